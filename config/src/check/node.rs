@@ -1,0 +1,400 @@
+//! One description, field by field: sizes, pace, permissions, rest, limits.
+
+use super::fields::Fields;
+use super::source::is_read_only;
+use super::stages::{StageDraft, sized};
+use crate::description::{NodeDescription, Pace, SourceDescription, StageDescription};
+use crate::format::Format;
+use crate::limits::{
+    BUDGET_US, BUDGET_US_MAX, MEMORY_KB, MEMORY_KB_MAX, NAME_BYTES_MAX, PERIOD_MS_MAX, TIMEOUT_MS,
+    TUPLE_BYTES_MAX,
+};
+use crate::problem::Problem;
+use crate::value::{Key, Value};
+use crate::vm::fingerprint::hash;
+use nix::unistd::{Group, User};
+use std::collections::BTreeMap;
+
+/// All fields of a description.
+pub(super) const FIELDS: [&str; 19] = [
+    "attributes",
+    "budget_us",
+    "converter",
+    "format",
+    "group",
+    "input_tuple_size",
+    "memory_kb",
+    "mode",
+    "on_event",
+    "output_tuple_size",
+    "owner",
+    "params",
+    "poll_ms",
+    "rest",
+    "share",
+    "src",
+    "timeout_ms",
+    "units",
+    "write_converter",
+];
+
+/// A state with the program takes about 50 KiB; with less than this no converter would ever run.
+const MEMORY_KB_MIN: u32 = 128;
+const PARAMS_MAX: usize = 256;
+const UNITS_BYTES_MAX: usize = 64;
+
+/// Sizes and what depends on them.
+struct Layout {
+    input: usize,
+    output: usize,
+    format: Option<Format>,
+}
+
+impl Fields<'_, '_> {
+    /// Reads and checks everything.
+    pub(super) fn description(&mut self) -> Result<NodeDescription, Problem> {
+        self.only("", self.table, &FIELDS)?;
+        let (source, input) = self.source()?;
+        let read = self.stages("converter")?.unwrap_or_default();
+        let write = self.stages("write_converter")?;
+        let layout = self.layout(input, &read, write.is_some())?;
+        let read_only = is_read_only(&source);
+        if write.is_some() && read_only {
+            return Err(self.problem(
+                "write_converter",
+                "write_converter makes no sense: the source cannot be written",
+            ));
+        }
+        let digests: Vec<u128> = read
+            .iter()
+            .chain(write.iter().flatten())
+            .map(|stage| stage.digest)
+            .collect();
+        let (input_size, output_size) = (layout.input, layout.output);
+        let converter = sized(read, input_size, output_size)
+            .map_err(|reason| self.problem("converter", reason))?;
+        let write_converter = match write {
+            None => None,
+            Some(stages) => {
+                let stages = sized(stages, output_size, input_size);
+                Some(stages.map_err(|reason| self.problem("write_converter", reason))?)
+            }
+        };
+        let mut node = NodeDescription {
+            path: self.path.clone(),
+            place: self.own_place(),
+            source,
+            input_tuple_size: input_size,
+            output_tuple_size: output_size,
+            converter,
+            write_converter,
+            format: layout.format,
+            units: self
+                .text("units", UNITS_BYTES_MAX)?
+                .unwrap_or_default()
+                .to_owned(),
+            pace: self.pace()?,
+            mode: self
+                .mode()?
+                .unwrap_or(if read_only { 0o444 } else { 0o644 }),
+            owner: self.owner()?,
+            group: self.owning_group()?,
+            rest: self.rest()?,
+            timeout_ms: self
+                .whole("timeout_ms", 1, PERIOD_MS_MAX)?
+                .unwrap_or(TIMEOUT_MS),
+            budget_us: self
+                .whole("budget_us", 1, BUDGET_US_MAX)?
+                .unwrap_or(BUDGET_US),
+            memory_kb: self
+                .whole("memory_kb", MEMORY_KB_MIN, MEMORY_KB_MAX)?
+                .unwrap_or(MEMORY_KB),
+            params: self.params()?,
+            attributes: Vec::new(),
+            share: self.boolean("share")?,
+            fingerprint: 0,
+        };
+        self.check_rest(&node, read_only)?;
+        node.fingerprint = fingerprint(&node, &digests);
+        Ok(node)
+    }
+
+    fn own_place(&self) -> crate::description::Place {
+        let keys: Vec<&str> = self.keys.iter().map(String::as_str).collect();
+        self.checker.texts.place(&keys)
+    }
+
+    /// Finds out both sizes.
+    fn layout(
+        &self,
+        input: Option<usize>,
+        read: &[StageDraft],
+        has_write: bool,
+    ) -> Result<Layout, Problem> {
+        let format = match self.text("format", 64 << 10)? {
+            None => None,
+            Some(text) => {
+                Some(Format::parse(text).map_err(|reason| self.problem("format", reason))?)
+            }
+        };
+        let format_size = format.as_ref().map(Format::size);
+        let given = match self.get("output_tuple_size") {
+            None => None,
+            Some(value) => Some(self.tuple_size("output_tuple_size", value)?),
+        };
+        if let (Some(size), Some(given)) = (format_size, given)
+            && size != given
+        {
+            let reason = format!("format has {size} bytes, but output_tuple_size is {given}");
+            return Err(self.problem("format", reason));
+        }
+        let said = read.last().and_then(|stage| stage.output_size);
+        let output = given.or(format_size).or(said);
+        if let Some(size) = output.filter(|size| *size > TUPLE_BYTES_MAX) {
+            return Err(self.problem(
+                "format",
+                format!("the tuple has {size} bytes, more than {TUPLE_BYTES_MAX}"),
+            ));
+        }
+        let unchanged = read.is_empty() && !has_write;
+        let (input, output) = match (input, output) {
+            (Some(input), Some(output)) => (input, output),
+            (Some(size), None) | (None, Some(size)) if unchanged => (size, size),
+            (None, _) => {
+                return Err(self.problem("input_tuple_size", "input_tuple_size is missing"));
+            }
+            (Some(_), None) => {
+                return Err(self.problem(
+                    "output_tuple_size",
+                    "output_tuple_size is missing; a format gives it as well",
+                ));
+            }
+        };
+        if read.is_empty() && input != output {
+            let field = if given.is_some() {
+                "output_tuple_size"
+            } else {
+                "format"
+            };
+            let reason = format!(
+                "without a converter the tuples before and after have the same size, not {input} and {output} bytes"
+            );
+            return Err(self.problem(field, reason));
+        }
+        Ok(Layout {
+            input,
+            output,
+            format,
+        })
+    }
+
+    fn pace(&self) -> Result<Pace, Problem> {
+        let period = self.whole("poll_ms", 1, PERIOD_MS_MAX)?;
+        let on_event = self.boolean("on_event")?.unwrap_or(false);
+        match (period, on_event) {
+            (Some(_), true) => {
+                Err(self.problem("on_event", "poll_ms and on_event exclude each other"))
+            }
+            (Some(period_ms), false) => Ok(Pace::Every { period_ms }),
+            (None, true) => Ok(Pace::OnEvent),
+            (None, false) => Ok(Pace::OnRead),
+        }
+    }
+
+    /// Permission bits: `'0644'`, or a number whose decimal digits are the octal ones, because `0644` is 644 in Lua.
+    fn mode(&self) -> Result<Option<u16>, Problem> {
+        let digits = match self.get("mode") {
+            None => return Ok(None),
+            Some(Value::Text(text)) => String::from_utf8_lossy(text).into_owned(),
+            Some(Value::Number(number)) => number.to_string(),
+            Some(value) => return Err(self.wrong_type("mode", "permissions like '0644'", value)),
+        };
+        let shown: String = digits
+            .chars()
+            .take(16)
+            .flat_map(char::escape_debug)
+            .collect();
+        let plain = !digits.is_empty()
+            && digits.len() <= 8
+            && digits.bytes().all(|byte| (b'0'..=b'7').contains(&byte));
+        let bits = u32::from_str_radix(&digits, 8).ok().filter(|_| plain);
+        match bits {
+            None => Err(self.problem(
+                "mode",
+                format!("mode must be octal digits like '0644', not '{shown}'"),
+            )),
+            Some(bits) if bits > 0o777 => {
+                Err(self.problem("mode", format!("mode '{shown}' is beyond 0777")))
+            }
+            Some(bits) => Ok(u16::try_from(bits).ok()),
+        }
+    }
+
+    fn owner(&self) -> Result<Option<u32>, Problem> {
+        self.account("owner", "user", |name| {
+            User::from_name(name)
+                .ok()
+                .flatten()
+                .map(|user| user.uid.as_raw())
+        })
+    }
+
+    fn owning_group(&self) -> Result<Option<u32>, Problem> {
+        self.account("group", "group", |name| {
+            Group::from_name(name)
+                .ok()
+                .flatten()
+                .map(|group| group.gid.as_raw())
+        })
+    }
+
+    /// A name or number of a user or group.
+    fn account(
+        &self,
+        field: &str,
+        what: &str,
+        find: impl Fn(&str) -> Option<u32>,
+    ) -> Result<Option<u32>, Problem> {
+        match self.get(field) {
+            None => Ok(None),
+            // The largest number means "nobody in particular" to chown and is no account.
+            Some(value @ Value::Number(_)) => {
+                self.whole_value(field, value, 0, u32::MAX - 1).map(Some)
+            }
+            Some(_) => {
+                let name = self.text(field, NAME_BYTES_MAX)?.unwrap_or_default();
+                let id = find(name)
+                    .ok_or_else(|| self.problem(field, format!("there is no {what} '{name}'")))?;
+                Ok(Some(id))
+            }
+        }
+    }
+
+    /// One number or a list of numbers.
+    fn rest(&self) -> Result<Option<Vec<f64>>, Problem> {
+        let Some(value) = self.get("rest") else {
+            return Ok(None);
+        };
+        let Some(table) = self.table_of(value) else {
+            return Ok(Some(vec![self.finite_value("rest", value)?]));
+        };
+        let list = table.list();
+        if list.is_empty() || list.len() != table.entries.len() {
+            return Err(self.problem("rest", "rest must be a number or a list of numbers"));
+        }
+        list.into_iter()
+            .map(|value| self.finite_value("rest", value))
+            .collect::<Result<_, _>>()
+            .map(Some)
+    }
+
+    /// The rest value can be written: the source takes writes, and the numbers fit the tuple that a program writes.
+    fn check_rest(&self, node: &NodeDescription, read_only: bool) -> Result<(), Problem> {
+        let Some(rest) = &node.rest else {
+            return Ok(());
+        };
+        if read_only {
+            return Err(self.problem("rest", "rest makes no sense: the source cannot be written"));
+        }
+        let size = node.written_tuple_size();
+        let format = node
+            .format
+            .clone()
+            .filter(|format| format.size() == size)
+            .unwrap_or_else(|| Format::bytes(size));
+        let encoded = format.encode_numbers(rest, &mut vec![0; size]);
+        encoded.map_err(|error| self.problem("rest", format!("rest: {error}")))
+    }
+
+    fn params(&self) -> Result<BTreeMap<String, f64>, Problem> {
+        let Some(value) = self.get("params") else {
+            return Ok(BTreeMap::new());
+        };
+        let Some(table) = self.table_of(value) else {
+            return Err(self.wrong_type("params", "a table of numbers", value));
+        };
+        if table.entries.len() > PARAMS_MAX {
+            return Err(self.problem(
+                "params",
+                format!("params has more than {PARAMS_MAX} numbers"),
+            ));
+        }
+        let mut params = BTreeMap::new();
+        for (key, value) in &table.entries {
+            let name = match key {
+                Key::Text(text) => std::str::from_utf8(text)
+                    .ok()
+                    .filter(|name| is_param_name(name)),
+                _ => None,
+            };
+            let Some(name) = name else {
+                return Err(self.problem(
+                    "params",
+                    "the name of a param is a word of letters, digits and '_'",
+                ));
+            };
+            let Value::Number(number) = value else {
+                return Err(self.problem(
+                    "params",
+                    format!(
+                        "params: '{name}' must be a number, not {}",
+                        value.describe()
+                    ),
+                ));
+            };
+            if !number.is_finite() {
+                return Err(self.problem(
+                    "params",
+                    format!("params: '{name}' must be finite, not {number}"),
+                ));
+            }
+            params.insert(name.to_owned(), *number);
+        }
+        Ok(params)
+    }
+}
+
+fn is_param_name(name: &str) -> bool {
+    !name.is_empty()
+        && name.len() <= 64
+        && name
+            .bytes()
+            .all(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
+}
+
+/// Digest of everything that makes the node behave as it does; not of where it stands in the text.
+fn fingerprint(node: &NodeDescription, digests: &[u128]) -> u128 {
+    fn plain(stages: &[StageDescription]) -> Vec<String> {
+        stages
+            .iter()
+            .map(|stage| {
+                format!(
+                    "{:?} {} {}",
+                    stage.kind, stage.input_size, stage.output_size
+                )
+            })
+            .collect()
+    }
+    let source: &SourceDescription = &node.source;
+    let stages = (
+        plain(&node.converter),
+        node.write_converter.as_deref().map(plain),
+        digests,
+    );
+    let sizes = (
+        node.input_tuple_size,
+        node.output_tuple_size,
+        &node.format,
+        &node.units,
+    );
+    let access = (
+        node.pace, node.mode, node.owner, node.group, &node.rest, node.share,
+    );
+    let limits = (
+        node.timeout_ms,
+        node.budget_us,
+        node.memory_kb,
+        &node.params,
+    );
+    hash(format!("{:?}", (&node.path, source, stages, sizes, access, limits)).as_bytes())
+}

@@ -1,0 +1,240 @@
+//! A configuration after all checks: plain typed values that the filesystem builds its tree from.
+//!
+//! Owns the meaning of each field of a node's description. Knows nothing of Lua and opens nothing.
+
+use crate::format::Format;
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::PathBuf;
+
+/// Everything that a configuration describes, in the order of the paths.
+#[derive(Clone, Debug, Default)]
+pub struct Config {
+    /// All nodes, sorted by `path`; groups exist only as parts of the paths.
+    pub nodes: Vec<NodeDescription>,
+}
+
+/// One node of the tree.
+#[derive(Clone, Debug)]
+pub struct NodeDescription {
+    /// Path below the mount point without a leading slash, for example `motors/M1`.
+    /// For an attribute, the node's path followed by the attribute's name.
+    pub path: String,
+    /// Where the description stands, for messages.
+    pub place: Place,
+    /// Where bytes come from and go to.
+    pub source: SourceDescription,
+    /// Bytes of one tuple before the converter; for several sources, their sum.
+    pub input_tuple_size: usize,
+    /// Bytes of one tuple after the converter.
+    pub output_tuple_size: usize,
+    /// Stages from device to program; empty means the bytes pass unchanged.
+    pub converter: Vec<StageDescription>,
+    /// Stages from program to device when they differ from `converter`; then a written tuple has
+    /// `output_tuple_size` bytes and the device gets `input_tuple_size`.
+    pub write_converter: Option<Vec<StageDescription>>,
+    /// Named fields of the converted tuple.
+    pub format: Option<Format>,
+    /// Physical unit as the user wrote it; empty when none was given.
+    pub units: String,
+    /// When samples are taken.
+    pub pace: Pace,
+    /// Permission bits (0o777 at most).
+    pub mode: u16,
+    /// Owner of the files; the mounting user when absent.
+    pub owner: Option<u32>,
+    /// Group of the files; the mounting user's when absent.
+    pub group: Option<u32>,
+    /// Values that bring the actuator to rest, written like the text of `value`.
+    pub rest: Option<Vec<f64>>,
+    /// How long a reader of the newest value waits for the first one.
+    pub timeout_ms: u32,
+    /// Time that one converter call may take.
+    pub budget_us: u32,
+    /// Memory that one open file's Lua state may take.
+    pub memory_kb: u32,
+    /// Numbers that a converter can read as `params` (Lua) or at open (native).
+    pub params: BTreeMap<String, f64>,
+    /// Further files of the node's directory; each has its own source and converter.
+    pub attributes: Vec<NodeDescription>,
+    /// `share` as written; absent means "by kind of source".
+    pub share: Option<bool>,
+    /// Equal for equal descriptions: plain fields, stripped bytecode, upvalues (attributes excluded, they have their own).
+    pub fingerprint: u128,
+}
+
+impl NodeDescription {
+    /// True if any stage of either direction is a Lua function.
+    pub fn uses_lua(&self) -> bool {
+        let lua =
+            |stages: &[StageDescription]| stages.iter().any(|s| matches!(s.kind, StageKind::Lua));
+        lua(&self.converter) || self.write_converter.as_deref().is_some_and(lua)
+    }
+
+    /// Bytes of one tuple that a program writes.
+    pub fn written_tuple_size(&self) -> usize {
+        if self.write_converter.is_some() {
+            self.output_tuple_size
+        } else {
+            self.input_tuple_size
+        }
+    }
+}
+
+/// A line of a configuration file.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Place {
+    /// File as the user named it.
+    pub file: String,
+    /// Line from 1.
+    pub line: u32,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.file, self.line)
+    }
+}
+
+/// When a node takes samples for its newest-value files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pace {
+    /// When somebody reads.
+    OnRead,
+    /// In the background, every so many milliseconds (at least 1).
+    Every {
+        /// Sampling period.
+        period_ms: u32,
+    },
+    /// In the background, whenever the source has data.
+    OnEvent,
+}
+
+/// What a node reads from and writes to.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SourceDescription {
+    /// A path of the system; what it is (regular file, character device, FIFO, terminal) is found out at open.
+    Path(PathBuf),
+    /// `attribute{ path }`: state, read afresh from offset 0, whatever the file's type says.
+    Attribute(PathBuf),
+    /// `fifo{ path }`: a named pipe, opened once and fanned out.
+    Fifo(PathBuf),
+    /// `evdev{ path }`: input events decoded and grouped up to SYN_REPORT.
+    Evdev(EvdevDescription),
+    /// `fake{ … }`: bytes that the configuration itself holds.
+    Fake(FakeDescription),
+    /// `replay{ … }`: bytes recorded with their timing.
+    Replay(ReplayDescription),
+    /// `faulty{ … }`: another source that fails on purpose.
+    Faulty(FaultyDescription),
+    /// `src = 'trikfs:other'`: the converted tuples of another node.
+    Node(String),
+    /// Several sources, one converter. The tuples stand one after the other in this order.
+    Several(Vec<PartDescription>),
+}
+
+/// One of several sources.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartDescription {
+    /// Key in the table, or its position from 1.
+    pub name: String,
+    /// The source.
+    pub source: SourceDescription,
+    /// Bytes of one tuple of this source.
+    pub tuple_size: usize,
+}
+
+/// How kernel input events are laid out in the bytes of an evdev node.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EvdevLayout {
+    /// As this kernel's `struct input_event` is for this process.
+    Native,
+    /// 16 bytes: 32-bit time fields.
+    Bits32,
+    /// 24 bytes: 64-bit time fields.
+    Bits64,
+}
+
+/// `evdev{ path = …, axes = { 'ABS_X', … } | codes… }`
+///
+/// Each tuple holds, for every listed code in order, its newest value as a little-endian i32; one tuple per SYN_REPORT.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EvdevDescription {
+    /// Device node, usually `/dev/input/eventN`; a FIFO or file of recorded events works as well.
+    pub path: PathBuf,
+    /// Watched (type, code) pairs, in the order of the tuple.
+    pub codes: Vec<(u16, u16)>,
+    /// Size of one event.
+    pub layout: EvdevLayout,
+}
+
+/// `fake{ data = '…', period_ms = 10, loop = true }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct FakeDescription {
+    /// Bytes to emit, a tuple at a time.
+    pub data: Vec<u8>,
+    /// Milliseconds between tuples; 0 makes the bytes state: one tuple per read, in turn.
+    pub period_ms: u32,
+    /// Start again at the end; otherwise end of file (a stream) or the last tuple for ever (state).
+    pub repeat: bool,
+}
+
+/// `replay{ path = 'run.rec', speed = 1, loop = false }`
+///
+/// Lines `TIME_MS HEX`, time from the start, not decreasing; `#` starts a comment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReplayDescription {
+    /// The recording, resolved like an include.
+    pub path: PathBuf,
+    /// Time factor, above 0.
+    pub speed: f64,
+    /// Start again at the end.
+    pub repeat: bool,
+}
+
+/// `faulty{ src = …, fail = 'EIO', from = 3, count = 1 }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct FaultyDescription {
+    /// What works in between.
+    pub source: Box<SourceDescription>,
+    /// Linux error number returned by the failing reads; 0 makes them end of file.
+    pub errno: i32,
+    /// First read that fails, from 1.
+    pub from: u32,
+    /// How many reads fail; 0 means all that follow.
+    pub count: u32,
+    /// Every read gives at most this many bytes; 0 means no limit.
+    pub short: usize,
+}
+
+/// One stage of a chain of converters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StageDescription {
+    /// Code of the stage.
+    pub kind: StageKind,
+    /// Bytes of the tuple it takes.
+    pub input_size: usize,
+    /// Bytes of the tuple it gives.
+    pub output_size: usize,
+    /// Where it stands, for messages.
+    pub place: Place,
+}
+
+/// The code of one stage.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StageKind {
+    /// A Lua function; found again in another state by node path, direction and position in the chain.
+    Lua,
+    /// A shared library.
+    Library {
+        /// Absolute path of a file that exists, or as written when `missing`.
+        path: PathBuf,
+        /// Converter inside a library of several; absent for a library with one.
+        name: Option<String>,
+    },
+    /// C source compiled on this machine.
+    InlineC {
+        /// The source text.
+        code: String,
+    },
+}

@@ -1,0 +1,23 @@
+//! The Lua configuration of a robot's tree: sandbox, checks, typed result.
+//!
+//! In reading order: `load` runs and checks a configuration, `description` is what comes out, `program` gives the
+//! private Lua states in which converters run, `format` turns tuples into text and back, `problem` says what is wrong
+//! and where, `limits` holds every limit, `watchdog` ends what lasts too long.
+//! Knows nothing of files that are mounted, and opens no device.
+
+mod check;
+pub mod description;
+mod evdev_codes;
+pub mod format;
+pub mod fuzz;
+pub mod limits;
+mod lines;
+pub mod load;
+pub mod nearest;
+pub mod problem;
+pub mod program;
+mod search;
+mod texts;
+mod value;
+mod vm;
+pub mod watchdog;

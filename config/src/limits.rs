@@ -1,0 +1,43 @@
+//! Every limit of a configuration and of what it may ask for, with the defaults.
+//!
+//! Owns the numbers only; the code that enforces each one names it from here.
+
+/// Bytes of one configuration file, and of everything written to the `config` node at once.
+pub const CONFIG_BYTES_MAX: usize = 1 << 20;
+/// Bytes of one tuple, before or after a converter.
+pub const TUPLE_BYTES_MAX: usize = 64 << 10;
+/// Nodes and attributes in one configuration.
+pub const NODES_MAX: usize = 4096;
+/// Depth of nested groups.
+pub const GROUP_DEPTH_MAX: usize = 16;
+/// Bytes of one file or group name, as in the kernel.
+pub const NAME_BYTES_MAX: usize = 255;
+/// Fields in one `format`.
+pub const FIELDS_MAX: usize = 1024;
+/// Stages in one chain of converters.
+pub const CHAIN_MAX: usize = 16;
+/// Sources of one node.
+pub const SOURCES_MAX: usize = 64;
+/// Files that one configuration may `include`, each at most [`CONFIG_BYTES_MAX`].
+pub const INCLUDES_MAX: usize = 64;
+/// Milliseconds that running the configuration program may take.
+pub const LOAD_TIME_MS: u32 = 5_000;
+/// Bytes of Lua memory while the configuration program runs for the first time.
+pub const LOAD_MEMORY_BYTES: usize = 64 << 20;
+/// Bytes of one `trikfs_log` line; the rest is cut.
+pub const LOG_LINE_BYTES_MAX: usize = 1024;
+/// Steps of one pattern match before it is refused.
+pub const PATTERN_STEPS_MAX: u32 = 1_000_000;
+
+/// `timeout_ms` when a description has none.
+pub const TIMEOUT_MS: u32 = 1_000;
+/// Largest `timeout_ms` and `poll_ms`: one hour.
+pub const PERIOD_MS_MAX: u32 = 3_600_000;
+/// `budget_us` when a description has none.
+pub const BUDGET_US: u32 = 10_000;
+/// Largest `budget_us`: ten seconds.
+pub const BUDGET_US_MAX: u32 = 10_000_000;
+/// `memory_kb` when a description has none.
+pub const MEMORY_KB: u32 = 1_024;
+/// Largest `memory_kb`: 64 MiB.
+pub const MEMORY_KB_MAX: u32 = 64 << 10;

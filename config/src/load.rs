@@ -1,0 +1,199 @@
+//! From the bytes of a configuration file to a checked `Config` and the program behind it.
+//!
+//! Owns the order of the steps and the limits of the first run. A failure at any step leaves nothing behind.
+
+use crate::check::check;
+use crate::description::Config;
+use crate::limits::{CONFIG_BYTES_MAX, INCLUDES_MAX, LOAD_MEMORY_BYTES, LOAD_TIME_MS};
+use crate::problem::Problem;
+use crate::program::Program;
+use crate::search::Search;
+use crate::texts::Texts;
+use crate::vm::bytecode::{Code, compile};
+use crate::vm::extract::extract;
+use crate::vm::fingerprint::{digest_functions, hash, keep_pristine};
+use crate::vm::state::{Include, LogSink, State};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Log lines of one load that are kept.
+const LOG_LINES_MAX: usize = 1000;
+
+/// Where a configuration finds other files.
+#[derive(Clone, Debug, Default)]
+pub struct Loader {
+    /// Folders for `include` and for recordings, first match wins.
+    pub include_dirs: Vec<PathBuf>,
+    /// Folders for converter libraries, after the configuration file's own.
+    pub library_dirs: Vec<PathBuf>,
+}
+
+/// A good configuration.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// All nodes, checked.
+    pub config: Config,
+    /// Source of the private Lua states.
+    pub program: Arc<Program>,
+    /// What is suspicious but allowed.
+    pub warnings: Vec<Problem>,
+    /// Lines that the program logged while it ran, at most a thousand.
+    pub log: Vec<String>,
+}
+
+impl Loader {
+    /// Runs and checks a configuration. `name` stands in messages; `base_dir` is the folder of the file, where libraries
+    /// are looked for first, or None if there is no file.
+    ///
+    /// Takes at most about `limits::LOAD_TIME_MS` and `limits::LOAD_MEMORY_BYTES`. Opens included files, nothing else.
+    ///
+    /// # Errors
+    /// The first problem found.
+    pub fn load(
+        &self,
+        name: &str,
+        base_dir: Option<&Path>,
+        source: &[u8],
+    ) -> Result<Loaded, Problem> {
+        self.load_within(name, base_dir, source, LOAD_TIME_MS, LOAD_MEMORY_BYTES)
+    }
+
+    /// As [`load`](Self::load) with other limits.
+    pub(crate) fn load_within(
+        &self,
+        name: &str,
+        base_dir: Option<&Path>,
+        source: &[u8],
+        time_ms: u32,
+        memory_bytes: usize,
+    ) -> Result<Loaded, Problem> {
+        if source.len() > CONFIG_BYTES_MAX {
+            return Err(Problem::new(
+                name,
+                0,
+                format!("the configuration has more than {CONFIG_BYTES_MAX} bytes"),
+            ));
+        }
+        let search = Search {
+            base_dir: base_dir.map(Path::to_path_buf),
+            include_dirs: self.include_dirs.clone(),
+            library_dirs: self.library_dirs.clone(),
+        };
+        let run = Arc::new(Mutex::new(Run {
+            texts: Texts::default(),
+            search,
+            files: BTreeMap::new(),
+            salt: hash(source),
+            log: Vec::new(),
+        }));
+        // The lock is taken for a moment each time: callbacks of the state take it, too.
+        let problem = |message: String| locked(&run).texts.problem(&message);
+        let compiled = locked(&run).compile(name, source);
+        let code = compiled.map_err(problem)?;
+        let mut state = new_state(&run, memory_bytes).map_err(problem)?;
+        let ended = state
+            .run(&code, time_ms.saturating_mul(1_000))
+            .and_then(|()| state.keep_tree());
+        ended.map_err(problem)?;
+        let mut values = extract(&state).map_err(|refusal| {
+            let mut keys = vec!["trikfs"];
+            keys.extend(refusal.path.iter().map(String::as_str));
+            let place = locked(&run).texts.place(&keys);
+            let path = if refusal.path.is_empty() {
+                "trikfs".to_owned()
+            } else {
+                refusal.path.join("/")
+            };
+            Problem::new(
+                place.file,
+                place.line,
+                format!("{path}: {}", refusal.reason),
+            )
+        })?;
+        let salt = locked(&run).salt;
+        digest_functions(&mut state, &mut values, salt);
+        drop(state);
+        let mut run = locked(&run);
+        let (config, warnings) = check(&values, &run.texts, &run.search)?;
+        Ok(Loaded {
+            config,
+            program: Arc::new(Program::new(code, std::mem::take(&mut run.files))),
+            warnings,
+            log: std::mem::take(&mut run.log),
+        })
+    }
+}
+
+/// What the first run of a program gathers. Shared with the callbacks of its state.
+struct Run {
+    texts: Texts,
+    search: Search,
+    files: BTreeMap<Vec<u8>, Code>,
+    /// Changes with every change of any of the texts.
+    salt: u128,
+    log: Vec<String>,
+}
+
+fn locked(run: &Mutex<Run>) -> MutexGuard<'_, Run> {
+    run.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn new_state(run: &Arc<Mutex<Run>>, memory_bytes: usize) -> Result<State, String> {
+    let logged = Arc::clone(run);
+    let log: LogSink = Arc::new(move |line| {
+        let mut run = locked(&logged);
+        if run.log.len() < LOG_LINES_MAX {
+            run.log.push(line.to_owned());
+        }
+    });
+    let including = Arc::clone(run);
+    let include: Include = Box::new(move |name| locked(&including).include(name));
+    let state = State::new(memory_bytes, Some(log), Some(include))?;
+    keep_pristine(&state)?;
+    Ok(state)
+}
+
+impl Run {
+    /// Compiles a file after the checks that need no parser.
+    fn compile(&mut self, name: &str, source: &[u8]) -> Result<Code, String> {
+        let chunk = self.texts.add(name, source);
+        if source.first() == Some(&0x1b) {
+            return Err(format!(
+                "{}:1: bytecode is not loaded, only text",
+                &chunk[1..]
+            ));
+        }
+        if let Some(at) = source.iter().position(|byte| *byte == 0) {
+            let line = source
+                .iter()
+                .take(at)
+                .filter(|byte| **byte == b'\n')
+                .count()
+                + 1;
+            return Err(format!(
+                "{}:{line}: the file contains a zero byte and is no text",
+                &chunk[1..]
+            ));
+        }
+        compile(&chunk, source, false)
+    }
+
+    /// Finds and compiles an included file; each is read once.
+    fn include(&mut self, name: &[u8]) -> Result<Code, String> {
+        if let Some(code) = self.files.get(name) {
+            return Ok(Arc::clone(code));
+        }
+        if self.files.len() == INCLUDES_MAX {
+            return Err(format!("more than {INCLUDES_MAX} files are included"));
+        }
+        let source = self.search.include(name)?;
+        self.salt ^= hash(&source).rotate_left(1);
+        let code = self.compile(&String::from_utf8_lossy(name), &source)?;
+        self.files.insert(name.to_vec(), Arc::clone(&code));
+        Ok(code)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,297 @@
+//! Where a configuration finds its files: included programs, recordings, converter libraries.
+//!
+//! Owns the rule that nothing outside the search path can be included. Reads files, never device nodes.
+
+use crate::limits::CONFIG_BYTES_MAX;
+use std::fs::{File, OpenOptions};
+use std::io::Read;
+use std::os::unix::ffi::OsStrExt;
+use std::os::unix::fs::OpenOptionsExt;
+use std::path::{Component, Path, PathBuf};
+
+/// The folders of one load.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Search {
+    /// Folder of the configuration file; None for one that came without a file.
+    pub(crate) base_dir: Option<PathBuf>,
+    /// Folders for `include`.
+    pub(crate) include_dirs: Vec<PathBuf>,
+    /// Folders for libraries, after `base_dir`.
+    pub(crate) library_dirs: Vec<PathBuf>,
+}
+
+impl Search {
+    /// Reads an included file: `name`, or `name.lua`, in the first folder that has it.
+    ///
+    /// # Errors
+    /// A name that leads outside, a file that is none, too large or unreadable, or nothing found.
+    pub(crate) fn include(&self, name: &[u8]) -> Result<Vec<u8>, String> {
+        let path = self.inside(name, &["", ".lua"])?;
+        let shown = String::from_utf8_lossy(name);
+        let mut source = Vec::new();
+        let file =
+            open_regular(&path).map_err(|reason| format!("'{shown}' cannot be read: {reason}"))?;
+        let limit = u64::try_from(CONFIG_BYTES_MAX).unwrap_or(u64::MAX) + 1;
+        file.take(limit)
+            .read_to_end(&mut source)
+            .map_err(|error| format!("'{shown}' cannot be read: {error}"))?;
+        if source.len() > CONFIG_BYTES_MAX {
+            return Err(format!("'{shown}' has more than {CONFIG_BYTES_MAX} bytes"));
+        }
+        Ok(source)
+    }
+
+    /// The path of a recording: an absolute one as it is, any other like an include.
+    ///
+    /// # Errors
+    /// As `include`.
+    pub(crate) fn recording(&self, name: &[u8]) -> Result<PathBuf, String> {
+        if name.first() == Some(&b'/') {
+            return Ok(path_of(name));
+        }
+        self.inside(name, &[""])
+    }
+
+    /// The absolute path of a library: beside the configuration, then in the library folders; never in the working
+    /// directory.
+    ///
+    /// # Errors
+    /// Nothing found, with the folders that were looked at.
+    pub(crate) fn library(&self, name: &[u8]) -> Result<PathBuf, String> {
+        let shown = String::from_utf8_lossy(name);
+        let wanted = path_of(name);
+        let folders: Vec<&PathBuf> = self.base_dir.iter().chain(&self.library_dirs).collect();
+        let candidates: Vec<PathBuf> = if wanted.is_absolute() {
+            vec![wanted]
+        } else {
+            folders.iter().map(|folder| folder.join(&wanted)).collect()
+        };
+        for path in &candidates {
+            if path.is_file() {
+                return std::path::absolute(path)
+                    .map_err(|error| format!("library '{shown}': {error}"));
+            }
+        }
+        if name.first() == Some(&b'/') {
+            return Err(format!("library '{shown}' does not exist"));
+        }
+        let folders: Vec<String> = folders
+            .iter()
+            .map(|folder| folder.display().to_string())
+            .collect();
+        Err(format!(
+            "library '{shown}' was not found in {}",
+            list(&folders)
+        ))
+    }
+
+    /// A file inside one of the include folders, with one of the endings.
+    fn inside(&self, name: &[u8], endings: &[&str]) -> Result<PathBuf, String> {
+        let shown = String::from_utf8_lossy(name);
+        let wanted = path_of(name);
+        let plain = wanted
+            .components()
+            .all(|part| matches!(part, Component::Normal(_)));
+        if name.is_empty() || name.contains(&0) || !plain {
+            return Err(format!("'{shown}' leads outside the search path"));
+        }
+        for folder in &self.include_dirs {
+            for ending in endings {
+                let mut file = name.to_vec();
+                file.extend_from_slice(ending.as_bytes());
+                let path = folder.join(path_of(&file));
+                let (Ok(real), Ok(root)) = (path.canonicalize(), folder.canonicalize()) else {
+                    continue;
+                };
+                if !real.starts_with(&root) {
+                    return Err(format!(
+                        "'{shown}' is a link that leads outside the search path"
+                    ));
+                }
+                if real.is_file() {
+                    return Ok(real);
+                }
+            }
+        }
+        let folders: Vec<String> = self
+            .include_dirs
+            .iter()
+            .map(|folder| folder.display().to_string())
+            .collect();
+        Err(format!("'{shown}' was not found in {}", list(&folders)))
+    }
+}
+
+/// A path of any bytes.
+pub(crate) fn path_of(bytes: &[u8]) -> PathBuf {
+    PathBuf::from(std::ffi::OsStr::from_bytes(bytes))
+}
+
+/// Opens a regular file without waiting, whatever has taken its place since it was looked at.
+fn open_regular(path: &Path) -> Result<File, String> {
+    let flags = libc::O_NONBLOCK | libc::O_CLOEXEC | libc::O_NOCTTY;
+    let file = OpenOptions::new()
+        .read(true)
+        .custom_flags(flags)
+        .open(path)
+        .map_err(|error| error.to_string())?;
+    match file.metadata() {
+        Ok(data) if data.is_file() => Ok(file),
+        Ok(_) => Err("not a regular file".into()),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+fn list(folders: &[String]) -> String {
+    if folders.is_empty() {
+        "any folder: no search path is set".into()
+    } else {
+        folders.join(", ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+    use std::os::unix::fs::symlink;
+
+    /// A folder of this test, removed with the value.
+    struct Folder(PathBuf);
+
+    impl Folder {
+        fn new(name: &str) -> Self {
+            let path =
+                std::env::temp_dir().join(format!("trikfs-search-{name}-{}", std::process::id()));
+            let _ = fs::remove_dir_all(&path);
+            fs::create_dir_all(path.join("inside")).unwrap();
+            Self(path)
+        }
+
+        fn search(&self) -> Search {
+            Search {
+                base_dir: Some(self.0.join("base")),
+                include_dirs: vec![self.0.join("nowhere"), self.0.join("inside")],
+                library_dirs: vec![self.0.join("inside")],
+            }
+        }
+    }
+
+    impl Drop for Folder {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    #[test]
+    fn a_file_is_found_with_or_without_its_ending() {
+        let folder = Folder::new("found");
+        fs::write(folder.0.join("inside/board.lua"), "x = 1").unwrap();
+        assert_eq!(folder.search().include(b"board"), Ok(b"x = 1".to_vec()));
+        assert_eq!(folder.search().include(b"board.lua"), Ok(b"x = 1".to_vec()));
+        let error = folder.search().include(b"bord").unwrap_err();
+        assert!(
+            error.starts_with("'bord' was not found in ") && error.ends_with("/inside"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn nothing_outside_the_search_path_is_included() {
+        let folder = Folder::new("outside");
+        fs::write(folder.0.join("secret.lua"), "x = 1").unwrap();
+        symlink(
+            folder.0.join("secret.lua"),
+            folder.0.join("inside/link.lua"),
+        )
+        .unwrap();
+        fs::write(folder.0.join("inside/own.lua"), "x = 2").unwrap();
+        symlink("own.lua", folder.0.join("inside/alias.lua")).unwrap();
+        let refused = |name: &str| folder.search().include(name.as_bytes()).unwrap_err();
+        assert_eq!(
+            refused("../secret.lua"),
+            "'../secret.lua' leads outside the search path"
+        );
+        assert_eq!(
+            refused("x/../../secret"),
+            "'x/../../secret' leads outside the search path"
+        );
+        assert_eq!(
+            refused("/etc/passwd"),
+            "'/etc/passwd' leads outside the search path"
+        );
+        assert_eq!(refused("a\0b"), "'a\0b' leads outside the search path");
+        assert_eq!(refused(""), "'' leads outside the search path");
+        assert_eq!(refused("."), "'.' leads outside the search path");
+        assert_eq!(
+            refused("link"),
+            "'link' is a link that leads outside the search path"
+        );
+        assert_eq!(folder.search().include(b"alias"), Ok(b"x = 2".to_vec()));
+        assert_eq!(
+            folder.search().recording(b"/tmp/run.rec"),
+            Ok("/tmp/run.rec".into())
+        );
+    }
+
+    #[test]
+    fn what_is_no_file_or_too_large_is_refused() {
+        let folder = Folder::new("kinds");
+        fs::create_dir(folder.0.join("inside/folder.lua")).unwrap();
+        nix::unistd::mkfifo(
+            &folder.0.join("inside/pipe.lua"),
+            nix::sys::stat::Mode::S_IRWXU,
+        )
+        .unwrap();
+        fs::write(
+            folder.0.join("inside/large.lua"),
+            vec![b' '; CONFIG_BYTES_MAX + 1],
+        )
+        .unwrap();
+        assert!(
+            folder
+                .search()
+                .include(b"folder")
+                .unwrap_err()
+                .starts_with("'folder' was not found in ")
+        );
+        assert!(
+            folder
+                .search()
+                .include(b"pipe")
+                .unwrap_err()
+                .starts_with("'pipe' was not found in ")
+        );
+        assert_eq!(
+            folder.search().include(b"large").unwrap_err(),
+            "'large' has more than 1048576 bytes"
+        );
+    }
+
+    #[test]
+    fn a_library_is_found_beside_the_file_and_then_in_the_library_folder() {
+        let folder = Folder::new("library");
+        fs::create_dir_all(folder.0.join("base")).unwrap();
+        fs::write(folder.0.join("inside/x.so"), "1").unwrap();
+        assert_eq!(
+            folder.search().library(b"x.so"),
+            Ok(folder.0.join("inside/x.so"))
+        );
+        fs::write(folder.0.join("base/x.so"), "2").unwrap();
+        assert_eq!(
+            folder.search().library(b"x.so"),
+            Ok(folder.0.join("base/x.so"))
+        );
+        assert_eq!(
+            folder.search().library(b"/nowhere/x.so"),
+            Err("library '/nowhere/x.so' does not exist".into())
+        );
+        assert!(
+            folder
+                .search()
+                .library(b"y.so")
+                .unwrap_err()
+                .starts_with("library 'y.so' was not found in ")
+        );
+    }
+}

@@ -1,0 +1,61 @@
+//! Waiting for what must come, and saying by name what cannot be tried here.
+//!
+//! Owns the two time limits of the suite. A condition is looked at again and again: nothing waits for a fixed time.
+
+use std::time::{Duration, Instant};
+
+/// How long anything that must happen may take before the test fails. Generous: two processors serve all tests.
+pub const SOON: Duration = Duration::from_secs(20);
+/// How long a whole mount may live before everything that hangs on it is cut off.
+pub const LIFE: Duration = Duration::from_secs(100);
+
+/// Looks until the condition holds.
+///
+/// # Panics
+/// With `what`, when [`SOON`] is over.
+pub fn eventually(what: &str, mut holds: impl FnMut() -> bool) {
+    let deadline = Instant::now() + SOON;
+    let mut pause = Duration::from_micros(200);
+    while !holds() {
+        assert!(Instant::now() < deadline, "not within {SOON:?}: {what}");
+        std::thread::sleep(pause);
+        pause = (pause * 2).min(Duration::from_millis(20));
+    }
+}
+
+/// Name of the running test.
+pub fn test_name() -> String {
+    std::thread::current().name().unwrap_or("main").to_owned()
+}
+
+/// Says that the running test is skipped, and why. A limit of the machine: with `TRIK_REQUIRE_FUSE=1` it is a failure.
+///
+/// # Panics
+/// With `TRIK_REQUIRE_FUSE=1`.
+pub fn skip(why: &str) {
+    let name = test_name();
+    assert!(
+        std::env::var_os("TRIK_REQUIRE_FUSE").is_none_or(|value| value != "1"),
+        "{name} would be skipped: {why}"
+    );
+    note_skip(why);
+}
+
+/// Says that the running test is skipped for a reason that no machine can change.
+pub fn note_skip(why: &str) {
+    println!("skipped: {}: {why}", test_name());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_holds_at_the_third_look_is_waited_for() {
+        let mut looks = 0;
+        eventually("three looks", || {
+            looks += 1;
+            looks == 3
+        });
+    }
+}

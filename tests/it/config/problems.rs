@@ -1,0 +1,170 @@
+//! `trikfs check`: mistakes are told with file, line, and what was probably meant.
+
+use crate::trikfs;
+use harness::Board;
+
+/// The first line of the refusal, without the name of the file.
+fn problem(config: &str) -> String {
+    let board = Board::new();
+    board.file("robot.lua", config);
+    let output = trikfs(&board, &["check", "--cache", "cache", "robot.lua"], b"");
+    assert_eq!(
+        output.code(),
+        1,
+        "{config}\n{}{}",
+        output.stdout,
+        output.stderr
+    );
+    assert_eq!(output.stdout, "", "{config}");
+    let line = output.stderr.lines().next().unwrap_or_default();
+    line.strip_prefix("robot.lua:")
+        .unwrap_or_else(|| panic!("{config}\n{line}"))
+        .to_owned()
+}
+
+#[test]
+fn a_good_file_is_said_to_be_good_and_missing_devices_are_warnings() {
+    let board = Board::new();
+    board.file(
+        "robot.lua",
+        "trikfs = {\n  a = { src = '/absent/device', input_tuple_size = 1 },\n}",
+    );
+    let output = trikfs(&board, &["check", "robot.lua"], b"");
+    assert_eq!(
+        (output.code(), output.stdout.as_str()),
+        (0, "robot.lua: good\n")
+    );
+    assert_eq!(
+        output.stderr,
+        "robot.lua:2: warning: node a: /absent/device does not exist; opening it will give ENODEV\n"
+    );
+}
+
+#[test]
+fn the_shipped_configurations_are_good() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../config/lua");
+    let board = Board::new();
+    let hello = format!("{folder}/hello.lua");
+    let output = trikfs(&board, &["check", "--cache", "cache", &hello], b"");
+    assert_eq!(output.code(), 0, "{}", output.stderr);
+    assert!(
+        output.stderr.lines().all(|line| line.contains("warning: ")),
+        "{}",
+        output.stderr
+    );
+}
+
+#[test]
+fn mistakes_are_told_with_their_line_and_the_nearest_right_word() {
+    let zero = "src = '/dev/zero', input_tuple_size = 1";
+    let node = |rest: &str| format!("trikfs = {{\n  a = {{ {zero}, {rest} }},\n}}");
+    let cases = [
+        ("trikfs = {\n a = 1 1 }".to_owned(), "2: ", ""),
+        ("\n\nlocal x = y.z".to_owned(), "3: ", "y"),
+        ("error('mine', 0)".to_owned(), "", "mine"),
+        ("trikfs = nil".to_owned(), "", "trikfs"),
+        ("trikfs = { 1, 2 }".to_owned(), "", ""),
+        (node("convertr = id_create(1)"), "2: ", "converter"),
+        (node("Units = 'mm'"), "2: ", "units"),
+        (node("poll_ms = 0"), "2: ", "poll_ms"),
+        (node("poll_ms = 1.5"), "2: ", "poll_ms"),
+        (node("poll_ms = 3600001"), "2: ", "3600000"),
+        (node("poll_ms = 5, on_event = true"), "2: ", "on_event"),
+        (node("timeout_ms = 0"), "2: ", "timeout_ms"),
+        (node("budget_us = -1"), "2: ", "budget_us"),
+        (node("memory_kb = 0 / 0"), "2: ", "memory_kb"),
+        (node("mode = 4096"), "2: ", "mode"),
+        (node("owner = 'nobody-like-this'"), "2: ", "nobody-like-this"),
+        (node("format = 'i16 x'"), "2: ", "format"),
+        (node("format = 'u9 x'"), "2: ", "u9"),
+        (node("format = 'u8'"), "2: ", "format"),
+        (node("units = 5"), "2: ", "units"),
+        (node("units = 'a\\nb'"), "2: ", "units"),
+        (node("rest = { 1, 2 }"), "2: ", "rest"),
+        (node("params = { k = 'x' }"), "2: ", "params"),
+        (node("share = 1"), "2: ", "share"),
+        (node("attributes = { b = 5 }"), "2: ", "b"),
+        (node("b = { src = '/dev/zero', input_tuple_size = 1 }"), "2: ", "b"),
+        (node("converter = 5"), "2: ", "converter"),
+        (node("converter = {}"), "2: ", "converter"),
+        (node("converter = 'absent.so'"), "2: ", "absent.so"),
+        ("trikfs = {\n  a = { src = 5, input_tuple_size = 1 } }".to_owned(), "2: ", "src"),
+        ("trikfs = {\n  a = { src = '/dev/zero' } }".to_owned(), "2: ", "input_tuple_size"),
+        ("trikfs = {\n  a = { src = '/dev/zero', input_tuple_size = 1, output_tuple_size = 2 } }".to_owned(), "2: ", "tuple_size"),
+        ("trikfs = {\n  log = { src = '/dev/zero', input_tuple_size = 1 } }".to_owned(), "2: ", "log"),
+        ("trikfs = {\n  a = { src = fake{ data = '' }, input_tuple_size = 1 } }".to_owned(), "", "data"),
+        ("trikfs = {\n  a = { src = evdev{ path = '/dev/input/event0', axes = { 'ABS_Q' } } } }".to_owned(), "", "ABS_Q"),
+        ("trikfs = {\n  a = { src = faulty{ src = '/dev/zero', fail = 'EWHAT' }, input_tuple_size = 1 } }".to_owned(), "", "EWHAT"),
+    ];
+    for (config, place, word) in cases {
+        let line = problem(&config);
+        assert!(
+            line.starts_with(place) && line.contains(word),
+            "{config}\n{line}"
+        );
+        let reason = line.trim_start_matches(|c: char| c.is_ascii_digit() || c == ':' || c == ' ');
+        assert!(
+            !reason.is_empty() && !reason.ends_with('.'),
+            "{config}\n{line}"
+        );
+    }
+}
+
+#[test]
+fn files_that_cannot_be_read_are_named() {
+    let board = Board::new();
+    for (name, words) in [("absent.lua", "absent.lua: "), (".", ".: ")] {
+        let output = trikfs(&board, &["check", name], b"");
+        assert_eq!(output.code(), 1);
+        assert!(
+            output.stderr.starts_with(words) && output.stderr.lines().count() == 1,
+            "{}",
+            output.stderr
+        );
+    }
+    board.file("long.lua", vec![b' '; (1 << 20) + 1]);
+    let output = trikfs(&board, &["check", "long.lua"], b"");
+    assert_eq!(output.code(), 1);
+    assert!(output.stderr.contains("1048576"), "{}", output.stderr);
+}
+
+#[test]
+fn the_command_line_explains_itself() {
+    let board = Board::new();
+    let help = trikfs(&board, &["--help"], b"").good();
+    for word in ["mount", "check", "convert", "umount", "edit", "Exit status"] {
+        assert!(help.contains(word), "{word} is missing in:\n{help}");
+    }
+    assert!(
+        trikfs(&board, &["--version"], b"")
+            .good()
+            .starts_with("trikfs 0.")
+    );
+    let mount = trikfs(&board, &["mount", "--help"], b"").good();
+    for option in [
+        "--config",
+        "--allow-other",
+        "--background",
+        "--config-group",
+        "--include",
+        "--cache",
+        "--transport",
+    ] {
+        assert!(mount.contains(option), "{option} is missing in:\n{mount}");
+    }
+    for arguments in [
+        &["nonsense"][..],
+        &["check"],
+        &["mount"],
+        &["convert", "x"],
+        &[],
+    ] {
+        assert_eq!(trikfs(&board, arguments, b"").code(), 2, "{arguments:?}");
+    }
+    assert!(
+        trikfs(&board, &["completions", "bash"], b"")
+            .good()
+            .contains("trikfs")
+    );
+    assert!(trikfs(&board, &["man"], b"").good().starts_with(".ie"));
+}

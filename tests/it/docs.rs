@@ -1,0 +1,203 @@
+//! The documents: every marked example is run, every table that can be compared is.
+//!
+//! Marks are the words behind a fence: `lua config NAME` loads, `c converter NAME` compiles without a warning,
+//! `sh session` is a transcript: lines with `$ ` are run in a mounted hello.lua, the others are what they print.
+
+use crate::{mount_on, trikfs};
+use harness::documents::{Example, examples};
+use harness::{Board, Mount};
+use std::path::{Path, PathBuf};
+
+fn root() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+}
+
+/// All documents of the project.
+pub fn documents() -> Vec<PathBuf> {
+    let mut found: Vec<_> = [
+        "README.md",
+        "ARCHITECTURE.md",
+        "CONTRIBUTING.md",
+        "CHANGELOG.md",
+    ]
+    .iter()
+    .map(|name| root().join(name))
+    .collect();
+    let mut folders = vec![root().join("docs")];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "md") {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+/// Examples whose words begin with `mark`, with the place for messages.
+fn marked(mark: &str) -> Vec<(String, Example)> {
+    let mut found = Vec::new();
+    for path in documents() {
+        let text = std::fs::read_to_string(&path)
+            .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        for example in examples(&text) {
+            if example.info.starts_with(mark) {
+                found.push((format!("{}:{}", path.display(), example.line), example));
+            }
+        }
+    }
+    assert!(!found.is_empty(), "no example is marked '{mark}'");
+    found
+}
+
+#[test]
+fn every_configuration_in_the_documents_is_good() {
+    for (place, example) in marked("lua config ") {
+        let board = Board::new();
+        let name = example.info.trim_start_matches("lua config ");
+        // Libraries that a document builds on the way: any that converts will do.
+        for library in ["libbattery.so", "libbattery_rust.so", "libmine.so"] {
+            if example.text.contains(library) {
+                board.library(library, "int converter(int in_s, char *in, int out_s, char *out) { (void)in_s; (void)in; (void)out_s; (void)out; return 0; }");
+            }
+        }
+        board.file("robot.lua", &example.text);
+        let output = trikfs(&board, &["check", "--cache", "cache", "robot.lua"], b"");
+        assert_eq!(output.code(), 0, "{place}: {name}\n{}", output.stderr);
+        for warning in output.stderr.lines() {
+            assert!(
+                warning.contains(" does not exist; opening it will give ENODEV"),
+                "{place}: {warning}"
+            );
+        }
+    }
+}
+
+#[test]
+fn every_c_converter_in_the_documents_compiles_without_a_warning_and_loads() {
+    for (place, example) in marked("c converter ") {
+        let board = Board::new();
+        board.file("x.c", &example.text);
+        let mut command = std::process::Command::new("cc");
+        let include = root().join("converter/include");
+        command
+            .args([
+                "-std=c99", "-Wall", "-Wextra", "-Werror", "-O2", "-fPIC", "-shared", "-o",
+                "libx.so", "x.c", "-I",
+            ])
+            .arg(include);
+        harness::run(command.current_dir(board.dir()), b"").good();
+        board.file("robot.lua", "trikfs = { n = { src = '/dev/zero', input_tuple_size = 2, output_tuple_size = 4, converter = 'libx.so' } }");
+        let output = trikfs(&board, &["check", "--cache", "cache", "robot.lua"], b"");
+        assert_eq!(output.code(), 0, "{place}\n{}", output.stderr);
+    }
+}
+
+/// Runs one transcript and compares what is printed, line by line.
+fn replay(m: &Mount, place: &str, example: &Example) {
+    let mut script = String::new();
+    let mut expected = String::new();
+    let mut outputs = Vec::new();
+    for line in example.text.lines() {
+        if let Some(command) = line.strip_prefix("$ ") {
+            outputs.push((std::mem::take(&mut script), std::mem::take(&mut expected)));
+            script = command.to_owned();
+        } else {
+            expected.push_str(line);
+            expected.push('\n');
+        }
+    }
+    outputs.push((script, expected));
+    for (script, expected) in outputs.into_iter().filter(|(script, _)| !script.is_empty()) {
+        let output = m.try_sh(&format!("exec 2>&1\n{script}"));
+        let place = format!("{place}: $ {script}");
+        assert_eq!(output.stdout.trim_end(), expected.trim_end(), "{place}");
+    }
+}
+
+#[test]
+fn every_transcript_in_the_documents_is_what_really_happens() {
+    let hello = std::fs::read_to_string(root().join("config/lua/hello.lua")).unwrap();
+    let Some(mut m) = mount_on(Board::new(), &hello) else {
+        return;
+    };
+    let mut document = String::new();
+    for (place, example) in marked("sh session") {
+        let this = place
+            .rsplit_once(':')
+            .map(|(document, _)| document.to_owned())
+            .unwrap_or_default();
+        if this != document {
+            // Each document begins with a fresh tree.
+            drop(m);
+            let Some(fresh) = mount_on(Board::new(), &hello) else {
+                return;
+            };
+            m = fresh;
+            document = this;
+        }
+        replay(&m, &place, &example);
+    }
+}
+
+#[test]
+fn every_python_program_in_the_documents_is_python() {
+    for (place, example) in marked("python") {
+        let script = format!("import ast, sys; ast.parse(sys.stdin.read(), {place:?})");
+        let mut command = std::process::Command::new(harness::tools::python_program());
+        harness::run(command.args(["-c", &script]), example.text.as_bytes()).good();
+    }
+}
+
+#[test]
+fn the_table_of_errors_has_a_row_for_every_error_in_order() {
+    let code = std::fs::read_to_string(root().join("trikfs/src/errno.rs")).unwrap();
+    let document = std::fs::read_to_string(root().join("docs/user/errors.md")).unwrap();
+    let between = |text: &str, start: &str| {
+        let text = text
+            .split_once(start)
+            .map_or("", |(_, rest)| rest)
+            .to_owned();
+        text.split_once("\n    }\n")
+            .map_or(text.clone(), |(body, _)| body.to_owned())
+    };
+    let numbers = between(&code, "pub fn errno(&self) -> i32 {");
+    let expected: Vec<String> = numbers
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix("Self::"))
+        .map(|line| {
+            line.split_once("=> libc::").map_or_else(
+                || "EIO".to_owned(),
+                |(_, name)| name.trim_end_matches(',').to_owned(),
+            )
+        })
+        .collect();
+    let variants = between(&code, "pub enum Error {")
+        .lines()
+        .filter(|line| line.starts_with("    ") && !line.trim().starts_with("///"))
+        .count();
+    let rows: Vec<Vec<&str>> = document
+        .lines()
+        .filter(|line| line.starts_with("| E"))
+        .map(|line| line.trim_matches('|').split('|').map(str::trim).collect())
+        .collect();
+    let names: Vec<&str> = rows.iter().map(|row| row[0]).collect();
+    assert_eq!(names, expected);
+    assert!(
+        expected.len() > 15 && variants >= expected.len(),
+        "{variants} variants, {} numbers",
+        expected.len()
+    );
+    for row in rows {
+        assert_eq!(row.len(), 4, "{row:?}");
+        assert!(
+            ["caller", "device", "converter", "filesystem"].contains(&row[2]),
+            "{row:?}"
+        );
+        assert!(row.iter().all(|cell| !cell.is_empty()), "{row:?}");
+    }
+}

@@ -1,0 +1,132 @@
+//! Integration tests: the program as people use it, mostly on real mounts.
+//!
+//! One binary, so that helpers are shared and linking happens once. Below is the table of contents.
+
+/// Configurations that must be refused with a place and a reason.
+mod config {
+    /// What only somebody hostile would write.
+    mod hostile;
+    /// Mistakes, and the words that tell of them.
+    mod problems;
+}
+/// The three languages of converters.
+mod converters {
+    /// Several stages, several sources, nodes that read nodes.
+    mod chain;
+    /// Loops, greed and nonsense cost their own file only.
+    mod hostile;
+    /// C source in the configuration.
+    mod inline_c;
+    /// Functions of the configuration, each open file with a state of its own.
+    mod lua;
+    /// Libraries: plain, versioned, replaced.
+    mod shared;
+    /// The shipped filters in both languages against the golden vectors.
+    mod vectors;
+}
+/// One module for each operation or file of a mounted tree.
+mod mount {
+    /// Further files in a node's directory.
+    mod attributes;
+    /// Writing and reading the configuration of a live tree.
+    mod config_node;
+    /// Decoded input events.
+    mod evdev;
+    /// What is told of failures, and by whom they are to be mended.
+    mod fault;
+    /// Named pipes: every reader sees every tuple, writers come and go.
+    mod fifo;
+    /// Modes, owners, sizes, times.
+    mod getattr;
+    /// Death of the daemon, of the guardian, of both.
+    mod guardian;
+    /// The example that ships, as the thesis describes it.
+    mod hello;
+    /// Many open files, large tuples, many nodes.
+    mod limits;
+    /// What converters and the filesystem report.
+    mod log;
+    /// Names.
+    mod lookup;
+    /// Who may open what, and what opening may cost.
+    mod open;
+    /// Newest values without a round trip.
+    mod page_cache;
+    /// select, poll and epoll.
+    mod poll;
+    /// Terminals.
+    mod pty;
+    /// Streams, any read size, waiting and being killed while waiting.
+    mod read;
+    /// Directories.
+    mod readdir;
+    /// A new configuration under open files.
+    mod reload;
+    /// Recordings and made-up bytes.
+    mod replay;
+    /// The ready line, the background, the service manager, refusals.
+    mod start;
+    /// One line per node.
+    mod status;
+    /// Bringing actuators to rest.
+    mod stop;
+    /// Leaving, also while somebody waits.
+    mod unmount;
+    /// Newest values.
+    mod value;
+    /// Programs to devices.
+    mod write;
+    /// Extended attributes.
+    mod xattr;
+}
+/// The documents: their examples run, their tables are complete.
+mod docs;
+/// Fuzz targets, briefly, with a printed seed.
+mod fuzz;
+/// Streams against a naive model.
+mod model;
+/// The rules of the project.
+mod tidy;
+
+use harness::{Board, Mount, Setting};
+
+/// The program under test.
+fn program() -> &'static str {
+    env!("CARGO_BIN_EXE_trikfs-under-test")
+}
+
+/// A mounted configuration on an empty board; None if nothing can be mounted here.
+fn mount(config: &str) -> Option<Mount> {
+    mount_on(Board::new(), config)
+}
+
+/// A mounted configuration on a prepared board.
+fn mount_on(board: Board, config: &str) -> Option<Mount> {
+    mount_with(board, config, &[])
+}
+
+/// The same with options of the command line.
+fn mount_with(board: Board, config: &str, options: &[&str]) -> Option<Mount> {
+    Mount::new(Setting {
+        program: program(),
+        board,
+        config,
+        options,
+        launcher: &[],
+    })
+}
+
+/// The program with arguments, run to its end on a board's folder.
+fn trikfs(board: &Board, arguments: &[&str], input: &[u8]) -> harness::Output {
+    let mut command = std::process::Command::new(program());
+    harness::run(command.args(arguments).current_dir(board.dir()), input)
+}
+
+/// True if a reader that waits in the daemon can be killed: a limit of the fuser crate, which its file documents.
+fn waiting_readers_can_be_killed() -> bool {
+    let can = harness::mount::transport() == "native";
+    if !can {
+        harness::wait::note_skip("the fuser transport cannot interrupt a waiting request");
+    }
+    can
+}

@@ -1,0 +1,42 @@
+//! Input events, recorded with 24- and 16-byte layouts, through a pipe.
+
+use crate::mount_on;
+use harness::Board;
+
+fn with_events(layout: &str, times: usize) {
+    let board = Board::new();
+    board.fifo("events");
+    let config = format!(
+        "trikfs = {{ pad = {{ src = evdev{{ path = '$DIR/events', axes = {{ 'ABS_X', 'ABS_Y' }}, layout = '{layout}' }}, format = 'i32 x, i32 y', on_event = true }} }}"
+    );
+    let Some(m) = mount_on(board, &config) else {
+        return;
+    };
+    m.python(&format!(
+        "def event(kind, code, value): return b'\\xaa' * {times} + struct.pack('=HHi', kind, code, value)
+fd, pipe = open_ro(M + '/pad/device', os.O_NONBLOCK), feed('events')
+recorded = event(3, 0, -5) + event(3, 16, 77) + event(3, 1, 99)
+for byte in recorded: os.write(pipe, bytes([byte]))
+assert ready(fd, ms=30) == []
+os.write(pipe, event(0, 0, 0))
+assert ready(fd, ms=10000)
+assert os.read(fd, 100) == struct.pack('<ii', -5, 99)
+eventually(lambda: text(M + '/pad/value') == '-5 99\\n', 'the value')
+assert text(M + '/pad/value1') == '99\\n'
+# What was dropped is not made up: everything up to the next report is thrown away.
+os.write(pipe, event(0, 3, 0) + event(3, 0, 1000) + event(0, 0, 0) + event(3, 1, 4) + event(0, 0, 0))
+assert ready(fd, ms=10000)
+assert os.read(fd, 100) == struct.pack('<ii', -5, 4)
+"
+    ));
+}
+
+#[test]
+fn events_of_64_bit_machines_become_tuples() {
+    with_events("bits64", 16);
+}
+
+#[test]
+fn events_of_32_bit_machines_become_tuples() {
+    with_events("bits32", 8);
+}

@@ -1,0 +1,170 @@
+//! Death of the daemon by any cause: actuators rest, nothing old is served, the tree comes back.
+
+use crate::mount_on;
+use harness::{Board, Mount, eventually, processes};
+use nix::sys::signal::Signal;
+
+const ROBOT: &str = "trikfs = {
+  motor = { src = '$DIR/motor', input_tuple_size = 2, format = 'i8 speed, u8 mode', rest = { 0, 7 } },
+  gyro = { src = fake{ data = 'abcd', period_ms = 0, loop = true }, input_tuple_size = 4, poll_ms = 5 },
+  stream = { src = '$DIR/in', input_tuple_size = 1 },
+}";
+
+fn robot() -> Option<Mount> {
+    let board = Board::new();
+    board.file("motor", "..");
+    board.fifo("in");
+    let m = mount_on(board, ROBOT)?;
+    m.sh("echo 100 1 > motor/value");
+    assert_eq!(m.board().content("motor"), [100, 1]);
+    eventually("a sample", || m.errno("gyro/bin_data") == 0);
+    Some(m)
+}
+
+/// Waits until another daemon serves the tree.
+fn comes_back(m: &Mount, before: u32) {
+    eventually("another daemon", || {
+        processes::children(m.guardian())
+            .iter()
+            .any(|&pid| pid != before)
+    });
+    eventually("the tree", || m.read("motor/units").is_ok());
+}
+
+#[test]
+fn after_a_kill_actuators_rest_and_the_tree_comes_back_with_its_configuration() {
+    let Some(m) = robot() else { return };
+    m.apply(&ROBOT.replace("stream", "renamed")).unwrap();
+    let daemon = m.daemon();
+    processes::signal(daemon, Signal::SIGKILL);
+    eventually("rest", || m.board().content("motor") == [0, 7]);
+    comes_back(&m, daemon);
+    assert!(m.path("renamed/device").exists());
+    assert_eq!(
+        m.text("config"),
+        m.board().fill_in(&ROBOT.replace("stream", "renamed"))
+    );
+    assert!(
+        m.complaints().contains("starting it again"),
+        "{}",
+        m.complaints()
+    );
+    m.sh("echo 50 2 > motor/value");
+    assert_eq!(m.board().content("motor"), [50, 2]);
+}
+
+#[test]
+fn a_cached_value_of_a_dead_daemon_is_not_served() {
+    let Some(m) = robot() else { return };
+    let open = m.open("gyro/bin_data");
+    let read = || std::os::unix::fs::FileExt::read_at(&open, &mut [0; 4], 0);
+    eventually("a cached value", || read().is_ok());
+    let daemon = m.daemon();
+    processes::signal(daemon, Signal::SIGKILL);
+    eventually("an error", || read().is_err());
+    comes_back(&m, daemon);
+    assert!(read().is_err());
+    eventually("a new value", || {
+        m.read("gyro/bin_data").is_ok_and(|bytes| bytes == b"abcd")
+    });
+}
+
+#[test]
+fn readers_of_a_dead_daemon_are_told() {
+    let Some(m) = robot() else { return };
+    let mut reader = std::process::Command::new("cat")
+        .arg(m.path("stream/device"))
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    eventually("a reader that waits", || processes::is_asleep(reader.id()));
+    let daemon = m.daemon();
+    processes::signal(daemon, Signal::SIGKILL);
+    eventually("the end of the reader", || {
+        reader.try_wait().unwrap().is_some()
+    });
+    comes_back(&m, daemon);
+}
+
+#[test]
+fn the_death_of_the_guardian_ends_the_daemon_in_order() {
+    let Some(mut m) = robot() else { return };
+    let daemon = m.daemon();
+    processes::signal(m.guardian(), Signal::SIGKILL);
+    m.wait();
+    eventually("the end of the daemon", || !processes::is_alive(daemon));
+    eventually("rest", || m.board().content("motor") == [0, 7]);
+    eventually("the end of the mount", || !m.is_mounted());
+}
+
+#[test]
+fn after_the_death_of_everything_the_tree_can_be_mounted_again() {
+    let Some(mut m) = robot() else { return };
+    m.kill_everything();
+    let board = {
+        let error = m.read("motor/units").unwrap_err();
+        assert_eq!(error.raw_os_error(), Some(libc::ENOTCONN));
+        let mut command = std::process::Command::new(crate::program());
+        command
+            .args(["mount", "--background", "--config"])
+            .arg(m.board().path("robot.lua"));
+        command
+            .arg("--cache")
+            .arg(m.board().path("cache"))
+            .arg(m.root());
+        harness::run(&mut command, b"").good();
+        m
+    };
+    board.sh("echo 3 4 > motor/value");
+    assert_eq!(board.board().content("motor"), [3, 4]);
+    let root = board.root().to_str().unwrap().to_owned();
+    assert_eq!(
+        crate::trikfs(board.board(), &["umount", &root], b"").code(),
+        0
+    );
+    eventually("rest", || board.board().content("motor") == [0, 7]);
+}
+
+#[test]
+fn a_crash_in_native_code_is_survived() {
+    let board = Board::new();
+    board.file("motor", "..");
+    let Some(m) = mount_on(
+        board,
+        "trikfs = {
+          motor = { src = '$DIR/motor', input_tuple_size = 2, rest = { 0, 7 } },
+          crash = { src = '/dev/zero', input_tuple_size = 1, output_tuple_size = 1, converter = { code = [[
+            int converter(int in_s, char *in, int out_s, char *out) { *(volatile int *)8 = 1; return 0; }
+          ]] } },
+        }",
+    ) else {
+        return;
+    };
+    m.sh("printf dd > motor/device");
+    let daemon = m.daemon();
+    assert_ne!(m.errno("crash/device"), 0);
+    eventually("rest", || m.board().content("motor") == [0, 7]);
+    comes_back(&m, daemon);
+    m.sh("printf ee > motor/device");
+    assert_eq!(m.board().content("motor"), b"ee");
+}
+
+#[test]
+fn a_daemon_that_crashes_again_and_again_is_given_up() {
+    let Some(mut m) = robot() else { return };
+    for _ in 0..5 {
+        let Some(&daemon) = processes::children(m.guardian()).first() else {
+            break;
+        };
+        processes::signal(daemon, Signal::SIGKILL);
+        eventually("a new daemon or the end", || {
+            let now = processes::children(m.guardian());
+            !processes::is_alive(m.guardian()) || now.first().is_some_and(|&pid| pid != daemon)
+        });
+    }
+    let status = m.wait();
+    assert_eq!(status.code(), Some(1), "{}", m.complaints());
+    assert!(m.complaints().contains("giving up"), "{}", m.complaints());
+    assert!(!m.is_mounted());
+    assert_eq!(m.board().content("motor"), [0, 7]);
+}

@@ -1,0 +1,376 @@
+//! The command line: what can be said, and which part of the crate does it.
+//!
+//! Owns the words, the help and the exit codes: 0 done, 1 refused or failed, 2 not understood. `run` mounts and serves,
+//! `paths` knows where files are looked for, `edit` changes the configuration of a mounted tree, `notify` speaks to a
+//! service manager.
+
+mod edit;
+mod notify;
+mod paths;
+mod run;
+
+use crate::check::SearchPaths;
+use crate::daemon::Transport;
+use crate::guardian::inherit::Handover;
+use crate::mount::{self, Unmounted};
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+use config::problem::Problem;
+use std::ffi::OsString;
+use std::io::{self, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// A robot's peripherals as files in physical units.
+///
+/// trikfs mounts a tree in which each peripheral of a robot is a directory: read its files for values in physical
+/// units, write them to move things. A configuration in Lua says which devices there are and how their bytes are
+/// converted; it can be changed while the tree is in use by writing MOUNTPOINT/config.
+#[derive(Parser)]
+#[command(name = "trikfs", version, max_term_width = 100, after_long_help = EXAMPLES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  trikfs check robot.lua                          is this configuration right?
+  trikfs mount --config robot.lua /trikfs         serve it until Ctrl-C
+  cat /trikfs/distance/value                      the newest value, as text
+  trikfs edit /trikfs                             change the configuration in use
+  trikfs convert robot.lua distance < raw | xxd   try a converter without a device
+  trikfs umount /trikfs
+
+Exit status: 0 done; 1 the configuration was refused, or something failed; 2 the command line was not understood.";
+
+#[derive(Subcommand)]
+enum Command {
+    /// Mount the tree and serve it.
+    ///
+    /// Stays in the foreground until it is unmounted or gets SIGTERM or SIGINT, and says in one line when the tree can
+    /// be used. Then it brings all actuators to rest and unmounts. A tree that a killed trikfs left behind is replaced.
+    Mount(MountArgs),
+    /// Check a configuration like the mounted tree would, without opening a device.
+    ///
+    /// Prints `FILE:LINE: REASON` and exits with 1 if the configuration would be refused. Warnings, such as a device
+    /// that is not there, do not change the exit status.
+    Check(CheckArgs),
+    /// Run one node's converter: raw bytes on standard input, converted bytes on standard output.
+    Convert(ConvertArgs),
+    /// Unmount a tree; if it is in use, it goes when its last file is closed.
+    Umount {
+        /// Where the tree is mounted.
+        mountpoint: PathBuf,
+    },
+    /// Edit the configuration of a mounted tree and apply it.
+    ///
+    /// Opens a copy in $VISUAL, $EDITOR or vi and writes it back when the editor ends. If it is refused, says why and
+    /// offers to edit again; the tree goes on with the old configuration meanwhile.
+    Edit {
+        /// Where the tree is mounted.
+        mountpoint: PathBuf,
+    },
+    /// Print a completion script for a shell.
+    Completions {
+        /// The shell.
+        shell: Shell,
+    },
+    /// Print the manual page, of the program or of one command, for example: trikfs man mount | man -l -
+    Man {
+        /// The command.
+        command: Option<String>,
+    },
+    #[command(hide = true)]
+    Serve(ServeArgs),
+}
+
+/// Options that say what is served, for the guardian and its daemon alike.
+#[derive(Args, Clone, Debug, PartialEq, Eq)]
+struct TreeArgs {
+    /// Configuration to begin with; without it the tree is empty until somebody writes to MOUNTPOINT/config.
+    #[arg(long, value_name = "FILE")]
+    config: Option<PathBuf>,
+    #[command(flatten)]
+    search: SearchArgs,
+    /// Group whose members may write MOUNTPOINT/config besides the mounting user. A configuration is code: it runs with
+    /// the rights of trikfs.
+    #[arg(long, value_name = "GROUP", value_parser = group_id)]
+    config_group: Option<u32>,
+    /// How to speak to the kernel.
+    #[arg(long, value_name = "NAME", value_enum, default_value_t = TransportName::Native)]
+    transport: TransportName,
+}
+
+/// A transport as it is called here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum TransportName {
+    /// The program's own layer over /dev/fuse.
+    Native,
+    /// The crate fuser: portable, but a program that waits for data cannot be killed.
+    #[cfg(feature = "fuser")]
+    Fuser,
+}
+
+impl TransportName {
+    fn transport(self) -> Transport {
+        match self {
+            Self::Native => Transport::Native,
+            #[cfg(feature = "fuser")]
+            Self::Fuser => Transport::Fuser,
+        }
+    }
+}
+
+#[derive(Args, Clone, Debug, PartialEq, Eq)]
+struct SearchArgs {
+    /// Directory for files that configurations include, before /etc/trikfs; may be given several times.
+    #[arg(long, value_name = "DIR")]
+    include: Vec<PathBuf>,
+    /// Private directory for compiled C and copies of libraries [default: /var/cache/trikfs for root, else
+    /// ~/.cache/trikfs].
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
+}
+
+#[derive(Args, Clone, Debug, PartialEq, Eq)]
+struct MountArgs {
+    #[command(flatten)]
+    tree: TreeArgs,
+    /// Let other users in, with the permissions that the files show.
+    #[arg(long)]
+    allow_other: bool,
+    /// Return when the tree can be used and serve it in the background.
+    #[arg(long)]
+    background: bool,
+    /// This is the process in the background.
+    #[arg(long, hide = true)]
+    detached: bool,
+    /// An existing directory.
+    mountpoint: PathBuf,
+}
+
+#[derive(Args)]
+struct ServeArgs {
+    #[command(flatten)]
+    tree: TreeArgs,
+    #[command(flatten)]
+    handover: Handover,
+    #[arg(long)]
+    detached: bool,
+    mountpoint: PathBuf,
+}
+
+#[derive(Args)]
+struct CheckArgs {
+    #[command(flatten)]
+    search: SearchArgs,
+    /// The configuration.
+    file: PathBuf,
+}
+
+#[derive(Args)]
+struct ConvertArgs {
+    #[command(flatten)]
+    search: SearchArgs,
+    /// The configuration.
+    file: PathBuf,
+    /// Path of the node in the tree, for example motors/M1.
+    node: String,
+}
+
+/// Why a command did not do what it should.
+enum Failure {
+    /// Printed after the name of the program.
+    Reason(String),
+    /// Printed as it is, so that editors find the place.
+    Problem(Problem),
+    /// Another process has printed it.
+    Told,
+}
+
+impl From<String> for Failure {
+    fn from(reason: String) -> Self {
+        Self::Reason(reason)
+    }
+}
+
+/// The program: reads the arguments of the process, does it, gives the exit code.
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            let _ = error.print();
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+        }
+    };
+    let text = match perform(cli.command) {
+        Ok(()) => return ExitCode::SUCCESS,
+        Err(Failure::Reason(reason)) => format!("trikfs: {reason}"),
+        Err(Failure::Problem(problem)) => problem.to_string(),
+        Err(Failure::Told) => return ExitCode::FAILURE,
+    };
+    let _ = writeln!(io::stderr(), "{text}");
+    ExitCode::FAILURE
+}
+
+fn perform(command: Command) -> Result<(), Failure> {
+    match command {
+        Command::Mount(args) => run::mount(args),
+        Command::Serve(args) => run::serve(args),
+        Command::Check(args) => check(args),
+        Command::Convert(args) => {
+            let (mut input, mut output) = (io::stdin().lock(), io::stdout().lock());
+            let paths = args.search.paths()?;
+            crate::check::convert(&args.file, &args.node, &paths, &mut input, &mut output)
+                .map_err(Failure::Reason)
+        }
+        Command::Umount { mountpoint } => match mount::unmount(&mountpoint) {
+            Ok(Unmounted::Clean) => Ok(()),
+            Ok(Unmounted::Detached) => {
+                let _ = writeln!(
+                    io::stderr(),
+                    "trikfs: {} was in use and has been detached",
+                    mountpoint.display()
+                );
+                Ok(())
+            }
+            Err(error) => Err(Failure::Reason(error.to_string())),
+        },
+        Command::Edit { mountpoint } => edit::edit(&mountpoint).map_err(Failure::Reason),
+        Command::Completions { shell } => {
+            let mut text = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "trikfs", &mut text);
+            print(&text)
+        }
+        Command::Man { command } => manual(command.as_deref()),
+    }
+}
+
+fn check(args: CheckArgs) -> Result<(), Failure> {
+    let warnings = crate::check::check(&args.file, &args.search.paths()?, &progress)
+        .map_err(Failure::Problem)?;
+    let mut text = String::new();
+    for warning in &warnings {
+        let reason = format!("warning: {}", warning.reason);
+        text.push_str(&format!(
+            "{}\n",
+            Problem {
+                reason,
+                ..warning.clone()
+            }
+        ));
+    }
+    let _ = io::stderr().write_all(text.as_bytes());
+    print(format!("{}: good\n", args.file.display()).as_bytes())
+}
+
+/// What takes long is told to a person who waits, and to nobody else.
+fn progress(line: &str) {
+    if io::stderr().is_terminal() {
+        let _ = writeln!(io::stderr(), "{line}");
+    }
+}
+
+fn manual(name: Option<&str>) -> Result<(), Failure> {
+    let mut program = Cli::command();
+    // Gives the commands their full names and the help options that a parse would give them.
+    program.build();
+    let page = match name {
+        None => program,
+        Some(name) => program
+            .find_subcommand(name)
+            .filter(|command| !command.is_hide_set())
+            .cloned()
+            .map(|command| command.display_name(format!("trikfs-{name}")))
+            .ok_or_else(|| format!("there is no command {name}"))?,
+    };
+    let mut text = Vec::new();
+    clap_mangen::Man::new(page)
+        .render(&mut text)
+        .map_err(|error| error.to_string())?;
+    print(&text)
+}
+
+/// Standard output; a reader that has seen enough is no failure.
+fn print(text: &[u8]) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Failure::Reason(format!("standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A group by its name or number.
+fn group_id(text: &str) -> Result<u32, String> {
+    if let Ok(number) = text.parse() {
+        return Ok(number);
+    }
+    match nix::unistd::Group::from_name(text) {
+        Ok(Some(group)) => Ok(group.gid.as_raw()),
+        Ok(None) => Err("there is no such group".to_owned()),
+        Err(error) => Err(error.desc().to_lowercase()),
+    }
+}
+
+impl SearchArgs {
+    fn paths(&self) -> Result<SearchPaths, String> {
+        paths::search_paths(self.include.clone(), self.cache.as_deref())
+    }
+}
+
+impl TreeArgs {
+    /// The same with paths that mean the same from everywhere.
+    fn absolute(self) -> Result<Self, String> {
+        Ok(Self {
+            config: self.config.map(|path| absolute(&path)).transpose()?,
+            search: SearchArgs {
+                include: self
+                    .search
+                    .include
+                    .iter()
+                    .map(|path| absolute(path))
+                    .collect::<Result<_, _>>()?,
+                cache: self.search.cache.map(|path| absolute(&path)).transpose()?,
+            },
+            ..self
+        })
+    }
+
+    /// The arguments that say the same.
+    fn to_arguments(&self) -> Vec<OsString> {
+        let mut arguments = Vec::new();
+        let mut option = |name: &str, value: &Path| {
+            // In one word, so that a path that begins with a dash stays a value.
+            let mut argument = OsString::from(name);
+            argument.push("=");
+            argument.push(value);
+            arguments.push(argument);
+        };
+        if let Some(config) = &self.config {
+            option("--config", config);
+        }
+        for dir in &self.search.include {
+            option("--include", dir);
+        }
+        if let Some(cache) = &self.search.cache {
+            option("--cache", cache);
+        }
+        if let Some(group) = self.config_group {
+            option("--config-group", Path::new(&group.to_string()));
+        }
+        if let Some(name) = self.transport.to_possible_value() {
+            option("--transport", Path::new(name.get_name()));
+        }
+        arguments
+    }
+}
+
+fn absolute(path: &Path) -> Result<PathBuf, String> {
+    std::path::absolute(path).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,135 @@
+//! The words of the command line; what they do is tested where it is done.
+
+use super::*;
+use clap::error::ErrorKind;
+
+fn parse(line: &[&str]) -> Result<Command, clap::Error> {
+    Cli::try_parse_from(std::iter::once(&"trikfs").chain(line)).map(|cli| cli.command)
+}
+
+fn mount_args(line: &[&str]) -> MountArgs {
+    match parse(line) {
+        Ok(Command::Mount(args)) => args,
+        Ok(_) => panic!("another command"),
+        Err(error) => panic!("{error}"),
+    }
+}
+
+#[test]
+fn the_definition_is_consistent() {
+    Cli::command().debug_assert();
+}
+
+#[test]
+fn mount_takes_all_its_options() {
+    let args = mount_args(&[
+        "mount",
+        "--config",
+        "r.lua",
+        "--include",
+        "a",
+        "--include",
+        "b",
+        "--allow-other",
+        "--background",
+        "--config-group",
+        "12",
+        "--cache",
+        "c",
+        "--transport",
+        "native",
+        "/trikfs",
+    ]);
+    assert_eq!(args.tree.config, Some("r.lua".into()));
+    assert_eq!(args.tree.search.include, ["a", "b"].map(PathBuf::from));
+    assert_eq!(args.tree.search.cache, Some("c".into()));
+    assert_eq!(args.tree.config_group, Some(12));
+    assert!(args.allow_other && args.background && !args.detached);
+    assert_eq!(args.mountpoint, PathBuf::from("/trikfs"));
+}
+
+#[test]
+fn what_the_guardian_passes_on_means_the_same() {
+    let args = mount_args(&[
+        "mount",
+        "--config=-odd name.lua",
+        "--include=--x",
+        "--config-group=7",
+        "--cache=c",
+        "m",
+    ]);
+    let plain = mount_args(&["mount", "m"]);
+    for tree in [args.tree, plain.tree] {
+        let mut line = vec![OsString::from("trikfs"), "mount".into()];
+        line.extend(tree.to_arguments());
+        line.extend(["--".into(), "-m".into()]);
+        match Cli::try_parse_from(line).map(|cli| cli.command) {
+            Ok(Command::Mount(again)) => assert_eq!(again.tree, tree),
+            _ => panic!("not understood: {tree:?}"),
+        }
+    }
+}
+
+#[test]
+fn paths_are_made_absolute_once() {
+    let tree = mount_args(&["mount", "--config=r.lua", "--include=/i", "--cache=c", "m"])
+        .tree
+        .absolute()
+        .expect("absolute");
+    let here = std::env::current_dir().expect("a directory");
+    assert_eq!(tree.config, Some(here.join("r.lua")));
+    assert_eq!(tree.search.include, [PathBuf::from("/i")]);
+    assert_eq!(tree.clone().absolute().expect("absolute"), tree);
+}
+
+#[test]
+fn what_is_not_understood_exits_with_2_and_help_with_0() {
+    let code = |line: &[&str]| parse(line).err().map(|error| error.exit_code());
+    assert_eq!(code(&["mount"]), Some(2));
+    assert_eq!(
+        code(&["mount", "--transport", "carrier-pigeon", "m"]),
+        Some(2)
+    );
+    assert_eq!(
+        code(&["mount", "--config-group", "no such group", "m"]),
+        Some(2)
+    );
+    assert_eq!(code(&["fly"]), Some(2));
+    assert_eq!(code(&[]), Some(2));
+    assert_eq!(code(&["--help"]), Some(0));
+    assert_eq!(code(&["--version"]), Some(0));
+}
+
+#[test]
+fn the_help_shows_every_command_but_serve_and_how_to_begin() {
+    let help = parse(&["--help"])
+        .err()
+        .map(|error| (error.kind(), error.to_string()));
+    let Some((ErrorKind::DisplayHelp, help)) = help else {
+        panic!("no help")
+    };
+    for word in [
+        "mount",
+        "check",
+        "convert",
+        "umount",
+        "edit",
+        "completions",
+        "man",
+        "Examples:",
+        "Exit status:",
+    ] {
+        assert!(help.contains(word), "{word} is missing:\n{help}");
+    }
+    assert!(!help.contains("serve  "), "{help}");
+}
+
+#[test]
+fn a_group_is_a_name_or_a_number() {
+    assert_eq!(group_id("0"), Ok(0));
+    assert_eq!(group_id("root"), Ok(0));
+    assert_eq!(
+        group_id("no such group"),
+        Err("there is no such group".to_owned())
+    );
+}

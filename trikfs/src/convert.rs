@@ -1,0 +1,356 @@
+//! Converters as the filesystem sees them: a recipe made once per description, a pipeline made once per open file.
+//!
+//! Owns the chain of stages and its scratch buffers. The three languages are behind it, one file each;
+//! nothing else in this crate runs Lua or loads machine code.
+
+pub mod inline_c;
+pub mod lua;
+pub mod shared;
+
+use crate::errno::Error;
+use crate::events::lock;
+use config::description::{NodeDescription, StageDescription, StageKind};
+use config::problem::Problem;
+use config::program::{Direction, StageId, Vm};
+use converter::Conversion;
+use inline_c::Compiler;
+use lua::StatePool;
+use shared::{Cache, Library, NativeStage};
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex};
+
+/// Everything needed to make pipelines of one description.
+pub struct Recipe {
+    node: String,
+    params: BTreeMap<String, f64>,
+    memory_kb: u32,
+    budget_us: u32,
+    read: Vec<Plan>,
+    write: Option<Vec<Plan>>,
+    lua: Mutex<Option<Arc<StatePool>>>,
+}
+
+/// One stage that is ready to be instantiated.
+struct Plan {
+    /// Absent for a Lua function, which lives in the open file's own state.
+    library: Option<Library>,
+    input_size: usize,
+    output_size: usize,
+}
+
+/// Where converters write their log lines.
+pub type LogSink = Arc<dyn Fn(&str) + Send + Sync>;
+
+/// What making recipes needs: the compiler, the cache of compiled code, and somebody to tell of progress.
+pub struct Workshop<'a> {
+    /// Keeps compiled and copied libraries.
+    pub cache: &'a Cache,
+    /// Told before something that takes long.
+    pub progress: &'a dyn Fn(&str),
+}
+
+impl Recipe {
+    /// Loads and compiles what the description names; opens no device and runs no converter.
+    pub fn prepare(
+        description: &NodeDescription,
+        workshop: &Workshop<'_>,
+        lua: Option<Arc<StatePool>>,
+    ) -> Result<Self, Problem> {
+        let plans = |stages: &[StageDescription]| -> Result<Vec<Plan>, Problem> {
+            stages
+                .iter()
+                .map(|stage| plan(&description.path, stage, workshop))
+                .collect()
+        };
+        Ok(Self {
+            node: description.path.clone(),
+            params: description.params.clone(),
+            memory_kb: description.memory_kb,
+            budget_us: description.budget_us,
+            read: plans(&description.converter)?,
+            write: description
+                .write_converter
+                .as_deref()
+                .map(plans)
+                .transpose()?,
+            lua: Mutex::new(lua.filter(|_| description.uses_lua())),
+        })
+    }
+
+    /// Takes Lua states from another pool from here on: that of an equal description in a newer configuration.
+    pub fn move_to(&self, pool: &Arc<StatePool>) {
+        if let Some(current) = lock(&self.lua).as_mut() {
+            *current = pool.clone();
+        }
+    }
+
+    /// A private pipeline for one open file. `sizes`: bytes before and after an empty chain.
+    pub fn open(&self, log: &LogSink) -> Result<Pipeline, Error> {
+        let pool = lock(&self.lua).clone();
+        let vm = match &pool {
+            None => None,
+            Some(pool) => {
+                let mut vm = pool.take().map_err(Error::Converter)?;
+                vm.set_log(log.clone());
+                vm.set_params(&self.node, &self.params)
+                    .map_err(Error::Converter)?;
+                Some(vm)
+            }
+        };
+        let mut pipeline = Pipeline {
+            vm,
+            pool,
+            read: Chain::default(),
+            write: None,
+        };
+        pipeline.read = self.chain(&self.read, Direction::Read, pipeline.vm.as_mut(), log)?;
+        if let Some(write) = &self.write {
+            pipeline.write =
+                Some(self.chain(write, Direction::Write, pipeline.vm.as_mut(), log)?);
+        }
+        if let Some(vm) = pipeline.vm.as_mut() {
+            vm.limit(self.memory_kb, self.budget_us);
+        }
+        Ok(pipeline)
+    }
+
+    fn chain(
+        &self,
+        plans: &[Plan],
+        direction: Direction,
+        mut vm: Option<&mut Vm>,
+        log: &LogSink,
+    ) -> Result<Chain, Error> {
+        let mut chain = Chain::default();
+        for (position, plan) in plans.iter().enumerate() {
+            let (input_size, output_size) = (plan.input_size, plan.output_size);
+            let code = if let Some(library) = &plan.library {
+                let info = shared::OpenInfo {
+                    direction,
+                    input_size,
+                    output_size,
+                    node: &self.node,
+                    params: &self.params,
+                    log: log.clone(),
+                };
+                Code::Native(library.open(&info).map_err(Error::Converter)?)
+            } else {
+                let Some(vm) = vm.as_mut() else {
+                    return Err(Error::Internal(format!(
+                        "{}: a Lua stage without a Lua state",
+                        self.node
+                    )));
+                };
+                Code::Lua(
+                    vm.bind(&self.node, direction, position, input_size, output_size)
+                        .map_err(Error::Converter)?,
+                )
+            };
+            chain.stages.push(Stage {
+                code,
+                input_size,
+                between: vec![0; output_size],
+            });
+        }
+        Ok(chain)
+    }
+}
+
+fn plan(node: &str, stage: &StageDescription, workshop: &Workshop<'_>) -> Result<Plan, Problem> {
+    let refused = |reason: String| {
+        Problem::new(
+            stage.place.file.clone(),
+            stage.place.line,
+            format!("node {node}: {reason}"),
+        )
+    };
+    let library = match &stage.kind {
+        StageKind::Lua => None,
+        StageKind::Library { path, name } => {
+            Some(Library::load(path, name.as_deref(), workshop.cache).map_err(refused)?)
+        }
+        StageKind::InlineC { code } => {
+            let tell = |text: &str| (workshop.progress)(&format!("node {node}: {text}"));
+            let path = Compiler::compile_with_any(code, &stage.place, workshop.cache, &tell)?;
+            Some(Library::load(&path, None, workshop.cache).map_err(refused)?)
+        }
+    };
+    Ok(Plan {
+        library,
+        input_size: stage.input_size,
+        output_size: stage.output_size,
+    })
+}
+
+/// The stages of one open file, both directions, with their state.
+pub struct Pipeline {
+    vm: Option<Vm>,
+    pool: Option<Arc<StatePool>>,
+    read: Chain,
+    /// Absent when both directions go through the same stages.
+    write: Option<Chain>,
+}
+
+impl Drop for Pipeline {
+    fn drop(&mut self) {
+        // Closing a Lua state takes longer than a read: leave it to the pool's thread.
+        if let (Some(vm), Some(pool)) = (self.vm.take(), self.pool.take()) {
+            pool.discard(vm);
+        }
+    }
+}
+
+#[derive(Default)]
+struct Chain {
+    stages: Vec<Stage>,
+}
+
+struct Stage {
+    code: Code,
+    input_size: usize,
+    /// Output of this stage on its way to the next one.
+    between: Vec<u8>,
+}
+
+enum Code {
+    Lua(StageId),
+    Native(NativeStage),
+}
+
+/// What became of a run of tuples.
+#[derive(Debug, Default)]
+pub struct Batch {
+    /// Tuples taken from the input, the failing one included.
+    pub consumed: usize,
+    /// Tuples put into the output.
+    pub produced: usize,
+    /// Why it stopped before the input's end or the output's.
+    pub fault: Option<Error>,
+}
+
+impl Pipeline {
+    /// Converts as many whole tuples as there are and as fit. `input` and `output` are multiples of the tuple sizes.
+    pub fn convert(&mut self, direction: Direction, input: &[u8], output: &mut [u8]) -> Batch {
+        let chain = match (direction, &mut self.write) {
+            (Direction::Write, Some(write)) => write,
+            _ => &mut self.read,
+        };
+        chain.convert(self.vm.as_mut(), input, output)
+    }
+}
+
+impl Chain {
+    fn convert(&mut self, vm: Option<&mut Vm>, input: &[u8], output: &mut [u8]) -> Batch {
+        match self.stages.as_mut_slice() {
+            [] => {
+                // Without stages both sizes are equal; the caller counts in tuples of its own.
+                let n = input.len().min(output.len());
+                output[..n].copy_from_slice(&input[..n]);
+                Batch {
+                    consumed: usize::MAX,
+                    produced: usize::MAX,
+                    fault: None,
+                }
+            }
+            [only] => only.convert_many(vm, input, output),
+            stages => convert_through(stages, vm, input, output),
+        }
+    }
+}
+
+fn convert_through(
+    stages: &mut [Stage],
+    mut vm: Option<&mut Vm>,
+    input: &[u8],
+    output: &mut [u8],
+) -> Batch {
+    let mut batch = Batch::default();
+    let (input_size, output_size) = (stages[0].input_size, stages[stages.len() - 1].between.len());
+    let mut outputs = output.chunks_exact_mut(output_size);
+    let mut target = outputs.next();
+    for tuple in input.chunks_exact(input_size) {
+        let Some(out) = target.as_deref_mut() else {
+            break;
+        };
+        batch.consumed += 1;
+        match one_through(stages, vm.as_deref_mut(), tuple, out) {
+            Ok(Conversion::Produced) => {
+                batch.produced += 1;
+                target = outputs.next();
+            }
+            Ok(Conversion::Consumed) => {}
+            Err(error) => {
+                batch.fault = Some(error);
+                break;
+            }
+        }
+    }
+    batch
+}
+
+fn one_through(
+    stages: &mut [Stage],
+    mut vm: Option<&mut Vm>,
+    input: &[u8],
+    output: &mut [u8],
+) -> Result<Conversion, Error> {
+    let last = stages.len() - 1;
+    for index in 0..=last {
+        let (before, rest) = stages.split_at_mut(index);
+        let stage = &mut rest[0];
+        let from = before
+            .last()
+            .map_or(input, |stage| stage.between.as_slice());
+        let outcome = if index == last {
+            stage.code.convert(vm.as_deref_mut(), from, output)?
+        } else {
+            stage
+                .code
+                .convert(vm.as_deref_mut(), from, &mut stage.between)?
+        };
+        if outcome == Conversion::Consumed {
+            return Ok(Conversion::Consumed);
+        }
+    }
+    Ok(Conversion::Produced)
+}
+
+const NO_STATE: &str = "a Lua stage without a Lua state";
+
+impl Stage {
+    fn convert_many(&mut self, vm: Option<&mut Vm>, input: &[u8], output: &mut [u8]) -> Batch {
+        let (consumed, produced, fault) = match (&mut self.code, vm) {
+            (Code::Native(native), _) => native.convert_many(input, output),
+            (Code::Lua(stage), Some(vm)) => vm.convert_many(*stage, input, output),
+            (Code::Lua(_), None) => (0, 0, Some(NO_STATE.to_owned())),
+        };
+        Batch {
+            consumed,
+            produced,
+            fault: fault.map(Error::Converter),
+        }
+    }
+}
+
+impl Code {
+    fn convert(
+        &mut self,
+        vm: Option<&mut Vm>,
+        input: &[u8],
+        output: &mut [u8],
+    ) -> Result<Conversion, Error> {
+        match (self, vm) {
+            (Self::Native(native), _) => native.convert(input, output).map_err(Error::Converter),
+            (Self::Lua(stage), Some(vm)) => {
+                let outcome = vm
+                    .convert(*stage, input, output)
+                    .map_err(Error::Converter)?;
+                Ok(match outcome {
+                    config::program::Conversion::Produced => Conversion::Produced,
+                    config::program::Conversion::Consumed => Conversion::Consumed,
+                })
+            }
+            (Self::Lua(_), None) => Err(Error::Converter(NO_STATE.to_owned())),
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! Lua states prepared ahead: every open file gets one of its own, and opening should not wait for its making.
+//!
+//! Owns a small stock of states in which a configuration has already run, and the thread that fills it and that
+//! closes used ones. A state that was used is never used again.
+
+use crate::events::lock;
+use crate::limits;
+use config::program::{Program, Vm};
+use std::io;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{Sender, channel};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+/// How many states are kept ready before anybody was seen to need more.
+const READY_AT_FIRST: usize = 4;
+
+enum Work {
+    Fill(Arc<StatePool>),
+    Close(Box<Vm>),
+}
+
+/// The thread that makes and closes Lua states.
+#[derive(Clone)]
+pub struct StateMaker {
+    work: Sender<Work>,
+}
+
+impl StateMaker {
+    /// Starts the thread; it ends with the last maker and pool.
+    pub fn start() -> io::Result<Self> {
+        let (work, todo) = channel();
+        std::thread::Builder::new()
+            .name("lua-states".to_owned())
+            .spawn(move || {
+                while let Ok(first) = todo.recv() {
+                    // Who opens files in a row should not be interrupted at each of them: the work waits until
+                    // a stock's worth of it may have come, and is then done in one go.
+                    std::thread::sleep(Duration::from_millis(limits::LUA_STATES_BATCH_MS));
+                    for item in std::iter::once(first).chain(todo.try_iter()) {
+                        match item {
+                            Work::Fill(pool) => pool.fill(),
+                            Work::Close(vm) => drop(vm),
+                        }
+                    }
+                }
+            })?;
+        Ok(Self { work })
+    }
+
+    /// A stock of states for one configuration.
+    pub fn pool(&self, program: Arc<Program>) -> Arc<StatePool> {
+        let pool = Arc::new(StatePool {
+            program,
+            maker: self.clone(),
+            ready: Mutex::default(),
+            wanted: AtomicUsize::new(READY_AT_FIRST),
+            filling: AtomicBool::new(false),
+            retired: AtomicBool::new(false),
+        });
+        pool.ask_to_fill();
+        pool
+    }
+}
+
+/// States in which one configuration has run, ready to be taken.
+pub struct StatePool {
+    program: Arc<Program>,
+    maker: StateMaker,
+    ready: Mutex<Vec<Vm>>,
+    wanted: AtomicUsize,
+    filling: AtomicBool,
+    retired: AtomicBool,
+}
+
+impl StatePool {
+    /// A state of one's own; made on the spot if the stock is empty.
+    pub fn take(self: &Arc<Self>) -> Result<Vm, String> {
+        let (vm, left) = {
+            let mut ready = lock(&self.ready);
+            (ready.pop(), ready.len())
+        };
+        if vm.is_none() {
+            let more = (self.wanted.load(Ordering::Relaxed) * 2).min(limits::LUA_STATES_READY);
+            self.wanted.store(more, Ordering::Relaxed);
+        }
+        // Filling in bursts keeps the maker from waking at every open.
+        if left * 2 <= self.wanted.load(Ordering::Relaxed) {
+            self.ask_to_fill();
+        }
+        vm.map_or_else(|| self.program.prepare(), Ok)
+    }
+
+    /// Closes a used state, later and elsewhere.
+    pub fn discard(&self, vm: Vm) {
+        // Without the thread the state is closed here.
+        let _ = self.maker.work.send(Work::Close(Box::new(vm)));
+    }
+
+    /// No more states are kept ready: the configuration is no longer in force.
+    pub fn retire(&self) {
+        self.retired.store(true, Ordering::Relaxed);
+        lock(&self.ready).clear();
+    }
+
+    fn ask_to_fill(self: &Arc<Self>) {
+        if !self.retired.load(Ordering::Relaxed) && !self.filling.swap(true, Ordering::Relaxed) {
+            let _ = self.maker.work.send(Work::Fill(self.clone()));
+        }
+    }
+
+    fn fill(&self) {
+        self.filling.store(false, Ordering::Relaxed);
+        while lock(&self.ready).len() < self.wanted.load(Ordering::Relaxed)
+            && !self.retired.load(Ordering::Relaxed)
+        {
+            // A program that no longer runs says so to whoever opens a file.
+            let Ok(vm) = self.program.prepare() else {
+                return;
+            };
+            lock(&self.ready).push(vm);
+        }
+    }
+}

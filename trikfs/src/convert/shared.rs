@@ -1,0 +1,307 @@
+//! Native converters: loads shared libraries and opens the converters in them.
+//!
+//! Owns finding the file, the copy that is really loaded, and the choice of a converter by name. What a library has to
+//! look like and how it is called is `converter::abi`'s business; compiling C is `inline_c`'s.
+//!
+//! **Native code is trusted code.** Loading a library runs its constructors, and a converter can crash the process,
+//! hang it or write anywhere. All that this file checks is that the library is what it says.
+//!
+//! A library is never unloaded: descriptors and functions of it stay valid to the end of the process. So that a new
+//! build under the same name is seen when the configuration is loaded again, what is loaded is a copy in the cache,
+//! named by its contents: the same contents are loaded once, other contents are another library. The copy has
+//! another directory, so a library must not look for others beside itself (`$ORIGIN`).
+
+mod cache;
+mod elf;
+
+pub use cache::Cache;
+
+use crate::hash::Hash;
+use crate::limits;
+use config::nearest::suggestion;
+use config::program::Direction;
+use converter::Conversion;
+use converter::abi::{self, Descriptor, Instance};
+use libloading::os::unix as dl;
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// What a converter is told when a file is opened.
+pub struct OpenInfo<'a> {
+    /// Which way this instance converts.
+    pub direction: Direction,
+    /// Bytes of every input tuple.
+    pub input_size: usize,
+    /// Bytes of every output tuple.
+    pub output_size: usize,
+    /// Path of the node in the tree, for messages.
+    pub node: &'a str,
+    /// The node's `params`.
+    pub params: &'a BTreeMap<String, f64>,
+    /// Gets what the converter logs while it is opened.
+    pub log: Arc<dyn Fn(&str) + Send + Sync>,
+}
+
+/// One converter of a loaded library; cheap to clone.
+#[derive(Clone, Debug)]
+pub struct Library {
+    descriptor: Arc<Descriptor>,
+    label: Arc<str>,
+}
+
+impl Library {
+    /// Loads the library at `path`, through its copy in `cache`, and chooses the converter `name` in it. Without a name
+    /// it must hold exactly one. A file of the cache itself is loaded as it is.
+    ///
+    /// The symbol `trikfs_library_entry` is preferred; without it the library must export the plain function `converter`.
+    ///
+    /// # Errors
+    /// What is wrong, with the path and, for a name that is not there, all that are.
+    pub fn load(path: &Path, name: Option<&str>, cache: &Cache) -> Result<Self, String> {
+        let inline = cache.holds(path);
+        let shown = if inline {
+            "inline C".to_owned()
+        } else {
+            path.display().to_string()
+        };
+        let short = match path.file_name() {
+            Some(file) if !inline => file.to_string_lossy().into_owned(),
+            _ => shown.clone(),
+        };
+        let loadable = if inline {
+            path.to_owned()
+        } else {
+            copy(path, cache)?
+        };
+        let descriptors = open_library(&loadable).map_err(|error| {
+            // The user has never seen the name in the cache.
+            let error = error.replace(&loadable.display().to_string(), &shown);
+            if error.starts_with(&shown) {
+                error
+            } else {
+                format!("{shown}: {error}")
+            }
+        })?;
+        let label = match name {
+            Some(name) => format!("{short}#{name}"),
+            None => short,
+        };
+        let descriptor = choose(descriptors, name).map_err(|error| format!("{shown}: {error}"))?;
+        Ok(Self {
+            descriptor: Arc::new(descriptor),
+            label: label.into(),
+        })
+    }
+
+    /// What messages call it: the file's name, with `#name` if one was given; `inline C` for compiled source.
+    pub fn label(&self) -> &str {
+        &self.label
+    }
+
+    /// Checks the tuple sizes of a description against those that the converter insists on, without running it.
+    ///
+    /// # Errors
+    /// Names the converter, what it wants and what it would get.
+    pub fn check_sizes(&self, input_size: usize, output_size: usize) -> Result<(), String> {
+        self.descriptor
+            .check_sizes(input_size, output_size)
+            .map_err(|error| format!("{}: {error}", self.label))
+    }
+
+    /// Makes the converter's state for one open file and direction.
+    ///
+    /// # Errors
+    /// The converter's own refusal (parameters, sizes), in its words.
+    pub fn open(&self, info: &OpenInfo<'_>) -> Result<NativeStage, String> {
+        let raw = converter::OpenInfo {
+            direction: match info.direction {
+                Direction::Read => converter::Direction::Read,
+                Direction::Write => converter::Direction::Write,
+            },
+            input_size: info.input_size,
+            output_size: info.output_size,
+            node: info.node,
+            params: info.params,
+            log: &*info.log,
+        };
+        let instance = self
+            .descriptor
+            .open(&raw)
+            .map_err(|fault| format!("{}: {fault}", self.label))?;
+        Ok(NativeStage {
+            instance,
+            label: Arc::clone(&self.label),
+            input_size: info.input_size,
+            output_size: info.output_size,
+        })
+    }
+}
+
+/// A native converter opened for one file and direction; dropping it closes it.
+#[derive(Debug)]
+pub struct NativeStage {
+    instance: Instance,
+    label: Arc<str>,
+    input_size: usize,
+    output_size: usize,
+}
+
+impl NativeStage {
+    /// Converts one tuple; both slices have the sizes of the opening. The output counts only after
+    /// [`Conversion::Produced`].
+    ///
+    /// # Errors
+    /// The fault in the converter's words, after the library's name. The tuple is lost; the next call is made as usual.
+    pub fn convert(&mut self, input: &[u8], output: &mut [u8]) -> Result<Conversion, String> {
+        self.instance
+            .convert(input, output)
+            .map_err(|fault| format!("{}: {fault}", self.label))
+    }
+
+    /// Converts whole tuples from the front of `input` to the front of `output` until one of them has no room for
+    /// another tuple, or until a fault.
+    ///
+    /// Gives how many tuples were taken, how many were made, and the fault; the tuple that caused it counts as taken.
+    pub fn convert_many(
+        &mut self,
+        input: &[u8],
+        output: &mut [u8],
+    ) -> (usize, usize, Option<String>) {
+        let (mut taken, mut made) = (0, 0);
+        let mut room = output.chunks_exact_mut(self.output_size);
+        let mut next = room.next();
+        for tuple in input.chunks_exact(self.input_size) {
+            let Some(slot) = next.as_deref_mut() else {
+                break;
+            };
+            taken += 1;
+            match self.instance.convert(tuple, slot) {
+                Ok(Conversion::Produced) => {
+                    made += 1;
+                    next = room.next();
+                }
+                Ok(Conversion::Consumed) => {}
+                Err(fault) => return (taken, made, Some(format!("{}: {fault}", self.label))),
+            }
+        }
+        (taken, made, None)
+    }
+}
+
+/// Reads a library and puts its copy into the cache.
+fn copy(path: &Path, cache: &Cache) -> Result<PathBuf, String> {
+    let shown = path.display();
+    let fail = |error: std::io::Error| match error.kind() {
+        std::io::ErrorKind::NotFound => format!("{shown}: no such library"),
+        _ => format!("{shown}: {error}"),
+    };
+    // Asked before opening: a FIFO would wait for a writer.
+    let found = std::fs::metadata(path).map_err(fail)?;
+    if !found.is_file() {
+        return Err(format!("{shown}: not a regular file"));
+    }
+    if found.len() > limits::LIBRARY_BYTES_MAX {
+        return Err(format!(
+            "{shown}: larger than {} bytes",
+            limits::LIBRARY_BYTES_MAX
+        ));
+    }
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(fail)?;
+    file.take(limits::LIBRARY_BYTES_MAX)
+        .read_to_end(&mut bytes)
+        .map_err(fail)?;
+    elf::check(&bytes).map_err(|error| format!("{shown}: {error}"))?;
+    cache.put(&format!("lib-{}.so", Hash::of(&bytes).hex()), &bytes)
+}
+
+/// Loads a library for ever and reads what it holds.
+fn open_library(path: &Path) -> Result<Vec<Descriptor>, String> {
+    // SAFETY: constructors of the library run, and native code is trusted (see the head of this file). `copy` and
+    // `inline_c` made the file in a directory that `Cache::open` found to be ours alone.
+    let library =
+        unsafe { dl::Library::open(Some(path), dl::RTLD_NOW | dl::RTLD_LOCAL) }.map_err(explain)?;
+    // SAFETY: the header gives this symbol this type.
+    let entry = unsafe { library.get::<abi::Entry>(abi::ENTRY_SYMBOL) }
+        .ok()
+        .map(|symbol| *symbol);
+    // SAFETY: as above.
+    let plain = unsafe { library.get::<abi::Plain>(abi::PLAIN_SYMBOL) }
+        .ok()
+        .map(|symbol| *symbol);
+    // Without a handle nothing can unload it, which is what `abi` demands.
+    let _ = library.into_raw();
+    if let Some(entry) = entry {
+        // SAFETY: the library that holds the function is loaded and stays so.
+        let table = unsafe { entry() };
+        // SAFETY: this is what the entry of a library returned that is never unloaded.
+        return unsafe { abi::read_library(table) };
+    }
+    match plain {
+        // SAFETY: the header gives this symbol this type and these rules; the library is never unloaded.
+        Some(function) => Ok(vec![unsafe {
+            Descriptor::plain(abi::PLAIN_SYMBOL, function)
+        }]),
+        None => Err(format!(
+            "exports neither {} nor {}",
+            abi::ENTRY_SYMBOL,
+            abi::PLAIN_SYMBOL
+        )),
+    }
+}
+
+/// The loader's own words, and what to do about the one refusal that puzzles everybody.
+fn explain(error: libloading::Error) -> String {
+    let text = match std::error::Error::source(&error) {
+        Some(source) => source.to_string(),
+        None => error.to_string(),
+    };
+    if text.contains("failed to map segment") {
+        return format!(
+            "{text}; a file system mounted noexec cannot hold the cache, choose another place with --cache"
+        );
+    }
+    text
+}
+
+/// The converter called `name`, or the only one.
+fn choose(mut descriptors: Vec<Descriptor>, name: Option<&str>) -> Result<Descriptor, String> {
+    let Some(name) = name else {
+        return match descriptors.pop() {
+            Some(only) if descriptors.is_empty() => Ok(only),
+            Some(last) => {
+                descriptors.push(last);
+                Err(format!(
+                    "holds several converters, add #NAME: {}",
+                    names(&descriptors)
+                ))
+            }
+            None => Err("holds no converter".to_owned()),
+        };
+    };
+    if let Some(index) = descriptors
+        .iter()
+        .position(|descriptor| descriptor.name() == name)
+    {
+        return Ok(descriptors.swap_remove(index));
+    }
+    let hint = suggestion(name, descriptors.iter().map(Descriptor::name));
+    Err(format!(
+        "has no converter '{name}'{hint}; it holds: {}",
+        names(&descriptors)
+    ))
+}
+
+fn names(descriptors: &[Descriptor]) -> String {
+    descriptors
+        .iter()
+        .map(Descriptor::name)
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,207 @@
+//! The process that serves one mount, from its first configuration to its end.
+//!
+//! Owns the order of things: serving starts before the configuration runs, because making a Lua state can wait for
+//! the kernel's random numbers on a freshly booted board; actuators come to rest before the process ends. The
+//! guardian, which is another process, mounts before and unmounts after.
+
+use crate::convert::shared::Cache;
+use crate::engine::Engine;
+use crate::errno::Error;
+use crate::files::control::rest_all;
+use crate::fs::{Forest, Fs, OpenFiles};
+use crate::guardian::ledger::Ledger;
+use crate::reload::{Reloader, Setup};
+use crate::transport::Operations;
+use crate::tree::{Owner, Tree};
+use config::load::Loader;
+use nix::sys::resource::{Resource, getrlimit, setrlimit};
+use nix::sys::signal::{SigSet, Signal};
+use std::os::fd::OwnedFd;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Sender, channel};
+
+/// Which transport serves the kernel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Transport {
+    /// Our own layer over /dev/fuse.
+    #[default]
+    Native,
+    /// The fuser crate.
+    #[cfg(feature = "fuser")]
+    Fuser,
+}
+
+/// What the process is started with.
+pub struct Options {
+    /// The mounted /dev/fuse.
+    pub device: OwnedFd,
+    /// Where it is mounted, for messages.
+    pub mountpoint: PathBuf,
+    /// The configuration file; an empty tree without one.
+    pub config: Option<PathBuf>,
+    /// Bytes that were in force before a crash; they take the place of the file's.
+    pub in_force: Option<Vec<u8>>,
+    /// Where `include` looks.
+    pub include_dirs: Vec<PathBuf>,
+    /// Where shared libraries are looked for after the configuration's directory.
+    pub library_dirs: Vec<PathBuf>,
+    /// Compiled converters.
+    pub cache: Cache,
+    /// Owner of the tree.
+    pub owner: Owner,
+    /// Which transport serves the kernel.
+    pub transport: Transport,
+    /// What the guardian must know.
+    pub ledger: Option<Ledger>,
+    /// Called when the first configuration is in force, with its number of nodes.
+    pub ready: Box<dyn FnOnce(usize)>,
+    /// Told before something that takes long.
+    pub progress: Box<dyn Fn(&str)>,
+}
+
+enum End {
+    Signal,
+    Unmounted,
+    Failed(String),
+}
+
+/// Serves until a signal asks to stop or the mount is gone. An error is a refused configuration or a failure.
+pub fn run(options: Options) -> Result<(), String> {
+    let signals = block_signals()?;
+    raise_file_limit();
+    let engine = Engine::start().map_err(|error| format!("threads cannot be started: {error}"))?;
+    let (end, ended) = channel();
+    wait_for_signals(signals, end.clone())?;
+
+    let mut last_ino = crate::tree::ROOT;
+    let forest = Arc::new(Forest::new(Tree::build(
+        Vec::new(),
+        options.owner,
+        None,
+        &mut last_ino,
+    )));
+    let files = Arc::new(OpenFiles::default());
+    let base_dir = options
+        .config
+        .as_deref()
+        .and_then(Path::parent)
+        .map(Path::to_path_buf);
+    let setup = Setup {
+        engine: engine.clone(),
+        forest: forest.clone(),
+        files: files.clone(),
+        loader: Loader {
+            include_dirs: options.include_dirs,
+            library_dirs: options.library_dirs,
+        },
+        base_dir,
+        cache: options.cache,
+        owner: options.owner,
+        last_ino,
+        ledger: options.ledger,
+    };
+    let reloader =
+        Reloader::start(setup).map_err(|error| format!("threads cannot be started: {error}"))?;
+    let fs: Arc<dyn Operations> = Arc::new(Fs::new(
+        engine.clone(),
+        forest.clone(),
+        files,
+        reloader.clone(),
+    ));
+    serve(options.device, fs, options.transport, end)?;
+    engine
+        .log
+        .line(&format!("mounted on {}", options.mountpoint.display()));
+
+    let loaded = first_configuration(options.config.as_deref(), options.in_force);
+    let applied = loaded.and_then(|(name, bytes)| {
+        let applied = reloader.apply(&name, bytes, &options.progress);
+        applied.map_err(|problem| problem.to_string())
+    });
+    let outcome = match applied {
+        Err(reason) => Err(reason),
+        Ok(nodes) => {
+            (options.ready)(nodes);
+            match ended.recv() {
+                Ok(End::Signal | End::Unmounted) | Err(_) => Ok(()),
+                Ok(End::Failed(reason)) => Err(reason),
+            }
+        }
+    };
+    if let Err(error) = rest_all(forest.tree().nodes()) {
+        eprintln!("trikfs: an actuator could not be brought to rest: {error}");
+    }
+    engine.refuse_all(&Error::ShuttingDown);
+    engine.stop();
+    outcome
+}
+
+/// Every thread started from here on leaves these signals to the one that waits for them.
+fn block_signals() -> Result<SigSet, String> {
+    let mut signals = SigSet::empty();
+    for signal in [Signal::SIGTERM, Signal::SIGINT, Signal::SIGHUP] {
+        signals.add(signal);
+    }
+    let blocked = signals.thread_block();
+    blocked.map_err(|errno| format!("signals cannot be blocked: {errno}"))?;
+    Ok(signals)
+}
+
+/// Every open file of a character device is one of ours as well: take as many descriptors as we may have.
+fn raise_file_limit() {
+    if let Ok((_, most)) = getrlimit(Resource::RLIMIT_NOFILE) {
+        // With fewer, opening fails with EMFILE sooner.
+        let _ = setrlimit(Resource::RLIMIT_NOFILE, most, most);
+    }
+}
+
+/// The name and bytes of the configuration to begin with.
+fn first_configuration(
+    file: Option<&Path>,
+    in_force: Option<Vec<u8>>,
+) -> Result<(String, Vec<u8>), String> {
+    let name = file.map_or_else(|| "config".to_owned(), |file| file.display().to_string());
+    if let Some(bytes) = in_force {
+        return Ok((name, bytes));
+    }
+    let Some(file) = file else {
+        return Ok((name, b"trikfs = {}\n".to_vec()));
+    };
+    crate::check::read_config(file).map(|bytes| (name, bytes))
+}
+
+fn wait_for_signals(signals: SigSet, end: Sender<End>) -> Result<(), String> {
+    let thread = std::thread::Builder::new().name("signals".to_owned());
+    let spawned = thread.spawn(move || {
+        if signals.wait().is_ok() {
+            let _ = end.send(End::Signal);
+        }
+    });
+    spawned
+        .map(|_| ())
+        .map_err(|error| format!("threads cannot be started: {error}"))
+}
+
+fn serve(
+    device: OwnedFd,
+    fs: Arc<dyn Operations>,
+    transport: Transport,
+    end: Sender<End>,
+) -> Result<(), String> {
+    let thread = std::thread::Builder::new().name("kernel".to_owned());
+    let spawned = thread.spawn(move || {
+        let served = match transport {
+            Transport::Native => crate::transport::native::serve(device, fs),
+            #[cfg(feature = "fuser")]
+            Transport::Fuser => crate::transport::fuser::serve(device, fs),
+        };
+        let _ = end.send(match served {
+            Ok(()) => End::Unmounted,
+            Err(error) => End::Failed(format!("the kernel cannot be served: {error}")),
+        });
+    });
+    spawned
+        .map(|_| ())
+        .map_err(|error| format!("threads cannot be started: {error}"))
+}

@@ -1,0 +1,270 @@
+//! Sources and sinks: where a node's bytes come from and go to.
+//!
+//! Owns the traits, the decision which of them a description gets, and nothing else. Each kind of device is one
+//! file below; only those files open device nodes. Nothing here knows converters, handles or the kernel's requests.
+//! A bus that needs more than a file (I2C, IIO, PWM) is one more file and one more arm of [`open`].
+
+pub mod attribute;
+pub mod chardev;
+pub mod evdev;
+pub mod fake;
+pub mod faulty;
+pub mod fifo;
+pub mod linked;
+pub mod replay;
+pub mod several;
+
+use crate::errno::Error;
+use crate::node::Node;
+use config::description::SourceDescription;
+use std::os::fd::BorrowedFd;
+use std::os::unix::fs::{FileTypeExt, MetadataExt};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// What opening a source gives.
+pub enum Device {
+    /// Something that has a value at any time.
+    State(Box<dyn State>),
+    /// Something that delivers one tuple after another.
+    Stream(Box<dyn Stream>),
+}
+
+/// A source that can be asked again: a sysfs attribute, a register, a regular file.
+pub trait State: Send {
+    /// Reads from a byte position of the source; 0 means its end. May take as long as the device takes.
+    fn read_at(&mut self, offset: u64, buf: &mut [u8]) -> Result<usize, Error>;
+
+    /// Text that ends before the tuple does is filled up with zero bytes (`read_at` at 0 gives all there is).
+    fn is_text(&self) -> bool {
+        false
+    }
+}
+
+/// A source that delivers and forgets.
+pub trait Stream: Send {
+    /// Takes what is there, without waiting.
+    fn read(&mut self, buf: &mut [u8]) -> Result<Got, Error>;
+
+    /// Becomes readable (edge-triggered) when `read` may give more after it gave [`Got::Nothing`].
+    fn fd(&self) -> Option<BorrowedFd<'_>>;
+
+    /// When to read again after [`Got::Nothing`], for sources that run by the clock.
+    fn wake_at(&self) -> Option<Instant> {
+        None
+    }
+
+    /// Whether opening it again after [`Got::End`] can give more (the next writer of a FIFO).
+    fn begins_anew(&self) -> bool {
+        true
+    }
+}
+
+/// Outcome of reading a stream.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Got {
+    /// So many bytes, at least one.
+    Bytes(usize),
+    /// Nothing at the moment.
+    Nothing,
+    /// The end: a FIFO without writers, a recording that is over. More may follow when it begins anew.
+    End,
+}
+
+/// Where written tuples go.
+pub trait Sink: Send {
+    /// Sends one whole tuple. A device that takes no bytes now is waited for, at most for the sink's time limit;
+    /// not at all (EAGAIN) if the writer does not wait and nothing of the tuple has gone yet.
+    fn write(&mut self, tuple: &[u8], waits: bool) -> Result<(), Error>;
+}
+
+/// What opening needs to know beside the description.
+#[derive(Clone)]
+pub struct Surroundings {
+    /// Nodes that `trikfs:` sources of this node name, by path.
+    pub links: Vec<(String, Arc<Node>)>,
+    /// How long a sink waits for a device that takes no bytes.
+    pub timeout_ms: u32,
+}
+
+impl Surroundings {
+    fn link(&self, path: &str) -> Result<&Arc<Node>, Error> {
+        let found = self.links.iter().find(|(name, _)| name == path);
+        found
+            .map(|(_, node)| node)
+            .ok_or_else(|| Error::NoDevice(format!("there is no node {path}")))
+    }
+}
+
+/// Opens a source for reading. `tuple_size` is that of the source, for kinds that produce whole tuples.
+pub fn open(
+    source: &SourceDescription,
+    tuple_size: usize,
+    around: &Surroundings,
+) -> Result<Device, Error> {
+    match source {
+        SourceDescription::Path(path) => open_path(path),
+        SourceDescription::Attribute(path) => Ok(Device::State(Box::new(
+            attribute::Attribute::open(path, true)?,
+        ))),
+        SourceDescription::Fifo(path) => Ok(Device::Stream(Box::new(fifo::Fifo::open(path)?))),
+        SourceDescription::Evdev(evdev) => Ok(Device::Stream(Box::new(evdev::Evdev::open(evdev)?))),
+        SourceDescription::Fake(fake) => Ok(fake::open(fake, tuple_size)),
+        SourceDescription::Replay(replay) => {
+            Ok(Device::Stream(Box::new(replay::Replay::open(replay)?)))
+        }
+        SourceDescription::Faulty(faulty) => {
+            faulty::open(faulty, open(&faulty.source, tuple_size, around)?)
+        }
+        SourceDescription::Node(path) => linked::open(around.link(path)?),
+        SourceDescription::Several(parts) => several::open(parts, around),
+    }
+}
+
+/// Opens a source for writing.
+pub fn open_sink(
+    source: &SourceDescription,
+    around: &Surroundings,
+) -> Result<Box<dyn Sink>, Error> {
+    match source {
+        SourceDescription::Path(path) => match kind_of(path)? {
+            PathKind::Attribute => Ok(Box::new(attribute::AttributeSink::open(path, true)?)),
+            PathKind::Regular => Ok(Box::new(attribute::AttributeSink::open(path, false)?)),
+            PathKind::CharDevice | PathKind::SharedDevice | PathKind::Fifo => {
+                Ok(Box::new(chardev::CharSink::open(path, around.timeout_ms)?))
+            }
+        },
+        SourceDescription::Attribute(path) => {
+            Ok(Box::new(attribute::AttributeSink::open(path, true)?))
+        }
+        SourceDescription::Fifo(path) => {
+            Ok(Box::new(chardev::CharSink::open(path, around.timeout_ms)?))
+        }
+        SourceDescription::Node(path) => {
+            Ok(Box::new(linked::LinkedSink::open(around.link(path)?)?))
+        }
+        SourceDescription::Faulty(faulty) => Ok(Box::new(faulty::FaultySink::new(
+            faulty,
+            open_sink(&faulty.source, around)?,
+        ))),
+        SourceDescription::Evdev(_)
+        | SourceDescription::Fake(_)
+        | SourceDescription::Replay(_)
+        | SourceDescription::Several(_) => Err(Error::AccessDenied),
+    }
+}
+
+/// Whether all readers share one opening: the source gives each datum once or lets only one process in.
+/// The kind of a plain path is looked up each time, because a device may appear later as something else.
+pub fn is_shared(source: &SourceDescription) -> Result<bool, Error> {
+    Ok(match source {
+        SourceDescription::Path(path) => {
+            matches!(kind_of(path)?, PathKind::Fifo | PathKind::SharedDevice)
+        }
+        SourceDescription::Attribute(_) | SourceDescription::Node(_) => false,
+        SourceDescription::Fifo(_) | SourceDescription::Evdev(_) | SourceDescription::Replay(_) => {
+            true
+        }
+        SourceDescription::Fake(fake) => fake.period_ms > 0,
+        SourceDescription::Faulty(faulty) => is_shared(&faulty.source)?,
+        SourceDescription::Several(parts) => {
+            let mut shared = false;
+            for part in parts {
+                shared |= is_shared(&part.source)?;
+            }
+            shared
+        }
+    })
+}
+
+/// Device paths that a description needs, for the warnings of `trikfs check`.
+pub fn paths(source: &SourceDescription) -> Vec<&Path> {
+    match source {
+        SourceDescription::Path(path)
+        | SourceDescription::Attribute(path)
+        | SourceDescription::Fifo(path) => vec![path],
+        SourceDescription::Evdev(evdev) => vec![&evdev.path],
+        SourceDescription::Replay(replay) => vec![&replay.path],
+        SourceDescription::Faulty(faulty) => paths(&faulty.source),
+        SourceDescription::Several(parts) => {
+            parts.iter().flat_map(|part| paths(&part.source)).collect()
+        }
+        SourceDescription::Fake(_) | SourceDescription::Node(_) => Vec::new(),
+    }
+}
+
+/// What a plain path is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum PathKind {
+    /// A file of sysfs, procfs or the like, whose content is made when it is read.
+    Attribute,
+    /// A regular file or block device.
+    Regular,
+    /// A character device that each handle may open for itself.
+    CharDevice,
+    /// A terminal or input device: one queue for all readers.
+    SharedDevice,
+    /// A named pipe.
+    Fifo,
+}
+
+/// Major numbers of Linux terminals (4, 5, 136-143, 188 USB serial, 166 ACM, 204 low-density serial) and of input (13).
+/// Source: Documentation/admin-guide/devices.txt of the kernel.
+const SHARED_MAJORS: [u32; 14] = [
+    4, 5, 13, 136, 137, 138, 139, 140, 141, 142, 143, 166, 188, 204,
+];
+
+fn kind_of(path: &Path) -> Result<PathKind, Error> {
+    let meta = std::fs::metadata(path).map_err(|error| device_error(path, &error))?;
+    let kind = meta.file_type();
+    if kind.is_fifo() {
+        return Ok(PathKind::Fifo);
+    }
+    if kind.is_char_device() {
+        let major = u32::try_from((meta.rdev() >> 8) & 0xfff).unwrap_or(0);
+        let shared = SHARED_MAJORS.contains(&major);
+        return Ok(if shared {
+            PathKind::SharedDevice
+        } else {
+            PathKind::CharDevice
+        });
+    }
+    if kind.is_dir() {
+        return Err(Error::NoDevice(format!(
+            "{} is a directory",
+            path.display()
+        )));
+    }
+    if kind.is_socket() {
+        return Err(Error::NoDevice(format!("{} is a socket", path.display())));
+    }
+    Ok(if attribute::is_generated(path) {
+        PathKind::Attribute
+    } else {
+        PathKind::Regular
+    })
+}
+
+fn open_path(path: &Path) -> Result<Device, Error> {
+    Ok(match kind_of(path)? {
+        PathKind::Attribute => Device::State(Box::new(attribute::Attribute::open(path, true)?)),
+        PathKind::Regular => Device::State(Box::new(attribute::Attribute::open(path, false)?)),
+        PathKind::Fifo => Device::Stream(Box::new(fifo::Fifo::open(path)?)),
+        PathKind::CharDevice | PathKind::SharedDevice => {
+            Device::Stream(Box::new(chardev::CharDevice::open(path)?))
+        }
+    })
+}
+
+/// An I/O error of a device, with the path in its text.
+pub(crate) fn device_error(path: &Path, error: &std::io::Error) -> Error {
+    let what = path.display().to_string();
+    match error.raw_os_error() {
+        Some(libc::ENOENT | libc::ENODEV | libc::ENXIO | libc::ENOTDIR) | None => {
+            Error::NoDevice(format!("{what}: {error}"))
+        }
+        Some(libc::EACCES | libc::EPERM | libc::EROFS) => Error::AccessDenied,
+        Some(errno) => Error::Device(errno, what),
+    }
+}

@@ -1,0 +1,181 @@
+//! Linux input devices decoded: the newest value of each watched code, one tuple per SYN_REPORT.
+//!
+//! Owns the layout of `struct input_event` (linux/input.h: two time fields, u16 type, u16 code, s32 value) for
+//! 32- and 64-bit times and the rule for SYN_DROPPED: everything up to the next SYN_REPORT is thrown away.
+
+use super::{Got, Stream, chardev, fifo};
+use crate::errno::Error;
+use config::description::{EvdevDescription, EvdevLayout};
+use std::os::fd::BorrowedFd;
+use std::os::unix::fs::FileTypeExt;
+
+const EV_SYN: u16 = 0;
+const SYN_REPORT: u16 = 0;
+const SYN_DROPPED: u16 = 3;
+
+/// A decoder in front of the device's bytes.
+pub struct Evdev {
+    bytes: Box<dyn Stream>,
+    decoder: Decoder,
+    raw: Vec<u8>,
+}
+
+impl Evdev {
+    /// Opens the device, or a FIFO of recorded events.
+    pub fn open(description: &EvdevDescription) -> Result<Self, Error> {
+        let path = &description.path;
+        let meta = std::fs::metadata(path).map_err(|error| super::device_error(path, &error))?;
+        let bytes: Box<dyn Stream> = if meta.file_type().is_fifo() {
+            Box::new(fifo::Fifo::open(path)?)
+        } else {
+            Box::new(chardev::CharDevice::open(path)?)
+        };
+        Ok(Self {
+            bytes,
+            decoder: Decoder::new(description),
+            raw: vec![0; 64 * 24],
+        })
+    }
+}
+
+impl Stream for Evdev {
+    fn read(&mut self, buf: &mut [u8]) -> Result<Got, Error> {
+        loop {
+            let given = self.decoder.take(buf);
+            if given > 0 {
+                return Ok(Got::Bytes(given));
+            }
+            match self.bytes.read(&mut self.raw)? {
+                Got::Bytes(n) => self.decoder.feed(&self.raw[..n]),
+                other => return Ok(other),
+            }
+        }
+    }
+
+    fn fd(&self) -> Option<BorrowedFd<'_>> {
+        self.bytes.fd()
+    }
+}
+
+/// Events in, tuples out.
+struct Decoder {
+    codes: Vec<(u16, u16)>,
+    event_size: usize,
+    values: Vec<i32>,
+    partial: Vec<u8>,
+    ready: Vec<u8>,
+    dropping: bool,
+}
+
+impl Decoder {
+    fn new(description: &EvdevDescription) -> Self {
+        let event_size = match description.layout {
+            EvdevLayout::Bits32 => 16,
+            EvdevLayout::Bits64 => 24,
+            EvdevLayout::Native => 2 * size_of::<libc::c_long>() + 8,
+        };
+        Self {
+            codes: description.codes.clone(),
+            event_size,
+            values: vec![0; description.codes.len()],
+            partial: Vec::with_capacity(event_size),
+            ready: Vec::new(),
+            dropping: false,
+        }
+    }
+
+    fn feed(&mut self, mut bytes: &[u8]) {
+        while !bytes.is_empty() {
+            let missing = self.event_size - self.partial.len();
+            let taken = missing.min(bytes.len());
+            self.partial.extend_from_slice(&bytes[..taken]);
+            bytes = &bytes[taken..];
+            if self.partial.len() == self.event_size {
+                let tail = &self.partial[self.event_size - 8..];
+                let kind = u16::from_ne_bytes([tail[0], tail[1]]);
+                let code = u16::from_ne_bytes([tail[2], tail[3]]);
+                let value = i32::from_ne_bytes([tail[4], tail[5], tail[6], tail[7]]);
+                self.partial.clear();
+                self.event(kind, code, value);
+            }
+        }
+    }
+
+    fn event(&mut self, kind: u16, code: u16, value: i32) {
+        match (kind, code) {
+            (EV_SYN, SYN_DROPPED) => self.dropping = true,
+            (EV_SYN, SYN_REPORT) if self.dropping => self.dropping = false,
+            (EV_SYN, SYN_REPORT) => {
+                for value in &self.values {
+                    self.ready.extend_from_slice(&value.to_le_bytes());
+                }
+            }
+            _ if self.dropping => {}
+            _ => {
+                if let Some(at) = self
+                    .codes
+                    .iter()
+                    .position(|&watched| watched == (kind, code))
+                {
+                    self.values[at] = value;
+                }
+            }
+        }
+    }
+
+    fn take(&mut self, buf: &mut [u8]) -> usize {
+        let n = self.ready.len().min(buf.len());
+        buf[..n].copy_from_slice(&self.ready[..n]);
+        self.ready.drain(..n);
+        n
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn event(times: usize, kind: u16, code: u16, value: i32) -> Vec<u8> {
+        let mut bytes = vec![0xaa; times];
+        bytes.extend_from_slice(&kind.to_ne_bytes());
+        bytes.extend_from_slice(&code.to_ne_bytes());
+        bytes.extend_from_slice(&value.to_ne_bytes());
+        bytes
+    }
+
+    fn decode(layout: EvdevLayout, times: usize, split: usize) -> Vec<u8> {
+        let codes = vec![(3, 0), (1, 28)];
+        let mut decoder = Decoder::new(&EvdevDescription {
+            path: "x".into(),
+            codes,
+            layout,
+        });
+        let mut bytes = Vec::new();
+        bytes.extend(event(times, 3, 0, -5)); // ABS_X
+        bytes.extend(event(times, 3, 1, 99)); // ABS_Y is not watched
+        bytes.extend(event(times, 0, 0, 0)); // SYN_REPORT: (-5, 0)
+        bytes.extend(event(times, 0, 3, 0)); // SYN_DROPPED
+        bytes.extend(event(times, 3, 0, 1000)); // lost with the rest of its report
+        bytes.extend(event(times, 0, 0, 0));
+        bytes.extend(event(times, 1, 28, 1)); // KEY_ENTER
+        bytes.extend(event(times, 0, 0, 0)); // (-5, 1)
+        for part in bytes.chunks(split) {
+            decoder.feed(part);
+        }
+        let mut out = [0; 64];
+        let n = decoder.take(&mut out);
+        out[..n].to_vec()
+    }
+
+    #[test]
+    fn each_report_gives_one_tuple_in_both_layouts_however_the_bytes_are_cut() {
+        let mut expected = Vec::new();
+        for value in [-5i32, 0, -5, 1] {
+            expected.extend_from_slice(&value.to_le_bytes());
+        }
+        for split in [1, 7, 16, 24, 1000] {
+            assert_eq!(decode(EvdevLayout::Bits32, 8, split), expected);
+            assert_eq!(decode(EvdevLayout::Bits64, 16, split), expected);
+        }
+    }
+}

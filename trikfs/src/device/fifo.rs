@@ -1,0 +1,97 @@
+//! Named pipes, whose writers come and go.
+//!
+//! Owns the rule for their ends: readers see one end of file when the last writer has left, and what the next
+//! writer sends after that. Opening does not wait for a writer, and no writer yet is not an end.
+
+use super::{Got, Stream, device_error};
+use crate::errno::Error;
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
+use std::fs::{File, OpenOptions};
+use std::io::{ErrorKind, Read};
+use std::os::fd::{AsFd, BorrowedFd};
+use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
+use std::path::{Path, PathBuf};
+
+/// A FIFO open for reading.
+pub struct Fifo {
+    file: File,
+    path: PathBuf,
+}
+
+impl Fifo {
+    /// Opens for reading without waiting for a writer.
+    pub fn open(path: &Path) -> Result<Self, Error> {
+        let file = OpenOptions::new()
+            .read(true)
+            .custom_flags(libc::O_NONBLOCK)
+            .open(path);
+        let file = file.map_err(|error| device_error(path, &error))?;
+        let kind = file
+            .metadata()
+            .map_err(|error| device_error(path, &error))?
+            .file_type();
+        if !kind.is_fifo() {
+            return Err(Error::NoDevice(format!(
+                "{} is not a named pipe",
+                path.display()
+            )));
+        }
+        Ok(Self {
+            file,
+            path: path.to_owned(),
+        })
+    }
+
+    /// The kernel reports a hang-up only for a writer that came and left since this opening.
+    fn had_a_writer(&self) -> bool {
+        let mut fds = [PollFd::new(self.file.as_fd(), PollFlags::POLLIN)];
+        let asked = poll(&mut fds, PollTimeout::ZERO);
+        asked.is_ok()
+            && fds[0]
+                .revents()
+                .is_some_and(|events| events.contains(PollFlags::POLLHUP))
+    }
+}
+
+impl Stream for Fifo {
+    fn read(&mut self, buf: &mut [u8]) -> Result<Got, Error> {
+        loop {
+            match self.file.read(buf) {
+                Ok(0) if self.had_a_writer() => return Ok(Got::End),
+                Ok(0) => return Ok(Got::Nothing),
+                Ok(n) => return Ok(Got::Bytes(n)),
+                Err(error) if error.kind() == ErrorKind::WouldBlock => return Ok(Got::Nothing),
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(error) => return Err(device_error(&self.path, &error)),
+            }
+        }
+    }
+
+    fn fd(&self) -> Option<BorrowedFd<'_>> {
+        Some(self.file.as_fd())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Write;
+
+    #[test]
+    fn the_end_comes_once_a_writer_has_left_and_not_before_one_came() {
+        let path = std::env::temp_dir().join(format!("trikfs-fifo-{}", std::process::id()));
+        let _ = std::fs::remove_file(&path);
+        nix::unistd::mkfifo(&path, nix::sys::stat::Mode::S_IRWXU).unwrap();
+        let mut fifo = Fifo::open(&path).unwrap();
+        let mut buf = [0; 8];
+        assert_eq!(fifo.read(&mut buf), Ok(Got::Nothing));
+        let mut writer = OpenOptions::new().write(true).open(&path).unwrap();
+        assert_eq!(fifo.read(&mut buf), Ok(Got::Nothing));
+        writer.write_all(b"ab").unwrap();
+        drop(writer);
+        assert_eq!(fifo.read(&mut buf), Ok(Got::Bytes(2)));
+        assert_eq!(fifo.read(&mut buf), Ok(Got::End));
+        std::fs::remove_file(&path).unwrap();
+        assert!(Fifo::open(Path::new("/dev/null")).is_err());
+    }
+}

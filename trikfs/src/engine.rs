@@ -1,0 +1,98 @@
+//! What all nodes and open files share: the kernel's side, events, the log, the requests that wait.
+//!
+//! Owns these services for one mount; there are no globals. Knows no node.
+
+use crate::errno::Error;
+use crate::events::{Poller, Schedule, lock};
+use crate::log::Log;
+use crate::transport::{Answer, Kernel, PollHandle, RequestId};
+use std::collections::HashSet;
+use std::io;
+use std::sync::{Arc, Mutex, OnceLock};
+
+/// The services of one mount.
+pub struct Engine {
+    /// Descriptors that wake somebody.
+    pub poller: Arc<Poller>,
+    /// Times at which somebody acts.
+    pub schedule: Arc<Schedule>,
+    /// The `log` file.
+    pub log: Arc<Log>,
+    kernel: OnceLock<Arc<dyn Kernel>>,
+    parked: Mutex<HashSet<RequestId>>,
+}
+
+impl Engine {
+    /// Starts the event threads.
+    pub fn start() -> io::Result<Arc<Self>> {
+        Ok(Arc::new(Self {
+            poller: Poller::start()?,
+            schedule: Schedule::start()?,
+            log: Arc::new(Log::new()),
+            kernel: OnceLock::new(),
+            parked: Mutex::default(),
+        }))
+    }
+
+    /// The mount is live; later calls are ignored.
+    pub fn connect(&self, kernel: Arc<dyn Kernel>) {
+        let _ = self.kernel.set(kernel);
+    }
+
+    /// The kernel's side, once there is one.
+    pub fn kernel(&self) -> Option<&Arc<dyn Kernel>> {
+        self.kernel.get()
+    }
+
+    /// Notes that a request waits for an answer.
+    pub fn park(&self, id: RequestId) {
+        lock(&self.parked).insert(id);
+    }
+
+    /// Whether a request still waits.
+    pub fn is_parked(&self, id: RequestId) -> bool {
+        lock(&self.parked).contains(&id)
+    }
+
+    /// Takes the right and duty to answer a waiting request; only one caller gets it.
+    pub fn claim(&self, id: RequestId) -> bool {
+        lock(&self.parked).remove(&id)
+    }
+
+    /// Answers a claimed request.
+    pub fn answer(&self, id: RequestId, result: Result<Answer<'_>, Error>) {
+        if let Some(kernel) = self.kernel() {
+            kernel.answer(id, result);
+        }
+    }
+
+    /// Answers a waiting request with an error, if it still waits.
+    pub fn refuse(&self, id: RequestId, error: Error) -> bool {
+        let claimed = self.claim(id);
+        if claimed {
+            self.answer(id, Err(error));
+        }
+        claimed
+    }
+
+    /// Answers everybody who waits, before the end.
+    pub fn refuse_all(&self, error: &Error) {
+        let all: Vec<_> = lock(&self.parked).drain().collect();
+        for id in all {
+            self.answer(id, Err(error.clone()));
+        }
+    }
+
+    /// Wakes whoever polls an open file.
+    pub fn notify(&self, handle: Option<PollHandle>) {
+        if let (Some(kernel), Some(handle)) = (self.kernel(), handle) {
+            kernel.notify_poll(handle);
+        }
+    }
+
+    /// Ends the event threads.
+    pub fn stop(&self) {
+        self.poller.stop();
+        self.schedule.stop();
+    }
+}

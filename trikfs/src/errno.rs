@@ -1,0 +1,183 @@
+//! Errors of the filesystem, who is to blame for each, and the one table that turns them into errno.
+//!
+//! Nothing else in this crate chooses an errno for an outcome of its own; a device's own errno passes through here.
+
+use std::fmt;
+
+/// Who has to act.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Blame {
+    /// The program that called.
+    Caller,
+    /// The device or its wiring.
+    Device,
+    /// The converter's code or its data.
+    Converter,
+    /// This filesystem.
+    Ours,
+}
+
+impl fmt::Display for Blame {
+    /// The first word of a `fault`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Caller => "caller",
+            Self::Device => "device",
+            Self::Converter => "converter",
+            Self::Ours => "filesystem",
+        })
+    }
+}
+
+/// Why an operation failed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Error {
+    /// No such name.
+    NotFound,
+    /// A path component is not a directory.
+    NotADirectory,
+    /// The operation needs a file.
+    IsADirectory,
+    /// Writing a sensor, or reading a file that can only be written.
+    AccessDenied,
+    /// Text or bytes that mean nothing here.
+    Invalid(String),
+    /// A number that does not fit its field.
+    OutOfRange(String),
+    /// Nothing is plugged in, or it was unplugged.
+    NoDevice(String),
+    /// No sample yet, and the caller does not wait.
+    WouldBlock,
+    /// No sample within the deadline, or the newest one is too old.
+    TimedOut(String),
+    /// The device failed with an errno of its own.
+    Device(i32, String),
+    /// The converter failed.
+    Converter(String),
+    /// The open file belongs to a node that a reload changed or removed.
+    Stale,
+    /// Too many open files.
+    TooManyOpen,
+    /// A queue or buffer is full.
+    NoBuffers,
+    /// More bytes than the file can take.
+    TooLarge,
+    /// The waiting caller got a signal.
+    Interrupted,
+    /// The filesystem is going away.
+    ShuttingDown,
+    /// An operation this filesystem does not have, and never will (rename, mkdir, chmod…).
+    NotPermitted,
+    /// An operation this filesystem does not have.
+    Unsupported,
+    /// No such extended attribute.
+    NoAttribute,
+    /// The caller's buffer is too small for the extended attribute.
+    BufferTooSmall,
+    /// A fault of our own; the text is for the log.
+    Internal(String),
+}
+
+impl Error {
+    /// The number that the program sees.
+    pub fn errno(&self) -> i32 {
+        match self {
+            Self::NotFound => libc::ENOENT,
+            Self::NotADirectory => libc::ENOTDIR,
+            Self::IsADirectory => libc::EISDIR,
+            Self::AccessDenied => libc::EACCES,
+            Self::Invalid(_) => libc::EINVAL,
+            Self::OutOfRange(_) => libc::ERANGE,
+            Self::NoDevice(_) => libc::ENODEV,
+            Self::WouldBlock => libc::EAGAIN,
+            Self::TimedOut(_) => libc::ETIMEDOUT,
+            Self::Device(errno, _) => device_errno(*errno),
+            Self::Converter(_) => libc::EIO,
+            Self::Stale => libc::ESTALE,
+            Self::TooManyOpen => libc::EMFILE,
+            Self::NoBuffers => libc::ENOBUFS,
+            Self::TooLarge => libc::EFBIG,
+            Self::Interrupted => libc::EINTR,
+            Self::ShuttingDown => libc::ENODEV,
+            Self::NotPermitted => libc::EPERM,
+            Self::Unsupported => libc::EOPNOTSUPP,
+            Self::NoAttribute => libc::ENODATA,
+            Self::BufferTooSmall => libc::ERANGE,
+            Self::Internal(_) => libc::EIO,
+        }
+    }
+
+    /// Who has to act.
+    pub fn blame(&self) -> Blame {
+        match self {
+            Self::NotFound
+            | Self::NotADirectory
+            | Self::IsADirectory
+            | Self::AccessDenied
+            | Self::Invalid(_)
+            | Self::OutOfRange(_)
+            | Self::WouldBlock
+            | Self::Stale
+            | Self::TooManyOpen
+            | Self::NoBuffers
+            | Self::TooLarge
+            | Self::Interrupted
+            | Self::ShuttingDown
+            | Self::NotPermitted
+            | Self::Unsupported
+            | Self::NoAttribute
+            | Self::BufferTooSmall => Blame::Caller,
+            Self::NoDevice(_) | Self::TimedOut(_) | Self::Device(..) => Blame::Device,
+            Self::Converter(_) => Blame::Converter,
+            Self::Internal(_) => Blame::Ours,
+        }
+    }
+}
+
+/// What a program sees of a device's own errno: an unplugged device is ENODEV whatever its driver said,
+/// a refused permission stays one, and everything else is a failed transfer.
+fn device_errno(errno: i32) -> i32 {
+    match errno {
+        libc::ENODEV | libc::ENXIO | libc::ENOENT => libc::ENODEV,
+        libc::EACCES | libc::EPERM | libc::EROFS => libc::EACCES,
+        libc::EINVAL => libc::EINVAL,
+        libc::ERANGE => libc::ERANGE,
+        libc::EBUSY => libc::EBUSY,
+        libc::EMFILE | libc::ENFILE => libc::EMFILE,
+        _ => libc::EIO,
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFound => f.write_str("no such name"),
+            Self::NotADirectory => f.write_str("not a directory"),
+            Self::IsADirectory => f.write_str("is a directory"),
+            Self::AccessDenied => f.write_str("the file cannot be opened that way"),
+            Self::Invalid(what)
+            | Self::OutOfRange(what)
+            | Self::NoDevice(what)
+            | Self::TimedOut(what)
+            | Self::Converter(what)
+            | Self::Internal(what) => f.write_str(what),
+            Self::WouldBlock => f.write_str("no sample yet"),
+            Self::Device(errno, what) => {
+                write!(f, "{what}: {}", std::io::Error::from_raw_os_error(*errno))
+            }
+            Self::Stale => f.write_str("the node was changed or removed since the file was opened"),
+            Self::TooManyOpen => f.write_str("too many open files"),
+            Self::NoBuffers => f.write_str("a queue is full"),
+            Self::TooLarge => f.write_str("more bytes than the file can take"),
+            Self::Interrupted => f.write_str("interrupted"),
+            Self::ShuttingDown => f.write_str("the filesystem is stopping"),
+            Self::NotPermitted | Self::Unsupported => {
+                f.write_str("this filesystem has no such operation")
+            }
+            Self::NoAttribute => f.write_str("no such extended attribute"),
+            Self::BufferTooSmall => f.write_str("the buffer is too small"),
+        }
+    }
+}
+
+impl std::error::Error for Error {}

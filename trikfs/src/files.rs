@@ -1,0 +1,59 @@
+//! Open files: one type for each kind of file in the tree, all behind one trait.
+//!
+//! Owns the trait and nothing else.
+
+pub mod config;
+pub mod control;
+pub mod device;
+pub mod log;
+pub mod ownership;
+pub mod value;
+
+use crate::errno::Error;
+use crate::transport::{Caller, Outcome, PollHandle, RequestId, Transfer};
+
+/// What can be asked of an open file. Operations that a kind does not name are refused here.
+pub trait OpenFile: Send + Sync {
+    /// See [`crate::transport::Operations::read`].
+    fn read(&self, _request: &Transfer, _out: &mut [u8]) -> Result<Outcome, Error> {
+        Err(Error::AccessDenied)
+    }
+
+    /// See [`crate::transport::Operations::write`].
+    fn write(&self, _request: &Transfer, _data: &[u8]) -> Result<Outcome, Error> {
+        Err(Error::AccessDenied)
+    }
+
+    /// See [`crate::transport::Operations::poll`]. A plain file is always ready.
+    fn poll(&self, _handle: PollHandle, events: u32) -> Result<u32, Error> {
+        Ok(events & READY)
+    }
+
+    /// A descriptor was closed.
+    fn flush(&self, _id: RequestId, _caller: Caller) -> Result<Outcome, Error> {
+        Ok(Outcome::Done(0))
+    }
+
+    /// fsync(2).
+    fn fsync(&self, _id: RequestId, _caller: Caller) -> Result<Outcome, Error> {
+        Ok(Outcome::Done(0))
+    }
+
+    /// ftruncate(2).
+    fn truncate(&self, _size: u64) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// The last descriptor is gone.
+    fn release(&self) {}
+
+    /// The node behind the file was retired: answer whoever waits.
+    fn retire(&self) {}
+}
+
+/// Readable bits of poll(2).
+pub const READABLE: u32 = (libc::POLLIN | libc::POLLRDNORM) as u32;
+/// Writable bits of poll(2).
+pub const WRITABLE: u32 = (libc::POLLOUT | libc::POLLWRNORM) as u32;
+/// Both.
+pub const READY: u32 = READABLE | WRITABLE;

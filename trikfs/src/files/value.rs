@@ -1,0 +1,294 @@
+//! An open `bin_data`, `value` or `valueN`: the newest sample as bytes, as text, or one number of it.
+//!
+//! Owns the rendering of the sample that this file was last asked for (so that reading in small pieces gives one
+//! sample) and what its poller has seen. The sample itself belongs to the node.
+
+use super::ownership::Ownership;
+use super::{OpenFile, READABLE, WRITABLE};
+use crate::engine::Engine;
+use crate::errno::Error;
+use crate::events::{Ready, lock};
+use crate::limits;
+use crate::newest::Waiter;
+use crate::node::Node;
+use crate::text;
+use crate::transport::{Access, Answer, Caller, Outcome, PollHandle, RequestId, Transfer};
+use crate::writer::Writer;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, Weak};
+
+/// Which view of the sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum View {
+    /// `bin_data`: the tuple's bytes.
+    Bytes,
+    /// `value`: all numbers on one line.
+    Text,
+    /// `valueN`: one number.
+    Field(usize),
+}
+
+/// One open file.
+pub struct ValueFile {
+    node: Arc<Node>,
+    engine: Arc<Engine>,
+    me: Weak<Self>,
+    view: View,
+    reads: bool,
+    /// Served from the page cache under this node id.
+    cached: Option<u64>,
+    is_polled: AtomicBool,
+    always_ready: bool,
+    writer: Option<Mutex<Writer>>,
+    ownership: Ownership,
+    shown: Mutex<Shown>,
+    poll: OnceLock<PollHandle>,
+}
+
+#[derive(Default)]
+struct Shown {
+    tuple: Vec<u8>,
+    content: Vec<u8>,
+    text: String,
+    seen: u32,
+    sizes: Vec<(RequestId, usize)>,
+}
+
+impl ValueFile {
+    /// Opens a view. Only `bin_data` read from a node with a background publisher is cached.
+    pub fn open(
+        node: &Arc<Node>,
+        view: View,
+        ino: u64,
+        read: bool,
+        write: bool,
+    ) -> Result<(Arc<Self>, Access), Error> {
+        node.check_access(read, write)?;
+        let always_ready = read && node.newest.join()?;
+        let writer = if write {
+            match node.open_writer(None) {
+                Ok(writer) => Some(Mutex::new(writer)),
+                Err(error) => {
+                    if read {
+                        node.newest.leave();
+                    }
+                    return Err(error);
+                }
+            }
+        } else {
+            None
+        };
+        let is_cached = view == View::Bytes && read && !write && node.newest.can_cache();
+        if is_cached {
+            node.newest.count_cached(ino, true);
+        }
+        let file = Arc::new_cyclic(|me| Self {
+            node: node.clone(),
+            engine: node.engine.clone(),
+            me: me.clone(),
+            view,
+            reads: read,
+            cached: is_cached.then_some(ino),
+            is_polled: AtomicBool::new(false),
+            always_ready,
+            writer,
+            ownership: Ownership::default(),
+            shown: Mutex::default(),
+            poll: OnceLock::new(),
+        });
+        Ok((
+            file,
+            if is_cached {
+                Access::Cached
+            } else {
+                Access::Direct
+            },
+        ))
+    }
+
+    /// Renders the newest sample into `shown`. False: there is none yet.
+    fn show(&self, shown: &mut Shown) -> Result<bool, Error> {
+        let Shown {
+            tuple,
+            content,
+            text,
+            seen,
+            ..
+        } = shown;
+        let got = self.node.newest.get(tuple);
+        if got.is_err() {
+            *seen = self.node.newest.events();
+        }
+        let Some(events) = got? else { return Ok(false) };
+        *seen = events;
+        content.clear();
+        text.clear();
+        let rendered = match self.view {
+            View::Bytes => {
+                content.extend_from_slice(tuple);
+                return Ok(true);
+            }
+            View::Text => self.node.format.render(tuple, text),
+            View::Field(index) => self.node.format.render_field(index, tuple, text),
+        };
+        rendered.map_err(Error::Converter)?;
+        content.extend_from_slice(text.as_bytes());
+        content.push(b'\n');
+        Ok(true)
+    }
+
+    fn tuple_of(&self, data: &[u8]) -> Result<Vec<u8>, Error> {
+        let size = self.node.description.written_tuple_size();
+        if self.view == View::Bytes {
+            return Ok(data.to_vec());
+        }
+        let format = self.node.written_format();
+        let text = text::from_bytes(data)?;
+        let mut tuple = vec![0; size];
+        match self.view {
+            View::Field(index) => {
+                if format.len() > 1 {
+                    tuple = self.node.last_tuple().ok_or_else(|| {
+                        Error::Invalid(
+                            "the other numbers are not known yet: write all of them to value first"
+                                .to_owned(),
+                        )
+                    })?;
+                }
+                text::encode_field(&format, index, text, &mut tuple)?;
+            }
+            View::Text | View::Bytes => text::encode(&format, text, &mut tuple)?,
+        }
+        Ok(tuple)
+    }
+}
+
+fn copy_from(content: &[u8], offset: u64, out: &mut [u8]) -> usize {
+    let rest = usize::try_from(offset)
+        .ok()
+        .and_then(|at| content.get(at..))
+        .unwrap_or(&[]);
+    let n = rest.len().min(out.len());
+    out[..n].copy_from_slice(&rest[..n]);
+    n
+}
+
+impl OpenFile for ValueFile {
+    fn read(&self, request: &Transfer, out: &mut [u8]) -> Result<Outcome, Error> {
+        if self.node.is_retired() {
+            return Err(Error::Stale);
+        }
+        if !self.reads {
+            return Err(Error::AccessDenied);
+        }
+        if request.offset > 0 {
+            let shown = lock(&self.shown);
+            let n = copy_from(&shown.content, request.offset, out);
+            return Ok(Outcome::Done(n));
+        }
+        // Taking a sample may answer other reads of this file: not with its lock held.
+        self.node.newest.refresh()?;
+        let mut shown = lock(&self.shown);
+        if self.show(&mut shown)? {
+            self.node.stats.reads.add(1);
+            return Ok(Outcome::Done(copy_from(&shown.content, 0, out)));
+        }
+        if request.nonblocking {
+            return Err(Error::WouldBlock);
+        }
+        shown.sizes.retain(|&(id, _)| self.engine.is_parked(id));
+        shown.sizes.push((request.id, out.len()));
+        drop(shown);
+        self.engine.park(request.id);
+        let me: Weak<dyn Waiter> = self.me.clone();
+        self.node.newest.wait(request.id, me);
+        Ok(Outcome::Wait)
+    }
+
+    fn write(&self, request: &Transfer, data: &[u8]) -> Result<Outcome, Error> {
+        let Some(writer) = &self.writer else {
+            return Err(Error::AccessDenied);
+        };
+        let tuple = self.tuple_of(data)?;
+        let _inside = self.node.enter()?;
+        lock(writer).write_whole(&tuple, !request.nonblocking)?;
+        self.node.wrote(tuple);
+        self.ownership.wrote();
+        self.node.stats.writes.add(1);
+        Ok(Outcome::Done(data.len()))
+    }
+
+    fn poll(&self, handle: PollHandle, events: u32) -> Result<u32, Error> {
+        let is_first = self.poll.set(handle).is_ok();
+        if is_first {
+            let me: Weak<dyn Ready> = self.me.clone();
+            self.node.newest.watch(me);
+            if self.cached.is_some() && !self.is_polled.swap(true, Ordering::SeqCst) {
+                self.node.newest.count_polled(true);
+            }
+        }
+        let mut now = 0;
+        if self.writer.is_some() {
+            now |= WRITABLE;
+        }
+        if self.node.is_retired() {
+            return Ok((events & now) | libc::POLLERR as u32);
+        }
+        if self.reads && (self.always_ready || self.node.newest.events() != lock(&self.shown).seen)
+        {
+            now |= READABLE | libc::POLLPRI as u32;
+        }
+        Ok(events & now)
+    }
+
+    fn flush(&self, _id: RequestId, caller: Caller) -> Result<Outcome, Error> {
+        self.ownership.closed(&self.node, caller);
+        Ok(Outcome::Done(0))
+    }
+
+    fn release(&self) {
+        self.ownership.released(&self.node);
+        if let Some(ino) = self.cached {
+            self.node.newest.count_cached(ino, false);
+            if self.is_polled.load(Ordering::SeqCst) {
+                self.node.newest.count_polled(false);
+            }
+        }
+        if self.reads {
+            self.node.newest.leave();
+        }
+    }
+
+    fn retire(&self) {
+        if self.node.is_retired() {
+            self.engine.notify(self.poll.get().copied());
+        }
+    }
+}
+
+impl Ready for ValueFile {
+    fn ready(&self) {
+        self.engine.notify(self.poll.get().copied());
+    }
+}
+
+impl Waiter for ValueFile {
+    fn serve(&self, id: RequestId, error: Option<Error>) {
+        let mut shown = lock(&self.shown);
+        let position = shown.sizes.iter().position(|&(waiting, _)| waiting == id);
+        let size = position.map_or(limits::TEXT_BYTES_MAX, |at| shown.sizes.swap_remove(at).1);
+        if let Some(error) = error {
+            return self.engine.answer(id, Err(error));
+        }
+        match self.show(&mut shown) {
+            Ok(true) => {
+                self.node.stats.reads.add(1);
+                let n = shown.content.len().min(size);
+                self.engine
+                    .answer(id, Ok(Answer::Data(&shown.content[..n])));
+            }
+            Ok(false) => self.engine.answer(id, Err(Error::WouldBlock)),
+            Err(error) => self.engine.answer(id, Err(error)),
+        }
+    }
+}

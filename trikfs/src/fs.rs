@@ -1,0 +1,349 @@
+//! The operations of the filesystem on its tree and its open files.
+//!
+//! Owns the table of open files and the tree in force. Each operation finds what a number stands for and calls it;
+//! what an open file does is in `files/`. Knows no FUSE.
+
+use crate::clock;
+use crate::engine::Engine;
+use crate::errno::Error;
+use crate::events::lock;
+use crate::files::config::ConfigFile;
+use crate::files::control::{PeriodFile, StopFile, TextFile, fault_line, status_lines};
+use crate::files::device::DeviceFile;
+use crate::files::log::LogFile;
+use crate::files::value::ValueFile;
+use crate::files::{OpenFile, READY};
+use crate::limits;
+use crate::node::Node;
+use crate::reload::Reloader;
+use crate::transport::{
+    Access, Attr, Caller, DirEntry, Kernel, Opened, Operations, Outcome, PollHandle, RequestId,
+    StatFs, Transfer,
+};
+use crate::tree::{Kind, Tree};
+use std::sync::{Arc, Mutex};
+
+/// The tree in force, shared between the operations and the reloader.
+pub struct Forest {
+    tree: Mutex<Arc<Tree>>,
+}
+
+impl Forest {
+    /// Starts with this tree.
+    pub fn new(tree: Tree) -> Self {
+        Self {
+            tree: Mutex::new(Arc::new(tree)),
+        }
+    }
+
+    /// The tree in force.
+    pub fn tree(&self) -> Arc<Tree> {
+        lock(&self.tree).clone()
+    }
+
+    /// Puts another tree in force and returns the one before.
+    pub fn replace(&self, tree: Tree) -> Arc<Tree> {
+        std::mem::replace(&mut *lock(&self.tree), Arc::new(tree))
+    }
+}
+
+/// Open files by number.
+#[derive(Default)]
+pub struct OpenFiles {
+    slots: Mutex<Slots>,
+}
+
+#[derive(Default)]
+struct Slots {
+    files: Vec<Option<Arc<dyn OpenFile>>>,
+    free: Vec<usize>,
+}
+
+impl OpenFiles {
+    fn add(&self, file: Arc<dyn OpenFile>) -> Result<u64, Error> {
+        let mut slots = lock(&self.slots);
+        let index = if let Some(index) = slots.free.pop() {
+            index
+        } else {
+            if slots.files.len() >= limits::OPEN_FILES_MAX {
+                return Err(Error::TooManyOpen);
+            }
+            slots.files.push(None);
+            slots.files.len() - 1
+        };
+        slots.files[index] = Some(file);
+        Ok(index as u64)
+    }
+
+    fn get(&self, fh: u64) -> Result<Arc<dyn OpenFile>, Error> {
+        let slots = lock(&self.slots);
+        let file = usize::try_from(fh)
+            .ok()
+            .and_then(|index| slots.files.get(index)?.clone());
+        file.ok_or(Error::Stale)
+    }
+
+    fn remove(&self, fh: u64) -> Option<Arc<dyn OpenFile>> {
+        let mut slots = lock(&self.slots);
+        let index = usize::try_from(fh).ok()?;
+        let file = slots.files.get_mut(index)?.take()?;
+        slots.free.push(index);
+        Some(file)
+    }
+
+    /// Every open file, for a reload that retires nodes.
+    pub fn all(&self) -> Vec<Arc<dyn OpenFile>> {
+        lock(&self.slots).files.iter().flatten().cloned().collect()
+    }
+}
+
+/// Makes the content of a text file.
+type Text = Box<dyn Fn() -> String + Send + Sync>;
+
+/// The filesystem.
+pub struct Fs {
+    engine: Arc<Engine>,
+    forest: Arc<Forest>,
+    files: Arc<OpenFiles>,
+    reloader: Arc<Reloader>,
+}
+
+impl Fs {
+    /// Puts the operations in front of what the reloader keeps in force.
+    pub fn new(
+        engine: Arc<Engine>,
+        forest: Arc<Forest>,
+        files: Arc<OpenFiles>,
+        reloader: Arc<Reloader>,
+    ) -> Self {
+        Self {
+            engine,
+            forest,
+            files,
+            reloader,
+        }
+    }
+
+    fn sizes(&self) -> (u64, u64) {
+        (self.reloader.in_force_len(), self.engine.log.end())
+    }
+
+    fn open_kind(
+        &self,
+        kind: &Kind,
+        ino: u64,
+        flags: i32,
+    ) -> Result<(Arc<dyn OpenFile>, Access, bool), Error> {
+        let (read, write) = match flags & libc::O_ACCMODE {
+            libc::O_RDONLY => (true, false),
+            libc::O_WRONLY => (false, true),
+            _ => (true, true),
+        };
+        if let Some(make) = self.text_of(kind) {
+            if write {
+                return Err(Error::AccessDenied);
+            }
+            return Ok((Arc::new(TextFile::new(make)), Access::Direct, false));
+        }
+        match kind {
+            Kind::Directory => Err(Error::IsADirectory),
+            Kind::Config => {
+                let file =
+                    ConfigFile::open(&self.engine, &self.reloader, flags & libc::O_TRUNC != 0);
+                Ok((Arc::new(file), Access::Direct, write))
+            }
+            Kind::Log if write => Err(Error::AccessDenied),
+            Kind::Log => Ok((LogFile::open(&self.engine), Access::Direct, false)),
+            Kind::Stop if read => Err(Error::AccessDenied),
+            Kind::Stop => {
+                let forest = self.forest.clone();
+                Ok((
+                    Arc::new(StopFile::new(move || forest.tree().nodes().to_vec())),
+                    Access::Direct,
+                    false,
+                ))
+            }
+            Kind::Device(node) => {
+                let (file, access) = DeviceFile::open(node, read, write)?;
+                Ok((file, access, write))
+            }
+            Kind::Value(node, view) => {
+                let (file, access) = ValueFile::open(node, *view, ino, read, write)?;
+                if access == Access::Cached {
+                    self.reloader.note_cached(ino);
+                }
+                let is_owned = write && node.description.rest.is_some();
+                Ok((file, access, is_owned))
+            }
+            Kind::Period(node) => {
+                if write && node.period_ms() == 0 {
+                    return Err(Error::AccessDenied);
+                }
+                Ok((Arc::new(PeriodFile::new(node)), Access::Direct, false))
+            }
+            Kind::Status | Kind::Units(_) | Kind::Format(_) | Kind::Fault(_) | Kind::Stats(_) => {
+                Err(Error::Internal("a text without a text".to_owned()))
+            }
+        }
+    }
+
+    /// What a file says that is only a text; None for all others.
+    fn text_of(&self, kind: &Kind) -> Option<Text> {
+        let node = kind.node().cloned();
+        Some(match (kind, node) {
+            (Kind::Status, _) => {
+                let (reloader, forest) = (self.reloader.clone(), self.forest.clone());
+                Box::new(move || {
+                    let lines = status_lines(forest.tree().nodes());
+                    format!("{}\n{lines}", reloader.result_line())
+                })
+            }
+            (Kind::Units(_), Some(node)) => {
+                Box::new(move || format!("{}\n", node.description.units))
+            }
+            (Kind::Format(_), Some(node)) => Box::new(move || format!("{}\n", node.format)),
+            (Kind::Fault(_), Some(node)) => Box::new(move || {
+                node.fault()
+                    .map_or_else(String::new, |error| fault_line(&error) + "\n")
+            }),
+            (Kind::Stats(_), Some(node)) => {
+                Box::new(move || node.stats.render(clock::realtime_offset_ns()))
+            }
+            _ => return None,
+        })
+    }
+
+    fn node_of(&self, ino: u64) -> Result<Arc<Node>, Error> {
+        let tree = self.forest.tree();
+        tree.entry(ino)?
+            .kind
+            .node()
+            .cloned()
+            .ok_or(Error::NoAttribute)
+    }
+}
+
+/// The extended attribute with the time of the newest sample.
+const TIME_ATTRIBUTE: &[u8] = b"user.trik.time_ns";
+
+impl Operations for Fs {
+    fn start(&self, kernel: Arc<dyn Kernel>) {
+        self.engine.connect(kernel);
+    }
+
+    fn lookup(&self, parent: u64, name: &[u8]) -> Result<Attr, Error> {
+        let tree = self.forest.tree();
+        tree.attr(tree.lookup(parent, name)?, self.sizes())
+    }
+
+    fn getattr(&self, ino: u64) -> Result<Attr, Error> {
+        self.forest.tree().attr(ino, self.sizes())
+    }
+
+    fn setattr(
+        &self,
+        ino: u64,
+        fh: Option<u64>,
+        size: Option<u64>,
+        other: bool,
+    ) -> Result<Attr, Error> {
+        if other {
+            return Err(Error::NotPermitted);
+        }
+        if let (Some(fh), Some(size)) = (fh, size) {
+            self.files.get(fh)?.truncate(size)?;
+        }
+        self.getattr(ino)
+    }
+
+    fn readdir(
+        &self,
+        ino: u64,
+        from: u64,
+        add: &mut dyn FnMut(DirEntry<'_>) -> bool,
+    ) -> Result<(), Error> {
+        self.forest.tree().list(ino, from, add)
+    }
+
+    fn open(&self, ino: u64, flags: i32, _caller: Caller) -> Result<Opened, Error> {
+        let kind = self.forest.tree().entry(ino)?.kind.clone();
+        let (file, access, flush) = self.open_kind(&kind, ino, flags)?;
+        let added = self.files.add(file.clone());
+        if added.is_err() {
+            file.release();
+        }
+        Ok(Opened {
+            fh: added?,
+            access,
+            flush,
+        })
+    }
+
+    fn read(&self, request: &Transfer, out: &mut [u8]) -> Result<Outcome, Error> {
+        self.files.get(request.fh)?.read(request, out)
+    }
+
+    fn write(&self, request: &Transfer, data: &[u8]) -> Result<Outcome, Error> {
+        self.files.get(request.fh)?.write(request, data)
+    }
+
+    fn poll(&self, _ino: u64, fh: u64, handle: PollHandle, events: u32) -> Result<u32, Error> {
+        match self.files.get(fh) {
+            Ok(file) => file.poll(handle, events),
+            Err(_) => Ok((events & READY) | libc::POLLERR as u32),
+        }
+    }
+
+    fn flush(&self, id: RequestId, _ino: u64, fh: u64, caller: Caller) -> Result<Outcome, Error> {
+        self.files.get(fh)?.flush(id, caller)
+    }
+
+    fn fsync(&self, id: RequestId, _ino: u64, fh: u64, caller: Caller) -> Result<Outcome, Error> {
+        self.files.get(fh)?.fsync(id, caller)
+    }
+
+    fn release(&self, _ino: u64, fh: u64) {
+        if let Some(file) = self.files.remove(fh) {
+            file.release();
+        }
+    }
+
+    fn interrupt(&self, id: RequestId) -> bool {
+        self.engine.refuse(id, Error::Interrupted)
+    }
+
+    fn getxattr(&self, ino: u64, name: &[u8]) -> Result<Vec<u8>, Error> {
+        if name != TIME_ATTRIBUTE {
+            return Err(Error::NoAttribute);
+        }
+        let stamp = self
+            .node_of(ino)?
+            .newest
+            .stamp()
+            .ok_or(Error::NoAttribute)?;
+        Ok(stamp.0.to_string().into_bytes())
+    }
+
+    fn listxattr(&self, ino: u64) -> Result<Vec<u8>, Error> {
+        let mut names = Vec::new();
+        if self
+            .node_of(ino)
+            .is_ok_and(|node| node.newest.stamp().is_some())
+        {
+            names.extend_from_slice(TIME_ATTRIBUTE);
+            names.push(0);
+        }
+        Ok(names)
+    }
+
+    fn statfs(&self) -> StatFs {
+        StatFs {
+            files: self.forest.tree().len() as u64,
+            name_max: 255,
+        }
+    }
+
+    fn stop(&self) {
+        self.engine.refuse_all(&Error::ShuttingDown);
+    }
+}

@@ -1,0 +1,192 @@
+//! The daemon as a child process: its start, the line that tells of its life, its end.
+//!
+//! What it inherits travels without any unsafe claim to a descriptor's number: the connection to the kernel as
+//! standard input, the lifeline as standard output, the ledger as a number that is opened again through /proc.
+
+use super::inherit::Handover;
+use super::ledger::Ledger;
+use super::mounted::Mounted;
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+use std::ffi::OsString;
+use std::io::{self, PipeReader, Read};
+use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
+use std::os::unix::process::CommandExt;
+use std::process::{self, Command, ExitStatus};
+
+/// Longest line that a daemon has to say; a longer one is nonsense and is dropped.
+const LINE_BYTES_MAX: usize = 64;
+
+/// A running daemon. Dropping it kills it.
+pub(super) struct Child {
+    process: process::Child,
+    /// Its writing end is open in the daemon alone, for as long as it lives.
+    lifeline: PipeReader,
+    heard: Vec<u8>,
+}
+
+/// What came over the lifeline.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum Heard {
+    /// It serves so many nodes.
+    Ready(usize),
+    /// Nothing yet.
+    Nothing,
+    /// It is dead.
+    End,
+}
+
+impl Child {
+    /// Starts this program again as the daemon. `again` tells it to take the configuration from the ledger.
+    pub(super) fn start(
+        device: &OwnedFd,
+        ledger: &Ledger,
+        mounted: &Mounted,
+        arguments: &[OsString],
+        again: bool,
+    ) -> io::Result<Self> {
+        let handover = Handover {
+            guardian: process::id(),
+            ledger: ledger.number(),
+            mount: mounted.numbers(),
+            again,
+        };
+        // Through this link it is the same program even if its file has been replaced since.
+        let mut command = Command::new("/proc/self/exe");
+        command
+            .arg0("trikfs")
+            .arg("serve")
+            .args(handover.to_arguments())
+            .args(arguments)
+            .arg("--")
+            .arg(mounted.path())
+            .stdin(device.try_clone()?)
+            // The service manager is told by the guardian.
+            .env_remove("NOTIFY_SOCKET");
+        Self::spawn(command)
+    }
+
+    fn spawn(mut command: Command) -> io::Result<Self> {
+        let (lifeline, writer) = io::pipe()?;
+        let process = command.stdout(writer).spawn()?;
+        // The command holds our copy of the writing end, which would keep the line open.
+        drop(command);
+        Ok(Self {
+            process,
+            lifeline,
+            heard: Vec::new(),
+        })
+    }
+
+    /// Readable when [`Child::hear`] has something to say.
+    pub(super) fn lifeline(&self) -> BorrowedFd<'_> {
+        self.lifeline.as_fd()
+    }
+
+    /// Reads what the daemon says. Call it when the lifeline is readable.
+    pub(super) fn hear(&mut self) -> io::Result<Heard> {
+        let mut piece = [0; LINE_BYTES_MAX];
+        let size = match self.lifeline.read(&mut piece) {
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => return Ok(Heard::Nothing),
+            result => result?,
+        };
+        if size == 0 {
+            return Ok(Heard::End);
+        }
+        self.heard.extend_from_slice(&piece[..size]);
+        let mut heard = Heard::Nothing;
+        while let Some(end) = self.heard.iter().position(|byte| *byte == b'\n') {
+            let line: Vec<u8> = self.heard.drain(..=end).collect();
+            let nodes = std::str::from_utf8(&line)
+                .ok()
+                .and_then(|line| line.trim_end().strip_prefix("ready "))
+                .and_then(|number| number.parse().ok());
+            heard = nodes.map_or(heard, Heard::Ready);
+        }
+        if self.heard.len() > LINE_BYTES_MAX {
+            self.heard.clear();
+        }
+        Ok(heard)
+    }
+
+    /// Asks it to end.
+    pub(super) fn terminate(&self) {
+        self.signal(Signal::SIGTERM);
+    }
+
+    /// Ends it.
+    pub(super) fn kill(&self) {
+        self.signal(Signal::SIGKILL);
+    }
+
+    fn signal(&self, signal: Signal) {
+        // The number is its own until `wait`: a dead child keeps it.
+        if let Ok(pid) = i32::try_from(self.process.id()) {
+            let _ = kill(Pid::from_raw(pid), signal);
+        }
+    }
+
+    /// How it ended; call it after [`Heard::End`].
+    pub(super) fn wait(&mut self) -> io::Result<ExitStatus> {
+        self.process.wait()
+    }
+}
+
+impl Drop for Child {
+    fn drop(&mut self) {
+        // `try_wait` has no process left to ask about, and kills nothing, after `wait`.
+        if let Ok(None) = self.process.try_wait() {
+            self.kill();
+        }
+    }
+}
+
+#[cfg(test)]
+impl Child {
+    /// A shell in the daemon's place; its standard output is the lifeline.
+    pub(super) fn shell(script: &str) -> Self {
+        let mut command = Command::new("/bin/sh");
+        command.args(["-c", script]).stdin(process::Stdio::null());
+        Self::spawn(command).expect("a shell")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all(child: &mut Child) -> Vec<Heard> {
+        let mut heard = Vec::new();
+        loop {
+            match child.hear().expect("readable") {
+                Heard::End => return heard,
+                Heard::Nothing => {}
+                Heard::Ready(nodes) => heard.push(Heard::Ready(nodes)),
+            }
+        }
+    }
+
+    #[test]
+    fn the_line_tells_of_readiness_and_of_the_end() {
+        let mut child = Child::shell("printf 'rea'; printf 'dy 6\\n'; exit 3");
+        assert_eq!(all(&mut child), [Heard::Ready(6)]);
+        assert_eq!(child.wait().expect("ended").code(), Some(3));
+    }
+
+    #[test]
+    fn nonsense_on_the_line_is_dropped() {
+        let mut child = Child::shell(
+            "head -c 100000 /dev/zero; echo; echo ready -1; echo ready x; echo ready 2",
+        );
+        assert_eq!(all(&mut child), [Heard::Ready(2)]);
+        assert!(child.heard.capacity() < 1000);
+    }
+
+    #[test]
+    fn a_dropped_child_is_killed() {
+        let child = Child::shell("exec sleep 1000");
+        let mut lifeline = child.lifeline.try_clone().expect("cloned");
+        drop(child);
+        assert_eq!(lifeline.read(&mut [0; 8]).expect("the end"), 0);
+    }
+}

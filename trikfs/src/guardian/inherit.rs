@@ -1,0 +1,201 @@
+//! The daemon's side of the guardian: takes over what it inherits, and takes its place if it is dead.
+//!
+//! Also when the guardian is dead: then SIGTERM comes from the kernel, and the daemon itself brings the actuators to
+//! rest and unmounts when it has ended. Owns the arguments that travel between the two; what to do at a signal is
+//! the daemon's business, which finds SIGTERM, SIGINT and SIGHUP blocked.
+
+use super::clean_up;
+use super::ledger::Ledger;
+use super::mounted::Mounted;
+use nix::sys::prctl::set_pdeathsig;
+use nix::sys::signal::{SigSet, Signal};
+use nix::unistd::{dup2_stdin, dup2_stdout, getppid};
+use std::ffi::OsString;
+use std::fs::File;
+use std::io::{self, Write};
+use std::os::fd::{AsFd, OwnedFd, RawFd};
+use std::path::Path;
+
+/// What the guardian tells the daemon on its command line, as options of `serve`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::Args)]
+pub struct Handover {
+    /// Process id of the guardian.
+    #[arg(long)]
+    pub guardian: u32,
+    /// Descriptor of the ledger.
+    #[arg(long)]
+    pub ledger: RawFd,
+    /// Numbers of the mount and of its connection.
+    #[arg(long, value_name = "ID:CONNECTION", value_parser = mount_numbers)]
+    pub mount: (u32, u32),
+    /// Take the configuration from the ledger: the daemon before this one crashed.
+    #[arg(long)]
+    pub again: bool,
+}
+
+impl Handover {
+    /// The same as arguments.
+    pub(super) fn to_arguments(self) -> Vec<OsString> {
+        let (id, connection) = self.mount;
+        let mut arguments = vec![
+            format!("--guardian={}", self.guardian).into(),
+            format!("--ledger={}", self.ledger).into(),
+            format!("--mount={id}:{connection}").into(),
+        ];
+        if self.again {
+            arguments.push("--again".into());
+        }
+        arguments
+    }
+}
+
+fn mount_numbers(text: &str) -> Result<(u32, u32), String> {
+    text.split_once(':')
+        .and_then(|(id, connection)| Some((id.parse().ok()?, connection.parse().ok()?)))
+        .ok_or_else(|| "not two numbers".to_owned())
+}
+
+/// What the daemon has from the guardian.
+pub struct Inheritance {
+    /// The connection to the kernel.
+    pub device: OwnedFd,
+    /// Shared with the guardian.
+    pub ledger: Ledger,
+    /// Keep it to the end: when it closes, the guardian takes this process for dead.
+    pub lifeline: Lifeline,
+}
+
+/// The writing end of the pipe that tells the guardian of our life.
+pub struct Lifeline(File);
+
+impl Lifeline {
+    /// Tells the guardian that the filesystem with so many nodes is being served.
+    pub fn ready(&self, nodes: usize) {
+        // If nobody listens, the guardian is dead and its signal is on the way.
+        let _ = (&self.0).write_all(format!("ready {nodes}\n").as_bytes());
+    }
+
+    /// Another handle on it.
+    pub fn share(&self) -> io::Result<Self> {
+        self.0.try_clone().map(Self)
+    }
+}
+
+impl Inheritance {
+    /// Takes the descriptors over. From then on standard input is empty, and what native code prints goes to
+    /// standard error. Blocks SIGTERM, SIGINT and SIGHUP in this thread, which must still be the only one.
+    ///
+    /// # Errors
+    /// This process was not started by a guardian.
+    pub fn take(handover: &Handover) -> Result<Self, String> {
+        let fail = |error: io::Error| format!("not started by a guardian: {error}");
+        let mask: SigSet = [Signal::SIGTERM, Signal::SIGINT, Signal::SIGHUP]
+            .into_iter()
+            .collect();
+        mask.thread_block().map_err(|error| fail(error.into()))?;
+        set_pdeathsig(Signal::SIGTERM).map_err(|error| fail(error.into()))?;
+        // It may have died before the line above, and then no signal comes.
+        if !is_parent(handover.guardian) {
+            return Err("the guardian is gone".to_owned());
+        }
+        let device = io::stdin().as_fd().try_clone_to_owned().map_err(fail)?;
+        let lifeline = io::stdout().as_fd().try_clone_to_owned().map_err(fail)?;
+        let ledger = Ledger::inherited(handover.ledger).map_err(fail)?;
+        let empty = File::open("/dev/null").map_err(fail)?;
+        dup2_stdin(empty).map_err(|error| fail(error.into()))?;
+        dup2_stdout(io::stderr()).map_err(|error| fail(error.into()))?;
+        // The ledger was opened anew; programs started from here need not inherit the guardian's number.
+        let _ = nix::unistd::close(handover.ledger);
+        Ok(Self {
+            device,
+            ledger,
+            lifeline: Lifeline(File::from(lifeline)),
+        })
+    }
+}
+
+/// What is left to do when the daemon has ended.
+pub struct Farewell {
+    guardian: u32,
+    mounted: Mounted,
+    device: OwnedFd,
+    ledger: Ledger,
+}
+
+impl Farewell {
+    /// Notes it down while the descriptors are there.
+    ///
+    /// # Errors
+    /// A descriptor too many.
+    pub fn prepare(
+        inheritance: &Inheritance,
+        mountpoint: &Path,
+        handover: &Handover,
+    ) -> io::Result<Self> {
+        Ok(Self {
+            guardian: handover.guardian,
+            mounted: Mounted::named(mountpoint.to_owned(), handover.mount.0, handover.mount.1),
+            device: inheritance.device.try_clone()?,
+            ledger: inheritance.ledger.clone(),
+        })
+    }
+
+    /// Leaves everything to the guardian. If that is dead, does what it would have done.
+    pub fn say(self) {
+        if !is_parent(self.guardian) {
+            // Before the actuators rest, so that no program moves them again.
+            self.mounted.abort();
+            clean_up(&self.ledger, &self.mounted, self.device);
+        }
+    }
+}
+
+fn is_parent(guardian: u32) -> bool {
+    u32::try_from(getppid().as_raw()) == Ok(guardian)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        handover: Handover,
+    }
+
+    #[test]
+    fn the_arguments_say_what_was_handed_over() {
+        for again in [false, true] {
+            let handover = Handover {
+                guardian: 12,
+                ledger: 7,
+                mount: (90, 45),
+                again,
+            };
+            let line = std::iter::once("serve".into()).chain(handover.to_arguments());
+            assert_eq!(
+                Line::try_parse_from(line).expect("parses").handover,
+                handover
+            );
+        }
+        assert!(
+            Line::try_parse_from(["serve", "--guardian=1", "--ledger=2", "--mount=3"]).is_err()
+        );
+    }
+
+    #[test]
+    fn a_process_of_somebody_else_takes_nothing_over() {
+        let handover = Handover {
+            guardian: u32::MAX,
+            ledger: 0,
+            mount: (0, 0),
+            again: false,
+        };
+        let refusal = std::thread::spawn(move || Inheritance::take(&handover).err())
+            .join()
+            .expect("no panic");
+        assert_eq!(refusal.as_deref(), Some("the guardian is gone"));
+    }
+}

@@ -1,0 +1,218 @@
+//! Waits for whatever comes first: a signal, the end of the mount, a word from the daemon, its end.
+//!
+//! One poll(2) for all of them; nothing here is asked periodically.
+
+use super::child::{Child, Heard};
+use crate::limits;
+use nix::errno::Errno;
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
+use nix::sys::signal::{SigSet, Signal};
+use nix::sys::signalfd::{SfdFlags, SignalFd};
+use std::fs::File;
+use std::io;
+use std::os::fd::AsFd;
+use std::os::unix::process::ExitStatusExt;
+use std::process::ExitStatus;
+use std::time::{Duration, Instant};
+
+/// Exit status of a Rust program whose main thread panicked.
+const PANICKED: i32 = 101;
+
+/// How one life of the daemon ended.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum End {
+    /// It was asked to, by whomever, or the mount is gone.
+    Stopped,
+    /// It refused to run and said why.
+    Failed,
+    /// It did not mean to; how, in words that follow "the daemon was".
+    Crashed(String),
+}
+
+/// What the guardian listens to for as long as it lives.
+pub(super) struct Watch {
+    signals: SignalFd,
+    /// Has an exceptional condition when the list of mounts changes.
+    mounts: File,
+}
+
+impl Watch {
+    /// Blocks the signals that end a program in this thread, and listens to them from here on.
+    pub(super) fn new() -> io::Result<Self> {
+        let mask: SigSet = [Signal::SIGTERM, Signal::SIGINT, Signal::SIGHUP]
+            .into_iter()
+            .collect();
+        mask.thread_block()?;
+        Ok(Self {
+            signals: SignalFd::with_flags(&mask, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC)?,
+            mounts: File::open("/proc/self/mountinfo")?,
+        })
+    }
+
+    /// Waits for the daemon's end. Brings it about when a signal comes or the mount goes: first by asking, after two
+    /// seconds by force. `ready` is called when the daemon says that it serves.
+    pub(super) fn until_end(
+        &self,
+        child: &mut Child,
+        mounted: &dyn Fn() -> bool,
+        ready: &mut dyn FnMut(usize),
+    ) -> io::Result<End> {
+        let grace = Duration::from_millis(limits::GRACE_MS.into());
+        let mut urgency = Urgency::None;
+        loop {
+            let [signal, mounts, word] = self.wait(child, urgency.deadline())?;
+            let mut stop = false;
+            if signal {
+                while self.signals.read_signal()?.is_some() {
+                    stop = true;
+                }
+            }
+            stop |= mounts && !mounted();
+            if word {
+                match child.hear()? {
+                    Heard::Ready(nodes) => ready(nodes),
+                    Heard::Nothing => {}
+                    // A signal from a terminal reaches the daemon as well, and it may be the first to end.
+                    Heard::End => {
+                        return Ok(judge(child.wait()?, stop || urgency != Urgency::None));
+                    }
+                }
+            }
+            let now = Instant::now();
+            match urgency {
+                Urgency::None if stop => {
+                    child.terminate();
+                    urgency = Urgency::Asked(now + grace);
+                }
+                Urgency::Asked(deadline) if now >= deadline => {
+                    child.kill();
+                    urgency = Urgency::Forced(now + grace);
+                }
+                // It hangs in the kernel. What is left to do must not wait for it.
+                Urgency::Forced(deadline) if now >= deadline => return Ok(End::Stopped),
+                _ => {}
+            }
+        }
+    }
+
+    /// Which of signals, mounts and lifeline have something to say.
+    fn wait(&self, child: &Child, deadline: Option<Instant>) -> io::Result<[bool; 3]> {
+        let timeout = match deadline {
+            None => PollTimeout::NONE,
+            // One more, so that the deadline has passed when the time is up.
+            Some(at) => (at.saturating_duration_since(Instant::now()) + Duration::from_millis(1))
+                .try_into()
+                .unwrap_or(PollTimeout::MAX),
+        };
+        let mut watched = [
+            PollFd::new(self.signals.as_fd(), PollFlags::POLLIN),
+            PollFd::new(self.mounts.as_fd(), PollFlags::POLLPRI),
+            PollFd::new(child.lifeline(), PollFlags::POLLIN),
+        ];
+        match poll(&mut watched, timeout) {
+            Err(Errno::EINTR) => Ok([false; 3]),
+            Err(error) => Err(error.into()),
+            Ok(_) => Ok(watched.map(|fd| fd.any().unwrap_or(true))),
+        }
+    }
+}
+
+/// How much has been done to end the daemon, and when the next step is due.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Urgency {
+    None,
+    Asked(Instant),
+    Forced(Instant),
+}
+
+impl Urgency {
+    fn deadline(self) -> Option<Instant> {
+        match self {
+            Self::None => None,
+            Self::Asked(at) | Self::Forced(at) => Some(at),
+        }
+    }
+}
+
+/// What an exit status means; `asked` if the guardian has asked for the end.
+fn judge(status: ExitStatus, asked: bool) -> End {
+    if asked || status.success() {
+        return End::Stopped;
+    }
+    match (status.code(), status.signal()) {
+        (Some(PANICKED), _) => End::Crashed("ended by a panic".to_owned()),
+        (Some(_), _) => End::Failed,
+        (None, Some(number)) => match Signal::try_from(number) {
+            Ok(Signal::SIGTERM | Signal::SIGINT) => End::Stopped,
+            Ok(signal) => End::Crashed(format!("killed by {signal}")),
+            Err(_) => End::Crashed(format!("killed by signal {number}")),
+        },
+        (None, None) => End::Crashed("ended somehow".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nix::sys::pthread::{pthread_kill, pthread_self};
+
+    fn end_of(script: &str) -> (End, Vec<usize>) {
+        let mut heard = Vec::new();
+        let mut child = Child::shell(script);
+        let end = Watch::new()
+            .and_then(|watch| watch.until_end(&mut child, &|| true, &mut |nodes| heard.push(nodes)))
+            .expect("watched");
+        (end, heard)
+    }
+
+    #[test]
+    fn an_end_is_judged_by_its_cause() {
+        assert_eq!(end_of("echo ready 3; exit 0"), (End::Stopped, vec![3]));
+        assert_eq!(end_of("exit 1").0, End::Failed);
+        assert_eq!(
+            end_of("exit 101").0,
+            End::Crashed("ended by a panic".to_owned())
+        );
+        assert_eq!(
+            end_of("kill -SEGV $$").0,
+            End::Crashed("killed by SIGSEGV".to_owned())
+        );
+        assert_eq!(
+            end_of("kill -KILL $$").0,
+            End::Crashed("killed by SIGKILL".to_owned())
+        );
+    }
+
+    #[test]
+    fn a_daemon_that_somebody_stopped_is_not_restarted() {
+        // The shell inherits the blocked signals of a daemon, so the statuses are made up: signal 15 and signal 2.
+        assert_eq!(judge(ExitStatus::from_raw(15), false), End::Stopped);
+        assert_eq!(judge(ExitStatus::from_raw(2), false), End::Stopped);
+        assert_eq!(
+            judge(ExitStatus::from_raw(64), false),
+            End::Crashed("killed by signal 64".to_owned())
+        );
+        assert_eq!(judge(ExitStatus::from_raw(9), true), End::Stopped);
+    }
+
+    #[test]
+    fn a_signal_ends_a_daemon_and_one_that_does_not_listen_is_forced() {
+        let watch = Watch::new().expect("watch");
+        // It inherits the mask of this thread, which blocks SIGTERM.
+        let mut child = Child::shell("echo ready 1; exec sleep 1000");
+        let mut asked = None;
+        let mut ready = |_| {
+            asked = Some(Instant::now());
+            pthread_kill(pthread_self(), Signal::SIGTERM).expect("sent to this thread");
+        };
+        let end = watch
+            .until_end(&mut child, &|| true, &mut ready)
+            .expect("watched");
+        assert_eq!(end, End::Stopped);
+        assert!(
+            asked.is_some_and(
+                |asked| asked.elapsed() >= Duration::from_millis(limits::GRACE_MS.into())
+            )
+        );
+    }
+}

@@ -1,0 +1,324 @@
+//! One opening of a source for all its readers.
+//!
+//! Owns the fan-out: every subscriber gets every raw tuple from its subscription on, in a bounded queue of its own
+//! that drops the oldest when its reader is slow. Also owns what happens when the source ends or is lost: one end
+//! of file for everybody, or an error until it is back, and attempts to open it again while anybody listens.
+
+use crate::device::{Got, Stream};
+use crate::errno::Error;
+use crate::events::{Due, Ready, Watch, lock};
+use crate::limits;
+use crate::node::Node;
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, Weak};
+use std::time::{Duration, Instant};
+
+/// The shared opening of one node's source. Closed with its last subscription.
+pub struct Hub {
+    me: Weak<Self>,
+    node: Weak<Node>,
+    tuple_size: usize,
+    inner: Mutex<Inner>,
+    subscriptions: Mutex<Vec<Weak<Subscription>>>,
+}
+
+struct Inner {
+    stream: Option<Box<dyn Stream>>,
+    watch: Option<Watch>,
+    raw: Vec<u8>,
+    raw_len: usize,
+    /// The source is over for good (a recording).
+    is_over: bool,
+}
+
+/// One reader's queue of raw tuples.
+pub struct Subscription {
+    /// Keeps the opening alive.
+    _hub: Arc<Hub>,
+    node: Weak<Node>,
+    tuple_size: usize,
+    queue: Mutex<Queue>,
+    on_ready: Weak<dyn Ready>,
+}
+
+#[derive(Default)]
+struct Queue {
+    bytes: VecDeque<u8>,
+    ended: bool,
+    /// The end stays: nothing will ever come again.
+    is_over: bool,
+    lost: Option<Error>,
+}
+
+impl Hub {
+    /// Starts to listen to the open source of a node.
+    pub fn start(node: &Arc<Node>, stream: Box<dyn Stream>) -> Arc<Self> {
+        let tuple_size = node.description.input_tuple_size;
+        let raw = vec![0; tuple_size.max(4096) / tuple_size * tuple_size];
+        let inner = Inner {
+            stream: Some(stream),
+            watch: None,
+            raw,
+            raw_len: 0,
+            is_over: false,
+        };
+        let hub = Arc::new_cyclic(|me| Self {
+            me: me.clone(),
+            node: Arc::downgrade(node),
+            tuple_size,
+            inner: Mutex::new(inner),
+            subscriptions: Mutex::default(),
+        });
+        hub.listen(&mut lock(&hub.inner));
+        hub
+    }
+
+    /// A queue that gets every tuple from now on.
+    pub fn subscribe(self: &Arc<Self>, on_ready: Weak<dyn Ready>) -> Arc<Subscription> {
+        let inner = lock(&self.inner);
+        let queue = Queue {
+            is_over: inner.is_over,
+            ..Queue::default()
+        };
+        let subscription = Arc::new(Subscription {
+            _hub: self.clone(),
+            node: self.node.clone(),
+            tuple_size: self.tuple_size,
+            queue: Mutex::new(queue),
+            on_ready,
+        });
+        let mut subscriptions = lock(&self.subscriptions);
+        subscriptions.retain(|other| other.strong_count() > 0);
+        subscriptions.push(Arc::downgrade(&subscription));
+        subscription
+    }
+
+    /// Registers for whatever wakes this source. An edge that is there already is reported at once.
+    fn listen(&self, inner: &mut Inner) {
+        let (Some(node), Some(stream)) = (self.node.upgrade(), &inner.stream) else {
+            return;
+        };
+        let at = stream.wake_at();
+        if let Some(fd) = stream.fd() {
+            let me: Weak<dyn Ready> = self.me.clone();
+            match node.engine.poller.watch(fd, me) {
+                Ok(watch) => inner.watch = watch,
+                Err(error) => node.report(&Error::Device(
+                    error.raw_os_error().unwrap_or(libc::EIO),
+                    "epoll".to_owned(),
+                )),
+            }
+        }
+        if let Some(at) = at {
+            self.wake_at(&node, at);
+        } else if inner.watch.is_none() {
+            inner.stream = None;
+            inner.is_over = true;
+            let what = "the source is always ready: it cannot be shared, use share = false";
+            self.each(|subscription| subscription.lose(&Error::NoDevice(what.to_owned())));
+            node.report(&Error::NoDevice(what.to_owned()));
+        }
+    }
+
+    fn wake_at(&self, node: &Node, at: Instant) {
+        let me: Weak<dyn Due> = self.me.clone();
+        node.engine.schedule.at(at, me);
+    }
+
+    /// Takes what the source has and passes it on. Readers are called with no lock held.
+    fn pump(&self) {
+        let Some(node) = self.node.upgrade() else {
+            return;
+        };
+        for _ in 0..limits::PUMP_ROUNDS {
+            let goes_on = self.take_once(&node);
+            match goes_on {
+                Some(goes_on) => {
+                    self.notify();
+                    if !goes_on {
+                        return;
+                    }
+                }
+                None => return,
+            }
+        }
+        self.wake_at(&node, Instant::now());
+    }
+
+    /// Reads once. None: nothing there; otherwise readers have news, and whether there may be more.
+    fn take_once(&self, node: &Arc<Node>) -> Option<bool> {
+        let mut inner = lock(&self.inner);
+        let Inner {
+            stream: Some(stream),
+            raw,
+            raw_len,
+            ..
+        } = &mut *inner
+        else {
+            return None;
+        };
+        match stream.read(&mut raw[*raw_len..]) {
+            Ok(Got::Bytes(n)) => {
+                *raw_len += n;
+                let whole = *raw_len / self.tuple_size * self.tuple_size;
+                if whole > 0 {
+                    self.each(|subscription| subscription.push(&raw[..whole]));
+                    raw.copy_within(whole..*raw_len, 0);
+                    *raw_len -= whole;
+                }
+                Some(true)
+            }
+            Ok(Got::Nothing) => {
+                if let Some(at) = stream.wake_at() {
+                    self.wake_at(node, at);
+                }
+                None
+            }
+            Ok(Got::End) => {
+                let again = stream.begins_anew();
+                if std::mem::take(raw_len) > 0 {
+                    node.report(&Error::Device(
+                        libc::EIO,
+                        "the source ended inside a tuple".to_owned(),
+                    ));
+                }
+                inner.is_over = !again;
+                self.each(|subscription| subscription.end(!again));
+                if again {
+                    // The old opening stays until the new one is there: what the next writer of a FIFO sends
+                    // would be lost while nobody has it open.
+                    self.reopen(node, &mut inner);
+                } else {
+                    inner.watch = None;
+                    inner.stream = None;
+                }
+                Some(false)
+            }
+            Err(error) => {
+                inner.raw_len = 0;
+                inner.watch = None;
+                inner.stream = None;
+                self.lose(node, &error);
+                Some(false)
+            }
+        }
+    }
+
+    fn reopen(&self, node: &Arc<Node>, inner: &mut Inner) {
+        match node.open_stream() {
+            Ok(stream) => {
+                inner.watch = None;
+                inner.stream = Some(stream);
+                self.listen(inner);
+                self.each(Subscription::recover);
+            }
+            Err(error) => {
+                inner.watch = None;
+                inner.stream = None;
+                self.lose(node, &error);
+            }
+        }
+    }
+
+    fn lose(&self, node: &Arc<Node>, error: &Error) {
+        node.report(error);
+        self.each(|subscription| subscription.lose(error));
+        self.wake_at(
+            node,
+            Instant::now() + Duration::from_millis(limits::REOPEN_MS),
+        );
+    }
+
+    fn each(&self, act: impl Fn(&Subscription)) {
+        for subscription in lock(&self.subscriptions).iter().filter_map(Weak::upgrade) {
+            act(&subscription);
+        }
+    }
+
+    fn notify(&self) {
+        let all: Vec<_> = lock(&self.subscriptions)
+            .iter()
+            .filter_map(Weak::upgrade)
+            .collect();
+        for target in all
+            .iter()
+            .filter_map(|subscription| subscription.on_ready.upgrade())
+        {
+            target.ready();
+        }
+    }
+}
+
+impl Ready for Hub {
+    fn ready(&self) {
+        self.pump();
+    }
+}
+
+impl Due for Hub {
+    fn due(&self) -> Option<Instant> {
+        let node = self.node.upgrade()?;
+        let is_lost = {
+            let mut inner = lock(&self.inner);
+            let is_lost = inner.stream.is_none() && !inner.is_over;
+            if is_lost {
+                self.reopen(&node, &mut inner);
+            }
+            is_lost
+        };
+        if is_lost {
+            self.notify();
+        } else {
+            self.pump();
+        }
+        None
+    }
+}
+
+impl Subscription {
+    /// Takes queued tuples. `buf` must hold a whole number of tuples.
+    pub fn take(&self, buf: &mut [u8]) -> Result<Got, Error> {
+        let mut queue = lock(&self.queue);
+        if queue.bytes.is_empty() {
+            if queue.is_over || std::mem::take(&mut queue.ended) {
+                return Ok(Got::End);
+            }
+            return queue.lost.clone().map_or(Ok(Got::Nothing), Err);
+        }
+        let n = buf.len().min(queue.bytes.len());
+        for (to, from) in buf.iter_mut().zip(queue.bytes.drain(..n)) {
+            *to = from;
+        }
+        Ok(Got::Bytes(n))
+    }
+
+    fn push(&self, tuples: &[u8]) {
+        let limit = limits::QUEUE_TUPLES * self.tuple_size;
+        let mut queue = lock(&self.queue);
+        queue.ended = false;
+        queue.bytes.extend(tuples);
+        let excess = queue.bytes.len().saturating_sub(limit);
+        if excess > 0 {
+            queue.bytes.drain(..excess);
+            if let Some(node) = self.node.upgrade() {
+                node.stats
+                    .dropped
+                    .add(u32::try_from(excess / self.tuple_size).unwrap_or(u32::MAX));
+            }
+        }
+    }
+
+    fn end(&self, for_good: bool) {
+        let mut queue = lock(&self.queue);
+        queue.ended = true;
+        queue.is_over = for_good;
+    }
+
+    fn lose(&self, error: &Error) {
+        lock(&self.queue).lost = Some(error.clone());
+    }
+
+    fn recover(&self) {
+        lock(&self.queue).lost = None;
+    }
+}

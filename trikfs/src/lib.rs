@@ -1,0 +1,38 @@
+//! The peripheral filesystem: device nodes in, files in physical units out.
+//!
+//! From the kernel inwards: `transport` (the only part that knows FUSE), `fs` (operations), `tree` (names),
+//! `files` (what is open), `node` (what is behind a name), `reader`, `state_reader`, `writer`, `newest` (the ways
+//! data takes), `hub` (one opening for many readers), `device` (sources), `convert` (converters).
+//! Beside them: `reload` and `daemon`, `events` and `engine`, `mount`, `guardian`, `check`, `cli`.
+
+pub mod check;
+pub mod cli;
+pub mod clock;
+pub mod convert;
+pub mod crew;
+pub mod daemon;
+pub mod device;
+pub mod engine;
+pub mod errno;
+pub mod events;
+pub mod files;
+pub mod fs;
+pub mod guardian;
+pub mod hash;
+pub mod hub;
+pub mod limits;
+pub mod log;
+pub mod mount;
+pub mod newest;
+pub mod node;
+pub mod process;
+pub mod reader;
+pub mod reload;
+#[cfg(test)]
+mod scratch;
+pub mod state_reader;
+pub mod stats;
+pub mod text;
+pub mod transport;
+pub mod tree;
+pub mod writer;

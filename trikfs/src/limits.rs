@@ -1,0 +1,70 @@
+//! Every limit of the running filesystem. Those of a configuration are in `config::limits`.
+//!
+//! Owns the numbers only; the code that enforces each one names it from here.
+
+/// Threads that may serve one role (the kernel, events, the schedule) while others of that role are late.
+pub const MAX_THREADS: usize = 64;
+/// Open files at once; the next open gets EMFILE.
+pub const OPEN_FILES_MAX: usize = 65_536;
+/// Tuples that a slow reader of a shared source may be behind before the oldest are dropped.
+pub const QUEUE_TUPLES: usize = 256;
+/// Tuples that one sampling takes from a stream of its own, so that it keeps up with a source faster than it.
+pub const TUPLES_PER_SAMPLE: usize = 16;
+/// Bytes read from a source at once.
+pub const READ_BYTES: usize = 128 << 10;
+/// Tuples that one request converts without getting any output before it gives way.
+pub const CONSUMED_TUPLES_MAX: usize = 4_096;
+/// Rounds of reading one shared source before other events get their turn.
+pub const PUMP_ROUNDS: usize = 64;
+/// Bytes of the log that are kept.
+pub const LOG_BYTES: usize = 64 << 10;
+/// Bytes of one recording.
+pub const RECORDING_BYTES_MAX: usize = 16 << 20;
+/// Milliseconds between attempts to open a lost device again.
+pub const REOPEN_MS: u64 = 250;
+/// Milliseconds that the making and closing of Lua states is put off, to do more of it at once.
+pub const LUA_STATES_BATCH_MS: u64 = 2;
+/// Prepared Lua states of the configuration in force.
+pub const LUA_STATES_READY: usize = 32;
+/// Bytes of the text of one number that is written.
+pub const TEXT_BYTES_MAX: usize = 64 << 10;
+/// Milliseconds until an event that found too many operations inside its node is looked at again.
+pub const RETRY_MS: u64 = 20;
+/// Milliseconds beyond its budget after which an operation inside a node counts as stuck for good.
+pub const STUCK_MS: u32 = 2_000;
+/// Operations inside one node that may be late at the same time before others are refused.
+pub const LATE_PER_NODE_MAX: usize = 4;
+/// Milliseconds of one `stop` before it goes on to the next actuator is bounded by each node's `timeout_ms`;
+/// this bounds the number of actuators brought to rest at once.
+pub const REST_THREADS_MAX: usize = 8;
+/// Bytes of data in one read or write request of the kernel; a larger one is served in part.
+pub const TRANSFER_BYTES_MAX: usize = 128 << 10;
+/// Requests without a waiting caller (releases, read-ahead) that the kernel may have under way.
+pub const BACKGROUND_MAX: u16 = 64;
+
+/// Libraries that the cache directory keeps.
+pub const CACHE_FILES_MAX: usize = 256;
+/// Bytes of libraries that the cache directory keeps.
+pub const CACHE_BYTES_MAX: u64 = 256 << 20;
+/// Bytes of one shared library.
+pub const LIBRARY_BYTES_MAX: u64 = 64 << 20;
+/// Seconds that a compiler may take for one piece of inline C.
+pub const COMPILE_SECONDS_MAX: u32 = 30;
+/// Bytes of compiler output that are kept.
+pub const COMPILE_OUTPUT_BYTES_MAX: usize = 64 << 10;
+/// KiB of memory that each process of a compiler may take.
+pub const COMPILE_MEMORY_KB_MAX: u32 = 2 << 20;
+/// Crashes within [`CRASH_WINDOW_SECONDS`] after which the filesystem is not started again.
+pub const CRASHES_MAX: usize = 5;
+/// Seconds that a crash is remembered.
+pub const CRASH_WINDOW_SECONDS: u32 = 60;
+/// Milliseconds from asking the daemon to end to ending it.
+pub const GRACE_MS: u32 = 2_000;
+/// Milliseconds that bringing all actuators to rest may take.
+pub const REST_MS_MAX: u32 = 3_000;
+/// Rest actions in one ledger.
+pub const REST_ACTIONS_MAX: usize = 4096;
+/// Bytes of all rest actions in one ledger.
+pub const REST_BYTES_MAX: usize = 4 << 20;
+/// Node ids with cached values in one ledger.
+pub const CACHED_MAX: usize = 4096;

@@ -1,0 +1,625 @@
+//! The newest sample of a node: one state for all readers of `bin_data`, `value` and `valueN`.
+//!
+//! Owns the latch, when samples are taken (on read, by the clock, on event), who waits for the first one, when a
+//! sample is too old to be shown, and the copy in the kernel's page cache. A failure replaces the sample: what
+//! cannot be read is an error with a reason, never the value of before.
+//!
+//! Page cache: `store` and `invalidate` happen on event and schedule threads only. A READ request may hold the page
+//! while it waits for the thread that serves the kernel, so that thread must never wait for the page.
+
+use crate::clock::Stamp;
+use crate::device::Got;
+use crate::errno::Error;
+use crate::events::{Due, Ready, lock};
+use crate::limits;
+use crate::node::{Feed, Node};
+use crate::reader::Reader;
+use crate::state_reader::StateReader;
+use crate::transport::RequestId;
+use config::description::Pace;
+use config::format::FieldKind;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::{Arc, Mutex, OnceLock, Weak};
+use std::time::{Duration, Instant};
+
+/// Newest sample of one node and everything that keeps it new.
+pub struct Newest {
+    node: Weak<Node>,
+    latch: Mutex<Latch>,
+    work: Mutex<Work>,
+    /// Open files that keep the source of an unsampled node open.
+    users: AtomicU32,
+    waiting: Mutex<Vec<Waiting>>,
+    watchers: Mutex<Vec<Weak<dyn Ready>>>,
+    jobs: Mutex<Vec<Arc<dyn Due>>>,
+    page: Page,
+}
+
+struct Latch {
+    tuple: Vec<u8>,
+    stamp: Option<Stamp>,
+    error: Option<Error>,
+    /// Counts samples and failures; a reader that has seen this number has nothing new to read.
+    events: u32,
+}
+
+#[derive(Default)]
+struct Work {
+    source: Source,
+    tuple: Vec<u8>,
+}
+
+#[derive(Default)]
+enum Source {
+    #[default]
+    Closed,
+    State(StateReader),
+    Stream(Arc<Reader>),
+}
+
+struct Waiting {
+    id: RequestId,
+    file: Weak<dyn Waiter>,
+    deadline: Instant,
+}
+
+/// An open file whose read waits for the first sample.
+pub trait Waiter: Send + Sync {
+    /// Answers the claimed request from the newest sample, or with the error.
+    fn serve(&self, id: RequestId, error: Option<Error>);
+}
+
+/// The node's `bin_data` in the page cache.
+#[derive(Default)]
+struct Page {
+    ino: OnceLock<u64>,
+    /// Open files whose reads come from the page cache.
+    readers: AtomicU32,
+    /// Those of them that are polled: they must come to us, so that we know what they have read.
+    polled: AtomicU32,
+    is_filled: AtomicBool,
+}
+
+impl Newest {
+    /// No sample yet.
+    pub fn new(node: Weak<Node>, tuple_size: usize) -> Self {
+        let latch = Latch {
+            tuple: vec![0; tuple_size],
+            stamp: None,
+            error: None,
+            events: 0,
+        };
+        Self {
+            node,
+            latch: Mutex::new(latch),
+            work: Mutex::default(),
+            users: AtomicU32::new(0),
+            waiting: Mutex::default(),
+            watchers: Mutex::default(),
+            jobs: Mutex::default(),
+            page: Page::default(),
+        }
+    }
+
+    /// Starts background sampling if the description asks for it.
+    pub fn start(&self) {
+        let Some(node) = self.node.upgrade() else {
+            return;
+        };
+        match node.description.pace {
+            Pace::OnRead => {}
+            Pace::Every { .. } => self.schedule_sampling(&node),
+            Pace::OnEvent => {
+                let me: Arc<dyn Due> = Arc::new(Listening {
+                    node: self.node.clone(),
+                });
+                node.engine.schedule.at(Instant::now(), Arc::downgrade(&me));
+                lock(&self.jobs).push(me);
+            }
+        }
+    }
+
+    fn schedule_sampling(&self, node: &Arc<Node>) {
+        let sampler: Arc<dyn Due> = Arc::new(Sampling {
+            node: self.node.clone(),
+            planned: Mutex::new(Instant::now()),
+        });
+        let ageing: Arc<dyn Due> = Arc::new(Ageing {
+            node: self.node.clone(),
+        });
+        node.engine
+            .schedule
+            .at(Instant::now(), Arc::downgrade(&sampler));
+        node.engine
+            .schedule
+            .at(Instant::now() + too_old(node), Arc::downgrade(&ageing));
+        // Entries of earlier jobs die with them.
+        *lock(&self.jobs) = vec![sampler, ageing];
+    }
+
+    /// The sampling period was changed.
+    pub fn period_changed(&self) {
+        if let Some(node) = self.node.upgrade() {
+            self.schedule_sampling(&node);
+        }
+    }
+
+    /// Stops sampling and answers everybody who waits with ESTALE.
+    pub fn stop(&self) {
+        lock(&self.jobs).clear();
+        for waiting in std::mem::take(&mut *lock(&self.waiting)) {
+            self.finish(&waiting, Some(Error::Stale));
+        }
+        self.drop_page();
+        // A sampler that is inside the device right now closes the source when it comes out.
+        if let Ok(mut work) = self.work.try_lock() {
+            work.source = Source::Closed;
+        }
+    }
+
+    /// Somebody opened a newest-value file for reading: without background sampling, listening starts here.
+    /// True if a reader always finds a value, because reading makes one.
+    pub fn join(&self) -> Result<bool, Error> {
+        let Some(node) = self.node.upgrade() else {
+            return Err(Error::Stale);
+        };
+        if node.description.pace != Pace::OnRead {
+            let latch = lock(&self.latch);
+            return match &latch.error {
+                Some(error @ Error::NoDevice(_)) => Err(error.clone()),
+                _ => Ok(false),
+            };
+        }
+        let _inside = node.enter()?;
+        let mut work = lock(&self.work);
+        work.open(&node)?;
+        self.users.fetch_add(1, Ordering::Relaxed);
+        Ok(!matches!(&work.source, Source::Stream(reader) if reader.is_shared()))
+    }
+
+    /// The opposite of [`join`](Self::join).
+    pub fn leave(&self) {
+        let Some(node) = self.node.upgrade() else {
+            return;
+        };
+        if node.description.pace == Pace::OnRead
+            && self.users.fetch_sub(1, Ordering::Relaxed) == 1
+            // A sampler that is stuck in the device keeps it; the next reader's end tries again.
+            && let Ok(mut work) = self.work.try_lock()
+        {
+            work.source = Source::Closed;
+        }
+    }
+
+    /// Brings the latch up to date for a reader: samples now unless the background does.
+    pub fn refresh(&self) -> Result<(), Error> {
+        let Some(node) = self.node.upgrade() else {
+            return Err(Error::Stale);
+        };
+        if node.is_retired() {
+            return Err(Error::Stale);
+        }
+        if node.description.pace == Pace::OnRead {
+            let _inside = node.enter()?;
+            self.sample(&node);
+        }
+        Ok(())
+    }
+
+    /// The newest sample. None: there is none yet.
+    pub fn get(&self, tuple: &mut Vec<u8>) -> Result<Option<u32>, Error> {
+        let Some(node) = self.node.upgrade() else {
+            return Err(Error::Stale);
+        };
+        let latch = lock(&self.latch);
+        if let Some(error) = &latch.error {
+            return Err(error.clone());
+        }
+        let Some(stamp) = latch.stamp else {
+            return Ok(None);
+        };
+        let age_ns = stamp.age_ns();
+        if matches!(node.description.pace, Pace::Every { .. })
+            && u128::from(age_ns) > too_old(&node).as_nanos()
+        {
+            return Err(Error::TimedOut(format!(
+                "the newest sample is {} ms old",
+                age_ns / 1_000_000
+            )));
+        }
+        tuple.clear();
+        tuple.extend_from_slice(&latch.tuple);
+        node.stats.age.add(age_ns);
+        Ok(Some(latch.events))
+    }
+
+    /// When the newest sample was taken, however old it is.
+    pub fn stamp(&self) -> Option<Stamp> {
+        lock(&self.latch).stamp
+    }
+
+    /// The number of the newest event; see [`get`](Self::get).
+    pub fn events(&self) -> u32 {
+        lock(&self.latch).events
+    }
+
+    /// Keeps a read until the first sample, at most `timeout_ms`.
+    pub fn wait(&self, id: RequestId, file: Weak<dyn Waiter>) {
+        let Some(node) = self.node.upgrade() else {
+            return;
+        };
+        let deadline = Instant::now() + Duration::from_millis(node.description.timeout_ms.into());
+        lock(&self.waiting).push(Waiting { id, file, deadline });
+        let due: Arc<dyn Due> = node.clone();
+        node.engine.schedule.at(deadline, Arc::downgrade(&due));
+        // The sample may have come before the request was in the list; a stream may need to be watched.
+        self.arm(&node);
+        self.ready();
+        let latch = lock(&self.latch);
+        let has_news = latch.stamp.is_some() || latch.error.is_some();
+        drop(latch);
+        if has_news {
+            self.serve_waiting();
+        }
+    }
+
+    /// Makes sure that the reader of a stream calls when there is more; sampling by the clock needs no call.
+    fn arm(&self, node: &Node) {
+        if matches!(node.description.pace, Pace::Every { .. }) {
+            return;
+        }
+        let reader = match &lock(&self.work).source {
+            Source::Stream(reader) => reader.clone(),
+            _ => return,
+        };
+        if let Err(error) = reader.arm() {
+            node.report(&error);
+        }
+    }
+
+    /// Answers reads whose time is over; says when the next one's is.
+    pub fn expire(&self) -> Option<Instant> {
+        let now = Instant::now();
+        let mut over = Vec::new();
+        let next = {
+            let mut waiting = lock(&self.waiting);
+            let (late, rest) = std::mem::take(&mut *waiting)
+                .into_iter()
+                .partition(|one| one.deadline <= now);
+            over.extend::<Vec<Waiting>>(late);
+            *waiting = rest;
+            waiting.iter().map(|one| one.deadline).min()
+        };
+        for one in over {
+            self.finish(
+                &one,
+                Some(Error::TimedOut("no sample within timeout_ms".to_owned())),
+            );
+        }
+        next
+    }
+
+    fn finish(&self, waiting: &Waiting, error: Option<Error>) {
+        let Some(node) = self.node.upgrade() else {
+            return;
+        };
+        if node.engine.claim(waiting.id)
+            && let Some(file) = waiting.file.upgrade()
+        {
+            file.serve(waiting.id, error);
+        }
+    }
+
+    fn serve_waiting(&self) {
+        for one in std::mem::take(&mut *lock(&self.waiting)) {
+            self.finish(&one, None);
+        }
+    }
+
+    /// Calls `file` at every sample and failure, for as long as it lives.
+    pub fn watch(&self, file: Weak<dyn Ready>) {
+        let mut watchers = lock(&self.watchers);
+        watchers.retain(|other| other.strong_count() > 0);
+        watchers.push(file);
+        drop(watchers);
+        if let Some(node) = self.node.upgrade() {
+            self.arm(&node);
+        }
+    }
+
+    /// Takes one sample (a state, an own stream) or everything that has come (a shared stream).
+    fn sample(&self, node: &Arc<Node>) {
+        let mut work = lock(&self.work);
+        if let Err(error) = work.open(node) {
+            drop(work);
+            return self.fail(error);
+        }
+        let outcome = work.take(node, |tuple| self.publish(node, tuple));
+        if matches!(&outcome, Err(error) if error.errno() == libc::ENODEV) || node.is_retired() {
+            work.source = Source::Closed;
+        }
+        drop(work);
+        if let Err(error) = outcome {
+            self.fail(error);
+        }
+    }
+
+    /// A stream may have more: called by its reader.
+    pub fn ready(&self) {
+        let Some(node) = self.node.upgrade() else {
+            return;
+        };
+        let listens = match node.description.pace {
+            Pace::OnEvent => true,
+            Pace::OnRead => matches!(lock(&self.work).source, Source::Stream(_)),
+            Pace::Every { .. } => false,
+        };
+        if listens {
+            self.sample(&node);
+            if node.description.pace == Pace::OnEvent {
+                self.arm(&node);
+            }
+        }
+    }
+
+    fn publish(&self, node: &Node, tuple: &[u8]) {
+        if node
+            .format
+            .fields()
+            .iter()
+            .any(|field| matches!(field.kind, FieldKind::F32 | FieldKind::F64))
+            && let Err(reason) = node.format.render(tuple, &mut String::new())
+        {
+            let error = Error::Converter(reason);
+            node.report(&error);
+            return self.fail(error);
+        }
+        {
+            let mut latch = lock(&self.latch);
+            latch.tuple.copy_from_slice(tuple);
+            latch.stamp = Some(Stamp::now());
+            latch.error = None;
+            latch.events = latch.events.wrapping_add(1);
+        }
+        node.stats.samples.add(1);
+        self.fill_page(node, tuple);
+        self.tell();
+    }
+
+    fn fail(&self, error: Error) {
+        let is_new = {
+            let mut latch = lock(&self.latch);
+            let is_new = latch.error.as_ref() != Some(&error);
+            latch.error = Some(error);
+            if is_new {
+                latch.events = latch.events.wrapping_add(1);
+            }
+            is_new
+        };
+        if is_new {
+            self.drop_page();
+        }
+        self.tell();
+    }
+
+    fn tell(&self) {
+        self.serve_waiting();
+        let watchers: Vec<_> = lock(&self.watchers)
+            .iter()
+            .filter_map(Weak::upgrade)
+            .collect();
+        for watcher in watchers {
+            watcher.ready();
+        }
+    }
+
+    /// Whether an open of `bin_data` may be served from the page cache: there is a good sample, and a publisher.
+    pub fn can_cache(&self) -> bool {
+        let Some(node) = self.node.upgrade() else {
+            return false;
+        };
+        let background = node.description.pace != Pace::OnRead;
+        let latch = lock(&self.latch);
+        let good = latch.stamp.is_some() && latch.error.is_none();
+        background
+            && good
+            && matches!(latch.tuple.len(), 1 | 2 | 4 | 8)
+            && node
+                .engine
+                .kernel()
+                .is_some_and(|kernel| kernel.can_store())
+    }
+
+    /// A cached open file comes (true) or goes.
+    pub fn count_cached(&self, ino: u64, comes: bool) {
+        let _ = self.page.ino.set(ino);
+        if comes {
+            // Its first read comes to us and leaves the answer in the page.
+            self.page.is_filled.store(true, Ordering::SeqCst);
+        }
+        count(&self.page.readers, comes);
+    }
+
+    /// A cached open file starts being polled (true) or goes.
+    pub fn count_polled(&self, comes: bool) {
+        count(&self.page.polled, comes);
+    }
+
+    fn fill_page(&self, node: &Node, tuple: &[u8]) {
+        let page = &self.page;
+        let (Some(kernel), Some(&ino)) = (node.engine.kernel(), page.ino.get()) else {
+            return;
+        };
+        if page.readers.load(Ordering::SeqCst) == 0 || page.polled.load(Ordering::SeqCst) > 0 {
+            // Readers that come to us leave their answers in the page as well.
+            if page
+                .is_filled
+                .swap(page.readers.load(Ordering::SeqCst) > 0, Ordering::SeqCst)
+            {
+                kernel.invalidate(ino);
+            }
+        } else {
+            page.is_filled.store(true, Ordering::SeqCst);
+            kernel.store(ino, tuple);
+        }
+    }
+
+    fn drop_page(&self) {
+        let Some(node) = self.node.upgrade() else {
+            return;
+        };
+        if let (Some(kernel), Some(&ino)) = (node.engine.kernel(), self.page.ino.get()) {
+            kernel.invalidate(ino);
+        }
+    }
+}
+
+fn count(counter: &AtomicU32, comes: bool) {
+    if comes {
+        counter.fetch_add(1, Ordering::SeqCst);
+    } else {
+        counter.fetch_sub(1, Ordering::SeqCst);
+    }
+}
+
+/// The age from which a sample taken by the clock is no longer shown.
+fn too_old(node: &Node) -> Duration {
+    let ms = u64::from(node.period_ms()) * 2;
+    Duration::from_millis(ms.max(node.description.timeout_ms.into()))
+}
+
+impl Work {
+    fn open(&mut self, node: &Arc<Node>) -> Result<(), Error> {
+        if matches!(self.source, Source::Closed) {
+            let on_ready: Arc<dyn Ready> = node.clone();
+            self.source = match node.open_feed(&on_ready)? {
+                Feed::State(_) if node.description.pace == Pace::OnEvent => {
+                    return Err(Error::NoDevice(
+                        "the source is a state and has no events; use poll_ms".to_owned(),
+                    ));
+                }
+                Feed::State(state) => Source::State(state),
+                Feed::Stream(reader) => Source::Stream(reader),
+            };
+        }
+        Ok(())
+    }
+
+    fn take(&mut self, node: &Arc<Node>, mut publish: impl FnMut(&[u8])) -> Result<(), Error> {
+        self.tuple.resize(node.description.output_tuple_size, 0);
+        let reader = match &mut self.source {
+            Source::Closed => return Ok(()),
+            Source::State(state) => {
+                if state.sample(&mut self.tuple)? {
+                    publish(&self.tuple);
+                }
+                return Ok(());
+            }
+            Source::Stream(reader) => reader,
+        };
+        let drains = reader.is_shared() || node.description.pace == Pace::OnEvent;
+        let most = if drains {
+            limits::QUEUE_TUPLES
+        } else {
+            limits::TUPLES_PER_SAMPLE
+        };
+        for _ in 0..most {
+            match reader.read(&mut self.tuple)? {
+                Got::Bytes(_) => publish(&self.tuple),
+                Got::Nothing => break,
+                Got::End if drains => break,
+                Got::End => return Err(Error::NoDevice("the source has ended".to_owned())),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Background sampling by the clock.
+struct Sampling {
+    node: Weak<Node>,
+    planned: Mutex<Instant>,
+}
+
+impl Due for Sampling {
+    fn due(&self) -> Option<Instant> {
+        let node = self.node.upgrade()?;
+        if node.is_retired() {
+            return None;
+        }
+        node.newest.sample(&node);
+        let period = Duration::from_millis(node.period_ms().into());
+        let mut planned = lock(&self.planned);
+        *planned += period;
+        let now = Instant::now();
+        if *planned <= now {
+            *planned = now + period; // periods that were missed are not made up for
+        }
+        Some(*planned)
+    }
+}
+
+/// Takes a value out of the page cache when it has become too old although the sampler still waits for the device.
+struct Ageing {
+    node: Weak<Node>,
+}
+
+impl Due for Ageing {
+    fn due(&self) -> Option<Instant> {
+        let node = self.node.upgrade()?;
+        let limit = too_old(&node);
+        let age = node
+            .newest
+            .stamp()
+            .map_or(limit, |stamp| Duration::from_nanos(stamp.age_ns()));
+        if age >= limit {
+            if node.newest.page.is_filled.swap(false, Ordering::SeqCst) {
+                node.newest.drop_page();
+                node.newest.tell();
+            }
+            return Some(Instant::now() + limit);
+        }
+        Some(Instant::now() + (limit - age))
+    }
+}
+
+/// Opens the source of an `on_event` node, and tries again while it is not there.
+struct Listening {
+    node: Weak<Node>,
+}
+
+impl Due for Listening {
+    fn due(&self) -> Option<Instant> {
+        let node = self.node.upgrade()?;
+        if node.is_retired() {
+            return None;
+        }
+        let is_open = {
+            let mut work = lock(&node.newest.work);
+            let opened = if matches!(work.source, Source::Closed) {
+                work.open(&node).map(|()| true)
+            } else {
+                Ok(false)
+            };
+            drop(work);
+            match opened {
+                Ok(true) => {
+                    node.newest.arm(&node);
+                    node.newest.ready();
+                    true
+                }
+                Ok(false) => true,
+                Err(error) => {
+                    node.newest.fail(error);
+                    false
+                }
+            }
+        };
+        let wait = if is_open {
+            4 * limits::REOPEN_MS
+        } else {
+            limits::REOPEN_MS
+        };
+        Some(Instant::now() + Duration::from_millis(wait))
+    }
+}

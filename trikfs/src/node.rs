@@ -1,0 +1,503 @@
+//! What stands behind one description: its converters, its sources, its newest value, its statistics.
+//!
+//! Owns the joints between these, the node's fault and the flag that a reload sets when the description is gone.
+//! Knows no file of the tree and no request of the kernel.
+
+use crate::clock::Stamp;
+use crate::convert::{LogSink, Pipeline, Recipe};
+use crate::device::{self, Device, Sink, Stream, Surroundings};
+use crate::engine::Engine;
+use crate::errno::Error;
+use crate::events::{Due, Ready, lock};
+use crate::hub::Hub;
+use crate::limits;
+use crate::newest::Newest;
+use crate::reader::{Origin, Reader};
+use crate::state_reader::StateReader;
+use crate::stats::Stats;
+use crate::writer::Writer;
+use config::description::{NodeDescription, Pace};
+use config::format::Format;
+use config::problem::Problem;
+use config::program::Direction;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::{Arc, Mutex, Weak};
+
+/// One described peripheral.
+pub struct Node {
+    /// As the configuration says.
+    pub description: NodeDescription,
+    /// One file of another node's directory, not a directory of its own.
+    pub is_attribute: bool,
+    /// The description's fingerprint together with those of the nodes it is linked to.
+    pub fingerprint: u128,
+    /// Format of a converted tuple; single bytes when none was given.
+    pub format: Format,
+    /// The mount's services.
+    pub engine: Arc<Engine>,
+    /// Counts and times.
+    pub stats: Stats,
+    /// The newest sample, and how it is got.
+    pub newest: Newest,
+    recipe: Recipe,
+    around: Surroundings,
+    hub: Mutex<Weak<Hub>>,
+    fault: Mutex<Option<Error>>,
+    faulty: AtomicBool,
+    written: Mutex<Option<Vec<u8>>>,
+    rate: Mutex<Rate>,
+    retired: AtomicBool,
+    period_ms: AtomicU32,
+    /// When each of the operations that are inside now began, in coarse ms.
+    inside: [AtomicU32; limits::LATE_PER_NODE_MAX],
+}
+
+/// How a node can be read.
+pub enum Feed {
+    /// A value at any time.
+    State(StateReader),
+    /// One tuple after another.
+    Stream(Arc<Reader>),
+}
+
+impl Node {
+    /// Puts a node together; opens nothing.
+    pub fn new(
+        description: NodeDescription,
+        is_attribute: bool,
+        fingerprint: u128,
+        recipe: Recipe,
+        links: Vec<(String, Arc<Self>)>,
+        engine: Arc<Engine>,
+    ) -> Arc<Self> {
+        let format = description
+            .format
+            .clone()
+            .unwrap_or_else(|| Format::bytes(description.output_tuple_size));
+        let around = Surroundings {
+            links,
+            timeout_ms: description.timeout_ms,
+        };
+        let period_ms = match description.pace {
+            Pace::Every { period_ms } => period_ms,
+            Pace::OnRead | Pace::OnEvent => 0,
+        };
+        Arc::new_cyclic(|me| Self {
+            is_attribute,
+            fingerprint,
+            format,
+            engine,
+            stats: Stats::default(),
+            newest: Newest::new(me.clone(), description.output_tuple_size),
+            recipe,
+            around,
+            hub: Mutex::default(),
+            fault: Mutex::default(),
+            faulty: AtomicBool::new(false),
+            written: Mutex::default(),
+            rate: Mutex::new(Rate {
+                count: 0,
+                since: Stamp::now(),
+                hz: 0.0,
+            }),
+            retired: AtomicBool::new(false),
+            period_ms: AtomicU32::new(period_ms),
+            inside: Default::default(),
+            description,
+        })
+    }
+
+    /// Path below the mount point.
+    pub fn path(&self) -> &str {
+        &self.description.path
+    }
+
+    /// A reload has changed or removed the description.
+    pub fn is_retired(&self) -> bool {
+        self.retired.load(Ordering::Acquire)
+    }
+
+    /// From here on everything that is open on this node gets ESTALE.
+    pub fn retire(&self) {
+        self.retired.store(true, Ordering::Release);
+        self.newest.stop();
+    }
+
+    /// Converters of this node that are opened from now on take their Lua states from here.
+    pub fn recipe(&self) -> &Recipe {
+        &self.recipe
+    }
+
+    /// Sampling period in ms; 0 unless sampled in the background.
+    pub fn period_ms(&self) -> u32 {
+        self.period_ms.load(Ordering::Relaxed)
+    }
+
+    /// Changes the sampling period of a node that is sampled in the background.
+    pub fn set_period_ms(&self, period_ms: u32) -> Result<(), Error> {
+        if !matches!(self.description.pace, Pace::Every { .. }) {
+            return Err(Error::Invalid(
+                "the node is not sampled by the clock: its description has no poll_ms".to_owned(),
+            ));
+        }
+        if period_ms == 0 || period_ms > config::limits::PERIOD_MS_MAX {
+            return Err(Error::OutOfRange(format!(
+                "poll_ms is 1 to {} ms",
+                config::limits::PERIOD_MS_MAX
+            )));
+        }
+        self.period_ms.store(period_ms, Ordering::Relaxed);
+        self.newest.period_changed();
+        Ok(())
+    }
+
+    /// Bytes of one tuple that goes to the device.
+    pub fn device_tuple_size(&self) -> usize {
+        if self.description.write_converter.is_some() {
+            self.description.input_tuple_size
+        } else {
+            self.description.output_tuple_size
+        }
+    }
+
+    /// Whether programs may read or write at all: root passes the kernel's check of the mode bits.
+    pub fn check_access(&self, read: bool, write: bool) -> Result<(), Error> {
+        let mode = self.description.mode;
+        if (read && mode & 0o444 == 0) || (write && mode & 0o222 == 0) {
+            return Err(Error::AccessDenied);
+        }
+        if self.is_retired() {
+            Err(Error::Stale)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Marks an operation that may enter the node's device or converter, for as long as the result lives.
+    ///
+    /// Refused while as many operations are inside as the limit allows, or one has been inside for so long that it
+    /// will hardly return (native code that hangs, a driver that never answers): those keep their threads, and no
+    /// further ones may join them.
+    pub fn enter(&self) -> Result<Inside<'_>, Error> {
+        // 0 marks a free place.
+        let now_ms = crate::clock::coarse_ms().max(1);
+        let limit_ms =
+            limits::STUCK_MS + self.description.budget_us / 1000 + self.description.timeout_ms;
+        let mut mine = None;
+        for place in &self.inside {
+            let since_ms = place.load(Ordering::Acquire);
+            if since_ms == 0 {
+                if mine.is_none()
+                    && place
+                        .compare_exchange(0, now_ms, Ordering::AcqRel, Ordering::Relaxed)
+                        .is_ok()
+                {
+                    mine = Some(Inside(place));
+                }
+            } else if now_ms.wrapping_sub(since_ms) > limit_ms
+                && now_ms.wrapping_sub(since_ms) < u32::MAX / 2
+            {
+                let for_ms = now_ms.wrapping_sub(since_ms);
+                let what =
+                    format!("quarantined: an earlier operation has not returned for {for_ms} ms");
+                return Err(Error::Device(libc::EIO, what));
+            }
+        }
+        mine.ok_or_else(|| {
+            Error::Device(
+                libc::EBUSY,
+                "earlier operations have not returned yet".to_owned(),
+            )
+        })
+    }
+
+    /// A private pipeline of converters.
+    pub fn open_pipeline(self: &Arc<Self>) -> Result<Arc<Mutex<Pipeline>>, Error> {
+        let pipeline = self
+            .recipe
+            .open(&self.log_sink())
+            .inspect_err(|error| self.report(error))?;
+        Ok(Arc::new(Mutex::new(pipeline)))
+    }
+
+    fn log_sink(self: &Arc<Self>) -> LogSink {
+        let (log, path) = (self.engine.log.clone(), self.description.path.clone());
+        Arc::new(move |text| log.line(&format!("{path}: {text}")))
+    }
+
+    /// Opens the node for reading with a pipeline of its own.
+    pub fn open_feed(self: &Arc<Self>, on_ready: &Arc<dyn Ready>) -> Result<Feed, Error> {
+        let pipeline = self.open_pipeline()?;
+        self.open_feed_with(pipeline, Arc::downgrade(on_ready))
+    }
+
+    /// Opens the node for reading. `on_ready` is called when a stream may have more.
+    pub fn open_feed_with(
+        self: &Arc<Self>,
+        pipeline: Arc<Mutex<Pipeline>>,
+        on_ready: Weak<dyn Ready>,
+    ) -> Result<Feed, Error> {
+        let opened = self.open_origin(&on_ready);
+        let origin = match opened.inspect_err(|error| self.report(error))? {
+            Opened::State(state) => {
+                return Ok(Feed::State(StateReader::new(self.clone(), state, pipeline)));
+            }
+            Opened::Stream(origin) => origin,
+        };
+        Ok(Feed::Stream(Reader::new(
+            self.clone(),
+            origin,
+            pipeline,
+            on_ready,
+        )))
+    }
+
+    fn open_origin(self: &Arc<Self>, on_ready: &Weak<dyn Ready>) -> Result<Opened, Error> {
+        let by_kind = device::is_shared(&self.description.source)?;
+        if self.description.share.unwrap_or(by_kind) {
+            let mut slot = lock(&self.hub);
+            let hub = match slot.upgrade() {
+                Some(hub) => hub,
+                None => match self.open_device()? {
+                    Device::State(state) => return Ok(Opened::State(state)),
+                    Device::Stream(stream) => {
+                        let hub = Hub::start(self, stream);
+                        *slot = Arc::downgrade(&hub);
+                        hub
+                    }
+                },
+            };
+            return Ok(Opened::Stream(Origin::Shared(
+                hub.subscribe(on_ready.clone()),
+            )));
+        }
+        Ok(match self.open_device()? {
+            Device::State(state) => Opened::State(state),
+            Device::Stream(stream) => Opened::Stream(Origin::Own(stream)),
+        })
+    }
+
+    fn open_device(&self) -> Result<Device, Error> {
+        device::open(
+            &self.description.source,
+            self.description.input_tuple_size,
+            &self.around,
+        )
+    }
+
+    /// Opens the source, which must be a stream: one that was a stream before.
+    pub fn open_stream(&self) -> Result<Box<dyn Stream>, Error> {
+        match self.open_device()? {
+            Device::Stream(stream) => Ok(stream),
+            Device::State(_) => Err(Error::NoDevice(
+                "the source is no longer a stream".to_owned(),
+            )),
+        }
+    }
+
+    /// Opens the node for writing, with the pipeline of the open file or one of its own.
+    pub fn open_writer(
+        self: &Arc<Self>,
+        pipeline: Option<Arc<Mutex<Pipeline>>>,
+    ) -> Result<Writer, Error> {
+        let pipeline = pipeline.map_or_else(|| self.open_pipeline(), Ok)?;
+        let sink: Box<dyn Sink> = device::open_sink(&self.description.source, &self.around)
+            .inspect_err(|error| self.report(error))?;
+        Ok(Writer::new(self.clone(), sink, pipeline))
+    }
+
+    /// Converts, counts and times: tuples taken, tuples made, and a fault that is reported already.
+    pub fn convert(
+        &self,
+        pipeline: &mut Pipeline,
+        direction: Direction,
+        input: &[u8],
+        output: &mut [u8],
+    ) -> (usize, usize, Option<Error>) {
+        let start = self.stats.measures_this_conversion().then(Stamp::now);
+        let batch = pipeline.convert(direction, input, output);
+        let (in_size, out_size) = match direction {
+            Direction::Write => (
+                self.description.written_tuple_size(),
+                self.device_tuple_size(),
+            ),
+            Direction::Read => (
+                self.description.input_tuple_size,
+                self.description.output_tuple_size,
+            ),
+        };
+        let whole = (input.len() / in_size).min(output.len() / out_size);
+        // An empty chain counts nothing: it moved everything that was there and fitted.
+        let (consumed, produced) = if batch.consumed == usize::MAX {
+            (whole, whole)
+        } else {
+            (batch.consumed, batch.produced)
+        };
+        if let Some(start) = start
+            && consumed > 0
+        {
+            self.stats.conversion.add(start.age_ns() / consumed as u64);
+        }
+        if let Some(error) = &batch.fault {
+            self.report(error);
+        } else if self.has_fault() {
+            self.recover();
+        }
+        (consumed, produced, batch.fault)
+    }
+
+    fn has_fault(&self) -> bool {
+        self.faulty.load(Ordering::Relaxed)
+    }
+
+    /// Notes a failure of the device or the converter: `fault`, `stats` and the log show it.
+    pub fn report(&self, error: &Error) {
+        self.stats.faults.add(1);
+        let mut fault = lock(&self.fault);
+        if fault.as_ref() != Some(error) {
+            self.engine
+                .log
+                .line(&format!("{}: {}: {error}", self.path(), error.blame()));
+            *fault = Some(error.clone());
+        }
+        self.faulty.store(true, Ordering::Relaxed);
+    }
+
+    /// All is well again.
+    pub fn recover(&self) {
+        self.faulty.store(false, Ordering::Relaxed);
+        *lock(&self.fault) = None;
+    }
+
+    /// The present fault.
+    pub fn fault(&self) -> Option<Error> {
+        lock(&self.fault).clone()
+    }
+
+    /// The tuple that brings the actuator to rest, as a program would write it.
+    pub fn rest_tuple(&self) -> Result<Option<Vec<u8>>, Error> {
+        let Some(rest) = &self.description.rest else {
+            return Ok(None);
+        };
+        let text: Vec<String> = rest.iter().map(ToString::to_string).collect();
+        let mut tuple = vec![0; self.description.written_tuple_size()];
+        crate::text::encode(&self.written_format(), &text.join(" "), &mut tuple)?;
+        Ok(Some(tuple))
+    }
+
+    /// Samples per second since the rate was last asked for, over at least a fifth of a second.
+    pub fn rate_hz(&self) -> f64 {
+        let mut rate = lock(&self.rate);
+        let elapsed_ns = rate.since.age_ns();
+        if elapsed_ns >= 200_000_000 {
+            let count = self.stats.samples.get();
+            #[allow(clippy::cast_precision_loss, reason = "a rate is shown with one digit")]
+            let hz = (count - rate.count) as f64 * 1e9 / elapsed_ns as f64;
+            *rate = Rate {
+                count,
+                since: Stamp::now(),
+                hz,
+            };
+        }
+        rate.hz
+    }
+
+    /// Notes what was written last, for writes of single numbers.
+    pub fn wrote(&self, tuple: Vec<u8>) {
+        *lock(&self.written) = Some(tuple);
+    }
+
+    /// What was written last, or else the newest sample if it has the shape of what is written.
+    pub fn last_tuple(&self) -> Option<Vec<u8>> {
+        if let Some(tuple) = lock(&self.written).clone() {
+            return Some(tuple);
+        }
+        let mut tuple = Vec::new();
+        let newest = self.newest.get(&mut tuple).ok().flatten();
+        newest
+            .filter(|_| self.description.output_tuple_size == self.description.written_tuple_size())
+            .map(|_| tuple)
+    }
+
+    /// Format of what programs write.
+    pub fn written_format(&self) -> Format {
+        if self.format.size() == self.description.written_tuple_size() {
+            self.format.clone()
+        } else {
+            Format::bytes(self.description.written_tuple_size())
+        }
+    }
+
+    /// Brings the actuator to rest now.
+    pub fn rest(self: &Arc<Self>) -> Result<(), Error> {
+        let Some(tuple) = self.rest_tuple()? else {
+            return Ok(());
+        };
+        self.open_writer(None)?.write_whole(&tuple, true)
+    }
+
+    /// What the guardian writes to which path if this process is no longer there.
+    pub fn rest_bytes(self: &Arc<Self>) -> Result<Option<(PathBuf, Vec<u8>)>, Error> {
+        let Some(tuple) = self.rest_tuple()? else {
+            return Ok(None);
+        };
+        let Some(path) = device::paths(&self.description.source)
+            .first()
+            .map(|path| path.to_path_buf())
+        else {
+            return Ok(None);
+        };
+        let mut bytes = vec![0; self.device_tuple_size()];
+        let pipeline = self.open_pipeline()?;
+        let (_, produced, fault) =
+            self.convert(&mut lock(&pipeline), Direction::Write, &tuple, &mut bytes);
+        match fault {
+            Some(error) => Err(error),
+            None => Ok((produced > 0).then_some((path, bytes))),
+        }
+    }
+
+    /// A problem at the place of this node's description.
+    pub fn problem(&self, reason: &str) -> Problem {
+        let place = &self.description.place;
+        Problem::new(
+            place.file.clone(),
+            place.line,
+            format!("node {}: {reason}", self.path()),
+        )
+    }
+}
+
+/// One operation inside a node: its place among those that may be there at once.
+pub struct Inside<'a>(&'a AtomicU32);
+
+impl Drop for Inside<'_> {
+    fn drop(&mut self) {
+        self.0.store(0, Ordering::Release);
+    }
+}
+
+/// Samples counted when the rate was last computed.
+struct Rate {
+    count: u64,
+    since: Stamp,
+    hz: f64,
+}
+
+enum Opened {
+    State(Box<dyn device::State>),
+    Stream(Origin),
+}
+
+impl Ready for Node {
+    fn ready(&self) {
+        self.newest.ready();
+    }
+}
+
+impl Due for Node {
+    fn due(&self) -> Option<std::time::Instant> {
+        self.newest.expire()
+    }
+}

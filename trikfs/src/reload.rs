@@ -1,0 +1,444 @@
+//! Configurations coming into force, whole or not at all.
+//!
+//! Owns the bytes in force, the result of the last attempt, the building of nodes from descriptions and the exchange
+//! of the tree. Everything that can fail happens before anything is changed. One thread does this, one configuration
+//! at a time, so of two writers the last close wins.
+
+use crate::convert::lua::StateMaker;
+use crate::convert::shared::Cache;
+use crate::convert::{Recipe, Workshop};
+use crate::device;
+use crate::engine::Engine;
+use crate::events::lock;
+use crate::files::control::rest_all;
+use crate::fs::{Forest, OpenFiles};
+use crate::guardian::ledger::{Ledger, RestAction};
+use crate::node::Node;
+use crate::tree::{Owner, Tree};
+use config::description::{Config, NodeDescription, SourceDescription, StageKind};
+use config::load::Loader;
+use config::problem::Problem;
+use std::collections::{BTreeSet, HashMap};
+use std::io;
+use std::os::unix::fs::MetadataExt;
+use std::path::PathBuf;
+use std::sync::mpsc::{Sender, channel};
+use std::sync::{Arc, Mutex};
+
+/// What the reloader works with for the life of the mount.
+pub struct Setup {
+    /// Services of the mount.
+    pub engine: Arc<Engine>,
+    /// Where the tree is put in force.
+    pub forest: Arc<Forest>,
+    /// Who must hear of retired nodes.
+    pub files: Arc<OpenFiles>,
+    /// Runs configurations.
+    pub loader: Loader,
+    /// Directory that relative library paths of the live configuration start from.
+    pub base_dir: Option<PathBuf>,
+    /// Compiled code.
+    pub cache: Cache,
+    /// Owner of the tree.
+    pub owner: Owner,
+    /// The last file number that the tree in force has taken.
+    pub last_ino: u64,
+    /// What the guardian must know.
+    pub ledger: Option<Ledger>,
+}
+
+/// Brings configurations into force.
+pub struct Reloader {
+    setup: Setup,
+    maker: StateMaker,
+    state: Mutex<State>,
+    one_at_a_time: Mutex<()>,
+    work: Sender<Job>,
+}
+
+struct State {
+    bytes: Arc<Vec<u8>>,
+    result: String,
+    next_ino: u64,
+    pool: Option<Arc<crate::convert::lua::StatePool>>,
+    cached: BTreeSet<u64>,
+}
+
+struct Job {
+    bytes: Vec<u8>,
+    done: Box<dyn FnOnce(Result<(), Problem>) + Send>,
+    reloader: Arc<Reloader>,
+}
+
+impl Reloader {
+    /// Starts the thread that applies what is written to `config`.
+    pub fn start(setup: Setup) -> io::Result<Arc<Self>> {
+        let (work, jobs) = channel::<Job>();
+        std::thread::Builder::new()
+            .name("reload".to_owned())
+            .spawn(move || {
+                for job in jobs {
+                    (job.done)(job.reloader.apply("config", job.bytes, &|_| {}).map(|_| ()));
+                }
+            })?;
+        let state = State {
+            bytes: Arc::default(),
+            result: "config ok: 0 nodes".to_owned(),
+            next_ino: setup.last_ino,
+            pool: None,
+            cached: BTreeSet::new(),
+        };
+        let maker = StateMaker::start()?;
+        Ok(Arc::new(Self {
+            setup,
+            maker,
+            state: Mutex::new(state),
+            one_at_a_time: Mutex::default(),
+            work,
+        }))
+    }
+
+    /// The exact bytes in force.
+    pub fn in_force(&self) -> Vec<u8> {
+        lock(&self.state).bytes.to_vec()
+    }
+
+    /// Their number.
+    pub fn in_force_len(&self) -> u64 {
+        lock(&self.state).bytes.len() as u64
+    }
+
+    /// What became of the last configuration, on one line.
+    pub fn result_line(&self) -> String {
+        lock(&self.state).result.clone()
+    }
+
+    /// Notes that something was not applied, and why.
+    pub fn refuse(&self, why: &str) {
+        let line = one_line(why);
+        self.setup
+            .engine
+            .log
+            .line(&format!("config refused: {line}"));
+        lock(&self.state).result = format!("config refused: {line}");
+    }
+
+    /// Notes that the kernel keeps bytes of this file, which somebody must invalidate if this process is gone.
+    pub fn note_cached(&self, ino: u64) {
+        let mut state = lock(&self.state);
+        if state.cached.insert(ino)
+            && let Some(ledger) = &self.setup.ledger
+        {
+            let all: Vec<u64> = state.cached.iter().copied().collect();
+            self.warn_of("the list of cached files", ledger.set_cached(&all));
+        }
+    }
+
+    fn warn_of(&self, what: &str, result: io::Result<()>) {
+        if let Err(error) = result {
+            self.setup
+                .engine
+                .log
+                .line(&format!("the guardian was not told {what}: {error}"));
+        }
+    }
+
+    /// Applies a configuration later, on the reload thread.
+    pub fn apply_later(
+        self: &Arc<Self>,
+        bytes: Vec<u8>,
+        done: impl FnOnce(Result<(), Problem>) + Send + 'static,
+    ) {
+        let job = Job {
+            bytes,
+            done: Box::new(done),
+            reloader: self.clone(),
+        };
+        if let Err(failed) = self.work.send(job) {
+            (failed.0.done)(Err(Problem::new("config", 0, "the filesystem is stopping")));
+        }
+    }
+
+    /// Applies a configuration now. Returns the number of nodes. On failure nothing has changed but `status`.
+    pub fn apply(
+        &self,
+        name: &str,
+        bytes: Vec<u8>,
+        progress: &dyn Fn(&str),
+    ) -> Result<usize, Problem> {
+        let _one = lock(&self.one_at_a_time);
+        let outcome = self.try_apply(name, bytes, progress);
+        match &outcome {
+            Ok(count) => lock(&self.state).result = format!("config ok: {count} nodes"),
+            Err(problem) => self.refuse(&problem.to_string()),
+        }
+        outcome
+    }
+
+    fn try_apply(
+        &self,
+        name: &str,
+        bytes: Vec<u8>,
+        progress: &dyn Fn(&str),
+    ) -> Result<usize, Problem> {
+        let setup = &self.setup;
+        let loaded = setup.loader.load(name, setup.base_dir.as_deref(), &bytes)?;
+        let uses_lua = all(&loaded.config).any(NodeDescription::uses_lua);
+        let pool = uses_lua.then(|| self.maker.pool(loaded.program.clone()));
+        let before = setup.forest.tree();
+        let workshop = Workshop {
+            cache: &setup.cache,
+            progress,
+        };
+        let mut builder = Builder {
+            engine: &setup.engine,
+            workshop,
+            pool: pool.clone(),
+            before: before
+                .nodes()
+                .iter()
+                .map(|node| (node.path(), node))
+                .collect(),
+            made: HashMap::new(),
+            kept: Vec::new(),
+        };
+        let nodes = builder.build(&loaded.config)?;
+        let kept = builder.kept;
+        let mut problems = loaded
+            .warnings
+            .into_iter()
+            .map(|warning| warning.to_string())
+            .collect::<Vec<_>>();
+        problems.extend(loaded.log);
+        let rest = self.rest_actions(&nodes, &mut problems);
+        // Nothing fails from here on.
+        for node in &kept {
+            if let Some(pool) = &pool {
+                node.recipe().move_to(pool);
+            }
+        }
+        self.put_in_force(nodes, &before, bytes, pool, &rest);
+        for line in problems {
+            setup.engine.log.line(&line);
+        }
+        Ok(loaded.config.nodes.len())
+    }
+
+    fn rest_actions(&self, nodes: &[Arc<Node>], problems: &mut Vec<String>) -> Vec<RestAction> {
+        let mut actions = Vec::new();
+        for node in nodes.iter().filter(|node| node.description.rest.is_some()) {
+            match node.rest_bytes() {
+                Ok(Some((path, bytes))) => actions.push(RestAction { path, bytes }),
+                Ok(None) => {}
+                Err(error) => problems.push(node.problem(&format!("rest: {error}")).to_string()),
+            }
+        }
+        actions
+    }
+
+    fn put_in_force(
+        &self,
+        nodes: Vec<Arc<Node>>,
+        before: &Arc<Tree>,
+        bytes: Vec<u8>,
+        pool: Option<Arc<crate::convert::lua::StatePool>>,
+        rest: &[RestAction],
+    ) {
+        let setup = &self.setup;
+        let is_new = |node: &Arc<Node>| !before.nodes().iter().any(|old| Arc::ptr_eq(old, node));
+        let new: Vec<_> = nodes.iter().filter(|node| is_new(node)).cloned().collect();
+        let old_pool = {
+            let mut state = lock(&self.state);
+            let tree = Tree::build(nodes, setup.owner, Some(before), &mut state.next_ino);
+            setup.forest.replace(tree);
+            state.bytes = Arc::new(bytes);
+            std::mem::replace(&mut state.pool, pool)
+        };
+        let tree = setup.forest.tree();
+        let stays = |old: &Arc<Node>| tree.nodes().iter().any(|node| Arc::ptr_eq(node, old));
+        let gone: Vec<_> = before
+            .nodes()
+            .iter()
+            .filter(|old| !stays(old))
+            .cloned()
+            .collect();
+        // Nobody will stop an actuator that is no longer in the tree.
+        if let Err(error) = rest_all(&gone) {
+            setup.engine.log.line(&format!(
+                "an actuator that left the tree did not come to rest: {error}"
+            ));
+        }
+        for old in gone {
+            old.retire();
+        }
+        for file in setup.files.all() {
+            file.retire();
+        }
+        for node in &new {
+            node.newest.start();
+        }
+        if let Some(old_pool) = old_pool {
+            old_pool.retire();
+        }
+        if let Some(kernel) = setup.engine.kernel() {
+            for gone in tree.gone_since(before) {
+                kernel.invalidate_entry(gone.parent, &gone.name);
+                kernel.invalidate(gone.ino);
+            }
+        }
+        if let Some(ledger) = &setup.ledger {
+            self.warn_of("the configuration", ledger.set_config(&self.in_force()));
+            self.warn_of("what brings the actuators to rest", ledger.set_rest(rest));
+        }
+    }
+}
+
+fn one_line(text: &str) -> String {
+    text.lines()
+        .map(str::trim_end)
+        .filter(|line| !line.is_empty())
+        .collect::<Vec<_>>()
+        .join(" | ")
+}
+
+/// Every description of a configuration, attributes behind their node.
+pub fn all(config: &Config) -> impl Iterator<Item = &NodeDescription> {
+    config
+        .nodes
+        .iter()
+        .flat_map(|node| std::iter::once(node).chain(&node.attributes))
+}
+
+/// Makes the nodes of one configuration, reusing what has not changed.
+struct Builder<'a> {
+    engine: &'a Arc<Engine>,
+    workshop: Workshop<'a>,
+    pool: Option<Arc<crate::convert::lua::StatePool>>,
+    before: HashMap<&'a str, &'a Arc<Node>>,
+    made: HashMap<String, Arc<Node>>,
+    kept: Vec<Arc<Node>>,
+}
+
+impl Builder<'_> {
+    fn build(&mut self, config: &Config) -> Result<Vec<Arc<Node>>, Problem> {
+        let descriptions: HashMap<&str, (&NodeDescription, bool)> = config
+            .nodes
+            .iter()
+            .flat_map(|node| {
+                std::iter::once((node, false))
+                    .chain(node.attributes.iter().map(|attribute| (attribute, true)))
+            })
+            .map(|(description, is_attribute)| {
+                (description.path.as_str(), (description, is_attribute))
+            })
+            .collect();
+        all(config)
+            .map(|description| self.make(&description.path, &descriptions))
+            .collect()
+    }
+
+    /// Links come first; the configuration's own checks made sure that they form no circle.
+    fn make(
+        &mut self,
+        path: &str,
+        descriptions: &HashMap<&str, (&NodeDescription, bool)>,
+    ) -> Result<Arc<Node>, Problem> {
+        if let Some(node) = self.made.get(path) {
+            return Ok(node.clone());
+        }
+        let Some(&(description, is_attribute)) = descriptions.get(path) else {
+            return Err(Problem::new(
+                "config",
+                0,
+                format!("there is no node {path}"),
+            ));
+        };
+        let mut links = Vec::new();
+        for name in linked(&description.source) {
+            links.push((name.to_owned(), self.make(name, descriptions)?));
+        }
+        let linked = links.iter().map(|(_, node)| node.fingerprint);
+        let fingerprint =
+            linked
+                .chain(libraries(description))
+                .fold(description.fingerprint, |sum, part| {
+                    sum.rotate_left(29)
+                        .wrapping_mul(0x9e37_79b9_7f4a_7c15_f39c_c060_5ced_c835)
+                        ^ part
+                });
+        if let Some(&old) = self.before.get(path)
+            && old.fingerprint == fingerprint
+            && old.is_attribute == is_attribute
+        {
+            self.kept.push(old.clone());
+            self.made.insert(path.to_owned(), old.clone());
+            return Ok(old.clone());
+        }
+        let recipe = Recipe::prepare(description, &self.workshop, self.pool.clone())?;
+        let node = Node::new(
+            description.clone(),
+            is_attribute,
+            fingerprint,
+            recipe,
+            links,
+            self.engine.clone(),
+        );
+        if let Err(error) = node.rest_tuple() {
+            return Err(node.problem(&format!("rest: {error}")));
+        }
+        self.made.insert(path.to_owned(), node.clone());
+        Ok(node)
+    }
+}
+
+/// What tells one version of a library file from another: a replaced library is a changed description.
+fn libraries(description: &NodeDescription) -> impl Iterator<Item = u128> {
+    let both = description
+        .converter
+        .iter()
+        .chain(description.write_converter.iter().flatten());
+    both.filter_map(|stage| {
+        let StageKind::Library { path, .. } = &stage.kind else {
+            return None;
+        };
+        let meta = std::fs::metadata(path).ok()?;
+        let modified = meta
+            .modified()
+            .ok()?
+            .duration_since(std::time::UNIX_EPOCH)
+            .ok()?
+            .as_nanos();
+        Some(modified ^ u128::from(meta.len()) << 64 ^ u128::from(meta.ino()) << 96)
+    })
+}
+
+/// Paths of the nodes that a source names.
+fn linked(source: &SourceDescription) -> Vec<&str> {
+    match source {
+        SourceDescription::Node(path) => vec![path],
+        SourceDescription::Several(parts) => {
+            parts.iter().flat_map(|part| linked(&part.source)).collect()
+        }
+        SourceDescription::Faulty(faulty) => linked(&faulty.source),
+        _ => Vec::new(),
+    }
+}
+
+/// Device paths of a configuration that do not exist, as warnings.
+pub fn missing_devices(config: &Config) -> Vec<Problem> {
+    let mut warnings = Vec::new();
+    for description in all(config) {
+        for path in device::paths(&description.source) {
+            if !path.exists() {
+                let place = &description.place;
+                let reason = format!(
+                    "node {}: {} does not exist; opening it will give ENODEV",
+                    description.path,
+                    path.display()
+                );
+                warnings.push(Problem::new(place.file.clone(), place.line, reason));
+            }
+        }
+    }
+    warnings
+}

@@ -1,0 +1,181 @@
+//! The converted tuples of a state, for one consumer: position in, bytes out.
+//!
+//! Owns the rule that reading at offset 0 samples anew, and what is left over when a buffer ends inside a tuple.
+
+use crate::convert::Pipeline;
+use crate::device::State;
+use crate::errno::Error;
+use crate::events::lock;
+use crate::limits;
+use crate::node::Node;
+use config::program::Direction;
+use std::sync::{Arc, Mutex};
+
+/// One consumer's view of a state.
+pub struct StateReader {
+    node: Arc<Node>,
+    device: Box<dyn State>,
+    pipeline: Arc<Mutex<Pipeline>>,
+    raw: Vec<u8>,
+    /// What is left of the converted tuple that the last read ended in.
+    rest: Vec<u8>,
+    /// The offset behind the last read, and the tuple of the source that comes next there.
+    next_at: u64,
+    next_tuple: u64,
+}
+
+/// Samples one raw tuple. Text is filled up with zero bytes; anything else that is short is an error.
+pub fn whole_tuple(state: &mut dyn State, tuple: &mut [u8]) -> Result<(), Error> {
+    let n = state.read_at(0, tuple)?;
+    if n < tuple.len() {
+        if !state.is_text() || n == 0 {
+            let what = format!(
+                "the source gave {n} of the {} bytes of a tuple",
+                tuple.len()
+            );
+            return Err(Error::Device(libc::EIO, what));
+        }
+        tuple[n..].fill(0);
+    }
+    Ok(())
+}
+
+impl StateReader {
+    /// A reader of an open state.
+    pub fn new(node: Arc<Node>, device: Box<dyn State>, pipeline: Arc<Mutex<Pipeline>>) -> Self {
+        Self {
+            node,
+            device,
+            pipeline,
+            raw: Vec::new(),
+            rest: Vec::new(),
+            next_at: 0,
+            next_tuple: 0,
+        }
+    }
+
+    /// One fresh converted tuple. A converter that gives none is sampled again, as often as the limit allows;
+    /// false if there was none even then.
+    pub fn sample(&mut self, tuple: &mut [u8]) -> Result<bool, Error> {
+        if self.node.is_retired() {
+            return Err(Error::Stale);
+        }
+        self.raw.resize(self.node.description.input_tuple_size, 0);
+        for _ in 0..limits::CONSUMED_TUPLES_MAX {
+            let sampled = whole_tuple(self.device.as_mut(), &mut self.raw);
+            sampled.inspect_err(|error| self.node.report(error))?;
+            let mut pipeline = lock(&self.pipeline);
+            let (_, produced, fault) =
+                self.node
+                    .convert(&mut pipeline, Direction::Read, &self.raw, tuple);
+            if let Some(error) = fault {
+                return Err(error);
+            }
+            if produced > 0 {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// Converted bytes from an offset, counted in converted bytes. 0 samples anew; the end is 0 bytes.
+    ///
+    /// Reading on where the last read ended goes on in the source where that ended; any other offset counts
+    /// one tuple of the source for each converted one.
+    pub fn read_at(&mut self, offset: u64, out: &mut [u8]) -> Result<usize, Error> {
+        if self.node.is_retired() {
+            return Err(Error::Stale);
+        }
+        let size = self.node.description.output_tuple_size as u64;
+        let mut skip = 0;
+        if offset == 0 || offset != self.next_at {
+            self.rest.clear();
+            self.next_tuple = offset / size;
+            skip = usize::try_from(offset % size).unwrap_or(0);
+        }
+        let mut filled = self.take_rest(out);
+        while filled < out.len() {
+            let made = if self.device.is_text() {
+                self.convert_text(skip, &mut out[filled..])?
+            } else {
+                self.convert_next(skip, &mut out[filled..])?
+            };
+            skip = 0;
+            filled += made;
+            if made == 0 {
+                break;
+            }
+        }
+        self.next_at = offset + filled as u64;
+        Ok(filled)
+    }
+
+    fn take_rest(&mut self, out: &mut [u8]) -> usize {
+        let n = self.rest.len().min(out.len());
+        out[..n].copy_from_slice(&self.rest[..n]);
+        self.rest.drain(..n);
+        n
+    }
+
+    /// The one tuple of a text.
+    fn convert_text(&mut self, skip: usize, out: &mut [u8]) -> Result<usize, Error> {
+        if self.next_tuple > 0 {
+            return Ok(0);
+        }
+        let mut tuple = vec![0; self.node.description.output_tuple_size];
+        if !self.sample(&mut tuple)? {
+            return Err(Error::WouldBlock);
+        }
+        self.next_tuple = 1;
+        tuple.drain(..skip);
+        self.rest = tuple;
+        Ok(self.take_rest(out))
+    }
+
+    /// As many tuples as fit, or one of which the first `skip` bytes are left out and the end becomes `rest`.
+    fn convert_next(&mut self, skip: usize, out: &mut [u8]) -> Result<usize, Error> {
+        let description = &self.node.description;
+        let (input_size, output_size) =
+            (description.input_tuple_size, description.output_tuple_size);
+        let whole = if skip == 0 {
+            out.len() / output_size
+        } else {
+            0
+        };
+        let wanted = whole.clamp(1, (limits::READ_BYTES / input_size).max(1));
+        let mut one = vec![0; if whole == 0 { output_size } else { 0 }];
+        for _ in 0..limits::CONSUMED_TUPLES_MAX {
+            self.raw.resize(wanted * input_size, 0);
+            let from = self.next_tuple.saturating_mul(input_size as u64);
+            let got = self.device.read_at(from, &mut self.raw);
+            let tuples = got.inspect_err(|error| self.node.report(error))? / input_size;
+            if tuples == 0 {
+                return Ok(0);
+            }
+            let target = if whole == 0 {
+                &mut one[..]
+            } else {
+                &mut out[..whole * output_size]
+            };
+            let input = &self.raw[..tuples * input_size];
+            let mut pipeline = lock(&self.pipeline);
+            let (consumed, produced, fault) =
+                self.node
+                    .convert(&mut pipeline, Direction::Read, input, target);
+            drop(pipeline);
+            self.next_tuple += consumed as u64;
+            if produced > 0 {
+                if whole > 0 {
+                    return Ok(produced * output_size);
+                }
+                one.drain(..skip);
+                self.rest = one;
+                return Ok(self.take_rest(out));
+            }
+            if let Some(error) = fault {
+                return Err(error);
+            }
+        }
+        Err(Error::WouldBlock)
+    }
+}
