@@ -20,7 +20,7 @@ use std::collections::HashMap;
 
 /// Names at the top that belong to the filesystem.
 const RESERVED_NODES: [&str; 4] = ["config", "log", "status", "stop"];
-/// Names in a node that belong to the filesystem; `value0`, `value1` … as well.
+/// Names in a node that belong to the filesystem; `value0`, `value1` ... as well.
 const RESERVED_ATTRIBUTES: [&str; 8] = [
     "bin_data", "device", "fault", "format", "poll_ms", "stats", "units", "value",
 ];

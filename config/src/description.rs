@@ -121,11 +121,11 @@ pub enum SourceDescription {
     Fifo(PathBuf),
     /// `evdev{ path }`: input events decoded and grouped up to SYN_REPORT.
     Evdev(EvdevDescription),
-    /// `fake{ … }`: bytes that the configuration itself holds.
+    /// `fake{ ... }`: bytes that the configuration itself holds.
     Fake(FakeDescription),
-    /// `replay{ … }`: bytes recorded with their timing.
+    /// `replay{ ... }`: bytes recorded with their timing.
     Replay(ReplayDescription),
-    /// `faulty{ … }`: another source that fails on purpose.
+    /// `faulty{ ... }`: another source that fails on purpose.
     Faulty(FaultyDescription),
     /// `src = 'trikfs:other'`: the converted tuples of another node.
     Node(String),
@@ -155,7 +155,7 @@ pub enum EvdevLayout {
     Bits64,
 }
 
-/// `evdev{ path = …, axes = { 'ABS_X', … } | codes… }`
+/// `evdev{ path = ..., axes = { 'ABS_X', ... } | codes... }`
 ///
 /// Each tuple holds, for every listed code in order, its newest value as a little-endian i32; one tuple per SYN_REPORT.
 #[derive(Clone, Debug, PartialEq)]
@@ -168,7 +168,7 @@ pub struct EvdevDescription {
     pub layout: EvdevLayout,
 }
 
-/// `fake{ data = '…', period_ms = 10, loop = true }`
+/// `fake{ data = '...', period_ms = 10, loop = true }`
 #[derive(Clone, Debug, PartialEq)]
 pub struct FakeDescription {
     /// Bytes to emit, a tuple at a time.
@@ -192,7 +192,7 @@ pub struct ReplayDescription {
     pub repeat: bool,
 }
 
-/// `faulty{ src = …, fail = 'EIO', from = 3, count = 1 }`
+/// `faulty{ src = ..., fail = 'EIO', from = 3, count = 1 }`
 #[derive(Clone, Debug, PartialEq)]
 pub struct FaultyDescription {
     /// What works in between.

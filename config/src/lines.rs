@@ -183,7 +183,7 @@ impl Reader<'_> {
         self.byte(0)
     }
 
-    /// Passes over `[[…]]`, `[=[…]=]`; false if there is none.
+    /// Passes over `[[...]]`, `[=[...]=]`; false if there is none.
     fn long_bracket(&mut self) -> bool {
         if self.byte(0) != Some(b'[') {
             return false;

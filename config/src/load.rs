@@ -187,9 +187,9 @@ impl Run {
         if self.files.len() == INCLUDES_MAX {
             return Err(format!("more than {INCLUDES_MAX} files are included"));
         }
-        let source = self.search.include(name)?;
+        let (shown, source) = self.search.include(name)?;
         self.salt ^= hash(&source).rotate_left(1);
-        let code = self.compile(&String::from_utf8_lossy(name), &source)?;
+        let code = self.compile(&shown, &source)?;
         self.files.insert(name.to_vec(), Arc::clone(&code));
         Ok(code)
     }

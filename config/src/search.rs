@@ -21,12 +21,13 @@ pub(crate) struct Search {
 }
 
 impl Search {
-    /// Reads an included file: `name`, or `name.lua`, in the first folder that has it.
+    /// Reads an included file: `name`, or `name.lua`, in the first folder that has it. Gives the name that the file has
+    /// there and its bytes.
     ///
     /// # Errors
     /// A name that leads outside, a file that is none, too large or unreadable, or nothing found.
-    pub(crate) fn include(&self, name: &[u8]) -> Result<Vec<u8>, String> {
-        let path = self.inside(name, &["", ".lua"])?;
+    pub(crate) fn include(&self, name: &[u8]) -> Result<(String, Vec<u8>), String> {
+        let (path, ending) = self.inside(name, &["", ".lua"])?;
         let shown = String::from_utf8_lossy(name);
         let mut source = Vec::new();
         let file =
@@ -38,7 +39,7 @@ impl Search {
         if source.len() > CONFIG_BYTES_MAX {
             return Err(format!("'{shown}' has more than {CONFIG_BYTES_MAX} bytes"));
         }
-        Ok(source)
+        Ok((format!("{shown}{ending}"), source))
     }
 
     /// The path of a recording: an absolute one as it is, any other like an include.
@@ -49,7 +50,7 @@ impl Search {
         if name.first() == Some(&b'/') {
             return Ok(path_of(name));
         }
-        self.inside(name, &[""])
+        self.inside(name, &[""]).map(|(path, _)| path)
     }
 
     /// The absolute path of a library: beside the configuration, then in the library folders; never in the working
@@ -85,8 +86,8 @@ impl Search {
         ))
     }
 
-    /// A file inside one of the include folders, with one of the endings.
-    fn inside(&self, name: &[u8], endings: &[&str]) -> Result<PathBuf, String> {
+    /// A file inside one of the include folders, and which of the endings it has.
+    fn inside<'e>(&self, name: &[u8], endings: &[&'e str]) -> Result<(PathBuf, &'e str), String> {
         let shown = String::from_utf8_lossy(name);
         let wanted = path_of(name);
         let plain = wanted
@@ -109,7 +110,7 @@ impl Search {
                     ));
                 }
                 if real.is_file() {
-                    return Ok(real);
+                    return Ok((real, ending));
                 }
             }
         }
@@ -187,8 +188,14 @@ mod tests {
     fn a_file_is_found_with_or_without_its_ending() {
         let folder = Folder::new("found");
         fs::write(folder.0.join("inside/board.lua"), "x = 1").unwrap();
-        assert_eq!(folder.search().include(b"board"), Ok(b"x = 1".to_vec()));
-        assert_eq!(folder.search().include(b"board.lua"), Ok(b"x = 1".to_vec()));
+        assert_eq!(
+            folder.search().include(b"board"),
+            Ok(("board.lua".to_owned(), b"x = 1".to_vec()))
+        );
+        assert_eq!(
+            folder.search().include(b"board.lua"),
+            Ok(("board.lua".to_owned(), b"x = 1".to_vec()))
+        );
         let error = folder.search().include(b"bord").unwrap_err();
         assert!(
             error.starts_with("'bord' was not found in ") && error.ends_with("/inside"),
@@ -227,7 +234,10 @@ mod tests {
             refused("link"),
             "'link' is a link that leads outside the search path"
         );
-        assert_eq!(folder.search().include(b"alias"), Ok(b"x = 2".to_vec()));
+        assert_eq!(
+            folder.search().include(b"alias"),
+            Ok(("alias.lua".to_owned(), b"x = 2".to_vec()))
+        );
         assert_eq!(
             folder.search().recording(b"/tmp/run.rec"),
             Ok("/tmp/run.rec".into())

@@ -64,7 +64,7 @@ impl Table {
         found.map(|(_, value)| value)
     }
 
-    /// The values of the keys 1, 2, 3 … up to the first gap.
+    /// The values of the keys 1, 2, 3 ... up to the first gap.
     pub(crate) fn list(&self) -> Vec<&Value> {
         let mut list = Vec::new();
         for (key, value) in &self.entries {

@@ -372,7 +372,12 @@ impl Mount {
         for &pid in daemons.iter().chain([&guardian.id()]) {
             processes::signal(pid, Signal::SIGSTOP);
         }
-        for &pid in [&guardian.id()].into_iter().chain(&daemons) {
+        eventually("a standstill", || {
+            processes::is_stopped(guardian.id())
+                && daemons.iter().all(|&pid| processes::is_stopped(pid))
+        });
+        // The guardian last: a stopped process that loses its parent is continued by the kernel.
+        for &pid in daemons.iter().chain([&guardian.id()]) {
             processes::signal(pid, Signal::SIGKILL);
         }
         let _ = guardian.wait();
@@ -396,8 +401,14 @@ impl Drop for Mount {
             return;
         };
         processes::signal(guardian.id(), Signal::SIGTERM);
-        let ended = wait_for(&mut guardian, SOON / 2);
+        let ended = wait_for(&mut guardian, SOON);
         if ended.is_none() {
+            for pid in processes::children(guardian.id())
+                .into_iter()
+                .chain([guardian.id()])
+            {
+                eprint!("{}", processes::describe(pid));
+            }
             cut_off(guardian.id(), &self.mountpoint);
             let _ = guardian.wait();
         }

@@ -23,6 +23,19 @@ pub fn is_asleep(pid: u32) -> bool {
     state(pid).is_some_and(|(state, _)| matches!(state, 'S' | 'D'))
 }
 
+/// Was stopped by a signal, with all its threads.
+pub fn is_stopped(pid: u32) -> bool {
+    let Ok(threads) = fs::read_dir(format!("/proc/{pid}/task")) else {
+        return false;
+    };
+    let numbers = threads
+        .flatten()
+        .filter_map(|entry| entry.file_name().to_str()?.parse().ok());
+    numbers
+        .map(state)
+        .all(|state| state.is_none_or(|(state, _)| state == 'T'))
+}
+
 /// Living children of a process.
 pub fn children(pid: u32) -> Vec<u32> {
     let Ok(entries) = fs::read_dir("/proc") else {
@@ -48,6 +61,36 @@ pub fn signal_group(pid: u32, signal: Signal) {
     if let Ok(pid) = i32::try_from(pid) {
         let _ = kill(Pid::from_raw(-pid), signal);
     }
+}
+
+/// What each thread of a process is doing, for the message of a hang.
+pub fn describe(pid: u32) -> String {
+    let read = |thread: &str, file: &str| {
+        fs::read_to_string(format!("/proc/{pid}/task/{thread}/{file}")).unwrap_or_default()
+    };
+    let threads = fs::read_dir(format!("/proc/{pid}/task")).into_iter();
+    let names = threads.flatten().flatten().map(|entry| entry.file_name());
+    let mut text = String::new();
+    for name in names {
+        let thread = name.to_string_lossy();
+        let state = thread.parse().ok().and_then(state).map_or('?', |s| s.0);
+        let (comm, stack) = (read(&thread, "comm"), read(&thread, "stack"));
+        let calls: Vec<&str> = stack
+            .lines()
+            .filter_map(|line| line.split(' ').nth(1)?.split('+').next())
+            .collect();
+        let doing = if calls.is_empty() {
+            read(&thread, "syscall")
+        } else {
+            calls.join(" < ")
+        };
+        text.push_str(&format!(
+            "{pid}/{thread} {} {state}: {}\n",
+            comm.trim(),
+            doing.trim()
+        ));
+    }
+    text
 }
 
 /// Resident memory in bytes (proc(5), /proc/PID/statm counts pages).

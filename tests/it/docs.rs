@@ -54,15 +54,33 @@ fn marked(mark: &str) -> Vec<(String, Example)> {
     found
 }
 
+/// A library of the versioned form with one converter.
+const VERSIONED: &str = "
+#include \"trikfs_converter.h\"
+static int convert(void *s, const uint8_t *a, uint32_t n, uint8_t *b, uint32_t m)
+{ (void)s; (void)a; (void)n; (void)b; (void)m; return 0; }
+static const trikfs_converter one = { 1, sizeof one, \"NAME\", 0, 0, 0, 0, convert, 0, 0 };
+static const trikfs_converter *const all[] = { &one };
+static const trikfs_library library = { 1, sizeof library, 1, all };
+TRIKFS_EXPORT const trikfs_library *trikfs_library_entry(void) { return &library; }
+";
+/// A library of the plain form.
+const PLAIN: &str =
+    "int converter(int n, char *a, int m, char *b) { return n == 0 || m == 0 || !a || !b; }";
+
 #[test]
 fn every_configuration_in_the_documents_is_good() {
     for (place, example) in marked("lua config ") {
         let board = Board::new();
         let name = example.info.trim_start_matches("lua config ");
-        // Libraries that a document builds on the way: any that converts will do.
-        for library in ["libbattery.so", "libbattery_rust.so", "libmine.so"] {
-            if example.text.contains(library) {
-                board.library(library, "int converter(int in_s, char *in, int out_s, char *out) { (void)in_s; (void)in; (void)out_s; (void)out; return 0; }");
+        for word in example.text.split('\'') {
+            // What the document builds on the way: a library that has the converter is enough here.
+            match word.split_once('#') {
+                _ if !word.starts_with("libbattery") => {}
+                Some((library, name)) => {
+                    drop(board.library(library, &VERSIONED.replace("NAME", name)))
+                }
+                None => drop(board.library(word, PLAIN)),
             }
         }
         board.file("robot.lua", &example.text);

@@ -66,7 +66,7 @@ pub enum Error {
     Interrupted,
     /// The filesystem is going away.
     ShuttingDown,
-    /// An operation this filesystem does not have, and never will (rename, mkdir, chmod…).
+    /// An operation this filesystem does not have, and never will (rename, mkdir, chmod...).
     NotPermitted,
     /// An operation this filesystem does not have.
     Unsupported,

@@ -29,6 +29,8 @@ struct Inner {
     raw_len: usize,
     /// The source is over for good (a recording).
     is_over: bool,
+    /// Somebody has subscribed, so the source is watched.
+    listens: bool,
 }
 
 /// One reader's queue of raw tuples.
@@ -51,7 +53,7 @@ struct Queue {
 }
 
 impl Hub {
-    /// Starts to listen to the open source of a node.
+    /// Takes over the open source of a node; listening starts with the first subscription.
     pub fn start(node: &Arc<Node>, stream: Box<dyn Stream>) -> Arc<Self> {
         let tuple_size = node.description.input_tuple_size;
         let raw = vec![0; tuple_size.max(4096) / tuple_size * tuple_size];
@@ -61,21 +63,20 @@ impl Hub {
             raw,
             raw_len: 0,
             is_over: false,
+            listens: false,
         };
-        let hub = Arc::new_cyclic(|me| Self {
+        Arc::new_cyclic(|me| Self {
             me: me.clone(),
             node: Arc::downgrade(node),
             tuple_size,
             inner: Mutex::new(inner),
             subscriptions: Mutex::default(),
-        });
-        hub.listen(&mut lock(&hub.inner));
-        hub
+        })
     }
 
     /// A queue that gets every tuple from now on.
     pub fn subscribe(self: &Arc<Self>, on_ready: Weak<dyn Ready>) -> Arc<Subscription> {
-        let inner = lock(&self.inner);
+        let mut inner = lock(&self.inner);
         let queue = Queue {
             is_over: inner.is_over,
             ..Queue::default()
@@ -90,6 +91,11 @@ impl Hub {
         let mut subscriptions = lock(&self.subscriptions);
         subscriptions.retain(|other| other.strong_count() > 0);
         subscriptions.push(Arc::downgrade(&subscription));
+        drop(subscriptions);
+        // Not before somebody is there to get what comes: a recording begins at once.
+        if !std::mem::replace(&mut inner.listens, true) {
+            self.listen(&mut inner);
+        }
         subscription
     }
 

@@ -9,6 +9,7 @@
 use crate::transport::native::received::receive_descriptor;
 use nix::errno::Errno;
 use nix::mount::{MntFlags, MsFlags, umount2};
+use nix::sys::statfs::statfs;
 use nix::unistd::{getegid, geteuid};
 use std::ffi::{OsStr, OsString};
 use std::fmt;
@@ -282,8 +283,12 @@ fn absolute(path: &Path) -> PathBuf {
 fn clear_mountpoint(path: &Path) -> Result<(), MountError> {
     // A mount may lie over a dead one; more layers than that are not our doing.
     for _ in 0..2 {
-        let checked = fs::metadata(path);
         let over = find(path)?;
+        // The kernel answers stat(2) of a dead mount from its cache; statfs(2) always asks the process.
+        let checked = fs::metadata(path).and_then(|data| match &over {
+            Some(entry) if entry.kind == TYPE => Ok(statfs(path).map(|_| data)?),
+            _ => Ok(data),
+        });
         match (checked, over) {
             (Ok(_), Some(entry)) if entry.kind == TYPE => {
                 return Err(MountError::AlreadyMounted(path.into()));

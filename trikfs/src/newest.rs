@@ -1,11 +1,11 @@
 //! The newest sample of a node: one state for all readers of `bin_data`, `value` and `valueN`.
 //!
 //! Owns the latch, when samples are taken (on read, by the clock, on event), who waits for the first one, when a
-//! sample is too old to be shown, and the copy in the kernel's page cache. A failure replaces the sample: what
-//! cannot be read is an error with a reason, never the value of before.
-//!
-//! Page cache: `store` and `invalidate` happen on event and schedule threads only. A READ request may hold the page
-//! while it waits for the thread that serves the kernel, so that thread must never wait for the page.
+//! sample is too old to be shown. `pace` takes samples in the background, `page` is the copy in the kernel's page
+//! cache. A failure replaces the sample: what cannot be read is an error with a reason, never the value of before.
+
+mod pace;
+mod page;
 
 use crate::clock::Stamp;
 use crate::device::Got;
@@ -18,8 +18,10 @@ use crate::state_reader::StateReader;
 use crate::transport::RequestId;
 use config::description::Pace;
 use config::format::FieldKind;
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use std::sync::{Arc, Mutex, OnceLock, Weak};
+use pace::{Ageing, Listening, Sampling};
+use page::Page;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, Mutex, Weak};
 use std::time::{Duration, Instant};
 
 /// Newest sample of one node and everything that keeps it new.
@@ -67,17 +69,6 @@ struct Waiting {
 pub trait Waiter: Send + Sync {
     /// Answers the claimed request from the newest sample, or with the error.
     fn serve(&self, id: RequestId, error: Option<Error>);
-}
-
-/// The node's `bin_data` in the page cache.
-#[derive(Default)]
-struct Page {
-    ino: OnceLock<u64>,
-    /// Open files whose reads come from the page cache.
-    readers: AtomicU32,
-    /// Those of them that are polled: they must come to us, so that we know what they have read.
-    polled: AtomicU32,
-    is_filled: AtomicBool,
 }
 
 impl Newest {
@@ -150,7 +141,9 @@ impl Newest {
         for waiting in std::mem::take(&mut *lock(&self.waiting)) {
             self.finish(&waiting, Some(Error::Stale));
         }
-        self.drop_page();
+        if let Some(node) = self.node.upgrade() {
+            self.page.drop(&node);
+        }
         // A sampler that is inside the device right now closes the source when it comes out.
         if let Ok(mut work) = self.work.try_lock() {
             work.source = Source::Closed;
@@ -277,8 +270,11 @@ impl Newest {
         }
     }
 
-    /// Answers reads whose time is over; says when the next one's is.
+    /// Answers reads whose time is over, and drops a page that is not to be used; says when the next read is due.
     pub fn expire(&self) -> Option<Instant> {
+        if let Some(node) = self.node.upgrade() {
+            self.page.drop_unwanted(&node);
+        }
         let now = Instant::now();
         let mut over = Vec::new();
         let next = {
@@ -382,7 +378,7 @@ impl Newest {
             latch.events = latch.events.wrapping_add(1);
         }
         node.stats.samples.add(1);
-        self.fill_page(node, tuple);
+        self.page.fill(node, tuple);
         self.tell();
     }
 
@@ -396,8 +392,8 @@ impl Newest {
             }
             is_new
         };
-        if is_new {
-            self.drop_page();
+        if is_new && let Some(node) = self.node.upgrade() {
+            self.page.drop(&node);
         }
         self.tell();
     }
@@ -421,64 +417,24 @@ impl Newest {
         let background = node.description.pace != Pace::OnRead;
         let latch = lock(&self.latch);
         let good = latch.stamp.is_some() && latch.error.is_none();
-        background
-            && good
-            && matches!(latch.tuple.len(), 1 | 2 | 4 | 8)
-            && node
-                .engine
-                .kernel()
-                .is_some_and(|kernel| kernel.can_store())
+        background && good && Page::can_hold(&node, latch.tuple.len())
     }
 
     /// A cached open file comes (true) or goes.
     pub fn count_cached(&self, ino: u64, comes: bool) {
-        let _ = self.page.ino.set(ino);
-        if comes {
-            // Its first read comes to us and leaves the answer in the page.
-            self.page.is_filled.store(true, Ordering::SeqCst);
-        }
-        count(&self.page.readers, comes);
+        self.page.count_reader(ino, comes);
     }
 
     /// A cached open file starts being polled (true) or goes.
     pub fn count_polled(&self, comes: bool) {
-        count(&self.page.polled, comes);
-    }
-
-    fn fill_page(&self, node: &Node, tuple: &[u8]) {
-        let page = &self.page;
-        let (Some(kernel), Some(&ino)) = (node.engine.kernel(), page.ino.get()) else {
-            return;
-        };
-        if page.readers.load(Ordering::SeqCst) == 0 || page.polled.load(Ordering::SeqCst) > 0 {
-            // Readers that come to us leave their answers in the page as well.
-            if page
-                .is_filled
-                .swap(page.readers.load(Ordering::SeqCst) > 0, Ordering::SeqCst)
-            {
-                kernel.invalidate(ino);
-            }
-        } else {
-            page.is_filled.store(true, Ordering::SeqCst);
-            kernel.store(ino, tuple);
+        self.page.count_polled(comes);
+        if comes && let Some(node) = self.node.upgrade() {
+            // What is in the page must go, but not from here: this is inside an operation.
+            let due: Arc<dyn Due> = node.clone();
+            node.engine
+                .schedule
+                .at(Instant::now(), Arc::downgrade(&due));
         }
-    }
-
-    fn drop_page(&self) {
-        let Some(node) = self.node.upgrade() else {
-            return;
-        };
-        if let (Some(kernel), Some(&ino)) = (node.engine.kernel(), self.page.ino.get()) {
-            kernel.invalidate(ino);
-        }
-    }
-}
-
-fn count(counter: &AtomicU32, comes: bool) {
-    if comes {
-        counter.fetch_add(1, Ordering::SeqCst);
-    } else {
-        counter.fetch_sub(1, Ordering::SeqCst);
     }
 }
 
@@ -532,94 +488,5 @@ impl Work {
             }
         }
         Ok(())
-    }
-}
-
-/// Background sampling by the clock.
-struct Sampling {
-    node: Weak<Node>,
-    planned: Mutex<Instant>,
-}
-
-impl Due for Sampling {
-    fn due(&self) -> Option<Instant> {
-        let node = self.node.upgrade()?;
-        if node.is_retired() {
-            return None;
-        }
-        node.newest.sample(&node);
-        let period = Duration::from_millis(node.period_ms().into());
-        let mut planned = lock(&self.planned);
-        *planned += period;
-        let now = Instant::now();
-        if *planned <= now {
-            *planned = now + period; // periods that were missed are not made up for
-        }
-        Some(*planned)
-    }
-}
-
-/// Takes a value out of the page cache when it has become too old although the sampler still waits for the device.
-struct Ageing {
-    node: Weak<Node>,
-}
-
-impl Due for Ageing {
-    fn due(&self) -> Option<Instant> {
-        let node = self.node.upgrade()?;
-        let limit = too_old(&node);
-        let age = node
-            .newest
-            .stamp()
-            .map_or(limit, |stamp| Duration::from_nanos(stamp.age_ns()));
-        if age >= limit {
-            if node.newest.page.is_filled.swap(false, Ordering::SeqCst) {
-                node.newest.drop_page();
-                node.newest.tell();
-            }
-            return Some(Instant::now() + limit);
-        }
-        Some(Instant::now() + (limit - age))
-    }
-}
-
-/// Opens the source of an `on_event` node, and tries again while it is not there.
-struct Listening {
-    node: Weak<Node>,
-}
-
-impl Due for Listening {
-    fn due(&self) -> Option<Instant> {
-        let node = self.node.upgrade()?;
-        if node.is_retired() {
-            return None;
-        }
-        let is_open = {
-            let mut work = lock(&node.newest.work);
-            let opened = if matches!(work.source, Source::Closed) {
-                work.open(&node).map(|()| true)
-            } else {
-                Ok(false)
-            };
-            drop(work);
-            match opened {
-                Ok(true) => {
-                    node.newest.arm(&node);
-                    node.newest.ready();
-                    true
-                }
-                Ok(false) => true,
-                Err(error) => {
-                    node.newest.fail(error);
-                    false
-                }
-            }
-        };
-        let wait = if is_open {
-            4 * limits::REOPEN_MS
-        } else {
-            limits::REOPEN_MS
-        };
-        Some(Instant::now() + Duration::from_millis(wait))
     }
 }

@@ -34,6 +34,14 @@ impl<'a> Fields<'_, 'a> {
         self.checker.texts.place(&keys)
     }
 
+    /// The same refusal at the line of another field: keys inside a field's table are found by that field.
+    pub(super) fn at<T>(&self, field: &str, result: Result<T, Problem>) -> Result<T, Problem> {
+        result.map_err(|problem| {
+            let place = self.place(field);
+            Problem::new(place.file, place.line, problem.reason)
+        })
+    }
+
     /// A refusal of a value of the wrong type.
     pub(super) fn wrong_type(&self, field: &str, wanted: &str, value: &Value) -> Problem {
         self.problem(

@@ -57,7 +57,7 @@ impl Fields<'_, '_> {
         let (source, input) = self.source()?;
         let read = self.stages("converter")?.unwrap_or_default();
         let write = self.stages("write_converter")?;
-        let layout = self.layout(input, &read, write.is_some())?;
+        let layout = self.layout(input, &read)?;
         let read_only = is_read_only(&source);
         if write.is_some() && read_only {
             return Err(self.problem(
@@ -125,12 +125,7 @@ impl Fields<'_, '_> {
     }
 
     /// Finds out both sizes.
-    fn layout(
-        &self,
-        input: Option<usize>,
-        read: &[StageDraft],
-        has_write: bool,
-    ) -> Result<Layout, Problem> {
+    fn layout(&self, input: Option<usize>, read: &[StageDraft]) -> Result<Layout, Problem> {
         let format = match self.text("format", 64 << 10)? {
             None => None,
             Some(text) => {
@@ -156,10 +151,9 @@ impl Fields<'_, '_> {
                 format!("the tuple has {size} bytes, more than {TUPLE_BYTES_MAX}"),
             ));
         }
-        let unchanged = read.is_empty() && !has_write;
         let (input, output) = match (input, output) {
             (Some(input), Some(output)) => (input, output),
-            (Some(size), None) | (None, Some(size)) if unchanged => (size, size),
+            (Some(size), None) | (None, Some(size)) if read.is_empty() => (size, size),
             (None, _) => {
                 return Err(self.problem("input_tuple_size", "input_tuple_size is missing"));
             }

@@ -263,21 +263,11 @@ impl<'a> Fields<'_, 'a> {
 
     /// `KIND{ path }`
     fn device(&self, kind: &str, table: &'a Table) -> Result<std::path::PathBuf, Problem> {
-        self.only(kind, table, &["", "path"])
-            .map_err(|problem| self.at_source(problem))?;
+        self.at("src", self.only(kind, table, &["", "path"]))?;
         match table.get("path") {
-            Some(value) => self
-                .absolute("path", value)
-                .map(path_of)
-                .map_err(|problem| self.at_source(problem)),
+            Some(value) => self.at("src", self.absolute("path", value).map(path_of)),
             None => Err(self.problem("src", format!("{kind}: path is missing"))),
         }
-    }
-
-    /// The same refusal at the line of `src`: the keys inside a constructor have no line of their own.
-    fn at_source(&self, problem: Problem) -> Problem {
-        let place = self.place("src");
-        Problem::new(place.file, place.line, problem.reason)
     }
 
     /// A field of a constructor, read with the checks of a description's field.
@@ -289,10 +279,10 @@ impl<'a> Fields<'_, 'a> {
         let outer = std::mem::replace(&mut self.table, table);
         let result = read(self);
         self.table = outer;
-        result.map_err(|problem| self.at_source(problem))
+        self.at("src", result)
     }
 
-    /// `evdev{ path = …, axes = { 'ABS_X', { 3, 1 } }, layout = 'native' }`; `codes` is another word for `axes`.
+    /// `evdev{ path = ..., axes = { 'ABS_X', { 3, 1 } }, layout = 'native' }`; `codes` is another word for `axes`.
     fn evdev(&mut self, table: &'a Table) -> Result<SourceDescription, Problem> {
         self.inner(table, |fields| {
             fields.only("evdev", table, &["", "path", "axes", "codes", "layout"])?;

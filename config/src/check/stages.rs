@@ -87,7 +87,8 @@ impl<'a> Fields<'_, 'a> {
             self.only(field, table, &["converter", "output_tuple_size"])?;
             let mut draft = self.code(field, inner)?;
             if let Some(size) = table.get("output_tuple_size") {
-                draft.output_size = Some(self.tuple_size("output_tuple_size", size)?);
+                draft.output_size =
+                    Some(self.at(field, self.tuple_size("output_tuple_size", size))?);
             }
             return Ok(draft);
         }
@@ -103,32 +104,7 @@ impl<'a> Fields<'_, 'a> {
             digest: 0,
         };
         match value {
-            Value::Function(number) => {
-                let function = self
-                    .checker
-                    .values
-                    .functions
-                    .get(*number)
-                    .cloned()
-                    .unwrap_or_default();
-                if !function.lua {
-                    return Err(self.problem(
-                        field,
-                        format!(
-                            "{field} must be a function written in lua, not one of the library"
-                        ),
-                    ));
-                }
-                let place = self
-                    .checker
-                    .texts
-                    .of_chunk(&function.place)
-                    .unwrap_or_else(|| self.place(field));
-                Ok(StageDraft {
-                    digest: function.digest,
-                    ..draft(StageKind::Lua, place)
-                })
-            }
+            Value::Function(number) => self.function(field, *number),
             Value::Text(_) => {
                 let bytes = self.path_bytes(field, value)?;
                 let (path, name) = match bytes.iter().rposition(|byte| *byte == b'#') {
@@ -148,11 +124,10 @@ impl<'a> Fields<'_, 'a> {
                         .map(|(kind, place)| draft(kind, place));
                 }
                 if table.get("library").is_none() {
-                    self.only(
-                        field,
-                        table,
-                        &["code", "library", "name", "converter", "output_tuple_size"],
-                    )?;
+                    if table.list().is_empty() {
+                        let known = ["code", "library", "name", "converter", "output_tuple_size"];
+                        self.only(field, table, &known)?;
+                    }
                     return Err(self.problem(field, format!("{field} must be {CONVERTER}")));
                 }
                 self.only(field, table, &["library", "name"])?;
@@ -162,13 +137,31 @@ impl<'a> Fields<'_, 'a> {
                     .transpose()?;
                 let name = table
                     .get("name")
-                    .map(|value| self.path_bytes("name", value))
+                    .map(|value| self.at(field, self.path_bytes("name", value)))
                     .transpose()?;
                 self.library(field, path.unwrap_or_default(), name)
                     .map(|kind| draft(kind, self.place(field)))
             }
             _ => Err(self.wrong_type(field, CONVERTER, value)),
         }
+    }
+
+    /// A stage whose code is a Lua function of the program's.
+    fn function(&self, field: &str, number: usize) -> Result<StageDraft, Problem> {
+        let known = &self.checker.values.functions;
+        let function = known.get(number).cloned().unwrap_or_default();
+        if !function.lua {
+            let reason =
+                format!("{field} must be a function written in lua, not one of the library");
+            return Err(self.problem(field, reason));
+        }
+        let place = self.checker.texts.of_chunk(&function.place);
+        Ok(StageDraft {
+            kind: StageKind::Lua,
+            place: place.unwrap_or_else(|| self.place(field)),
+            output_size: None,
+            digest: function.digest,
+        })
     }
 
     fn library(&self, field: &str, path: &[u8], name: Option<&[u8]>) -> Result<StageKind, Problem> {
@@ -203,7 +196,12 @@ impl<'a> Fields<'_, 'a> {
                 return Err(self.problem(field, "code is empty"));
             }
             Some(Value::Text(code)) => code,
-            Some(value) => return Err(self.wrong_type("code", "a string of C", value)),
+            Some(value) => {
+                return Err(self.problem(
+                    field,
+                    format!("code must be a string of C, not {}", value.describe()),
+                ));
+            }
             None => return Err(self.problem(field, "code is missing")),
         };
         let place = self

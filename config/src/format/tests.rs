@@ -1,3 +1,5 @@
+//! Tests of formats: parsing, both directions, ranges, whatever is not finite.
+
 use super::*;
 use proptest::prelude::*;
 

@@ -1,3 +1,5 @@
+//! Tests of programs and their states: conversions, budgets, memory, the sandbox.
+
 use super::*;
 use crate::vm::bytecode::compile;
 use std::sync::Mutex;
@@ -568,6 +570,10 @@ fn string_functions_do_what_the_manual_says() {
             "{expression}"
         );
     }
+}
+
+#[test]
+fn string_functions_name_what_they_refuse() {
     assert_eq!(
         fault("('x'):find('[')"),
         "test.lua:1: malformed pattern (missing ']')"

@@ -264,8 +264,14 @@ unsafe fn push_raw_library(
         if status != lua::LUA_OK {
             lua::lua_error(l);
         }
-        lua::lua_pushvalue(l, -1);
-        lua::lua_setfield(l, raw, name.as_ptr());
+        // `luaopen_ffi` gives its table and makes no global; `luaopen_jit` makes a global and gives something else.
+        if lua::lua_type(l, -1) == lua::LUA_TTABLE {
+            lua::lua_pushvalue(l, -1);
+            lua::lua_setfield(l, raw, name.as_ptr());
+        } else {
+            lua::lua_settop(l, -2);
+            lua::lua_getfield(l, raw, name.as_ptr());
+        }
     }
 }
 
@@ -295,8 +301,8 @@ pub(super) unsafe fn compile_from_here(l: *mut lua::lua_State) {
     }
 }
 
-/// Turns the compiler on, with a memory budget for its code that suits a state per open file. The raw table must be
-/// upvalue 1.
+/// Turns the compiler on, with a memory budget for its code that suits a state per open file, and collects what is not
+/// needed any more. The raw table must be upvalue 1.
 ///
 /// Sizes: one area of 16 KiB is touched at both ends, two pages, by a small converter; 128 KiB are enough for any
 /// converter that people write by hand.
@@ -310,6 +316,17 @@ unsafe extern "C-unwind" fn start_compiler(l: *mut lua::lua_State) -> c_int {
         lua::lua_pushstring_(l, c"maxmcode=128".as_ptr());
         lua::lua_pushstring_(l, c"maxtrace=64".as_ptr());
         lua::lua_call(l, 3, 0);
+        // Nobody asks for these two again: the prelude has kept what it needs of the foreign function interface.
+        for name in [c"ffi", c"jit"] {
+            lua::lua_pushnil(l);
+            lua::lua_setfield(l, lua::lua_upvalueindex(1), name.as_ptr());
+        }
+        for name in [c"_LOADED", c"_PRELOAD"] {
+            lua::lua_pushnil(l);
+            lua::lua_setfield(l, lua::LUA_REGISTRYINDEX, name.as_ptr());
+        }
+        lua::lua_settop(l, 0);
+        lua::lua_gc(l, lua::LUA_GCCOLLECT, 0);
     }
     0
 }

@@ -1,16 +1,38 @@
-//! Memory of a Lua state: from malloc, counted, with a limit.
+//! Memory of a Lua state, counted, with a limit.
 //!
-//! Owns the allocator function that LuaJIT calls. Knows nothing of what the memory holds.
+//! Owns the allocator function that LuaJIT calls. A state consists of some five hundred blocks of a few dozen bytes;
+//! malloc would add a sixth to them for its own notes. LuaJIT tells the size of a block when it gives it back, so small
+//! blocks are cut from chunks and kept in lists by size; large ones come from malloc.
+//! Knows nothing of what the memory holds.
 
 use std::cell::Cell;
 use std::ffi::c_void;
 use std::ptr;
 
-/// Account of one state. Its address is the allocator's user data for the life of the state.
-#[derive(Debug, Default)]
+/// Sizes of small blocks are multiples of this; it is also their alignment, that of LuaJIT's own allocator.
+const GRAIN: usize = 8;
+/// Largest small block.
+const SMALL_MAX: usize = 512;
+/// A chunk with malloc's notes fills a page.
+const CHUNK_BYTES: usize = 4096 - 2 * GRAIN;
+/// Chunks may take so much more than the limit, for blocks of sizes that are not wanted any more.
+const CHUNKS_SLACK: usize = 256 << 10;
+
+const _: () = assert!(GRAIN >= size_of::<*mut c_void>());
+
+/// Account and blocks of one state. Its address is the allocator's user data for the life of the state.
+#[derive(Debug)]
 pub(crate) struct Memory {
     used: Cell<usize>,
     limit: Cell<usize>,
+    /// Free small blocks by size; each begins with the address of the next.
+    free: [Cell<*mut c_void>; SMALL_MAX / GRAIN],
+    /// What is left of the newest chunk.
+    rest: Cell<*mut u8>,
+    rest_bytes: Cell<usize>,
+    /// The newest chunk; each begins with the address of the one before.
+    chunks: Cell<*mut c_void>,
+    chunk_bytes: Cell<usize>,
 }
 
 impl Memory {
@@ -19,6 +41,11 @@ impl Memory {
         Self {
             used: Cell::new(0),
             limit: Cell::new(limit),
+            free: [const { Cell::new(ptr::null_mut()) }; SMALL_MAX / GRAIN],
+            rest: Cell::new(ptr::null_mut()),
+            rest_bytes: Cell::new(0),
+            chunks: Cell::new(ptr::null_mut()),
+            chunk_bytes: Cell::new(0),
         }
     }
 
@@ -41,6 +68,88 @@ impl Memory {
         }
         allowed
     }
+
+    /// The list of free blocks for a size; None for large blocks.
+    fn list(&self, size: usize) -> Option<&Cell<*mut c_void>> {
+        self.free.get(size.div_ceil(GRAIN).checked_sub(1)?)
+    }
+
+    /// A block of `size` bytes, not zero, or null. `shrinks`: in the place of a larger one.
+    fn take(&self, size: usize, shrinks: bool) -> *mut c_void {
+        let Some(list) = self.list(size) else {
+            // SAFETY: the size is not zero.
+            return unsafe { libc::malloc(size) };
+        };
+        let block = list.get();
+        if !block.is_null() {
+            // SAFETY: blocks in the list were put there by `give`, which wrote the next one's address into them.
+            list.set(unsafe { block.cast::<*mut c_void>().read() });
+            return block;
+        }
+        let size = size.next_multiple_of(GRAIN);
+        if self.rest_bytes.get() < size && !self.add_chunk(shrinks) {
+            return ptr::null_mut();
+        }
+        let block = self.rest.get();
+        self.rest_bytes.set(self.rest_bytes.get() - size);
+        // SAFETY: the chunk has at least `size` bytes left, as compared above.
+        self.rest.set(unsafe { block.add(size) });
+        block.cast()
+    }
+
+    /// Takes a block back.
+    ///
+    /// # Safety
+    /// The block must come from `take` with this size, and nobody may use it any more.
+    unsafe fn give(&self, block: *mut c_void, size: usize) {
+        // SAFETY: the caller vouches for the block; a small one has room for an address because of the grain.
+        unsafe {
+            match self.list(size) {
+                Some(list) => {
+                    block.cast::<*mut c_void>().write(list.get());
+                    list.set(block);
+                }
+                None => libc::free(block),
+            }
+        }
+    }
+
+    /// A new chunk for small blocks. False if there is no memory or too much is held in chunks already; a block that
+    /// shrinks is not refused for that, because Lua shrinks where it cannot fail.
+    fn add_chunk(&self, shrinks: bool) -> bool {
+        let most = self.limit.get().saturating_mul(2);
+        if !shrinks && self.chunk_bytes.get() >= most.saturating_add(CHUNKS_SLACK) {
+            return false;
+        }
+        // SAFETY: the size is not zero, and a chunk is larger than the address that it begins with.
+        unsafe {
+            let chunk = libc::malloc(CHUNK_BYTES);
+            if chunk.is_null() {
+                return false;
+            }
+            chunk.cast::<*mut c_void>().write(self.chunks.get());
+            self.chunks.set(chunk);
+            self.rest.set(chunk.cast::<u8>().add(GRAIN));
+        }
+        self.rest_bytes.set(CHUNK_BYTES - GRAIN);
+        self.chunk_bytes.set(self.chunk_bytes.get() + CHUNK_BYTES);
+        true
+    }
+}
+
+impl Drop for Memory {
+    /// Gives the chunks back. The state must be closed.
+    fn drop(&mut self) {
+        let mut chunk = self.chunks.get();
+        while !chunk.is_null() {
+            // SAFETY: chunks were made by `add_chunk`, which wrote the address of the one before into each.
+            unsafe {
+                let before = chunk.cast::<*mut c_void>().read();
+                libc::free(chunk);
+                chunk = before;
+            }
+        }
+    }
 }
 
 /// LuaJIT's allocator: `new` zero frees, otherwise gives a block of `new` bytes with the old block's contents, or null.
@@ -60,15 +169,30 @@ pub(crate) unsafe extern "C" fn allocate(
     if !memory.book(old, new) {
         return ptr::null_mut();
     }
-    // SAFETY: the caller vouches for the block; null is allowed by both functions.
+    // SAFETY: the caller vouches for the block and its size; the copy stays within both sizes.
     unsafe {
         if new == 0 {
-            libc::free(block);
+            if old > 0 {
+                memory.give(block, old);
+            }
             return ptr::null_mut();
         }
-        let moved = libc::realloc(block, new);
+        if old > SMALL_MAX && new > SMALL_MAX {
+            let moved = libc::realloc(block, new);
+            if moved.is_null() {
+                memory.book(new, old);
+            }
+            return moved;
+        }
+        if old > 0 && old.div_ceil(GRAIN) == new.div_ceil(GRAIN) {
+            return block;
+        }
+        let moved = memory.take(new, new < old);
         if moved.is_null() {
             memory.book(new, old);
+        } else if old > 0 {
+            ptr::copy_nonoverlapping(block.cast::<u8>(), moved.cast::<u8>(), old.min(new));
+            memory.give(block, old);
         }
         moved
     }
@@ -78,24 +202,96 @@ pub(crate) unsafe extern "C" fn allocate(
 mod tests {
     use super::*;
 
+    /// The blocks of one account, each filled with a byte of its own.
+    struct Blocks {
+        memory: Memory,
+        blocks: Vec<(*mut c_void, usize)>,
+    }
+
+    impl Blocks {
+        fn new(limit: usize) -> Self {
+            Self {
+                memory: Memory::new(limit),
+                blocks: Vec::new(),
+            }
+        }
+
+        /// Resizes a block; the next number makes one. True if it was allowed.
+        fn resize(&mut self, number: usize, new: usize) -> bool {
+            if number == self.blocks.len() {
+                self.blocks.push((ptr::null_mut(), 0));
+            }
+            let fill = u8::try_from(number % 251).unwrap();
+            let (block, old) = self.blocks[number];
+            let account = (&raw const self.memory).cast_mut().cast();
+            // SAFETY: the account lives as long as the blocks, which are passed with their true sizes and are read and
+            // written within them.
+            unsafe {
+                let moved = allocate(account, block, old, new);
+                if new > 0 {
+                    if moved.is_null() {
+                        return false;
+                    }
+                    let kept = std::slice::from_raw_parts(moved.cast::<u8>(), old.min(new));
+                    assert!(
+                        kept.iter().all(|byte| *byte == fill),
+                        "block {number} keeps its bytes"
+                    );
+                    moved.cast::<u8>().write_bytes(fill, new);
+                    assert_eq!(moved.addr() % GRAIN, 0);
+                }
+                self.blocks[number] = (moved, new);
+            }
+            true
+        }
+    }
+
+    impl Drop for Blocks {
+        fn drop(&mut self) {
+            for number in 0..self.blocks.len() {
+                self.resize(number, 0);
+            }
+            if !std::thread::panicking() {
+                assert_eq!(self.memory.used(), 0);
+            }
+        }
+    }
+
     #[test]
     fn growth_beyond_the_limit_is_refused_and_counted_right() {
-        let memory = Memory::new(100);
-        let account = (&raw const memory).cast_mut().cast();
-        // SAFETY: the account lives to the end of the test and blocks are passed with their true sizes.
-        unsafe {
-            let block = allocate(account, ptr::null_mut(), 0, 60);
-            assert!(!block.is_null());
-            assert!(allocate(account, ptr::null_mut(), 0, 50).is_null());
-            assert_eq!(memory.used(), 60);
-            assert!(allocate(account, block, 60, 101).is_null());
-            let block = allocate(account, block, 60, 100);
-            assert!(!block.is_null());
-            memory.set_limit(10);
-            let block = allocate(account, block, 100, 50);
-            assert!(!block.is_null(), "shrinking is always allowed");
-            allocate(account, block, 50, 0);
-            assert_eq!(memory.used(), 0);
+        let mut blocks = Blocks::new(1000);
+        assert!(blocks.resize(0, 60));
+        assert!(!blocks.resize(1, 950));
+        assert_eq!(blocks.memory.used(), 60);
+        assert!(!blocks.resize(0, 1001));
+        assert!(blocks.resize(0, 1000));
+        blocks.memory.set_limit(10);
+        assert!(blocks.resize(0, 500), "shrinking is always allowed");
+        assert_eq!(blocks.memory.used(), 500);
+    }
+
+    #[test]
+    fn blocks_of_all_sizes_keep_their_bytes() {
+        let mut blocks = Blocks::new(1 << 20);
+        for round in 1..40 {
+            for number in 0..100 {
+                assert!(blocks.resize(number, (number * 7 + round * 31) % 1500));
+            }
         }
+    }
+
+    #[test]
+    fn chunks_of_sizes_that_are_not_wanted_any_more_are_bounded() {
+        const LIMIT: usize = 100 << 10;
+        let mut blocks = Blocks::new(LIMIT);
+        for size in (GRAIN..=SMALL_MAX).step_by(GRAIN) {
+            while blocks.resize(blocks.blocks.len(), size) {}
+            for number in 0..blocks.blocks.len() {
+                blocks.resize(number, 0);
+            }
+            blocks.blocks.clear();
+        }
+        let most = 2 * LIMIT + CHUNKS_SLACK + CHUNK_BYTES;
+        assert!(blocks.memory.chunk_bytes.get() <= most);
     }
 }

@@ -32,7 +32,7 @@ impl Match {
 /// One capture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Capture {
-    /// `(…)` that is not closed yet; never in a result.
+    /// `(...)` that is not closed yet; never in a result.
     Open(usize),
     /// Bytes from, to.
     Text(usize, usize),
@@ -376,7 +376,7 @@ impl Matcher<'_> {
         })
     }
 
-    /// Is the byte in the set `[…]` from `p` up to `behind`?
+    /// Is the byte in the set `[...]` from `p` up to `behind`?
     fn in_set(&self, byte: u8, p: usize, behind: usize) -> bool {
         let last = behind - 1;
         let inverted = self.at(p + 1) == Some(b'^');

@@ -1,3 +1,5 @@
+//! Tests of the watchdog: lateness, budgets, compiled loops.
+
 use super::*;
 use std::ffi::{CStr, CString};
 use std::sync::mpsc;

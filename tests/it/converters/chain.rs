@@ -144,7 +144,7 @@ fn several_states_are_sampled_together() {
     std::fs::remove_file(m.board().path("one")).unwrap();
     assert_eq!(m.errno("list/value"), libc::ENODEV);
     assert!(
-        m.text("list/fault").contains("source 1"),
+        m.text("list/fault").contains("/one"),
         "{}",
         m.text("list/fault")
     );

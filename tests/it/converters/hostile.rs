@@ -108,7 +108,7 @@ fn a_hostile_converter_costs_its_own_file_an_error_and_no_other_file_its_latency
             std::panic::resume_unwind(panic);
         }
         assert!(
-            worst < std::time::Duration::from_millis(500),
+            worst < std::time::Duration::from_secs(1),
             "a good converter took {worst:?}"
         );
     });
@@ -168,7 +168,7 @@ fn a_budget_of_ones_own_is_kept() {
         );
         assert!(
             took < std::time::Duration::from_micros(least_us) * 2
-                + std::time::Duration::from_secs(1),
+                + std::time::Duration::from_secs(5),
             "{name}: {took:?}"
         );
         assert!(
@@ -185,7 +185,7 @@ fn a_program_that_behaves_otherwise_in_an_open_file_is_told_there() {
     let Some(m) = mount(
         "local t = {}
          for i = 1, 300000 do t[i] = i end
-         trikfs = { n = { src = '/dev/zero', input_tuple_size = 1, output_tuple_size = 1, memory_kb = 64, converter = function() return t[1] and nil end } }",
+         trikfs = { n = { src = '/dev/zero', input_tuple_size = 1, output_tuple_size = 1, memory_kb = 128, converter = function() return t[1] and nil end } }",
     ) else {
         return;
     };

@@ -95,7 +95,7 @@ assert read_exactly(two, 2) == bytes([11, 12])
 assert read_exactly(one, 2) == bytes([13, 14])
 os.write(pipe, b'!')
 expect('EIO', os.read, one, 1)
-assert text(M + '/n/fault') == 'converter: an exclamation mark\\n', text(M + '/n/fault')
+assert text(M + '/n/fault') == 'converter: counting.so#counting: an exclamation mark\\n', text(M + '/n/fault')
 assert error_of(os.open, M + '/bad/device', os.O_RDONLY) == 'EIO'
 assert 'start is at least 0' in text(M + '/bad/fault')
 ",

@@ -193,7 +193,7 @@ fn a_device_that_hangs_costs_no_other_file_its_answer() {
             rounds += 1;
         }
         assert!(
-            rounds > 20 && worst < std::time::Duration::from_millis(1000),
+            rounds > 20 && worst < std::time::Duration::from_millis(1500),
             "{rounds} reads, the slowest took {worst:?}"
         );
         for one in slow {

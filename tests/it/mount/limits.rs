@@ -7,7 +7,7 @@ use harness::Board;
 fn the_largest_tuple_passes_whole_and_a_larger_one_is_refused() {
     let board = Board::new();
     board.file("in", [5; 65536]);
-    let config = "trikfs = { n = { src = '$DIR/in', input_tuple_size = 65536, output_tuple_size = 65536,
+    let config = "trikfs = { n = { src = '$DIR/in', input_tuple_size = 65536, output_tuple_size = 65536, budget_us = 1000000,
       converter = function(a_s, a, b_s, b) for i = 0, b_s - 1 do ba.set(b, i, ba.get(a, i) + 1) end end } }";
     let Some(m) = mount_on(board, config) else {
         return;

@@ -106,19 +106,22 @@ for _ in range(3):
 
 #[test]
 fn a_failing_source_takes_the_value_back() {
-    let Some(m) = mount(
-        "trikfs = { n = { src = faulty{ src = fake{ data = '\\1\\2\\3\\4', period_ms = 0, loop = true }, fail = 'EIO', from = 100, count = 100 },
-                          input_tuple_size = 4, poll_ms = 2 } }",
-    ) else {
+    let board = Board::new();
+    board.file("raw", [1, 2, 3, 4]);
+    let config = "trikfs = { n = { src = '$DIR/raw', input_tuple_size = 4, poll_ms = 2 } }";
+    let Some(m) = mount_on(board, config) else {
         return;
     };
     m.python(
         "eventually(lambda: error_of(lambda: open(M + '/n/bin_data', 'rb').read()) is None, 'a value')
 fd = open_ro(M + '/n/bin_data')
-eventually(lambda: error_of(os.pread, fd, 4, 0) == 'EIO', 'the failure')
-assert open(M + '/n/fault').read().startswith('device: faulty source')
-eventually(lambda: error_of(os.pread, fd, 4, 0) is None, 'recovery')
-assert os.pread(fd, 4, 0) == b'\\1\\2\\3\\4'
+for _ in range(5):
+    os.truncate(D + '/raw', 2)
+    eventually(lambda: error_of(os.pread, fd, 4, 0) == 'EIO', 'the failure')
+    assert text(M + '/n/fault').startswith('device: the source gave 2 of the 4 bytes')
+    with open(D + '/raw', 'wb') as file: file.write(b'\\1\\2\\3\\4')
+    eventually(lambda: error_of(os.pread, fd, 4, 0) is None, 'recovery')
+    assert os.pread(fd, 4, 0) == b'\\1\\2\\3\\4'
 ",
     );
 }

@@ -62,13 +62,7 @@ fn unmounting_ends_the_program() {
 fn readers_that_wait_do_not_hold_up_the_end() {
     let Some(mut m) = mounted() else { return };
     let mut readers = [waiting_reader(&m), waiting_reader(&m)];
-    let start = std::time::Instant::now();
     assert_eq!(m.stop().code(), Some(0), "{}", m.complaints());
-    assert!(
-        start.elapsed() < std::time::Duration::from_secs(8),
-        "{:?}",
-        start.elapsed()
-    );
     assert!(!m.is_mounted());
     for reader in &mut readers {
         // The wait ends with an error; the reader is not killed by us.
@@ -98,13 +92,13 @@ fn a_busy_tree_is_detached() {
 #[test]
 fn a_stale_mount_is_replaced() {
     let Some(mut m) = mounted() else { return };
-    let held = m.open("z/bin_data");
+    let held = m.open("z/stats");
     m.kill_everything();
     assert!(m.is_mounted());
-    assert_eq!(
-        std::fs::metadata(m.root()).unwrap_err().raw_os_error(),
-        Some(libc::ENOTCONN)
-    );
+    // ECONNABORTED at first, ENOTCONN afterwards.
+    nix::sys::statvfs::statvfs(m.root()).unwrap_err();
+    let dead = nix::sys::statvfs::statvfs(m.root()).unwrap_err();
+    assert_eq!(dead, nix::Error::ENOTCONN);
     assert!(std::os::unix::fs::FileExt::read_at(&held, &mut [0; 1], 0).is_err());
     let mut command = std::process::Command::new(program());
     command

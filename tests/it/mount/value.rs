@@ -143,7 +143,7 @@ fn the_period_can_be_read_and_changed() {
         (m.text("n/poll_ms"), m.text("r/poll_ms")),
         ("3600000\n".to_owned(), "0\n".to_owned())
     );
-    harness::eventually("the first sample", || m.stat("n", "samples") == 1.0);
+    harness::eventually("the first sample", || m.stat("n", "samples") > 0.0);
     let errno = |text: &str| {
         m.write("n/poll_ms", text)
             .err()

@@ -24,12 +24,16 @@ enum Work {
 #[derive(Clone)]
 pub struct StateMaker {
     work: Sender<Work>,
+    /// States that wait to be closed.
+    used: Arc<AtomicUsize>,
 }
 
 impl StateMaker {
     /// Starts the thread; it ends with the last maker and pool.
     pub fn start() -> io::Result<Self> {
         let (work, todo) = channel();
+        let used = Arc::new(AtomicUsize::new(0));
+        let waiting = used.clone();
         std::thread::Builder::new()
             .name("lua-states".to_owned())
             .spawn(move || {
@@ -40,12 +44,15 @@ impl StateMaker {
                     for item in std::iter::once(first).chain(todo.try_iter()) {
                         match item {
                             Work::Fill(pool) => pool.fill(),
-                            Work::Close(vm) => drop(vm),
+                            Work::Close(vm) => {
+                                drop(vm);
+                                waiting.fetch_sub(1, Ordering::Relaxed);
+                            }
                         }
                     }
                 }
             })?;
-        Ok(Self { work })
+        Ok(Self { work, used })
     }
 
     /// A stock of states for one configuration.
@@ -91,8 +98,13 @@ impl StatePool {
         vm.map_or_else(|| self.program.prepare(), Ok)
     }
 
-    /// Closes a used state, later and elsewhere.
+    /// Closes a used state, later and elsewhere; here if many wait already, because each holds its memory.
     pub fn discard(&self, vm: Vm) {
+        let used = &self.maker.used;
+        if used.fetch_add(1, Ordering::Relaxed) >= limits::LUA_STATES_READY {
+            used.fetch_sub(1, Ordering::Relaxed);
+            return;
+        }
         // Without the thread the state is closed here.
         let _ = self.maker.work.send(Work::Close(Box::new(vm)));
     }

@@ -1,3 +1,5 @@
+//! Tests of mounting: the mount table, its escapes, messages.
+
 use super::*;
 use crate::transport::native::{Session, SessionOptions};
 use crate::transport::null::NullFs;

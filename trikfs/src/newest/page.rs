@@ -1,0 +1,95 @@
+//! A node's `bin_data` in the kernel's page cache.
+//!
+//! Owns the counts of those who read from there and what is known of the page's content. Filling and dropping happen
+//! on event and schedule threads only: a READ request may hold the page while it waits for the thread that serves the
+//! kernel, so that thread must never wait for the page.
+
+use crate::node::Node;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+
+/// What the kernel keeps of one file.
+#[derive(Default)]
+pub(super) struct Page {
+    ino: OnceLock<u64>,
+    /// Open files whose reads come from the page cache.
+    readers: AtomicU32,
+    /// Those of them that are polled: they must come to us, so that we know what they have read.
+    polled: AtomicU32,
+    is_filled: AtomicBool,
+    /// The page is to be dropped soon, by the schedule.
+    is_unwanted: AtomicBool,
+}
+
+impl Page {
+    /// Only these sizes are written in one piece, so that no reader sees half of two values; and the transport must
+    /// be able to fill pages.
+    pub(super) fn can_hold(node: &Node, size: usize) -> bool {
+        let kernel = node.engine.kernel();
+        matches!(size, 1 | 2 | 4 | 8) && kernel.is_some_and(|kernel| kernel.can_store())
+    }
+
+    /// A reader of this file comes (true) or goes.
+    pub(super) fn count_reader(&self, ino: u64, comes: bool) {
+        let _ = self.ino.set(ino);
+        if comes {
+            // Its first read comes to us and leaves the answer in the page.
+            self.is_filled.store(true, Ordering::SeqCst);
+        }
+        count(&self.readers, comes);
+    }
+
+    /// A reader starts being polled (true) or goes.
+    pub(super) fn count_polled(&self, comes: bool) {
+        count(&self.polled, comes);
+        if comes {
+            self.is_unwanted.store(true, Ordering::SeqCst);
+        }
+    }
+
+    /// There is a new sample.
+    pub(super) fn fill(&self, node: &Node, tuple: &[u8]) {
+        let (Some(kernel), Some(&ino)) = (node.engine.kernel(), self.ino.get()) else {
+            return;
+        };
+        let has_readers = self.readers.load(Ordering::SeqCst) > 0;
+        if has_readers && self.polled.load(Ordering::SeqCst) == 0 {
+            self.is_filled.store(true, Ordering::SeqCst);
+            kernel.store(ino, tuple);
+        } else if self.is_filled.swap(has_readers, Ordering::SeqCst) {
+            // Readers that come to us leave their answers in the page as well.
+            kernel.invalidate(ino);
+        }
+    }
+
+    /// The sample is no longer to be shown.
+    pub(super) fn drop(&self, node: &Node) {
+        if let (Some(kernel), Some(&ino)) = (node.engine.kernel(), self.ino.get()) {
+            kernel.invalidate(ino);
+        }
+    }
+
+    /// Drops the page if it may hold something. True if it may have.
+    pub(super) fn drop_filled(&self, node: &Node) -> bool {
+        let was_filled = self.is_filled.swap(false, Ordering::SeqCst);
+        if was_filled {
+            self.drop(node);
+        }
+        was_filled
+    }
+
+    /// Drops the page if somebody began to poll.
+    pub(super) fn drop_unwanted(&self, node: &Node) {
+        if self.is_unwanted.swap(false, Ordering::SeqCst) {
+            self.drop(node);
+        }
+    }
+}
+
+fn count(counter: &AtomicU32, comes: bool) {
+    if comes {
+        counter.fetch_add(1, Ordering::SeqCst);
+    } else {
+        counter.fetch_sub(1, Ordering::SeqCst);
+    }
+}
