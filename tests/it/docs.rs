@@ -1,7 +1,8 @@
 //! The documents: every marked example is run, every table that can be compared is.
 //!
-//! Marks are the words behind a fence: `lua config NAME` loads, `c converter NAME` compiles without a warning,
-//! `sh session` is a transcript: lines with `$ ` are run in a mounted hello.lua, the others are what they print.
+//! Marks are the words behind a fence: `lua config NAME` loads, `c converter NAME` and `rust converter NAME` compile
+//! without a warning and load, `python` is Python, `sh session` is a transcript: lines with `$ ` are run in a mounted
+//! hello.lua, the others are what they print.
 
 use crate::{mount_on, trikfs};
 use harness::documents::{Example, examples};
@@ -112,6 +113,47 @@ fn every_c_converter_in_the_documents_compiles_without_a_warning_and_loads() {
         board.file("robot.lua", "trikfs = { n = { src = '/dev/zero', input_tuple_size = 2, output_tuple_size = 4, converter = 'libx.so' } }");
         let output = trikfs(&board, &["check", "--cache", "cache", "robot.lua"], b"");
         assert_eq!(output.code(), 0, "{place}\n{}", output.stderr);
+    }
+}
+
+#[test]
+fn every_rust_converter_in_the_documents_compiles_without_a_warning_and_loads() {
+    for (place, example) in marked("rust converter ") {
+        let board = Board::new();
+        let name = example.info.trim_start_matches("rust converter ");
+        let converter = root().join("converter").canonicalize().unwrap();
+        std::fs::create_dir(board.path("src")).unwrap();
+        board.file("src/lib.rs", &example.text);
+        board.file(
+            "Cargo.toml",
+            format!(
+                "[workspace]\n[package]\nname = \"{name}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\
+                 [lib]\ncrate-type = [\"cdylib\"]\n[dependencies]\nconverter = {{ path = {converter:?} }}\n"
+            ),
+        );
+        let mut command = std::process::Command::new(env!("CARGO"));
+        command.args(["build", "--offline", "--quiet", "--target-dir", "target"]);
+        command
+            .env("RUSTFLAGS", "-Dwarnings")
+            .current_dir(board.dir());
+        let output = harness::tools::run_within(&mut command, b"", harness::wait::LIFE);
+        assert_eq!(output.code(), 0, "{place}\n{}", output.stderr);
+        let built = board.path(&format!("target/debug/lib{name}.so"));
+        std::fs::copy(built, board.path(&format!("lib{name}.so"))).unwrap();
+        // The page has a configuration that names this library.
+        let users = marked("lua config ");
+        let users = users
+            .iter()
+            .filter(|(_, config)| config.text.contains(&format!("lib{name}.so")));
+        assert!(
+            users.clone().count() > 0,
+            "{place}: no configuration uses lib{name}.so"
+        );
+        for (user, config) in users {
+            board.file("robot.lua", &config.text);
+            let output = trikfs(&board, &["check", "--cache", "cache", "robot.lua"], b"");
+            assert_eq!(output.code(), 0, "{user}\n{}", output.stderr);
+        }
     }
 }
 
