@@ -1,15 +1,14 @@
--- What every configuration and converter finds when it starts: the safe part of Lua, byte arrays, id_create, trikfs_log,
--- include. Everything else (string, table, math, bit, coroutine, filter, the source constructors) is made when its name
--- is first used, because a state of its own for every open file has to be small.
+-- What every configuration and converter finds when it starts: the safe part of Lua and byte arrays. Everything else
+-- (id_create, trikfs_log, include, string, table, math, bit, coroutine, filter, the source constructors and more) is made
+-- when its name is first used, because a state of its own for every open file has to be small.
 --
--- raw: LuaJIT's base library, never shown to a configuration. The rest are functions of the host:
--- log(text); chunk(name) gives the function of an included file, or nil and the reason;
--- part(name) gives what the global `name` is made of, or nothing; accessor(type) gives the maker of ba.TYPE, or nothing;
--- ffi() opens LuaJIT's foreign function interface.
-local raw, log, chunk, part, accessor, ffi = ...
+-- raw: LuaJIT's base library, never shown to a configuration. The rest are functions of the host: part(name) gives what
+-- the global `name` is made of, or nothing; accessor(type) gives the maker of ba.TYPE, or nothing; ffi() opens LuaJIT's
+-- foreign function interface.
+local raw, part, accessor, ffi = ...
 
-local error, pcall, select, tostring, type = raw.error, raw.pcall, raw.select, raw.tostring, raw.type
-local rawset, setmetatable, rawload = raw.rawset, raw.setmetatable, raw.load
+local error, select, tostring, type = raw.error, raw.select, raw.tostring, raw.type
+local rawset, setmetatable = raw.rawset, raw.setmetatable
 
 -- Byte arrays. A program holds an empty table with a locked metatable; its bytes (a pointer into memory of the host that
 -- stays where it is for the life of this state) and their number are known only here.
@@ -58,7 +57,7 @@ function ba.len(array)
   return refuse(array)
 end
 
-local get, set = ba.get, ba.set
+raw.get, raw.set = ba.get, ba.set
 local library, pointer, scratch
 
 local function open_ffi()
@@ -88,70 +87,41 @@ local function array(address, size)
   return proxy
 end
 
-local function id_create(n)
-  if type(n) ~= 'number' or n < 0 or n % 1 ~= 0 then error('id_create wants a number of bytes', 2) end
-  return function(a_s, a, b_s, b)
-    for i = 0, n - 1 do set(b, i, get(a, i)) end
-  end
-end
-
-local function trikfs_log(...)
-  local count = select('#', ...)
-  local text = tostring((...))
-  for i = 2, count do text = text .. '\t' .. tostring((select(i, ...))) end
-  log(count > 0 and text or '')
-end
-
-local function load(text, name, _, env)
-  if type(text) ~= 'string' then error('load takes the text of a program', 2) end
-  if type(name) ~= 'string' then name = '=load' end
-  if env == nil then return rawload(text, name, 't') end
-  return rawload(text, name, 't', env)
-end
-
-local function handle(handler, ok, ...)
-  if ok then return true, ... end
-  return false, handler(...)
-end
-
-local function include(name)
-  local run, problem = chunk(name)
-  if not run then error(problem, 2) end
-  return run()
-end
-
 local function made(maker, ...)
   if maker then return maker(...) end
   return ...
 end
 
+local globals
+
+-- Globals that were made late, by name: a fingerprint tells them from the program's own.
+local late = {}
+raw.late = late
+
+local function global(_, name)
+  local value = made(part(name))
+  if value ~= nil then
+    late[name] = value
+    rawset(globals, name, value)
+  end
+  return value
+end
+
 local params = {}
-local globals = {
+globals = {
   assert = raw.assert, error = error, getmetatable = raw.getmetatable, ipairs = raw.ipairs, next = raw.next,
-  pairs = raw.pairs, pcall = pcall, rawequal = raw.rawequal, rawget = raw.rawget, rawset = rawset, select = select,
+  pairs = raw.pairs, pcall = raw.pcall, rawequal = raw.rawequal, rawget = raw.rawget, rawset = rawset, select = select,
   setmetatable = setmetatable, tonumber = raw.tonumber, tostring = tostring, type = type, unpack = raw.unpack,
   _VERSION = raw._VERSION,
-  -- The real xpcall runs its handler where no hook can end it.
-  xpcall = function(f, handler, ...) return handle(handler, pcall(f, ...)) end,
-  load = load, loadstring = load, include = include, print = trikfs_log, trikfs_log = trikfs_log,
-  ba = ba, id_create = id_create, params = params,
+  ba = ba, params = params,
 }
 globals._G = globals
 
-setmetatable(globals, {
-  __metatable = false,
-  __index = function(_, name)
-    local value = made(part(name))
-    if value ~= nil then rawset(globals, name, value) end
-    return value
-  end,
-})
+setmetatable(globals, { __metatable = false, __index = global })
 
 -- The first method call on a string opens the string library, which then takes the place of this function.
 local function method(_, name)
-  local library = made(part('string'))
-  if raw.rawget(globals, 'string') == nil then rawset(globals, 'string', library) end
-  return library[name]
+  return (late.string or global(nil, 'string'))[name]
 end
 
 return globals, array, params, method

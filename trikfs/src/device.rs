@@ -171,7 +171,7 @@ pub fn is_shared(source: &SourceDescription) -> Result<bool, Error> {
         SourceDescription::Several(parts) => {
             let mut shared = false;
             for part in parts {
-                shared |= is_shared(&part.source)?;
+                shared |= is_shared(&part.source).map_err(|error| part_error(&part.name, error))?;
             }
             shared
         }
@@ -255,6 +255,14 @@ fn open_path(path: &Path) -> Result<Device, Error> {
             Device::Stream(Box::new(chardev::CharDevice::open(path)?))
         }
     })
+}
+
+/// The error of one of several sources, with its name.
+fn part_error(name: &str, error: Error) -> Error {
+    match error {
+        Error::NoDevice(what) => Error::NoDevice(format!("source {name}: {what}")),
+        other => other,
+    }
 }
 
 /// An I/O error of a device, with the path in its text.

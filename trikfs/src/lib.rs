@@ -5,6 +5,7 @@
 //! data takes), `hub` (one opening for many readers), `device` (sources), `convert` (converters).
 //! Beside them: `reload` and `daemon`, `events` and `engine`, `mount`, `guardian`, `check`, `cli`.
 
+pub mod bytes;
 pub mod check;
 pub mod cli;
 pub mod clock;

@@ -19,6 +19,10 @@ pub(crate) type Code = Arc<[u8]>;
 pub(crate) enum Part {
     /// Makes the globals.
     Prelude,
+    /// The global `id_create`.
+    IdCreate,
+    /// Globals that most converters do without.
+    Rare,
     /// The string library.
     String,
     /// The table library.
@@ -37,6 +41,8 @@ impl Part {
     fn source(self) -> &'static str {
         match self {
             Self::Prelude => include_str!("../../lua/prelude.lua"),
+            Self::IdCreate => include_str!("lua/id_create.lua"),
+            Self::Rare => include_str!("lua/rare.lua"),
             Self::String => include_str!("lua/string.lua"),
             Self::Table => include_str!("lua/table.lua"),
             Self::Coroutine => include_str!("lua/coroutine.lua"),

@@ -42,12 +42,10 @@ pub(super) unsafe fn install(l: *mut lua::lua_State, prelude: &[u8]) -> c_int {
         push_with_raw(l, inspection);
         lua::lua_rawseti_(l, lua::LUA_REGISTRYINDEX, INSPECTION);
         lua::lua_pushvalue(l, lua::LUA_GLOBALSINDEX);
-        lua::lua_pushcfunction(l, log);
-        lua::lua_pushcfunction(l, chunk);
         push_with_raw(l, part);
         lua::lua_pushcfunction(l, accessor);
         push_with_raw(l, ffi);
-        lua::lua_call(l, 6, 4);
+        lua::lua_call(l, 4, 4);
         // The last is what strings find when they are indexed.
         lua::lua_createtable(l, 0, 1);
         lua::lua_insert(l, -2);
@@ -190,6 +188,20 @@ unsafe extern "C-unwind" fn part(l: *mut lua::lua_State) -> c_int {
                 push_maker(l, Part::Filters);
                 1
             }
+            b"include" | b"load" | b"loadstring" | b"print" | b"trikfs_log" | b"xpcall" => {
+                push_maker(l, Part::Rare);
+                lua::lua_pushvalue(l, 1);
+                lua::lua_pushvalue(l, raw);
+                lua::lua_pushcfunction(l, log);
+                lua::lua_pushcfunction(l, chunk);
+                5
+            }
+            b"id_create" => {
+                push_maker(l, Part::IdCreate);
+                lua::lua_pushvalue(l, 1);
+                lua::lua_pushvalue(l, raw);
+                3
+            }
             b"evdev" | b"fifo" | b"attribute" | b"fake" | b"replay" | b"faulty" => {
                 push_maker(l, Part::Sources);
                 lua::lua_pushvalue(l, 1);
@@ -304,31 +316,42 @@ pub(super) unsafe fn compile_from_here(l: *mut lua::lua_State) {
 /// Turns the compiler on, with a memory budget for its code that suits a state per open file, and collects what is not
 /// needed any more. The raw table must be upvalue 1.
 ///
-/// Sizes: one area of 16 KiB is touched at both ends, two pages, by a small converter; 128 KiB are enough for any
-/// converter that people write by hand.
+/// One area of 16 KiB of code is touched at both ends, two pages, by a small converter; 128 KiB are enough for any
+/// that people write by hand. A state that comes here converts a lot: a loop is hot early, because interpreted code
+/// leaves garbage that compiled code does not, and the collector starts when a fifth was added to what it left.
 unsafe extern "C-unwind" fn start_compiler(l: *mut lua::lua_State) -> c_int {
     // SAFETY: as above.
     unsafe {
+        // The prelude has kept what it needs of the foreign function interface.
+        forget_library(l, c"ffi");
+        lua::lua_gc(l, lua::LUA_GCCOLLECT, 0);
         push_raw_library(l, c"jit", lua::luaopen_jit);
         lua::lua_getfield(l, -1, c"opt".as_ptr());
         lua::lua_getfield(l, -1, c"start".as_ptr());
+        lua::lua_pushstring_(l, c"hotloop=20".as_ptr());
         lua::lua_pushstring_(l, c"sizemcode=16".as_ptr());
         lua::lua_pushstring_(l, c"maxmcode=128".as_ptr());
         lua::lua_pushstring_(l, c"maxtrace=64".as_ptr());
-        lua::lua_call(l, 3, 0);
-        // Nobody asks for these two again: the prelude has kept what it needs of the foreign function interface.
-        for name in [c"ffi", c"jit"] {
-            lua::lua_pushnil(l);
-            lua::lua_setfield(l, lua::lua_upvalueindex(1), name.as_ptr());
-        }
-        for name in [c"_LOADED", c"_PRELOAD"] {
-            lua::lua_pushnil(l);
-            lua::lua_setfield(l, lua::LUA_REGISTRYINDEX, name.as_ptr());
-        }
+        lua::lua_call(l, 4, 0);
         lua::lua_settop(l, 0);
+        forget_library(l, c"jit");
+        lua::lua_gc(l, lua::LUA_GCSETPAUSE, 120);
         lua::lua_gc(l, lua::LUA_GCCOLLECT, 0);
     }
     0
+}
+
+/// Lets go of a library that nobody asks for again.
+unsafe fn forget_library(l: *mut lua::lua_State, name: &std::ffi::CStr) {
+    // SAFETY: called by functions whose upvalue 1 is the table of the raw libraries.
+    unsafe {
+        lua::lua_pushnil(l);
+        lua::lua_setfield(l, lua::lua_upvalueindex(1), name.as_ptr());
+        for list in [c"_LOADED", c"_PRELOAD"] {
+            lua::lua_pushnil(l);
+            lua::lua_setfield(l, lua::LUA_REGISTRYINDEX, list.as_ptr());
+        }
+    }
 }
 
 /// Pushes what the fingerprint needs of LuaJIT: the raw base library, the string library, `debug.getupvalue`,

@@ -13,8 +13,8 @@ use std::ptr;
 const GRAIN: usize = 8;
 /// Largest small block.
 const SMALL_MAX: usize = 512;
-/// A chunk with malloc's notes fills a page.
-const CHUNK_BYTES: usize = 4096 - 2 * GRAIN;
+/// A chunk with malloc's notes fills half a page; what is left of the newest one is wasted.
+const CHUNK_BYTES: usize = 2048 - 2 * GRAIN;
 /// Chunks may take so much more than the limit, for blocks of sizes that are not wanted any more.
 const CHUNKS_SLACK: usize = 256 << 10;
 

@@ -68,6 +68,8 @@ pub(crate) struct Stages {
 /// Conversions that run interpreted. Most open files convert a few tuples only and are closed again; for them turning
 /// the compiler on costs more than it saves.
 const COLD_CONVERSIONS: u8 = 8;
+/// Tuples from this size on are compiled for at once.
+const LARGE_TUPLE_BYTES: usize = 512;
 
 impl Stages {
     pub(crate) fn new(state: State) -> Self {
@@ -128,6 +130,11 @@ impl Stages {
             // SAFETY: inside a protected call.
             unsafe { lua::luaL_checkstack_(l, 32, c"too many converters".as_ptr()) };
         })?;
+        // For a large tuple one call is work enough to be worth the compiler.
+        if self.cold > 0 && input_size.max(output_size) >= LARGE_TUPLE_BYTES {
+            self.cold = 1;
+            self.warm_up();
+        }
         self.stages.push(Stage {
             slot,
             input,

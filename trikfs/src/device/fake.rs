@@ -3,6 +3,7 @@
 //! Owns the turn and the timing. For trying things with no device at hand, and for tests.
 
 use super::{Device, Got, State, Stream};
+use crate::bytes::copy_at;
 use crate::errno::Error;
 use config::description::FakeDescription;
 use std::os::fd::BorrowedFd;
@@ -65,13 +66,7 @@ impl State for FakeState {
         {
             self.current = tuple.to_vec();
         }
-        let rest = usize::try_from(offset)
-            .ok()
-            .and_then(|at| self.current.get(at..))
-            .unwrap_or(&[]);
-        let n = rest.len().min(buf.len());
-        buf[..n].copy_from_slice(&rest[..n]);
-        Ok(n)
+        Ok(copy_at(&self.current, offset, buf))
     }
 }
 

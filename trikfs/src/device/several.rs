@@ -5,6 +5,7 @@
 //! Only states: each reading samples all of them.
 
 use super::{Device, Got, State, Stream, Surroundings};
+use crate::bytes::copy_at;
 use crate::errno::Error;
 use crate::state_reader::whole_tuple;
 use config::description::PartDescription;
@@ -17,11 +18,8 @@ pub fn open(parts: &[PartDescription], around: &Surroundings) -> Result<Device, 
     let mut inputs = Vec::with_capacity(parts.len());
     let mut streams = false;
     for part in parts {
-        let named = |error: Error| match error {
-            Error::NoDevice(what) => Error::NoDevice(format!("source {}: {what}", part.name)),
-            other => other,
-        };
-        let device = super::open(&part.source, part.tuple_size, around).map_err(named)?;
+        let device = super::open(&part.source, part.tuple_size, around)
+            .map_err(|error| super::part_error(&part.name, error))?;
         streams |= matches!(device, Device::Stream(_));
         let empty = vec![0; part.tuple_size];
         inputs.push(Input {
@@ -98,13 +96,7 @@ impl State for States {
             self.current.clear();
             joined(&mut self.inputs, &mut self.current)?;
         }
-        let rest = usize::try_from(offset)
-            .ok()
-            .and_then(|at| self.current.get(at..))
-            .unwrap_or(&[]);
-        let n = rest.len().min(buf.len());
-        buf[..n].copy_from_slice(&rest[..n]);
-        Ok(n)
+        Ok(copy_at(&self.current, offset, buf))
     }
 }
 

@@ -5,6 +5,7 @@
 //! duplicate, also of those that a forked child or a dying process makes; those must not apply half a configuration.
 
 use super::OpenFile;
+use crate::bytes::copy_at;
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::lock;
@@ -89,13 +90,7 @@ impl OpenFile for ConfigFile {
         if request.offset == 0 {
             *shown = self.reloader.in_force();
         }
-        let rest = usize::try_from(request.offset)
-            .ok()
-            .and_then(|at| shown.get(at..))
-            .unwrap_or(&[]);
-        let n = rest.len().min(out.len());
-        out[..n].copy_from_slice(&rest[..n]);
-        Ok(Outcome::Done(n))
+        Ok(Outcome::Done(copy_at(&shown, request.offset, out)))
     }
 
     fn write(&self, request: &Transfer, data: &[u8]) -> Result<Outcome, Error> {

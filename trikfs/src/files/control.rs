@@ -3,6 +3,7 @@
 //! Owns their rendering. What they tell belongs to the nodes and to the reloader.
 
 use super::OpenFile;
+use crate::bytes::copy_at;
 use crate::errno::Error;
 use crate::events::lock;
 use crate::limits;
@@ -31,13 +32,7 @@ impl TextFile {
         if offset == 0 {
             *shown = (self.make)();
         }
-        let rest = usize::try_from(offset)
-            .ok()
-            .and_then(|at| shown.as_bytes().get(at..))
-            .unwrap_or(&[]);
-        let n = rest.len().min(out.len());
-        out[..n].copy_from_slice(&rest[..n]);
-        n
+        copy_at(shown.as_bytes(), offset, out)
     }
 }
 

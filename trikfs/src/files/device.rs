@@ -22,7 +22,7 @@ pub struct DeviceFile {
     node: Arc<Node>,
     engine: Arc<Engine>,
     source: OnceLock<Source>,
-    writer: Option<Mutex<Writer>>,
+    writer: OnceLock<Mutex<Writer>>,
     ownership: Ownership,
     waiting: Mutex<Waiting>,
     poll: OnceLock<PollHandle>,
@@ -44,16 +44,11 @@ impl DeviceFile {
     pub fn open(node: &Arc<Node>, read: bool, write: bool) -> Result<(Arc<Self>, Access), Error> {
         node.check_access(read, write)?;
         let pipeline = node.open_pipeline()?;
-        let writer = if write {
-            Some(Mutex::new(node.open_writer(Some(pipeline.clone()))?))
-        } else {
-            None
-        };
         let file = Arc::new(Self {
             node: node.clone(),
             engine: node.engine.clone(),
             source: OnceLock::new(),
-            writer,
+            writer: OnceLock::new(),
             ownership: Ownership::default(),
             waiting: Mutex::default(),
             poll: OnceLock::new(),
@@ -61,7 +56,7 @@ impl DeviceFile {
         let mut access = Access::Stream;
         if read {
             let me: Arc<dyn Ready> = file.clone();
-            let source = match node.open_feed_with(pipeline, Arc::downgrade(&me))? {
+            let source = match node.open_feed_with(pipeline.clone(), Arc::downgrade(&me))? {
                 Feed::State(state) => {
                     access = Access::Direct;
                     Source::State(Box::new(Mutex::new(state)))
@@ -69,6 +64,11 @@ impl DeviceFile {
                 Feed::Stream(reader) => Source::Stream(reader),
             };
             let _ = file.source.set(source);
+        }
+        // After the source: a FIFO that nobody else reads has us as its reader then.
+        if write {
+            let writer = node.open_writer(Some(pipeline))?;
+            let _ = file.writer.set(Mutex::new(writer));
         }
         Ok((file, access))
     }
@@ -161,7 +161,7 @@ impl OpenFile for DeviceFile {
     }
 
     fn write(&self, request: &Transfer, data: &[u8]) -> Result<Outcome, Error> {
-        let Some(writer) = &self.writer else {
+        let Some(writer) = self.writer.get() else {
             return Err(Error::AccessDenied);
         };
         let _inside = self.node.enter()?;
@@ -174,7 +174,7 @@ impl OpenFile for DeviceFile {
     fn poll(&self, handle: PollHandle, events: u32) -> Result<u32, Error> {
         let _ = self.poll.set(handle);
         let mut now = 0;
-        if self.writer.is_some() {
+        if self.writer.get().is_some() {
             now |= WRITABLE;
         }
         match self.source.get() {
@@ -199,7 +199,7 @@ impl OpenFile for DeviceFile {
         let _inside = self.node.enter()?;
         let incomplete = self
             .writer
-            .as_ref()
+            .get()
             .map_or(0, |writer| lock(writer).incomplete());
         if incomplete > 0 {
             let size = self.node.description.written_tuple_size();

@@ -5,6 +5,7 @@
 
 use super::ownership::Ownership;
 use super::{OpenFile, READABLE, WRITABLE};
+use crate::bytes::copy_at;
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::{Ready, lock};
@@ -163,16 +164,6 @@ impl ValueFile {
     }
 }
 
-fn copy_from(content: &[u8], offset: u64, out: &mut [u8]) -> usize {
-    let rest = usize::try_from(offset)
-        .ok()
-        .and_then(|at| content.get(at..))
-        .unwrap_or(&[]);
-    let n = rest.len().min(out.len());
-    out[..n].copy_from_slice(&rest[..n]);
-    n
-}
-
 impl OpenFile for ValueFile {
     fn read(&self, request: &Transfer, out: &mut [u8]) -> Result<Outcome, Error> {
         if self.node.is_retired() {
@@ -183,7 +174,7 @@ impl OpenFile for ValueFile {
         }
         if request.offset > 0 {
             let shown = lock(&self.shown);
-            let n = copy_from(&shown.content, request.offset, out);
+            let n = copy_at(&shown.content, request.offset, out);
             return Ok(Outcome::Done(n));
         }
         // Taking a sample may answer other reads of this file: not with its lock held.
@@ -191,7 +182,7 @@ impl OpenFile for ValueFile {
         let mut shown = lock(&self.shown);
         if self.show(&mut shown)? {
             self.node.stats.reads.add(1);
-            return Ok(Outcome::Done(copy_from(&shown.content, 0, out)));
+            return Ok(Outcome::Done(copy_at(&shown.content, 0, out)));
         }
         if request.nonblocking {
             return Err(Error::WouldBlock);

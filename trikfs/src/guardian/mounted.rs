@@ -56,8 +56,10 @@ impl Mounted {
 
     /// True as long as this mount can be reached by its path.
     pub fn is_there(&self) -> bool {
-        // If the list cannot be read, nothing says that the mount is gone.
-        fs::read("/proc/self/mountinfo").map_or(true, |list| self.is_in(&list))
+        // If the list cannot be read, nothing says that the mount is gone. Before Linux 5.8 an entry can be missing
+        // from a list that is read while others unmount, so one that is missing is looked for once more.
+        let look = || fs::read("/proc/self/mountinfo").map_or(true, |list| self.is_in(&list));
+        look() || look()
     }
 
     /// The last entry at a path is the uppermost.

@@ -10,13 +10,7 @@ local dump, format, match, concat, sort = raw.dump or string.dump, string.format
 -- What is ours, by name: the globals of the beginning and those that are made on first use.
 local known = {}
 for name, value in next, pristine do known[value] = name end
-for name in next, {
-  string = 1, table = 1, math = 1, bit = 1, coroutine = 1, filter = 1, evdev = 1, fifo = 1, attribute = 1, fake = 1,
-  replay = 1, faulty = 1,
-} do
-  local value = rawget(globals, name)
-  if value ~= nil then known[value] = name end
-end
+for name, value in next, raw.late do known[value] = name end
 
 -- Bytes that one function may lead to; beyond that any change of the program counts as a change of the function.
 local SIZE_MAX = 4194304
