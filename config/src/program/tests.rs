@@ -768,3 +768,18 @@ fn a_program_that_fails_this_time_is_an_error() {
     let program = program("local n = nil\nerror('no luck')");
     assert_eq!(program.prepare().unwrap_err(), "test.lua:2: no luck");
 }
+
+#[test]
+fn a_state_that_converts_a_lot_is_compiled_and_made_smaller() {
+    let (mut vm, stage) = bound("function(_, a, _, b) ba.set(b, 0, ba.get(a, 0)) end", 1, 1);
+    let cold = vm.memory();
+    for _ in 0..8 {
+        vm.convert(stage, &[1], &mut [0]).unwrap();
+    }
+    // Starting the compiler ends with a collection; without it the libraries that it needs would have made it grow.
+    assert!(vm.memory() < cold, "{} bytes, {cold} before", vm.memory());
+    for _ in 0..1000 {
+        vm.convert(stage, &[1], &mut [0]).unwrap();
+    }
+    assert!(vm.memory() < 64 << 10, "{} bytes", vm.memory());
+}

@@ -328,7 +328,7 @@ unsafe extern "C-unwind" fn start_compiler(l: *mut lua::lua_State) -> c_int {
         push_raw_library(l, c"jit", lua::luaopen_jit);
         lua::lua_getfield(l, -1, c"opt".as_ptr());
         lua::lua_getfield(l, -1, c"start".as_ptr());
-        lua::lua_pushstring_(l, c"hotloop=20".as_ptr());
+        lua::lua_pushstring_(l, c"hotloop=12".as_ptr());
         lua::lua_pushstring_(l, c"sizemcode=16".as_ptr());
         lua::lua_pushstring_(l, c"maxmcode=128".as_ptr());
         lua::lua_pushstring_(l, c"maxtrace=64".as_ptr());

@@ -170,23 +170,22 @@ fn the_watchdog_wakes_after_it_slept() {
 
 #[test]
 fn a_panicking_callback_does_not_end_the_watch() {
-    let seat = Seat::take(Arc::new(|| panic!("on purpose, in a test")));
+    let (tell_first, told_first) = mpsc::channel();
+    let seat = Seat::take(Arc::new(move || {
+        let _ = tell_first.send(());
+        panic!("on purpose, in a test");
+    }));
     seat.begin();
+    told_first
+        .recv_timeout(Duration::from_secs(10))
+        .expect("the callback is called");
+    seat.end();
     let (tell, told) = mpsc::channel();
-    std::thread::spawn(move || {
-        let seat = Seat::take(Arc::new(move || {
-            let _ = tell.send(());
-        }));
-        seat.begin();
-        told_or_parked(&seat);
-    });
+    let seat = Seat::take(Arc::new(move || {
+        let _ = tell.send(());
+    }));
+    seat.begin();
     told.recv_timeout(Duration::from_secs(10))
         .expect("the watchdog lives");
     seat.end();
-}
-
-/// Keeps the work of a seat going for long enough to be noticed, without the processor.
-fn told_or_parked(_seat: &Seat) {
-    let (_keep, never) = mpsc::channel::<()>();
-    let _ = never.recv_timeout(Duration::from_secs(1));
 }
