@@ -65,9 +65,21 @@ local function open_ffi()
   pointer = library.typeof('uint8_t *')
 end
 
+-- The text at the beginning of an array, up to its first zero byte: what an attribute of sysfs says.
+local function text(array)
+  local length = sizes[array] or refuse(array)
+  local start, stop = bytes[array], 0
+  while stop < length and start[stop] ~= 0 do stop = stop + 1 end
+  return library.string(start, stop)
+end
+
 setmetatable(ba, {
   __metatable = false,
   __index = function(_, name)
+    if name == 'text' then
+      rawset(ba, name, text)
+      return text
+    end
     local make = accessor(name)
     if not make then return nil end
     if not library then open_ffi() end

@@ -96,6 +96,7 @@ impl Loader {
             .run(&code, time_ms.saturating_mul(1_000))
             .and_then(|()| state.keep_tree());
         ended.map_err(problem)?;
+        let undefined = state.host().undefined.take();
         let mut values = extract(&state).map_err(|refusal| {
             let mut keys = vec!["trikfs"];
             keys.extend(refusal.path.iter().map(String::as_str));
@@ -113,9 +114,12 @@ impl Loader {
         })?;
         let salt = locked(&run).salt;
         digest_functions(&mut state, &mut values, salt);
+        let held_kib = state.collect().map_err(problem)?.div_ceil(1024);
         drop(state);
         let mut run = locked(&run);
-        let (config, warnings) = check(&values, &run.texts, &run.search)?;
+        let (config, mut warnings) = check(&values, &run.texts, &run.search)?;
+        enough_memory(&config, held_kib)?;
+        warnings.extend(undefined.iter().map(|name| run.texts.undefined(name)));
         Ok(Loaded {
             config,
             program: Arc::new(Program::new(code, std::mem::take(&mut run.files))),
@@ -123,6 +127,28 @@ impl Loader {
             log: std::mem::take(&mut run.log),
         })
     }
+}
+
+/// Every open file of a Lua node has a state in which the program has run: its memory must have room for that.
+fn enough_memory(config: &Config, held_kib: usize) -> Result<(), Problem> {
+    let all = config
+        .nodes
+        .iter()
+        .flat_map(|node| std::iter::once(node).chain(&node.attributes));
+    for node in all.filter(|node| node.uses_lua()) {
+        if held_kib > usize::try_from(node.memory_kb).unwrap_or(usize::MAX) {
+            let reason = format!(
+                "node {}: the program alone holds {held_kib} KiB in each open file's lua state, memory_kb = {} leaves no room",
+                node.path, node.memory_kb
+            );
+            return Err(Problem::new(
+                node.place.file.clone(),
+                node.place.line,
+                reason,
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// What the first run of a program gathers. Shared with the callbacks of its state.

@@ -49,6 +49,9 @@ impl fmt::Debug for Program {
     }
 }
 
+/// A program that took more than this has its garbage collected before its state is used.
+const TIDY_BYTES: usize = 128 << 10;
+
 impl Program {
     pub(crate) fn new(code: Code, files: BTreeMap<Vec<u8>, Code>) -> Self {
         Self {
@@ -75,6 +78,10 @@ impl Program {
         let mut state = State::new(LOAD_MEMORY_BYTES, None, Some(include))?;
         state.run(&self.code, LOAD_TIME_MS.saturating_mul(1_000))?;
         state.keep_tree()?;
+        // What the program left lying about would count against its converters' memory.
+        if state.host().memory.used() > TIDY_BYTES {
+            state.collect()?;
+        }
         let mut stages = Stages::new(state);
         stages.prepare_arrays()?;
         let mut vm = Vm {

@@ -76,10 +76,7 @@ impl Search {
         if name.first() == Some(&b'/') {
             return Err(format!("library '{shown}' does not exist"));
         }
-        let folders: Vec<String> = folders
-            .iter()
-            .map(|folder| folder.display().to_string())
-            .collect();
+        let folders: Vec<String> = folders.iter().map(|folder| shown_folder(folder)).collect();
         Err(format!(
             "library '{shown}' was not found in {}",
             list(&folders)
@@ -117,9 +114,18 @@ impl Search {
         let folders: Vec<String> = self
             .include_dirs
             .iter()
-            .map(|folder| folder.display().to_string())
+            .map(|folder| shown_folder(folder))
             .collect();
         Err(format!("'{shown}' was not found in {}", list(&folders)))
+    }
+}
+
+/// A folder for a message; the working directory has an empty path here.
+fn shown_folder(folder: &Path) -> String {
+    if folder.as_os_str().is_empty() {
+        ".".to_owned()
+    } else {
+        folder.display().to_string()
     }
 }
 

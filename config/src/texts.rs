@@ -101,6 +101,21 @@ impl Texts {
         })
     }
 
+    /// The warning that a global was read which nobody has defined, at the first place where its name stands.
+    pub(crate) fn undefined(&self, name: &str) -> Problem {
+        let place = self.of_text(name.as_bytes()).unwrap_or_default();
+        let file = if place.file.is_empty() {
+            self.main().to_owned()
+        } else {
+            place.file
+        };
+        Problem::new(
+            file,
+            place.line,
+            format!("there is no global '{name}', so it is nil here"),
+        )
+    }
+
     /// Turns a message of Lua, `CHUNK:LINE: REASON`, into a problem. A reason that begins with a place of its own comes
     /// from an included file, and that place is the one to mend. Without a place it is a problem of the whole file.
     pub(crate) fn problem(&self, message: &str) -> Problem {

@@ -58,7 +58,7 @@ enum Command {
     Check(CheckArgs),
     /// Run one node's converter: raw bytes on standard input, converted bytes on standard output.
     Convert(ConvertArgs),
-    /// Unmount a tree; if it is in use, it goes when its last file is closed.
+    /// Unmount a tree; one that is in use is detached: it disappears at once, and programs get ENOTCONN from it.
     Umount {
         /// Where the tree is mounted.
         mountpoint: PathBuf,
@@ -146,7 +146,7 @@ struct MountArgs {
     /// This is the process in the background.
     #[arg(long, hide = true)]
     detached: bool,
-    /// An existing directory.
+    /// A directory; made if nothing is there.
     mountpoint: PathBuf,
 }
 

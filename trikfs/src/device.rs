@@ -55,6 +55,11 @@ pub trait Stream: Send {
         None
     }
 
+    /// False when another source stands at the same place by now, or none: a FIFO that was deleted and made again.
+    fn is_still_there(&self) -> bool {
+        true
+    }
+
     /// Whether opening it again after [`Got::End`] can give more (the next writer of a FIFO).
     fn begins_anew(&self) -> bool {
         true
@@ -262,6 +267,17 @@ fn part_error(name: &str, error: Error) -> Error {
     match error {
         Error::NoDevice(what) => Error::NoDevice(format!("source {name}: {what}")),
         other => other,
+    }
+}
+
+/// Whether a path still leads to the file that is open.
+pub(crate) fn is_same_file(file: &std::fs::File, path: &Path) -> bool {
+    let same = |there: std::fs::Metadata, open: std::fs::Metadata| {
+        (there.dev(), there.ino()) == (open.dev(), open.ino())
+    };
+    match (std::fs::metadata(path), file.metadata()) {
+        (Ok(there), Ok(open)) => same(there, open),
+        _ => false,
     }
 }
 

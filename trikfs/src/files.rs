@@ -19,6 +19,11 @@ pub trait OpenFile: Send + Sync {
         Err(Error::AccessDenied)
     }
 
+    /// Whether the kernel may read this file into its page cache.
+    fn is_cached(&self) -> bool {
+        false
+    }
+
     /// See [`crate::transport::Operations::write`].
     fn write(&self, _request: &Transfer, _data: &[u8]) -> Result<Outcome, Error> {
         Err(Error::AccessDenied)

@@ -280,7 +280,13 @@ impl Operations for Fs {
     }
 
     fn read(&self, request: &Transfer, out: &mut [u8]) -> Result<Outcome, Error> {
-        self.files.get(request.fh)?.read(request, out)
+        let file = self.files.get(request.fh)?;
+        if request.paged && !file.is_cached() {
+            // What the kernel reads ahead for splice(2) or a mapping would be lost or grow old there.
+            let what = "the file cannot be mapped or spliced: use read(2)";
+            return Err(Error::Invalid(what.to_owned()));
+        }
+        file.read(request, out)
     }
 
     fn write(&self, request: &Transfer, data: &[u8]) -> Result<Outcome, Error> {

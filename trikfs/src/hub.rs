@@ -31,6 +31,8 @@ struct Inner {
     is_over: bool,
     /// Somebody has subscribed, so the source is watched.
     listens: bool,
+    /// Looks whether the source is still the one that is open.
+    presence: Option<Arc<dyn Due>>,
 }
 
 /// One reader's queue of raw tuples.
@@ -64,6 +66,7 @@ impl Hub {
             raw_len: 0,
             is_over: false,
             listens: false,
+            presence: None,
         };
         Arc::new_cyclic(|me| Self {
             me: me.clone(),
@@ -95,6 +98,12 @@ impl Hub {
         // Not before somebody is there to get what comes: a recording begins at once.
         if !std::mem::replace(&mut inner.listens, true) {
             self.listen(&mut inner);
+            let presence: Arc<dyn Due> = Arc::new(Presence(self.me.clone()));
+            if let Some(node) = self.node.upgrade() {
+                let at = Instant::now() + Duration::from_millis(limits::PRESENCE_MS);
+                node.engine.schedule.at(at, Arc::downgrade(&presence));
+            }
+            inner.presence = Some(presence);
         }
         subscription
     }
@@ -252,6 +261,34 @@ impl Hub {
         {
             target.ready();
         }
+    }
+}
+
+/// Looks after the source of a hub now and then: a FIFO that was deleted and made again is another one, and nothing
+/// wakes whoever has the old one open.
+struct Presence(Weak<Hub>);
+
+impl Due for Presence {
+    fn due(&self) -> Option<Instant> {
+        let hub = self.0.upgrade()?;
+        let node = hub.node.upgrade()?;
+        let is_gone = {
+            let mut inner = lock(&hub.inner);
+            let stream = inner.stream.as_ref();
+            let is_gone = stream.is_some_and(|stream| !stream.is_still_there());
+            if is_gone {
+                inner.raw_len = 0;
+                inner.watch = None;
+                inner.stream = None;
+                let what = "the device was removed or replaced".to_owned();
+                hub.lose(&node, &Error::NoDevice(what));
+            }
+            is_gone
+        };
+        if is_gone {
+            hub.notify();
+        }
+        Some(Instant::now() + Duration::from_millis(limits::PRESENCE_MS))
     }
 }
 

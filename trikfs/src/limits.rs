@@ -8,8 +8,6 @@ pub const MAX_THREADS: usize = 64;
 pub const OPEN_FILES_MAX: usize = 65_536;
 /// Tuples that a slow reader of a shared source may be behind before the oldest are dropped.
 pub const QUEUE_TUPLES: usize = 256;
-/// Tuples that one sampling takes from a stream of its own, so that it keeps up with a source faster than it.
-pub const TUPLES_PER_SAMPLE: usize = 16;
 /// Bytes read from a source at once.
 pub const READ_BYTES: usize = 128 << 10;
 /// Tuples that one request converts without getting any output before it gives way.
@@ -20,8 +18,12 @@ pub const PUMP_ROUNDS: usize = 64;
 pub const LOG_BYTES: usize = 64 << 10;
 /// Bytes of one recording.
 pub const RECORDING_BYTES_MAX: usize = 16 << 20;
+/// Milliseconds between two looks whether an open source is still at its path.
+pub const PRESENCE_MS: u64 = 500;
 /// Milliseconds between attempts to open a lost device again.
 pub const REOPEN_MS: u64 = 250;
+/// Bytes of Lua memory that prepared states may hold together, beyond the first.
+pub const LUA_STATES_BYTES: usize = 4 << 20;
 /// Milliseconds that the making and closing of Lua states is put off, to do more of it at once.
 pub const LUA_STATES_BATCH_MS: u64 = 2;
 /// Prepared Lua states of the configuration in force.
@@ -53,7 +55,7 @@ pub const COMPILE_SECONDS_MAX: u32 = 30;
 /// Bytes of compiler output that are kept.
 pub const COMPILE_OUTPUT_BYTES_MAX: usize = 64 << 10;
 /// KiB of memory that each process of a compiler may take.
-pub const COMPILE_MEMORY_KB_MAX: u32 = 2 << 20;
+pub const COMPILE_MEMORY_KB_MAX: u32 = 512 << 10;
 /// Crashes within [`CRASH_WINDOW_SECONDS`] after which the filesystem is not started again.
 pub const CRASHES_MAX: usize = 5;
 /// Seconds that a crash is remembered.

@@ -287,10 +287,11 @@ impl Newest {
             waiting.iter().map(|one| one.deadline).min()
         };
         for one in over {
-            self.finish(
-                &one,
-                Some(Error::TimedOut("no sample within timeout_ms".to_owned())),
-            );
+            let error = Error::TimedOut("no sample within timeout_ms".to_owned());
+            if let Some(node) = self.node.upgrade() {
+                node.report(&error);
+            }
+            self.finish(&one, Some(error));
         }
         next
     }
@@ -474,11 +475,7 @@ impl Work {
             Source::Stream(reader) => reader,
         };
         let drains = reader.is_shared() || node.description.pace == Pace::OnEvent;
-        let most = if drains {
-            limits::QUEUE_TUPLES
-        } else {
-            limits::TUPLES_PER_SAMPLE
-        };
+        let most = if drains { limits::QUEUE_TUPLES } else { 1 };
         for _ in 0..most {
             match reader.read(&mut self.tuple)? {
                 Got::Bytes(_) => publish(&self.tuple),

@@ -169,7 +169,12 @@ impl Reloader {
         let _one = lock(&self.one_at_a_time);
         let outcome = self.try_apply(name, bytes, progress);
         match &outcome {
-            Ok(count) => lock(&self.state).result = format!("config ok: {count} nodes"),
+            Ok(count) => {
+                lock(&self.state).result = format!(
+                    "config ok: {count} node{}",
+                    if *count == 1 { "" } else { "s" }
+                )
+            }
             Err(problem) => self.refuse(&problem.to_string()),
         }
         outcome
@@ -247,6 +252,15 @@ impl Reloader {
         let setup = &self.setup;
         let is_new = |node: &Arc<Node>| !before.nodes().iter().any(|old| Arc::ptr_eq(old, node));
         let new: Vec<_> = nodes.iter().filter(|node| is_new(node)).cloned().collect();
+        let stays = |old: &Arc<Node>| nodes.iter().any(|node| Arc::ptr_eq(node, old));
+        let leaving = before.nodes().iter().filter(|old| !stays(old));
+        let gone: Vec<_> = leaving.cloned().collect();
+        // Nobody will stop an actuator that is no longer in the tree.
+        if let Err(error) = rest_all(&gone) {
+            setup.engine.log.line(&format!(
+                "an actuator that leaves the tree did not come to rest: {error}"
+            ));
+        }
         let old_pool = {
             let mut state = lock(&self.state);
             let tree = Tree::build(nodes, setup.owner, Some(before), &mut state.next_ino);
@@ -255,19 +269,6 @@ impl Reloader {
             std::mem::replace(&mut state.pool, pool)
         };
         let tree = setup.forest.tree();
-        let stays = |old: &Arc<Node>| tree.nodes().iter().any(|node| Arc::ptr_eq(node, old));
-        let gone: Vec<_> = before
-            .nodes()
-            .iter()
-            .filter(|old| !stays(old))
-            .cloned()
-            .collect();
-        // Nobody will stop an actuator that is no longer in the tree.
-        if let Err(error) = rest_all(&gone) {
-            setup.engine.log.line(&format!(
-                "an actuator that left the tree did not come to rest: {error}"
-            ));
-        }
         for old in gone {
             old.retire();
         }
@@ -299,6 +300,7 @@ fn one_line(text: &str) -> String {
         .filter(|line| !line.is_empty())
         .collect::<Vec<_>>()
         .join(" | ")
+        .replace(|c: char| c.is_control(), " ")
 }
 
 /// Every description of a configuration, attributes behind their node.

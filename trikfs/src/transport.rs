@@ -111,6 +111,8 @@ pub struct Transfer {
     pub nonblocking: bool,
     /// O_APPEND is set on the open file now.
     pub append: bool,
+    /// The kernel reads for its page cache (splice, sendfile, a mapping), not for a read(2) of a program.
+    pub paged: bool,
     /// Who asks.
     pub caller: Caller,
 }

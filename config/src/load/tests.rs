@@ -420,14 +420,45 @@ fn a_fingerprint_does_not_see_what_the_converter_cannot_reach() {
 #[test]
 fn a_fingerprint_of_very_much_depends_on_the_text() {
     let source = format!(
-        "local t = {{}} for i = 1, 200000 do t[i] = ('x'):rep(30) .. i end trikfs = {{ x = {{ {NODE}, converter = function() return t end }} }}"
+        "local t = {{}} for i = 1, 200000 do t[i] = ('x'):rep(30) .. i end trikfs = {{ x = {{ {NODE}, memory_kb = 65536, converter = function() return t end }} }}"
     );
     assert_eq!(fingerprint(&source), fingerprint(&source));
     assert_ne!(fingerprint(&source), fingerprint(&format!("{source} ")));
     let long = format!(
-        "local t for i = 1, 50000 do t = {{ t }} end trikfs = {{ x = {{ {NODE}, converter = function() return t end }} }}"
+        "local t for i = 1, 50000 do t = {{ t }} end trikfs = {{ x = {{ {NODE}, memory_kb = 65536, converter = function() return t end }} }}"
     );
     assert_eq!(fingerprint(&long), fingerprint(&long));
+}
+
+#[test]
+fn a_program_that_leaves_its_converters_no_memory_is_refused() {
+    let source = format!(
+        "local held = {{}} for i = 1, 1e5 do held[i] = {{ i }} end trikfs = {{ x = {{ {NODE}, converter = function() return held end }} }}"
+    );
+    let reason = load(&source).unwrap_err().reason;
+    assert!(
+        reason.starts_with("node x: the program alone holds ")
+            && reason
+                .ends_with(" KiB in each open file's lua state, memory_kb = 1024 leaves no room"),
+        "{reason}"
+    );
+    let garbage = format!(
+        "for i = 1, 1e5 do local t = {{ i }} end trikfs = {{ x = {{ {NODE}, converter = function() end }} }}"
+    );
+    assert!(load(&garbage).is_ok());
+}
+
+#[test]
+fn a_global_that_nobody_defined_is_a_warning_at_its_line() {
+    let loaded = load(&format!(
+        "trikfs = {{\n x = {{ {NODE},\n converter = my_convrter }} }}"
+    ))
+    .unwrap();
+    let warnings: Vec<String> = loaded.warnings.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        warnings,
+        ["robot.lua:3: there is no global 'my_convrter', so it is nil here"]
+    );
 }
 
 #[test]

@@ -650,6 +650,7 @@ fn table_functions_do_what_the_manual_says() {
     }
     let error = "test.lua:1: bad argument #2 to 'insert' (position out of bounds)";
     assert_eq!(fault("table.insert({}, -2147483647, 1)"), error);
+    assert_eq!(fault("table.insert({}, '-2147483647', 1)"), error);
 }
 
 #[test]

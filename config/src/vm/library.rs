@@ -11,6 +11,8 @@ use mlua_sys as lua;
 use std::ffi::{c_char, c_int};
 use std::panic::catch_unwind;
 
+/// Names of undefined globals that are remembered for a warning.
+const UNDEFINED_MAX: usize = 16;
 /// Chunk name of our own code, which has no lines: messages begin with [`NO_PLACE`].
 const CHUNK: &std::ffi::CStr = c"=trikfs";
 /// What Lua puts before the message of an error in our own code.
@@ -208,7 +210,15 @@ unsafe extern "C-unwind" fn part(l: *mut lua::lua_State) -> c_int {
                 lua::lua_pushvalue(l, raw);
                 3
             }
-            _ => 0,
+            name => {
+                let mut undefined = host(l).undefined.borrow_mut();
+                let name = String::from_utf8_lossy(name);
+                if undefined.len() < UNDEFINED_MAX && !undefined.iter().any(|known| *known == name)
+                {
+                    undefined.push(name.into_owned());
+                }
+                0
+            }
         }
     }
 }

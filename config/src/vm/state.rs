@@ -35,6 +35,8 @@ pub(crate) struct Host {
     pub(crate) memory: Memory,
     log: RefCell<Option<LogSink>>,
     include: RefCell<Option<Include>>,
+    /// Names of globals that were read and do not exist, the first few.
+    pub(crate) undefined: RefCell<Vec<String>>,
     /// Bytecode that a callback is loading.
     pub(super) code: RefCell<Option<Code>>,
     /// A message that a callback is about to hand to Lua.
@@ -111,6 +113,7 @@ impl State {
             memory: Memory::new(memory_limit),
             log: RefCell::new(None),
             include: RefCell::new(None),
+            undefined: RefCell::default(),
             code: RefCell::new(None),
             message: RefCell::new(String::new()),
             pending: Cell::new(None),
@@ -234,6 +237,15 @@ impl State {
         // SAFETY: takes off the error that the failed call left.
         unsafe { lua::lua_settop(l, -2) };
         Err(text)
+    }
+
+    /// Throws away what nobody can reach. Returns the bytes that are left.
+    pub(crate) fn collect(&self) -> Result<usize, String> {
+        self.protect(&[], |l| {
+            // SAFETY: inside a protected call.
+            unsafe { lua::lua_gc(l, lua::LUA_GCCOLLECT, 0) };
+        })?;
+        Ok(self.host().memory.used())
     }
 
     /// Keeps the global `trikfs` as it is now in its stack place.

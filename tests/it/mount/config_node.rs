@@ -28,7 +28,7 @@ fn the_exact_bytes_in_force_are_read_back() {
     m.sh("cp $DIR/new config");
     assert_eq!(m.read("config").unwrap(), OTHER.as_bytes());
     assert_eq!(m.sh("cat config | dd bs=1 2>/dev/null"), OTHER);
-    assert_eq!(m.result(), "config ok: 1 nodes");
+    assert_eq!(m.result(), "config ok: 1 node");
     assert_eq!(m.sh("ls"), "config\nlog\none\nstatus\nstop\n");
 }
 
@@ -164,7 +164,7 @@ fn truncating_alone_changes_nothing() {
     let Some(m) = mount(GOOD) else { return };
     m.sh(": > config; truncate -s 0 config; truncate -s 3 config");
     assert_eq!(m.read("config").unwrap(), GOOD.as_bytes());
-    assert_eq!(m.result(), "config ok: 1 nodes");
+    assert_eq!(m.result(), "config ok: 1 node");
 }
 
 #[test]
@@ -206,7 +206,7 @@ fn a_forked_child_that_closes_does_not_apply_half_a_configuration() {
 fd = os.open(M + '/config', os.O_WRONLY | os.O_TRUNC)
 os.write(fd, good[:20])
 assert ended(forked(lambda: None)) == 0
-assert open(M + '/status').readline() == 'config ok: 1 nodes\\n'
+assert open(M + '/status').readline() == 'config ok: 1 node\\n'
 assert not os.path.exists(M + '/n')
 os.write(fd, good[20:])
 os.close(fd)
@@ -238,7 +238,7 @@ fn a_writer_that_is_killed_half_way_changes_nothing_and_status_says_so() {
     );
     assert_eq!(m.read("config").unwrap(), GOOD.as_bytes());
     m.apply(OTHER).unwrap();
-    assert_eq!(m.result(), "config ok: 1 nodes");
+    assert_eq!(m.result(), "config ok: 1 node");
 }
 
 #[test]

@@ -156,3 +156,32 @@ expect('EAGAIN', os.read, two, 1)
 ",
     );
 }
+
+#[test]
+fn a_pipe_that_was_deleted_and_made_again_is_found() {
+    with_pipe(
+        "fd, pipe = open_ro(M + '/n/device'), feed('in')
+os.write(pipe, b'aaaa')
+assert os.read(fd, 4) == b'aaaa'
+os.close(pipe)
+os.unlink(D + '/in')
+os.mkfifo(D + '/in')
+def reads_again():
+    try:
+        writer = os.open(D + '/in', os.O_WRONLY | os.O_NONBLOCK)
+    except OSError:
+        return False
+    os.write(writer, b'bbbb')
+    os.close(writer)
+    return True
+eventually(reads_again, 'the new pipe has a reader')
+os.set_blocking(fd, False)
+def got():
+    try:
+        return os.read(fd, 4) == b'bbbb'
+    except OSError:
+        return False
+eventually(got, 'what the new pipe carries')
+",
+    );
+}

@@ -162,3 +162,31 @@ fn a_daemon_that_crashes_again_and_again_is_given_up() {
     assert!(!m.is_mounted());
     assert_eq!(m.board().content("motor"), [0, 7]);
 }
+
+#[test]
+fn native_code_that_calls_exit_does_not_end_the_filesystem() {
+    let config = "trikfs = {
+  bad = { src = '/dev/zero', input_tuple_size = 1, output_tuple_size = 1,
+          converter = { code = [[
+#include <stdlib.h>
+int converter(int in_s, char *in, int out_s, char *out) { exit(0); }
+]] } },
+  good = { src = '/dev/zero', input_tuple_size = 1 },
+}";
+    let Some(m) = mount_on(Board::new(), config) else {
+        return;
+    };
+    let daemon = m.daemon();
+    assert_ne!(m.errno("bad/device"), 0);
+    eventually("another daemon", || {
+        processes::children(m.guardian())
+            .iter()
+            .any(|&pid| pid != daemon)
+    });
+    eventually("the tree", || m.read("good/units").is_ok());
+    assert!(
+        m.complaints().contains("ended from inside with status 0"),
+        "{}",
+        m.complaints()
+    );
+}

@@ -253,3 +253,32 @@ assert got == [b'x'], got
 ",
     );
 }
+
+#[test]
+fn what_only_the_page_cache_could_serve_is_refused_and_loses_nothing() {
+    let board = harness::Board::new();
+    board.fifo("in");
+    let Some(m) = crate::mount_on(
+        board,
+        "trikfs = { n = { src = '$DIR/in', input_tuple_size = 4 } }",
+    ) else {
+        return;
+    };
+    m.python(
+        "fd, pipe = open_ro(M + '/n/device'), feed('in')
+os.write(pipe, b'aaaabbbbcccc')
+eventually(lambda: select.select([fd], [], [], 0)[0], 'data')
+out, into = os.pipe()
+expect('EINVAL', os.splice, fd, into, 4)
+assert os.read(fd, 12) == b'aaaabbbbcccc'
+with open(M + '/status') as status:
+    expect('EINVAL', os.sendfile, into, status.fileno(), 0, 100)
+    assert status.read().startswith('config ok')
+",
+    );
+    // cp finds its way without them.
+    assert!(
+        m.sh("cp status $DIR/copy; head -n 1 $DIR/copy")
+            .contains("config ok")
+    );
+}

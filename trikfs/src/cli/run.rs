@@ -9,6 +9,7 @@ use crate::guardian::inherit::{Farewell, Inheritance};
 use crate::guardian::{self, Plan};
 use crate::mount::MountOptions;
 use crate::tree::Owner;
+use nix::sys::prctl;
 use nix::sys::stat::{SFlag, fstat};
 use nix::unistd::{dup2_stderr, dup2_stdout, getgid, getuid, setsid};
 use std::ffi::OsString;
@@ -34,6 +35,11 @@ pub(super) fn mount(args: MountArgs) -> Result<(), Failure> {
     } else {
         guard(&args)
     }
+}
+
+/// Started through /proc/self/exe this process would be listed as `exe`.
+fn name_process() {
+    let _ = prctl::set_name(c"trikfs");
 }
 
 /// Makes the directory if nothing is there; it stays when the tree is gone.
@@ -83,6 +89,7 @@ fn start_in_background(args: &MountArgs) -> Result<(), Failure> {
 
 /// Guards the tree until it is stopped.
 fn guard(args: &MountArgs) -> Result<(), Failure> {
+    name_process();
     if args.detached {
         // Fails only for the leader of a session, which has what this is for.
         let _ = setsid();
@@ -158,6 +165,7 @@ fn detach_output() {
 
 /// `trikfs serve`: the daemon, as its guardian starts it.
 pub(super) fn serve(args: ServeArgs) -> Result<(), Failure> {
+    name_process();
     let inheritance = Inheritance::take(&args.handover)?;
     let fail = |error: io::Error| format!("serve: {error}");
     let farewell =
@@ -193,6 +201,7 @@ pub(super) fn serve(args: ServeArgs) -> Result<(), Failure> {
         }),
         progress: Box::new(super::progress),
     });
+    inheritance.lifeline.over();
     farewell.say();
     drop(inheritance.lifeline);
     result.map_err(Failure::Reason)

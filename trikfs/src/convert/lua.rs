@@ -123,13 +123,23 @@ impl StatePool {
 
     fn fill(&self) {
         self.filling.store(false, Ordering::Relaxed);
-        while lock(&self.ready).len() < self.wanted.load(Ordering::Relaxed)
-            && !self.retired.load(Ordering::Relaxed)
-        {
+        loop {
+            let ready = lock(&self.ready).len();
+            if ready >= self.wanted.load(Ordering::Relaxed) || self.retired.load(Ordering::Relaxed)
+            {
+                return;
+            }
             // A program that no longer runs says so to whoever opens a file.
             let Ok(vm) = self.program.prepare() else {
                 return;
             };
+            // A program that holds much is not held many times for nobody.
+            if (ready + 1) * vm.memory() > limits::LUA_STATES_BYTES {
+                self.wanted.store(ready.max(1), Ordering::Relaxed);
+                if ready > 0 {
+                    return;
+                }
+            }
             lock(&self.ready).push(vm);
         }
     }

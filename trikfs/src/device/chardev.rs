@@ -3,7 +3,7 @@
 //! Owns non-blocking reading and writing that waits for room, no longer than its limit. Terminals are set to
 //! pass bytes unchanged (no echo, no line editing) when they are opened for reading, as a robot's sensors need.
 
-use super::{Got, Sink, Stream, device_error};
+use super::{Got, Sink, Stream, device_error, is_same_file};
 use crate::errno::Error;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::termios;
@@ -55,6 +55,10 @@ impl Stream for CharDevice {
 
     fn fd(&self) -> Option<BorrowedFd<'_>> {
         Some(self.file.as_fd())
+    }
+
+    fn is_still_there(&self) -> bool {
+        is_same_file(&self.file, &self.path)
     }
 }
 

@@ -55,6 +55,10 @@ impl Stream for Evdev {
     fn fd(&self) -> Option<BorrowedFd<'_>> {
         self.bytes.fd()
     }
+
+    fn is_still_there(&self) -> bool {
+        self.bytes.is_still_there()
+    }
 }
 
 /// Events in, tuples out.

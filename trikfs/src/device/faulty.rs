@@ -117,6 +117,10 @@ impl Stream for FaultyStream {
         self.stream.wake_at()
     }
 
+    fn is_still_there(&self) -> bool {
+        self.stream.is_still_there()
+    }
+
     fn begins_anew(&self) -> bool {
         self.stream.begins_anew()
     }

@@ -3,7 +3,7 @@
 //! Owns the rule for their ends: readers see one end of file when the last writer has left, and what the next
 //! writer sends after that. Opening does not wait for a writer, and no writer yet is not an end.
 
-use super::{Got, Stream, device_error};
+use super::{Got, Stream, device_error, is_same_file};
 use crate::errno::Error;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::fs::{File, OpenOptions};
@@ -69,6 +69,10 @@ impl Stream for Fifo {
 
     fn fd(&self) -> Option<BorrowedFd<'_>> {
         Some(self.file.as_fd())
+    }
+
+    fn is_still_there(&self) -> bool {
+        is_same_file(&self.file, &self.path)
     }
 }
 

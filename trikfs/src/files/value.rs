@@ -165,6 +165,10 @@ impl ValueFile {
 }
 
 impl OpenFile for ValueFile {
+    fn is_cached(&self) -> bool {
+        self.cached.is_some()
+    }
+
     fn read(&self, request: &Transfer, out: &mut [u8]) -> Result<Outcome, Error> {
         if self.node.is_retired() {
             return Err(Error::Stale);
@@ -200,7 +204,10 @@ impl OpenFile for ValueFile {
         let Some(writer) = &self.writer else {
             return Err(Error::AccessDenied);
         };
-        let tuple = self.tuple_of(data)?;
+        let tuple = self.tuple_of(data).inspect_err(|error| {
+            let line = format!("{}: {}: {error}", self.node.path(), error.blame());
+            self.engine.log.line(&line);
+        })?;
         let _inside = self.node.enter()?;
         lock(writer).write_whole(&tuple, !request.nonblocking)?;
         self.node.wrote(tuple);

@@ -30,6 +30,8 @@ pub(super) struct Child {
 pub(super) enum Heard {
     /// It serves so many nodes.
     Ready(usize),
+    /// It ends in order: its exit status is its own word.
+    Over,
     /// Nothing yet.
     Nothing,
     /// It is dead.
@@ -102,6 +104,9 @@ impl Child {
                 .and_then(|line| line.trim_end().strip_prefix("ready "))
                 .and_then(|number| number.parse().ok());
             heard = nodes.map_or(heard, Heard::Ready);
+            if line == b"over\n" {
+                heard = Heard::Over;
+            }
         }
         if self.heard.len() > LINE_BYTES_MAX {
             self.heard.clear();
@@ -161,7 +166,7 @@ mod tests {
             match child.hear().expect("readable") {
                 Heard::End => return heard,
                 Heard::Nothing => {}
-                Heard::Ready(nodes) => heard.push(Heard::Ready(nodes)),
+                word => heard.push(word),
             }
         }
     }

@@ -75,6 +75,11 @@ impl Lifeline {
         let _ = (&self.0).write_all(format!("ready {nodes}\n").as_bytes());
     }
 
+    /// Tells the guardian that this process is about to end in order.
+    pub fn over(&self) {
+        let _ = (&self.0).write_all(b"over\n");
+    }
+
     /// Another handle on it.
     pub fn share(&self) -> io::Result<Self> {
         self.0.try_clone().map(Self)

@@ -59,6 +59,7 @@ impl Watch {
     ) -> io::Result<End> {
         let grace = Duration::from_millis(limits::GRACE_MS.into());
         let mut urgency = Urgency::None;
+        let mut life = Life::Starting;
         loop {
             let [signal, mounts, word] = self.wait(child, urgency.deadline())?;
             let mut stop = false;
@@ -70,11 +71,16 @@ impl Watch {
             stop |= mounts && !mounted();
             if word {
                 match child.hear()? {
-                    Heard::Ready(nodes) => ready(nodes),
+                    Heard::Ready(nodes) => {
+                        life = Life::Serving;
+                        ready(nodes);
+                    }
+                    Heard::Over => life = Life::Over,
                     Heard::Nothing => {}
                     // A signal from a terminal reaches the daemon as well, and it may be the first to end.
                     Heard::End => {
-                        return Ok(judge(child.wait()?, stop || urgency != Urgency::None));
+                        let asked = stop || urgency != Urgency::None;
+                        return Ok(judge(child.wait()?, asked, life));
                     }
                 }
             }
@@ -134,13 +140,26 @@ impl Urgency {
     }
 }
 
-/// What an exit status means; `asked` if the guardian has asked for the end.
-fn judge(status: ExitStatus, asked: bool) -> End {
-    if asked || status.success() {
+/// What the daemon was doing by its own word.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Life {
+    Starting,
+    Serving,
+    Over,
+}
+
+/// What an exit status means; `asked` if the guardian has asked for the end. A daemon that exits while it serves,
+/// without a word, did not mean to: native code has called exit().
+fn judge(status: ExitStatus, asked: bool, life: Life) -> End {
+    if asked {
         return End::Stopped;
     }
     match (status.code(), status.signal()) {
         (Some(PANICKED), _) => End::Crashed("ended by a panic".to_owned()),
+        (Some(code), _) if life == Life::Serving => {
+            End::Crashed(format!("ended from inside with status {code}"))
+        }
+        (Some(0), _) => End::Stopped,
         (Some(_), _) => End::Failed,
         (None, Some(number)) => match Signal::try_from(number) {
             Ok(Signal::SIGTERM | Signal::SIGINT) => End::Stopped,
@@ -167,7 +186,14 @@ mod tests {
 
     #[test]
     fn an_end_is_judged_by_its_cause() {
-        assert_eq!(end_of("echo ready 3; exit 0"), (End::Stopped, vec![3]));
+        assert_eq!(
+            end_of("echo ready 3; echo over; exit 0"),
+            (End::Stopped, vec![3])
+        );
+        assert_eq!(
+            end_of("echo ready 3; exit 0").0,
+            End::Crashed("ended from inside with status 0".to_owned())
+        );
         assert_eq!(end_of("exit 1").0, End::Failed);
         assert_eq!(
             end_of("exit 101").0,
@@ -186,13 +212,22 @@ mod tests {
     #[test]
     fn a_daemon_that_somebody_stopped_is_not_restarted() {
         // The shell inherits the blocked signals of a daemon, so the statuses are made up: signal 15 and signal 2.
-        assert_eq!(judge(ExitStatus::from_raw(15), false), End::Stopped);
-        assert_eq!(judge(ExitStatus::from_raw(2), false), End::Stopped);
         assert_eq!(
-            judge(ExitStatus::from_raw(64), false),
+            judge(ExitStatus::from_raw(15), false, Life::Serving),
+            End::Stopped
+        );
+        assert_eq!(
+            judge(ExitStatus::from_raw(2), false, Life::Serving),
+            End::Stopped
+        );
+        assert_eq!(
+            judge(ExitStatus::from_raw(64), false, Life::Serving),
             End::Crashed("killed by signal 64".to_owned())
         );
-        assert_eq!(judge(ExitStatus::from_raw(9), true), End::Stopped);
+        assert_eq!(
+            judge(ExitStatus::from_raw(9), true, Life::Serving),
+            End::Stopped
+        );
     }
 
     #[test]

@@ -86,6 +86,7 @@ fn transfer(
         offset,
         nonblocking: flags.0 & libc::O_NONBLOCK != 0,
         append: flags.0 & libc::O_APPEND != 0,
+        paged: false,
         caller: caller(request),
     }
 }
@@ -281,10 +282,14 @@ impl Filesystem for Adapter {
         offset: u64,
         size: u32,
         flags: OpenFlags,
-        _owner: Option<LockOwner>,
+        owner: Option<LockOwner>,
         reply: ReplyData,
     ) {
-        let transfer = transfer(request, ino, fh, offset, flags);
+        let transfer = Transfer {
+            // The page cache has no owner; a read(2) always has one.
+            paged: owner.is_none(),
+            ..transfer(request, ino, fh, offset, flags)
+        };
         let mut buffer = vec![0; TRANSFER_BYTES_MAX.min(size as usize)];
         let out = buffer.as_mut_slice();
         self.link.perform(transfer.id, Reply::Data(reply), move || {

@@ -5,10 +5,12 @@ local error, type, insert = raw.error, raw.type, table.insert
 -- Positions far outside the list would make the library's loop shift nothing for minutes.
 function table.insert(list, ...)
   if type(list) == 'table' and raw.select('#', ...) == 2 then
-    local position = ...
-    if type(position) == 'number' and not (position >= 1 and position <= #list + 1) then
+    local position, value = ...
+    position = raw.tonumber(position)
+    if position and not (position >= 1 and position <= #list + 1) then
       error("bad argument #2 to 'insert' (position out of bounds)", 2)
     end
+    return insert(list, position, value)
   end
   return insert(list, ...)
 end

@@ -10,6 +10,8 @@ pub(crate) const MINOR: u32 = 45;
 pub(crate) const MINOR_MIN: u32 = 26;
 /// Node id of the mount's root.
 pub(crate) const ROOT: u64 = 1;
+/// `read_flags` of a READ that a program's read(2) caused.
+pub(crate) const READ_LOCKOWNER: u32 = 1 << 1;
 
 /// Requests, `fuse_opcode`.
 pub(crate) mod op {

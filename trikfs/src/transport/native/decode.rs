@@ -60,6 +60,8 @@ pub(crate) enum Body<'a> {
         offset: u64,
         size: u32,
         flags: u32,
+        /// For the page cache.
+        paged: bool,
     },
     Write {
         fh: u64,
@@ -291,13 +293,16 @@ fn init(fields: &mut Fields<'_>) -> Decoded<KernelInit> {
 /// `fuse_read_in`: fh, offset, size, read_flags, lock_owner, flags, padding.
 fn read<'a>(fields: &mut Fields<'a>) -> Decoded<Body<'a>> {
     let (fh, offset, size) = (fields.u64()?, fields.u64()?, fields.u32()?);
-    fields.skip::<12>()?;
+    let read_flags = fields.u32()?;
+    fields.skip::<8>()?;
     let flags = fields.u32()?;
     Ok(Body::Read {
         fh,
         offset,
         size,
         flags,
+        // The page cache has no owner; a read(2) always has one.
+        paged: read_flags & abi::READ_LOCKOWNER == 0,
     })
 }
 

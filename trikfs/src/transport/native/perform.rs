@@ -54,9 +54,14 @@ fn try_perform(
             offset,
             size,
             flags,
+            paged,
         } => {
             let room = out.len().min(size as usize);
-            let read = operations.read(&transfer(header, fh, offset, flags), &mut out[..room])?;
+            let transfer = Transfer {
+                paged,
+                ..transfer(header, fh, offset, flags)
+            };
+            let read = operations.read(&transfer, &mut out[..room])?;
             done(read, room)?
         }
         Body::Write {
@@ -128,6 +133,7 @@ fn transfer(header: &Header, fh: u64, offset: u64, flags: u32) -> Transfer {
         offset,
         nonblocking: flags & libc::O_NONBLOCK != 0,
         append: flags & libc::O_APPEND != 0,
+        paged: false,
         caller: caller(header),
     }
 }

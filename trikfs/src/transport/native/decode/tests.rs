@@ -61,6 +61,7 @@ fn a_read_carries_position_size_and_open_flags() {
         offset: 4096,
         size: 64,
         flags: 0o4000,
+        paged: true,
     };
     assert_eq!(decode(&bytes).unwrap().body, expected);
     let bytes = message(op::READDIR, &body);
