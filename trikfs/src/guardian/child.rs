@@ -85,8 +85,11 @@ impl Child {
         self.lifeline.as_fd()
     }
 
-    /// Reads what the daemon says. Call it when the lifeline is readable.
+    /// What the daemon says, a line at a time. Call it when the lifeline is readable, which it stays after the end.
     pub(super) fn hear(&mut self) -> io::Result<Heard> {
+        if let Some(word) = self.next_word() {
+            return Ok(word);
+        }
         let mut piece = [0; LINE_BYTES_MAX];
         let size = match self.lifeline.read(&mut piece) {
             Err(error) if error.kind() == io::ErrorKind::Interrupted => return Ok(Heard::Nothing),
@@ -96,22 +99,27 @@ impl Child {
             return Ok(Heard::End);
         }
         self.heard.extend_from_slice(&piece[..size]);
-        let mut heard = Heard::Nothing;
-        while let Some(end) = self.heard.iter().position(|byte| *byte == b'\n') {
-            let line: Vec<u8> = self.heard.drain(..=end).collect();
-            let nodes = std::str::from_utf8(&line)
-                .ok()
-                .and_then(|line| line.trim_end().strip_prefix("ready "))
-                .and_then(|number| number.parse().ok());
-            heard = nodes.map_or(heard, Heard::Ready);
-            if line == b"over\n" {
-                heard = Heard::Over;
-            }
-        }
+        let word = self.next_word();
         if self.heard.len() > LINE_BYTES_MAX {
             self.heard.clear();
         }
-        Ok(heard)
+        Ok(word.unwrap_or(Heard::Nothing))
+    }
+
+    /// The next line that has been read and means something.
+    fn next_word(&mut self) -> Option<Heard> {
+        while let Some(end) = self.heard.iter().position(|byte| *byte == b'\n') {
+            let line: Vec<u8> = self.heard.drain(..=end).collect();
+            let line = std::str::from_utf8(&line).unwrap_or("").trim_end();
+            if line == "over" {
+                return Some(Heard::Over);
+            }
+            let nodes = line.strip_prefix("ready ").map(str::parse);
+            if let Some(Ok(nodes)) = nodes {
+                return Some(Heard::Ready(nodes));
+            }
+        }
+        None
     }
 
     /// Asks it to end.
