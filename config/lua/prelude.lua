@@ -58,11 +58,12 @@ function ba.len(array)
 end
 
 raw.get, raw.set = ba.get, ba.set
-local library, pointer, scratch
+-- Of the foreign function interface only these are kept: the rest of it is larger than everything else here.
+local pointer, new, copy, text_of, scratch
 
 local function open_ffi()
-  library = ffi()
-  pointer = library.typeof('uint8_t *')
+  local library = ffi()
+  pointer, new, copy, text_of = library.typeof('uint8_t *'), library.new, library.copy, library.string
 end
 
 -- The text at the beginning of an array, up to its first zero byte: what an attribute of sysfs says.
@@ -70,7 +71,7 @@ local function text(array)
   local length = sizes[array] or refuse(array)
   local start, stop = bytes[array], 0
   while stop < length and start[stop] ~= 0 do stop = stop + 1 end
-  return library.string(start, stop)
+  return text_of(start, stop)
 end
 
 setmetatable(ba, {
@@ -82,10 +83,10 @@ setmetatable(ba, {
     end
     local make = accessor(name)
     if not make then return nil end
-    if not library then open_ffi() end
-    scratch = scratch or library.new(
+    if not pointer then open_ffi() end
+    scratch = scratch or new(
       'union { uint8_t b[8]; int16_t i16; uint16_t u16; int32_t i32; uint32_t u32; float f32; double f64; }')
-    local access = make(sizes, bytes, scratch, library.copy, refuse, wrap, type, error, select)
+    local access = make(sizes, bytes, scratch, copy, refuse, wrap, type, error, select)
     rawset(ba, name, access)
     return access
   end,
@@ -93,7 +94,7 @@ setmetatable(ba, {
 
 -- For the host: the proxy of a buffer.
 local function array(address, size)
-  if not library then open_ffi() end
+  if not pointer then open_ffi() end
   local proxy = setmetatable({}, opaque)
   bytes[proxy], sizes[proxy] = pointer(address), size
   return proxy

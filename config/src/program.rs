@@ -49,9 +49,6 @@ impl fmt::Debug for Program {
     }
 }
 
-/// A program that took more than this has its garbage collected before its state is used.
-const TIDY_BYTES: usize = 128 << 10;
-
 impl Program {
     pub(crate) fn new(code: Code, files: BTreeMap<Vec<u8>, Code>) -> Self {
         Self {
@@ -78,12 +75,10 @@ impl Program {
         let mut state = State::new(LOAD_MEMORY_BYTES, None, Some(include))?;
         state.run(&self.code, LOAD_TIME_MS.saturating_mul(1_000))?;
         state.keep_tree()?;
-        // What the program left lying about would count against its converters' memory.
-        if state.host().memory.used() > TIDY_BYTES {
-            state.collect()?;
-        }
         let mut stages = Stages::new(state);
         stages.prepare_arrays()?;
+        // What lies about would count against the converters' memory, and what they need first fits into its place.
+        stages.state().collect()?;
         let mut vm = Vm {
             stages,
             budget_us: BUDGET_US,
