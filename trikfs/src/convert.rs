@@ -50,16 +50,17 @@ pub struct Workshop<'a> {
 }
 
 impl Recipe {
-    /// Loads and compiles what the description names; opens no device and runs no converter.
+    /// Loads and compiles what the description names and opens native converters once, to hear what they refuse; opens
+    /// no device and converts nothing.
     pub fn prepare(
         description: &NodeDescription,
         workshop: &Workshop<'_>,
         lua: Option<Arc<StatePool>>,
     ) -> Result<Self, Problem> {
-        let plans = |stages: &[StageDescription]| -> Result<Vec<Plan>, Problem> {
+        let plans = |stages: &[StageDescription], direction| -> Result<Vec<Plan>, Problem> {
             stages
                 .iter()
-                .map(|stage| plan(&description.path, stage, workshop))
+                .map(|stage| plan(description, stage, direction, workshop))
                 .collect()
         };
         Ok(Self {
@@ -67,11 +68,11 @@ impl Recipe {
             params: description.params.clone(),
             memory_kb: description.memory_kb,
             budget_us: description.budget_us,
-            read: plans(&description.converter)?,
+            read: plans(&description.converter, Direction::Read)?,
             write: description
                 .write_converter
                 .as_deref()
-                .map(plans)
+                .map(|stages| plans(stages, Direction::Write))
                 .transpose()?,
             lua: Mutex::new(lua.filter(|_| description.uses_lua())),
         })
@@ -156,7 +157,13 @@ impl Recipe {
     }
 }
 
-fn plan(node: &str, stage: &StageDescription, workshop: &Workshop<'_>) -> Result<Plan, Problem> {
+fn plan(
+    description: &NodeDescription,
+    stage: &StageDescription,
+    direction: Direction,
+    workshop: &Workshop<'_>,
+) -> Result<Plan, Problem> {
+    let node = &description.path;
     let refused = |reason: String| {
         Problem::new(
             stage.place.file.clone(),
@@ -175,6 +182,18 @@ fn plan(node: &str, stage: &StageDescription, workshop: &Workshop<'_>) -> Result
             Some(Library::load(&path, None, workshop.cache).map_err(refused)?)
         }
     };
+    if let Some(library) = &library {
+        // What it would refuse to every open file, sizes and parameters, it refuses now.
+        let info = shared::OpenInfo {
+            direction,
+            input_size: stage.input_size,
+            output_size: stage.output_size,
+            node,
+            params: &description.params,
+            log: Arc::new(|_| {}),
+        };
+        library.open(&info).map_err(refused)?;
+    }
     Ok(Plan {
         library,
         input_size: stage.input_size,

@@ -77,9 +77,8 @@ fn a_versioned_library_has_a_state_for_each_open_file_and_explains_itself() {
         )
     };
     let config = format!(
-        "trikfs = {{ n = {}, bad = {}, twin = {} }}",
+        "trikfs = {{ n = {}, twin = {} }}",
         node("counting", 10),
-        node("counting", -1),
         node("twin", 0)
     );
     let Some(m) = mount_on(board, &config) else {
@@ -96,9 +95,16 @@ assert read_exactly(one, 2) == bytes([13, 14])
 os.write(pipe, b'!')
 expect('EIO', os.read, one, 1)
 assert text(M + '/n/fault') == 'converter: counting.so#counting: an exclamation mark\\n', text(M + '/n/fault')
-assert error_of(os.open, M + '/bad/device', os.O_RDONLY) == 'EIO'
-assert 'start is at least 0' in text(M + '/bad/fault')
 ",
+    );
+    let refused = m.apply(&format!("trikfs = {{ bad = {} }}", node("counting", -1)));
+    assert!(refused.is_err());
+    let status = m.text("status");
+    assert!(
+        status.starts_with(
+            "config refused: config:1: node bad: counting.so#counting: start is at least 0\n"
+        ),
+        "{status}"
     );
     assert!(
         m.sh("dd if=log iflag=nonblock bs=64k count=1 2>/dev/null")
