@@ -288,7 +288,10 @@ impl Newest {
         };
         for one in over {
             let error = Error::TimedOut("no sample within timeout_ms".to_owned());
-            if let Some(node) = self.node.upgrade() {
+            // A reader that was interrupted meanwhile has missed nothing.
+            if let Some(node) = self.node.upgrade()
+                && node.engine.is_parked(one.id)
+            {
                 node.report(&error);
             }
             self.finish(&one, Some(error));
