@@ -87,7 +87,7 @@ impl Board {
         let path = self.path(name);
         let fresh = self.path(&format!("{name}.new"));
         let include = concat!(env!("CARGO_MANIFEST_DIR"), "/../converter/include");
-        let done = Command::new("cc")
+        let done = Command::new(crate::tools::c_compiler())
             .args(["-shared", "-fPIC", "-O1", "-I", include, "-o"])
             .arg(&fresh)
             .arg(source)

@@ -48,6 +48,11 @@ impl Output {
     }
 }
 
+/// The C compiler whose code the program under test can load: `$CC`, else `cc`.
+pub fn c_compiler() -> String {
+    std::env::var("CC").unwrap_or_else(|_| "cc".to_owned())
+}
+
 /// Runs a command to its end with `input` on standard input.
 ///
 /// # Panics

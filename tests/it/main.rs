@@ -89,11 +89,18 @@ mod model;
 mod tidy;
 
 use harness::{Board, Mount, Setting};
+use std::sync::OnceLock;
 
-/// The program under test.
+/// The program under test: the one built with the tests, or an installed one that `TRIKFS_UNDER_TEST` names.
 fn program() -> &'static str {
-    env!("CARGO_BIN_EXE_trikfs-under-test")
+    static PROGRAM: OnceLock<String> = OnceLock::new();
+    PROGRAM.get_or_init(|| {
+        std::env::var(UNDER_TEST)
+            .unwrap_or_else(|_| env!("CARGO_BIN_EXE_trikfs-under-test").to_owned())
+    })
 }
+
+const UNDER_TEST: &str = "TRIKFS_UNDER_TEST";
 
 /// A mounted configuration on an empty board; None if nothing can be mounted here.
 fn mount(config: &str) -> Option<Mount> {

@@ -141,7 +141,7 @@ impl Hub {
     }
 
     /// Takes what the source has and passes it on. Readers are called with no lock held.
-    fn pump(&self) {
+    pub fn pump(&self) {
         let Some(node) = self.node.upgrade() else {
             return;
         };

@@ -256,6 +256,11 @@ impl Node {
     fn open_origin(self: &Arc<Self>, on_ready: &Weak<dyn Ready>) -> Result<Opened, Error> {
         let by_kind = device::is_shared(&self.description.source)?;
         if self.description.share.unwrap_or(by_kind) {
+            // What came before, an end included, is for those who were there before.
+            let running = lock(&self.hub).upgrade();
+            if let Some(hub) = running {
+                hub.pump();
+            }
             let mut slot = lock(&self.hub);
             let hub = match slot.upgrade() {
                 Some(hub) => hub,

@@ -78,7 +78,10 @@ fn the_same_source_is_compiled_once_wherever_it_stands() {
     // A compiler that leaves a mark each time it runs.
     board.file(
         "cc",
-        "#!/bin/sh\necho run >> \"$(dirname \"$0\")/runs\"\nexec cc \"$@\"\n",
+        format!(
+            "#!/bin/sh\necho run >> \"$(dirname \"$0\")/runs\"\nexec {} \"$@\"\n",
+            harness::tools::c_compiler()
+        ),
     );
     std::fs::set_permissions(
         board.path("cc"),

@@ -69,6 +69,23 @@ for round in (b'aaaa', b'bbbb', b'cccc'):
 }
 
 #[test]
+fn who_opens_after_the_end_sees_neither_it_nor_what_came_before() {
+    with_pipe(
+        "for turn in range(200):
+    old, pipe = open_ro(M + '/n/device'), feed('in')
+    os.write(pipe, b'past')
+    os.close(pipe)
+    new = open_ro(M + '/n/device', os.O_NONBLOCK)
+    expect('EAGAIN', os.read, new, 4)
+    assert os.read(old, 8) == b'past'
+    assert os.read(old, 8) == b''
+    os.close(old)
+    os.close(new)
+",
+    );
+}
+
+#[test]
 fn no_writer_yet_is_no_end() {
     with_pipe(
         "fd = open_ro(M + '/n/device', os.O_NONBLOCK)
