@@ -1,7 +1,7 @@
 //! The process that serves one mount, from its first configuration to its end.
 //!
-//! Owns the order of things: serving starts before the configuration runs, because making a Lua state can wait for
-//! the kernel's random numbers on a freshly booted board; actuators come to rest before the process ends. The
+//! Owns the order of things: serving starts before the configuration runs, which may take long when it compiles C;
+//! actuators come to rest before the process ends. The
 //! guardian, which is another process, mounts before and unmounts after.
 
 use crate::convert::shared::Cache;

@@ -60,6 +60,14 @@ fn a_compiled_endless_loop_is_ended() {
 }
 
 #[test]
+fn loops_are_compiled_on_this_processor() {
+    let loops =
+        "local x = 0 for i = 1, 1000 do x = x + i end assert(jit.status(), 'the compiler is off')
+        assert(require('jit.util').traceinfo(1), 'nothing was compiled')";
+    assert_eq!(State::new().run(5_000_000, loops), Ok(()));
+}
+
+#[test]
 fn pcall_cannot_swallow_the_end() {
     ends_in_time("while true do pcall(function() while true do end end) end");
     ends_in_time("while true do pcall(coroutine.wrap(function() while true do end end)) end");
