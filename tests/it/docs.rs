@@ -24,7 +24,7 @@ pub fn documents() -> Vec<PathBuf> {
     .iter()
     .map(|name| root().join(name))
     .collect();
-    let mut folders = vec![root().join("docs")];
+    let mut folders = vec![root().join("docs"), root().join("cross")];
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();

@@ -272,6 +272,29 @@ fn there_are_no_atomics_that_the_controller_lacks() {
 }
 
 #[test]
+fn only_the_cross_build_names_its_target() {
+    // In two pieces, so that this file does not name it either.
+    let name = ["arm", "v5te"].concat();
+    let mut complaints = Vec::new();
+    let manifests = CRATES.map(|name| root().join(name).join("Cargo.toml"));
+    let others = ["Cargo.toml", ".cargo/config.toml", ".ci/run"].map(|name| root().join(name));
+    let here = root().join("cross");
+    let documents = crate::docs::documents();
+    let documents = documents.iter().filter(|path| !path.starts_with(&here));
+    let mut files: Vec<PathBuf> = manifests.into_iter().chain(others).collect();
+    files.extend(documents.cloned());
+    files.extend(sources().iter().map(|source| root().join(&source.path)));
+    for path in files {
+        let text = std::fs::read_to_string(&path)
+            .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        if text.contains(&name) {
+            complaints.push(format!("{}: names the cross target", path.display()));
+        }
+    }
+    none(&complaints);
+}
+
+#[test]
 fn every_module_is_named_in_the_map() {
     let map = std::fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
     let words: BTreeSet<&str> = map
@@ -312,7 +335,7 @@ fn every_path_that_a_document_names_exists() {
             for quoted in line.split('`').skip(1).step_by(2) {
                 let looks_like_ours = CRATES
                     .iter()
-                    .chain(&["docs", ".ci"])
+                    .chain(&["docs", "cross", ".ci"])
                     .any(|name| quoted.starts_with(&format!("{name}/")));
                 let is_plain = quoted
                     .chars()

@@ -5,6 +5,8 @@
 //! service manager.
 
 mod edit;
+#[cfg(feature = "manual")]
+mod manual;
 mod notify;
 mod paths;
 mod run;
@@ -13,8 +15,7 @@ use crate::check::SearchPaths;
 use crate::daemon::Transport;
 use crate::guardian::inherit::Handover;
 use crate::mount::{self, Unmounted};
-use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
-use clap_complete::Shell;
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use config::problem::Problem;
 use std::ffi::OsString;
 use std::io::{self, IsTerminal, Write};
@@ -72,11 +73,13 @@ enum Command {
         mountpoint: PathBuf,
     },
     /// Print a completion script for a shell.
+    #[cfg(feature = "manual")]
     Completions {
         /// The shell.
-        shell: Shell,
+        shell: clap_complete::Shell,
     },
     /// Print the manual page, of the program or of one command, for example: trikfs man mount | man -l -
+    #[cfg(feature = "manual")]
     Man {
         /// The command.
         command: Option<String>,
@@ -238,12 +241,10 @@ fn perform(command: Command) -> Result<(), Failure> {
             Err(error) => Err(Failure::Reason(error.to_string())),
         },
         Command::Edit { mountpoint } => edit::edit(&mountpoint).map_err(Failure::Reason),
-        Command::Completions { shell } => {
-            let mut text = Vec::new();
-            clap_complete::generate(shell, &mut Cli::command(), "trikfs", &mut text);
-            print(&text)
-        }
-        Command::Man { command } => manual(command.as_deref()),
+        #[cfg(feature = "manual")]
+        Command::Completions { shell } => print(&manual::completions(shell)),
+        #[cfg(feature = "manual")]
+        Command::Man { command } => print(&manual::page(command.as_deref())?),
     }
 }
 
@@ -270,26 +271,6 @@ fn progress(line: &str) {
     if io::stderr().is_terminal() {
         let _ = writeln!(io::stderr(), "{line}");
     }
-}
-
-fn manual(name: Option<&str>) -> Result<(), Failure> {
-    let mut program = Cli::command();
-    // Gives the commands their full names and the help options that a parse would give them.
-    program.build();
-    let page = match name {
-        None => program,
-        Some(name) => program
-            .find_subcommand(name)
-            .filter(|command| !command.is_hide_set())
-            .cloned()
-            .map(|command| command.display_name(format!("trikfs-{name}")))
-            .ok_or_else(|| format!("there is no command {name}"))?,
-    };
-    let mut text = Vec::new();
-    clap_mangen::Man::new(page)
-        .render(&mut text)
-        .map_err(|error| error.to_string())?;
-    print(&text)
 }
 
 /// Standard output; a reader that has seen enough is no failure.

@@ -1,6 +1,7 @@
 //! The words of the command line; what they do is tested where it is done.
 
 use super::*;
+use clap::CommandFactory;
 use clap::error::ErrorKind;
 
 fn parse(line: &[&str]) -> Result<Command, clap::Error> {
@@ -114,7 +115,9 @@ fn the_help_shows_every_command_but_serve_and_how_to_begin() {
         "convert",
         "umount",
         "edit",
+        #[cfg(feature = "manual")]
         "completions",
+        #[cfg(feature = "manual")]
         "man",
         "Examples:",
         "Exit status:",

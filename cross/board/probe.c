@@ -1,0 +1,155 @@
+/* What the shell of the emulated board cannot do: poll, hold files open, count, press a key. Each command prints one
+ * line and exits with 0, or says on standard error what went wrong and exits with 1. */
+#define _GNU_SOURCE
+#include <errno.h>
+#include <fcntl.h>
+#include <linux/uinput.h>
+#include <poll.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <sys/random.h>
+#include <time.h>
+#include <unistd.h>
+
+static int fail(const char *what)
+{
+	perror(what);
+	return 1;
+}
+
+static double now_ns(void)
+{
+	struct timespec at;
+
+	clock_gettime(CLOCK_MONOTONIC, &at);
+	return at.tv_sec * 1e9 + at.tv_nsec;
+}
+
+/* poll FILE MS: nothing to read at first, then something within the time. */
+static int wait_for(const char *path, int ms)
+{
+	struct pollfd watched = { .fd = open(path, O_RDONLY | O_NONBLOCK), .events = POLLIN };
+	char byte[64];
+
+	if (watched.fd < 0)
+		return fail(path);
+	if (poll(&watched, 1, 0) != 0) {
+		fprintf(stderr, "%s: ready before anything came\n", path);
+		return 1;
+	}
+	printf("waiting\n");
+	fflush(stdout);
+	if (poll(&watched, 1, ms) != 1 || !(watched.revents & POLLIN)) {
+		fprintf(stderr, "%s: nothing within %d ms\n", path, ms);
+		return 1;
+	}
+	ssize_t got = read(watched.fd, byte, sizeof byte);
+	if (got < 0)
+		return fail(path);
+	printf("woke with %zd bytes, the first is %d\n", got, byte[0]);
+	return 0;
+}
+
+/* reads FILE COUNT SIZE: nanoseconds for one read, the least of ten rounds. */
+static int time_reads(const char *path, int count, size_t size)
+{
+	char bytes[4096];
+	double best = 1e18;
+	int file = open(path, O_RDONLY);
+
+	if (file < 0)
+		return fail(path);
+	for (int round = 0; round < 10; round++) {
+		double start = now_ns();
+
+		for (int i = 0; i < count; i++)
+			if (pread(file, bytes, size, 0) != (ssize_t)size)
+				return fail("pread");
+		double each = (now_ns() - start) / count;
+		if (each < best)
+			best = each;
+	}
+	printf("%.0f\n", best);
+	return 0;
+}
+
+/* hold FILE COUNT: opens it so often, reads each 100 times, says so and waits for the end of standard input. */
+static int hold(const char *path, int count)
+{
+	char bytes[4];
+
+	for (int i = 0; i < count; i++) {
+		int file = open(path, O_RDONLY);
+
+		if (file < 0)
+			return fail(path);
+		for (int turn = 0; turn < 100; turn++)
+			if (pread(file, bytes, sizeof bytes, 0) != sizeof bytes)
+				return fail("pread");
+	}
+	printf("holding %d\n", count);
+	fflush(stdout);
+	return read(0, bytes, 1) < 0;
+}
+
+static int emit(int file, int type, int code, int value)
+{
+	struct input_event event = { .type = type, .code = code, .value = value };
+
+	return write(file, &event, sizeof event) == sizeof event ? 0 : fail("uinput");
+}
+
+/* keyboard: makes an input device with ENTER, presses and releases the key at each line of standard input. */
+static int keyboard(void)
+{
+	struct uinput_setup setup = { .id = { .bustype = BUS_VIRTUAL }, .name = "board keys" };
+	int file = open("/dev/uinput", O_WRONLY);
+
+	if (file < 0)
+		return fail("/dev/uinput");
+	if (ioctl(file, UI_SET_EVBIT, EV_KEY) || ioctl(file, UI_SET_KEYBIT, KEY_ENTER) ||
+	    ioctl(file, UI_DEV_SETUP, &setup) || ioctl(file, UI_DEV_CREATE))
+		return fail("uinput");
+	printf("made\n");
+	fflush(stdout);
+	for (int c; (c = getchar()) != EOF;)
+		if (c == '\n')
+			for (int value = 1; value >= 0; value--)
+				if (emit(file, EV_KEY, KEY_ENTER, value) || emit(file, EV_SYN, SYN_REPORT, 0))
+					return 1;
+	return 0;
+}
+
+/* entropy: whether the kernel has random numbers already. */
+static int entropy(void)
+{
+	char byte;
+
+	if (getrandom(&byte, 1, GRND_NONBLOCK) == 1)
+		printf("yes\n");
+	else if (errno == EAGAIN)
+		printf("no\n");
+	else
+		return fail("getrandom");
+	return 0;
+}
+
+int main(int argc, char **argv)
+{
+	const char *command = argc > 1 ? argv[1] : "";
+
+	if (!strcmp(command, "poll") && argc == 4)
+		return wait_for(argv[2], atoi(argv[3]));
+	if (!strcmp(command, "reads") && argc == 5)
+		return time_reads(argv[2], atoi(argv[3]), atoi(argv[4]));
+	if (!strcmp(command, "hold") && argc == 4)
+		return hold(argv[2], atoi(argv[3]));
+	if (!strcmp(command, "keyboard") && argc == 2)
+		return keyboard();
+	if (!strcmp(command, "entropy") && argc == 2)
+		return entropy();
+	fprintf(stderr, "probe: poll FILE MS | reads FILE COUNT SIZE | hold FILE COUNT | keyboard | entropy\n");
+	return 2;
+}

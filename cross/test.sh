@@ -1,0 +1,63 @@
+#!/usr/bin/env bash
+# Tries the build for the controller on this PC, with the controller's processor emulated.
+#
+# usage: cross/test.sh [unit|mount] [NAME...]
+#
+#   unit    each crate's own tests, built for the controller
+#   mount   the programs of cross/build.sh on real mounts: the integration tests of this PC start them through
+#           binfmt_misc and speak to them over the PC's /dev/fuse; C converters are compiled for the controller
+#
+# Without arguments both. Further names choose tests, as with cargo test. It may register qemu for ARM programs, as
+# root, and says so.
+set -euo pipefail
+. "$(dirname "$0")/lib.sh"
+help_if_asked "$@"
+
+main() {
+    local what=${1:-all}
+    case $what in
+    unit | mount) shift ;;
+    all) ;;
+    *)
+        printf 'test.sh: there are no tests %s; see --help\n' "$what" >&2
+        exit 2
+        ;;
+    esac
+    need_toolchain
+    need_emulation
+    export QEMU_CPU=$cpu QEMU_LD_PREFIX=$sysroot
+    [ "$what" = mount ] || unit "$@"
+    [ "$what" = unit ] || mount_tests "$@"
+}
+
+# Interpreted instructions take some ten times as long, so the random trials are fewer.
+unit() {
+    say "unit tests"
+    PROPTEST_CASES=${PROPTEST_CASES:-32} cross_cargo test --lib -p config -p filters -p trikfs -- "$@"
+}
+
+mount_tests() {
+    local program=$out/robot/bin/trikfs
+    [ -x "$program" ] || die "there are no programs for the controller" "run cross/build.sh first"
+    say "the robot's programs start and ask for no random numbers that may be late"
+    no_random_numbers "$program"
+    say "integration tests on real mounts"
+    local tests
+    tests=$(cd "$root" && cargo test --quiet -p tests --test it --no-run --message-format=json |
+        sed -n 's/.*"executable":"\([^"]*\/it-[^"]*\)".*/\1/p')
+    [ -x "$tests" ] || die "cargo built no integration tests" "try: cargo test -p tests --test it --no-run"
+    (cd "$root/tests" && TRIKFS_UNDER_TEST=$program CC=$arm_gcc "$tests" "$@")
+}
+
+# A board without a source of randomness has no random numbers for minutes after it started, and getrandom without
+# flags waits for them.
+no_random_numbers() {
+    local calls
+    calls=$(CC=$arm_gcc "$qemu" -strace "$1" check "$root/config/lua/hello.lua" 2>&1 || true)
+    grep -q 'hello.lua: good' <<<"$calls" || die "trikfs check failed on the controller's processor" "${calls: -400}"
+    if grep -E 'getrandom\([^)]*,0\)' <<<"$calls"; then
+        die "trikfs waits for random numbers" "is LuaJIT built with the flags of .cargo/config.toml?"
+    fi
+}
+
+main "$@"
