@@ -14,16 +14,21 @@ updated=
 update_once() {
     if [ -z "$updated" ]; then
         updated=yes
-        as_root apt-get "${apt_options[@]}" update -qq || note "apt-get update failed: going on with what it knew before"
+        as_root apt-get "${apt_options[@]}" -o APT::Update::Error-Mode=any update -qq ||
+            note "apt-get update failed: is the network there? going on with what it knew before"
     fi
 }
 
 # available NAME VERSION: whether the archive has it, after asking it anew if it seems not to.
 available() {
-    apt-cache "${apt_options[@]}" show "$1=$2" >/dev/null 2>&1 || {
+    listed "$1" "$2" || {
         update_once
-        apt-cache "${apt_options[@]}" show "$1=$2" >/dev/null 2>&1
+        listed "$1" "$2"
     }
+}
+
+listed() {
+    apt-cache "${apt_options[@]}" madison "$1" 2>/dev/null | awk -v version="$2" '$3 == version { found = 1 } END { exit !found }'
 }
 
 # have_deb NAME SHA256: it was downloaded before and is still what it was.
@@ -73,8 +78,11 @@ fetch() {
             download "$name" "$version" "$sum"
         else
             candidate=$(apt-cache "${apt_options[@]}" policy "$name" | awk '$1 == "Candidate:" { print $2 }')
-            note "$name $version has left the archive: trying ${candidate:-nothing}"
-            download "$name" "${candidate:-$version}" any
+            if [ -z "$candidate" ] || [ "$candidate" = "(none)" ]; then
+                die "the archive, as far as apt-get knows it, has no $name" "is the network there?"
+            fi
+            note "the archive does not have $name $version any more: trying $candidate"
+            download "$name" "$candidate" any
             note "if everything passes with it, put this into $1:"
             printf '%s %s %s %s\n' "$2" "$name" "$candidate" "$downloaded"
         fi

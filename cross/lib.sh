@@ -81,7 +81,7 @@ installed() {
 
 # Ends unless toolchain.sh has done its work for the packages file of now.
 need_toolchain() {
-    need cargo "rustup, see https://rustup.rs"
+    command -v cargo >/dev/null || die "cargo is missing" "install it with rustup: https://rustup.rs"
     need "$arm_gcc" gcc-arm-linux-gnueabi
     need i686-linux-gnu-gcc gcc-i686-linux-gnu
     need make make

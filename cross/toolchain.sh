@@ -42,7 +42,7 @@ install_packages() {
         elif available "$name" "$version"; then
             want+=("$name=$version")
         else
-            note "$name $version has left the archive: trying the current one"
+            note "the archive does not have $name $version any more: trying the current one"
             want+=("$name")
         fi
     done < <(rows "$packages" install)
@@ -70,7 +70,7 @@ unpack_compiler() {
     local name version sum files=() moved=
     while read -r name version sum; do
         if ! have_deb "$name" "$sum" && ! available "$name" "$version"; then
-            note "$name $version has left the archive"
+            note "the archive does not have $name $version any more"
             moved=yes
         fi
     done < <(rows "$packages" unpack)
@@ -97,9 +97,11 @@ unpack_compiler() {
 
 # The compiler that the archive has now, if the pinned one is gone; says what to write into cross/packages.
 current_compiler() {
-    local names name version lines=() downloaded=
-    names="rustc-web rust-web-src $(apt-cache depends --recurse --no-recommends --no-suggests --no-conflicts --no-breaks \
-        --no-replaces --no-enhances rustc-web 2>/dev/null | grep -oE '^(libstd-rust-web-[a-z0-9.]+|libllvm[0-9]+)$' | sort -u | tr '\n' ' ')"
+    local needed names name version lines=() downloaded=
+    needed=$(apt-cache depends --recurse --no-recommends --no-suggests --no-conflicts --no-breaks \
+        --no-replaces --no-enhances rustc-web 2>/dev/null | grep -oE '^(libstd-rust-web-[a-z0-9.]+|libllvm[0-9]+)$' | sort -u | tr '\n' ' ') ||
+        die "Debian's archive, as far as apt-get knows it, has no rustc-web" "is the network there, and bookworm-security in /etc/apt/sources.list?"
+    names="rustc-web rust-web-src $needed"
     say "trying the current ones: $names"
     for name in $names; do
         version=$(apt-cache policy "$name" | awk '$1 == "Candidate:" { print $2 }')
