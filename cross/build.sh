@@ -10,11 +10,7 @@ help_if_asked "$@"
 no_arguments "$@"
 need_toolchain
 
-crates=()
-for crate in "${robot_crates[@]}"; do
-    crates+=(-p "$crate")
-done
-cross_cargo build --profile robot --no-default-features "${crates[@]}"
+cross_cargo build --profile robot --no-default-features "${robot_crates[@]}"
 
 . "$root/cross/install/stage.sh"
 stage "$out/build/$target/robot" "$out/robot" "$arm_gcc"

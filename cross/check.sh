@@ -9,8 +9,4 @@ help_if_asked "$@"
 no_arguments "$@"
 need_toolchain
 
-crates=()
-for crate in "${robot_crates[@]}"; do
-    crates+=(-p "$crate")
-done
-cross_cargo check --no-default-features "${crates[@]}"
+cross_cargo check --no-default-features "${robot_crates[@]}"

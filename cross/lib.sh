@@ -12,8 +12,8 @@ sysroot=/usr/arm-linux-gnueabi
 arm_gcc=arm-linux-gnueabi-gcc
 qemu="qemu-arm-static"
 cpu=arm926
-# The crates whose products run on the robot; `filters` is a shared library.
-robot_crates=(trikfs filters)
+# The crates whose products run on the robot, for cargo; `filters` is a shared library.
+robot_crates=(-p trikfs -p filters)
 
 say() { printf '\n== %s\n' "$*"; }
 note() { printf '%s\n' "$*"; }
