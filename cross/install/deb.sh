@@ -1,0 +1,120 @@
+#!/usr/bin/env bash
+# Builds trikfs for this PC and packs it as a Debian package.
+#
+# usage: cross/install/deb.sh [--no-build]
+#
+#   --no-build   pack what cargo has built before
+#
+# The result is target/cross/packages/trikfs_VERSION_ARCHITECTURE.deb, for the Debian release of this PC and later ones.
+# cross/install/README.md says how to install it. CARGO_TARGET_DIR, DEBFULLNAME and DEBEMAIL are respected.
+set -euo pipefail
+# shellcheck source=cross/lib.sh
+. "$(dirname "$0")/../lib.sh"
+help_if_asked "$@"
+build=yes
+if [ "${1:-}" = --no-build ]; then
+    build=
+    shift
+fi
+no_arguments "$@"
+# shellcheck source=cross/install/package.sh
+. "$root/cross/install/package.sh"
+# shellcheck source=cross/install/stage.sh
+. "$root/cross/install/stage.sh"
+
+from=$root/cross/install/deb
+built=${CARGO_TARGET_DIR:-$root/target}/release
+work=
+
+main() {
+    command -v cargo >/dev/null || die "cargo is missing" "install it with rustup: https://rustup.rs"
+    need dpkg-deb dpkg
+    need gcc gcc
+    need_packages dpkg-dev binutils
+    if [ -n "$build" ]; then
+        say "building for this PC"
+        (cd "$root" && cargo build --release -p trikfs -p filters --locked)
+    fi
+    [ -x "$built/trikfs" ] || die "$built/trikfs is missing" "run this without --no-build"
+    mkdir -p "$packages"
+    work=$(mktemp -d)
+    trap 'rm -rf "$work"' EXIT
+    # dpkg-shlibdeps reads debian/control in the folder it runs in.
+    mkdir -p "$work/debian"
+    sed "s/@MAINTAINER@/$maintainer/" "$from/control" >"$work/debian/control"
+    changelog >"$work/debian/changelog"
+    local package=$work/debian/trikfs
+    make_tree "$package"
+    make_docs "$package/usr/share"
+    make_control "$package"
+    pack "$package"
+}
+
+make_tree() {
+    local tree=$1
+    stage "$built" "$tree/usr" gcc
+    find "$tree/usr" -type f \( -name '*.so' -o -path '*/bin/*' \) -exec strip --strip-unneeded \
+        --remove-section=.comment --remove-section=.note {} +
+    install -D -m 644 "$root/cross/install/robot.lua" "$tree/etc/trikfs/robot.lua"
+    install -D -m 644 "$from/trikfs.service" "$tree/lib/systemd/system/trikfs.service"
+    install -D -m 644 "$from/overrides" "$tree/usr/share/lintian/overrides/trikfs"
+}
+
+make_docs() {
+    local share=$1 trikfs=$built/trikfs doc=$1/doc/trikfs command
+    mkdir -p "$share/man/man1" "$doc"
+    "$trikfs" man | gzip -9n >"$share/man/man1/trikfs.1.gz"
+    for command in $(commands); do
+        "$trikfs" man "$command" | gzip -9n >"$share/man/man1/trikfs-$command.1.gz"
+    done
+    completion bash "$share/bash-completion/completions/trikfs"
+    completion zsh "$share/zsh/vendor-completions/_trikfs"
+    completion fish "$share/fish/vendor_completions.d/trikfs.fish"
+    install -m 644 "$from/copyright" "$doc"
+    gzip -9n <"$work/debian/changelog" >"$doc/changelog.gz"
+    install -m 644 "$root"/docs/user/*.md "$doc"
+}
+
+# The commands that the help names.
+commands() {
+    "$built/trikfs" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]\{1,\}\) .*/\1/p' | grep -vx help
+}
+
+completion() {
+    mkdir -p "$(dirname "$2")"
+    "$built/trikfs" completions "$1" >"$2"
+}
+
+# The newest section of CHANGELOG.md that says something, as Debian wants it.
+changelog() {
+    printf 'trikfs (%s) unstable; urgency=medium\n\n' "$version"
+    awk '/^## / { if (said) exit; next }
+        /^### / { if (said) print ""; print "  [ " substr($0, 5) " ]"; next }
+        /^- / { print "  * " substr($0, 3); said = 1 }' "$root/CHANGELOG.md" | tr -d '`' |
+        fold -s -w 74 | sed -e 's/ *$//' -e 's/^\([^ ]\)/    \1/'
+    printf '\n -- %s  %s\n' "$maintainer" "$(date -u -R -d "@$SOURCE_DATE_EPOCH")"
+}
+
+make_control() {
+    local tree=$1 arch script
+    mkdir "$tree/DEBIAN"
+    for script in postinst prerm postrm; do
+        install -m 755 "$from/$script" "$tree/DEBIAN/$script"
+    done
+    echo /etc/trikfs/robot.lua >"$tree/DEBIAN/conffiles"
+    (cd "$work" && dpkg-shlibdeps -O debian/trikfs/usr/bin/trikfs debian/trikfs/usr/lib/trikfs/*.so) >"$work/substvars"
+    arch=$(dpkg --print-architecture)
+    (cd "$work" && dpkg-gencontrol -ptrikfs -T"$work/substvars" -Pdebian/trikfs -v"$version" \
+        -DArchitecture="$arch")
+    (cd "$tree" && find . -path ./DEBIAN -prune -o -type f -printf '%P\n' | sort | xargs md5sum) >"$tree/DEBIAN/md5sums"
+}
+
+pack() {
+    local file
+    file=$packages/trikfs_${version}_$(dpkg --print-architecture).deb
+    # Times that are later than SOURCE_DATE_EPOCH become that.
+    dpkg-deb --root-owner-group --build "$1" "$file" >/dev/null
+    made "$file"
+}
+
+main
