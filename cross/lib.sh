@@ -5,6 +5,10 @@
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 # Everything that is made or downloaded is below this folder and can be deleted at any time.
 out=${TRIK_CROSS_DIR:-$root/target/cross}
+case $out in
+/*) ;;
+*) out=$PWD/$out ;;
+esac
 toolchain=$out/toolchain
 target=armv5te-unknown-linux-gnueabi
 # The controller's C library, compiler and processor.
@@ -89,8 +93,25 @@ need_toolchain() {
         die "the controller's C headers are missing" "cross/toolchain.sh installs them; by hand: apt-get install libc6-dev-armel-cross"
     [ -x "$toolchain/rustc" ] ||
         die "the cross compiler for Rust is missing" "run cross/toolchain.sh once"
+    compiler_is_whole || die "the cross compiler for Rust in $toolchain is damaged" "delete that folder and run cross/toolchain.sh again"
     [ "$(cat "$toolchain/made-for" 2>/dev/null)" = "$(packages_hash)" ] ||
         die "the cross compiler for Rust is not that of cross/packages" "run cross/toolchain.sh again"
+}
+
+# Whether what toolchain.sh unpacked starts and has the sources of its standard library.
+compiler_is_whole() {
+    "$toolchain/rustc" --version >/dev/null 2>&1 && [ -e "$toolchain/debian/usr/lib/rustlib/src/rust/library/std/Cargo.toml" ]
+}
+
+# lock: one script at a time changes the folder of everything that is made.
+lock() {
+    mkdir -p "$out" 2>/dev/null || true
+    [ -w "$out" ] || die "$out cannot be written" "is it somebody else's? name another folder in TRIK_CROSS_DIR"
+    exec 9>"$out/lock"
+    flock -n 9 || {
+        note "waiting for another script of cross/"
+        flock 9
+    }
 }
 
 packages_hash() {
@@ -102,7 +123,9 @@ cross_cargo() {
     local command=$1
     shift
     # The standard library is made from source, which a released compiler does only when it is told so.
-    (cd "$root" && RUSTC="$toolchain/rustc" RUSTC_BOOTSTRAP=1 CARGO_TARGET_DIR="$out/build" \
+    # What is meant for the PC does not reach the controller: cargo.toml and .cargo/config.toml have all flags.
+    (cd "$root" && unset CC CXX AR RUSTFLAGS CARGO_ENCODED_RUSTFLAGS RUSTC_WRAPPER TARGET_CC TARGET_CFLAGS &&
+        RUSTC="$toolchain/rustc" RUSTC_BOOTSTRAP=1 CARGO_TARGET_DIR="$out/build" \
         cargo "$command" --config cross/cargo.toml --locked "$@")
 }
 

@@ -21,12 +21,7 @@ main() {
     if ! command -v apt-get >/dev/null || ! command -v dpkg >/dev/null; then
         die "apt-get and dpkg are missing" "the compiler comes from Debian 12: use such a machine or a container"
     fi
-    mkdir -p "$out"
-    exec 9>"$out/lock"
-    flock -n 9 || {
-        note "waiting for another toolchain.sh"
-        flock 9
-    }
+    lock
     install_packages
     unpack_compiler
     say "ready: $("$toolchain/rustc" --version)"
@@ -65,7 +60,8 @@ tell_version() {
 
 unpack_compiler() {
     if [ -x "$toolchain/rustc" ] && [ "$(cat "$toolchain/made-for" 2>/dev/null)" = "$(packages_hash)" ]; then
-        return
+        compiler_is_whole && return
+        note "the compiler in $toolchain is damaged: unpacking it again"
     fi
     local name version sum files=() moved=
     while read -r name version sum; do
@@ -132,8 +128,7 @@ check_compiler() {
     need=$(awk -F '"' '/^rust-version/ { print $2 }' "$root/Cargo.toml")
     [ "$(printf '%s\n' "$need" "$have" | sort -V | head -n 1)" = "$need" ] ||
         die "the archive has Rust $have, and the project needs $need or later" "Debian's security updates have a newer one: see /etc/apt/sources.list"
-    [ -e "$toolchain/debian/usr/lib/rustlib/src/rust/library/std/Cargo.toml" ] ||
-        die "the sources of the standard library are not with the compiler $have"
+    compiler_is_whole || die "the sources of the standard library are not with the compiler $have"
 }
 
 main

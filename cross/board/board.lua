@@ -13,7 +13,8 @@ trikfs = {
   -- The same through a shared library.
   scaled = {
     src = fake{ data = '\1\0\0\0', loop = true }, input_tuple_size = 4,
-    format = 'i32 length', units = 'mm', converter = filter.scale{ x0 = 0, y0 = 100, x1 = 1, y1 = 107 },
+    format = 'i32 length', units = 'mm',
+    converter = 'libtrikfs_filters.so#scale', params = { x0 = 0, y0 = 100, x1 = 1, y1 = 107 },
   },
   hello = { src = '/dev/zero', input_tuple_size = 4, output_tuple_size = 4, converter = 'libhello.so' },
   -- Events: a pipe and an input device.

@@ -3,8 +3,8 @@
 #
 # usage: cross/board/run.sh
 #
-# Builds what is missing: the kernel once (3 to 10 minutes), the memory disk each time. Prints what the board says;
-# succeeds if every line of it is ok and it came to its end. cross/build.sh comes first.
+# Builds what is missing: the programs, the kernel (once, 2 to 10 minutes), the memory disk. Prints what the board says;
+# succeeds if every line of it is ok and it came to its end. cross/toolchain.sh comes first, once.
 set -euo pipefail
 . "$(dirname "$0")/../lib.sh"
 help_if_asked "$@"
@@ -18,8 +18,11 @@ clock=(-icount "shift=0,align=off,sleep=off")
 limit_s=300
 
 main() {
-    [ -x "$out/robot/bin/trikfs" ] || die "there are no programs for the board" "run cross/build.sh first"
     need "$arm_gcc" gcc-arm-linux-gnueabi
+    need "$qemu" qemu-user-static
+    # Fast when nothing has changed.
+    "$root/cross/build.sh"
+    lock
     need_packages qemu-system-arm bc bison flex libelf-dev libssl-dev xz-utils cpio
     mkdir -p "$work"
     kernel
@@ -30,7 +33,7 @@ main() {
 kernel() {
     local key source
     key=$(cat "$here/kernel.config" "$here/packages" | sha256sum | cut -d ' ' -f 1)
-    if [ "$(cat "$work/kernel/made-for" 2>/dev/null)" = "$key" ]; then
+    if [ "$(cat "$work/kernel/made-for" 2>/dev/null)" = "$key $(kernel_hash)" ]; then
         return
     fi
     fetch "$here/packages" source
@@ -47,8 +50,12 @@ kernel() {
     "${source[@]}" "-j$(nproc)" zImage dtbs >>"$work/kernel/log" 2>&1 ||
         die "the kernel does not build" "see $work/kernel/log"
     cp "$work/source/arch/arm/boot/zImage" "$work/source/arch/arm/boot/dts/versatile-pb.dtb" "$work/kernel"
+    echo "$key $(kernel_hash)" >"$work/kernel/made-for"
     rm -rf "$work/source"
-    echo "$key" >"$work/kernel/made-for"
+}
+
+kernel_hash() {
+    cat "$work/kernel/zImage" "$work/kernel/versatile-pb.dtb" 2>/dev/null | sha256sum | cut -d ' ' -f 1
 }
 
 # An option that the kernel does not know any more, or that needs another, is dropped without a word.
@@ -61,14 +68,15 @@ kernel_has_what_it_should() {
 
 # The root file system: busybox, the C library, the programs as they are installed, and the trial itself.
 memory_disk() {
-    local disk=$work/disk lib
+    local disk=$work/disk lib tool tools
     foreign_archive armel
     fetch "$here/packages" armel
     rm -rf "$disk"
     mkdir -p "$disk"/{bin,dev,etc,lib,proc,sys,tmp,usr}
     dpkg -x "${files[0]}" "$work/busybox"
     cp "$work/busybox/bin/busybox" "$disk/bin/busybox"
-    for tool in $("$qemu" "$disk/bin/busybox" --list); do
+    tools=$("$qemu" "$disk/bin/busybox" --list) || die "$qemu cannot run busybox"
+    for tool in $tools; do
         [ "$tool" = busybox ] || ln -sf busybox "$disk/bin/$tool"
     done
     for lib in ld-linux.so.3 libc.so.6 libm.so.6 libgcc_s.so.1; do
