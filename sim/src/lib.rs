@@ -4,9 +4,22 @@
 //! opens them cannot tell them from the real ones but by their kind of file. Behind the connectors is a
 //! [`body::Body`]. This crate knows no filesystem of ours and no configuration: the devices are the contract.
 
+mod attributes;
+pub mod board;
 pub mod body;
+mod bus;
+mod faults;
+mod fifo;
+mod files;
 pub mod geometry;
-pub mod limits;
-pub mod random;
+mod limits;
+pub mod machine;
+mod msp430;
+mod random;
 pub mod robots;
+mod root;
+#[cfg(test)]
+mod scratch;
+mod shared;
+mod sysfs;
 pub mod world;

@@ -164,7 +164,7 @@ impl Body for TwoWheels {
         let touch = if self.touches { 20.0 } else { 1000.0 };
         Senses {
             pose: self.pose,
-            encoders_deg: self.motors.map(|motor| motor.angle_deg),
+            encoders_deg: self.shafts_deg(),
             analog: [
                 Some(self.sharp()),
                 None,
@@ -186,6 +186,10 @@ impl Body for TwoWheels {
             ],
             rate_dps: [0.0, 0.0, self.rate_rad_s.to_degrees()],
         }
+    }
+
+    fn shafts_deg(&self) -> [f64; 4] {
+        self.motors.map(|motor| motor.angle_deg)
     }
 
     fn range_m(&self, clockwise_rad: f64) -> Option<f64> {
