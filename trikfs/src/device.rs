@@ -2,7 +2,8 @@
 //!
 //! Owns the traits, the decision which of them a description gets, and nothing else. Each kind of device is one
 //! file below; only those files open device nodes. Nothing here knows converters, handles or the kernel's requests.
-//! A bus that needs more than a file (I2C, IIO, PWM) is one more file and one more arm of [`open`].
+//! A bus that needs more than a file (I2C, IIO, PWM) is one more file and one more arm of [`open`]; who uses a bus that
+//! may be slow finds it through [`bus_of`].
 
 pub mod attribute;
 pub mod chardev;
@@ -10,6 +11,7 @@ pub mod evdev;
 pub mod fake;
 pub mod faulty;
 pub mod fifo;
+pub mod i2c;
 pub mod linked;
 pub mod replay;
 pub mod several;
@@ -91,6 +93,8 @@ pub struct Surroundings {
     pub links: Vec<(String, Arc<Node>)>,
     /// How long a sink waits for a device that takes no bytes.
     pub timeout_ms: u32,
+    /// The I2C buses of the mount.
+    pub buses: Arc<i2c::bus::Buses>,
 }
 
 impl Surroundings {
@@ -124,7 +128,10 @@ pub fn open(
         }
         SourceDescription::Node(path) => linked::open(around.link(path)?),
         SourceDescription::Several(parts) => several::open(parts, around),
-        SourceDescription::I2c(i2c) => Err(Error::NoDevice(i2c.path.display().to_string())),
+        SourceDescription::I2c(i2c) => {
+            let register = i2c::Register::open(i2c, tuple_size, around.timeout_ms, &around.buses)?;
+            Ok(Device::State(Box::new(register)))
+        }
         SourceDescription::Absent(reason) => Err(Error::NoDevice(reason.clone())),
     }
 }
@@ -155,7 +162,11 @@ pub fn open_sink(
             faulty,
             open_sink(&faulty.source, around)?,
         ))),
-        SourceDescription::I2c(i2c) => Err(Error::NoDevice(i2c.path.display().to_string())),
+        SourceDescription::I2c(i2c) => {
+            // The size only matters for reading.
+            let register = i2c::Register::open(i2c, 0, around.timeout_ms, &around.buses)?;
+            Ok(Box::new(register))
+        }
         SourceDescription::Absent(reason) => Err(Error::NoDevice(reason.clone())),
         SourceDescription::Evdev(_)
         | SourceDescription::Fake(_)
@@ -206,6 +217,15 @@ pub fn paths(source: &SourceDescription) -> Vec<&Path> {
         SourceDescription::Fake(_) | SourceDescription::Node(_) | SourceDescription::Absent(_) => {
             Vec::new()
         }
+    }
+}
+
+/// The bus whose transfers a source waits for, if it is one alone: nodes of one bus are sampled by a thread of its own.
+pub fn bus_of(source: &SourceDescription) -> Option<&Path> {
+    match source {
+        SourceDescription::I2c(i2c) => Some(&i2c.path),
+        SourceDescription::Faulty(faulty) => bus_of(&faulty.source),
+        _ => None,
     }
 }
 
