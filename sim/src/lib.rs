@@ -8,7 +8,7 @@ mod attributes;
 pub mod board;
 pub mod body;
 mod bus;
-mod faults;
+pub mod faults;
 mod fifo;
 mod files;
 pub mod geometry;
