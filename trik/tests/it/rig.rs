@@ -249,9 +249,9 @@ impl Robot {
         self.home.run(&all).good()
     }
 
-    /// The byte with which the coprocessor drives a motor, read over the bus.
+    /// The byte with which the coprocessor drives a motor, with a probe at the chip: the bus cannot read it back.
     pub fn duty(&self, motor: u8) -> io::Result<i8> {
-        let byte = transfer(&self.devices.join("dev/i2c-2"), 0x48, &[0x13 + motor], 1)?[0];
+        let byte = probe(&self.devices.join("dev/i2c-2"), 0x48, &[0x13 + motor], 1)?[0];
         Ok(i8::from_le_bytes([byte]))
     }
 
@@ -322,8 +322,8 @@ fn only_child(pid: u32) -> u32 {
     found.unwrap_or(0)
 }
 
-/// One transaction on a virtual bus.
-pub fn transfer(bus: &Path, address: u16, out: &[u8], read: u16) -> io::Result<Vec<u8>> {
+/// What a probe sees at a chip of a virtual bus.
+fn probe(bus: &Path, address: u16, out: &[u8], read: u16) -> io::Result<Vec<u8>> {
     let client = socket(
         AddressFamily::Unix,
         SockType::SeqPacket,
@@ -333,7 +333,8 @@ pub fn transfer(bus: &Path, address: u16, out: &[u8], read: u16) -> io::Result<V
     connect(client.as_raw_fd(), &UnixAddr::new(bus)?)?;
     setsockopt(&client, ReceiveTimeout, &TimeVal::new(5, 0))?;
     let length = u16::try_from(out.len()).expect("short");
-    let mut packet = vec![1, 0];
+    // Version 1, and the flag of a probe.
+    let mut packet = vec![1, 1];
     for number in [address, length, read] {
         packet.extend(number.to_le_bytes());
     }
