@@ -38,13 +38,22 @@ impl Attributes {
 
     /// Makes a watched directory.
     pub fn folder(&mut self, name: &str) -> io::Result<()> {
-        let path = self.root.join(name);
-        std::fs::create_dir_all(&path)?;
         let flags = AddWatchFlags::IN_MODIFY
             | AddWatchFlags::IN_CLOSE_WRITE
             | AddWatchFlags::IN_MOVED_FROM
             | AddWatchFlags::IN_MOVED_TO
             | AddWatchFlags::IN_DELETE;
+        self.watched(name, flags)
+    }
+
+    /// Makes a directory for FIFOs: here it is news that a reader has left.
+    pub fn device_folder(&mut self, name: &str) -> io::Result<()> {
+        self.watched(name, AddWatchFlags::IN_CLOSE_NOWRITE)
+    }
+
+    fn watched(&mut self, name: &str, flags: AddWatchFlags) -> io::Result<()> {
+        let path = self.root.join(name);
+        std::fs::create_dir_all(&path)?;
         let watch = self.inotify.add_watch(&path, flags)?;
         self.folders.insert(watch, name.to_owned());
         Ok(())

@@ -96,7 +96,7 @@ impl Board {
         };
         let started = bus(1)
             .and_then(|first| Ok(vec![first, bus(2)?]))
-            .and_then(|buses| Files::start(root.path(), Arc::clone(&shared), buses));
+            .and_then(|buses| Files::start(root.path(), Arc::clone(&shared), buses, options.seed));
         match started {
             Ok(files) => Ok(Self {
                 shared,

@@ -71,6 +71,9 @@ pub trait Body: Send {
     /// The angles of [`Senses::encoders_deg`] alone: they are asked for after each step.
     fn shafts_deg(&self) -> [f64; 4];
 
+    /// Whether there is a lidar on the serial line.
+    fn has_lidar(&self) -> bool;
+
     /// What a lidar sees at this angle, clockwise from straight ahead; nothing without a lidar or an echo.
     fn range_m(&self, clockwise_rad: f64) -> Option<f64>;
 

@@ -41,6 +41,7 @@ pub struct Out {
     path: PathBuf,
     file: Option<File>,
     is_there: bool,
+    has_reader_left: bool,
 }
 
 impl Out {
@@ -51,16 +52,8 @@ impl Out {
             path,
             file: None,
             is_there: true,
+            has_reader_left: false,
         })
-    }
-
-    /// One that [`Out::set_there`] will make.
-    pub fn absent(path: PathBuf) -> Self {
-        Self {
-            path,
-            file: None,
-            is_there: false,
-        }
     }
 
     /// Makes the FIFO or takes it away, like a device that is plugged in or out.
@@ -74,10 +67,16 @@ impl Out {
         }
     }
 
+    /// A reader has closed it, and another may have come before anybody looked.
+    pub fn reader_left(&mut self) {
+        self.has_reader_left = true;
+    }
+
     /// Looks for a reader.
     pub fn reader(&mut self) -> Reader {
+        let has_left = std::mem::take(&mut self.has_reader_left);
         if self.file.as_ref().is_some_and(|file| !has_lost(file)) {
-            return Reader::Same;
+            return if has_left { Reader::New } else { Reader::Same };
         }
         self.file = None;
         if !self.is_there {

@@ -4,14 +4,21 @@
 
 use crate::attributes::Attributes;
 use crate::bus::Bus;
+use crate::control::Control;
+use crate::input::{Keys, Ultrasonic};
+use crate::lidar::Lidar;
 use crate::limits::TICK_MS;
+use crate::mems::Mems;
+use crate::sensors::Camera;
 use crate::shared::Shared;
 use crate::sysfs;
 use nix::poll::{PollFd, PollFlags, ppoll};
 use nix::sys::eventfd::{EfdFlags, EventFd};
 use nix::sys::time::TimeSpec;
+use std::fs::Permissions;
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd};
+use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -42,13 +49,13 @@ pub struct Files {
 
 impl Files {
     /// Makes all files below `root`; `buses` are told when faults change.
-    pub fn start(root: &Path, shared: Arc<Shared>, buses: Vec<Bus>) -> io::Result<Self> {
+    pub fn start(root: &Path, shared: Arc<Shared>, buses: Vec<Bus>, seed: u64) -> io::Result<Self> {
         let flags = EfdFlags::EFD_CLOEXEC | EfdFlags::EFD_NONBLOCK;
         let wake = Arc::new(EventFd::from_flags(flags)?);
         let mut attributes = Attributes::new(root)?;
         sysfs::make(&mut attributes)?;
         attributes.folder(FAULTS)?;
-        let parts = parts(&mut attributes)?;
+        let parts = parts(&mut attributes, seed)?;
         let mut work = Work {
             shared: Arc::clone(&shared),
             wake: Arc::clone(&wake),
@@ -78,8 +85,29 @@ impl Drop for Files {
 }
 
 /// Every kind of device that is not on a bus.
-fn parts(_attributes: &mut Attributes) -> io::Result<Vec<Box<dyn Part>>> {
-    Ok(Vec::new())
+fn parts(attributes: &mut Attributes, seed: u64) -> io::Result<Vec<Box<dyn Part>>> {
+    let mut parts: Vec<Box<dyn Part>> = Vec::new();
+    for chip in Mems::make(attributes, seed)? {
+        parts.push(Box::new(chip));
+    }
+    for sensor in Ultrasonic::make(attributes)? {
+        parts.push(Box::new(sensor));
+    }
+    parts.push(Box::new(Keys::make(attributes)?));
+    parts.push(Box::new(Lidar::make(attributes)?));
+    parts.push(Box::new(Camera::make(attributes)?));
+    parts.push(Box::new(Control::make(attributes)?));
+    Ok(parts)
+}
+
+/// Makes a shell script that knows its root, two directories above its own.
+pub fn script(path: &Path, body: &str) -> io::Result<()> {
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder)?;
+    }
+    let head = "#!/bin/sh\n# Made by the virtual board.\nroot=$(cd \"$(dirname \"$0\")/../..\" && pwd) || exit 1\n";
+    std::fs::write(path, format!("{head}{body}"))?;
+    std::fs::set_permissions(path, Permissions::from_mode(0o755))
 }
 
 struct Work {

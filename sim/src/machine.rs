@@ -137,9 +137,9 @@ impl Machine {
         self.body.step(STEP_S, &self.drive);
         self.steps += 1;
         let shafts = self.body.shafts_deg();
-        for encoder in 0..4 {
+        for (encoder, shaft_deg) in shafts.iter().enumerate() {
             let fault = self.faults[faults::ENCODER + encoder];
-            let moved = shafts[encoder] - self.shafts_deg[encoder];
+            let moved = shaft_deg - self.shafts_deg[encoder];
             if !fault.unplug && !fault.stuck {
                 self.encoders_deg[encoder] += moved * (1.0 - fault.drop);
             }
@@ -172,11 +172,15 @@ impl Machine {
         self.steps as f64 * STEP_S
     }
 
-    /// The simulated real time in nanoseconds: that of the start plus simulated time.
+    /// The simulated real time now in nanoseconds: that of the start plus simulated time.
     pub fn real_time_ns(&self) -> i64 {
-        let since = self.steps.saturating_mul((STEP_S * 1e9) as u64);
-        self.began_real_ns
-            .saturating_add(i64::try_from(since).unwrap_or(i64::MAX))
+        self.real_time_ns_at(self.time_s())
+    }
+
+    /// The same for another simulated time, to the microsecond.
+    pub fn real_time_ns_at(&self, time_s: f64) -> i64 {
+        let since_ns = ((time_s * 1e6).round() as i64).saturating_mul(1000);
+        self.began_real_ns.saturating_add(since_ns)
     }
 
     /// How long it really takes until `time_s`.
@@ -275,9 +279,9 @@ impl Machine {
         let battery = senses.battery_v / BATTERY_FULL_V * FULL_SCALE;
         let kept = self.msp430.battery;
         self.msp430.battery = self.count(faults::BATTERY, Some(battery), kept, common);
-        for encoder in 0..4 {
+        for (encoder, sign) in ENCODER_SIGNS.into_iter().enumerate() {
             let fault = self.faults[faults::ENCODER + encoder];
-            let turned = self.encoders_deg[encoder] * ENCODER_SIGNS[encoder] * TICKS_PER_DEGREE;
+            let turned = self.encoders_deg[encoder] * sign * TICKS_PER_DEGREE;
             let noise = self.random.within(fault.noise);
             // The counter has 32 bits and wraps.
             let ticks = (turned + noise).floor() as i64;

@@ -1,5 +1,7 @@
 //! The board from outside: sockets, FIFOs and files, as a client of the devices sees them.
 
+mod devices;
+
 use super::*;
 use crate::robots;
 use crate::scratch::Scratch;

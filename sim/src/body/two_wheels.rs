@@ -192,6 +192,10 @@ impl Body for TwoWheels {
         self.motors.map(|motor| motor.angle_deg)
     }
 
+    fn has_lidar(&self) -> bool {
+        true
+    }
+
     fn range_m(&self, clockwise_rad: f64) -> Option<f64> {
         let towards = Point::towards(self.pose.heading_rad - clockwise_rad);
         let distance = self.world.ray(self.pose.at, towards)?;
