@@ -5,6 +5,7 @@
 
 mod fields;
 mod node;
+mod ports;
 mod source;
 mod stages;
 

@@ -124,6 +124,9 @@ pub fn open(
         }
         SourceDescription::Node(path) => linked::open(around.link(path)?),
         SourceDescription::Several(parts) => several::open(parts, around),
+        _ => Err(Error::NoDevice(
+            "this program cannot open such ports yet".to_owned(),
+        )),
     }
 }
 
@@ -157,6 +160,9 @@ pub fn open_sink(
         | SourceDescription::Fake(_)
         | SourceDescription::Replay(_)
         | SourceDescription::Several(_) => Err(Error::AccessDenied),
+        _ => Err(Error::NoDevice(
+            "this program cannot open such ports yet".to_owned(),
+        )),
     }
 }
 
@@ -167,10 +173,16 @@ pub fn is_shared(source: &SourceDescription) -> Result<bool, Error> {
         SourceDescription::Path(path) => {
             matches!(kind_of(path)?, PathKind::Fifo | PathKind::SharedDevice)
         }
-        SourceDescription::Attribute(_) | SourceDescription::Node(_) => false,
-        SourceDescription::Fifo(_) | SourceDescription::Evdev(_) | SourceDescription::Replay(_) => {
-            true
-        }
+        SourceDescription::Attribute(_)
+        | SourceDescription::Node(_)
+        | SourceDescription::Pwm(_)
+        | SourceDescription::Gpio(_) => false,
+        SourceDescription::Fifo(_)
+        | SourceDescription::Evdev(_)
+        | SourceDescription::Replay(_)
+        | SourceDescription::Iio(_)
+        | SourceDescription::Lines(_)
+        | SourceDescription::Packets(_) => true,
         SourceDescription::Fake(fake) => fake.period_ms > 0,
         SourceDescription::Faulty(faulty) => is_shared(&faulty.source)?,
         SourceDescription::Several(parts) => {
@@ -191,6 +203,15 @@ pub fn paths(source: &SourceDescription) -> Vec<&Path> {
         | SourceDescription::Fifo(path) => vec![path],
         SourceDescription::Evdev(evdev) => vec![&evdev.path],
         SourceDescription::Replay(replay) => vec![&replay.path],
+        SourceDescription::Iio(iio) => vec![&iio.devices],
+        SourceDescription::Pwm(pwm) => vec![&pwm.chip],
+        SourceDescription::Gpio(gpio) => vec![&gpio.base],
+        // The program makes its pipes when it is started.
+        SourceDescription::Lines(lines) => match &lines.start {
+            Some(start) => vec![&start.program],
+            None => vec![&lines.path],
+        },
+        SourceDescription::Packets(packets) => vec![&packets.path],
         SourceDescription::Faulty(faulty) => paths(&faulty.source),
         SourceDescription::Several(parts) => {
             parts.iter().flat_map(|part| paths(&part.source)).collect()

@@ -4,8 +4,8 @@
 
 use super::fields::Fields;
 use crate::description::{
-    EvdevDescription, EvdevLayout, FakeDescription, FaultyDescription, PartDescription,
-    ReplayDescription, SourceDescription,
+    EvdevDescription, EvdevLayout, FakeDescription, FaultyDescription, GpioDirection,
+    PartDescription, ReplayDescription, SourceDescription,
 };
 use crate::evdev_codes::event_code;
 use crate::limits::{NAME_BYTES_MAX, PERIOD_MS_MAX, SOURCES_MAX, TUPLE_BYTES_MAX};
@@ -43,7 +43,12 @@ pub(super) fn is_read_only(source: &SourceDescription) -> bool {
         SourceDescription::Path(_)
         | SourceDescription::Attribute(_)
         | SourceDescription::Fifo(_) => false,
+        SourceDescription::Pwm(_) => false,
+        SourceDescription::Gpio(gpio) => gpio.direction == GpioDirection::In,
+        SourceDescription::Lines(lines) => lines.input.is_none(),
         SourceDescription::Evdev(_)
+        | SourceDescription::Iio(_)
+        | SourceDescription::Packets(_)
         | SourceDescription::Fake(_)
         | SourceDescription::Replay(_)
         | SourceDescription::Node(_)
@@ -109,6 +114,7 @@ impl<'a> Fields<'_, 'a> {
                 );
                 Err(self.problem("src", reason))
             }
+            SourceDescription::Packets(packets) => self.check_packets(packets, size),
             SourceDescription::Faulty(faulty) => self.check_data(&faulty.source, size),
             _ => Ok(()),
         }
@@ -118,6 +124,9 @@ impl<'a> Fields<'_, 'a> {
     fn size_of(&mut self, source: &SourceDescription) -> Result<Option<usize>, Problem> {
         match source {
             SourceDescription::Evdev(evdev) => Ok(Some(4 * evdev.codes.len())),
+            SourceDescription::Iio(iio) => Ok(Some(iio.tuple_size())),
+            SourceDescription::Pwm(_) => Ok(Some(4)),
+            SourceDescription::Gpio(_) => Ok(Some(1)),
             SourceDescription::Faulty(faulty) => self.size_of(&faulty.source),
             SourceDescription::Node(other) => match self.checker.size_of_node(other, self.depth)? {
                 Some(size) => Ok(Some(size)),
@@ -244,6 +253,11 @@ impl<'a> Fields<'_, 'a> {
                 .map(SourceDescription::Attribute),
             b"fifo" => self.device("fifo", table).map(SourceDescription::Fifo),
             b"evdev" => self.evdev(table),
+            b"iio" => self.iio(table),
+            b"pwm" => self.pwm(table),
+            b"gpio" => self.gpio(table),
+            b"lines" => self.lines(table),
+            b"packets" => self.packets(table),
             b"fake" => self.fake(table),
             b"replay" => self.replay(table),
             b"faulty" => self.faulty(table),
@@ -252,7 +266,7 @@ impl<'a> Fields<'_, 'a> {
     }
 
     /// A path of the system, which never depends on the working directory.
-    fn absolute(&self, field: &str, value: &'a Value) -> Result<&'a [u8], Problem> {
+    pub(super) fn absolute(&self, field: &str, value: &'a Value) -> Result<&'a [u8], Problem> {
         let path = self.path_bytes(field, value)?;
         if path.first() == Some(&b'/') {
             return Ok(path);
@@ -271,7 +285,7 @@ impl<'a> Fields<'_, 'a> {
     }
 
     /// A field of a constructor, read with the checks of a description's field.
-    fn inner<T>(
+    pub(super) fn inner<T>(
         &mut self,
         table: &'a Table,
         read: impl FnOnce(&mut Self) -> Result<T, Problem>,
