@@ -18,6 +18,8 @@ pub const FIELDS_MAX: usize = 1024;
 pub const CHAIN_MAX: usize = 16;
 /// Sources of one node.
 pub const SOURCES_MAX: usize = 64;
+/// Numbers in the `params` of one description.
+pub const PARAMS_MAX: usize = 256;
 /// Files that one configuration may `include`, each at most [`CONFIG_BYTES_MAX`].
 pub const INCLUDES_MAX: usize = 64;
 /// Milliseconds that running the configuration program may take.

@@ -10,6 +10,7 @@ pub mod evdev;
 pub mod fake;
 pub mod faulty;
 pub mod fifo;
+pub mod latched;
 pub mod linked;
 pub mod replay;
 pub mod several;
@@ -123,7 +124,8 @@ pub fn open(
             faulty::open(faulty, open(&faulty.source, tuple_size, around)?)
         }
         SourceDescription::Node(path) => linked::open(around.link(path)?),
-        SourceDescription::Several(parts) => several::open(parts, around),
+        SourceDescription::Newest(path) => latched::open(around.link(path)?),
+        SourceDescription::Several(several) => several::open(several, around),
     }
 }
 
@@ -156,6 +158,7 @@ pub fn open_sink(
         SourceDescription::Evdev(_)
         | SourceDescription::Fake(_)
         | SourceDescription::Replay(_)
+        | SourceDescription::Newest(_)
         | SourceDescription::Several(_) => Err(Error::AccessDenied),
     }
 }
@@ -167,15 +170,17 @@ pub fn is_shared(source: &SourceDescription) -> Result<bool, Error> {
         SourceDescription::Path(path) => {
             matches!(kind_of(path)?, PathKind::Fifo | PathKind::SharedDevice)
         }
-        SourceDescription::Attribute(_) | SourceDescription::Node(_) => false,
+        SourceDescription::Attribute(_)
+        | SourceDescription::Node(_)
+        | SourceDescription::Newest(_) => false,
         SourceDescription::Fifo(_) | SourceDescription::Evdev(_) | SourceDescription::Replay(_) => {
             true
         }
         SourceDescription::Fake(fake) => fake.period_ms > 0,
         SourceDescription::Faulty(faulty) => is_shared(&faulty.source)?,
-        SourceDescription::Several(parts) => {
+        SourceDescription::Several(several) => {
             let mut shared = false;
-            for part in parts {
+            for part in &several.parts {
                 shared |= is_shared(&part.source).map_err(|error| part_error(&part.name, error))?;
             }
             shared
@@ -192,10 +197,13 @@ pub fn paths(source: &SourceDescription) -> Vec<&Path> {
         SourceDescription::Evdev(evdev) => vec![&evdev.path],
         SourceDescription::Replay(replay) => vec![&replay.path],
         SourceDescription::Faulty(faulty) => paths(&faulty.source),
-        SourceDescription::Several(parts) => {
-            parts.iter().flat_map(|part| paths(&part.source)).collect()
+        SourceDescription::Several(several) => {
+            let parts = several.parts.iter();
+            parts.flat_map(|part| paths(&part.source)).collect()
         }
-        SourceDescription::Fake(_) | SourceDescription::Node(_) => Vec::new(),
+        SourceDescription::Fake(_) | SourceDescription::Node(_) | SourceDescription::Newest(_) => {
+            Vec::new()
+        }
     }
 }
 
