@@ -45,10 +45,7 @@ fn only_the_named_sources_trigger() {
     assert_eq!(triggers(""), [true, true, true]);
     assert_eq!(triggers(", trigger = 'b'"), [false, true, false]);
     assert_eq!(triggers(", trigger = { 'a', 'b' }"), [true, true, false]);
-    assert_eq!(
-        several("src = { 'trikfs:gyro', 'newest:gyro' }, trigger = 1").parts[0].is_trigger,
-        true
-    );
+    assert!(several("src = { 'trikfs:gyro', 'newest:gyro' }, trigger = 1").parts[0].is_trigger);
 }
 
 #[test]
