@@ -61,14 +61,15 @@ fn of_source(source: &mut SourceDescription, take: &mut dyn FnMut(&mut PathBuf))
         }
         SourceDescription::Packets(packets) => take(&mut packets.path),
         SourceDescription::Faulty(faulty) => of_source(&mut faulty.source, take),
-        SourceDescription::Several(parts) => {
-            for part in parts {
+        SourceDescription::Several(several) => {
+            for part in &mut several.parts {
                 of_source(&mut part.source, take);
             }
         }
         SourceDescription::Fake(_)
         | SourceDescription::Replay(_)
         | SourceDescription::Node(_)
+        | SourceDescription::Newest(_)
         | SourceDescription::Absent(_) => {}
     }
 }
