@@ -2,6 +2,13 @@
 //!
 //! Owns the meaning of each field of a node's description. Knows nothing of Lua and opens nothing.
 
+mod ports;
+
+pub use ports::{
+    ByteOrder, Checksum, CommandDescription, GpioDescription, GpioDirection, IioDescription,
+    LengthField, LinesDescription, PacketsDescription, PwmDescription,
+};
+
 use crate::format::Format;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -57,6 +64,8 @@ pub struct NodeDescription {
     pub memory_kb: u32,
     /// Numbers that a converter can read as `params` (Lua) or at open (native).
     pub params: BTreeMap<String, f64>,
+    /// Least and greatest value of those params that have a range.
+    pub param_ranges: BTreeMap<String, (f64, f64)>,
     /// Further files of the node's directory; each has its own source and converter.
     pub attributes: Vec<NodeDescription>,
     /// `share` as written; absent means "by kind of source".
@@ -123,6 +132,16 @@ pub enum SourceDescription {
     Fifo(PathBuf),
     /// `evdev{ path }`: input events decoded and grouped up to SYN_REPORT.
     Evdev(EvdevDescription),
+    /// `iio{ ... }`: a sampled sensor.
+    Iio(IioDescription),
+    /// `pwm{ ... }`: pulses of a PWM channel, state.
+    Pwm(PwmDescription),
+    /// `gpio{ ... }`: one line, state.
+    Gpio(GpioDescription),
+    /// `lines{ ... }`: lines of text of a sensor program.
+    Lines(LinesDescription),
+    /// `packets{ ... }`: packets of a serial line.
+    Packets(PacketsDescription),
     /// `fake{ ... }`: bytes that the configuration itself holds.
     Fake(FakeDescription),
     /// `i2c{ ... }`: a register of a device on an I2C bus.
@@ -135,8 +154,30 @@ pub enum SourceDescription {
     Faulty(FaultyDescription),
     /// `src = 'trikfs:other'`: the converted tuples of another node.
     Node(String),
-    /// Several sources, one converter. The tuples stand one after the other in this order.
-    Several(Vec<PartDescription>),
+    /// `src = 'newest:other'`: the newest sample of another node, which is taken by that node alone.
+    Newest(String),
+    /// Several sources, one converter.
+    Several(SeveralDescription),
+}
+
+/// Several sources: the tuples stand one after the other in the order of the parts, then the ages, then the interval.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SeveralDescription {
+    /// The sources, at least one.
+    pub parts: Vec<PartDescription>,
+    /// Behind the tuples stands, for each source, the age of its tuple in us as a little-endian u32, saturated.
+    pub ages: bool,
+    /// At the end stands the time since the tuple before in us as a little-endian u32, saturated; 0 in the first.
+    pub interval: bool,
+}
+
+impl SeveralDescription {
+    /// Bytes of one tuple of all sources with their times.
+    pub fn tuple_size(&self) -> usize {
+        let tuples: usize = self.parts.iter().map(|part| part.tuple_size).sum();
+        let times = if self.ages { self.parts.len() } else { 0 } + usize::from(self.interval);
+        tuples + times * size_of::<u32>()
+    }
 }
 
 /// One of several sources.
@@ -148,6 +189,8 @@ pub struct PartDescription {
     pub source: SourceDescription,
     /// Bytes of one tuple of this source.
     pub tuple_size: usize,
+    /// Its tuples make one of the node; false: only its newest is used when another source makes one.
+    pub is_trigger: bool,
 }
 
 /// How kernel input events are laid out in the bytes of an evdev node.
