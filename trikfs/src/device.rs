@@ -126,6 +126,8 @@ pub fn open(
         SourceDescription::Node(path) => linked::open(around.link(path)?),
         SourceDescription::Newest(path) => latched::open(around.link(path)?),
         SourceDescription::Several(several) => several::open(several, around),
+        SourceDescription::I2c(i2c) => Err(Error::NoDevice(i2c.path.display().to_string())),
+        SourceDescription::Absent(reason) => Err(Error::NoDevice(reason.clone())),
     }
 }
 
@@ -155,6 +157,8 @@ pub fn open_sink(
             faulty,
             open_sink(&faulty.source, around)?,
         ))),
+        SourceDescription::I2c(i2c) => Err(Error::NoDevice(i2c.path.display().to_string())),
+        SourceDescription::Absent(reason) => Err(Error::NoDevice(reason.clone())),
         SourceDescription::Evdev(_)
         | SourceDescription::Fake(_)
         | SourceDescription::Replay(_)
@@ -172,7 +176,9 @@ pub fn is_shared(source: &SourceDescription) -> Result<bool, Error> {
         }
         SourceDescription::Attribute(_)
         | SourceDescription::Node(_)
-        | SourceDescription::Newest(_) => false,
+        | SourceDescription::Newest(_)
+        | SourceDescription::I2c(_)
+        | SourceDescription::Absent(_) => false,
         SourceDescription::Fifo(_) | SourceDescription::Evdev(_) | SourceDescription::Replay(_) => {
             true
         }
@@ -195,15 +201,17 @@ pub fn paths(source: &SourceDescription) -> Vec<&Path> {
         | SourceDescription::Attribute(path)
         | SourceDescription::Fifo(path) => vec![path],
         SourceDescription::Evdev(evdev) => vec![&evdev.path],
+        SourceDescription::I2c(i2c) => vec![&i2c.path],
         SourceDescription::Replay(replay) => vec![&replay.path],
         SourceDescription::Faulty(faulty) => paths(&faulty.source),
         SourceDescription::Several(several) => {
             let parts = several.parts.iter();
             parts.flat_map(|part| paths(&part.source)).collect()
         }
-        SourceDescription::Fake(_) | SourceDescription::Node(_) | SourceDescription::Newest(_) => {
-            Vec::new()
-        }
+        SourceDescription::Fake(_)
+        | SourceDescription::Node(_)
+        | SourceDescription::Newest(_)
+        | SourceDescription::Absent(_) => Vec::new(),
     }
 }
 
