@@ -126,6 +126,7 @@ pub fn open(
         SourceDescription::Node(path) => linked::open(around.link(path)?),
         SourceDescription::Newest(path) => latched::open(around.link(path)?),
         SourceDescription::Several(several) => several::open(several, around),
+        SourceDescription::Regulator(regulator) => several::open(&regulator.feedback, around),
         SourceDescription::I2c(i2c) => Err(Error::NoDevice(i2c.path.display().to_string())),
         SourceDescription::Absent(reason) => Err(Error::NoDevice(reason.clone())),
     }
@@ -163,6 +164,7 @@ pub fn open_sink(
         | SourceDescription::Fake(_)
         | SourceDescription::Replay(_)
         | SourceDescription::Newest(_)
+        | SourceDescription::Regulator(_)
         | SourceDescription::Several(_) => Err(Error::AccessDenied),
     }
 }
@@ -177,6 +179,7 @@ pub fn is_shared(source: &SourceDescription) -> Result<bool, Error> {
         SourceDescription::Attribute(_)
         | SourceDescription::Node(_)
         | SourceDescription::Newest(_)
+        | SourceDescription::Regulator(_)
         | SourceDescription::I2c(_)
         | SourceDescription::Absent(_) => false,
         SourceDescription::Fifo(_) | SourceDescription::Evdev(_) | SourceDescription::Replay(_) => {
@@ -210,6 +213,7 @@ pub fn paths(source: &SourceDescription) -> Vec<&Path> {
         }
         SourceDescription::Fake(_)
         | SourceDescription::Node(_)
+        | SourceDescription::Regulator(_)
         | SourceDescription::Newest(_)
         | SourceDescription::Absent(_) => Vec::new(),
     }
