@@ -29,6 +29,7 @@ pub mod newest;
 pub mod node;
 pub mod process;
 pub mod reader;
+pub mod regulation;
 pub mod reload;
 #[cfg(test)]
 mod scratch;
