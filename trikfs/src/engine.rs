@@ -4,11 +4,14 @@
 
 use crate::errno::Error;
 use crate::events::{Poller, Schedule, lock};
+use crate::limits;
 use crate::log::Log;
+use crate::programs::Programs;
 use crate::transport::{Answer, Kernel, PollHandle, RequestId};
 use std::collections::HashSet;
 use std::io;
 use std::sync::{Arc, Mutex, OnceLock};
+use std::time::Duration;
 
 /// The services of one mount.
 pub struct Engine {
@@ -18,6 +21,8 @@ pub struct Engine {
     pub schedule: Arc<Schedule>,
     /// The `log` file.
     pub log: Arc<Log>,
+    /// Programs that sensors need.
+    pub programs: Arc<Programs>,
     kernel: OnceLock<Arc<dyn Kernel>>,
     parked: Mutex<HashSet<RequestId>>,
 }
@@ -25,10 +30,12 @@ pub struct Engine {
 impl Engine {
     /// Starts the event threads.
     pub fn start() -> io::Result<Arc<Self>> {
+        let log = Arc::new(Log::new());
         Ok(Arc::new(Self {
             poller: Poller::start()?,
             schedule: Schedule::start()?,
-            log: Arc::new(Log::new()),
+            programs: Programs::new(log.clone()),
+            log,
             kernel: OnceLock::new(),
             parked: Mutex::default(),
         }))
@@ -90,8 +97,10 @@ impl Engine {
         }
     }
 
-    /// Ends the event threads.
+    /// Ends the event threads and the programs that are up.
     pub fn stop(&self) {
+        self.programs
+            .stop_all(Duration::from_millis(limits::PROGRAM_END_MS));
         self.poller.stop();
         self.schedule.stop();
     }

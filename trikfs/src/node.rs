@@ -75,9 +75,13 @@ impl Node {
             .format
             .clone()
             .unwrap_or_else(|| Format::bytes(description.output_tuple_size));
+        let stats = Stats::default();
         let around = Surroundings {
             links,
             timeout_ms: description.timeout_ms,
+            damaged: stats.damaged.clone(),
+            programs: engine.programs.clone(),
+            log: log_sink(&engine, &description.path),
         };
         let period_ms = match description.pace {
             Pace::Every { period_ms } => period_ms,
@@ -88,7 +92,7 @@ impl Node {
             fingerprint,
             format,
             engine,
-            stats: Stats::default(),
+            stats,
             newest: Newest::new(me.clone(), description.output_tuple_size),
             recipe,
             around,
@@ -216,14 +220,9 @@ impl Node {
     pub fn open_pipeline(self: &Arc<Self>) -> Result<Arc<Mutex<Pipeline>>, Error> {
         let pipeline = self
             .recipe
-            .open(&self.log_sink())
+            .open(&self.around.log)
             .inspect_err(|error| self.report(error))?;
         Ok(Arc::new(Mutex::new(pipeline)))
-    }
-
-    fn log_sink(self: &Arc<Self>) -> LogSink {
-        let (log, path) = (self.engine.log.clone(), self.description.path.clone());
-        Arc::new(move |text| log.line(&format!("{path}: {text}")))
     }
 
     /// Opens the node for reading with a pipeline of its own.
@@ -472,6 +471,12 @@ impl Node {
             format!("node {}: {reason}", self.path()),
         )
     }
+}
+
+/// Lines of the log that begin with a node's path.
+fn log_sink(engine: &Engine, path: &str) -> LogSink {
+    let (log, path) = (engine.log.clone(), path.to_owned());
+    Arc::new(move |text| log.line(&format!("{path}: {text}")))
 }
 
 /// One operation inside a node: its place among those that may be there at once.
