@@ -3,13 +3,18 @@
 //! Owns the rules about names and the order in which nodes are built (a node that reads another needs its size first).
 //! The fields of one description are the submodules' business. Runs no Lua.
 
+mod bus;
 mod fields;
 mod node;
+mod params;
 mod ports;
+mod setup;
+mod several;
 mod source;
 mod stages;
 
-use crate::description::{Config, NodeDescription};
+use crate::description::{Config, NodeDescription, SetupAction};
+use crate::format::Format;
 use crate::limits::{GROUP_DEPTH_MAX, NAME_BYTES_MAX, NODES_MAX, SOURCES_MAX};
 use crate::nearest::{nearest, suggestion};
 use crate::problem::Problem;
@@ -22,8 +27,8 @@ use std::collections::HashMap;
 /// Names at the top that belong to the filesystem.
 const RESERVED_NODES: [&str; 4] = ["config", "log", "status", "stop"];
 /// Names in a node that belong to the filesystem; `value0`, `value1` ... as well.
-const RESERVED_ATTRIBUTES: [&str; 8] = [
-    "bin_data", "device", "fault", "format", "poll_ms", "stats", "units", "value",
+const RESERVED_ATTRIBUTES: [&str; 9] = [
+    "bin_data", "device", "fault", "format", "params", "poll_ms", "stats", "units", "value",
 ];
 /// Nodes that read each other in a row; bounds the recursion of `build`.
 const LINKS_MAX: usize = SOURCES_MAX;
@@ -44,12 +49,14 @@ pub(crate) fn check(
         drafts: Vec::new(),
         index: HashMap::new(),
         warnings: Vec::new(),
+        trail: Vec::new(),
     };
     checker.root()?;
     for number in 0..checker.drafts.len() {
         checker.build(number, 0)?;
     }
-    Ok(checker.finish())
+    let setup = checker.setup()?;
+    Ok(checker.finish(setup))
 }
 
 /// A node or attribute that was found and is not built yet.
@@ -80,6 +87,8 @@ struct Checker<'a> {
     /// Number of each draft by its path.
     index: HashMap<String, usize>,
     warnings: Vec<Problem>,
+    /// Paths of the nodes that are being built, each because the one before reads it.
+    trail: Vec<String>,
 }
 
 impl<'a> Checker<'a> {
@@ -290,10 +299,10 @@ impl<'a> Checker<'a> {
         let under = matches!(draft.built, Built::Under);
         draft.built = Built::Under;
         if under {
-            return Err(self.problem(
-                &extended(&keys, "src"),
-                format!("{path}: the node reads itself in a circle"),
-            ));
+            let start = self.trail.iter().position(|at| *at == path).unwrap_or(0);
+            let circle = self.trail[start..].join(" -> ");
+            let reason = format!("{path}: the node reads itself in a circle: {circle} -> {path}");
+            return Err(self.problem(&extended(&keys, "src"), reason));
         }
         if depth > LINKS_MAX {
             return Err(self.problem(
@@ -301,6 +310,7 @@ impl<'a> Checker<'a> {
                 format!("{path}: more than {LINKS_MAX} nodes read each other in a row"),
             ));
         }
+        self.trail.push(path.clone());
         let mut fields = Fields {
             checker: self,
             path,
@@ -309,6 +319,7 @@ impl<'a> Checker<'a> {
             depth,
         };
         let description = fields.description()?;
+        self.trail.pop();
         if let Some(draft) = self.drafts.get_mut(number) {
             draft.built = Built::Done(Box::new(description));
         }
@@ -330,6 +341,19 @@ impl<'a> Checker<'a> {
             }))
     }
 
+    /// The format of a node that is built already, single bytes if it gave none.
+    fn format_of_node(&self, other: &str) -> Option<Format> {
+        match &self.drafts.get(*self.index.get(other)?)?.built {
+            Built::Done(description) => Some(
+                description
+                    .format
+                    .clone()
+                    .unwrap_or_else(|| Format::bytes(description.output_tuple_size)),
+            ),
+            _ => None,
+        }
+    }
+
     /// The existing path that a wrong one was probably meant to be.
     fn nearest_node(&self, wrong: &str) -> String {
         nearest(wrong, self.index.keys().map(String::as_str))
@@ -337,7 +361,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Puts the attributes into their nodes.
-    fn finish(self) -> (Config, Vec<Problem>) {
+    fn finish(self, setup: Vec<SetupAction>) -> (Config, Vec<Problem>) {
         let mut attributes: HashMap<usize, Vec<NodeDescription>> = HashMap::new();
         let mut nodes = Vec::new();
         for (number, draft) in self.drafts.into_iter().enumerate() {
@@ -357,7 +381,7 @@ impl<'a> Checker<'a> {
             })
             .collect();
         nodes.sort_by(|a, b| a.path.cmp(&b.path));
-        (Config { nodes }, self.warnings)
+        (Config { nodes, setup }, self.warnings)
     }
 }
 

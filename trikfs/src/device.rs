@@ -2,7 +2,8 @@
 //!
 //! Owns the traits, the decision which of them a description gets, and nothing else. Each kind of device is one
 //! file below; only those files open device nodes. Nothing here knows converters, handles or the kernel's requests.
-//! A bus that needs more than a file (I2C, IIO, PWM) is one more file and one more arm of [`open`].
+//! A bus that needs more than a file (I2C, IIO, PWM) is one more file and one more arm of [`open`]; who uses a bus that
+//! may be slow finds it through [`bus_of`].
 
 pub mod attribute;
 pub mod chardev;
@@ -12,7 +13,9 @@ pub mod fake;
 pub mod faulty;
 pub mod fifo;
 pub mod gpio;
+pub mod i2c;
 pub mod iio;
+pub mod latched;
 pub mod lines;
 pub mod linked;
 pub mod packets;
@@ -107,6 +110,8 @@ pub struct Surroundings {
     pub programs: Arc<Programs>,
     /// What has to be said and is no failure.
     pub log: LogSink,
+    /// The I2C buses of the mount.
+    pub buses: Arc<i2c::bus::Buses>,
 }
 
 impl Surroundings {
@@ -139,7 +144,6 @@ pub fn open(
             faulty::open(faulty, open(&faulty.source, tuple_size, around)?)
         }
         SourceDescription::Node(path) => linked::open(around.link(path)?),
-        SourceDescription::Several(parts) => several::open(parts, around),
         SourceDescription::Iio(iio) => Ok(Device::Stream(Box::new(iio::Iio::open(
             iio,
             around.damaged.clone(),
@@ -156,6 +160,13 @@ pub fn open(
         SourceDescription::Packets(packets) => Ok(Device::Stream(Box::new(
             packets::Packets::open(packets, tuple_size, around.damaged.clone())?,
         ))),
+        SourceDescription::Newest(path) => latched::open(around.link(path)?),
+        SourceDescription::Several(several) => several::open(several, around),
+        SourceDescription::I2c(i2c) => {
+            let register = i2c::Register::open(i2c, tuple_size, around.timeout_ms, &around.buses)?;
+            Ok(Device::State(Box::new(register)))
+        }
+        SourceDescription::Absent(reason) => Err(Error::NoDevice(reason.clone())),
     }
 }
 
@@ -192,12 +203,19 @@ pub fn open_sink(
         SourceDescription::Lines(lines) => {
             Ok(Box::new(lines::LinesSink::open(lines, around.timeout_ms)?))
         }
+        SourceDescription::I2c(i2c) => {
+            // The size only matters for reading.
+            let register = i2c::Register::open(i2c, 0, around.timeout_ms, &around.buses)?;
+            Ok(Box::new(register))
+        }
+        SourceDescription::Absent(reason) => Err(Error::NoDevice(reason.clone())),
         SourceDescription::Evdev(_)
         | SourceDescription::Iio(_)
         | SourceDescription::Gpio(_)
         | SourceDescription::Packets(_)
         | SourceDescription::Fake(_)
         | SourceDescription::Replay(_)
+        | SourceDescription::Newest(_)
         | SourceDescription::Several(_) => Err(Error::AccessDenied),
     }
 }
@@ -211,6 +229,9 @@ pub fn is_shared(source: &SourceDescription) -> Result<bool, Error> {
         }
         SourceDescription::Attribute(_)
         | SourceDescription::Node(_)
+        | SourceDescription::Newest(_)
+        | SourceDescription::I2c(_)
+        | SourceDescription::Absent(_)
         | SourceDescription::Pwm(_)
         | SourceDescription::Gpio(_) => false,
         SourceDescription::Fifo(_)
@@ -221,9 +242,9 @@ pub fn is_shared(source: &SourceDescription) -> Result<bool, Error> {
         | SourceDescription::Packets(_) => true,
         SourceDescription::Fake(fake) => fake.period_ms > 0,
         SourceDescription::Faulty(faulty) => is_shared(&faulty.source)?,
-        SourceDescription::Several(parts) => {
+        SourceDescription::Several(several) => {
             let mut shared = false;
-            for part in parts {
+            for part in &several.parts {
                 shared |= is_shared(&part.source).map_err(|error| part_error(&part.name, error))?;
             }
             shared
@@ -238,6 +259,7 @@ pub fn paths(source: &SourceDescription) -> Vec<&Path> {
         | SourceDescription::Attribute(path)
         | SourceDescription::Fifo(path) => vec![path],
         SourceDescription::Evdev(evdev) => vec![&evdev.path],
+        SourceDescription::I2c(i2c) => vec![&i2c.path],
         SourceDescription::Replay(replay) => vec![&replay.path],
         SourceDescription::Iio(iio) => vec![&iio.devices],
         SourceDescription::Pwm(pwm) => vec![&pwm.chip],
@@ -249,10 +271,23 @@ pub fn paths(source: &SourceDescription) -> Vec<&Path> {
         },
         SourceDescription::Packets(packets) => vec![&packets.path],
         SourceDescription::Faulty(faulty) => paths(&faulty.source),
-        SourceDescription::Several(parts) => {
-            parts.iter().flat_map(|part| paths(&part.source)).collect()
+        SourceDescription::Several(several) => {
+            let parts = several.parts.iter();
+            parts.flat_map(|part| paths(&part.source)).collect()
         }
-        SourceDescription::Fake(_) | SourceDescription::Node(_) => Vec::new(),
+        SourceDescription::Fake(_)
+        | SourceDescription::Node(_)
+        | SourceDescription::Newest(_)
+        | SourceDescription::Absent(_) => Vec::new(),
+    }
+}
+
+/// The bus whose transfers a source waits for, if it is one alone: nodes of one bus are sampled by a thread of its own.
+pub fn bus_of(source: &SourceDescription) -> Option<&Path> {
+    match source {
+        SourceDescription::I2c(i2c) => Some(&i2c.path),
+        SourceDescription::Faulty(faulty) => bus_of(&faulty.source),
+        _ => None,
     }
 }
 

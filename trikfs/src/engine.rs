@@ -2,14 +2,17 @@
 //!
 //! Owns these services for one mount; there are no globals. Knows no node.
 
+use crate::device::i2c::bus::Buses;
 use crate::errno::Error;
+
 use crate::events::{Poller, Schedule, lock};
 use crate::limits;
 use crate::log::Log;
 use crate::programs::Programs;
 use crate::transport::{Answer, Kernel, PollHandle, RequestId};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::io;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock};
 use std::time::Duration;
 
@@ -23,6 +26,10 @@ pub struct Engine {
     pub log: Arc<Log>,
     /// Programs that sensors need.
     pub programs: Arc<Programs>,
+    /// The I2C buses.
+    pub buses: Arc<Buses>,
+    /// Times of sampling on one bus each, by the path of the bus.
+    bus_schedules: Mutex<HashMap<PathBuf, Arc<Schedule>>>,
     kernel: OnceLock<Arc<dyn Kernel>>,
     parked: Mutex<HashSet<RequestId>>,
 }
@@ -36,9 +43,27 @@ impl Engine {
             schedule: Schedule::start()?,
             programs: Programs::new(log.clone()),
             log,
+            buses: Arc::default(),
+            bus_schedules: Mutex::default(),
             kernel: OnceLock::new(),
             parked: Mutex::default(),
         }))
+    }
+
+    /// Where background samples from a bus are scheduled: with a thread of its own for each bus, so that a slow one
+    /// delays nobody else's samples. When there are too many buses or no thread can be made, where all others are.
+    pub fn schedule_of(&self, bus: &Path) -> Arc<Schedule> {
+        let mut schedules = lock(&self.bus_schedules);
+        if let Some(schedule) = schedules.get(bus) {
+            return schedule.clone();
+        }
+        if schedules.len() < limits::BUS_THREADS_MAX
+            && let Ok(schedule) = Schedule::start_crew("bus", 1)
+        {
+            schedules.insert(bus.to_owned(), schedule.clone());
+            return schedule;
+        }
+        self.schedule.clone()
     }
 
     /// The mount is live; later calls are ignored.
@@ -103,5 +128,8 @@ impl Engine {
             .stop_all(Duration::from_millis(limits::PROGRAM_END_MS));
         self.poller.stop();
         self.schedule.stop();
+        for schedule in lock(&self.bus_schedules).values() {
+            schedule.stop();
+        }
     }
 }
