@@ -42,6 +42,8 @@ mod mount {
     mod guardian;
     /// The example that ships, as the thesis describes it.
     mod hello;
+    /// Who may write an actuator, and what becomes of it when that one ends.
+    mod lease;
     /// Many open files, large tuples, many nodes.
     mod limits;
     /// What converters and the filesystem report.

@@ -10,13 +10,14 @@ use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::{Due, Ready, lock};
 use crate::hub::Hub;
+use crate::lease::Lease;
 use crate::limits;
 use crate::newest::Newest;
 use crate::reader::{Origin, Reader};
 use crate::state_reader::StateReader;
 use crate::stats::Stats;
 use crate::writer::Writer;
-use config::description::{NodeDescription, Pace};
+use config::description::{NodeDescription, Pace, SourceDescription};
 use config::format::Format;
 use config::problem::Problem;
 use config::program::Direction;
@@ -36,6 +37,10 @@ pub struct Node {
     pub format: Format,
     /// The mount's services.
     pub engine: Arc<Engine>,
+    /// Who may write the files of the node's directory.
+    pub lease: Arc<Lease>,
+    /// The same, and those of the nodes that a write passes on its way to the device.
+    pub leases: Vec<Arc<Lease>>,
     /// Counts and times.
     pub stats: Stats,
     /// The newest sample, and how it is got.
@@ -70,11 +75,17 @@ impl Node {
         recipe: Recipe,
         links: Vec<(String, Arc<Self>)>,
         engine: Arc<Engine>,
+        lease: Arc<Lease>,
     ) -> Arc<Self> {
         let format = description
             .format
             .clone()
             .unwrap_or_else(|| Format::bytes(description.output_tuple_size));
+        let mut leases = vec![lease.clone()];
+        if let Some(other) = written_node(&description.source) {
+            let linked = links.iter().filter(|(path, _)| path == other);
+            leases.extend(linked.flat_map(|(_, node)| node.leases.clone()));
+        }
         let around = Surroundings {
             links,
             timeout_ms: description.timeout_ms,
@@ -88,6 +99,8 @@ impl Node {
             fingerprint,
             format,
             engine,
+            lease,
+            leases,
             stats: Stats::default(),
             newest: Newest::new(me.clone(), description.output_tuple_size),
             recipe,
@@ -111,6 +124,11 @@ impl Node {
     /// Path below the mount point.
     pub fn path(&self) -> &str {
         &self.description.path
+    }
+
+    /// Path of the directory that holds the node's files.
+    pub fn directory(&self) -> &str {
+        directory_of(&self.description.path, self.is_attribute)
     }
 
     /// A reload has changed or removed the description.
@@ -471,6 +489,21 @@ impl Node {
             place.line,
             format!("node {}: {reason}", self.path()),
         )
+    }
+}
+
+/// The directory of a node, or of an attribute.
+pub fn directory_of(path: &str, is_attribute: bool) -> &str {
+    let parent = path.rsplit_once('/').filter(|_| is_attribute);
+    parent.map_or(path, |(parent, _)| parent)
+}
+
+/// The node that a write to this source goes to.
+fn written_node(source: &SourceDescription) -> Option<&str> {
+    match source {
+        SourceDescription::Node(path) => Some(path),
+        SourceDescription::Faulty(faulty) => written_node(&faulty.source),
+        _ => None,
     }
 }
 

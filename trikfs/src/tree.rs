@@ -9,7 +9,7 @@ use crate::files::value::View;
 use crate::node::Node;
 use crate::transport::{Attr, DirEntry, FileKind};
 use config::description::Pace;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 use std::time::{Duration, SystemTime};
 
@@ -50,6 +50,8 @@ pub enum Kind {
     Fault(Arc<Node>),
     /// `stats`
     Stats(Arc<Node>),
+    /// `owner`
+    Owner(Arc<Node>),
 }
 
 /// One file or directory.
@@ -121,6 +123,11 @@ impl Tree {
         ] {
             builder.add(ROOT, name, kind);
         }
+        let actuators: HashSet<&str> = nodes
+            .iter()
+            .filter(|node| node.description.rest.is_some())
+            .map(|node| node.directory())
+            .collect();
         for node in &nodes {
             let mut at = ROOT;
             let mut parts = node.path().split('/').peekable();
@@ -132,7 +139,7 @@ impl Tree {
                 }
             }
             if !node.is_attribute {
-                builder.add_node_files(at, node);
+                builder.add_node_files(at, node, actuators.contains(node.directory()));
             }
         }
         Self {
@@ -260,6 +267,7 @@ impl Tree {
                     0o444
                 }
             }
+            Kind::Owner(node) => attr.mode = 0o444 | node.lease.write_mode(),
             Kind::Device(node) => {
                 attr.mode = node.description.mode;
                 attr.size = node.description.output_tuple_size as u64;
@@ -313,7 +321,8 @@ impl Kind {
             | Self::Format(node)
             | Self::Period(node)
             | Self::Fault(node)
-            | Self::Stats(node) => Some(node),
+            | Self::Stats(node)
+            | Self::Owner(node) => Some(node),
         }
     }
 
@@ -373,7 +382,7 @@ impl Builder<'_> {
         existing.unwrap_or_else(|| self.add(parent, name, Kind::Directory))
     }
 
-    fn add_node_files(&mut self, at: u64, node: &Arc<Node>) {
+    fn add_node_files(&mut self, at: u64, node: &Arc<Node>, is_actuator: bool) {
         self.add(at, "device", Kind::Device(node.clone()));
         self.add(at, "bin_data", Kind::Value(node.clone(), View::Bytes));
         self.add(at, "value", Kind::Value(node.clone(), View::Text));
@@ -391,5 +400,8 @@ impl Builder<'_> {
         self.add(at, "poll_ms", Kind::Period(node.clone()));
         self.add(at, "fault", Kind::Fault(node.clone()));
         self.add(at, "stats", Kind::Stats(node.clone()));
+        if is_actuator {
+            self.add(at, "owner", Kind::Owner(node.clone()));
+        }
     }
 }
