@@ -2,7 +2,8 @@
 //!
 //! Owns the traits, the decision which of them a description gets, and nothing else. Each kind of device is one
 //! file below; only those files open device nodes. Nothing here knows converters, handles or the kernel's requests.
-//! A bus that needs more than a file (I2C, IIO, PWM) is one more file and one more arm of [`open`].
+//! A bus that needs more than a file (I2C, IIO, PWM) is one more file and one more arm of [`open`]; who uses a bus that
+//! may be slow finds it through [`bus_of`].
 
 pub mod attribute;
 pub mod chardev;
@@ -10,6 +11,7 @@ pub mod evdev;
 pub mod fake;
 pub mod faulty;
 pub mod fifo;
+pub mod i2c;
 pub mod linked;
 pub mod replay;
 pub mod several;
@@ -91,6 +93,8 @@ pub struct Surroundings {
     pub links: Vec<(String, Arc<Node>)>,
     /// How long a sink waits for a device that takes no bytes.
     pub timeout_ms: u32,
+    /// The I2C buses of the mount.
+    pub buses: Arc<i2c::bus::Buses>,
 }
 
 impl Surroundings {
@@ -124,6 +128,11 @@ pub fn open(
         }
         SourceDescription::Node(path) => linked::open(around.link(path)?),
         SourceDescription::Several(parts) => several::open(parts, around),
+        SourceDescription::I2c(i2c) => {
+            let register = i2c::Register::open(i2c, tuple_size, around.timeout_ms, &around.buses)?;
+            Ok(Device::State(Box::new(register)))
+        }
+        SourceDescription::Absent(reason) => Err(Error::NoDevice(reason.clone())),
     }
 }
 
@@ -153,6 +162,12 @@ pub fn open_sink(
             faulty,
             open_sink(&faulty.source, around)?,
         ))),
+        SourceDescription::I2c(i2c) => {
+            // The size only matters for reading.
+            let register = i2c::Register::open(i2c, 0, around.timeout_ms, &around.buses)?;
+            Ok(Box::new(register))
+        }
+        SourceDescription::Absent(reason) => Err(Error::NoDevice(reason.clone())),
         SourceDescription::Evdev(_)
         | SourceDescription::Fake(_)
         | SourceDescription::Replay(_)
@@ -167,7 +182,10 @@ pub fn is_shared(source: &SourceDescription) -> Result<bool, Error> {
         SourceDescription::Path(path) => {
             matches!(kind_of(path)?, PathKind::Fifo | PathKind::SharedDevice)
         }
-        SourceDescription::Attribute(_) | SourceDescription::Node(_) => false,
+        SourceDescription::Attribute(_)
+        | SourceDescription::Node(_)
+        | SourceDescription::I2c(_)
+        | SourceDescription::Absent(_) => false,
         SourceDescription::Fifo(_) | SourceDescription::Evdev(_) | SourceDescription::Replay(_) => {
             true
         }
@@ -190,12 +208,24 @@ pub fn paths(source: &SourceDescription) -> Vec<&Path> {
         | SourceDescription::Attribute(path)
         | SourceDescription::Fifo(path) => vec![path],
         SourceDescription::Evdev(evdev) => vec![&evdev.path],
+        SourceDescription::I2c(i2c) => vec![&i2c.path],
         SourceDescription::Replay(replay) => vec![&replay.path],
         SourceDescription::Faulty(faulty) => paths(&faulty.source),
         SourceDescription::Several(parts) => {
             parts.iter().flat_map(|part| paths(&part.source)).collect()
         }
-        SourceDescription::Fake(_) | SourceDescription::Node(_) => Vec::new(),
+        SourceDescription::Fake(_) | SourceDescription::Node(_) | SourceDescription::Absent(_) => {
+            Vec::new()
+        }
+    }
+}
+
+/// The bus whose transfers a source waits for, if it is one alone: nodes of one bus are sampled by a thread of its own.
+pub fn bus_of(source: &SourceDescription) -> Option<&Path> {
+    match source {
+        SourceDescription::I2c(i2c) => Some(&i2c.path),
+        SourceDescription::Faulty(faulty) => bus_of(&faulty.source),
+        _ => None,
     }
 }
 

@@ -8,6 +8,7 @@ mod pace;
 mod page;
 
 use crate::clock::Stamp;
+use crate::crew::lock_patiently;
 use crate::device::Got;
 use crate::errno::Error;
 use crate::events::{Due, Ready, lock};
@@ -118,8 +119,7 @@ impl Newest {
         let ageing: Arc<dyn Due> = Arc::new(Ageing {
             node: self.node.clone(),
         });
-        node.engine
-            .schedule
+        node.sampling_schedule()
             .at(Instant::now(), Arc::downgrade(&sampler));
         node.engine
             .schedule
@@ -164,7 +164,7 @@ impl Newest {
             };
         }
         let _inside = node.enter()?;
-        let mut work = lock(&self.work);
+        let mut work = lock_patiently(&self.work);
         work.open(&node)?;
         self.users.fetch_add(1, Ordering::Relaxed);
         Ok(!matches!(&work.source, Source::Stream(reader) if reader.is_shared()))
@@ -261,7 +261,7 @@ impl Newest {
         if matches!(node.description.pace, Pace::Every { .. }) {
             return;
         }
-        let reader = match &lock(&self.work).source {
+        let reader = match &lock_patiently(&self.work).source {
             Source::Stream(reader) => reader.clone(),
             _ => return,
         };
@@ -329,7 +329,7 @@ impl Newest {
 
     /// Takes one sample (a state, an own stream) or everything that has come (a shared stream).
     fn sample(&self, node: &Arc<Node>) {
-        let mut work = lock(&self.work);
+        let mut work = lock_patiently(&self.work);
         if let Err(error) = work.open(node) {
             drop(work);
             return self.fail(error);
@@ -351,7 +351,7 @@ impl Newest {
         };
         let listens = match node.description.pace {
             Pace::OnEvent => true,
-            Pace::OnRead => matches!(lock(&self.work).source, Source::Stream(_)),
+            Pace::OnRead => matches!(lock_patiently(&self.work).source, Source::Stream(_)),
             Pace::Every { .. } => false,
         };
         if listens {
