@@ -66,6 +66,8 @@ mod mount {
     mod reload;
     /// Recordings and made-up bytes.
     mod replay;
+    /// Every kind of actuator comes to rest.
+    mod rest;
     /// The ready line, the background, the service manager, refusals.
     mod start;
     /// One line per node.

@@ -18,7 +18,7 @@ pub mod several;
 
 use crate::errno::Error;
 use crate::node::Node;
-use config::description::SourceDescription;
+use config::description::{GpioDirection, SourceDescription};
 use std::os::fd::BorrowedFd;
 use std::os::unix::fs::{FileTypeExt, MetadataExt};
 use std::path::Path;
@@ -178,6 +178,20 @@ pub fn open_sink(
         _ => Err(Error::NoDevice(
             "this program cannot open such ports yet".to_owned(),
         )),
+    }
+}
+
+/// Whether a source is a device of its own that written tuples can go to.
+pub fn takes_bytes(source: &SourceDescription) -> bool {
+    match source {
+        SourceDescription::Path(_)
+        | SourceDescription::Attribute(_)
+        | SourceDescription::Fifo(_)
+        | SourceDescription::I2c(_)
+        | SourceDescription::Pwm(_) => true,
+        SourceDescription::Gpio(gpio) => gpio.direction != GpioDirection::In,
+        SourceDescription::Lines(lines) => lines.input.is_some(),
+        _ => false,
     }
 }
 

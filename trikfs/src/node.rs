@@ -9,6 +9,7 @@ use crate::device::{self, Device, Sink, Stream, Surroundings};
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::{Due, Ready, Schedule, lock};
+use crate::guardian::actions::RestAction;
 use crate::hub::Hub;
 use crate::lease::Lease;
 use crate::limits;
@@ -24,6 +25,10 @@ use config::program::Direction;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, Weak};
+use std::time::{Duration, Instant};
+
+/// Between two attempts to bring an actuator to rest whose device is busy.
+const REST_PAUSE: Duration = Duration::from_millis(1);
 
 /// One described peripheral.
 pub struct Node {
@@ -453,12 +458,27 @@ impl Node {
         }
     }
 
-    /// Brings the actuator to rest now.
+    /// Brings the actuator to rest now. One that this board does not have rests already; a bus that has too many to
+    /// serve at the moment is asked again until the node's time limit.
     pub fn rest(self: &Arc<Self>) -> Result<(), Error> {
         let Some(tuple) = self.rest_tuple()? else {
             return Ok(());
         };
-        self.open_writer(None)?.write_whole(&tuple, true)
+        if matches!(self.description.source, SourceDescription::Absent(_)) {
+            return Ok(());
+        }
+        let deadline = Instant::now() + Duration::from_millis(self.description.timeout_ms.into());
+        loop {
+            let outcome = self
+                .open_writer(None)
+                .and_then(|mut writer| writer.write_whole(&tuple, true));
+            match outcome {
+                Err(Error::Device(libc::EBUSY, _)) if Instant::now() < deadline => {
+                    std::thread::sleep(REST_PAUSE);
+                }
+                outcome => return outcome,
+            }
+        }
     }
 
     /// Where background samples of this node are scheduled: a node that reads one bus, itself or through another node,
@@ -478,28 +498,45 @@ impl Node {
         device::bus_of(&self.description.source).map(std::path::Path::to_path_buf)
     }
 
-    /// What the guardian writes to which path if this process is no longer there.
-    pub fn rest_bytes(self: &Arc<Self>) -> Result<Option<(PathBuf, Vec<u8>)>, Error> {
-        let Some(tuple) = self.rest_tuple()? else {
-            return Ok(None);
-        };
-        // A transfer on a bus is more than a write to a path.
-        if device::bus_of(&self.description.source).is_some() {
+    /// What the guardian has to do if this process is no longer there; nothing if there is no device to rest.
+    pub fn rest_action(self: &Arc<Self>) -> Result<Option<RestAction>, Error> {
+        match self.rest_tuple()? {
+            Some(tuple) => self.action_of(&tuple),
+            None => Ok(None),
+        }
+    }
+
+    /// The action that has the effect of writing this tuple, through all nodes on the way to a device.
+    fn action_of(self: &Arc<Self>, tuple: &[u8]) -> Result<Option<RestAction>, Error> {
+        let mut converted = vec![0; self.device_tuple_size()];
+        let pipeline = self.open_pipeline()?;
+        let (_, produced, fault) = self.convert(
+            &mut lock(&pipeline),
+            Direction::Write,
+            tuple,
+            &mut converted,
+        );
+        if let Some(error) = fault {
+            return Err(error);
+        }
+        if produced == 0 {
             return Ok(None);
         }
-        let Some(path) = device::paths(&self.description.source)
-            .first()
-            .map(|path| path.to_path_buf())
-        else {
-            return Ok(None);
-        };
-        let mut bytes = vec![0; self.device_tuple_size()];
-        let pipeline = self.open_pipeline()?;
-        let (_, produced, fault) =
-            self.convert(&mut lock(&pipeline), Direction::Write, &tuple, &mut bytes);
-        match fault {
-            Some(error) => Err(error),
-            None => Ok((produced > 0).then_some((path, bytes))),
+        let mut sink = &self.description.source;
+        while let SourceDescription::Faulty(faulty) = sink {
+            sink = &faulty.source;
+        }
+        match sink {
+            SourceDescription::Node(path) => {
+                let other = self.around.links.iter().find(|(name, _)| name == path);
+                other.map_or(Ok(None), |(_, other)| other.action_of(&converted))
+            }
+            _ if !device::takes_bytes(sink) => Ok(None),
+            _ => Ok(Some(RestAction {
+                sink: sink.clone(),
+                tuple: converted,
+                timeout_ms: self.description.timeout_ms,
+            })),
         }
     }
 

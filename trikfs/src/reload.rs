@@ -12,7 +12,8 @@ use crate::engine::Engine;
 use crate::events::lock;
 use crate::files::control::rest_all;
 use crate::fs::{Forest, OpenFiles};
-use crate::guardian::ledger::{Ledger, RestAction};
+use crate::guardian::actions::RestAction;
+use crate::guardian::ledger::Ledger;
 use crate::lease::Lease;
 use crate::node::{Node, directory_of};
 use crate::tree::{Owner, Tree};
@@ -238,8 +239,12 @@ impl Reloader {
     fn rest_actions(&self, nodes: &[Arc<Node>], problems: &mut Vec<String>) -> Vec<RestAction> {
         let mut actions = Vec::new();
         for node in nodes.iter().filter(|node| node.description.rest.is_some()) {
-            match node.rest_bytes() {
-                Ok(Some((path, bytes))) => actions.push(RestAction { path, bytes }),
+            match node.rest_action() {
+                Ok(Some(action)) if action.can_be_noted() => actions.push(action),
+                Ok(Some(_)) => {
+                    let what = "rest: the guardian cannot do it when the daemon is dead: the path is too long";
+                    problems.push(node.problem(what).to_string());
+                }
                 Ok(None) => {}
                 Err(error) => problems.push(node.problem(&format!("rest: {error}")).to_string()),
             }
