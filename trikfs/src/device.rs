@@ -12,6 +12,7 @@ pub mod fake;
 pub mod faulty;
 pub mod fifo;
 pub mod i2c;
+pub mod latched;
 pub mod linked;
 pub mod replay;
 pub mod several;
@@ -127,7 +128,8 @@ pub fn open(
             faulty::open(faulty, open(&faulty.source, tuple_size, around)?)
         }
         SourceDescription::Node(path) => linked::open(around.link(path)?),
-        SourceDescription::Several(parts) => several::open(parts, around),
+        SourceDescription::Newest(path) => latched::open(around.link(path)?),
+        SourceDescription::Several(several) => several::open(several, around),
         SourceDescription::I2c(i2c) => {
             let register = i2c::Register::open(i2c, tuple_size, around.timeout_ms, &around.buses)?;
             Ok(Device::State(Box::new(register)))
@@ -174,6 +176,7 @@ pub fn open_sink(
         SourceDescription::Evdev(_)
         | SourceDescription::Fake(_)
         | SourceDescription::Replay(_)
+        | SourceDescription::Newest(_)
         | SourceDescription::Several(_) => Err(Error::AccessDenied),
         _ => Err(Error::NoDevice(
             "this program cannot open such ports yet".to_owned(),
@@ -204,6 +207,7 @@ pub fn is_shared(source: &SourceDescription) -> Result<bool, Error> {
         }
         SourceDescription::Attribute(_)
         | SourceDescription::Node(_)
+        | SourceDescription::Newest(_)
         | SourceDescription::I2c(_)
         | SourceDescription::Absent(_)
         | SourceDescription::Pwm(_)
@@ -216,9 +220,9 @@ pub fn is_shared(source: &SourceDescription) -> Result<bool, Error> {
         | SourceDescription::Packets(_) => true,
         SourceDescription::Fake(fake) => fake.period_ms > 0,
         SourceDescription::Faulty(faulty) => is_shared(&faulty.source)?,
-        SourceDescription::Several(parts) => {
+        SourceDescription::Several(several) => {
             let mut shared = false;
-            for part in parts {
+            for part in &several.parts {
                 shared |= is_shared(&part.source).map_err(|error| part_error(&part.name, error))?;
             }
             shared
@@ -245,12 +249,14 @@ pub fn paths(source: &SourceDescription) -> Vec<&Path> {
         },
         SourceDescription::Packets(packets) => vec![&packets.path],
         SourceDescription::Faulty(faulty) => paths(&faulty.source),
-        SourceDescription::Several(parts) => {
-            parts.iter().flat_map(|part| paths(&part.source)).collect()
+        SourceDescription::Several(several) => {
+            let parts = several.parts.iter();
+            parts.flat_map(|part| paths(&part.source)).collect()
         }
-        SourceDescription::Fake(_) | SourceDescription::Node(_) | SourceDescription::Absent(_) => {
-            Vec::new()
-        }
+        SourceDescription::Fake(_)
+        | SourceDescription::Node(_)
+        | SourceDescription::Newest(_)
+        | SourceDescription::Absent(_) => Vec::new(),
     }
 }
 

@@ -8,6 +8,7 @@ pub mod device;
 pub mod log;
 pub mod owner;
 pub mod ownership;
+pub mod param;
 pub mod value;
 
 use crate::errno::Error;

@@ -245,7 +245,7 @@ impl Node {
         Ok(Arc::new(Mutex::new(pipeline)))
     }
 
-    fn log_sink(self: &Arc<Self>) -> LogSink {
+    fn log_sink(&self) -> LogSink {
         let (log, path) = (self.engine.log.clone(), self.description.path.clone());
         Arc::new(move |text| log.line(&format!("{path}: {text}")))
     }
@@ -344,6 +344,10 @@ impl Node {
         input: &[u8],
         output: &mut [u8],
     ) -> (usize, usize, Option<Error>) {
+        if let Err(error) = self.recipe.renew(pipeline, || self.log_sink()) {
+            self.report(&error);
+            return (1, 0, Some(error));
+        }
         let start = self.stats.measures_this_conversion().then(Stamp::now);
         let batch = pipeline.convert(direction, input, output);
         let (in_size, out_size) = match direction {

@@ -46,6 +46,8 @@ pub enum Kind {
     Format(Arc<Node>),
     /// `poll_ms`
     Period(Arc<Node>),
+    /// `params/NAME`
+    Param(Arc<Node>, Arc<str>),
     /// `fault`
     Fault(Arc<Node>),
     /// `stats`
@@ -134,6 +136,7 @@ impl Tree {
             while let Some(part) = parts.next() {
                 if parts.peek().is_none() && node.is_attribute {
                     builder.add(at, part, Kind::Value(node.clone(), View::Text));
+                    builder.add_params(at, &format!("{part}."), node);
                 } else {
                     at = builder.directory(at, part);
                 }
@@ -268,6 +271,7 @@ impl Tree {
                 }
             }
             Kind::Owner(node) => attr.mode = 0o444 | node.lease.write_mode(),
+            Kind::Param(..) => attr.mode = 0o644,
             Kind::Device(node) => {
                 attr.mode = node.description.mode;
                 attr.size = node.description.output_tuple_size as u64;
@@ -320,6 +324,7 @@ impl Kind {
             | Self::Units(node)
             | Self::Format(node)
             | Self::Period(node)
+            | Self::Param(node, _)
             | Self::Fault(node)
             | Self::Stats(node)
             | Self::Owner(node) => Some(node),
@@ -335,6 +340,7 @@ impl Kind {
         };
         let same_view = match (self, other) {
             (Self::Value(_, a), Self::Value(_, b)) => a == b,
+            (Self::Param(_, a), Self::Param(_, b)) => a == b,
             _ => true,
         };
         std::mem::discriminant(self) == std::mem::discriminant(other) && same_node && same_view
@@ -402,6 +408,19 @@ impl Builder<'_> {
         self.add(at, "stats", Kind::Stats(node.clone()));
         if is_actuator {
             self.add(at, "owner", Kind::Owner(node.clone()));
+        }
+        self.add_params(at, "", node);
+    }
+
+    /// The params of a node, or of one of its attributes, whose name and a dot then stand before theirs.
+    fn add_params(&mut self, at: u64, before: &str, node: &Arc<Node>) {
+        if node.description.params.is_empty() {
+            return;
+        }
+        let directory = self.directory(at, "params");
+        for name in node.description.params.keys() {
+            let kind = Kind::Param(node.clone(), name.as_str().into());
+            self.add(directory, &format!("{before}{name}"), kind);
         }
     }
 }

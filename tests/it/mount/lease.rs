@@ -6,6 +6,7 @@ use nix::sys::signal::Signal;
 
 const ROBOT: &str = "trikfs = {
   motor = { src = '$DIR/motor', input_tuple_size = 2, format = 'i8 speed, u8 mode', rest = { 0, 7 },
+    params = { gain = 1 },
     attributes = { brake = { src = '$DIR/brake', input_tuple_size = 1, rest = { 1 } } } },
   alias = { src = 'trikfs:motor', input_tuple_size = 2, mode = '0644' },
   lamp = { src = '$DIR/lamp', input_tuple_size = 1 },
@@ -93,7 +94,7 @@ for fd, data in zip(before, texts): os.write(fd, data)
 child = held()
 for fd, data in zip(before, texts):
     expect('EBUSY', os.write, fd, data)
-for name, data in (('value', b'1 1'), ('device', b'ab'), ('brake', b'1')):
+for name, data in (('value', b'1 1'), ('device', b'ab'), ('brake', b'1'), ('params/gain', b'2')):
     expect('EBUSY', put, 'motor/' + name, data)
 expect('EBUSY', take)
 assert owner().startswith('%d python3' % child) and owner().endswith(' priority 0 deadman_ms 0\\n'), owner()
