@@ -28,8 +28,9 @@ use std::collections::HashMap;
 /// Names at the top that belong to the filesystem.
 const RESERVED_NODES: [&str; 4] = ["config", "log", "status", "stop"];
 /// Names in a node that belong to the filesystem; `value0`, `value1` ... as well.
-const RESERVED_ATTRIBUTES: [&str; 9] = [
-    "bin_data", "device", "fault", "format", "params", "poll_ms", "stats", "units", "value",
+const RESERVED_ATTRIBUTES: [&str; 10] = [
+    "bin_data", "device", "fault", "format", "owner", "params", "poll_ms", "stats", "units",
+    "value",
 ];
 /// Nodes that read each other in a row; bounds the recursion of `build`.
 const LINKS_MAX: usize = SOURCES_MAX;

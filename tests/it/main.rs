@@ -44,6 +44,8 @@ mod mount {
     mod guardian;
     /// The example that ships, as the thesis describes it.
     mod hello;
+    /// Who may write an actuator, and what becomes of it when that one ends.
+    mod lease;
     /// Many open files, large tuples, many nodes.
     mod limits;
     /// What converters and the filesystem report.
@@ -66,6 +68,8 @@ mod mount {
     mod reload;
     /// Recordings and made-up bytes.
     mod replay;
+    /// Every kind of actuator comes to rest.
+    mod rest;
     /// The ready line, the background, the service manager, refusals.
     mod start;
     /// One line per node.

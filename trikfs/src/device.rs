@@ -222,6 +222,20 @@ pub fn open_sink(
     }
 }
 
+/// Whether a source is a device of its own that written tuples can go to.
+pub fn takes_bytes(source: &SourceDescription) -> bool {
+    match source {
+        SourceDescription::Path(_)
+        | SourceDescription::Attribute(_)
+        | SourceDescription::Fifo(_)
+        | SourceDescription::I2c(_)
+        | SourceDescription::Pwm(_) => true,
+        SourceDescription::Gpio(gpio) => gpio.direction != GpioDirection::In,
+        SourceDescription::Lines(lines) => lines.input.is_some(),
+        _ => false,
+    }
+}
+
 /// Whether all readers share one opening: the source gives each datum once or lets only one process in.
 /// The kind of a plain path is looked up each time, because a device may appear later as something else.
 pub fn is_shared(source: &SourceDescription) -> Result<bool, Error> {

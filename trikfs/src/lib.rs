@@ -22,6 +22,7 @@ pub mod fs;
 pub mod guardian;
 pub mod hash;
 pub mod hub;
+pub mod lease;
 pub mod limits;
 pub mod log;
 pub mod mount;

@@ -51,6 +51,10 @@ pub const LATE_PER_NODE_MAX: usize = 4;
 /// Milliseconds of one `stop` before it goes on to the next actuator is bounded by each node's `timeout_ms`;
 /// this bounds the number of actuators brought to rest at once.
 pub const REST_THREADS_MAX: usize = 8;
+/// Highest priority that a lease can be asked for with.
+pub const LEASE_PRIORITY_MAX: u32 = 100;
+/// Longest time in milliseconds that a dead-man's clock can be set to.
+pub const DEADMAN_MS_MAX: u32 = 60_000;
 /// Bytes of data in one read or write request of the kernel; a larger one is served in part.
 pub const TRANSFER_BYTES_MAX: usize = 128 << 10;
 /// Requests without a waiting caller (releases, read-ahead) that the kernel may have under way.

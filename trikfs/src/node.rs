@@ -9,7 +9,9 @@ use crate::device::{self, Device, Sink, Stream, Surroundings};
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::{Due, Ready, Schedule, lock};
+use crate::guardian::actions::RestAction;
 use crate::hub::Hub;
+use crate::lease::Lease;
 use crate::limits;
 use crate::newest::Newest;
 use crate::reader::{Origin, Reader};
@@ -24,6 +26,10 @@ use config::program::Direction;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, Weak};
+use std::time::{Duration, Instant};
+
+/// Between two attempts to bring an actuator to rest whose device is busy.
+const REST_PAUSE: Duration = Duration::from_millis(1);
 
 /// One described peripheral.
 pub struct Node {
@@ -37,6 +43,10 @@ pub struct Node {
     pub format: Format,
     /// The mount's services.
     pub engine: Arc<Engine>,
+    /// Who may write the files of the node's directory.
+    pub lease: Arc<Lease>,
+    /// The same, and those of the nodes that a write passes on its way to the device.
+    pub leases: Vec<Arc<Lease>>,
     /// Counts and times.
     pub stats: Stats,
     /// The newest sample, and how it is got.
@@ -75,6 +85,7 @@ impl Node {
         recipe: Recipe,
         links: Vec<(String, Arc<Self>)>,
         engine: Arc<Engine>,
+        lease: Arc<Lease>,
     ) -> Arc<Self> {
         let format = description
             .format
@@ -88,6 +99,11 @@ impl Node {
             _ => None,
         };
         let stats = Stats::default();
+        let mut leases = vec![lease.clone()];
+        if let Some(other) = written_node(&description.source) {
+            let linked = links.iter().filter(|(path, _)| path == other);
+            leases.extend(linked.flat_map(|(_, node)| node.leases.clone()));
+        }
         let around = Surroundings {
             links,
             timeout_ms: description.timeout_ms,
@@ -105,6 +121,8 @@ impl Node {
             fingerprint,
             format,
             engine,
+            lease,
+            leases,
             stats,
             newest: Newest::new(me.clone(), description.output_tuple_size),
             recipe,
@@ -130,6 +148,11 @@ impl Node {
     /// Path below the mount point.
     pub fn path(&self) -> &str {
         &self.description.path
+    }
+
+    /// Path of the directory that holds the node's files.
+    pub fn directory(&self) -> &str {
+        directory_of(&self.description.path, self.is_attribute)
     }
 
     /// A reload has changed or removed the description.
@@ -471,7 +494,8 @@ impl Node {
         }
     }
 
-    /// Brings the actuator to rest now.
+    /// Brings the actuator to rest now. One that this board does not have rests already; a bus that has too many to
+    /// serve at the moment is asked again until the node's time limit.
     pub fn rest(self: &Arc<Self>) -> Result<(), Error> {
         if let Some(regulation) = &self.regulation {
             return regulation.rest();
@@ -479,7 +503,21 @@ impl Node {
         let Some(tuple) = self.rest_tuple()? else {
             return Ok(());
         };
-        self.open_writer(None)?.write_whole(&tuple, true)
+        if matches!(self.description.source, SourceDescription::Absent(_)) {
+            return Ok(());
+        }
+        let deadline = Instant::now() + Duration::from_millis(self.description.timeout_ms.into());
+        loop {
+            let outcome = self
+                .open_writer(None)
+                .and_then(|mut writer| writer.write_whole(&tuple, true));
+            match outcome {
+                Err(Error::Device(libc::EBUSY, _)) if Instant::now() < deadline => {
+                    std::thread::sleep(REST_PAUSE);
+                }
+                outcome => return outcome,
+            }
+        }
     }
 
     /// Where background samples of this node are scheduled: a node that reads one bus, itself or through another node,
@@ -499,32 +537,49 @@ impl Node {
         device::bus_of(&self.description.source).map(std::path::Path::to_path_buf)
     }
 
-    /// What the guardian writes to which path if this process is no longer there.
-    pub fn rest_bytes(self: &Arc<Self>) -> Result<Option<(PathBuf, Vec<u8>)>, Error> {
+    /// What the guardian has to do if this process is no longer there; nothing if there is no device to rest.
+    pub fn rest_action(self: &Arc<Self>) -> Result<Option<RestAction>, Error> {
         if self.regulation.is_some() {
             // What it drives has a rest of its own.
             return Ok(None);
         }
-        let Some(tuple) = self.rest_tuple()? else {
-            return Ok(None);
-        };
-        // A transfer on a bus is more than a write to a path.
-        if device::bus_of(&self.description.source).is_some() {
+        match self.rest_tuple()? {
+            Some(tuple) => self.action_of(&tuple),
+            None => Ok(None),
+        }
+    }
+
+    /// The action that has the effect of writing this tuple, through all nodes on the way to a device.
+    fn action_of(self: &Arc<Self>, tuple: &[u8]) -> Result<Option<RestAction>, Error> {
+        let mut converted = vec![0; self.device_tuple_size()];
+        let pipeline = self.open_pipeline()?;
+        let (_, produced, fault) = self.convert(
+            &mut lock(&pipeline),
+            Direction::Write,
+            tuple,
+            &mut converted,
+        );
+        if let Some(error) = fault {
+            return Err(error);
+        }
+        if produced == 0 {
             return Ok(None);
         }
-        let Some(path) = device::paths(&self.description.source)
-            .first()
-            .map(|path| path.to_path_buf())
-        else {
-            return Ok(None);
-        };
-        let mut bytes = vec![0; self.device_tuple_size()];
-        let pipeline = self.open_pipeline()?;
-        let (_, produced, fault) =
-            self.convert(&mut lock(&pipeline), Direction::Write, &tuple, &mut bytes);
-        match fault {
-            Some(error) => Err(error),
-            None => Ok((produced > 0).then_some((path, bytes))),
+        let mut sink = &self.description.source;
+        while let SourceDescription::Faulty(faulty) = sink {
+            sink = &faulty.source;
+        }
+        match sink {
+            SourceDescription::Node(path) => {
+                let other = self.around.links.iter().find(|(name, _)| name == path);
+                other.map_or(Ok(None), |(_, other)| other.action_of(&converted))
+            }
+            _ if !device::takes_bytes(sink) => Ok(None),
+            _ => Ok(Some(RestAction {
+                sink: sink.clone(),
+                tuple: converted,
+                timeout_ms: self.description.timeout_ms,
+            })),
         }
     }
 
@@ -543,6 +598,21 @@ impl Node {
 fn log_sink(engine: &Engine, path: &str) -> LogSink {
     let (log, path) = (engine.log.clone(), path.to_owned());
     Arc::new(move |text| log.line(&format!("{path}: {text}")))
+}
+
+/// The directory of a node, or of an attribute.
+pub fn directory_of(path: &str, is_attribute: bool) -> &str {
+    let parent = path.rsplit_once('/').filter(|_| is_attribute);
+    parent.map_or(path, |(parent, _)| parent)
+}
+
+/// The node that a write to this source goes to.
+fn written_node(source: &SourceDescription) -> Option<&str> {
+    match source {
+        SourceDescription::Node(path) => Some(path),
+        SourceDescription::Faulty(faulty) => written_node(&faulty.source),
+        _ => None,
+    }
 }
 
 /// One operation inside a node: its place among those that may be there at once.
