@@ -13,6 +13,7 @@ use crate::hub::Hub;
 use crate::limits;
 use crate::newest::Newest;
 use crate::reader::{Origin, Reader};
+use crate::regulation::Regulation;
 use crate::state_reader::StateReader;
 use crate::stats::Stats;
 use crate::writer::Writer;
@@ -49,6 +50,10 @@ pub struct Node {
     rate: Mutex<Rate>,
     retired: AtomicBool,
     period_ms: AtomicU32,
+    /// How often a tuple went to the device. Wraps.
+    writes: AtomicU32,
+    /// Only for the source `regulator{...}`.
+    regulation: Option<Regulation>,
     /// When each of the operations that are inside now began, in coarse ms.
     inside: [AtomicU32; limits::LATE_PER_NODE_MAX],
 }
@@ -75,6 +80,13 @@ impl Node {
             .format
             .clone()
             .unwrap_or_else(|| Format::bytes(description.output_tuple_size));
+        let regulation = match &description.source {
+            SourceDescription::Regulator(regulator) => links
+                .iter()
+                .find(|(path, _)| *path == regulator.actuator)
+                .map(|(_, actuator)| Regulation::new(actuator.clone())),
+            _ => None,
+        };
         let stats = Stats::default();
         let around = Surroundings {
             links,
@@ -108,6 +120,8 @@ impl Node {
             }),
             retired: AtomicBool::new(false),
             period_ms: AtomicU32::new(period_ms),
+            writes: AtomicU32::new(0),
+            regulation,
             inside: Default::default(),
             description,
         })
@@ -159,11 +173,30 @@ impl Node {
 
     /// Bytes of one tuple that goes to the device.
     pub fn device_tuple_size(&self) -> usize {
-        if self.description.write_converter.is_some() {
-            self.description.input_tuple_size
-        } else {
-            self.description.output_tuple_size
+        self.description.write_conversion_sizes().1
+    }
+
+    /// Holds what is written by driving another node.
+    pub fn regulation(&self) -> Option<&Regulation> {
+        self.regulation.as_ref()
+    }
+
+    /// How often a tuple went to the device, for an alias to the device of the node that it stands for. Wraps.
+    pub fn writes(&self) -> u32 {
+        match &self.description.source {
+            SourceDescription::Node(path) => {
+                match self.around.links.iter().find(|(name, _)| name == path) {
+                    Some((_, other)) => other.writes(),
+                    None => 0,
+                }
+            }
+            _ => self.writes.load(Ordering::Relaxed),
         }
+    }
+
+    /// A tuple went to the device.
+    pub fn count_write(&self) {
+        self.writes.fetch_add(1, Ordering::Relaxed);
     }
 
     /// Whether programs may read or write at all: root passes the kernel's check of the mode bits.
@@ -306,6 +339,9 @@ impl Node {
         self: &Arc<Self>,
         pipeline: Option<Arc<Mutex<Pipeline>>>,
     ) -> Result<Writer, Error> {
+        if self.regulation.is_some() {
+            return Ok(Writer::to_regulation(self.clone()));
+        }
         let pipeline = pipeline.map_or_else(|| self.open_pipeline(), Ok)?;
         let sink: Box<dyn Sink> = device::open_sink(&self.description.source, &self.around)
             .inspect_err(|error| self.report(error))?;
@@ -327,10 +363,7 @@ impl Node {
         let start = self.stats.measures_this_conversion().then(Stamp::now);
         let batch = pipeline.convert(direction, input, output);
         let (in_size, out_size) = match direction {
-            Direction::Write => (
-                self.description.written_tuple_size(),
-                self.device_tuple_size(),
-            ),
+            Direction::Write => self.description.write_conversion_sizes(),
             Direction::Read => (
                 self.description.input_tuple_size,
                 self.description.output_tuple_size,
@@ -440,6 +473,9 @@ impl Node {
 
     /// Brings the actuator to rest now.
     pub fn rest(self: &Arc<Self>) -> Result<(), Error> {
+        if let Some(regulation) = &self.regulation {
+            return regulation.rest();
+        }
         let Some(tuple) = self.rest_tuple()? else {
             return Ok(());
         };
@@ -465,6 +501,10 @@ impl Node {
 
     /// What the guardian writes to which path if this process is no longer there.
     pub fn rest_bytes(self: &Arc<Self>) -> Result<Option<(PathBuf, Vec<u8>)>, Error> {
+        if self.regulation.is_some() {
+            // What it drives has a rest of its own.
+            return Ok(None);
+        }
         let Some(tuple) = self.rest_tuple()? else {
             return Ok(None);
         };

@@ -105,6 +105,10 @@ pub fn rest_all(nodes: &[Arc<Node>]) -> Result<(), Error> {
         .collect();
     let per_thread = actuators.len().div_ceil(limits::REST_THREADS_MAX).max(1);
     let failures = Mutex::new(Vec::new());
+    // First nobody may drive them any more.
+    for regulation in nodes.iter().filter_map(|node| node.regulation()) {
+        regulation.release();
+    }
     std::thread::scope(|scope| {
         let rest = |group: &[&Arc<Node>]| {
             for node in group {
