@@ -26,6 +26,19 @@ mod converters {
     /// The shipped filters in both languages against the golden vectors.
     mod vectors;
 }
+/// Ports of a controller, with files and pipes in their place.
+mod devices {
+    /// Single lines.
+    mod gpio;
+    /// Sampled sensors.
+    mod iio;
+    /// Text of sensor programs.
+    mod lines;
+    /// Serial lines.
+    mod packets;
+    /// Pulses.
+    mod pwm;
+}
 /// One module for each operation or file of a mounted tree.
 mod mount {
     /// Further files in a node's directory.
