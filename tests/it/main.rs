@@ -26,6 +26,19 @@ mod converters {
     /// The shipped filters in both languages against the golden vectors.
     mod vectors;
 }
+/// Ports of a controller, with files and pipes in their place.
+mod devices {
+    /// Single lines.
+    mod gpio;
+    /// Sampled sensors.
+    mod iio;
+    /// Text of sensor programs.
+    mod lines;
+    /// Serial lines.
+    mod packets;
+    /// Pulses.
+    mod pwm;
+}
 /// One module for each operation or file of a mounted tree.
 mod mount {
     /// Further files in a node's directory.
@@ -44,6 +57,8 @@ mod mount {
     mod guardian;
     /// The example that ships, as the thesis describes it.
     mod hello;
+    /// Who may write an actuator, and what becomes of it when that one ends.
+    mod lease;
     /// Many open files, large tuples, many nodes.
     mod limits;
     /// What converters and the filesystem report.
@@ -66,6 +81,8 @@ mod mount {
     mod reload;
     /// Recordings and made-up bytes.
     mod replay;
+    /// Every kind of actuator comes to rest.
+    mod rest;
     /// The ready line, the background, the service manager, refusals.
     mod start;
     /// One line per node.

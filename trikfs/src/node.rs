@@ -9,10 +9,13 @@ use crate::device::{self, Device, Sink, Stream, Surroundings};
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::{Due, Ready, Schedule, lock};
+use crate::guardian::actions::RestAction;
 use crate::hub::Hub;
+use crate::lease::Lease;
 use crate::limits;
 use crate::newest::Newest;
 use crate::reader::{Origin, Reader};
+use crate::regulation::Regulation;
 use crate::state_reader::StateReader;
 use crate::stats::Stats;
 use crate::writer::Writer;
@@ -23,6 +26,10 @@ use config::program::Direction;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, Weak};
+use std::time::{Duration, Instant};
+
+/// Between two attempts to bring an actuator to rest whose device is busy.
+const REST_PAUSE: Duration = Duration::from_millis(1);
 
 /// One described peripheral.
 pub struct Node {
@@ -36,6 +43,10 @@ pub struct Node {
     pub format: Format,
     /// The mount's services.
     pub engine: Arc<Engine>,
+    /// Who may write the files of the node's directory.
+    pub lease: Arc<Lease>,
+    /// The same, and those of the nodes that a write passes on its way to the device.
+    pub leases: Vec<Arc<Lease>>,
     /// Counts and times.
     pub stats: Stats,
     /// The newest sample, and how it is got.
@@ -49,6 +60,10 @@ pub struct Node {
     rate: Mutex<Rate>,
     retired: AtomicBool,
     period_ms: AtomicU32,
+    /// How often a tuple went to the device. Wraps.
+    writes: AtomicU32,
+    /// Only for the source `regulator{...}`.
+    regulation: Option<Regulation>,
     /// When each of the operations that are inside now began, in coarse ms.
     inside: [AtomicU32; limits::LATE_PER_NODE_MAX],
 }
@@ -70,14 +85,31 @@ impl Node {
         recipe: Recipe,
         links: Vec<(String, Arc<Self>)>,
         engine: Arc<Engine>,
+        lease: Arc<Lease>,
     ) -> Arc<Self> {
         let format = description
             .format
             .clone()
             .unwrap_or_else(|| Format::bytes(description.output_tuple_size));
+        let regulation = match &description.source {
+            SourceDescription::Regulator(regulator) => links
+                .iter()
+                .find(|(path, _)| *path == regulator.actuator)
+                .map(|(_, actuator)| Regulation::new(actuator.clone())),
+            _ => None,
+        };
+        let stats = Stats::default();
+        let mut leases = vec![lease.clone()];
+        if let Some(other) = written_node(&description.source) {
+            let linked = links.iter().filter(|(path, _)| path == other);
+            leases.extend(linked.flat_map(|(_, node)| node.leases.clone()));
+        }
         let around = Surroundings {
             links,
             timeout_ms: description.timeout_ms,
+            damaged: stats.damaged.clone(),
+            programs: engine.programs.clone(),
+            log: log_sink(&engine, &description.path),
             buses: engine.buses.clone(),
         };
         let period_ms = match description.pace {
@@ -89,7 +121,9 @@ impl Node {
             fingerprint,
             format,
             engine,
-            stats: Stats::default(),
+            lease,
+            leases,
+            stats,
             newest: Newest::new(me.clone(), description.output_tuple_size),
             recipe,
             around,
@@ -104,6 +138,8 @@ impl Node {
             }),
             retired: AtomicBool::new(false),
             period_ms: AtomicU32::new(period_ms),
+            writes: AtomicU32::new(0),
+            regulation,
             inside: Default::default(),
             description,
         })
@@ -112,6 +148,11 @@ impl Node {
     /// Path below the mount point.
     pub fn path(&self) -> &str {
         &self.description.path
+    }
+
+    /// Path of the directory that holds the node's files.
+    pub fn directory(&self) -> &str {
+        directory_of(&self.description.path, self.is_attribute)
     }
 
     /// A reload has changed or removed the description.
@@ -155,11 +196,30 @@ impl Node {
 
     /// Bytes of one tuple that goes to the device.
     pub fn device_tuple_size(&self) -> usize {
-        if self.description.write_converter.is_some() {
-            self.description.input_tuple_size
-        } else {
-            self.description.output_tuple_size
+        self.description.write_conversion_sizes().1
+    }
+
+    /// Holds what is written by driving another node.
+    pub fn regulation(&self) -> Option<&Regulation> {
+        self.regulation.as_ref()
+    }
+
+    /// How often a tuple went to the device, for an alias to the device of the node that it stands for. Wraps.
+    pub fn writes(&self) -> u32 {
+        match &self.description.source {
+            SourceDescription::Node(path) => {
+                match self.around.links.iter().find(|(name, _)| name == path) {
+                    Some((_, other)) => other.writes(),
+                    None => 0,
+                }
+            }
+            _ => self.writes.load(Ordering::Relaxed),
         }
+    }
+
+    /// A tuple went to the device.
+    pub fn count_write(&self) {
+        self.writes.fetch_add(1, Ordering::Relaxed);
     }
 
     /// Whether programs may read or write at all: root passes the kernel's check of the mode bits.
@@ -217,14 +277,9 @@ impl Node {
     pub fn open_pipeline(self: &Arc<Self>) -> Result<Arc<Mutex<Pipeline>>, Error> {
         let pipeline = self
             .recipe
-            .open(&self.log_sink())
+            .open(&self.around.log)
             .inspect_err(|error| self.report(error))?;
         Ok(Arc::new(Mutex::new(pipeline)))
-    }
-
-    fn log_sink(&self) -> LogSink {
-        let (log, path) = (self.engine.log.clone(), self.description.path.clone());
-        Arc::new(move |text| log.line(&format!("{path}: {text}")))
     }
 
     /// Opens the node for reading with a pipeline of its own.
@@ -307,6 +362,9 @@ impl Node {
         self: &Arc<Self>,
         pipeline: Option<Arc<Mutex<Pipeline>>>,
     ) -> Result<Writer, Error> {
+        if self.regulation.is_some() {
+            return Ok(Writer::to_regulation(self.clone()));
+        }
         let pipeline = pipeline.map_or_else(|| self.open_pipeline(), Ok)?;
         let sink: Box<dyn Sink> = device::open_sink(&self.description.source, &self.around)
             .inspect_err(|error| self.report(error))?;
@@ -321,17 +379,14 @@ impl Node {
         input: &[u8],
         output: &mut [u8],
     ) -> (usize, usize, Option<Error>) {
-        if let Err(error) = self.recipe.renew(pipeline, || self.log_sink()) {
+        if let Err(error) = self.recipe.renew(pipeline, || self.around.log.clone()) {
             self.report(&error);
             return (1, 0, Some(error));
         }
         let start = self.stats.measures_this_conversion().then(Stamp::now);
         let batch = pipeline.convert(direction, input, output);
         let (in_size, out_size) = match direction {
-            Direction::Write => (
-                self.description.written_tuple_size(),
-                self.device_tuple_size(),
-            ),
+            Direction::Write => self.description.write_conversion_sizes(),
             Direction::Read => (
                 self.description.input_tuple_size,
                 self.description.output_tuple_size,
@@ -439,12 +494,30 @@ impl Node {
         }
     }
 
-    /// Brings the actuator to rest now.
+    /// Brings the actuator to rest now. One that this board does not have rests already; a bus that has too many to
+    /// serve at the moment is asked again until the node's time limit.
     pub fn rest(self: &Arc<Self>) -> Result<(), Error> {
+        if let Some(regulation) = &self.regulation {
+            return regulation.rest();
+        }
         let Some(tuple) = self.rest_tuple()? else {
             return Ok(());
         };
-        self.open_writer(None)?.write_whole(&tuple, true)
+        if matches!(self.description.source, SourceDescription::Absent(_)) {
+            return Ok(());
+        }
+        let deadline = Instant::now() + Duration::from_millis(self.description.timeout_ms.into());
+        loop {
+            let outcome = self
+                .open_writer(None)
+                .and_then(|mut writer| writer.write_whole(&tuple, true));
+            match outcome {
+                Err(Error::Device(libc::EBUSY, _)) if Instant::now() < deadline => {
+                    std::thread::sleep(REST_PAUSE);
+                }
+                outcome => return outcome,
+            }
+        }
     }
 
     /// Where background samples of this node are scheduled: a node that reads one bus, itself or through another node,
@@ -464,28 +537,49 @@ impl Node {
         device::bus_of(&self.description.source).map(std::path::Path::to_path_buf)
     }
 
-    /// What the guardian writes to which path if this process is no longer there.
-    pub fn rest_bytes(self: &Arc<Self>) -> Result<Option<(PathBuf, Vec<u8>)>, Error> {
-        let Some(tuple) = self.rest_tuple()? else {
-            return Ok(None);
-        };
-        // A transfer on a bus is more than a write to a path.
-        if device::bus_of(&self.description.source).is_some() {
+    /// What the guardian has to do if this process is no longer there; nothing if there is no device to rest.
+    pub fn rest_action(self: &Arc<Self>) -> Result<Option<RestAction>, Error> {
+        if self.regulation.is_some() {
+            // What it drives has a rest of its own.
             return Ok(None);
         }
-        let Some(path) = device::paths(&self.description.source)
-            .first()
-            .map(|path| path.to_path_buf())
-        else {
-            return Ok(None);
-        };
-        let mut bytes = vec![0; self.device_tuple_size()];
+        match self.rest_tuple()? {
+            Some(tuple) => self.action_of(&tuple),
+            None => Ok(None),
+        }
+    }
+
+    /// The action that has the effect of writing this tuple, through all nodes on the way to a device.
+    fn action_of(self: &Arc<Self>, tuple: &[u8]) -> Result<Option<RestAction>, Error> {
+        let mut converted = vec![0; self.device_tuple_size()];
         let pipeline = self.open_pipeline()?;
-        let (_, produced, fault) =
-            self.convert(&mut lock(&pipeline), Direction::Write, &tuple, &mut bytes);
-        match fault {
-            Some(error) => Err(error),
-            None => Ok((produced > 0).then_some((path, bytes))),
+        let (_, produced, fault) = self.convert(
+            &mut lock(&pipeline),
+            Direction::Write,
+            tuple,
+            &mut converted,
+        );
+        if let Some(error) = fault {
+            return Err(error);
+        }
+        if produced == 0 {
+            return Ok(None);
+        }
+        let mut sink = &self.description.source;
+        while let SourceDescription::Faulty(faulty) = sink {
+            sink = &faulty.source;
+        }
+        match sink {
+            SourceDescription::Node(path) => {
+                let other = self.around.links.iter().find(|(name, _)| name == path);
+                other.map_or(Ok(None), |(_, other)| other.action_of(&converted))
+            }
+            _ if !device::takes_bytes(sink) => Ok(None),
+            _ => Ok(Some(RestAction {
+                sink: sink.clone(),
+                tuple: converted,
+                timeout_ms: self.description.timeout_ms,
+            })),
         }
     }
 
@@ -497,6 +591,27 @@ impl Node {
             place.line,
             format!("node {}: {reason}", self.path()),
         )
+    }
+}
+
+/// Lines of the log that begin with a node's path.
+fn log_sink(engine: &Engine, path: &str) -> LogSink {
+    let (log, path) = (engine.log.clone(), path.to_owned());
+    Arc::new(move |text| log.line(&format!("{path}: {text}")))
+}
+
+/// The directory of a node, or of an attribute.
+pub fn directory_of(path: &str, is_attribute: bool) -> &str {
+    let parent = path.rsplit_once('/').filter(|_| is_attribute);
+    parent.map_or(path, |(parent, _)| parent)
+}
+
+/// The node that a write to this source goes to.
+fn written_node(source: &SourceDescription) -> Option<&str> {
+    match source {
+        SourceDescription::Node(path) => Some(path),
+        SourceDescription::Faulty(faulty) => written_node(&faulty.source),
+        _ => None,
     }
 }
 

@@ -9,7 +9,7 @@ use crate::files::value::View;
 use crate::node::Node;
 use crate::transport::{Attr, DirEntry, FileKind};
 use config::description::Pace;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 use std::time::{Duration, SystemTime};
 
@@ -52,6 +52,8 @@ pub enum Kind {
     Fault(Arc<Node>),
     /// `stats`
     Stats(Arc<Node>),
+    /// `owner`
+    Owner(Arc<Node>),
 }
 
 /// One file or directory.
@@ -123,6 +125,11 @@ impl Tree {
         ] {
             builder.add(ROOT, name, kind);
         }
+        let actuators: HashSet<&str> = nodes
+            .iter()
+            .filter(|node| node.description.rest.is_some())
+            .map(|node| node.directory())
+            .collect();
         for node in &nodes {
             let mut at = ROOT;
             let mut parts = node.path().split('/').peekable();
@@ -135,7 +142,7 @@ impl Tree {
                 }
             }
             if !node.is_attribute {
-                builder.add_node_files(at, node);
+                builder.add_node_files(at, node, actuators.contains(node.directory()));
             }
         }
         Self {
@@ -263,6 +270,7 @@ impl Tree {
                     0o444
                 }
             }
+            Kind::Owner(node) => attr.mode = 0o444 | node.lease.write_mode(),
             Kind::Param(..) => attr.mode = 0o644,
             Kind::Device(node) => {
                 attr.mode = node.description.mode;
@@ -318,7 +326,8 @@ impl Kind {
             | Self::Period(node)
             | Self::Param(node, _)
             | Self::Fault(node)
-            | Self::Stats(node) => Some(node),
+            | Self::Stats(node)
+            | Self::Owner(node) => Some(node),
         }
     }
 
@@ -379,7 +388,7 @@ impl Builder<'_> {
         existing.unwrap_or_else(|| self.add(parent, name, Kind::Directory))
     }
 
-    fn add_node_files(&mut self, at: u64, node: &Arc<Node>) {
+    fn add_node_files(&mut self, at: u64, node: &Arc<Node>, is_actuator: bool) {
         self.add(at, "device", Kind::Device(node.clone()));
         self.add(at, "bin_data", Kind::Value(node.clone(), View::Bytes));
         self.add(at, "value", Kind::Value(node.clone(), View::Text));
@@ -397,6 +406,9 @@ impl Builder<'_> {
         self.add(at, "poll_ms", Kind::Period(node.clone()));
         self.add(at, "fault", Kind::Fault(node.clone()));
         self.add(at, "stats", Kind::Stats(node.clone()));
+        if is_actuator {
+            self.add(at, "owner", Kind::Owner(node.clone()));
+        }
         self.add_params(at, "", node);
     }
 
