@@ -1,12 +1,15 @@
 //! An I2C bus as a socket: one packet for each transaction, one answer for each packet.
 //!
-//! Request: u8 version = 1, u8 flags = 0, u16 address, u16 bytes to write, u16 bytes to read, the bytes to write.
+//! Request: u8 version = 1, u8 flags, u16 address, u16 bytes to write, u16 bytes to read, the bytes to write.
+//! Flags: 0 is a transaction; 1 is a look with a probe at the register that is written (one byte), for tests and judges:
+//! it takes no time on the bus, meets no fault, and sees registers that the bus cannot read back.
 //! Answer: i32 Linux error number (0: fine), the bytes that were read. All numbers have the low byte first.
 //! Owns connections and their time; what answers is the [`Machine`](crate::machine::Machine).
 //! A client can harm only itself: packets have a limit, and one that does not take its answers is cut off.
 
 use crate::limits::{MAX_CONNECTIONS, MAX_TRANSFER_BYTES};
 use crate::machine::Outcome;
+use crate::msp430;
 use crate::shared::Shared;
 use nix::errno::Errno;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
@@ -25,6 +28,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 const VERSION: u8 = 1;
+const PROBE: u8 = 1;
 const HEADER_BYTES: usize = 8;
 /// A fault that makes the bus slow may end while it waits.
 const SLOW_SLICE_MS: u64 = 5;
@@ -189,6 +193,9 @@ impl Line {
                 return Some(4);
             }
         };
+        if request.is_probe {
+            return Some(self.probe(&request, answer));
+        }
         let began = Instant::now();
         self.be_slow(request.address);
         let read = &mut answer[4..4 + request.read];
@@ -211,6 +218,21 @@ impl Line {
         Some(if error == 0 { 4 + request.read } else { 4 })
     }
 
+    /// What somebody with a probe at the chip sees: no transaction, so no time, no count and no faults.
+    fn probe(&self, request: &Request<'_>, answer: &mut [u8]) -> usize {
+        let read = &mut answer[4..4 + request.read];
+        let &[register] = request.written else {
+            answer[..4].copy_from_slice(&libc::EINVAL.to_le_bytes());
+            return 4;
+        };
+        let machine = self.shared.machine();
+        let is_there = self.number == 2 && request.address == msp430::ADDRESS;
+        let known = is_there && machine.msp430.probe(register, read);
+        let error = if known { 0 } else { msp430::NACK };
+        answer[..4].copy_from_slice(&error.to_le_bytes());
+        if known { 4 + request.read } else { 4 }
+    }
+
     /// Waits as long as the faults say, while they say it.
     fn be_slow(&self, address: u16) {
         let began = Instant::now();
@@ -227,6 +249,7 @@ impl Line {
 
 /// A packet that makes sense.
 struct Request<'a> {
+    is_probe: bool,
     address: u16,
     written: &'a [u8],
     read: usize,
@@ -239,7 +262,7 @@ impl<'a> Request<'a> {
         let Some((header, written)) = whole.split_at_checked(HEADER_BYTES) else {
             return Err(libc::EINVAL);
         };
-        if header[0] != VERSION || header[1] != 0 {
+        if header[0] != VERSION || header[1] & !PROBE != 0 {
             return Err(libc::EPROTONOSUPPORT);
         }
         let word = |at: usize| u16::from_le_bytes([header[at], header[at + 1]]);
@@ -251,6 +274,7 @@ impl<'a> Request<'a> {
             return Err(libc::EMSGSIZE);
         }
         Ok(Self {
+            is_probe: header[1] & PROBE != 0,
             address: word(2),
             written,
             read,
@@ -276,6 +300,11 @@ mod tests {
             Some(libc::EINVAL),
             "a byte is missing"
         );
+        let mut probe = fine;
+        probe[1] = PROBE;
+        assert!(Request::parse(&probe, 9).unwrap().is_probe && !request.is_probe);
+        probe[1] = 2;
+        assert_eq!(fault(&probe, 9), Some(libc::EPROTONOSUPPORT));
         let mut other = fine;
         other[0] = 2;
         assert_eq!(fault(&other, 9), Some(libc::EPROTONOSUPPORT));

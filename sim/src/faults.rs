@@ -173,6 +173,12 @@ impl Faults {
     }
 }
 
+/// All devices by their names, with the kinds of faults that each can have.
+pub fn devices() -> impl Iterator<Item = (&'static str, &'static [&'static str])> {
+    let names = NAMES.iter().enumerate();
+    names.map(|(index, name)| (*name, kinds(index)))
+}
+
 /// What the device of this index can have.
 fn kinds(index: usize) -> &'static [&'static str] {
     match index {

@@ -10,7 +10,7 @@ pub mod body;
 mod bus;
 mod camera;
 mod control;
-mod faults;
+pub mod faults;
 mod fifo;
 mod files;
 pub mod geometry;

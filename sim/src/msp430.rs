@@ -69,6 +69,28 @@ impl Msp430 {
         Ok(())
     }
 
+    /// The bytes of any register, also of those that the bus cannot read back; false if there is no such register.
+    pub fn probe(&self, register: u8, read: &mut [u8]) -> bool {
+        let written = match register {
+            PERIOD..DUTY => {
+                let [low, high] = self.period[usize::from(register - PERIOD)].to_le_bytes();
+                Some(([low, high, 0, 0], 2))
+            }
+            DUTY..=0x17 => {
+                let [duty] = self.duty[usize::from(register - DUTY)].to_le_bytes();
+                Some(([duty, 0, 0, 0], 1))
+            }
+            _ => self.value(register),
+        };
+        let Some((bytes, width)) = written else {
+            return false;
+        };
+        read.fill(0xFF);
+        let length = width.min(read.len());
+        read[..length].copy_from_slice(&bytes[..length]);
+        true
+    }
+
     fn write(&mut self, register: u8, data: &[u8]) -> Result<(), i32> {
         match (register, data) {
             (PERIOD..DUTY, &[low, high]) => {
@@ -157,6 +179,10 @@ mod tests {
         assert_eq!(chip.duty, [50, 0, 127, -50]);
         chip.transact(&[0x12, 0x10, 0x27], &mut []).unwrap();
         assert_eq!(chip.period, [4096, 4096, 10_000, 4096]);
+        let mut seen = [0; 2];
+        assert!(chip.probe(0x12, &mut seen) && seen == [0x10, 0x27]);
+        assert!(chip.probe(0x17, &mut seen) && seen == [0xCE, 0xFF]);
+        assert!(!chip.probe(0x99, &mut seen));
     }
 
     #[test]
