@@ -4,6 +4,7 @@
 //! gives it what drives the motors and servos. It knows no world; a body knows no registers and no files.
 
 pub mod battery;
+pub mod bench;
 pub mod motor;
 pub mod two_wheels;
 
