@@ -15,6 +15,7 @@
 //! | S1 | a servo | angularServomotor |
 //! | S6 | a gripper | manipulatorServomotor |
 //! | camera | looks forward and down | - |
+//! | ir_camera | looks where the camera looks | - |
 //! | lidar | on top, 0 degrees is forward, clockwise | - |
 //!
 //! M1, M2, E1, E2, A2, A4, D3, S2 to S5 are empty. `two-wheels` starts on the free floor, `line-follower` on the line.
@@ -52,7 +53,7 @@ const fn plug(port: &'static str, kind: &'static str, role: &'static str) -> Plu
     Plug { port, kind, role }
 }
 
-const TWO_WHEELS: [Plug; 14] = [
+const TWO_WHEELS: [Plug; 15] = [
     plug("M3", "motor100", "left wheel"),
     plug("M4", "motor100", "right wheel"),
     plug("E3", "encoder95", "left wheel"),
@@ -66,6 +67,7 @@ const TWO_WHEELS: [Plug; 14] = [
     plug("S1", "angularServomotor", "servo"),
     plug("S6", "manipulatorServomotor", "gripper"),
     plug("camera", "", "line camera"),
+    plug("ir_camera", "", "warmth ahead"),
     plug("lidar", "", "all around"),
 ];
 

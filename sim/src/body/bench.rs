@@ -27,6 +27,10 @@ impl Body for Bench {
         [0.0; 4]
     }
 
+    fn has_infrared_camera(&self) -> bool {
+        false
+    }
+
     fn has_lidar(&self) -> bool {
         false
     }
