@@ -66,7 +66,14 @@ impl Attributes {
         {
             self.folder(folder)?;
         }
-        self.write(name, text)
+        self.appear(name, text)
+    }
+
+    /// Makes or replaces a file in one moment: who sees it sees its text.
+    pub fn appear(&self, name: &str, text: &str) -> io::Result<()> {
+        let fresh = self.root.join(".fresh");
+        std::fs::write(&fresh, format!("{text}\n"))?;
+        std::fs::rename(fresh, self.root.join(name))
     }
 
     /// Writes a text, with the newline that attributes have.

@@ -4,6 +4,7 @@
 //! gives it what drives the motors and servos. It knows no world; a body knows no registers and no files.
 
 pub mod battery;
+pub mod bench;
 pub mod motor;
 pub mod two_wheels;
 
@@ -76,6 +77,9 @@ pub trait Body: Send {
 
     /// What a lidar sees at this angle, clockwise from straight ahead; nothing without a lidar or an echo.
     fn range_m(&self, clockwise_rad: f64) -> Option<f64>;
+
+    /// Whether there is an infrared camera on bus 1; it looks where the other one looks.
+    fn has_infrared_camera(&self) -> bool;
 
     /// What a camera sees: `right` and `down` from -1 to 1 across its picture. Nothing without a camera.
     fn pixel(&self, right: f64, down: f64) -> Option<Colour>;

@@ -245,6 +245,31 @@ mod tests {
         assert!(faults[ANALOG].stuck);
     }
 
+    /// Rows of the table in the manual: names in backquotes, then kinds.
+    #[test]
+    fn the_manual_names_every_device_and_its_faults() {
+        let manual = include_str!("../../docs/user/simulator.md");
+        let mut told: Vec<(&str, &str)> = Vec::new();
+        for line in manual.lines().filter(|line| line.starts_with("| `")) {
+            let mut cells = line.trim_matches('|').split('|').map(str::trim);
+            let (names, kinds) = (cells.next().unwrap(), cells.next().unwrap());
+            if kinds.starts_with("unplug stuck") {
+                told.extend(
+                    names
+                        .split(", ")
+                        .map(|name| (name.trim_matches('`'), kinds)),
+                );
+            }
+        }
+        told.sort_unstable();
+        let mut real: Vec<(&str, String)> = devices()
+            .map(|(name, kinds)| (name, kinds.join(" ")))
+            .collect();
+        real.sort_unstable();
+        let real: Vec<(&str, &str)> = real.iter().map(|(name, kinds)| (*name, &**kinds)).collect();
+        assert_eq!(told, real);
+    }
+
     #[test]
     fn the_indices_are_those_of_the_names() {
         for (index, name) in [

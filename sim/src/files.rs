@@ -164,7 +164,7 @@ impl Work {
         match result {
             Ok(()) => self.attributes.remove(&complaint),
             Err(reason) => {
-                let _ = self.attributes.write(&complaint, &reason);
+                let _ = self.attributes.appear(&complaint, &reason);
             }
         }
         for bus in &self.buses {

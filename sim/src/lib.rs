@@ -19,6 +19,7 @@ mod lidar;
 mod limits;
 pub mod machine;
 mod mems;
+mod mlx90640;
 mod msp430;
 mod random;
 pub mod robots;

@@ -6,6 +6,7 @@
 use crate::body::{Body, Drive, Power, Senses};
 use crate::faults::{self, Faults};
 use crate::limits::{MAX_CATCH_UP_S, STEP_S};
+use crate::mlx90640::{self, Mlx90640};
 use crate::msp430::{self, Msp430};
 use crate::random::Random;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
@@ -61,6 +62,8 @@ pub(crate) struct Machine {
     pub random: Random,
     /// The coprocessor.
     pub msp430: Msp430,
+    /// Looks where the camera looks.
+    mlx90640: Mlx90640,
     /// S1 to S6.
     pub pwm: [Pwm; 6],
     /// Green and red.
@@ -95,6 +98,7 @@ impl Machine {
             faults: Faults::default(),
             random: Random::new(seed),
             msp430: Msp430::default(),
+            mlx90640: Mlx90640::new(seed),
             pwm: [Pwm::default(); 6],
             led: (false, false),
             has_motor_power: true,
@@ -221,26 +225,38 @@ impl Machine {
             return Outcome::Silence;
         }
         let is_deaf = line.unplug || chip.unplug || self.random.chance(line.nack.max(chip.nack));
-        if is_deaf || bus != 2 || address != msp430::ADDRESS {
+        if is_deaf {
             return Outcome::Failed(msp430::NACK);
         }
-        let result = if chip.stuck {
-            // It answers with what it had, and nothing that is written has an effect.
-            self.msp430.clone().transact(written, read)
-        } else {
-            self.measure();
-            let result = self.msp430.transact(written, read);
-            for (encoder, cleared) in self.msp430.take_cleared().into_iter().enumerate() {
-                if cleared {
-                    self.encoders_deg[encoder] = 0.0;
-                }
+        let result = match (bus, address) {
+            (1, mlx90640::ADDRESS) if self.body.has_infrared_camera() => {
+                let now_s = self.time_s();
+                let body = self.body.as_ref();
+                self.mlx90640.look(now_s, body, &mut self.random);
+                self.mlx90640.transact(written, read)
             }
-            result
+            (2, msp430::ADDRESS) => self.ask_msp430(chip.stuck, written, read),
+            _ => Err(msp430::NACK),
         };
         if line.garbage || chip.garbage {
             self.random.fill(read);
         }
         result.map_or_else(Outcome::Failed, |()| Outcome::Done)
+    }
+
+    fn ask_msp430(&mut self, stuck: bool, written: &[u8], read: &mut [u8]) -> Result<(), i32> {
+        if stuck {
+            // It answers with what it had, and nothing that is written has an effect.
+            return self.msp430.clone().transact(written, read);
+        }
+        self.measure();
+        let result = self.msp430.transact(written, read);
+        for (encoder, cleared) in self.msp430.take_cleared().into_iter().enumerate() {
+            if cleared {
+                self.encoders_deg[encoder] = 0.0;
+            }
+        }
+        result
     }
 
     /// How long the bus and the chip make a transaction wait.
@@ -407,6 +423,17 @@ mod tests {
         // 0.8 m to the wall of the box less the sensor's own place.
         let expected = 8697.0 / (50.0 - 11.0 + 2.0);
         assert!((f64::from(word(&mut machine, 0x25)) - expected).abs() < 4.0);
+    }
+
+    #[test]
+    fn the_infrared_camera_answers_on_bus_1_where_there_is_one() {
+        let mut machine = machine();
+        let mut word = [0; 2];
+        let outcome = machine.transact(1, 0x33, &[0x80, 0x0D], &mut word);
+        assert_eq!((outcome, word), (Outcome::Done, [0x19, 0x01]));
+        let mut bare = Machine::new(robots::by_name("bare").unwrap().body(), 1e-9, 1);
+        let outcome = bare.transact(1, 0x33, &[0x80, 0x0D], &mut word);
+        assert_eq!(outcome, Outcome::Failed(121));
     }
 
     #[test]

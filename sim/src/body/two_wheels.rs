@@ -192,6 +192,10 @@ impl Body for TwoWheels {
         self.motors.map(|motor| motor.angle_deg)
     }
 
+    fn has_infrared_camera(&self) -> bool {
+        true
+    }
+
     fn has_lidar(&self) -> bool {
         true
     }
