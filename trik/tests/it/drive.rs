@@ -86,6 +86,10 @@ fn turning_on_the_spot_is_seen_by_encoders_and_gyroscope() {
         robot.number("encoders/E3/value") < -100.0 && robot.number("encoders/E4/value") > 100.0
     });
     let left = robot.numbers("gyroscope/value")[2];
+    let heading = number(&robot, "gyroscope/heading");
+    eventually("20 degrees more", || {
+        (number(&robot, "gyroscope/heading") - heading).abs() > 20_000.0
+    });
     robot.drive(20, -20);
     eventually("a turn to the right", || {
         let now = robot.numbers("gyroscope/value")[2];
@@ -131,12 +135,30 @@ fn battery_and_accelerometer_have_values_in_physical_units() {
     assert!((11.0..13.0).contains(&volts), "{volts} V");
     let gravity = "accelerometer/value";
     eventually(gravity, || robot.errno(gravity) == 0);
+    assert_eq!(robot.read("accelerometer/units").expect("a unit"), "mg");
     let all = robot.numbers(gravity);
-    let length = all.iter().map(|value| value * value).sum::<f64>().sqrt();
-    assert!(
-        (9.3..10.3).contains(&(length / 1000.0)) || (9.3..10.3).contains(&length),
-        "{all:?}"
-    );
+    assert!((950.0..1050.0).contains(&all[2]), "{all:?}");
+    assert!(all[0].abs() < 50.0 && all[1].abs() < 50.0, "{all:?}");
+}
+
+#[test]
+fn a_pressed_key_is_seen_until_it_is_released() {
+    let Some(robot) = robot(&[]) else { return };
+    let press = |words: &str| {
+        let control = robot.devices.join("control/keys");
+        std::fs::write(control, format!("{words}\n")).expect("keys");
+    };
+    let pressed = || {
+        let names = robot.read("keys/format").expect("names");
+        let place = names.split(", ").position(|name| name.ends_with(" up"));
+        robot.numbers("keys/value")[place.expect("a key UP")]
+    };
+    eventually("keys", || robot.errno("keys/value") == 0);
+    assert_eq!(pressed(), 0.0);
+    press("press up");
+    eventually("a pressed key", || pressed() == 1.0);
+    press("release up");
+    eventually("a released key", || pressed() == 0.0);
 }
 
 #[test]

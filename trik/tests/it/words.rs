@@ -1,6 +1,6 @@
 //! What is said to a person, and what is refused.
 
-use crate::rig::{Home, Robot, robot};
+use crate::rig::{Home, Robot, TRIK, robot};
 use std::sync::Arc;
 
 #[test]
@@ -109,4 +109,57 @@ fn without_a_terminal_there_are_no_control_characters() {
         said.chars().all(|c| c == '\n' || !c.is_control()),
         "{said:?}"
     );
+}
+
+/// Runs a program on a terminal of its own, ends it with the key Ctrl-C once a text was there, and prints what it said,
+/// whether the terminal showed typed characters meanwhile and whether it does so afterwards.
+const ON_A_TERMINAL: &str = r#"
+import fcntl, os, pty, select, struct, sys, termios, time
+text, program = sys.argv[1].encode(), sys.argv[2:]
+master, slave = pty.openpty()
+fcntl.ioctl(slave, termios.TIOCSWINSZ, struct.pack('HHHH', 24, 60, 0, 0))
+shows = lambda: bool(termios.tcgetattr(slave)[3] & termios.ECHO)
+pid = os.fork()
+if pid == 0:
+    os.setsid()
+    fcntl.ioctl(slave, termios.TIOCSCTTY, 0)
+    for fd in (0, 1, 2):
+        os.dup2(slave, fd)
+    os.execv(program[0], program)
+said, during, deadline = b'', None, time.time() + 25
+while time.time() < deadline:
+    if os.waitpid(pid, os.WNOHANG)[0]:
+        break
+    if select.select([master], [], [], 0.05)[0]:
+        said += os.read(master, 65536)
+    if during is None and said.count(text) > 3:
+        during = shows()
+        os.write(master, b'\x03')
+sys.stdout.write('%s %s\n' % (during, shows()))
+while select.select([master], [], [], 0)[0]:
+    said += os.read(master, 65536)
+sys.stdout.write(said.decode())
+"#;
+
+#[test]
+fn on_a_terminal_the_robot_is_shown_in_place_and_the_terminal_is_given_back() {
+    let Some(home) = Home::new() else { return };
+    let mut command = std::process::Command::new(harness::tools::python_program());
+    command
+        .args(["-c", ON_A_TERMINAL, "motors, %", TRIK, "up", "--cache"])
+        .arg(home.0.path("cache"))
+        .env("XDG_RUNTIME_DIR", home.0.dir())
+        .env("TERM", "xterm");
+    let output = harness::run(&mut command, b"").good();
+    let (echo, said) = output.split_once('\n').expect("lines");
+    assert_eq!(echo, "False True", "{said}");
+    // Drawn again where it was.
+    assert!(said.contains("\x1b[7A\r"), "{said:?}");
+    assert!(said.trim_end().ends_with("\x1b[?25h"), "{said:?}");
+    let shown = said.split("\x1b[?25l").nth(1).expect("a view");
+    let row = shown.lines().find(|line| line.starts_with("analog, raw"));
+    // As wide as the terminal is: 60 columns, and the last one stays free.
+    let text = row.and_then(|row| row.split('\x1b').next()).expect("a row");
+    assert_eq!(text.len(), 59, "{text:?}");
+    assert!(!home.base().exists());
 }
