@@ -26,6 +26,15 @@ mod converters {
     /// The shipped filters in both languages against the golden vectors.
     mod vectors;
 }
+/// Kinds of devices that are more than a file.
+mod devices {
+    /// Registers on a bus that is fine, slow, dead, gone and back.
+    mod i2c;
+    /// Actions that are done once, and the root of a virtual board.
+    mod setup;
+    /// A slow bus delays nobody who does not use it.
+    mod slow_bus;
+}
 /// One module for each operation or file of a mounted tree.
 mod mount {
     /// Further files in a node's directory.

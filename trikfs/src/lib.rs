@@ -32,6 +32,7 @@ pub mod reader;
 pub mod reload;
 #[cfg(test)]
 mod scratch;
+pub mod setup;
 pub mod state_reader;
 pub mod stats;
 pub mod text;
