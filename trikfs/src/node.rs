@@ -3,13 +3,14 @@
 //! Owns the joints between these, the node's fault and the flag that a reload sets when the description is gone.
 //! Knows no file of the tree and no request of the kernel.
 
+mod rest;
+
 use crate::clock::Stamp;
 use crate::convert::{LogSink, Pipeline, Recipe};
 use crate::device::{self, Device, Sink, Stream, Surroundings};
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::{Due, Ready, Schedule, lock};
-use crate::guardian::actions::RestAction;
 use crate::hub::Hub;
 use crate::lease::Lease;
 use crate::limits;
@@ -23,13 +24,10 @@ use config::description::{NodeDescription, Pace, SourceDescription};
 use config::format::Format;
 use config::problem::Problem;
 use config::program::Direction;
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, Weak};
-use std::time::{Duration, Instant};
-
-/// Between two attempts to bring an actuator to rest whose device is busy.
-const REST_PAUSE: Duration = Duration::from_millis(1);
 
 /// One described peripheral.
 pub struct Node {
@@ -440,17 +438,6 @@ impl Node {
         lock(&self.fault).clone()
     }
 
-    /// The tuple that brings the actuator to rest, as a program would write it.
-    pub fn rest_tuple(&self) -> Result<Option<Vec<u8>>, Error> {
-        let Some(rest) = &self.description.rest else {
-            return Ok(None);
-        };
-        let text: Vec<String> = rest.iter().map(ToString::to_string).collect();
-        let mut tuple = vec![0; self.description.written_tuple_size()];
-        crate::text::encode(&self.written_format(), &text.join(" "), &mut tuple)?;
-        Ok(Some(tuple))
-    }
-
     /// Samples per second since the rate was last asked for, over at least a fifth of a second.
     pub fn rate_hz(&self) -> f64 {
         let mut rate = lock(&self.rate);
@@ -494,93 +481,20 @@ impl Node {
         }
     }
 
-    /// Brings the actuator to rest now. One that this board does not have rests already; a bus that has too many to
-    /// serve at the moment is asked again until the node's time limit.
-    pub fn rest(self: &Arc<Self>) -> Result<(), Error> {
-        if let Some(regulation) = &self.regulation {
-            return regulation.rest();
-        }
-        let Some(tuple) = self.rest_tuple()? else {
-            return Ok(());
-        };
-        if matches!(self.description.source, SourceDescription::Absent(_)) {
-            return Ok(());
-        }
-        let deadline = Instant::now() + Duration::from_millis(self.description.timeout_ms.into());
-        loop {
-            let outcome = self
-                .open_writer(None)
-                .and_then(|mut writer| writer.write_whole(&tuple, true));
-            match outcome {
-                Err(Error::Device(libc::EBUSY, _)) if Instant::now() < deadline => {
-                    std::thread::sleep(REST_PAUSE);
-                }
-                outcome => return outcome,
-            }
-        }
-    }
-
-    /// Where background samples of this node are scheduled: a node that reads one bus, itself or through another node,
-    /// has its turn on the thread of that bus.
+    /// Where background samples of this node are scheduled: a node that reads one bus, itself or through other nodes,
+    /// has its turn on the thread of that bus. One that reads several would make each wait for the others.
     pub fn sampling_schedule(&self) -> Arc<Schedule> {
-        match self.bus() {
-            Some(bus) => self.engine.schedule_of(&bus),
-            None => self.engine.schedule.clone(),
+        let mut buses = BTreeSet::new();
+        self.add_buses(&mut buses);
+        match (buses.pop_first(), buses.is_empty()) {
+            (Some(bus), true) => self.engine.schedule_of(&bus),
+            _ => self.engine.schedule.clone(),
         }
     }
 
-    fn bus(&self) -> Option<PathBuf> {
-        if let SourceDescription::Node(_) = &self.description.source {
-            let (_, other) = self.around.links.first()?;
-            return other.bus();
-        }
-        device::bus_of(&self.description.source).map(std::path::Path::to_path_buf)
-    }
-
-    /// What the guardian has to do if this process is no longer there; nothing if there is no device to rest.
-    pub fn rest_action(self: &Arc<Self>) -> Result<Option<RestAction>, Error> {
-        if self.regulation.is_some() {
-            // What it drives has a rest of its own.
-            return Ok(None);
-        }
-        match self.rest_tuple()? {
-            Some(tuple) => self.action_of(&tuple),
-            None => Ok(None),
-        }
-    }
-
-    /// The action that has the effect of writing this tuple, through all nodes on the way to a device.
-    fn action_of(self: &Arc<Self>, tuple: &[u8]) -> Result<Option<RestAction>, Error> {
-        let mut converted = vec![0; self.device_tuple_size()];
-        let pipeline = self.open_pipeline()?;
-        let (_, produced, fault) = self.convert(
-            &mut lock(&pipeline),
-            Direction::Write,
-            tuple,
-            &mut converted,
-        );
-        if let Some(error) = fault {
-            return Err(error);
-        }
-        if produced == 0 {
-            return Ok(None);
-        }
-        let mut sink = &self.description.source;
-        while let SourceDescription::Faulty(faulty) = sink {
-            sink = &faulty.source;
-        }
-        match sink {
-            SourceDescription::Node(path) => {
-                let other = self.around.links.iter().find(|(name, _)| name == path);
-                other.map_or(Ok(None), |(_, other)| other.action_of(&converted))
-            }
-            _ if !device::takes_bytes(sink) => Ok(None),
-            _ => Ok(Some(RestAction {
-                sink: sink.clone(),
-                tuple: converted,
-                timeout_ms: self.description.timeout_ms,
-            })),
-        }
+    /// The buses whose transfers this node waits for.
+    pub fn add_buses(&self, buses: &mut BTreeSet<PathBuf>) {
+        device::add_buses(&self.description.source, &self.around, buses);
     }
 
     /// A problem at the place of this node's description.
