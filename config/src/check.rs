@@ -3,12 +3,14 @@
 //! Owns the rules about names and the order in which nodes are built (a node that reads another needs its size first).
 //! The fields of one description are the submodules' business. Runs no Lua.
 
+mod bus;
 mod fields;
 mod node;
+mod setup;
 mod source;
 mod stages;
 
-use crate::description::{Config, NodeDescription};
+use crate::description::{Config, NodeDescription, SetupAction};
 use crate::limits::{GROUP_DEPTH_MAX, NAME_BYTES_MAX, NODES_MAX, SOURCES_MAX};
 use crate::nearest::{nearest, suggestion};
 use crate::problem::Problem;
@@ -48,7 +50,8 @@ pub(crate) fn check(
     for number in 0..checker.drafts.len() {
         checker.build(number, 0)?;
     }
-    Ok(checker.finish())
+    let setup = checker.setup()?;
+    Ok(checker.finish(setup))
 }
 
 /// A node or attribute that was found and is not built yet.
@@ -336,7 +339,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Puts the attributes into their nodes.
-    fn finish(self) -> (Config, Vec<Problem>) {
+    fn finish(self, setup: Vec<SetupAction>) -> (Config, Vec<Problem>) {
         let mut attributes: HashMap<usize, Vec<NodeDescription>> = HashMap::new();
         let mut nodes = Vec::new();
         for (number, draft) in self.drafts.into_iter().enumerate() {
@@ -356,7 +359,7 @@ impl<'a> Checker<'a> {
             })
             .collect();
         nodes.sort_by(|a, b| a.path.cmp(&b.path));
-        (Config { nodes }, self.warnings)
+        (Config { nodes, setup }, self.warnings)
     }
 }
 

@@ -12,6 +12,8 @@ use std::path::PathBuf;
 pub struct Config {
     /// All nodes, sorted by `path`; groups exist only as parts of the paths.
     pub nodes: Vec<NodeDescription>,
+    /// The global `setup`: what is done once, in this order, when the configuration comes into force.
+    pub setup: Vec<SetupAction>,
 }
 
 /// One node of the tree.
@@ -123,6 +125,10 @@ pub enum SourceDescription {
     Evdev(EvdevDescription),
     /// `fake{ ... }`: bytes that the configuration itself holds.
     Fake(FakeDescription),
+    /// `i2c{ ... }`: a register of a device on an I2C bus.
+    I2c(I2cDescription),
+    /// `absent{ reason }`: something that this board does not have; opening it tells why.
+    Absent(String),
     /// `replay{ ... }`: bytes recorded with their timing.
     Replay(ReplayDescription),
     /// `faulty{ ... }`: another source that fails on purpose.
@@ -177,6 +183,79 @@ pub struct FakeDescription {
     pub period_ms: u32,
     /// Start again at the end; otherwise end of file (a stream) or the last tuple for ever (state).
     pub repeat: bool,
+}
+
+/// How the bytes of a register travel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum I2cTransfer {
+    /// SMBus byte data: one byte.
+    Byte,
+    /// SMBus word data: two bytes, low byte first as on the wire.
+    Word,
+    /// I2C block data of the SMBus layer: 1 to 32 bytes.
+    Block,
+    /// Plain I2C messages: register bytes out, repeated start, data in; or register bytes and data out.
+    Raw,
+}
+
+/// `i2c{ path = '/dev/i2c-2', address = 0x48, register = 0x25, transfer = 'word' }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct I2cDescription {
+    /// The bus: a node of i2c-dev, or the socket of a virtual bus.
+    pub path: PathBuf,
+    /// 7-bit address of the device.
+    pub address: u16,
+    /// First register of the tuple.
+    pub register: u16,
+    /// Bytes of the register number on the wire, 1 or 2, high byte first.
+    pub register_bytes: u8,
+    /// How a tuple is read.
+    pub transfer: I2cTransfer,
+    /// How the beginning of a tuple is written.
+    pub write_transfer: I2cTransfer,
+    /// False: the device cannot be read back; reading gives what was written last.
+    pub readable: bool,
+    /// Read once after the bus was opened, then remembered.
+    pub once: bool,
+}
+
+/// One entry of the global `setup`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SetupAction {
+    /// Where it stands, for messages.
+    pub place: Place,
+    /// What to do.
+    pub step: SetupStep,
+    /// Nothing is done if this path exists.
+    pub unless: Option<PathBuf>,
+    /// How long it may take.
+    pub timeout_ms: u32,
+}
+
+/// What one action of `setup` does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SetupStep {
+    /// `{ path = ..., write = ... }`: one write(2) to a file that exists.
+    Write {
+        /// Usually an attribute of sysfs.
+        path: PathBuf,
+        /// What is written.
+        bytes: Vec<u8>,
+    },
+    /// `{ run = { '/sbin/modprobe', 'hcsr04' } }`: a program that must end with 0.
+    Run {
+        /// Absolute path of the program.
+        program: PathBuf,
+        /// Its arguments.
+        arguments: Vec<String>,
+    },
+    /// `{ to = i2c{ ... }, write = ... }`: one tuple to a source that takes writes.
+    Send {
+        /// Where to.
+        to: SourceDescription,
+        /// The tuple.
+        bytes: Vec<u8>,
+    },
 }
 
 /// `replay{ path = 'run.rec', speed = 1, loop = false }`

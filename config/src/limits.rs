@@ -18,6 +18,18 @@ pub const FIELDS_MAX: usize = 1024;
 pub const CHAIN_MAX: usize = 16;
 /// Sources of one node.
 pub const SOURCES_MAX: usize = 64;
+/// Actions in one `setup`.
+pub const SETUP_ACTIONS_MAX: usize = 256;
+/// Bytes that one action of `setup` writes, and of all words of a program that it runs.
+pub const SETUP_BYTES_MAX: usize = 4_096;
+/// `timeout_ms` of an action of `setup` when it has none.
+pub const SETUP_TIMEOUT_MS: u32 = 1_000;
+/// Largest `timeout_ms` of an action of `setup`.
+pub const SETUP_TIMEOUT_MS_MAX: u32 = 60_000;
+/// Bytes of one SMBus block (`I2C_SMBUS_BLOCK_MAX` of linux/i2c.h).
+pub const I2C_BLOCK_BYTES_MAX: usize = 32;
+/// Bytes of one plain I2C message (8192 in the kernel's i2c-dev.c).
+pub const I2C_RAW_BYTES_MAX: usize = 8_192;
 /// Files that one configuration may `include`, each at most [`CONFIG_BYTES_MAX`].
 pub const INCLUDES_MAX: usize = 64;
 /// Milliseconds that running the configuration program may take.

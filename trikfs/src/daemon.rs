@@ -46,6 +46,8 @@ pub struct Options {
     pub include_dirs: Vec<PathBuf>,
     /// Where shared libraries are looked for after the configuration's directory.
     pub library_dirs: Vec<PathBuf>,
+    /// Below which all device paths are taken.
+    pub device_root: Option<PathBuf>,
     /// Compiled converters.
     pub cache: Cache,
     /// Owner of the tree.
@@ -94,6 +96,7 @@ pub fn run(options: Options) -> Result<(), String> {
         loader: Loader {
             include_dirs: options.include_dirs,
             library_dirs: options.library_dirs,
+            device_root: options.device_root,
         },
         base_dir,
         cache: options.cache,

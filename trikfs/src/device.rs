@@ -124,6 +124,8 @@ pub fn open(
         }
         SourceDescription::Node(path) => linked::open(around.link(path)?),
         SourceDescription::Several(parts) => several::open(parts, around),
+        SourceDescription::I2c(i2c) => Err(Error::NoDevice(i2c.path.display().to_string())),
+        SourceDescription::Absent(reason) => Err(Error::NoDevice(reason.clone())),
     }
 }
 
@@ -153,6 +155,8 @@ pub fn open_sink(
             faulty,
             open_sink(&faulty.source, around)?,
         ))),
+        SourceDescription::I2c(i2c) => Err(Error::NoDevice(i2c.path.display().to_string())),
+        SourceDescription::Absent(reason) => Err(Error::NoDevice(reason.clone())),
         SourceDescription::Evdev(_)
         | SourceDescription::Fake(_)
         | SourceDescription::Replay(_)
@@ -167,7 +171,10 @@ pub fn is_shared(source: &SourceDescription) -> Result<bool, Error> {
         SourceDescription::Path(path) => {
             matches!(kind_of(path)?, PathKind::Fifo | PathKind::SharedDevice)
         }
-        SourceDescription::Attribute(_) | SourceDescription::Node(_) => false,
+        SourceDescription::Attribute(_)
+        | SourceDescription::Node(_)
+        | SourceDescription::I2c(_)
+        | SourceDescription::Absent(_) => false,
         SourceDescription::Fifo(_) | SourceDescription::Evdev(_) | SourceDescription::Replay(_) => {
             true
         }
@@ -190,12 +197,15 @@ pub fn paths(source: &SourceDescription) -> Vec<&Path> {
         | SourceDescription::Attribute(path)
         | SourceDescription::Fifo(path) => vec![path],
         SourceDescription::Evdev(evdev) => vec![&evdev.path],
+        SourceDescription::I2c(i2c) => vec![&i2c.path],
         SourceDescription::Replay(replay) => vec![&replay.path],
         SourceDescription::Faulty(faulty) => paths(&faulty.source),
         SourceDescription::Several(parts) => {
             parts.iter().flat_map(|part| paths(&part.source)).collect()
         }
-        SourceDescription::Fake(_) | SourceDescription::Node(_) => Vec::new(),
+        SourceDescription::Fake(_) | SourceDescription::Node(_) | SourceDescription::Absent(_) => {
+            Vec::new()
+        }
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Owns which sources can be written, and which know the size of their tuples.
 
+use super::bus::i2c_size;
 use super::fields::Fields;
 use crate::description::{
     EvdevDescription, EvdevLayout, FakeDescription, FaultyDescription, PartDescription,
@@ -42,7 +43,10 @@ pub(super) fn is_read_only(source: &SourceDescription) -> bool {
     match source {
         SourceDescription::Path(_)
         | SourceDescription::Attribute(_)
-        | SourceDescription::Fifo(_) => false,
+        | SourceDescription::Fifo(_)
+        // A port that is absent on this board is described like one that is there.
+        | SourceDescription::Absent(_)
+        | SourceDescription::I2c(_) => false,
         SourceDescription::Evdev(_)
         | SourceDescription::Fake(_)
         | SourceDescription::Replay(_)
@@ -100,7 +104,11 @@ impl<'a> Fields<'_, 'a> {
     }
 
     /// The bytes of a fake source are whole tuples.
-    fn check_data(&self, source: &SourceDescription, size: usize) -> Result<(), Problem> {
+    pub(super) fn check_data(
+        &self,
+        source: &SourceDescription,
+        size: usize,
+    ) -> Result<(), Problem> {
         match source {
             SourceDescription::Fake(fake) if !fake.data.len().is_multiple_of(size) => {
                 let reason = format!(
@@ -110,15 +118,17 @@ impl<'a> Fields<'_, 'a> {
                 Err(self.problem("src", reason))
             }
             SourceDescription::Faulty(faulty) => self.check_data(&faulty.source, size),
+            SourceDescription::I2c(i2c) => self.check_i2c_size(i2c, size),
             _ => Ok(()),
         }
     }
 
     /// Bytes of one tuple, if the source knows.
-    fn size_of(&mut self, source: &SourceDescription) -> Result<Option<usize>, Problem> {
+    pub(super) fn size_of(&mut self, source: &SourceDescription) -> Result<Option<usize>, Problem> {
         match source {
             SourceDescription::Evdev(evdev) => Ok(Some(4 * evdev.codes.len())),
             SourceDescription::Faulty(faulty) => self.size_of(&faulty.source),
+            SourceDescription::I2c(i2c) => Ok(i2c_size(i2c.transfer)),
             SourceDescription::Node(other) => match self.checker.size_of_node(other, self.depth)? {
                 Some(size) => Ok(Some(size)),
                 None => {
@@ -219,7 +229,7 @@ impl<'a> Fields<'_, 'a> {
     }
 
     /// One source: a path, another node, or what a constructor made.
-    fn single(&mut self, value: &'a Value) -> Result<SourceDescription, Problem> {
+    pub(super) fn single(&mut self, value: &'a Value) -> Result<SourceDescription, Problem> {
         if let Value::Text(text) = value {
             if let Some(other) = text.strip_prefix(b"trikfs:") {
                 let other = String::from_utf8_lossy(other).into_owned();
@@ -247,12 +257,14 @@ impl<'a> Fields<'_, 'a> {
             b"fake" => self.fake(table),
             b"replay" => self.replay(table),
             b"faulty" => self.faulty(table),
+            b"i2c" => self.i2c(table),
+            b"absent" => self.absent(table),
             _ => Err(self.problem("src", "src is of an unknown kind")),
         }
     }
 
     /// A path of the system, which never depends on the working directory.
-    fn absolute(&self, field: &str, value: &'a Value) -> Result<&'a [u8], Problem> {
+    pub(super) fn absolute(&self, field: &str, value: &'a Value) -> Result<&'a [u8], Problem> {
         let path = self.path_bytes(field, value)?;
         if path.first() == Some(&b'/') {
             return Ok(path);
@@ -271,7 +283,7 @@ impl<'a> Fields<'_, 'a> {
     }
 
     /// A field of a constructor, read with the checks of a description's field.
-    fn inner<T>(
+    pub(super) fn inner<T>(
         &mut self,
         table: &'a Table,
         read: impl FnOnce(&mut Self) -> Result<T, Problem>,

@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 pub(super) fn search_paths(
     include: Vec<PathBuf>,
     cache_dir: Option<&Path>,
+    device_root: Option<PathBuf>,
 ) -> Result<SearchPaths, String> {
     let program = std::env::current_exe().ok();
     let dirs = Dirs::beside(program.as_deref().and_then(Path::parent), include);
@@ -22,6 +23,7 @@ pub(super) fn search_paths(
         include_dirs: dirs.include,
         library_dirs: dirs.library,
         cache: Cache::open(cache_dir)?,
+        device_root,
     })
 }
 
