@@ -6,6 +6,7 @@
 mod bus;
 mod fields;
 mod node;
+mod ports;
 mod setup;
 mod source;
 mod stages;

@@ -2,6 +2,13 @@
 //!
 //! Owns the meaning of each field of a node's description. Knows nothing of Lua and opens nothing.
 
+mod ports;
+
+pub use ports::{
+    ByteOrder, Checksum, CommandDescription, GpioDescription, GpioDirection, IioDescription,
+    LengthField, LinesDescription, PacketsDescription, PwmDescription,
+};
+
 use crate::format::Format;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -123,6 +130,16 @@ pub enum SourceDescription {
     Fifo(PathBuf),
     /// `evdev{ path }`: input events decoded and grouped up to SYN_REPORT.
     Evdev(EvdevDescription),
+    /// `iio{ ... }`: a sampled sensor.
+    Iio(IioDescription),
+    /// `pwm{ ... }`: pulses of a PWM channel, state.
+    Pwm(PwmDescription),
+    /// `gpio{ ... }`: one line, state.
+    Gpio(GpioDescription),
+    /// `lines{ ... }`: lines of text of a sensor program.
+    Lines(LinesDescription),
+    /// `packets{ ... }`: packets of a serial line.
+    Packets(PacketsDescription),
     /// `fake{ ... }`: bytes that the configuration itself holds.
     Fake(FakeDescription),
     /// `i2c{ ... }`: a register of a device on an I2C bus.

@@ -46,6 +46,20 @@ fn of_source(source: &mut SourceDescription, take: &mut dyn FnMut(&mut PathBuf))
         | SourceDescription::Fifo(path) => take(path),
         SourceDescription::Evdev(evdev) => take(&mut evdev.path),
         SourceDescription::I2c(i2c) => take(&mut i2c.path),
+        SourceDescription::Iio(iio) => {
+            take(&mut iio.devices);
+            take(&mut iio.nodes);
+        }
+        SourceDescription::Pwm(pwm) => take(&mut pwm.chip),
+        SourceDescription::Gpio(gpio) => take(&mut gpio.base),
+        SourceDescription::Lines(lines) => {
+            take(&mut lines.path);
+            let programs = [&mut lines.start, &mut lines.stop];
+            let programs = programs.into_iter().flatten();
+            lines.input.iter_mut().for_each(&mut *take);
+            programs.for_each(|command| take(&mut command.program));
+        }
+        SourceDescription::Packets(packets) => take(&mut packets.path),
         SourceDescription::Faulty(faulty) => of_source(&mut faulty.source, take),
         SourceDescription::Several(parts) => {
             for part in parts {

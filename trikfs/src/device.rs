@@ -126,6 +126,9 @@ pub fn open(
         SourceDescription::Several(parts) => several::open(parts, around),
         SourceDescription::I2c(i2c) => Err(Error::NoDevice(i2c.path.display().to_string())),
         SourceDescription::Absent(reason) => Err(Error::NoDevice(reason.clone())),
+        _ => Err(Error::NoDevice(
+            "this program cannot open such ports yet".to_owned(),
+        )),
     }
 }
 
@@ -161,6 +164,9 @@ pub fn open_sink(
         | SourceDescription::Fake(_)
         | SourceDescription::Replay(_)
         | SourceDescription::Several(_) => Err(Error::AccessDenied),
+        _ => Err(Error::NoDevice(
+            "this program cannot open such ports yet".to_owned(),
+        )),
     }
 }
 
@@ -174,10 +180,15 @@ pub fn is_shared(source: &SourceDescription) -> Result<bool, Error> {
         SourceDescription::Attribute(_)
         | SourceDescription::Node(_)
         | SourceDescription::I2c(_)
-        | SourceDescription::Absent(_) => false,
-        SourceDescription::Fifo(_) | SourceDescription::Evdev(_) | SourceDescription::Replay(_) => {
-            true
-        }
+        | SourceDescription::Absent(_)
+        | SourceDescription::Pwm(_)
+        | SourceDescription::Gpio(_) => false,
+        SourceDescription::Fifo(_)
+        | SourceDescription::Evdev(_)
+        | SourceDescription::Replay(_)
+        | SourceDescription::Iio(_)
+        | SourceDescription::Lines(_)
+        | SourceDescription::Packets(_) => true,
         SourceDescription::Fake(fake) => fake.period_ms > 0,
         SourceDescription::Faulty(faulty) => is_shared(&faulty.source)?,
         SourceDescription::Several(parts) => {
@@ -199,6 +210,15 @@ pub fn paths(source: &SourceDescription) -> Vec<&Path> {
         SourceDescription::Evdev(evdev) => vec![&evdev.path],
         SourceDescription::I2c(i2c) => vec![&i2c.path],
         SourceDescription::Replay(replay) => vec![&replay.path],
+        SourceDescription::Iio(iio) => vec![&iio.devices],
+        SourceDescription::Pwm(pwm) => vec![&pwm.chip],
+        SourceDescription::Gpio(gpio) => vec![&gpio.base],
+        // The program makes its pipes when it is started.
+        SourceDescription::Lines(lines) => match &lines.start {
+            Some(start) => vec![&start.program],
+            None => vec![&lines.path],
+        },
+        SourceDescription::Packets(packets) => vec![&packets.path],
         SourceDescription::Faulty(faulty) => paths(&faulty.source),
         SourceDescription::Several(parts) => {
             parts.iter().flat_map(|part| paths(&part.source)).collect()

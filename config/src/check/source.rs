@@ -5,8 +5,8 @@
 use super::bus::i2c_size;
 use super::fields::Fields;
 use crate::description::{
-    EvdevDescription, EvdevLayout, FakeDescription, FaultyDescription, PartDescription,
-    ReplayDescription, SourceDescription,
+    EvdevDescription, EvdevLayout, FakeDescription, FaultyDescription, GpioDirection,
+    PartDescription, ReplayDescription, SourceDescription,
 };
 use crate::evdev_codes::event_code;
 use crate::limits::{NAME_BYTES_MAX, PERIOD_MS_MAX, SOURCES_MAX, TUPLE_BYTES_MAX};
@@ -47,7 +47,12 @@ pub(super) fn is_read_only(source: &SourceDescription) -> bool {
         // A port that is absent on this board is described like one that is there.
         | SourceDescription::Absent(_)
         | SourceDescription::I2c(_) => false,
+        SourceDescription::Pwm(_) => false,
+        SourceDescription::Gpio(gpio) => gpio.direction == GpioDirection::In,
+        SourceDescription::Lines(lines) => lines.input.is_none(),
         SourceDescription::Evdev(_)
+        | SourceDescription::Iio(_)
+        | SourceDescription::Packets(_)
         | SourceDescription::Fake(_)
         | SourceDescription::Replay(_)
         | SourceDescription::Node(_)
@@ -117,6 +122,7 @@ impl<'a> Fields<'_, 'a> {
                 );
                 Err(self.problem("src", reason))
             }
+            SourceDescription::Packets(packets) => self.check_packets(packets, size),
             SourceDescription::Faulty(faulty) => self.check_data(&faulty.source, size),
             SourceDescription::I2c(i2c) => self.check_i2c_size(i2c, size),
             _ => Ok(()),
@@ -127,6 +133,9 @@ impl<'a> Fields<'_, 'a> {
     pub(super) fn size_of(&mut self, source: &SourceDescription) -> Result<Option<usize>, Problem> {
         match source {
             SourceDescription::Evdev(evdev) => Ok(Some(4 * evdev.codes.len())),
+            SourceDescription::Iio(iio) => Ok(Some(iio.tuple_size())),
+            SourceDescription::Pwm(_) => Ok(Some(4)),
+            SourceDescription::Gpio(_) => Ok(Some(1)),
             SourceDescription::Faulty(faulty) => self.size_of(&faulty.source),
             SourceDescription::I2c(i2c) => Ok(i2c_size(i2c.transfer)),
             SourceDescription::Node(other) => match self.checker.size_of_node(other, self.depth)? {
@@ -254,6 +263,11 @@ impl<'a> Fields<'_, 'a> {
                 .map(SourceDescription::Attribute),
             b"fifo" => self.device("fifo", table).map(SourceDescription::Fifo),
             b"evdev" => self.evdev(table),
+            b"iio" => self.iio(table),
+            b"pwm" => self.pwm(table),
+            b"gpio" => self.gpio(table),
+            b"lines" => self.lines(table),
+            b"packets" => self.packets(table),
             b"fake" => self.fake(table),
             b"replay" => self.replay(table),
             b"faulty" => self.faulty(table),
