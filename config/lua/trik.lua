@@ -88,7 +88,7 @@ local function add_name(group, entry, port, family)
   end
   if family_of[name] then entry:refuse("the name '" .. name .. "' is that of a port") end
   if group[name] then entry:refuse("the name '" .. name .. "' is used twice in " .. family.group) end
-  group[name] = { link = family.group .. '/' .. port }
+  group[name] = { alias = family.group .. '/' .. port }
 end
 
 -- Actions of the board itself, then those of what is plugged in.

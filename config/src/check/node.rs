@@ -16,7 +16,8 @@ use nix::unistd::{Group, User};
 use std::collections::BTreeMap;
 
 /// All fields of a description.
-pub(super) const FIELDS: [&str; 19] = [
+pub(super) const FIELDS: [&str; 20] = [
+    "about",
     "attributes",
     "budget_us",
     "converter",
@@ -42,6 +43,7 @@ pub(super) const FIELDS: [&str; 19] = [
 const MEMORY_KB_MIN: u32 = 128;
 const PARAMS_MAX: usize = 256;
 const UNITS_BYTES_MAX: usize = 64;
+const ABOUT_BYTES_MAX: usize = 200;
 
 /// Sizes and what depends on them.
 struct Layout {
@@ -58,7 +60,13 @@ impl Fields<'_, '_> {
         let read = self.stages("converter")?.unwrap_or_default();
         let write = self.stages("write_converter")?;
         let layout = self.layout(input, &read)?;
-        let read_only = is_read_only(&source);
+        let read_only = is_read_only(&source)
+            || match &source {
+                SourceDescription::Node(other) => {
+                    !self.checker.takes_tuples(other) || !read.is_empty() && write.is_none()
+                }
+                _ => false,
+            };
         if write.is_some() && read_only {
             return Err(self.problem(
                 "write_converter",
@@ -89,6 +97,10 @@ impl Fields<'_, '_> {
             converter,
             write_converter,
             format: layout.format,
+            about: self
+                .text("about", ABOUT_BYTES_MAX)?
+                .unwrap_or_default()
+                .to_owned(),
             units: self
                 .text("units", UNITS_BYTES_MAX)?
                 .unwrap_or_default()
