@@ -82,7 +82,6 @@ end
 local function add_name(group, entry, port, family)
   local name = entry.given.name
   if name == nil then return end
-  if family.top then entry:refuse("'" .. port .. "' is part of the board and takes no name") end
   if type(name) ~= 'string' or not name:find('^%a[%w_-]*$') or #name > 64 then
     entry:refuse('name must be a word of letters, digits, _ and -, not ' .. Entry.shown(name))
   end
@@ -111,6 +110,7 @@ local function build(list)
     local entry = entries[port] or Entry.new({ port = port }, 0)
     local kind = fitting_type(entry, port, family)
     if family.top then
+      if entry.given.name ~= nil then entry:refuse("'" .. port .. "' is part of the board and takes no name") end
       for name, node in pairs(family.make(port, entry, listed)) do tree[name] = node end
       if listed and family.setup then
         for _, action in ipairs(family.setup()) do extra[#extra + 1] = action end

@@ -79,6 +79,21 @@ mod mount {
     /// Extended attributes.
     mod xattr;
 }
+/// The shipped description of the controller, without hardware: bytes against numbers worked out by hand.
+mod trik_lua {
+    /// Analog ports, battery, encoders.
+    mod inputs;
+    /// Motors and servos.
+    mod outputs;
+    /// Robot files, good and bad.
+    mod robots;
+    /// A robot whose converters are called one by one.
+    pub mod run;
+    /// Sensors that deliver by themselves: distance, keys, IIO, lines, packets.
+    mod streams;
+    /// The tables of docs/user/trik.md.
+    mod tables;
+}
 /// The documents: their examples run, their tables are complete.
 mod docs;
 /// Fuzz targets, briefly, with a printed seed.
