@@ -6,12 +6,15 @@
 mod bus;
 mod fields;
 mod node;
+mod params;
 mod ports;
 mod setup;
+mod several;
 mod source;
 mod stages;
 
 use crate::description::{Alias, Config, NodeDescription, SetupAction};
+use crate::format::Format;
 use crate::limits::{GROUP_DEPTH_MAX, NAME_BYTES_MAX, NODES_MAX, SOURCES_MAX};
 use crate::nearest::{nearest, suggestion};
 use crate::problem::Problem;
@@ -24,8 +27,8 @@ use std::collections::HashMap;
 /// Names at the top that belong to the filesystem.
 const RESERVED_NODES: [&str; 4] = ["config", "log", "status", "stop"];
 /// Names in a node that belong to the filesystem; `value0`, `value1` ... as well.
-const RESERVED_ATTRIBUTES: [&str; 8] = [
-    "bin_data", "device", "fault", "format", "poll_ms", "stats", "units", "value",
+const RESERVED_ATTRIBUTES: [&str; 9] = [
+    "bin_data", "device", "fault", "format", "params", "poll_ms", "stats", "units", "value",
 ];
 /// Nodes that read each other in a row; bounds the recursion of `build`.
 const LINKS_MAX: usize = SOURCES_MAX;
@@ -47,6 +50,7 @@ pub(crate) fn check(
         index: HashMap::new(),
         warnings: Vec::new(),
         aliases: Vec::new(),
+        trail: Vec::new(),
     };
     checker.root()?;
     for number in 0..checker.drafts.len() {
@@ -87,6 +91,8 @@ struct Checker<'a> {
     warnings: Vec<Problem>,
     /// Second names, with the keys in the text.
     aliases: Vec<(Alias, Vec<String>)>,
+    /// Paths of the nodes that are being built, each because the one before reads it.
+    trail: Vec<String>,
 }
 
 impl<'a> Checker<'a> {
@@ -300,10 +306,10 @@ impl<'a> Checker<'a> {
         let under = matches!(draft.built, Built::Under);
         draft.built = Built::Under;
         if under {
-            return Err(self.problem(
-                &extended(&keys, "src"),
-                format!("{path}: the node reads itself in a circle"),
-            ));
+            let start = self.trail.iter().position(|at| *at == path).unwrap_or(0);
+            let circle = self.trail[start..].join(" -> ");
+            let reason = format!("{path}: the node reads itself in a circle: {circle} -> {path}");
+            return Err(self.problem(&extended(&keys, "src"), reason));
         }
         if depth > LINKS_MAX {
             return Err(self.problem(
@@ -311,6 +317,7 @@ impl<'a> Checker<'a> {
                 format!("{path}: more than {LINKS_MAX} nodes read each other in a row"),
             ));
         }
+        self.trail.push(path.clone());
         let mut fields = Fields {
             checker: self,
             path,
@@ -319,6 +326,7 @@ impl<'a> Checker<'a> {
             depth,
         };
         let description = fields.description()?;
+        self.trail.pop();
         if let Some(draft) = self.drafts.get_mut(number) {
             draft.built = Built::Done(Box::new(description));
         }
@@ -385,6 +393,19 @@ impl<'a> Checker<'a> {
                 node.mode & 0o222 != 0 && node.written_tuple_size() == node.output_tuple_size
             }
             _ => false,
+        }
+    }
+
+    /// The format of a node that is built already, single bytes if it gave none.
+    fn format_of_node(&self, other: &str) -> Option<Format> {
+        match &self.drafts.get(*self.index.get(other)?)?.built {
+            Built::Done(description) => Some(
+                description
+                    .format
+                    .clone()
+                    .unwrap_or_else(|| Format::bytes(description.output_tuple_size)),
+            ),
+            _ => None,
         }
     }
 

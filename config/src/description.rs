@@ -77,6 +77,8 @@ pub struct NodeDescription {
     pub memory_kb: u32,
     /// Numbers that a converter can read as `params` (Lua) or at open (native).
     pub params: BTreeMap<String, f64>,
+    /// Least and greatest value of those params that have a range.
+    pub param_ranges: BTreeMap<String, (f64, f64)>,
     /// Further files of the node's directory; each has its own source and converter.
     pub attributes: Vec<NodeDescription>,
     /// `share` as written; absent means "by kind of source".
@@ -165,8 +167,30 @@ pub enum SourceDescription {
     Faulty(FaultyDescription),
     /// `src = 'trikfs:other'`: the converted tuples of another node.
     Node(String),
-    /// Several sources, one converter. The tuples stand one after the other in this order.
-    Several(Vec<PartDescription>),
+    /// `src = 'newest:other'`: the newest sample of another node, which is taken by that node alone.
+    Newest(String),
+    /// Several sources, one converter.
+    Several(SeveralDescription),
+}
+
+/// Several sources: the tuples stand one after the other in the order of the parts, then the ages, then the interval.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SeveralDescription {
+    /// The sources, at least one.
+    pub parts: Vec<PartDescription>,
+    /// Behind the tuples stands, for each source, the age of its tuple in us as a little-endian u32, saturated.
+    pub ages: bool,
+    /// At the end stands the time since the tuple before in us as a little-endian u32, saturated; 0 in the first.
+    pub interval: bool,
+}
+
+impl SeveralDescription {
+    /// Bytes of one tuple of all sources with their times.
+    pub fn tuple_size(&self) -> usize {
+        let tuples: usize = self.parts.iter().map(|part| part.tuple_size).sum();
+        let times = if self.ages { self.parts.len() } else { 0 } + usize::from(self.interval);
+        tuples + times * size_of::<u32>()
+    }
 }
 
 /// One of several sources.
@@ -178,6 +202,8 @@ pub struct PartDescription {
     pub source: SourceDescription,
     /// Bytes of one tuple of this source.
     pub tuple_size: usize,
+    /// Its tuples make one of the node; false: only its newest is used when another source makes one.
+    pub is_trigger: bool,
 }
 
 /// How kernel input events are laid out in the bytes of an evdev node.

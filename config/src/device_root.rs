@@ -54,21 +54,22 @@ fn of_source(source: &mut SourceDescription, take: &mut dyn FnMut(&mut PathBuf))
         SourceDescription::Gpio(gpio) => take(&mut gpio.base),
         SourceDescription::Lines(lines) => {
             take(&mut lines.path);
-            let programs = [&mut lines.start, &mut lines.stop];
-            let programs = programs.into_iter().flatten();
             lines.input.iter_mut().for_each(&mut *take);
-            programs.for_each(|command| take(&mut command.program));
+            for command in lines.start.iter_mut().chain(&mut lines.stop) {
+                take(&mut command.program);
+            }
         }
         SourceDescription::Packets(packets) => take(&mut packets.path),
         SourceDescription::Faulty(faulty) => of_source(&mut faulty.source, take),
-        SourceDescription::Several(parts) => {
-            for part in parts {
+        SourceDescription::Several(several) => {
+            for part in &mut several.parts {
                 of_source(&mut part.source, take);
             }
         }
         SourceDescription::Fake(_)
         | SourceDescription::Replay(_)
         | SourceDescription::Node(_)
+        | SourceDescription::Newest(_)
         | SourceDescription::Absent(_) => {}
     }
 }
@@ -93,6 +94,13 @@ mod tests {
               e = { src = i2c{ '/dev/i2c-1', address = 9, register = 1, transfer = 'byte' } },
               f = { src = replay{ '/var/f.rec' }, input_tuple_size = 1 },
               g = { src = 'trikfs:a' },
+              h = { src = iio{ name = 'mma8451', channels = { 'accel_x' } } },
+              i = { src = pwm{ chip = '/sys/class/pwm/pwmchip2', channel = 0, period_ns = 20000000 } },
+              j = { src = gpio{ number = 56, direction = 'in' } },
+              k = { src = lines{ path = '/run/out', input = '/run/in', start = { '/etc/start', '/k' }, stop = { '/etc/stop' } },
+                    input_tuple_size = 8 },
+              l = { src = packets{ path = '/dev/ttyS1', start = 'a', length = { at = 1, bytes = 1, add = 2 }, checksum = 'none' },
+                    input_tuple_size = 8 },
             }";
         let loader = Loader {
             device_root: Some("/tmp/board".into()),
@@ -108,15 +116,25 @@ mod tests {
         paths.sort_unstable();
         let expected = [
             "/etc/x",
+            "/k",
+            "/tmp/board/dev",
             "/tmp/board/dev/a",
             "/tmp/board/dev/d",
             "/tmp/board/dev/i2c-1",
             "/tmp/board/dev/i2c-2",
+            "/tmp/board/dev/ttyS1",
+            "/tmp/board/etc/start",
+            "/tmp/board/etc/stop",
             "/tmp/board/run/c",
+            "/tmp/board/run/in",
+            "/tmp/board/run/out",
             "/tmp/board/sbin/modprobe",
             "/tmp/board/sys/b",
+            "/tmp/board/sys/bus/iio/devices",
+            "/tmp/board/sys/class/gpio",
             "/tmp/board/sys/class/gpio/export",
             "/tmp/board/sys/class/gpio/gpio94",
+            "/tmp/board/sys/class/pwm/pwmchip2",
             "/var/f.rec",
         ];
         assert_eq!(paths, expected);

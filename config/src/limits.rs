@@ -30,6 +30,8 @@ pub const SETUP_TIMEOUT_MS_MAX: u32 = 60_000;
 pub const I2C_BLOCK_BYTES_MAX: usize = 32;
 /// Bytes of one plain I2C message (8192 in the kernel's i2c-dev.c).
 pub const I2C_RAW_BYTES_MAX: usize = 8_192;
+/// Numbers in the `params` of one description.
+pub const PARAMS_MAX: usize = 256;
 /// Files that one configuration may `include`, each at most [`CONFIG_BYTES_MAX`].
 pub const INCLUDES_MAX: usize = 64;
 /// Milliseconds that running the configuration program may take.

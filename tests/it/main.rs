@@ -13,6 +13,8 @@ mod config {
 mod converters {
     /// Several stages, several sources, nodes that read nodes.
     mod chain;
+    /// Several nodes in one converter: pace, ages, one moment, numbers changed on the way.
+    mod fusion;
     /// Loops, greed and nonsense cost their own file only.
     mod hostile;
     /// C source in the configuration.

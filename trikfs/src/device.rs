@@ -2,7 +2,8 @@
 //!
 //! Owns the traits, the decision which of them a description gets, and nothing else. Each kind of device is one
 //! file below; only those files open device nodes. Nothing here knows converters, handles or the kernel's requests.
-//! A bus that needs more than a file (I2C, IIO, PWM) is one more file and one more arm of [`open`].
+//! A bus that needs more than a file (I2C, IIO, PWM) is one more file and one more arm of [`open`]; who uses a bus that
+//! may be slow finds it through [`bus_of`].
 
 pub mod attribute;
 pub mod chardev;
@@ -10,6 +11,8 @@ pub mod evdev;
 pub mod fake;
 pub mod faulty;
 pub mod fifo;
+pub mod i2c;
+pub mod latched;
 pub mod linked;
 pub mod replay;
 pub mod several;
@@ -91,6 +94,8 @@ pub struct Surroundings {
     pub links: Vec<(String, Arc<Node>)>,
     /// How long a sink waits for a device that takes no bytes.
     pub timeout_ms: u32,
+    /// The I2C buses of the mount.
+    pub buses: Arc<i2c::bus::Buses>,
 }
 
 impl Surroundings {
@@ -123,8 +128,12 @@ pub fn open(
             faulty::open(faulty, open(&faulty.source, tuple_size, around)?)
         }
         SourceDescription::Node(path) => linked::open(around.link(path)?),
-        SourceDescription::Several(parts) => several::open(parts, around),
-        SourceDescription::I2c(i2c) => Err(Error::NoDevice(i2c.path.display().to_string())),
+        SourceDescription::Newest(path) => latched::open(around.link(path)?),
+        SourceDescription::Several(several) => several::open(several, around),
+        SourceDescription::I2c(i2c) => {
+            let register = i2c::Register::open(i2c, tuple_size, around.timeout_ms, &around.buses)?;
+            Ok(Device::State(Box::new(register)))
+        }
         SourceDescription::Absent(reason) => Err(Error::NoDevice(reason.clone())),
         _ => Err(Error::NoDevice(
             "this program cannot open such ports yet".to_owned(),
@@ -158,11 +167,16 @@ pub fn open_sink(
             faulty,
             open_sink(&faulty.source, around)?,
         ))),
-        SourceDescription::I2c(i2c) => Err(Error::NoDevice(i2c.path.display().to_string())),
+        SourceDescription::I2c(i2c) => {
+            // The size only matters for reading.
+            let register = i2c::Register::open(i2c, 0, around.timeout_ms, &around.buses)?;
+            Ok(Box::new(register))
+        }
         SourceDescription::Absent(reason) => Err(Error::NoDevice(reason.clone())),
         SourceDescription::Evdev(_)
         | SourceDescription::Fake(_)
         | SourceDescription::Replay(_)
+        | SourceDescription::Newest(_)
         | SourceDescription::Several(_) => Err(Error::AccessDenied),
         _ => Err(Error::NoDevice(
             "this program cannot open such ports yet".to_owned(),
@@ -179,6 +193,7 @@ pub fn is_shared(source: &SourceDescription) -> Result<bool, Error> {
         }
         SourceDescription::Attribute(_)
         | SourceDescription::Node(_)
+        | SourceDescription::Newest(_)
         | SourceDescription::I2c(_)
         | SourceDescription::Absent(_)
         | SourceDescription::Pwm(_)
@@ -191,9 +206,9 @@ pub fn is_shared(source: &SourceDescription) -> Result<bool, Error> {
         | SourceDescription::Packets(_) => true,
         SourceDescription::Fake(fake) => fake.period_ms > 0,
         SourceDescription::Faulty(faulty) => is_shared(&faulty.source)?,
-        SourceDescription::Several(parts) => {
+        SourceDescription::Several(several) => {
             let mut shared = false;
-            for part in parts {
+            for part in &several.parts {
                 shared |= is_shared(&part.source).map_err(|error| part_error(&part.name, error))?;
             }
             shared
@@ -220,12 +235,23 @@ pub fn paths(source: &SourceDescription) -> Vec<&Path> {
         },
         SourceDescription::Packets(packets) => vec![&packets.path],
         SourceDescription::Faulty(faulty) => paths(&faulty.source),
-        SourceDescription::Several(parts) => {
-            parts.iter().flat_map(|part| paths(&part.source)).collect()
+        SourceDescription::Several(several) => {
+            let parts = several.parts.iter();
+            parts.flat_map(|part| paths(&part.source)).collect()
         }
-        SourceDescription::Fake(_) | SourceDescription::Node(_) | SourceDescription::Absent(_) => {
-            Vec::new()
-        }
+        SourceDescription::Fake(_)
+        | SourceDescription::Node(_)
+        | SourceDescription::Newest(_)
+        | SourceDescription::Absent(_) => Vec::new(),
+    }
+}
+
+/// The bus whose transfers a source waits for, if it is one alone: nodes of one bus are sampled by a thread of its own.
+pub fn bus_of(source: &SourceDescription) -> Option<&Path> {
+    match source {
+        SourceDescription::I2c(i2c) => Some(&i2c.path),
+        SourceDescription::Faulty(faulty) => bus_of(&faulty.source),
+        _ => None,
     }
 }
 

@@ -2,12 +2,16 @@
 //!
 //! Owns these services for one mount; there are no globals. Knows no node.
 
+use crate::device::i2c::bus::Buses;
 use crate::errno::Error;
+
 use crate::events::{Poller, Schedule, lock};
+use crate::limits;
 use crate::log::Log;
 use crate::transport::{Answer, Kernel, PollHandle, RequestId};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::io;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock};
 
 /// The services of one mount.
@@ -18,6 +22,10 @@ pub struct Engine {
     pub schedule: Arc<Schedule>,
     /// The `log` file.
     pub log: Arc<Log>,
+    /// The I2C buses.
+    pub buses: Arc<Buses>,
+    /// Times of sampling on one bus each, by the path of the bus.
+    bus_schedules: Mutex<HashMap<PathBuf, Arc<Schedule>>>,
     kernel: OnceLock<Arc<dyn Kernel>>,
     parked: Mutex<HashSet<RequestId>>,
 }
@@ -29,9 +37,27 @@ impl Engine {
             poller: Poller::start()?,
             schedule: Schedule::start()?,
             log: Arc::new(Log::new()),
+            buses: Arc::default(),
+            bus_schedules: Mutex::default(),
             kernel: OnceLock::new(),
             parked: Mutex::default(),
         }))
+    }
+
+    /// Where background samples from a bus are scheduled: with a thread of its own for each bus, so that a slow one
+    /// delays nobody else's samples. When there are too many buses or no thread can be made, where all others are.
+    pub fn schedule_of(&self, bus: &Path) -> Arc<Schedule> {
+        let mut schedules = lock(&self.bus_schedules);
+        if let Some(schedule) = schedules.get(bus) {
+            return schedule.clone();
+        }
+        if schedules.len() < limits::BUS_THREADS_MAX
+            && let Ok(schedule) = Schedule::start_crew("bus", 1)
+        {
+            schedules.insert(bus.to_owned(), schedule.clone());
+            return schedule;
+        }
+        self.schedule.clone()
     }
 
     /// The mount is live; later calls are ignored.
@@ -94,5 +120,8 @@ impl Engine {
     pub fn stop(&self) {
         self.poller.stop();
         self.schedule.stop();
+        for schedule in lock(&self.bus_schedules).values() {
+            schedule.stop();
+        }
     }
 }

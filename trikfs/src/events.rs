@@ -169,16 +169,21 @@ impl Ord for Entry {
 }
 
 impl Schedule {
-    /// Starts the thread that watches the clock.
+    /// Starts the thread that watches the clock, with others that step in when it is late.
     pub fn start() -> io::Result<Arc<Self>> {
+        Self::start_crew("schedule", limits::MAX_THREADS)
+    }
+
+    /// Starts one with threads of this name, at most so many.
+    pub fn start_crew(name: &str, threads: usize) -> io::Result<Arc<Self>> {
         let schedule = Arc::new(Self {
             queue: Mutex::default(),
             changed: Condvar::new(),
         });
         let cycling = schedule.clone();
         Crew::run(
-            "schedule",
-            limits::MAX_THREADS,
+            name,
+            threads,
             Arc::new(move |seat: &Seat| cycling.cycle(seat)),
         )?;
         Ok(schedule)

@@ -7,6 +7,7 @@ pub mod control;
 pub mod device;
 pub mod log;
 pub mod ownership;
+pub mod param;
 pub mod value;
 
 use crate::errno::Error;

@@ -11,6 +11,7 @@ use crate::files::config::ConfigFile;
 use crate::files::control::{PeriodFile, StopFile, TextFile, fault_line, status_lines};
 use crate::files::device::DeviceFile;
 use crate::files::log::LogFile;
+use crate::files::param::ParamFile;
 use crate::files::value::ValueFile;
 use crate::files::{OpenFile, READY};
 use crate::limits;
@@ -180,6 +181,9 @@ impl Fs {
                     return Err(Error::AccessDenied);
                 }
                 Ok((Arc::new(PeriodFile::new(node)), Access::Direct, false))
+            }
+            Kind::Param(node, name) => {
+                Ok((Arc::new(ParamFile::new(node, name)), Access::Direct, false))
             }
             Kind::Status | Kind::Units(_) | Kind::Format(_) | Kind::Fault(_) | Kind::Stats(_) => {
                 Err(Error::Internal("a text without a text".to_owned()))

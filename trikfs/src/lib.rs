@@ -9,6 +9,7 @@ pub mod bytes;
 pub mod check;
 pub mod cli;
 pub mod clock;
+mod command;
 pub mod convert;
 pub mod crew;
 pub mod daemon;

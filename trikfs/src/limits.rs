@@ -4,6 +4,18 @@
 
 /// Threads that may serve one role (the kernel, events, the schedule) while others of that role are late.
 pub const MAX_THREADS: usize = 64;
+/// Transfers that wait for one bus at once; together those of four dead buses leave threads for everything else.
+pub const BUS_WAITERS_MAX: usize = MAX_THREADS / 5;
+/// Microseconds from which a transfer counts as slow: others must not wait for it.
+pub const BUS_SLOW_US: u64 = 500;
+/// Fast transfers after a slow one until a bus counts as fast again.
+pub const BUS_SLOW_TRANSFERS: u32 = 64;
+/// Bytes of data that a bus of 100 kHz moves within [`BUS_SLOW_US`], about.
+pub const BUS_SHORT_BYTES: usize = 8;
+/// Buses whose nodes are sampled by a thread of their own.
+pub const BUS_THREADS_MAX: usize = 16;
+/// Registers of one bus that are remembered, in each of two ways.
+pub const BUS_MEMORY_MAX: usize = 4_096;
 /// Open files at once; the next open gets EMFILE.
 pub const OPEN_FILES_MAX: usize = 65_536;
 /// Tuples that a slow reader of a shared source may be behind before the oldest are dropped.

@@ -8,7 +8,7 @@ use crate::convert::{LogSink, Pipeline, Recipe};
 use crate::device::{self, Device, Sink, Stream, Surroundings};
 use crate::engine::Engine;
 use crate::errno::Error;
-use crate::events::{Due, Ready, lock};
+use crate::events::{Due, Ready, Schedule, lock};
 use crate::hub::Hub;
 use crate::limits;
 use crate::newest::Newest;
@@ -16,7 +16,7 @@ use crate::reader::{Origin, Reader};
 use crate::state_reader::StateReader;
 use crate::stats::Stats;
 use crate::writer::Writer;
-use config::description::{NodeDescription, Pace};
+use config::description::{NodeDescription, Pace, SourceDescription};
 use config::format::Format;
 use config::problem::Problem;
 use config::program::Direction;
@@ -78,6 +78,7 @@ impl Node {
         let around = Surroundings {
             links,
             timeout_ms: description.timeout_ms,
+            buses: engine.buses.clone(),
         };
         let period_ms = match description.pace {
             Pace::Every { period_ms } => period_ms,
@@ -221,7 +222,7 @@ impl Node {
         Ok(Arc::new(Mutex::new(pipeline)))
     }
 
-    fn log_sink(self: &Arc<Self>) -> LogSink {
+    fn log_sink(&self) -> LogSink {
         let (log, path) = (self.engine.log.clone(), self.description.path.clone());
         Arc::new(move |text| log.line(&format!("{path}: {text}")))
     }
@@ -320,6 +321,10 @@ impl Node {
         input: &[u8],
         output: &mut [u8],
     ) -> (usize, usize, Option<Error>) {
+        if let Err(error) = self.recipe.renew(pipeline, || self.log_sink()) {
+            self.report(&error);
+            return (1, 0, Some(error));
+        }
         let start = self.stats.measures_this_conversion().then(Stamp::now);
         let batch = pipeline.convert(direction, input, output);
         let (in_size, out_size) = match direction {
@@ -442,11 +447,32 @@ impl Node {
         self.open_writer(None)?.write_whole(&tuple, true)
     }
 
+    /// Where background samples of this node are scheduled: a node that reads one bus, itself or through another node,
+    /// has its turn on the thread of that bus.
+    pub fn sampling_schedule(&self) -> Arc<Schedule> {
+        match self.bus() {
+            Some(bus) => self.engine.schedule_of(&bus),
+            None => self.engine.schedule.clone(),
+        }
+    }
+
+    fn bus(&self) -> Option<PathBuf> {
+        if let SourceDescription::Node(_) = &self.description.source {
+            let (_, other) = self.around.links.first()?;
+            return other.bus();
+        }
+        device::bus_of(&self.description.source).map(std::path::Path::to_path_buf)
+    }
+
     /// What the guardian writes to which path if this process is no longer there.
     pub fn rest_bytes(self: &Arc<Self>) -> Result<Option<(PathBuf, Vec<u8>)>, Error> {
         let Some(tuple) = self.rest_tuple()? else {
             return Ok(None);
         };
+        // A transfer on a bus is more than a write to a path.
+        if device::bus_of(&self.description.source).is_some() {
+            return Ok(None);
+        }
         let Some(path) = device::paths(&self.description.source)
             .first()
             .map(|path| path.to_path_buf())

@@ -424,9 +424,10 @@ fn libraries(description: &NodeDescription) -> impl Iterator<Item = u128> {
 /// Paths of the nodes that a source names.
 fn linked(source: &SourceDescription) -> Vec<&str> {
     match source {
-        SourceDescription::Node(path) => vec![path],
-        SourceDescription::Several(parts) => {
-            parts.iter().flat_map(|part| linked(&part.source)).collect()
+        SourceDescription::Node(path) | SourceDescription::Newest(path) => vec![path],
+        SourceDescription::Several(several) => {
+            let parts = several.parts.iter();
+            parts.flat_map(|part| linked(&part.source)).collect()
         }
         SourceDescription::Faulty(faulty) => linked(&faulty.source),
         _ => Vec::new(),

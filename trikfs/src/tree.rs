@@ -46,6 +46,8 @@ pub enum Kind {
     Format(Arc<Node>),
     /// `poll_ms`
     Period(Arc<Node>),
+    /// `params/NAME`
+    Param(Arc<Node>, Arc<str>),
     /// `fault`
     Fault(Arc<Node>),
     /// `stats`
@@ -260,6 +262,7 @@ impl Tree {
                     0o444
                 }
             }
+            Kind::Param(..) => attr.mode = 0o644,
             Kind::Device(node) => {
                 attr.mode = node.description.mode;
                 attr.size = node.description.output_tuple_size as u64;
@@ -312,6 +315,7 @@ impl Kind {
             | Self::Units(node)
             | Self::Format(node)
             | Self::Period(node)
+            | Self::Param(node, _)
             | Self::Fault(node)
             | Self::Stats(node) => Some(node),
         }
@@ -326,6 +330,7 @@ impl Kind {
         };
         let same_view = match (self, other) {
             (Self::Value(_, a), Self::Value(_, b)) => a == b,
+            (Self::Param(_, a), Self::Param(_, b)) => a == b,
             _ => true,
         };
         std::mem::discriminant(self) == std::mem::discriminant(other) && same_node && same_view
@@ -380,6 +385,7 @@ impl Builder<'_> {
         while let Some(part) = parts.next() {
             if parts.peek().is_none() && node.is_attribute {
                 self.add(at, part, Kind::Value(node.clone(), View::Text));
+                self.add_params(at, &format!("{part}."), node);
             } else {
                 at = self.directory(at, part);
             }
@@ -407,5 +413,18 @@ impl Builder<'_> {
         self.add(at, "poll_ms", Kind::Period(node.clone()));
         self.add(at, "fault", Kind::Fault(node.clone()));
         self.add(at, "stats", Kind::Stats(node.clone()));
+        self.add_params(at, "", node);
+    }
+
+    /// The params of a node, or of one of its attributes, whose name and a dot then stand before theirs.
+    fn add_params(&mut self, at: u64, before: &str, node: &Arc<Node>) {
+        if node.description.params.is_empty() {
+            return;
+        }
+        let directory = self.directory(at, "params");
+        for name in node.description.params.keys() {
+            let kind = Kind::Param(node.clone(), name.as_str().into());
+            self.add(directory, &format!("{before}{name}"), kind);
+        }
     }
 }

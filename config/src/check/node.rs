@@ -10,20 +10,21 @@ use crate::limits::{
     TUPLE_BYTES_MAX,
 };
 use crate::problem::Problem;
-use crate::value::{Key, Value};
+use crate::value::Value;
 use crate::vm::fingerprint::hash;
 use nix::unistd::{Group, User};
-use std::collections::BTreeMap;
 
 /// All fields of a description.
-pub(super) const FIELDS: [&str; 20] = [
+pub(super) const FIELDS: [&str; 23] = [
     "about",
+    "ages",
     "attributes",
     "budget_us",
     "converter",
     "format",
     "group",
     "input_tuple_size",
+    "interval",
     "memory_kb",
     "mode",
     "on_event",
@@ -35,13 +36,13 @@ pub(super) const FIELDS: [&str; 20] = [
     "share",
     "src",
     "timeout_ms",
+    "trigger",
     "units",
     "write_converter",
 ];
 
 /// A state with the program takes about 50 KiB; with less than this no converter would ever run.
 const MEMORY_KB_MIN: u32 = 128;
-const PARAMS_MAX: usize = 256;
 const UNITS_BYTES_MAX: usize = 64;
 const ABOUT_BYTES_MAX: usize = 200;
 
@@ -59,7 +60,10 @@ impl Fields<'_, '_> {
         let (source, input) = self.source()?;
         let read = self.stages("converter")?.unwrap_or_default();
         let write = self.stages("write_converter")?;
-        let layout = self.layout(input, &read)?;
+        let mut layout = self.layout(input, &read)?;
+        if layout.format.is_none() && read.is_empty() {
+            layout.format = self.joined_format(&source);
+        }
         let read_only = is_read_only(&source)
             || match &source {
                 SourceDescription::Node(other) => {
@@ -88,6 +92,7 @@ impl Fields<'_, '_> {
                 Some(stages.map_err(|reason| self.problem("write_converter", reason))?)
             }
         };
+        let (params, param_ranges) = self.params()?;
         let mut node = NodeDescription {
             path: self.path.clone(),
             place: self.own_place(),
@@ -121,7 +126,8 @@ impl Fields<'_, '_> {
             memory_kb: self
                 .whole("memory_kb", MEMORY_KB_MIN, MEMORY_KB_MAX)?
                 .unwrap_or(MEMORY_KB),
-            params: self.params()?,
+            params,
+            param_ranges,
             attributes: Vec::new(),
             share: self.boolean("share")?,
             fingerprint: 0,
@@ -311,61 +317,6 @@ impl Fields<'_, '_> {
         let encoded = format.encode_numbers(rest, &mut vec![0; size]);
         encoded.map_err(|error| self.problem("rest", format!("rest: {error}")))
     }
-
-    fn params(&self) -> Result<BTreeMap<String, f64>, Problem> {
-        let Some(value) = self.get("params") else {
-            return Ok(BTreeMap::new());
-        };
-        let Some(table) = self.table_of(value) else {
-            return Err(self.wrong_type("params", "a table of numbers", value));
-        };
-        if table.entries.len() > PARAMS_MAX {
-            return Err(self.problem(
-                "params",
-                format!("params has more than {PARAMS_MAX} numbers"),
-            ));
-        }
-        let mut params = BTreeMap::new();
-        for (key, value) in &table.entries {
-            let name = match key {
-                Key::Text(text) => std::str::from_utf8(text)
-                    .ok()
-                    .filter(|name| is_param_name(name)),
-                _ => None,
-            };
-            let Some(name) = name else {
-                return Err(self.problem(
-                    "params",
-                    "the name of a param is a word of letters, digits and '_'",
-                ));
-            };
-            let Value::Number(number) = value else {
-                return Err(self.problem(
-                    "params",
-                    format!(
-                        "params: '{name}' must be a number, not {}",
-                        value.describe()
-                    ),
-                ));
-            };
-            if !number.is_finite() {
-                return Err(self.problem(
-                    "params",
-                    format!("params: '{name}' must be finite, not {number}"),
-                ));
-            }
-            params.insert(name.to_owned(), *number);
-        }
-        Ok(params)
-    }
-}
-
-fn is_param_name(name: &str) -> bool {
-    !name.is_empty()
-        && name.len() <= 64
-        && name
-            .bytes()
-            .all(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
 }
 
 /// Digest of everything that makes the node behave as it does; not of where it stands in the text.
@@ -401,6 +352,7 @@ fn fingerprint(node: &NodeDescription, digests: &[u128]) -> u128 {
         node.budget_us,
         node.memory_kb,
         &node.params,
+        &node.param_ranges,
     );
     hash(format!("{:?}", (&node.path, source, stages, sizes, access, limits)).as_bytes())
 }

@@ -382,13 +382,14 @@ fn sources_that_make_their_own_bytes_are_read() {
         source(&format!("faulty{{ src = {inner}, short = 1 }}")),
         faulty(libc::EIO, u32::MAX, 1, 1)
     );
-    let SourceDescription::Several(parts) =
+    let SourceDescription::Several(several) =
         node("src = { gyro = '/g', accel = 'trikfs:other' }, input_tuple_size = { gyro = 6 }")
             .source
     else {
         panic!("several sources");
     };
-    let parts: Vec<_> = parts
+    let parts: Vec<_> = several
+        .parts
         .iter()
         .map(|part| (part.name.as_str(), part.tuple_size))
         .collect();
@@ -417,7 +418,7 @@ fn sources_that_cannot_be_are_refused() {
     );
     assert_eq!(
         source("'trikfs:x'"),
-        "robot.lua:2: x: the node reads itself in a circle"
+        "robot.lua:2: x: the node reads itself in a circle: x -> x"
     );
     assert_eq!(
         source("attribute{}"),
@@ -515,7 +516,7 @@ fn sources_that_cannot_make_bytes_are_refused() {
 fn circles_and_long_rows_of_nodes_are_refused() {
     assert_eq!(
         refused_program("trikfs = {\na = { src = 'trikfs:b' },\nb = { src = 'trikfs:a' } }"),
-        "robot.lua:2: a: the node reads itself in a circle"
+        "robot.lua:2: a: the node reads itself in a circle: a -> b -> a"
     );
     let row = "trikfs = { n0 = { src = '/d', input_tuple_size = 1 } } for i = 1, N do trikfs['n' .. i] = { src = 'trikfs:n' .. (i - 1) } end";
     assert!(load(&row.replace('N', "60")).is_ok());

@@ -6,6 +6,7 @@
 use super::ownership::Ownership;
 use super::{OpenFile, READABLE, WRITABLE};
 use crate::bytes::copy_at;
+use crate::crew::lock_patiently;
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::{Ready, lock};
@@ -209,7 +210,7 @@ impl OpenFile for ValueFile {
             self.engine.log.line(&line);
         })?;
         let _inside = self.node.enter()?;
-        lock(writer).write_whole(&tuple, !request.nonblocking)?;
+        lock_patiently(writer).write_whole(&tuple, !request.nonblocking)?;
         self.node.wrote(tuple);
         self.ownership.wrote();
         self.node.stats.writes.add(1);
