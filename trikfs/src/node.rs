@@ -75,9 +75,13 @@ impl Node {
             .format
             .clone()
             .unwrap_or_else(|| Format::bytes(description.output_tuple_size));
+        let stats = Stats::default();
         let around = Surroundings {
             links,
             timeout_ms: description.timeout_ms,
+            damaged: stats.damaged.clone(),
+            programs: engine.programs.clone(),
+            log: log_sink(&engine, &description.path),
             buses: engine.buses.clone(),
         };
         let period_ms = match description.pace {
@@ -89,7 +93,7 @@ impl Node {
             fingerprint,
             format,
             engine,
-            stats: Stats::default(),
+            stats,
             newest: Newest::new(me.clone(), description.output_tuple_size),
             recipe,
             around,
@@ -217,14 +221,9 @@ impl Node {
     pub fn open_pipeline(self: &Arc<Self>) -> Result<Arc<Mutex<Pipeline>>, Error> {
         let pipeline = self
             .recipe
-            .open(&self.log_sink())
+            .open(&self.around.log)
             .inspect_err(|error| self.report(error))?;
         Ok(Arc::new(Mutex::new(pipeline)))
-    }
-
-    fn log_sink(&self) -> LogSink {
-        let (log, path) = (self.engine.log.clone(), self.description.path.clone());
-        Arc::new(move |text| log.line(&format!("{path}: {text}")))
     }
 
     /// Opens the node for reading with a pipeline of its own.
@@ -321,7 +320,7 @@ impl Node {
         input: &[u8],
         output: &mut [u8],
     ) -> (usize, usize, Option<Error>) {
-        if let Err(error) = self.recipe.renew(pipeline, || self.log_sink()) {
+        if let Err(error) = self.recipe.renew(pipeline, || self.around.log.clone()) {
             self.report(&error);
             return (1, 0, Some(error));
         }
@@ -498,6 +497,12 @@ impl Node {
             format!("node {}: {reason}", self.path()),
         )
     }
+}
+
+/// Lines of the log that begin with a node's path.
+fn log_sink(engine: &Engine, path: &str) -> LogSink {
+    let (log, path) = (engine.log.clone(), path.to_owned());
+    Arc::new(move |text| log.line(&format!("{path}: {text}")))
 }
 
 /// One operation inside a node: its place among those that may be there at once.
