@@ -28,6 +28,8 @@ mod converters {
 }
 /// One module for each operation or file of a mounted tree.
 mod mount {
+    /// Second names of nodes, and nodes that are written through others.
+    mod aliases;
     /// Further files in a node's directory.
     mod attributes;
     /// Writing and reading the configuration of a live tree.

@@ -784,18 +784,3 @@ fn a_state_that_converts_a_lot_is_compiled_and_made_smaller() {
     }
     assert!(vm.memory() < 64 << 10, "{} bytes", vm.memory());
 }
-
-#[test]
-fn what_is_first_needed_after_the_compiler_was_turned_on_is_still_there() {
-    // The garbage takes the place of whatever was let go of too early.
-    let late = "function(_, a, _, b) n = (n or 0) + 1 kept = kept or {} \
-                for i = 1, 20 do kept[#kept + 1] = { [i + 0.5] = i } end if n > 30 then ba.f32(b, 0, 2.5) end end";
-    let (mut vm, stage) = bound(late, 4, 4);
-    let mut output = [0; 4];
-    for _ in 0..40 {
-        vm.convert(stage, &[0; 4], &mut output).unwrap();
-    }
-    assert_eq!(output, 2.5f32.to_le_bytes());
-    let another = vm.bind("x", Direction::Read, 0, 600, 600).unwrap();
-    vm.convert(another, &[0; 600], &mut [0; 600]).unwrap();
-}

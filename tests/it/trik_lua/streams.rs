@@ -314,6 +314,8 @@ fn commands_to_the_camera_are_lines() {
     );
 }
 
+/// Converters of several nodes are bound in one state, some of them after it was compiled and made smaller: LuaJIT's
+/// tables for foreign types had been freed by then, and the process died.
 #[test]
 fn lines_of_the_gamepad_become_its_state() {
     let mut robot = robot("");
