@@ -17,7 +17,8 @@ use crate::vm::fingerprint::hash;
 use nix::unistd::{Group, User};
 
 /// All fields of a description.
-pub(super) const FIELDS: [&str; 22] = [
+pub(super) const FIELDS: [&str; 23] = [
+    "about",
     "ages",
     "attributes",
     "budget_us",
@@ -45,6 +46,7 @@ pub(super) const FIELDS: [&str; 22] = [
 /// A state with the program takes about 50 KiB; with less than this no converter would ever run.
 const MEMORY_KB_MIN: u32 = 128;
 const UNITS_BYTES_MAX: usize = 64;
+const ABOUT_BYTES_MAX: usize = 200;
 
 /// Sizes and what depends on them.
 struct Layout {
@@ -64,7 +66,13 @@ impl Fields<'_, '_> {
         if layout.format.is_none() && read.is_empty() {
             layout.format = self.joined_format(&source);
         }
-        let read_only = is_read_only(&source);
+        let read_only = is_read_only(&source)
+            || match &source {
+                SourceDescription::Node(other) => {
+                    !self.checker.takes_tuples(other) || !read.is_empty() && write.is_none()
+                }
+                _ => false,
+            };
         if write.is_some() && read_only {
             return Err(self.problem(
                 "write_converter",
@@ -90,6 +98,10 @@ impl Fields<'_, '_> {
             converter,
             write_converter,
             format: layout.format,
+            about: self
+                .text("about", ABOUT_BYTES_MAX)?
+                .unwrap_or_default()
+                .to_owned(),
             units: self
                 .text("units", UNITS_BYTES_MAX)?
                 .unwrap_or_default()
