@@ -78,7 +78,11 @@ impl Place {
             };
             let Some(held) = taken else { continue };
             let default = base.join(&name);
-            // A guardian that has lost its parent may still be busy there.
+            // Nobody is left to unmount a dead one, and a guardian that has lost its parent may still be busy with a
+            // living one.
+            if mountpoint.is_none() && is_dead(&default) {
+                let _ = trikfs::mount::unmount(&default);
+            }
             if mountpoint.is_none() && is_mount(&default)? {
                 continue;
             }
@@ -89,7 +93,8 @@ impl Place {
                 lock,
                 held,
             };
-            place.made_mountpoint = make_mountpoint(&place.mountpoint)?;
+            // The default one is ours, whoever of us made it.
+            place.made_mountpoint = make_mountpoint(&place.mountpoint)? || mountpoint.is_none();
             place
                 .record()
                 .map_err(|error| format!("{}: {error}", place.lock.display()))?;
