@@ -18,7 +18,7 @@ use crate::lease::Lease;
 use crate::node::{Node, directory_of};
 use crate::setup::SetupRunner;
 use crate::tree::{Owner, Tree};
-use config::description::{Config, NodeDescription, SourceDescription, StageKind};
+use config::description::{Alias, Config, NodeDescription, SourceDescription, StageKind};
 use config::load::Loader;
 use config::problem::Problem;
 use std::collections::{BTreeSet, HashMap};
@@ -239,7 +239,8 @@ impl Reloader {
                 node.recipe().move_to(pool);
             }
         }
-        self.put_in_force(nodes, &before, bytes, pool, &rest);
+        let aliases = &loaded.config.aliases;
+        self.put_in_force((nodes, aliases), &before, bytes, pool, &rest);
         for line in problems {
             setup.engine.log.line(&line);
         }
@@ -264,7 +265,7 @@ impl Reloader {
 
     fn put_in_force(
         &self,
-        nodes: Vec<Arc<Node>>,
+        (nodes, aliases): (Vec<Arc<Node>>, &[Alias]),
         before: &Arc<Tree>,
         bytes: Vec<u8>,
         pool: Option<Arc<crate::convert::lua::StatePool>>,
@@ -285,7 +286,13 @@ impl Reloader {
         set_actuators(&nodes);
         let old_pool = {
             let mut state = lock(&self.state);
-            let tree = Tree::build(nodes, setup.owner, Some(before), &mut state.next_ino);
+            let tree = Tree::build(
+                nodes,
+                aliases,
+                setup.owner,
+                Some(before),
+                &mut state.next_ino,
+            );
             setup.forest.replace(tree);
             state.bytes = Arc::new(bytes);
             std::mem::replace(&mut state.pool, pool)
