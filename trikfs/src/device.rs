@@ -256,11 +256,14 @@ pub fn paths(source: &SourceDescription) -> Vec<&Path> {
     }
 }
 
+/// Tells what a node that a source reads waits for: its path, and who is told.
+pub type OfNode<'f, 'a> = &'f mut dyn FnMut(&'a str, &mut dyn FnMut(&Path));
+
 /// Names each bus whose transfers a source waits for; `of_node` does the same for a node that the source reads.
 pub fn each_bus<'a>(
     source: &'a SourceDescription,
     found: &mut dyn FnMut(&Path),
-    of_node: &mut dyn FnMut(&'a str, &mut dyn FnMut(&Path)),
+    of_node: OfNode<'_, 'a>,
 ) {
     match source {
         SourceDescription::I2c(i2c) => found(&i2c.path),
