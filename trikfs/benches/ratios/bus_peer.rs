@@ -39,7 +39,7 @@ fn packet_socket() -> Result<OwnedFd, String> {
 impl BusPeer {
     /// Starts it; `delay_ms` before each answer, `u32::MAX` for none at all.
     pub fn start(name: &str, delay_ms: u32) -> Result<Self, String> {
-        let place = Place::new(&format!("bus-{name}"))?;
+        let place = Place::new(&format!("i2c-{name}"))?;
         let path = place.0.join("i2c");
         let _ = std::fs::remove_file(&path);
         let words = [path.display().to_string(), delay_ms.to_string()];
