@@ -26,10 +26,12 @@ mod converters {
     /// The shipped filters in both languages against the golden vectors.
     mod vectors;
 }
-/// Ports of a controller, with files and pipes in their place.
+/// Ports of a controller, with files, pipes and sockets in their place.
 mod devices {
     /// Single lines.
     mod gpio;
+    /// Registers on a bus that is fine, slow, dead, gone and back.
+    mod i2c;
     /// Sampled sensors.
     mod iio;
     /// Text of sensor programs.
@@ -38,6 +40,10 @@ mod devices {
     mod packets;
     /// Pulses.
     mod pwm;
+    /// Actions that are done once, and the root of a virtual board.
+    mod setup;
+    /// A slow bus delays nobody who does not use it.
+    mod slow_bus;
 }
 /// One module for each operation or file of a mounted tree.
 mod mount {

@@ -2,8 +2,8 @@
 //!
 //! Owns the traits, the decision which of them a description gets, and nothing else. Each kind of device is one
 //! file below; only those files open device nodes. Nothing here knows converters, handles or the kernel's requests.
-//! A bus that needs more than a file (I2C, IIO, PWM) is one more file and one more arm of [`open`]; who uses a bus that
-//! may be slow finds it through [`bus_of`].
+//! A bus that needs more than a file (I2C, IIO, PWM) is one more file and one more arm of [`open`]; [`each_bus`]
+//! tells who waits for which bus.
 
 pub mod attribute;
 pub mod chardev;
@@ -25,6 +25,7 @@ pub mod several;
 mod sysfs;
 
 use crate::convert::LogSink;
+use crate::engine::Engine;
 use crate::errno::Error;
 use crate::node::Node;
 use crate::programs::Programs;
@@ -115,6 +116,19 @@ pub struct Surroundings {
 }
 
 impl Surroundings {
+    /// Those of a mount, without links and with the usual time limit.
+    pub fn new(engine: &Engine) -> Self {
+        let log = engine.log.clone();
+        Self {
+            links: Vec::new(),
+            timeout_ms: config::limits::TIMEOUT_MS,
+            damaged: Arc::default(),
+            programs: engine.programs.clone(),
+            log: Arc::new(move |text| log.line(text)),
+            buses: engine.buses.clone(),
+        }
+    }
+
     fn link(&self, path: &str) -> Result<&Arc<Node>, Error> {
         let found = self.links.iter().find(|(name, _)| name == path);
         found
@@ -286,12 +300,22 @@ pub fn paths(source: &SourceDescription) -> Vec<&Path> {
     }
 }
 
-/// The bus whose transfers a source waits for, if it is one alone: nodes of one bus are sampled by a thread of its own.
-pub fn bus_of(source: &SourceDescription) -> Option<&Path> {
+/// Names each bus whose transfers a source waits for; `of_node` does the same for a node that the source reads.
+pub fn each_bus<'a>(
+    source: &'a SourceDescription,
+    found: &mut dyn FnMut(&Path),
+    of_node: &mut dyn FnMut(&'a str, &mut dyn FnMut(&Path)),
+) {
     match source {
-        SourceDescription::I2c(i2c) => Some(&i2c.path),
-        SourceDescription::Faulty(faulty) => bus_of(&faulty.source),
-        _ => None,
+        SourceDescription::I2c(i2c) => found(&i2c.path),
+        SourceDescription::Faulty(faulty) => each_bus(&faulty.source, found, of_node),
+        SourceDescription::Node(path) | SourceDescription::Newest(path) => of_node(path, found),
+        SourceDescription::Several(several) => {
+            for part in &several.parts {
+                each_bus(&part.source, found, of_node);
+            }
+        }
+        _ => {}
     }
 }
 

@@ -21,7 +21,8 @@ use config::description::{NodeDescription, Pace, SourceDescription};
 use config::format::Format;
 use config::problem::Problem;
 use config::program::Direction;
-use std::path::PathBuf;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, Weak};
 
@@ -92,9 +93,8 @@ impl Node {
             links,
             timeout_ms: description.timeout_ms,
             damaged: stats.damaged.clone(),
-            programs: engine.programs.clone(),
             log: log_sink(&engine, &description.path),
-            buses: engine.buses.clone(),
+            ..Surroundings::new(&engine)
         };
         let period_ms = match description.pace {
             Pace::Every { period_ms } => period_ms,
@@ -482,21 +482,26 @@ impl Node {
         self.open_writer(None)?.write_whole(&tuple, true)
     }
 
-    /// Where background samples of this node are scheduled: a node that reads one bus, itself or through another node,
-    /// has its turn on the thread of that bus.
+    /// Where background samples of this node are scheduled: a node that reads one bus, itself or through other nodes,
+    /// has its turn on the thread of that bus. One that reads several would make each wait for the others.
     pub fn sampling_schedule(&self) -> Arc<Schedule> {
-        match self.bus() {
-            Some(bus) => self.engine.schedule_of(&bus),
-            None => self.engine.schedule.clone(),
+        let mut buses = BTreeSet::new();
+        self.each_bus(&mut |bus| {
+            buses.insert(bus.to_path_buf());
+        });
+        match (buses.pop_first(), buses.is_empty()) {
+            (Some(bus), true) => self.engine.schedule_of(&bus),
+            _ => self.engine.schedule.clone(),
         }
     }
 
-    fn bus(&self) -> Option<PathBuf> {
-        if let SourceDescription::Node(_) = &self.description.source {
-            let (_, other) = self.around.links.first()?;
-            return other.bus();
-        }
-        device::bus_of(&self.description.source).map(std::path::Path::to_path_buf)
+    fn each_bus(&self, found: &mut dyn FnMut(&Path)) {
+        device::each_bus(&self.description.source, found, &mut |name, found| {
+            let link = self.around.links.iter().find(|(path, _)| path == name);
+            if let Some((_, other)) = link {
+                other.each_bus(found);
+            }
+        });
     }
 
     /// What the guardian writes to which path if this process is no longer there.
@@ -509,7 +514,9 @@ impl Node {
             return Ok(None);
         };
         // A transfer on a bus is more than a write to a path.
-        if device::bus_of(&self.description.source).is_some() {
+        let mut is_on_bus = false;
+        self.each_bus(&mut |_| is_on_bus = true);
+        if is_on_bus {
             return Ok(None);
         }
         let Some(path) = device::paths(&self.description.source)

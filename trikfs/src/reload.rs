@@ -14,6 +14,7 @@ use crate::files::control::rest_all;
 use crate::fs::{Forest, OpenFiles};
 use crate::guardian::ledger::{Ledger, RestAction};
 use crate::node::Node;
+use crate::setup::SetupRunner;
 use crate::tree::{Owner, Tree};
 use config::description::{Config, NodeDescription, SourceDescription, StageKind};
 use config::load::Loader;
@@ -51,6 +52,7 @@ pub struct Setup {
 pub struct Reloader {
     setup: Setup,
     maker: StateMaker,
+    setup_runner: Arc<SetupRunner>,
     state: Mutex<State>,
     one_at_a_time: Mutex<()>,
     work: Sender<Job>,
@@ -89,7 +91,9 @@ impl Reloader {
             cached: BTreeSet::new(),
         };
         let maker = StateMaker::start()?;
+        let root = setup.loader.device_root.clone();
         Ok(Arc::new(Self {
+            setup_runner: SetupRunner::new(setup.engine.clone(), root),
             setup,
             maker,
             state: Mutex::new(state),
@@ -111,6 +115,11 @@ impl Reloader {
     /// What became of the last configuration, on one line.
     pub fn result_line(&self) -> String {
         lock(&self.state).result.clone()
+    }
+
+    /// What of `setup` failed, a line each.
+    pub fn setup_lines(&self) -> String {
+        self.setup_runner.status_lines()
     }
 
     /// Notes that something was not applied, and why.
@@ -216,7 +225,8 @@ impl Reloader {
             .collect::<Vec<_>>();
         problems.extend(loaded.log);
         let rest = self.rest_actions(&nodes, &mut problems);
-        // Nothing fails from here on.
+        // Nothing fails from here on: what `setup` cannot do is only told.
+        self.setup_runner.run(&loaded.config.setup);
         for node in &kept {
             if let Some(pool) = &pool {
                 node.recipe().move_to(pool);
