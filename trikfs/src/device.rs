@@ -119,15 +119,13 @@ pub struct Surroundings {
 impl Surroundings {
     /// Those of a mount, without links and with the usual time limit.
     pub fn new(engine: &Engine) -> Self {
+        let log = engine.log.clone();
         Self {
             links: Vec::new(),
             timeout_ms: config::limits::TIMEOUT_MS,
             damaged: Arc::default(),
             programs: engine.programs.clone(),
-            log: {
-                let log = engine.log.clone();
-                Arc::new(move |text| log.line(text))
-            },
+            log: Arc::new(move |text| log.line(text)),
             buses: engine.buses.clone(),
         }
     }

@@ -106,9 +106,8 @@ impl Node {
             links,
             timeout_ms: description.timeout_ms,
             damaged: stats.damaged.clone(),
-            programs: engine.programs.clone(),
             log: log_sink(&engine, &description.path),
-            buses: engine.buses.clone(),
+            ..Surroundings::new(&engine)
         };
         let period_ms = match description.pace {
             Pace::Every { period_ms } => period_ms,
