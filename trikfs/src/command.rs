@@ -31,6 +31,8 @@ pub(crate) struct Ended {
     pub(crate) status: Option<ExitStatus>,
     /// What it wrote to standard output and standard error; bytes that are no UTF-8 are replaced.
     pub(crate) output: String,
+    /// Where what it has left running still can write to.
+    pub(crate) pipe: Option<PipeReader>,
 }
 
 /// A command for `program` whose processes may each take so much memory and write files of such a size.
@@ -72,6 +74,7 @@ pub(crate) fn run(mut command: Command, limits: &Limits) -> io::Result<Ended> {
     Ok(Ended {
         status: status?,
         output: running.text(),
+        pipe: running.reader,
     })
 }
 

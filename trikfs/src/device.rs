@@ -7,18 +7,29 @@
 
 pub mod attribute;
 pub mod chardev;
+mod cutter;
 pub mod evdev;
 pub mod fake;
 pub mod faulty;
 pub mod fifo;
+pub mod gpio;
 pub mod i2c;
+pub mod iio;
 pub mod latched;
+pub mod lines;
 pub mod linked;
+pub mod packets;
+pub mod pwm;
 pub mod replay;
 pub mod several;
+mod sysfs;
 
+use crate::convert::LogSink;
 use crate::errno::Error;
+use crate::log::Log;
 use crate::node::Node;
+use crate::programs::Programs;
+use crate::stats::Counter;
 use config::description::{GpioDirection, SourceDescription};
 use std::os::fd::BorrowedFd;
 use std::os::unix::fs::{FileTypeExt, MetadataExt};
@@ -94,11 +105,29 @@ pub struct Surroundings {
     pub links: Vec<(String, Arc<Node>)>,
     /// How long a sink waits for a device that takes no bytes.
     pub timeout_ms: u32,
+    /// Where the node counts what its source had to throw away.
+    pub damaged: Arc<Counter>,
+    /// Programs that sensors need.
+    pub programs: Arc<Programs>,
+    /// What has to be said and is no failure.
+    pub log: LogSink,
     /// The I2C buses of the mount.
     pub buses: Arc<i2c::bus::Buses>,
 }
 
 impl Surroundings {
+    /// For who has a device and nothing else: no nodes, nobody to talk to.
+    pub fn alone(timeout_ms: u32, buses: &Arc<i2c::bus::Buses>) -> Self {
+        Self {
+            links: Vec::new(),
+            timeout_ms,
+            damaged: Arc::default(),
+            programs: Programs::new(Arc::new(Log::new())),
+            log: Arc::new(|_| {}),
+            buses: buses.clone(),
+        }
+    }
+
     fn link(&self, path: &str) -> Result<&Arc<Node>, Error> {
         let found = self.links.iter().find(|(name, _)| name == path);
         found
@@ -128,6 +157,22 @@ pub fn open(
             faulty::open(faulty, open(&faulty.source, tuple_size, around)?)
         }
         SourceDescription::Node(path) => linked::open(around.link(path)?),
+        SourceDescription::Iio(iio) => Ok(Device::Stream(Box::new(iio::Iio::open(
+            iio,
+            around.damaged.clone(),
+            &around.log,
+        )?))),
+        SourceDescription::Pwm(pwm) => Ok(Device::State(Box::new(pwm::Pwm::open(pwm)?))),
+        SourceDescription::Gpio(gpio) => Ok(Device::State(Box::new(gpio::Gpio::open(gpio)?))),
+        SourceDescription::Lines(lines) => Ok(Device::Stream(Box::new(lines::Lines::open(
+            lines,
+            tuple_size,
+            &around.programs,
+            around.damaged.clone(),
+        )?))),
+        SourceDescription::Packets(packets) => Ok(Device::Stream(Box::new(
+            packets::Packets::open(packets, tuple_size, around.damaged.clone())?,
+        ))),
         SourceDescription::Newest(path) => latched::open(around.link(path)?),
         SourceDescription::Several(several) => several::open(several, around),
         SourceDescription::I2c(i2c) => {
@@ -135,9 +180,6 @@ pub fn open(
             Ok(Device::State(Box::new(register)))
         }
         SourceDescription::Absent(reason) => Err(Error::NoDevice(reason.clone())),
-        _ => Err(Error::NoDevice(
-            "this program cannot open such ports yet".to_owned(),
-        )),
     }
 }
 
@@ -167,6 +209,13 @@ pub fn open_sink(
             faulty,
             open_sink(&faulty.source, around)?,
         ))),
+        SourceDescription::Pwm(pwm) => Ok(Box::new(pwm::Pwm::open(pwm)?)),
+        SourceDescription::Gpio(gpio) if gpio.direction != GpioDirection::In => {
+            Ok(Box::new(gpio::Gpio::open(gpio)?))
+        }
+        SourceDescription::Lines(lines) => {
+            Ok(Box::new(lines::LinesSink::open(lines, around.timeout_ms)?))
+        }
         SourceDescription::I2c(i2c) => {
             // The size only matters for reading.
             let register = i2c::Register::open(i2c, 0, around.timeout_ms, &around.buses)?;
@@ -174,13 +223,13 @@ pub fn open_sink(
         }
         SourceDescription::Absent(reason) => Err(Error::NoDevice(reason.clone())),
         SourceDescription::Evdev(_)
+        | SourceDescription::Iio(_)
+        | SourceDescription::Gpio(_)
+        | SourceDescription::Packets(_)
         | SourceDescription::Fake(_)
         | SourceDescription::Replay(_)
         | SourceDescription::Newest(_)
         | SourceDescription::Several(_) => Err(Error::AccessDenied),
-        _ => Err(Error::NoDevice(
-            "this program cannot open such ports yet".to_owned(),
-        )),
     }
 }
 

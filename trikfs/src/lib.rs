@@ -29,6 +29,7 @@ pub mod mount;
 pub mod newest;
 pub mod node;
 pub mod process;
+pub mod programs;
 pub mod reader;
 pub mod reload;
 #[cfg(test)]

@@ -3,13 +3,14 @@
 //! Owns the joints between these, the node's fault and the flag that a reload sets when the description is gone.
 //! Knows no file of the tree and no request of the kernel.
 
+mod rest;
+
 use crate::clock::Stamp;
 use crate::convert::{LogSink, Pipeline, Recipe};
 use crate::device::{self, Device, Sink, Stream, Surroundings};
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::{Due, Ready, Schedule, lock};
-use crate::guardian::actions::RestAction;
 use crate::hub::Hub;
 use crate::lease::Lease;
 use crate::limits;
@@ -25,10 +26,6 @@ use config::program::Direction;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, Weak};
-use std::time::{Duration, Instant};
-
-/// Between two attempts to bring an actuator to rest whose device is busy.
-const REST_PAUSE: Duration = Duration::from_millis(1);
 
 /// One described peripheral.
 pub struct Node {
@@ -91,9 +88,13 @@ impl Node {
             let linked = links.iter().filter(|(path, _)| path == other);
             leases.extend(linked.flat_map(|(_, node)| node.leases.clone()));
         }
+        let stats = Stats::default();
         let around = Surroundings {
             links,
             timeout_ms: description.timeout_ms,
+            damaged: stats.damaged.clone(),
+            programs: engine.programs.clone(),
+            log: log_sink(&engine, &description.path),
             buses: engine.buses.clone(),
         };
         let period_ms = match description.pace {
@@ -107,7 +108,7 @@ impl Node {
             engine,
             lease,
             leases,
-            stats: Stats::default(),
+            stats,
             newest: Newest::new(me.clone(), description.output_tuple_size),
             recipe,
             around,
@@ -240,14 +241,9 @@ impl Node {
     pub fn open_pipeline(self: &Arc<Self>) -> Result<Arc<Mutex<Pipeline>>, Error> {
         let pipeline = self
             .recipe
-            .open(&self.log_sink())
+            .open(&self.around.log)
             .inspect_err(|error| self.report(error))?;
         Ok(Arc::new(Mutex::new(pipeline)))
-    }
-
-    fn log_sink(&self) -> LogSink {
-        let (log, path) = (self.engine.log.clone(), self.description.path.clone());
-        Arc::new(move |text| log.line(&format!("{path}: {text}")))
     }
 
     /// Opens the node for reading with a pipeline of its own.
@@ -344,7 +340,7 @@ impl Node {
         input: &[u8],
         output: &mut [u8],
     ) -> (usize, usize, Option<Error>) {
-        if let Err(error) = self.recipe.renew(pipeline, || self.log_sink()) {
+        if let Err(error) = self.recipe.renew(pipeline, || self.around.log.clone()) {
             self.report(&error);
             return (1, 0, Some(error));
         }
@@ -408,17 +404,6 @@ impl Node {
         lock(&self.fault).clone()
     }
 
-    /// The tuple that brings the actuator to rest, as a program would write it.
-    pub fn rest_tuple(&self) -> Result<Option<Vec<u8>>, Error> {
-        let Some(rest) = &self.description.rest else {
-            return Ok(None);
-        };
-        let text: Vec<String> = rest.iter().map(ToString::to_string).collect();
-        let mut tuple = vec![0; self.description.written_tuple_size()];
-        crate::text::encode(&self.written_format(), &text.join(" "), &mut tuple)?;
-        Ok(Some(tuple))
-    }
-
     /// Samples per second since the rate was last asked for, over at least a fifth of a second.
     pub fn rate_hz(&self) -> f64 {
         let mut rate = lock(&self.rate);
@@ -462,29 +447,6 @@ impl Node {
         }
     }
 
-    /// Brings the actuator to rest now. One that this board does not have rests already; a bus that has too many to
-    /// serve at the moment is asked again until the node's time limit.
-    pub fn rest(self: &Arc<Self>) -> Result<(), Error> {
-        let Some(tuple) = self.rest_tuple()? else {
-            return Ok(());
-        };
-        if matches!(self.description.source, SourceDescription::Absent(_)) {
-            return Ok(());
-        }
-        let deadline = Instant::now() + Duration::from_millis(self.description.timeout_ms.into());
-        loop {
-            let outcome = self
-                .open_writer(None)
-                .and_then(|mut writer| writer.write_whole(&tuple, true));
-            match outcome {
-                Err(Error::Device(libc::EBUSY, _)) if Instant::now() < deadline => {
-                    std::thread::sleep(REST_PAUSE);
-                }
-                outcome => return outcome,
-            }
-        }
-    }
-
     /// Where background samples of this node are scheduled: a node that reads one bus, itself or through another node,
     /// has its turn on the thread of that bus.
     pub fn sampling_schedule(&self) -> Arc<Schedule> {
@@ -500,48 +462,6 @@ impl Node {
             return other.bus();
         }
         device::bus_of(&self.description.source).map(std::path::Path::to_path_buf)
-    }
-
-    /// What the guardian has to do if this process is no longer there; nothing if there is no device to rest.
-    pub fn rest_action(self: &Arc<Self>) -> Result<Option<RestAction>, Error> {
-        match self.rest_tuple()? {
-            Some(tuple) => self.action_of(&tuple),
-            None => Ok(None),
-        }
-    }
-
-    /// The action that has the effect of writing this tuple, through all nodes on the way to a device.
-    fn action_of(self: &Arc<Self>, tuple: &[u8]) -> Result<Option<RestAction>, Error> {
-        let mut converted = vec![0; self.device_tuple_size()];
-        let pipeline = self.open_pipeline()?;
-        let (_, produced, fault) = self.convert(
-            &mut lock(&pipeline),
-            Direction::Write,
-            tuple,
-            &mut converted,
-        );
-        if let Some(error) = fault {
-            return Err(error);
-        }
-        if produced == 0 {
-            return Ok(None);
-        }
-        let mut sink = &self.description.source;
-        while let SourceDescription::Faulty(faulty) = sink {
-            sink = &faulty.source;
-        }
-        match sink {
-            SourceDescription::Node(path) => {
-                let other = self.around.links.iter().find(|(name, _)| name == path);
-                other.map_or(Ok(None), |(_, other)| other.action_of(&converted))
-            }
-            _ if !device::takes_bytes(sink) => Ok(None),
-            _ => Ok(Some(RestAction {
-                sink: sink.clone(),
-                tuple: converted,
-                timeout_ms: self.description.timeout_ms,
-            })),
-        }
     }
 
     /// A problem at the place of this node's description.
@@ -568,6 +488,12 @@ fn written_node(source: &SourceDescription) -> Option<&str> {
         SourceDescription::Faulty(faulty) => written_node(&faulty.source),
         _ => None,
     }
+}
+
+/// Lines of the log that begin with a node's path.
+fn log_sink(engine: &Engine, path: &str) -> LogSink {
+    let (log, path) = (engine.log.clone(), path.to_owned());
+    Arc::new(move |text| log.line(&format!("{path}: {text}")))
 }
 
 /// One operation inside a node: its place among those that may be there at once.

@@ -92,11 +92,7 @@ fn start_worker(
 }
 
 fn perform(action: &RestAction, buses: &Arc<Buses>) -> Result<(), Error> {
-    let around = Surroundings {
-        links: Vec::new(),
-        timeout_ms: action.timeout_ms.min(limits::REST_MS_MAX),
-        buses: buses.clone(),
-    };
+    let around = Surroundings::alone(action.timeout_ms.min(limits::REST_MS_MAX), buses);
     device::open_sink(&action.sink, &around)?.write(&action.tuple, true)
 }
 
