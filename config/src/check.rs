@@ -8,6 +8,7 @@ mod fields;
 mod node;
 mod params;
 mod ports;
+mod regulator;
 mod setup;
 mod several;
 mod source;
@@ -342,17 +343,19 @@ impl<'a> Checker<'a> {
             }))
     }
 
-    /// The format of a node that is built already, single bytes if it gave none.
-    fn format_of_node(&self, other: &str) -> Option<Format> {
-        match &self.drafts.get(*self.index.get(other)?)?.built {
-            Built::Done(description) => Some(
-                description
-                    .format
-                    .clone()
-                    .unwrap_or_else(|| Format::bytes(description.output_tuple_size)),
-            ),
+    /// A node that is built already.
+    fn built(&self, path: &str) -> Option<&NodeDescription> {
+        match &self.drafts.get(*self.index.get(path)?)?.built {
+            Built::Done(description) => Some(description),
             _ => None,
         }
+    }
+
+    /// The format of a node that is built already, single bytes if it gave none.
+    fn format_of_node(&self, other: &str) -> Option<Format> {
+        let description = self.built(other)?;
+        let format = description.format.clone();
+        Some(format.unwrap_or_else(|| Format::bytes(description.output_tuple_size)))
     }
 
     /// The existing path that a wrong one was probably meant to be.

@@ -175,6 +175,7 @@ pub fn open(
         ))),
         SourceDescription::Newest(path) => latched::open(around.link(path)?),
         SourceDescription::Several(several) => several::open(several, around),
+        SourceDescription::Regulator(regulator) => several::open(&regulator.feedback, around),
         SourceDescription::I2c(i2c) => {
             let register = i2c::Register::open(i2c, tuple_size, around.timeout_ms, &around.buses)?;
             Ok(Device::State(Box::new(register)))
@@ -229,6 +230,7 @@ pub fn open_sink(
         | SourceDescription::Fake(_)
         | SourceDescription::Replay(_)
         | SourceDescription::Newest(_)
+        | SourceDescription::Regulator(_)
         | SourceDescription::Several(_) => Err(Error::AccessDenied),
     }
 }
@@ -257,6 +259,7 @@ pub fn is_shared(source: &SourceDescription) -> Result<bool, Error> {
         SourceDescription::Attribute(_)
         | SourceDescription::Node(_)
         | SourceDescription::Newest(_)
+        | SourceDescription::Regulator(_)
         | SourceDescription::I2c(_)
         | SourceDescription::Absent(_)
         | SourceDescription::Pwm(_)
@@ -304,6 +307,7 @@ pub fn paths(source: &SourceDescription) -> Vec<&Path> {
         }
         SourceDescription::Fake(_)
         | SourceDescription::Node(_)
+        | SourceDescription::Regulator(_)
         | SourceDescription::Newest(_)
         | SourceDescription::Absent(_) => Vec::new(),
     }

@@ -31,6 +31,7 @@ pub mod node;
 pub mod process;
 pub mod programs;
 pub mod reader;
+pub mod regulation;
 pub mod reload;
 #[cfg(test)]
 mod scratch;

@@ -16,6 +16,7 @@ use crate::lease::Lease;
 use crate::limits;
 use crate::newest::Newest;
 use crate::reader::{Origin, Reader};
+use crate::regulation::Regulation;
 use crate::state_reader::StateReader;
 use crate::stats::Stats;
 use crate::writer::Writer;
@@ -56,6 +57,10 @@ pub struct Node {
     rate: Mutex<Rate>,
     retired: AtomicBool,
     period_ms: AtomicU32,
+    /// How often a tuple went to the device. Wraps.
+    writes: AtomicU32,
+    /// Only for the source `regulator{...}`.
+    regulation: Option<Regulation>,
     /// When each of the operations that are inside now began, in coarse ms.
     inside: [AtomicU32; limits::LATE_PER_NODE_MAX],
 }
@@ -88,6 +93,13 @@ impl Node {
             let linked = links.iter().filter(|(path, _)| path == other);
             leases.extend(linked.flat_map(|(_, node)| node.leases.clone()));
         }
+        let regulation = match &description.source {
+            SourceDescription::Regulator(regulator) => links
+                .iter()
+                .find(|(path, _)| *path == regulator.actuator)
+                .map(|(_, actuator)| Regulation::new(actuator.clone())),
+            _ => None,
+        };
         let stats = Stats::default();
         let around = Surroundings {
             links,
@@ -123,6 +135,8 @@ impl Node {
             }),
             retired: AtomicBool::new(false),
             period_ms: AtomicU32::new(period_ms),
+            writes: AtomicU32::new(0),
+            regulation,
             inside: Default::default(),
             description,
         })
@@ -179,11 +193,36 @@ impl Node {
 
     /// Bytes of one tuple that goes to the device.
     pub fn device_tuple_size(&self) -> usize {
-        if self.description.write_converter.is_some() {
-            self.description.input_tuple_size
-        } else {
-            self.description.output_tuple_size
+        self.description.write_conversion_sizes().1
+    }
+
+    /// Holds what is written by driving another node.
+    pub fn regulation(&self) -> Option<&Regulation> {
+        self.regulation.as_ref()
+    }
+
+    /// Changes whenever a lease that a write to this node touches changes hands.
+    pub fn lease_generation(&self) -> u32 {
+        let generations = self.leases.iter().map(|lease| lease.generation());
+        generations.fold(0, u32::wrapping_add)
+    }
+
+    /// How often a tuple went to the device, for an alias to the device of the node that it stands for. Wraps.
+    pub fn writes(&self) -> u32 {
+        match &self.description.source {
+            SourceDescription::Node(path) => {
+                match self.around.links.iter().find(|(name, _)| name == path) {
+                    Some((_, other)) => other.writes(),
+                    None => 0,
+                }
+            }
+            _ => self.writes.load(Ordering::Relaxed),
         }
+    }
+
+    /// A tuple went to the device.
+    pub fn count_write(&self) {
+        self.writes.fetch_add(1, Ordering::Relaxed);
     }
 
     /// Whether programs may read or write at all: root passes the kernel's check of the mode bits.
@@ -326,6 +365,9 @@ impl Node {
         self: &Arc<Self>,
         pipeline: Option<Arc<Mutex<Pipeline>>>,
     ) -> Result<Writer, Error> {
+        if self.regulation.is_some() {
+            return Ok(Writer::to_regulation(self.clone()));
+        }
         let pipeline = pipeline.map_or_else(|| self.open_pipeline(), Ok)?;
         let sink: Box<dyn Sink> = device::open_sink(&self.description.source, &self.around)
             .inspect_err(|error| self.report(error))?;
@@ -347,10 +389,7 @@ impl Node {
         let start = self.stats.measures_this_conversion().then(Stamp::now);
         let batch = pipeline.convert(direction, input, output);
         let (in_size, out_size) = match direction {
-            Direction::Write => (
-                self.description.written_tuple_size(),
-                self.device_tuple_size(),
-            ),
+            Direction::Write => self.description.write_conversion_sizes(),
             Direction::Read => (
                 self.description.input_tuple_size,
                 self.description.output_tuple_size,
@@ -485,6 +524,7 @@ pub fn directory_of(path: &str, is_attribute: bool) -> &str {
 fn written_node(source: &SourceDescription) -> Option<&str> {
     match source {
         SourceDescription::Node(path) => Some(path),
+        SourceDescription::Regulator(regulator) => Some(&regulator.actuator),
         SourceDescription::Faulty(faulty) => written_node(&faulty.source),
         _ => None,
     }

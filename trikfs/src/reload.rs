@@ -457,6 +457,13 @@ fn linked(source: &SourceDescription) -> Vec<&str> {
             let parts = several.parts.iter();
             parts.flat_map(|part| linked(&part.source)).collect()
         }
+        SourceDescription::Regulator(regulator) => {
+            let feedback = regulator.feedback.parts.iter();
+            feedback
+                .flat_map(|part| linked(&part.source))
+                .chain([regulator.actuator.as_str()])
+                .collect()
+        }
         SourceDescription::Faulty(faulty) => linked(&faulty.source),
         _ => Vec::new(),
     }

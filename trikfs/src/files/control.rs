@@ -106,6 +106,10 @@ pub fn rest_all(nodes: &[Arc<Node>]) -> Result<(), Error> {
     let threads = actuators.len().min(limits::REST_THREADS_MAX);
     let next = AtomicUsize::new(0);
     let failures = Mutex::new(Vec::new());
+    // First nobody may drive them any more.
+    for regulation in nodes.iter().filter_map(|node| node.regulation()) {
+        regulation.release();
+    }
     let work = || {
         while let Some(node) = actuators.get(next.fetch_add(1, Ordering::Relaxed)) {
             if let Err(error) = node.rest() {

@@ -30,6 +30,9 @@ impl Node {
     /// Brings the actuator to rest now. One that this board does not have rests already; a bus that has too many to
     /// serve at the moment is asked again until the node's time limit.
     pub fn rest(self: &Arc<Self>) -> Result<(), Error> {
+        if let Some(regulation) = self.regulation() {
+            return regulation.rest();
+        }
         let Some(tuple) = self.rest_tuple()? else {
             return Ok(());
         };
@@ -52,6 +55,10 @@ impl Node {
 
     /// What the guardian has to do if this process is no longer there; nothing if there is no device to rest.
     pub fn rest_action(self: &Arc<Self>) -> Result<Option<RestAction>, Error> {
+        if self.regulation().is_some() {
+            // What it drives has a rest of its own.
+            return Ok(None);
+        }
         match self.rest_tuple()? {
             Some(tuple) => self.action_of(&tuple),
             None => Ok(None),
