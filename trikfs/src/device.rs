@@ -27,6 +27,7 @@ mod sysfs;
 use crate::convert::LogSink;
 use crate::engine::Engine;
 use crate::errno::Error;
+use crate::log::Log;
 use crate::node::Node;
 use crate::programs::Programs;
 use crate::stats::Counter;
@@ -127,6 +128,18 @@ impl Surroundings {
             programs: engine.programs.clone(),
             log: Arc::new(move |text| log.line(text)),
             buses: engine.buses.clone(),
+        }
+    }
+
+    /// For who has a device and nothing else: no nodes, nobody to talk to.
+    pub fn alone(timeout_ms: u32, buses: &Arc<i2c::bus::Buses>) -> Self {
+        Self {
+            links: Vec::new(),
+            timeout_ms,
+            damaged: Arc::default(),
+            programs: Programs::new(Arc::new(Log::new())),
+            log: Arc::new(|_| {}),
+            buses: buses.clone(),
         }
     }
 

@@ -201,6 +201,12 @@ impl Node {
         self.regulation.as_ref()
     }
 
+    /// Changes whenever a lease that a write to this node touches changes hands.
+    pub fn lease_generation(&self) -> u32 {
+        let generations = self.leases.iter().map(|lease| lease.generation());
+        generations.fold(0, u32::wrapping_add)
+    }
+
     /// How often a tuple went to the device, for an alias to the device of the node that it stands for. Wraps.
     pub fn writes(&self) -> u32 {
         match &self.description.source {
@@ -523,6 +529,7 @@ pub fn directory_of(path: &str, is_attribute: bool) -> &str {
 fn written_node(source: &SourceDescription) -> Option<&str> {
     match source {
         SourceDescription::Node(path) => Some(path),
+        SourceDescription::Regulator(regulator) => Some(&regulator.actuator),
         SourceDescription::Faulty(faulty) => written_node(&faulty.source),
         _ => None,
     }
