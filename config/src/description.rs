@@ -21,6 +21,17 @@ pub struct Config {
     pub nodes: Vec<NodeDescription>,
     /// The global `setup`: what is done once, in this order, when the configuration comes into force.
     pub setup: Vec<SetupAction>,
+    /// Second names of nodes, sorted by path.
+    pub aliases: Vec<Alias>,
+}
+
+/// `{ alias = 'motors/M1' }`: the same node, with all its files, at a second place.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Alias {
+    /// Where the second directory is.
+    pub path: String,
+    /// Path of the node.
+    pub node: String,
 }
 
 /// One node of the tree.
@@ -44,6 +55,8 @@ pub struct NodeDescription {
     pub write_converter: Option<Vec<StageDescription>>,
     /// Named fields of the converted tuple.
     pub format: Option<Format>,
+    /// What the node is, in a few words, for tables and people; empty when none was given.
+    pub about: String,
     /// Physical unit as the user wrote it; empty when none was given.
     pub units: String,
     /// When samples are taken.
@@ -80,6 +93,18 @@ impl NodeDescription {
         let lua =
             |stages: &[StageDescription]| stages.iter().any(|s| matches!(s.kind, StageKind::Lua));
         lua(&self.converter) || self.write_converter.as_deref().is_some_and(lua)
+    }
+
+    /// Bytes of a tuple before and after the conversion in the direction of writing.
+    pub fn write_conversion_sizes(&self) -> (usize, usize) {
+        match &self.source {
+            SourceDescription::Regulator(regulator) => (
+                RegulatorDescription::law_input_size(self.output_tuple_size),
+                regulator.actuator_tuple_size,
+            ),
+            _ if self.write_converter.is_some() => (self.output_tuple_size, self.input_tuple_size),
+            _ => (self.input_tuple_size, self.output_tuple_size),
+        }
     }
 
     /// Bytes of one tuple that a program writes.
@@ -158,6 +183,8 @@ pub enum SourceDescription {
     Newest(String),
     /// Several sources, one converter.
     Several(SeveralDescription),
+    /// `regulator{ feedback = ..., actuator = ... }`: what is written is held by driving another node.
+    Regulator(RegulatorDescription),
 }
 
 /// Several sources: the tuples stand one after the other in the order of the parts, then the ages, then the interval.
@@ -177,6 +204,27 @@ impl SeveralDescription {
         let tuples: usize = self.parts.iter().map(|part| part.tuple_size).sum();
         let times = if self.ages { self.parts.len() } else { 0 } + usize::from(self.interval);
         tuples + times * size_of::<u32>()
+    }
+}
+
+/// `regulator{ feedback = 'trikfs:encoder', actuator = 'trikfs:motor' }`
+///
+/// The converter makes the measured tuple of the feedback, and the write converter is the control law: at each sample it
+/// takes what was ordered, what was measured and the time since the step before, and gives what the actuator is to do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RegulatorDescription {
+    /// What is measured: one source, with the interval behind it.
+    pub feedback: SeveralDescription,
+    /// Path of the driven node.
+    pub actuator: String,
+    /// Bytes of one tuple that the driven node takes.
+    pub actuator_tuple_size: usize,
+}
+
+impl RegulatorDescription {
+    /// Bytes that the control law takes: ordered, measured, interval.
+    pub fn law_input_size(output_tuple_size: usize) -> usize {
+        2 * output_tuple_size + size_of::<u32>()
     }
 }
 

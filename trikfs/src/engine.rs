@@ -8,11 +8,13 @@ use crate::errno::Error;
 use crate::events::{Poller, Schedule, lock};
 use crate::limits;
 use crate::log::Log;
+use crate::programs::Programs;
 use crate::transport::{Answer, Kernel, PollHandle, RequestId};
 use std::collections::{HashMap, HashSet};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock};
+use std::time::Duration;
 
 /// The services of one mount.
 pub struct Engine {
@@ -22,6 +24,8 @@ pub struct Engine {
     pub schedule: Arc<Schedule>,
     /// The `log` file.
     pub log: Arc<Log>,
+    /// Programs that sensors need.
+    pub programs: Arc<Programs>,
     /// The I2C buses.
     pub buses: Arc<Buses>,
     /// Times of sampling on one bus each, by the path of the bus.
@@ -33,10 +37,12 @@ pub struct Engine {
 impl Engine {
     /// Starts the event threads.
     pub fn start() -> io::Result<Arc<Self>> {
+        let log = Arc::new(Log::new());
         Ok(Arc::new(Self {
             poller: Poller::start()?,
             schedule: Schedule::start()?,
-            log: Arc::new(Log::new()),
+            programs: Programs::new(log.clone()),
+            log,
             buses: Arc::default(),
             bus_schedules: Mutex::default(),
             kernel: OnceLock::new(),
@@ -116,8 +122,10 @@ impl Engine {
         }
     }
 
-    /// Ends the event threads.
+    /// Ends the event threads and the programs that are up.
     pub fn stop(&self) {
+        self.programs
+            .stop_all(Duration::from_millis(limits::PROGRAM_END_MS));
         self.poller.stop();
         self.schedule.stop();
         for schedule in lock(&self.bus_schedules).values() {

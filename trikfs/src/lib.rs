@@ -22,13 +22,16 @@ pub mod fs;
 pub mod guardian;
 pub mod hash;
 pub mod hub;
+pub mod lease;
 pub mod limits;
 pub mod log;
 pub mod mount;
 pub mod newest;
 pub mod node;
 pub mod process;
+pub mod programs;
 pub mod reader;
+pub mod regulation;
 pub mod reload;
 #[cfg(test)]
 mod scratch;

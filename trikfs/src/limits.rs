@@ -64,10 +64,41 @@ pub const LATE_PER_NODE_MAX: usize = 4;
 /// Milliseconds of one `stop` before it goes on to the next actuator is bounded by each node's `timeout_ms`;
 /// this bounds the number of actuators brought to rest at once.
 pub const REST_THREADS_MAX: usize = 8;
+/// Highest priority that a lease can be asked for with.
+pub const LEASE_PRIORITY_MAX: u32 = 100;
+/// Longest time in milliseconds that a dead-man's clock can be set to.
+pub const DEADMAN_MS_MAX: u32 = 60_000;
 /// Bytes of data in one read or write request of the kernel; a larger one is served in part.
 pub const TRANSFER_BYTES_MAX: usize = 128 << 10;
 /// Requests without a waiting caller (releases, read-ahead) that the kernel may have under way.
 pub const BACKGROUND_MAX: u16 = 64;
+
+/// Bytes that a port of lines, packets or samples reads at once.
+pub const PORT_READ_BYTES: usize = 4096;
+/// Bytes that such a port looks at without finding anything before others get their turn.
+pub const CUT_BYTES_MAX: usize = 64 << 10;
+/// Entries of the folder of IIO devices that are looked at.
+pub const IIO_DEVICES_MAX: usize = 256;
+/// Files of one IIO device's scan elements that are looked at.
+pub const IIO_FILES_MAX: usize = 1024;
+/// Samples that the kernel keeps of an IIO device while nobody reads.
+pub const IIO_BUFFER_SAMPLES: u32 = 128;
+/// Milliseconds that the start of a sensor's program may take.
+pub const PROGRAM_START_MS_MAX: u32 = 30_000;
+/// Milliseconds that its stop may take.
+pub const PROGRAM_STOP_MS_MAX: u32 = 10_000;
+/// Milliseconds that a program goes on after its last user: who comes back at once finds it running.
+pub const PROGRAM_LINGER_MS: u64 = 1_000;
+/// Milliseconds until a start that has failed is tried again.
+pub const PROGRAM_RETRY_MS: u64 = 5_000;
+/// Milliseconds that the end of a mount waits for programs to stop.
+pub const PROGRAM_END_MS: u64 = 1_500;
+/// Bytes of output of a start or stop that go to the log.
+pub const PROGRAM_OUTPUT_BYTES_MAX: usize = 4096;
+/// Milliseconds that a sensor's pipe may take to appear once its program has been started.
+pub const LINES_APPEAR_MS: u64 = 20_000;
+/// Milliseconds between two looks for it.
+pub const LINES_LOOK_MS: u64 = 50;
 
 /// Libraries that the cache directory keeps.
 pub const CACHE_FILES_MAX: usize = 256;

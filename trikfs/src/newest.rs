@@ -426,20 +426,28 @@ impl Newest {
         node.stats.samples.add(1);
         self.page.fill(node, tuple);
         self.tell();
+        if let Some(regulation) = node.regulation() {
+            regulation.step(node, tuple);
+        }
     }
 
     fn fail(&self, error: Error) {
         let is_new = {
             let mut latch = lock(&self.latch);
             let is_new = latch.error.as_ref() != Some(&error);
-            latch.error = Some(error);
+            latch.error = Some(error.clone());
             if is_new {
                 latch.events = latch.events.wrapping_add(1);
             }
             is_new
         };
-        if is_new && let Some(node) = self.node.upgrade() {
-            self.page.drop(&node);
+        if let Some(node) = self.node.upgrade() {
+            if is_new {
+                self.page.drop(&node);
+            }
+            if let Some(regulation) = node.regulation() {
+                regulation.fail(&node, &error);
+            }
         }
         self.tell();
     }
@@ -456,19 +464,19 @@ impl Newest {
     }
 
     /// Whether an open of `bin_data` may be served from the page cache: there is a good sample, and a publisher.
-    pub fn can_cache(&self) -> bool {
+    pub fn can_cache(&self, ino: u64) -> bool {
         let Some(node) = self.node.upgrade() else {
             return false;
         };
         let background = node.description.pace != Pace::OnRead;
         let latch = lock(&self.latch);
         let good = latch.stamp.is_some() && latch.error.is_none();
-        background && good && Page::can_hold(&node, latch.tuple.len())
+        background && good && Page::can_hold(&node, latch.tuple.len()) && self.page.is_of(ino)
     }
 
     /// A cached open file comes (true) or goes.
-    pub fn count_cached(&self, ino: u64, comes: bool) {
-        self.page.count_reader(ino, comes);
+    pub fn count_cached(&self, comes: bool) {
+        self.page.count_reader(comes);
     }
 
     /// A cached open file starts being polled (true) or goes.

@@ -3,7 +3,9 @@
 use super::fields::Fields;
 use super::source::is_read_only;
 use super::stages::{StageDraft, sized};
-use crate::description::{NodeDescription, Pace, SourceDescription, StageDescription};
+use crate::description::{
+    NodeDescription, Pace, RegulatorDescription, SourceDescription, StageDescription,
+};
 use crate::format::Format;
 use crate::limits::{
     BUDGET_US, BUDGET_US_MAX, MEMORY_KB, MEMORY_KB_MAX, NAME_BYTES_MAX, PERIOD_MS_MAX, TIMEOUT_MS,
@@ -15,7 +17,8 @@ use crate::vm::fingerprint::hash;
 use nix::unistd::{Group, User};
 
 /// All fields of a description.
-pub(super) const FIELDS: [&str; 22] = [
+pub(super) const FIELDS: [&str; 23] = [
+    "about",
     "ages",
     "attributes",
     "budget_us",
@@ -43,6 +46,7 @@ pub(super) const FIELDS: [&str; 22] = [
 /// A state with the program takes about 50 KiB; with less than this no converter would ever run.
 const MEMORY_KB_MIN: u32 = 128;
 const UNITS_BYTES_MAX: usize = 64;
+const ABOUT_BYTES_MAX: usize = 200;
 
 /// Sizes and what depends on them.
 struct Layout {
@@ -62,7 +66,13 @@ impl Fields<'_, '_> {
         if layout.format.is_none() && read.is_empty() {
             layout.format = self.joined_format(&source);
         }
-        let read_only = is_read_only(&source);
+        let read_only = is_read_only(&source)
+            || match &source {
+                SourceDescription::Node(other) => {
+                    !self.checker.takes_tuples(other) || !read.is_empty() && write.is_none()
+                }
+                _ => false,
+            };
         if write.is_some() && read_only {
             return Err(self.problem(
                 "write_converter",
@@ -77,13 +87,7 @@ impl Fields<'_, '_> {
         let (input_size, output_size) = (layout.input, layout.output);
         let converter = sized(read, input_size, output_size)
             .map_err(|reason| self.problem("converter", reason))?;
-        let write_converter = match write {
-            None => None,
-            Some(stages) => {
-                let stages = sized(stages, output_size, input_size);
-                Some(stages.map_err(|reason| self.problem("write_converter", reason))?)
-            }
-        };
+        let write_converter = self.write_stages(write, &source, &layout)?;
         let (params, param_ranges) = self.params()?;
         let mut node = NodeDescription {
             path: self.path.clone(),
@@ -94,10 +98,8 @@ impl Fields<'_, '_> {
             converter,
             write_converter,
             format: layout.format,
-            units: self
-                .text("units", UNITS_BYTES_MAX)?
-                .unwrap_or_default()
-                .to_owned(),
+            about: self.short_text("about", ABOUT_BYTES_MAX)?,
+            units: self.short_text("units", UNITS_BYTES_MAX)?,
             pace: self.pace()?,
             mode: self
                 .mode()?
@@ -120,9 +122,39 @@ impl Fields<'_, '_> {
             share: self.boolean("share")?,
             fingerprint: 0,
         };
+        self.check_regulator(&mut node)?;
         self.check_rest(&node, read_only)?;
         node.fingerprint = fingerprint(&node, &digests);
         Ok(node)
+    }
+
+    /// A text that may be missing, which is the same as empty.
+    fn short_text(&self, field: &str, most_bytes: usize) -> Result<String, Problem> {
+        let text = self.text(field, most_bytes)?;
+        Ok(text.unwrap_or_default().to_owned())
+    }
+
+    /// The stages from program to device; for a regulator, those of its control law.
+    fn write_stages(
+        &self,
+        write: Option<Vec<StageDraft>>,
+        source: &SourceDescription,
+        layout: &Layout,
+    ) -> Result<Option<Vec<StageDescription>>, Problem> {
+        let Some(drafts) = write else {
+            return Ok(None);
+        };
+        let (before, after) = match source {
+            SourceDescription::Regulator(regulator) => (
+                RegulatorDescription::law_input_size(layout.output),
+                regulator.actuator_tuple_size,
+            ),
+            _ => (layout.output, layout.input),
+        };
+        let stages = sized(drafts, before, after);
+        stages
+            .map(Some)
+            .map_err(|reason| self.problem("write_converter", reason))
     }
 
     fn own_place(&self) -> crate::description::Place {

@@ -46,7 +46,10 @@ pub(super) fn is_read_only(source: &SourceDescription) -> bool {
         | SourceDescription::Fifo(_)
         // A port that is absent on this board is described like one that is there.
         | SourceDescription::Absent(_)
-        | SourceDescription::I2c(_) => false,
+        | SourceDescription::Regulator(_)
+        | SourceDescription::I2c(_)
+        // What the other node says is looked up where it is known.
+        | SourceDescription::Node(_) => false,
         SourceDescription::Pwm(_) => false,
         SourceDescription::Gpio(gpio) => gpio.direction == GpioDirection::In,
         SourceDescription::Lines(lines) => lines.input.is_none(),
@@ -55,7 +58,6 @@ pub(super) fn is_read_only(source: &SourceDescription) -> bool {
         | SourceDescription::Packets(_)
         | SourceDescription::Fake(_)
         | SourceDescription::Replay(_)
-        | SourceDescription::Node(_)
         | SourceDescription::Newest(_)
         | SourceDescription::Several(_) => true,
         SourceDescription::Faulty(faulty) => is_read_only(&faulty.source),
@@ -146,6 +148,7 @@ impl<'a> Fields<'_, 'a> {
             SourceDescription::Gpio(_) => Ok(Some(1)),
             SourceDescription::Faulty(faulty) => self.size_of(&faulty.source),
             SourceDescription::I2c(i2c) => Ok(i2c_size(i2c.transfer)),
+            SourceDescription::Regulator(regulator) => Ok(Some(regulator.feedback.tuple_size())),
             SourceDescription::Node(other) | SourceDescription::Newest(other) => {
                 match self.checker.size_of_node(other, self.depth)? {
                     Some(size) => Ok(Some(size)),
@@ -197,6 +200,7 @@ impl<'a> Fields<'_, 'a> {
             b"fake" => self.fake(table),
             b"replay" => self.replay(table),
             b"faulty" => self.faulty(table),
+            b"regulator" => self.regulator(table),
             b"i2c" => self.i2c(table),
             b"absent" => self.absent(table),
             _ => Err(self.problem("src", "src is of an unknown kind")),
