@@ -18,7 +18,7 @@ use crate::process::{line_of, name_of};
 use std::sync::{Arc, Mutex, Weak};
 use std::time::{Duration, Instant};
 
-/// The lease of one directory. It outlives reloads, so that kept and new nodes of a directory obey the same one.
+/// The lease of one directory and of those that stand for it (`src = 'trikfs:...'`). It outlives reloads, so that kept and new nodes of a directory obey the same one.
 pub struct Lease {
     /// The directory, for messages.
     path: String,
@@ -154,6 +154,11 @@ impl Lease {
             actuators: Mutex::default(),
             state: Mutex::default(),
         })
+    }
+
+    /// The directory that it is named after.
+    pub fn path(&self) -> &str {
+        &self.path
     }
 
     /// Which nodes come to rest at its end.

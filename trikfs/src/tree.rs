@@ -109,6 +109,11 @@ impl Tree {
             entries: HashMap::new(),
             before,
             next_ino,
+            leased: nodes
+                .iter()
+                .filter(|node| node.description.rest.is_some())
+                .map(|node| node.lease.path().to_owned())
+                .collect(),
         };
         let root = Entry {
             parent: ROOT,
@@ -125,11 +130,6 @@ impl Tree {
         ] {
             builder.add(ROOT, name, kind);
         }
-        let actuators: HashSet<&str> = nodes
-            .iter()
-            .filter(|node| node.description.rest.is_some())
-            .map(|node| node.directory())
-            .collect();
         for node in &nodes {
             let mut at = ROOT;
             let mut parts = node.path().split('/').peekable();
@@ -142,7 +142,7 @@ impl Tree {
                 }
             }
             if !node.is_attribute {
-                builder.add_node_files(at, node, actuators.contains(node.directory()));
+                builder.add_node_files(at, node);
             }
         }
         Self {
@@ -351,6 +351,8 @@ struct Builder<'a> {
     entries: HashMap<u64, Entry>,
     before: Option<&'a Tree>,
     next_ino: &'a mut u64,
+    /// Names of the leases at whose end something comes to rest.
+    leased: HashSet<String>,
 }
 
 impl Builder<'_> {
@@ -388,7 +390,14 @@ impl Builder<'_> {
         existing.unwrap_or_else(|| self.add(parent, name, Kind::Directory))
     }
 
-    fn add_node_files(&mut self, at: u64, node: &Arc<Node>, is_actuator: bool) {
+    /// Whether a node's directory shows a lease: there is something to rest, and a link can be written.
+    fn has_owner(&self, node: &Node) -> bool {
+        let is_link = node.lease.path() != node.directory();
+        let is_written = node.description.mode & 0o222 != 0;
+        self.leased.contains(node.lease.path()) && (is_written || !is_link)
+    }
+
+    fn add_node_files(&mut self, at: u64, node: &Arc<Node>) {
         self.add(at, "device", Kind::Device(node.clone()));
         self.add(at, "bin_data", Kind::Value(node.clone(), View::Bytes));
         self.add(at, "value", Kind::Value(node.clone(), View::Text));
@@ -406,7 +415,7 @@ impl Builder<'_> {
         self.add(at, "poll_ms", Kind::Period(node.clone()));
         self.add(at, "fault", Kind::Fault(node.clone()));
         self.add(at, "stats", Kind::Stats(node.clone()));
-        if is_actuator {
+        if self.has_owner(node) {
             self.add(at, "owner", Kind::Owner(node.clone()));
         }
         self.add_params(at, "", node);

@@ -111,6 +111,32 @@ assert state() == b'ab'
 }
 
 #[test]
+fn a_node_that_stands_for_another_has_its_lease() {
+    let Some(m) = robot() else { return };
+    python(
+        &m,
+        "
+def named(): return os.open(M + '/alias/owner', os.O_WRONLY)
+fd = named()
+assert owner().startswith('%d ' % os.getpid())
+expect('EBUSY', take)
+def stranger():
+    expect('EBUSY', put, 'motor/value', b'1 1')
+    expect('EBUSY', put, 'alias/device', b'ab')
+put('alias/device', b'\\x64\\1')
+assert state() == RUNS
+os.close(fd)
+eventually(rests, 'rest')
+child = held()
+expect('EBUSY', named)
+stranger()
+killed(child)
+eventually(rests)
+",
+    );
+}
+
+#[test]
 fn a_lease_ends_with_its_program_by_any_way() {
     let Some(m) = robot() else { return };
     python(
