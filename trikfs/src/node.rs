@@ -100,7 +100,9 @@ impl Node {
         let mut leases = vec![lease.clone()];
         if let Some(other) = written_node(&description.source) {
             let linked = links.iter().filter(|(path, _)| path == other);
-            leases.extend(linked.flat_map(|(_, node)| node.leases.clone()));
+            // One that stands for another node has its lease.
+            let others = linked.flat_map(|(_, node)| node.leases.clone());
+            leases.extend(others.filter(|other| !Arc::ptr_eq(other, &lease)));
         }
         let around = Surroundings {
             links,
