@@ -8,6 +8,7 @@ mod fields;
 mod node;
 mod params;
 mod ports;
+mod regulator;
 mod setup;
 mod several;
 mod source;
@@ -27,8 +28,9 @@ use std::collections::HashMap;
 /// Names at the top that belong to the filesystem.
 const RESERVED_NODES: [&str; 4] = ["config", "log", "status", "stop"];
 /// Names in a node that belong to the filesystem; `value0`, `value1` ... as well.
-const RESERVED_ATTRIBUTES: [&str; 9] = [
-    "bin_data", "device", "fault", "format", "params", "poll_ms", "stats", "units", "value",
+const RESERVED_ATTRIBUTES: [&str; 10] = [
+    "bin_data", "device", "fault", "format", "owner", "params", "poll_ms", "stats", "units",
+    "value",
 ];
 /// Nodes that read each other in a row; bounds the recursion of `build`.
 const LINKS_MAX: usize = SOURCES_MAX;
@@ -387,26 +389,24 @@ impl<'a> Checker<'a> {
 
     /// True if what another node gives can also be written to it. It has been built.
     fn takes_tuples(&self, other: &str) -> bool {
-        let draft = self.index.get(other).and_then(|n| self.drafts.get(*n));
-        match draft.map(|draft| &draft.built) {
-            Some(Built::Done(node)) => {
-                node.mode & 0o222 != 0 && node.written_tuple_size() == node.output_tuple_size
-            }
-            _ => false,
+        self.built(other).is_some_and(|node| {
+            node.mode & 0o222 != 0 && node.written_tuple_size() == node.output_tuple_size
+        })
+    }
+
+    /// A node that is built already.
+    fn built(&self, path: &str) -> Option<&NodeDescription> {
+        match &self.drafts.get(*self.index.get(path)?)?.built {
+            Built::Done(description) => Some(description),
+            _ => None,
         }
     }
 
     /// The format of a node that is built already, single bytes if it gave none.
     fn format_of_node(&self, other: &str) -> Option<Format> {
-        match &self.drafts.get(*self.index.get(other)?)?.built {
-            Built::Done(description) => Some(
-                description
-                    .format
-                    .clone()
-                    .unwrap_or_else(|| Format::bytes(description.output_tuple_size)),
-            ),
-            _ => None,
-        }
+        let description = self.built(other)?;
+        let format = description.format.clone();
+        Some(format.unwrap_or_else(|| Format::bytes(description.output_tuple_size)))
     }
 
     /// The existing path that a wrong one was probably meant to be.

@@ -95,6 +95,18 @@ impl NodeDescription {
         lua(&self.converter) || self.write_converter.as_deref().is_some_and(lua)
     }
 
+    /// Bytes of a tuple before and after the conversion in the direction of writing.
+    pub fn write_conversion_sizes(&self) -> (usize, usize) {
+        match &self.source {
+            SourceDescription::Regulator(regulator) => (
+                RegulatorDescription::law_input_size(self.output_tuple_size),
+                regulator.actuator_tuple_size,
+            ),
+            _ if self.write_converter.is_some() => (self.output_tuple_size, self.input_tuple_size),
+            _ => (self.input_tuple_size, self.output_tuple_size),
+        }
+    }
+
     /// Bytes of one tuple that a program writes.
     pub fn written_tuple_size(&self) -> usize {
         if self.write_converter.is_some() {
@@ -171,6 +183,8 @@ pub enum SourceDescription {
     Newest(String),
     /// Several sources, one converter.
     Several(SeveralDescription),
+    /// `regulator{ feedback = ..., actuator = ... }`: what is written is held by driving another node.
+    Regulator(RegulatorDescription),
 }
 
 /// Several sources: the tuples stand one after the other in the order of the parts, then the ages, then the interval.
@@ -190,6 +204,27 @@ impl SeveralDescription {
         let tuples: usize = self.parts.iter().map(|part| part.tuple_size).sum();
         let times = if self.ages { self.parts.len() } else { 0 } + usize::from(self.interval);
         tuples + times * size_of::<u32>()
+    }
+}
+
+/// `regulator{ feedback = 'trikfs:encoder', actuator = 'trikfs:motor' }`
+///
+/// The converter makes the measured tuple of the feedback, and the write converter is the control law: at each sample it
+/// takes what was ordered, what was measured and the time since the step before, and gives what the actuator is to do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RegulatorDescription {
+    /// What is measured: one source, with the interval behind it.
+    pub feedback: SeveralDescription,
+    /// Path of the driven node.
+    pub actuator: String,
+    /// Bytes of one tuple that the driven node takes.
+    pub actuator_tuple_size: usize,
+}
+
+impl RegulatorDescription {
+    /// Bytes that the control law takes: ordered, measured, interval.
+    pub fn law_input_size(output_tuple_size: usize) -> usize {
+        2 * output_tuple_size + size_of::<u32>()
     }
 }
 

@@ -70,6 +70,7 @@ fn of_source(source: &mut SourceDescription, take: &mut dyn FnMut(&mut PathBuf))
         | SourceDescription::Replay(_)
         | SourceDescription::Node(_)
         | SourceDescription::Newest(_)
+        | SourceDescription::Regulator(_)
         | SourceDescription::Absent(_) => {}
     }
 }

@@ -26,6 +26,25 @@ mod converters {
     /// The shipped filters in both languages against the golden vectors.
     mod vectors;
 }
+/// Devices that are more than a file, with files, pipes and sockets in their place.
+mod devices {
+    /// Single lines.
+    mod gpio;
+    /// Registers on a bus that is fine, slow, dead, gone and back.
+    mod i2c;
+    /// Sampled sensors.
+    mod iio;
+    /// Text of sensor programs.
+    mod lines;
+    /// Serial lines.
+    mod packets;
+    /// Pulses.
+    mod pwm;
+    /// Actions that are done once, and the root of a virtual board.
+    mod setup;
+    /// A slow bus delays nobody who does not use it.
+    mod slow_bus;
+}
 /// One module for each operation or file of a mounted tree.
 mod mount {
     /// Second names of nodes, and nodes that are written through others.
@@ -46,6 +65,8 @@ mod mount {
     mod guardian;
     /// The example that ships, as the thesis describes it.
     mod hello;
+    /// Who may write an actuator, and what becomes of it when that one ends.
+    mod lease;
     /// Many open files, large tuples, many nodes.
     mod limits;
     /// What converters and the filesystem report.
@@ -68,6 +89,8 @@ mod mount {
     mod reload;
     /// Recordings and made-up bytes.
     mod replay;
+    /// Every kind of actuator comes to rest.
+    mod rest;
     /// The ready line, the background, the service manager, refusals.
     mod start;
     /// One line per node.

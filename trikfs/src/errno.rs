@@ -50,6 +50,8 @@ pub enum Error {
     WouldBlock,
     /// No sample within the deadline, or the newest one is too old.
     TimedOut(String),
+    /// Another program holds the lease of the actuator.
+    Busy(String),
     /// The device failed with an errno of its own.
     Device(i32, String),
     /// The converter failed.
@@ -106,6 +108,7 @@ impl Error {
             Self::NoDevice(_) => libc::ENODEV,
             Self::WouldBlock => libc::EAGAIN,
             Self::TimedOut(_) => libc::ETIMEDOUT,
+            Self::Busy(_) => libc::EBUSY,
             Self::Device(errno, _) => device_errno(*errno),
             Self::Converter(_) => libc::EIO,
             Self::Stale => libc::ESTALE,
@@ -132,6 +135,7 @@ impl Error {
             | Self::Invalid(_)
             | Self::OutOfRange(_)
             | Self::WouldBlock
+            | Self::Busy(_)
             | Self::Stale
             | Self::TooManyOpen
             | Self::NoBuffers
@@ -174,6 +178,7 @@ impl fmt::Display for Error {
             | Self::OutOfRange(what)
             | Self::NoDevice(what)
             | Self::TimedOut(what)
+            | Self::Busy(what)
             | Self::Converter(what)
             | Self::Internal(what) => f.write_str(what),
             Self::WouldBlock => f.write_str("no sample yet"),

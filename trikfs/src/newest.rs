@@ -427,20 +427,28 @@ impl Newest {
         node.stats.samples.add(1);
         self.page.fill(node, tuple);
         self.tell();
+        if let Some(regulation) = node.regulation() {
+            regulation.step(node, tuple);
+        }
     }
 
     fn fail(&self, error: Error) {
         let is_new = {
             let mut latch = lock(&self.latch);
             let is_new = latch.error.as_ref() != Some(&error);
-            latch.error = Some(error);
+            latch.error = Some(error.clone());
             if is_new {
                 latch.events = latch.events.wrapping_add(1);
             }
             is_new
         };
-        if is_new && let Some(node) = self.node.upgrade() {
-            self.page.drop(&node);
+        if let Some(node) = self.node.upgrade() {
+            if is_new {
+                self.page.drop(&node);
+            }
+            if let Some(regulation) = node.regulation() {
+                regulation.fail(&node, &error);
+            }
         }
         self.tell();
     }

@@ -9,7 +9,7 @@ use crate::files::value::View;
 use crate::node::Node;
 use crate::transport::{Attr, DirEntry, FileKind};
 use config::description::{Alias, Pace};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 use std::time::{Duration, SystemTime};
 
@@ -52,6 +52,8 @@ pub enum Kind {
     Fault(Arc<Node>),
     /// `stats`
     Stats(Arc<Node>),
+    /// `owner`
+    Owner(Arc<Node>),
 }
 
 /// One file or directory.
@@ -124,14 +126,20 @@ impl Tree {
         ] {
             builder.add(ROOT, name, kind);
         }
+        let actuators: HashSet<&str> = nodes
+            .iter()
+            .filter(|node| node.description.rest.is_some())
+            .map(|node| node.directory())
+            .collect();
         for node in &nodes {
-            builder.add_node(node.path(), node);
+            builder.add_node(node.path(), node, actuators.contains(node.directory()));
         }
         for Alias { path, node: target } in aliases {
             for node in &nodes {
                 match node.path().strip_prefix(target.as_str()) {
                     Some(rest) if rest.is_empty() || node.is_attribute && rest.starts_with('/') => {
-                        builder.add_node(&format!("{path}{rest}"), node);
+                        let is_actuator = actuators.contains(node.directory());
+                        builder.add_node(&format!("{path}{rest}"), node, is_actuator);
                     }
                     _ => {}
                 }
@@ -262,6 +270,7 @@ impl Tree {
                     0o444
                 }
             }
+            Kind::Owner(node) => attr.mode = 0o444 | node.lease.write_mode(),
             Kind::Param(..) => attr.mode = 0o644,
             Kind::Device(node) => {
                 attr.mode = node.description.mode;
@@ -317,7 +326,8 @@ impl Kind {
             | Self::Period(node)
             | Self::Param(node, _)
             | Self::Fault(node)
-            | Self::Stats(node) => Some(node),
+            | Self::Stats(node)
+            | Self::Owner(node) => Some(node),
         }
     }
 
@@ -379,7 +389,7 @@ impl Builder<'_> {
     }
 
     /// A node's directory with its files at a path, or an attribute's file.
-    fn add_node(&mut self, path: &str, node: &Arc<Node>) {
+    fn add_node(&mut self, path: &str, node: &Arc<Node>, is_actuator: bool) {
         let mut at = ROOT;
         let mut parts = path.split('/').peekable();
         while let Some(part) = parts.next() {
@@ -391,11 +401,11 @@ impl Builder<'_> {
             }
         }
         if !node.is_attribute {
-            self.add_node_files(at, node);
+            self.add_node_files(at, node, is_actuator);
         }
     }
 
-    fn add_node_files(&mut self, at: u64, node: &Arc<Node>) {
+    fn add_node_files(&mut self, at: u64, node: &Arc<Node>, is_actuator: bool) {
         self.add(at, "device", Kind::Device(node.clone()));
         self.add(at, "bin_data", Kind::Value(node.clone(), View::Bytes));
         self.add(at, "value", Kind::Value(node.clone(), View::Text));
@@ -413,6 +423,9 @@ impl Builder<'_> {
         self.add(at, "poll_ms", Kind::Period(node.clone()));
         self.add(at, "fault", Kind::Fault(node.clone()));
         self.add(at, "stats", Kind::Stats(node.clone()));
+        if is_actuator {
+            self.add(at, "owner", Kind::Owner(node.clone()));
+        }
         self.add_params(at, "", node);
     }
 

@@ -3,7 +3,9 @@
 use super::fields::Fields;
 use super::source::is_read_only;
 use super::stages::{StageDraft, sized};
-use crate::description::{NodeDescription, Pace, SourceDescription, StageDescription};
+use crate::description::{
+    NodeDescription, Pace, RegulatorDescription, SourceDescription, StageDescription,
+};
 use crate::format::Format;
 use crate::limits::{
     BUDGET_US, BUDGET_US_MAX, MEMORY_KB, MEMORY_KB_MAX, NAME_BYTES_MAX, PERIOD_MS_MAX, TIMEOUT_MS,
@@ -83,10 +85,7 @@ impl Fields<'_, '_> {
         let (input_size, output_size) = (layout.input, layout.output);
         let converter = sized(read, input_size, output_size)
             .map_err(|reason| self.problem("converter", reason))?;
-        let write_converter = write.map(|stages| sized(stages, output_size, input_size));
-        let write_converter = write_converter
-            .transpose()
-            .map_err(|reason| self.problem("write_converter", reason))?;
+        let write_converter = self.write_stages(write, &source, &layout)?;
         let (params, param_ranges) = self.params()?;
         let mut node = NodeDescription {
             path: self.path.clone(),
@@ -121,6 +120,7 @@ impl Fields<'_, '_> {
             share: self.boolean("share")?,
             fingerprint: 0,
         };
+        self.check_regulator(&mut node)?;
         self.check_rest(&node, read_only)?;
         node.fingerprint = fingerprint(&node, &digests);
         Ok(node)
@@ -129,6 +129,29 @@ impl Fields<'_, '_> {
     /// A text that may be left out.
     fn words(&self, field: &str, bytes_max: usize) -> Result<String, Problem> {
         Ok(self.text(field, bytes_max)?.unwrap_or_default().to_owned())
+    }
+
+    /// The stages from program to device; for a regulator, those of its control law.
+    fn write_stages(
+        &self,
+        write: Option<Vec<StageDraft>>,
+        source: &SourceDescription,
+        layout: &Layout,
+    ) -> Result<Option<Vec<StageDescription>>, Problem> {
+        let Some(drafts) = write else {
+            return Ok(None);
+        };
+        let (before, after) = match source {
+            SourceDescription::Regulator(regulator) => (
+                RegulatorDescription::law_input_size(layout.output),
+                regulator.actuator_tuple_size,
+            ),
+            _ => (layout.output, layout.input),
+        };
+        let stages = sized(drafts, before, after);
+        stages
+            .map(Some)
+            .map_err(|reason| self.problem("write_converter", reason))
     }
 
     fn own_place(&self) -> crate::description::Place {

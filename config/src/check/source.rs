@@ -46,6 +46,7 @@ pub(super) fn is_read_only(source: &SourceDescription) -> bool {
         | SourceDescription::Fifo(_)
         // A port that is absent on this board is described like one that is there.
         | SourceDescription::Absent(_)
+        | SourceDescription::Regulator(_)
         | SourceDescription::I2c(_) => false,
         SourceDescription::Pwm(_) => false,
         SourceDescription::Gpio(gpio) => gpio.direction == GpioDirection::In,
@@ -146,6 +147,7 @@ impl<'a> Fields<'_, 'a> {
             SourceDescription::Gpio(_) => Ok(Some(1)),
             SourceDescription::Faulty(faulty) => self.size_of(&faulty.source),
             SourceDescription::I2c(i2c) => Ok(i2c_size(i2c.transfer)),
+            SourceDescription::Regulator(regulator) => Ok(Some(regulator.feedback.tuple_size())),
             SourceDescription::Node(other) | SourceDescription::Newest(other) => {
                 match self.checker.size_of_node(other, self.depth)? {
                     Some(size) => Ok(Some(size)),
@@ -197,6 +199,7 @@ impl<'a> Fields<'_, 'a> {
             b"fake" => self.fake(table),
             b"replay" => self.replay(table),
             b"faulty" => self.faulty(table),
+            b"regulator" => self.regulator(table),
             b"i2c" => self.i2c(table),
             b"absent" => self.absent(table),
             _ => Err(self.problem("src", "src is of an unknown kind")),

@@ -1,7 +1,7 @@
 //! Several nodes in one: who sets the pace, how old the others are, samples of one moment, numbers changed on the way.
 
 use crate::mount_on;
-use harness::Board;
+use harness::{Board, eventually};
 
 #[test]
 fn only_the_trigger_makes_tuples_from_the_newest_of_the_others() {
@@ -218,4 +218,161 @@ assert through(75) == 75
     );
     let log = m.sh("dd if=$MNT/log bs=64K count=1 status=none");
     assert!(log.contains("params/alpha stays as it is"), "{log}");
+}
+
+/// A motor whose speed is what is written to it, seen by a file that the test plays the encoder with.
+const REGULATED: &str = "
+trikfs = {
+  encoder = { src = '$DIR/encoder', format = 'i32 speed' },
+  motor = { src = '$DIR/motor', format = 'i32 power', rest = 0,
+    attributes = {
+      speed = {
+        src = regulator{ feedback = 'trikfs:encoder', actuator = 'trikfs:motor' },
+        poll_ms = 5, format = 'i32 speed', units = 'deg/s', params = { gain = 2 },
+        converter = function(a_s, a, b_s, b) ba.i32(b, 0, ba.i32(a, 0)) end,
+        write_converter = function(a_s, a, b_s, b)
+          assert(a_s == 12 and b_s == 4)
+          local ordered, measured, interval_us = ba.i32(a, 0), ba.i32(a, 4), ba.u32(a, 8)
+          if ordered == 666 then error('no such speed', 0) end
+          ba.i32(b, 0, params.gain * (ordered - measured) + (interval_us < 1000000 and 0 or 1000))
+        end,
+      },
+    },
+  },
+}";
+
+fn regulated() -> Option<harness::Mount> {
+    let board = Board::new();
+    board.file("encoder", 10i32.to_le_bytes());
+    board.file("motor", 0i32.to_le_bytes());
+    mount_on(board, REGULATED)
+}
+
+const POWER: &str = "
+def power():
+    with open(D + '/motor', 'rb') as f:
+        return struct.unpack('<i', f.read(4))[0]
+def put(name, text):
+    with open(M + '/' + name, 'w') as f:
+        f.write(text)
+def encoder(speed):
+    with open(D + '/encoder', 'r+b') as f:
+        f.write(struct.pack('<i', speed))
+";
+
+#[test]
+fn what_is_ordered_is_held_until_somebody_else_drives() {
+    let Some(m) = regulated() else {
+        return;
+    };
+    m.python(&format!(
+        "{POWER}
+# Measured without an order: nothing is driven.
+eventually(lambda: text(M + '/motor/speed') == '10\\n')
+assert power() == 0
+put('motor/speed', '50')
+eventually(lambda: power() == 80)
+encoder(45)
+eventually(lambda: power() == 10)
+assert text(M + '/motor/speed') == '45\\n'
+put('motor/params/speed.gain', '3')
+eventually(lambda: power() == 15)
+put('motor/speed', '46')
+eventually(lambda: power() == 3)
+# Whoever writes to the motor has it from there on.
+put('motor/value', '-7')
+encoder(20)
+eventually(lambda: text(M + '/motor/speed') == '20\\n')
+time.sleep(0.05)
+assert power() == -7, power()
+put('motor/speed', '21')
+eventually(lambda: power() == 3)
+"
+    ));
+}
+
+#[test]
+fn a_regulator_ends_in_rest_by_every_way() {
+    let Some(m) = regulated() else {
+        return;
+    };
+    m.python(&format!(
+        "{POWER}
+def begin(speed='50'):
+    encoder(10)
+    put('motor/speed', speed)
+    eventually(lambda: power() == 120 or power() == 80)
+def ends(why):
+    eventually(lambda: power() == 0, why)
+    time.sleep(0.03)
+    assert power() == 0, (why, power())
+begin()
+put('stop', '1')
+ends('stop')
+# The encoder dies: a motor that cannot be measured must not run.
+begin()
+os.truncate(D + '/encoder', 0)
+ends('feedback')
+assert 'comes to rest' in os.read(open_ro(M + '/log'), 65536).decode()
+begin()
+put('motor/speed', '666')
+ends('law')
+# A program that dies with the file open has lost the motor.
+def drive():
+    fd = os.open(M + '/motor/speed', os.O_WRONLY)
+    os.write(fd, b'50')
+    eventually(lambda: power() == 80)
+    os.kill(os.getpid(), signal.SIGKILL)
+encoder(10)
+ended(forked(drive))
+ends('program')
+"
+    ));
+    m.python(&format!(
+        "{POWER}
+encoder(10)
+put('motor/speed', '50')
+eventually(lambda: power() == 80)"
+    ));
+    let config = m.text("config");
+    m.apply(&config.replace("poll_ms = 5", "poll_ms = 6"))
+        .unwrap();
+    m.python(&format!(
+        "{POWER}
+assert power() == 0, power()
+put('motor/speed', '50')
+eventually(lambda: power() == 80)"
+    ));
+    harness::processes::signal(m.daemon(), nix::sys::signal::Signal::SIGKILL);
+    eventually("rest", || m.board().content("motor") == 0i32.to_le_bytes());
+}
+
+#[test]
+fn a_regulator_that_cannot_work_is_refused() {
+    let Some(m) = mount_on(Board::new(), "trikfs = {}") else {
+        return;
+    };
+    let law =
+        "poll_ms = 5, format = 'i32 v', converter = id_create(4), write_converter = id_create(4)";
+    let cases = [
+        (format!("src = regulator{{ actuator = 'trikfs:motor' }}, {law}"), "regulator: feedback is missing"),
+        (format!("src = regulator{{ feedback = 'trikfs:e' }}, {law}"), "regulator: actuator is missing"),
+        (format!("src = regulator{{ feedback = '/dev/zero', actuator = 'trikfs:motor' }}, {law}"), "feedback is another node"),
+        (format!("src = regulator{{ feedback = 'trikfs:e', actuator = 'trikfs:mot' }}, {law}"), "there is no node 'mot'"),
+        (format!("src = regulator{{ feedback = 'trikfs:e', actuator = 'trikfs:sensor' }}, {law}"), "'sensor' cannot be driven: it cannot be written"),
+        (format!("src = regulator{{ feedback = 'trikfs:e', actuator = 'trikfs:e' }}, {law}"), "'e' cannot be driven: it has no rest"),
+        (format!("src = regulator{{ feedback = 'trikfs:x', actuator = 'trikfs:motor' }}, {law}"), "in a circle: x -> x"),
+        (format!("src = regulator{{ feedback = 'trikfs:e', actuator = 'trikfs:motor', gain = 1 }}, {law}"), "regulator: unknown key 'gain'"),
+        (format!("src = regulator{{ feedback = 'trikfs:e', actuator = 'trikfs:motor' }}, {}", law.replace("poll_ms = 5,", "")), "give poll_ms"),
+        ("src = regulator{ feedback = 'trikfs:e', actuator = 'trikfs:motor' }, poll_ms = 5, format = 'i32 v', converter = id_create(4)".to_owned(), "a regulator needs a write_converter"),
+        (format!("src = regulator{{ feedback = 'trikfs:e', actuator = 'trikfs:motor' }}, {law}, rest = 0"), "a regulator has no rest of its own"),
+    ];
+    for (node, reason) in cases {
+        let config = format!(
+            "trikfs = {{ x = {{ {node} }}, e = {{ src = '/dev/null', format = 'i32 v' }}, sensor = {{ src = fake{{ data = 'abcd' }}, format = 'i32 v' }},\n\
+             motor = {{ src = '/dev/null', format = 'i32 v', rest = 0 }} }}"
+        );
+        let refused = m.apply(&config).unwrap_err();
+        assert!(refused.contains(reason), "{node}: {refused}");
+    }
 }

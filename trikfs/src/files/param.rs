@@ -4,6 +4,7 @@
 
 use super::OpenFile;
 use super::control::TextFile;
+use super::ownership::Ownership;
 use crate::errno::Error;
 use crate::node::Node;
 use crate::text;
@@ -38,7 +39,7 @@ impl OpenFile for ParamFile {
         self.text.read(request, out)
     }
 
-    fn write(&self, _request: &Transfer, data: &[u8]) -> Result<Outcome, Error> {
+    fn write(&self, request: &Transfer, data: &[u8]) -> Result<Outcome, Error> {
         if self.node.is_retired() {
             return Err(Error::Stale);
         }
@@ -56,6 +57,8 @@ impl OpenFile for ParamFile {
         {
             return Err(Error::OutOfRange(format!("{name} is {min} to {max}")));
         }
+        // It changes what writes mean.
+        let _admitted = Ownership::default().admit(&self.node, request.caller)?;
         let _inside = self.node.enter()?;
         let changed = self.node.recipe().set_param(name, value);
         if let Err(error) = &changed {

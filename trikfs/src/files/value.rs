@@ -209,10 +209,10 @@ impl OpenFile for ValueFile {
             let line = format!("{}: {}: {error}", self.node.path(), error.blame());
             self.engine.log.line(&line);
         })?;
+        let _admitted = self.ownership.admit(&self.node, request.caller)?;
         let _inside = self.node.enter()?;
         lock_patiently(writer).write_whole(&tuple, !request.nonblocking)?;
         self.node.wrote(tuple);
-        self.ownership.wrote();
         self.node.stats.writes.add(1);
         Ok(Outcome::Done(data.len()))
     }
