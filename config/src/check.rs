@@ -3,12 +3,19 @@
 //! Owns the rules about names and the order in which nodes are built (a node that reads another needs its size first).
 //! The fields of one description are the submodules' business. Runs no Lua.
 
+mod bus;
 mod fields;
 mod node;
+mod params;
+mod ports;
+mod regulator;
+mod setup;
+mod several;
 mod source;
 mod stages;
 
-use crate::description::{Config, NodeDescription};
+use crate::description::{Alias, Config, NodeDescription, SetupAction};
+use crate::format::Format;
 use crate::limits::{GROUP_DEPTH_MAX, NAME_BYTES_MAX, NODES_MAX, SOURCES_MAX};
 use crate::nearest::{nearest, suggestion};
 use crate::problem::Problem;
@@ -21,8 +28,9 @@ use std::collections::HashMap;
 /// Names at the top that belong to the filesystem.
 const RESERVED_NODES: [&str; 4] = ["config", "log", "status", "stop"];
 /// Names in a node that belong to the filesystem; `value0`, `value1` ... as well.
-const RESERVED_ATTRIBUTES: [&str; 8] = [
-    "bin_data", "device", "fault", "format", "poll_ms", "stats", "units", "value",
+const RESERVED_ATTRIBUTES: [&str; 10] = [
+    "bin_data", "device", "fault", "format", "owner", "params", "poll_ms", "stats", "units",
+    "value",
 ];
 /// Nodes that read each other in a row; bounds the recursion of `build`.
 const LINKS_MAX: usize = SOURCES_MAX;
@@ -43,12 +51,16 @@ pub(crate) fn check(
         drafts: Vec::new(),
         index: HashMap::new(),
         warnings: Vec::new(),
+        aliases: Vec::new(),
+        trail: Vec::new(),
     };
     checker.root()?;
     for number in 0..checker.drafts.len() {
         checker.build(number, 0)?;
     }
-    Ok(checker.finish())
+    checker.check_aliases()?;
+    let setup = checker.setup()?;
+    Ok(checker.finish(setup))
 }
 
 /// A node or attribute that was found and is not built yet.
@@ -79,6 +91,10 @@ struct Checker<'a> {
     /// Number of each draft by its path.
     index: HashMap<String, usize>,
     warnings: Vec<Problem>,
+    /// Second names, with the keys in the text.
+    aliases: Vec<(Alias, Vec<String>)>,
+    /// Paths of the nodes that are being built, each because the one before reads it.
+    trail: Vec<String>,
 }
 
 impl<'a> Checker<'a> {
@@ -143,6 +159,9 @@ impl<'a> Checker<'a> {
             };
             if table.get("src").is_some() && !self.is_group_with_node_called_src(table) {
                 self.node(path, keys, table, None)?;
+            } else if let Some(Value::Text(node)) = table.get("alias") {
+                let node = String::from_utf8_lossy(node).into_owned();
+                self.alias(Alias { path, node }, keys, table)?;
             } else if let Some(known) = node::FIELDS.iter().find(|known| table.get(known).is_some())
             {
                 let hint = table_hint(table);
@@ -289,10 +308,10 @@ impl<'a> Checker<'a> {
         let under = matches!(draft.built, Built::Under);
         draft.built = Built::Under;
         if under {
-            return Err(self.problem(
-                &extended(&keys, "src"),
-                format!("{path}: the node reads itself in a circle"),
-            ));
+            let start = self.trail.iter().position(|at| *at == path).unwrap_or(0);
+            let circle = self.trail[start..].join(" -> ");
+            let reason = format!("{path}: the node reads itself in a circle: {circle} -> {path}");
+            return Err(self.problem(&extended(&keys, "src"), reason));
         }
         if depth > LINKS_MAX {
             return Err(self.problem(
@@ -300,6 +319,7 @@ impl<'a> Checker<'a> {
                 format!("{path}: more than {LINKS_MAX} nodes read each other in a row"),
             ));
         }
+        self.trail.push(path.clone());
         let mut fields = Fields {
             checker: self,
             path,
@@ -308,6 +328,7 @@ impl<'a> Checker<'a> {
             depth,
         };
         let description = fields.description()?;
+        self.trail.pop();
         if let Some(draft) = self.drafts.get_mut(number) {
             draft.built = Built::Done(Box::new(description));
         }
@@ -329,6 +350,69 @@ impl<'a> Checker<'a> {
             }))
     }
 
+    /// Takes note of a second name.
+    fn alias(&mut self, alias: Alias, keys: Vec<String>, table: &Table) -> Result<(), Problem> {
+        let Alias { path, node } = &alias;
+        if table.entries.len() > 1 {
+            let reason = format!(
+                "{path}: with 'alias' there is nothing else to say: the files are those of '{node}'"
+            );
+            return Err(self.problem(&keys, reason));
+        }
+        if self.aliases.len() == NODES_MAX {
+            return Err(self.problem(&keys, format!("more than {NODES_MAX} second names")));
+        }
+        self.aliases.push((alias, keys));
+        Ok(())
+    }
+
+    /// Every second name stands for a node; attributes, groups and other second names have none.
+    fn check_aliases(&self) -> Result<(), Problem> {
+        for (Alias { path, node }, keys) in &self.aliases {
+            let number = self.index.get(node).copied();
+            match number.and_then(|number| self.drafts.get(number)) {
+                Some(draft) if draft.parent.is_none() => {}
+                Some(_) => {
+                    let reason =
+                        format!("{path}: '{node}' is an attribute and can have no second name");
+                    return Err(self.problem(keys, reason));
+                }
+                None => {
+                    let hint = self.nearest_node(node);
+                    let reason = format!("{path}: there is no node '{node}'{hint}");
+                    return Err(self.problem(keys, reason));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// True if what another node gives can also be written to it. It has been built.
+    fn takes_tuples(&self, other: &str) -> bool {
+        let draft = self.index.get(other).and_then(|n| self.drafts.get(*n));
+        match draft.map(|draft| &draft.built) {
+            Some(Built::Done(node)) => {
+                node.mode & 0o222 != 0 && node.written_tuple_size() == node.output_tuple_size
+            }
+            _ => false,
+        }
+    }
+
+    /// A node that is built already.
+    fn built(&self, path: &str) -> Option<&NodeDescription> {
+        match &self.drafts.get(*self.index.get(path)?)?.built {
+            Built::Done(description) => Some(description),
+            _ => None,
+        }
+    }
+
+    /// The format of a node that is built already, single bytes if it gave none.
+    fn format_of_node(&self, other: &str) -> Option<Format> {
+        let description = self.built(other)?;
+        let format = description.format.clone();
+        Some(format.unwrap_or_else(|| Format::bytes(description.output_tuple_size)))
+    }
+
     /// The existing path that a wrong one was probably meant to be.
     fn nearest_node(&self, wrong: &str) -> String {
         nearest(wrong, self.index.keys().map(String::as_str))
@@ -336,7 +420,7 @@ impl<'a> Checker<'a> {
     }
 
     /// Puts the attributes into their nodes.
-    fn finish(self) -> (Config, Vec<Problem>) {
+    fn finish(self, setup: Vec<SetupAction>) -> (Config, Vec<Problem>) {
         let mut attributes: HashMap<usize, Vec<NodeDescription>> = HashMap::new();
         let mut nodes = Vec::new();
         for (number, draft) in self.drafts.into_iter().enumerate() {
@@ -356,7 +440,14 @@ impl<'a> Checker<'a> {
             })
             .collect();
         nodes.sort_by(|a, b| a.path.cmp(&b.path));
-        (Config { nodes }, self.warnings)
+        let mut aliases: Vec<Alias> = self.aliases.into_iter().map(|(alias, _)| alias).collect();
+        aliases.sort_by(|a, b| a.path.cmp(&b.path));
+        let config = Config {
+            nodes,
+            setup,
+            aliases,
+        };
+        (config, self.warnings)
     }
 }
 

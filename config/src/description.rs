@@ -2,6 +2,13 @@
 //!
 //! Owns the meaning of each field of a node's description. Knows nothing of Lua and opens nothing.
 
+mod ports;
+
+pub use ports::{
+    ByteOrder, Checksum, CommandDescription, GpioDescription, GpioDirection, IioDescription,
+    LengthField, LinesDescription, PacketsDescription, PwmDescription,
+};
+
 use crate::format::Format;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -12,6 +19,19 @@ use std::path::PathBuf;
 pub struct Config {
     /// All nodes, sorted by `path`; groups exist only as parts of the paths.
     pub nodes: Vec<NodeDescription>,
+    /// The global `setup`: what is done once, in this order, when the configuration comes into force.
+    pub setup: Vec<SetupAction>,
+    /// Second names of nodes, sorted by path.
+    pub aliases: Vec<Alias>,
+}
+
+/// `{ alias = 'motors/M1' }`: the same node, with all its files, at a second place.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Alias {
+    /// Where the second directory is.
+    pub path: String,
+    /// Path of the node.
+    pub node: String,
 }
 
 /// One node of the tree.
@@ -35,6 +55,8 @@ pub struct NodeDescription {
     pub write_converter: Option<Vec<StageDescription>>,
     /// Named fields of the converted tuple.
     pub format: Option<Format>,
+    /// What the node is, in a few words, for tables and people; empty when none was given.
+    pub about: String,
     /// Physical unit as the user wrote it; empty when none was given.
     pub units: String,
     /// When samples are taken.
@@ -55,6 +77,8 @@ pub struct NodeDescription {
     pub memory_kb: u32,
     /// Numbers that a converter can read as `params` (Lua) or at open (native).
     pub params: BTreeMap<String, f64>,
+    /// Least and greatest value of those params that have a range.
+    pub param_ranges: BTreeMap<String, (f64, f64)>,
     /// Further files of the node's directory; each has its own source and converter.
     pub attributes: Vec<NodeDescription>,
     /// `share` as written; absent means "by kind of source".
@@ -69,6 +93,18 @@ impl NodeDescription {
         let lua =
             |stages: &[StageDescription]| stages.iter().any(|s| matches!(s.kind, StageKind::Lua));
         lua(&self.converter) || self.write_converter.as_deref().is_some_and(lua)
+    }
+
+    /// Bytes of a tuple before and after the conversion in the direction of writing.
+    pub fn write_conversion_sizes(&self) -> (usize, usize) {
+        match &self.source {
+            SourceDescription::Regulator(regulator) => (
+                RegulatorDescription::law_input_size(self.output_tuple_size),
+                regulator.actuator_tuple_size,
+            ),
+            _ if self.write_converter.is_some() => (self.output_tuple_size, self.input_tuple_size),
+            _ => (self.input_tuple_size, self.output_tuple_size),
+        }
     }
 
     /// Bytes of one tuple that a program writes.
@@ -121,16 +157,75 @@ pub enum SourceDescription {
     Fifo(PathBuf),
     /// `evdev{ path }`: input events decoded and grouped up to SYN_REPORT.
     Evdev(EvdevDescription),
+    /// `iio{ ... }`: a sampled sensor.
+    Iio(IioDescription),
+    /// `pwm{ ... }`: pulses of a PWM channel, state.
+    Pwm(PwmDescription),
+    /// `gpio{ ... }`: one line, state.
+    Gpio(GpioDescription),
+    /// `lines{ ... }`: lines of text of a sensor program.
+    Lines(LinesDescription),
+    /// `packets{ ... }`: packets of a serial line.
+    Packets(PacketsDescription),
     /// `fake{ ... }`: bytes that the configuration itself holds.
     Fake(FakeDescription),
+    /// `i2c{ ... }`: a register of a device on an I2C bus.
+    I2c(I2cDescription),
+    /// `absent{ reason }`: something that this board does not have; opening it tells why.
+    Absent(String),
     /// `replay{ ... }`: bytes recorded with their timing.
     Replay(ReplayDescription),
     /// `faulty{ ... }`: another source that fails on purpose.
     Faulty(FaultyDescription),
     /// `src = 'trikfs:other'`: the converted tuples of another node.
     Node(String),
-    /// Several sources, one converter. The tuples stand one after the other in this order.
-    Several(Vec<PartDescription>),
+    /// `src = 'newest:other'`: the newest sample of another node, which is taken by that node alone.
+    Newest(String),
+    /// Several sources, one converter.
+    Several(SeveralDescription),
+    /// `regulator{ feedback = ..., actuator = ... }`: what is written is held by driving another node.
+    Regulator(RegulatorDescription),
+}
+
+/// Several sources: the tuples stand one after the other in the order of the parts, then the ages, then the interval.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SeveralDescription {
+    /// The sources, at least one.
+    pub parts: Vec<PartDescription>,
+    /// Behind the tuples stands, for each source, the age of its tuple in us as a little-endian u32, saturated.
+    pub ages: bool,
+    /// At the end stands the time since the tuple before in us as a little-endian u32, saturated; 0 in the first.
+    pub interval: bool,
+}
+
+impl SeveralDescription {
+    /// Bytes of one tuple of all sources with their times.
+    pub fn tuple_size(&self) -> usize {
+        let tuples: usize = self.parts.iter().map(|part| part.tuple_size).sum();
+        let times = if self.ages { self.parts.len() } else { 0 } + usize::from(self.interval);
+        tuples + times * size_of::<u32>()
+    }
+}
+
+/// `regulator{ feedback = 'trikfs:encoder', actuator = 'trikfs:motor' }`
+///
+/// The converter makes the measured tuple of the feedback, and the write converter is the control law: at each sample it
+/// takes what was ordered, what was measured and the time since the step before, and gives what the actuator is to do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RegulatorDescription {
+    /// What is measured: one source, with the interval behind it.
+    pub feedback: SeveralDescription,
+    /// Path of the driven node.
+    pub actuator: String,
+    /// Bytes of one tuple that the driven node takes.
+    pub actuator_tuple_size: usize,
+}
+
+impl RegulatorDescription {
+    /// Bytes that the control law takes: ordered, measured, interval.
+    pub fn law_input_size(output_tuple_size: usize) -> usize {
+        2 * output_tuple_size + size_of::<u32>()
+    }
 }
 
 /// One of several sources.
@@ -142,6 +237,8 @@ pub struct PartDescription {
     pub source: SourceDescription,
     /// Bytes of one tuple of this source.
     pub tuple_size: usize,
+    /// Its tuples make one of the node; false: only its newest is used when another source makes one.
+    pub is_trigger: bool,
 }
 
 /// How kernel input events are laid out in the bytes of an evdev node.
@@ -177,6 +274,79 @@ pub struct FakeDescription {
     pub period_ms: u32,
     /// Start again at the end; otherwise end of file (a stream) or the last tuple for ever (state).
     pub repeat: bool,
+}
+
+/// How the bytes of a register travel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum I2cTransfer {
+    /// SMBus byte data: one byte.
+    Byte,
+    /// SMBus word data: two bytes, low byte first as on the wire.
+    Word,
+    /// I2C block data of the SMBus layer: 1 to 32 bytes.
+    Block,
+    /// Plain I2C messages: register bytes out, repeated start, data in; or register bytes and data out.
+    Raw,
+}
+
+/// `i2c{ path = '/dev/i2c-2', address = 0x48, register = 0x25, transfer = 'word' }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct I2cDescription {
+    /// The bus: a node of i2c-dev, or the socket of a virtual bus.
+    pub path: PathBuf,
+    /// 7-bit address of the device.
+    pub address: u16,
+    /// First register of the tuple.
+    pub register: u16,
+    /// Bytes of the register number on the wire, 1 or 2, high byte first.
+    pub register_bytes: u8,
+    /// How a tuple is read.
+    pub transfer: I2cTransfer,
+    /// How the beginning of a tuple is written.
+    pub write_transfer: I2cTransfer,
+    /// False: the device cannot be read back; reading gives what was written last.
+    pub readable: bool,
+    /// Read once after the bus was opened, then remembered.
+    pub once: bool,
+}
+
+/// One entry of the global `setup`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SetupAction {
+    /// Where it stands, for messages.
+    pub place: Place,
+    /// What to do.
+    pub step: SetupStep,
+    /// Nothing is done if this path exists.
+    pub unless: Option<PathBuf>,
+    /// How long it may take.
+    pub timeout_ms: u32,
+}
+
+/// What one action of `setup` does.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SetupStep {
+    /// `{ path = ..., write = ... }`: one write(2) to a file that exists.
+    Write {
+        /// Usually an attribute of sysfs.
+        path: PathBuf,
+        /// What is written.
+        bytes: Vec<u8>,
+    },
+    /// `{ run = { '/sbin/modprobe', 'hcsr04' } }`: a program that must end with 0.
+    Run {
+        /// Absolute path of the program.
+        program: PathBuf,
+        /// Its arguments.
+        arguments: Vec<String>,
+    },
+    /// `{ to = i2c{ ... }, write = ... }`: one tuple to a source that takes writes.
+    Send {
+        /// Where to.
+        to: SourceDescription,
+        /// The tuple.
+        bytes: Vec<u8>,
+    },
 }
 
 /// `replay{ path = 'run.rec', speed = 1, loop = false }`

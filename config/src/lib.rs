@@ -7,6 +7,7 @@
 
 mod check;
 pub mod description;
+mod device_root;
 mod evdev_codes;
 pub mod format;
 pub mod fuzz;

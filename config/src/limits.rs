@@ -18,6 +18,20 @@ pub const FIELDS_MAX: usize = 1024;
 pub const CHAIN_MAX: usize = 16;
 /// Sources of one node.
 pub const SOURCES_MAX: usize = 64;
+/// Actions in one `setup`.
+pub const SETUP_ACTIONS_MAX: usize = 256;
+/// Bytes that one action of `setup` writes, and of all words of a program that it runs.
+pub const SETUP_BYTES_MAX: usize = 4_096;
+/// `timeout_ms` of an action of `setup` when it has none.
+pub const SETUP_TIMEOUT_MS: u32 = 1_000;
+/// Largest `timeout_ms` of an action of `setup`.
+pub const SETUP_TIMEOUT_MS_MAX: u32 = 60_000;
+/// Bytes of one SMBus block (`I2C_SMBUS_BLOCK_MAX` of linux/i2c.h).
+pub const I2C_BLOCK_BYTES_MAX: usize = 32;
+/// Bytes of one plain I2C message (8192 in the kernel's i2c-dev.c).
+pub const I2C_RAW_BYTES_MAX: usize = 8_192;
+/// Numbers in the `params` of one description.
+pub const PARAMS_MAX: usize = 256;
 /// Files that one configuration may `include`, each at most [`CONFIG_BYTES_MAX`].
 pub const INCLUDES_MAX: usize = 64;
 /// Milliseconds that running the configuration program may take.
@@ -41,3 +55,27 @@ pub const BUDGET_US_MAX: u32 = 10_000_000;
 pub const MEMORY_KB: u32 = 1_024;
 /// Largest `memory_kb`: 64 MiB.
 pub const MEMORY_KB_MAX: u32 = 64 << 10;
+
+/// Names that one `iio` source may look for.
+pub const IIO_NAMES_MAX: usize = 16;
+/// Channels of one `iio` source.
+pub const IIO_CHANNELS_MAX: usize = 64;
+/// Bytes of the name of a device or channel of `iio`.
+pub const IIO_NAME_BYTES_MAX: usize = 64;
+/// Largest `sampling_frequency` of `iio`, in Hz.
+pub const IIO_FREQUENCY_MAX: f64 = 1e9;
+/// Largest `channel` of `pwm`.
+pub const PWM_CHANNEL_MAX: u32 = 255;
+/// Largest `number` of `gpio`.
+pub const GPIO_NUMBER_MAX: u32 = 65_535;
+/// Words of a command: the program and its arguments.
+pub const COMMAND_WORDS_MAX: usize = 32;
+/// Bytes of one argument of a command.
+pub const COMMAND_WORD_BYTES_MAX: usize = 1024;
+/// Bytes of the `start` of packets.
+pub const PACKET_START_BYTES_MAX: usize = 16;
+/// Speeds of a serial line in bits per second, as Linux names them (asm-generic/termbits.h).
+pub const BAUD_RATES: [u32; 19] = [
+    1_200, 2_400, 4_800, 9_600, 19_200, 38_400, 57_600, 115_200, 230_400, 460_800, 500_000,
+    576_000, 921_600, 1_000_000, 1_152_000, 1_500_000, 2_000_000, 2_500_000, 3_000_000,
+];

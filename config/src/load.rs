@@ -27,6 +27,8 @@ pub struct Loader {
     pub include_dirs: Vec<PathBuf>,
     /// Folders for converter libraries, after the configuration file's own.
     pub library_dirs: Vec<PathBuf>,
+    /// Folder below which all device paths are taken: a virtual board.
+    pub device_root: Option<PathBuf>,
 }
 
 /// A good configuration.
@@ -98,13 +100,12 @@ impl Loader {
         ended.map_err(problem)?;
         let undefined = state.host().undefined.take();
         let mut values = extract(&state).map_err(|refusal| {
-            let mut keys = vec!["trikfs"];
-            keys.extend(refusal.path.iter().map(String::as_str));
+            let keys: Vec<&str> = refusal.path.iter().map(String::as_str).collect();
             let place = locked(&run).texts.place(&keys);
-            let path = if refusal.path.is_empty() {
-                "trikfs".to_owned()
-            } else {
-                refusal.path.join("/")
+            let path = match keys.as_slice() {
+                [] => "trikfs".to_owned(),
+                ["trikfs", inner @ ..] if !inner.is_empty() => inner.join("/"),
+                all => all.join("/"),
             };
             Problem::new(
                 place.file,
@@ -117,8 +118,11 @@ impl Loader {
         let held_kib = state.collect().map_err(problem)?.div_ceil(1024);
         drop(state);
         let mut run = locked(&run);
-        let (config, mut warnings) = check(&values, &run.texts, &run.search)?;
+        let (mut config, mut warnings) = check(&values, &run.texts, &run.search)?;
         enough_memory(&config, held_kib)?;
+        if let Some(root) = &self.device_root {
+            crate::device_root::take_below(&mut config, root);
+        }
         warnings.extend(undefined.iter().map(|name| run.texts.undefined(name)));
         Ok(Loaded {
             config,

@@ -112,6 +112,8 @@ pub(crate) struct Function {
 pub(crate) struct Values {
     /// The global `trikfs`; None if there is none.
     pub(crate) root: Option<Value>,
+    /// The global `setup`; None if there is none.
+    pub(crate) setup: Option<Value>,
     /// All tables.
     pub(crate) tables: Vec<Table>,
     /// All functions.

@@ -3,14 +3,24 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-const CRATES: [&str; 5] = ["config", "converter", "filters", "tests", "trikfs"];
+const CRATES: [&str; 7] = [
+    "config",
+    "converter",
+    "filters",
+    "sim",
+    "tests",
+    "trik",
+    "trikfs",
+];
 /// Files that may hold `unsafe`, as beginnings of paths.
-const UNSAFE: [&str; 7] = [
+const UNSAFE: [&str; 9] = [
     "config/src/vm",
     "config/src/watchdog",
     "converter/src/abi",
     "converter/src/export",
     "trikfs/src/convert/shared",
+    "trikfs/src/device/evdev/present",
+    "trikfs/src/device/i2c/adapter",
     "trikfs/src/transport/native",
     "converter/templates/",
 ];

@@ -19,6 +19,8 @@ pub struct SearchPaths {
     pub include_dirs: Vec<PathBuf>,
     /// Where shared libraries are looked for after the configuration's directory.
     pub library_dirs: Vec<PathBuf>,
+    /// Below which all device paths are taken.
+    pub device_root: Option<PathBuf>,
     /// Compiled converters.
     pub cache: Cache,
 }
@@ -47,6 +49,7 @@ fn load(file: &Path, paths: &SearchPaths) -> Result<Loaded, Problem> {
     let loader = Loader {
         include_dirs: paths.include_dirs.clone(),
         library_dirs: paths.library_dirs.clone(),
+        device_root: paths.device_root.clone(),
     };
     loader.load(&name, file.parent(), &bytes)
 }

@@ -11,6 +11,8 @@ mod notify;
 mod paths;
 mod run;
 
+pub use paths::find_shipped;
+
 use crate::check::SearchPaths;
 use crate::daemon::Transport;
 use crate::guardian::inherit::Handover;
@@ -134,6 +136,10 @@ struct SearchArgs {
     /// ~/.cache/trikfs].
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
+    /// Take all device paths of the configuration below this directory: /dev/i2c-2 means DIR/dev/i2c-2. A virtual board
+    /// lives there.
+    #[arg(long, value_name = "DIR")]
+    device_root: Option<PathBuf>,
 }
 
 #[derive(Args, Clone, Debug, PartialEq, Eq)]
@@ -298,7 +304,8 @@ fn group_id(text: &str) -> Result<u32, String> {
 
 impl SearchArgs {
     fn paths(&self) -> Result<SearchPaths, String> {
-        paths::search_paths(self.include.clone(), self.cache.as_deref())
+        let root = self.device_root.as_deref().map(device_root).transpose()?;
+        paths::search_paths(self.include.clone(), self.cache.as_deref(), root)
     }
 }
 
@@ -315,6 +322,11 @@ impl TreeArgs {
                     .map(|path| absolute(path))
                     .collect::<Result<_, _>>()?,
                 cache: self.search.cache.map(|path| absolute(&path)).transpose()?,
+                device_root: self
+                    .search
+                    .device_root
+                    .map(|path| absolute(&path))
+                    .transpose()?,
             },
             ..self
         })
@@ -339,6 +351,9 @@ impl TreeArgs {
         if let Some(cache) = &self.search.cache {
             option("--cache", cache);
         }
+        if let Some(root) = &self.search.device_root {
+            option("--device-root", root);
+        }
         if let Some(group) = self.config_group {
             option("--config-group", Path::new(&group.to_string()));
         }
@@ -347,6 +362,14 @@ impl TreeArgs {
         }
         arguments
     }
+}
+
+/// The root of a virtual board, which must be there: a mistyped one would make every device a missing one.
+fn device_root(path: &Path) -> Result<PathBuf, String> {
+    if !path.is_dir() {
+        return Err(format!("--device-root {}: not a directory", path.display()));
+    }
+    absolute(path)
 }
 
 fn absolute(path: &Path) -> Result<PathBuf, String> {

@@ -17,12 +17,15 @@ use inline_c::Compiler;
 use lua::StatePool;
 use shared::{Cache, Library, NativeStage};
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
 
 /// Everything needed to make pipelines of one description.
 pub struct Recipe {
     node: String,
-    params: BTreeMap<String, f64>,
+    params: Mutex<Arc<Params>>,
+    /// How often a param was changed; a pipeline that knows another number takes them anew.
+    generation: AtomicU32,
     memory_kb: u32,
     budget_us: u32,
     read: Vec<Plan>,
@@ -37,6 +40,9 @@ struct Plan {
     input_size: usize,
     output_size: usize,
 }
+
+/// Params by name.
+type Params = BTreeMap<String, f64>;
 
 /// Where converters write their log lines.
 pub type LogSink = Arc<dyn Fn(&str) + Send + Sync>;
@@ -65,7 +71,8 @@ impl Recipe {
         };
         Ok(Self {
             node: description.path.clone(),
-            params: description.params.clone(),
+            params: Mutex::new(Arc::new(description.params.clone())),
+            generation: AtomicU32::new(0),
             memory_kb: description.memory_kb,
             budget_us: description.budget_us,
             read: plans(&description.converter, Direction::Read)?,
@@ -88,12 +95,14 @@ impl Recipe {
     /// A private pipeline for one open file. `sizes`: bytes before and after an empty chain.
     pub fn open(&self, log: &LogSink) -> Result<Pipeline, Error> {
         let pool = lock(&self.lua).clone();
+        let generation = self.generation.load(Ordering::Acquire);
+        let params = lock(&self.params).clone();
         let vm = match &pool {
             None => None,
             Some(pool) => {
                 let mut vm = pool.take().map_err(Error::Converter)?;
                 vm.set_log(log.clone());
-                vm.set_params(&self.node, &self.params)
+                vm.set_params(&self.node, &params)
                     .map_err(Error::Converter)?;
                 Some(vm)
             }
@@ -101,13 +110,20 @@ impl Recipe {
         let mut pipeline = Pipeline {
             vm,
             pool,
+            generation,
             read: Chain::default(),
             write: None,
         };
-        pipeline.read = self.chain(&self.read, Direction::Read, pipeline.vm.as_mut(), log)?;
+        pipeline.read = self.chain(
+            &self.read,
+            Direction::Read,
+            &params,
+            pipeline.vm.as_mut(),
+            log,
+        )?;
         if let Some(write) = &self.write {
-            pipeline.write =
-                Some(self.chain(write, Direction::Write, pipeline.vm.as_mut(), log)?);
+            let vm = pipeline.vm.as_mut();
+            pipeline.write = Some(self.chain(write, Direction::Write, &params, vm, log)?);
         }
         if let Some(vm) = pipeline.vm.as_mut() {
             vm.limit(self.memory_kb, self.budget_us);
@@ -115,10 +131,103 @@ impl Recipe {
         Ok(pipeline)
     }
 
+    /// The present value of a param.
+    pub fn param(&self, name: &str) -> Option<f64> {
+        lock(&self.params).get(name).copied()
+    }
+
+    /// Changes a param for all pipelines, open ones included, which take it before their next tuple: a Lua converter
+    /// finds it in `params`, a library converter is opened anew and begins afresh.
+    ///
+    /// # Errors
+    /// The reason of a library that refuses the number; then nothing has changed.
+    pub fn set_param(&self, name: &str, value: f64) -> Result<(), Error> {
+        let mut params = lock(&self.params);
+        let mut changed = Params::clone(&params);
+        changed.insert(name.to_owned(), value);
+        let write = self
+            .write
+            .iter()
+            .flatten()
+            .map(|plan| (plan, Direction::Write));
+        for (plan, direction) in self
+            .read
+            .iter()
+            .map(|plan| (plan, Direction::Read))
+            .chain(write)
+        {
+            if let Some(library) = &plan.library {
+                let log: LogSink = Arc::new(|_| {});
+                let info = self.open_info(plan, direction, &changed, &log);
+                library.open(&info).map_err(Error::Invalid)?;
+            }
+        }
+        *params = Arc::new(changed);
+        self.generation.fetch_add(1, Ordering::Release);
+        Ok(())
+    }
+
+    /// Gives a pipeline the params of now, if it does not have them.
+    #[inline]
+    pub fn renew(&self, pipeline: &mut Pipeline, log: impl Fn() -> LogSink) -> Result<(), Error> {
+        let generation = self.generation.load(Ordering::Acquire);
+        if pipeline.generation == generation {
+            return Ok(());
+        }
+        let params = lock(&self.params).clone();
+        if let Some(vm) = pipeline.vm.as_mut() {
+            vm.set_params(&self.node, &params)
+                .map_err(Error::Converter)?;
+        }
+        let log = log();
+        let (read, write) = (&mut pipeline.read, pipeline.write.as_mut());
+        self.reopen(&self.read, read, Direction::Read, &params, &log)?;
+        if let (Some(plans), Some(chain)) = (&self.write, write) {
+            self.reopen(plans, chain, Direction::Write, &params, &log)?;
+        }
+        pipeline.generation = generation;
+        Ok(())
+    }
+
+    fn reopen(
+        &self,
+        plans: &[Plan],
+        chain: &mut Chain,
+        direction: Direction,
+        params: &Params,
+        log: &LogSink,
+    ) -> Result<(), Error> {
+        for (plan, stage) in plans.iter().zip(&mut chain.stages) {
+            if let Some(library) = &plan.library {
+                let info = self.open_info(plan, direction, params, log);
+                stage.code = Code::Native(library.open(&info).map_err(Error::Converter)?);
+            }
+        }
+        Ok(())
+    }
+
+    fn open_info<'a>(
+        &'a self,
+        plan: &Plan,
+        direction: Direction,
+        params: &'a Params,
+        log: &LogSink,
+    ) -> shared::OpenInfo<'a> {
+        shared::OpenInfo {
+            direction,
+            input_size: plan.input_size,
+            output_size: plan.output_size,
+            node: &self.node,
+            params,
+            log: log.clone(),
+        }
+    }
+
     fn chain(
         &self,
         plans: &[Plan],
         direction: Direction,
+        params: &Params,
         mut vm: Option<&mut Vm>,
         log: &LogSink,
     ) -> Result<Chain, Error> {
@@ -126,14 +235,7 @@ impl Recipe {
         for (position, plan) in plans.iter().enumerate() {
             let (input_size, output_size) = (plan.input_size, plan.output_size);
             let code = if let Some(library) = &plan.library {
-                let info = shared::OpenInfo {
-                    direction,
-                    input_size,
-                    output_size,
-                    node: &self.node,
-                    params: &self.params,
-                    log: log.clone(),
-                };
+                let info = self.open_info(plan, direction, params, log);
                 Code::Native(library.open(&info).map_err(Error::Converter)?)
             } else {
                 let Some(vm) = vm.as_mut() else {
@@ -205,6 +307,8 @@ fn plan(
 pub struct Pipeline {
     vm: Option<Vm>,
     pool: Option<Arc<StatePool>>,
+    /// Which params it has; see `Recipe::generation`.
+    generation: u32,
     read: Chain,
     /// Absent when both directions go through the same stages.
     write: Option<Chain>,
@@ -346,7 +450,7 @@ impl Stage {
         Batch {
             consumed,
             produced,
-            fault: fault.map(Error::Converter),
+            fault: fault.map(Error::of_converter),
         }
     }
 }
@@ -359,11 +463,11 @@ impl Code {
         output: &mut [u8],
     ) -> Result<Conversion, Error> {
         match (self, vm) {
-            (Self::Native(native), _) => native.convert(input, output).map_err(Error::Converter),
+            (Self::Native(native), _) => native.convert(input, output).map_err(Error::of_converter),
             (Self::Lua(stage), Some(vm)) => {
                 let outcome = vm
                     .convert(*stage, input, output)
-                    .map_err(Error::Converter)?;
+                    .map_err(Error::of_converter)?;
                 Ok(match outcome {
                     config::program::Conversion::Produced => Conversion::Produced,
                     config::program::Conversion::Consumed => Conversion::Consumed,

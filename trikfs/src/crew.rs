@@ -5,6 +5,9 @@
 //! work and becomes a spare. A second thread in the role all the time would be simpler and costs 12 to 21 % of every
 //! request, because the kernel wakes the waiters in turn.
 //!
+//! Who knows that its work will last, a device before a transfer on a slow bus, calls [`give_way`] and does not make the
+//! others wait for the watchdog.
+//!
 //! Owns the threads and who has the role. Knows nothing of what the role is; `config::watchdog` measures the time.
 //!
 //! Why no two threads have the role: it is given away only by the compare-and-swap of `Work::relieve`, which succeeds
@@ -12,12 +15,12 @@
 
 use config::watchdog;
 use std::any::Any;
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::io;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, TryLockError};
 
 /// One cycle of a role: waits for work, does it between [`Seat::begin`] and [`Seat::end`], returns.
 /// `Break` ends the crew.
@@ -27,6 +30,35 @@ pub type Role = dyn Fn(&Seat) -> ControlFlow<()> + Send + Sync;
 pub type OwnRole = Box<dyn FnMut(&Seat) -> ControlFlow<()>>;
 
 type MakeRole = Arc<dyn Fn() -> OwnRole + Send + Sync>;
+
+type HandOver = Arc<dyn Fn() + Send + Sync>;
+
+thread_local! {
+    /// Hands the role of this thread over, if it has one and works.
+    static HAND_OVER: RefCell<Option<HandOver>> = const { RefCell::new(None) };
+}
+
+/// Hands this thread's role over now, because what comes next may last: the thread goes on with its own work, as one
+/// that the watchdog found late. Does nothing on a thread that has no role, or none any more. Costs the waking of
+/// another thread, so it is for waits that are likely, not for those that are possible.
+pub fn give_way() {
+    let hand_over = HAND_OVER.with_borrow(Clone::clone);
+    if let Some(hand_over) = hand_over {
+        hand_over();
+    }
+}
+
+/// Takes a lock whose holder may be inside a slow device: gives way if it is not free.
+pub(crate) fn lock_patiently<T: ?Sized>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    match mutex.try_lock() {
+        Ok(guard) => guard,
+        Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
+        Err(TryLockError::WouldBlock) => {
+            give_way();
+            mutex.lock().unwrap_or_else(PoisonError::into_inner)
+        }
+    }
+}
 
 /// A thread's place in a crew.
 pub struct Seat {
@@ -214,16 +246,19 @@ impl Shared {
     /// The life of one thread.
     fn play(self: &Arc<Self>, make: &MakeRole) {
         let work = Arc::new(Work::default());
-        let on_late = {
+        let relieve = {
             let (shared, work, make) = (Arc::clone(self), Arc::clone(&work), Arc::clone(make));
-            move || {
+            move |late: u32| {
                 if work.relieve() {
+                    shared.late.fetch_add(late, Ordering::Relaxed);
                     shared.hand_over(&make);
                 }
             }
         };
+        let on_late = relieve.clone();
+        HAND_OVER.set(Some(Arc::new(move || relieve(0))));
         let seat = Seat {
-            watched: watchdog::Seat::take(Arc::new(on_late)),
+            watched: watchdog::Seat::take(Arc::new(move || on_late(1))),
             work,
             working: Cell::new(false),
             relieved: Cell::new(false),
@@ -254,10 +289,9 @@ impl Shared {
         !state.ended
     }
 
-    /// On the watchdog's thread: the role is vacant, and a spare or a new thread is called to it. At the limit, or
-    /// when no thread can be made, the first late thread to finish takes it.
+    /// On the watchdog's thread, or on the one that gives way: the role is vacant, and a spare or a new thread is called
+    /// to it. At the limit, or when no thread can be made, the first of the others to finish takes it.
     fn hand_over(self: &Arc<Self>, make: &MakeRole) {
-        self.late.fetch_add(1, Ordering::Relaxed);
         let mut state = self.lock();
         state.vacant = true;
         if state.spares > 0 {

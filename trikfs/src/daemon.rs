@@ -46,6 +46,8 @@ pub struct Options {
     pub include_dirs: Vec<PathBuf>,
     /// Where shared libraries are looked for after the configuration's directory.
     pub library_dirs: Vec<PathBuf>,
+    /// Below which all device paths are taken.
+    pub device_root: Option<PathBuf>,
     /// Compiled converters.
     pub cache: Cache,
     /// Owner of the tree.
@@ -77,6 +79,7 @@ pub fn run(options: Options) -> Result<(), String> {
     let mut last_ino = crate::tree::ROOT;
     let forest = Arc::new(Forest::new(Tree::build(
         Vec::new(),
+        &[],
         options.owner,
         None,
         &mut last_ino,
@@ -94,6 +97,7 @@ pub fn run(options: Options) -> Result<(), String> {
         loader: Loader {
             include_dirs: options.include_dirs,
             library_dirs: options.library_dirs,
+            device_root: options.device_root,
         },
         base_dir,
         cache: options.cache,

@@ -2,24 +2,40 @@
 //!
 //! Owns the traits, the decision which of them a description gets, and nothing else. Each kind of device is one
 //! file below; only those files open device nodes. Nothing here knows converters, handles or the kernel's requests.
-//! A bus that needs more than a file (I2C, IIO, PWM) is one more file and one more arm of [`open`].
+//! A bus that needs more than a file (I2C, IIO, PWM) is one more file and one more arm of [`open`]; [`add_buses`]
+//! tells who waits for which bus.
 
 pub mod attribute;
 pub mod chardev;
+mod cutter;
 pub mod evdev;
 pub mod fake;
 pub mod faulty;
 pub mod fifo;
+pub mod gpio;
+pub mod i2c;
+pub mod iio;
+pub mod latched;
+pub mod lines;
 pub mod linked;
+pub mod packets;
+pub mod pwm;
 pub mod replay;
 pub mod several;
+mod sysfs;
 
+use crate::convert::LogSink;
+use crate::engine::Engine;
 use crate::errno::Error;
+use crate::log::Log;
 use crate::node::Node;
-use config::description::SourceDescription;
+use crate::programs::Programs;
+use crate::stats::Counter;
+use config::description::{GpioDirection, SourceDescription};
+use std::collections::BTreeSet;
 use std::os::fd::BorrowedFd;
 use std::os::unix::fs::{FileTypeExt, MetadataExt};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -91,9 +107,42 @@ pub struct Surroundings {
     pub links: Vec<(String, Arc<Node>)>,
     /// How long a sink waits for a device that takes no bytes.
     pub timeout_ms: u32,
+    /// Where the node counts what its source had to throw away.
+    pub damaged: Arc<Counter>,
+    /// Programs that sensors need.
+    pub programs: Arc<Programs>,
+    /// What has to be said and is no failure.
+    pub log: LogSink,
+    /// The I2C buses of the mount.
+    pub buses: Arc<i2c::bus::Buses>,
 }
 
 impl Surroundings {
+    /// Those of a mount, without links and with the usual time limit.
+    pub fn new(engine: &Engine) -> Self {
+        let log = engine.log.clone();
+        Self {
+            links: Vec::new(),
+            timeout_ms: config::limits::TIMEOUT_MS,
+            damaged: Arc::default(),
+            programs: engine.programs.clone(),
+            log: Arc::new(move |text| log.line(text)),
+            buses: engine.buses.clone(),
+        }
+    }
+
+    /// For who has a device and nothing else: no nodes, nobody to talk to.
+    pub fn alone(timeout_ms: u32, buses: &Arc<i2c::bus::Buses>) -> Self {
+        Self {
+            links: Vec::new(),
+            timeout_ms,
+            damaged: Arc::default(),
+            programs: Programs::new(Arc::new(Log::new())),
+            log: Arc::new(|_| {}),
+            buses: buses.clone(),
+        }
+    }
+
     fn link(&self, path: &str) -> Result<&Arc<Node>, Error> {
         let found = self.links.iter().find(|(name, _)| name == path);
         found
@@ -123,7 +172,30 @@ pub fn open(
             faulty::open(faulty, open(&faulty.source, tuple_size, around)?)
         }
         SourceDescription::Node(path) => linked::open(around.link(path)?),
-        SourceDescription::Several(parts) => several::open(parts, around),
+        SourceDescription::Iio(iio) => Ok(Device::Stream(Box::new(iio::Iio::open(
+            iio,
+            around.damaged.clone(),
+            &around.log,
+        )?))),
+        SourceDescription::Pwm(pwm) => Ok(Device::State(Box::new(pwm::Pwm::open(pwm)?))),
+        SourceDescription::Gpio(gpio) => Ok(Device::State(Box::new(gpio::Gpio::open(gpio)?))),
+        SourceDescription::Lines(lines) => Ok(Device::Stream(Box::new(lines::Lines::open(
+            lines,
+            tuple_size,
+            &around.programs,
+            around.damaged.clone(),
+        )?))),
+        SourceDescription::Packets(packets) => Ok(Device::Stream(Box::new(
+            packets::Packets::open(packets, tuple_size, around.damaged.clone())?,
+        ))),
+        SourceDescription::Newest(path) => latched::open(around.link(path)?),
+        SourceDescription::Several(several) => several::open(several, around),
+        SourceDescription::Regulator(regulator) => several::open(&regulator.feedback, around),
+        SourceDescription::I2c(i2c) => {
+            let register = i2c::Register::open(i2c, tuple_size, around.timeout_ms, &around.buses)?;
+            Ok(Device::State(Box::new(register)))
+        }
+        SourceDescription::Absent(reason) => Err(Error::NoDevice(reason.clone())),
     }
 }
 
@@ -153,10 +225,42 @@ pub fn open_sink(
             faulty,
             open_sink(&faulty.source, around)?,
         ))),
+        SourceDescription::Pwm(pwm) => Ok(Box::new(pwm::Pwm::open(pwm)?)),
+        SourceDescription::Gpio(gpio) if gpio.direction != GpioDirection::In => {
+            Ok(Box::new(gpio::Gpio::open(gpio)?))
+        }
+        SourceDescription::Lines(lines) => {
+            Ok(Box::new(lines::LinesSink::open(lines, around.timeout_ms)?))
+        }
+        SourceDescription::I2c(i2c) => {
+            // The size only matters for reading.
+            let register = i2c::Register::open(i2c, 0, around.timeout_ms, &around.buses)?;
+            Ok(Box::new(register))
+        }
+        SourceDescription::Absent(reason) => Err(Error::NoDevice(reason.clone())),
         SourceDescription::Evdev(_)
+        | SourceDescription::Iio(_)
+        | SourceDescription::Gpio(_)
+        | SourceDescription::Packets(_)
         | SourceDescription::Fake(_)
         | SourceDescription::Replay(_)
+        | SourceDescription::Newest(_)
+        | SourceDescription::Regulator(_)
         | SourceDescription::Several(_) => Err(Error::AccessDenied),
+    }
+}
+
+/// Whether a source is a device of its own that written tuples can go to.
+pub fn takes_bytes(source: &SourceDescription) -> bool {
+    match source {
+        SourceDescription::Path(_)
+        | SourceDescription::Attribute(_)
+        | SourceDescription::Fifo(_)
+        | SourceDescription::I2c(_)
+        | SourceDescription::Pwm(_) => true,
+        SourceDescription::Gpio(gpio) => gpio.direction != GpioDirection::In,
+        SourceDescription::Lines(lines) => lines.input.is_some(),
+        _ => false,
     }
 }
 
@@ -167,15 +271,25 @@ pub fn is_shared(source: &SourceDescription) -> Result<bool, Error> {
         SourceDescription::Path(path) => {
             matches!(kind_of(path)?, PathKind::Fifo | PathKind::SharedDevice)
         }
-        SourceDescription::Attribute(_) | SourceDescription::Node(_) => false,
-        SourceDescription::Fifo(_) | SourceDescription::Evdev(_) | SourceDescription::Replay(_) => {
-            true
-        }
+        SourceDescription::Attribute(_)
+        | SourceDescription::Node(_)
+        | SourceDescription::Newest(_)
+        | SourceDescription::Regulator(_)
+        | SourceDescription::I2c(_)
+        | SourceDescription::Absent(_)
+        | SourceDescription::Pwm(_)
+        | SourceDescription::Gpio(_) => false,
+        SourceDescription::Fifo(_)
+        | SourceDescription::Evdev(_)
+        | SourceDescription::Replay(_)
+        | SourceDescription::Iio(_)
+        | SourceDescription::Lines(_)
+        | SourceDescription::Packets(_) => true,
         SourceDescription::Fake(fake) => fake.period_ms > 0,
         SourceDescription::Faulty(faulty) => is_shared(&faulty.source)?,
-        SourceDescription::Several(parts) => {
+        SourceDescription::Several(several) => {
             let mut shared = false;
-            for part in parts {
+            for part in &several.parts {
                 shared |= is_shared(&part.source).map_err(|error| part_error(&part.name, error))?;
             }
             shared
@@ -190,12 +304,55 @@ pub fn paths(source: &SourceDescription) -> Vec<&Path> {
         | SourceDescription::Attribute(path)
         | SourceDescription::Fifo(path) => vec![path],
         SourceDescription::Evdev(evdev) => vec![&evdev.path],
+        SourceDescription::I2c(i2c) => vec![&i2c.path],
         SourceDescription::Replay(replay) => vec![&replay.path],
+        SourceDescription::Iio(iio) => vec![&iio.devices],
+        SourceDescription::Pwm(pwm) => vec![&pwm.chip],
+        SourceDescription::Gpio(gpio) => vec![&gpio.base],
+        // The program makes its pipes when it is started.
+        SourceDescription::Lines(lines) => match &lines.start {
+            Some(start) => vec![&start.program],
+            None => vec![&lines.path],
+        },
+        SourceDescription::Packets(packets) => vec![&packets.path],
         SourceDescription::Faulty(faulty) => paths(&faulty.source),
-        SourceDescription::Several(parts) => {
-            parts.iter().flat_map(|part| paths(&part.source)).collect()
+        SourceDescription::Several(several) => {
+            let parts = several.parts.iter();
+            parts.flat_map(|part| paths(&part.source)).collect()
         }
-        SourceDescription::Fake(_) | SourceDescription::Node(_) => Vec::new(),
+        SourceDescription::Fake(_)
+        | SourceDescription::Node(_)
+        | SourceDescription::Regulator(_)
+        | SourceDescription::Newest(_)
+        | SourceDescription::Absent(_) => Vec::new(),
+    }
+}
+
+/// The buses whose transfers a source waits for, itself or through nodes that it reads or drives.
+pub fn add_buses(source: &SourceDescription, around: &Surroundings, buses: &mut BTreeSet<PathBuf>) {
+    let mut of_node = |path: &str| {
+        if let Ok(node) = around.link(path) {
+            node.add_buses(buses);
+        }
+    };
+    match source {
+        SourceDescription::I2c(i2c) => {
+            buses.insert(i2c.path.clone());
+        }
+        SourceDescription::Faulty(faulty) => add_buses(&faulty.source, around, buses),
+        SourceDescription::Node(path) | SourceDescription::Newest(path) => of_node(path),
+        SourceDescription::Regulator(regulator) => {
+            of_node(&regulator.actuator);
+            for part in &regulator.feedback.parts {
+                add_buses(&part.source, around, buses);
+            }
+        }
+        SourceDescription::Several(several) => {
+            for part in &several.parts {
+                add_buses(&part.source, around, buses);
+            }
+        }
+        _ => {}
     }
 }
 

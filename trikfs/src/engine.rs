@@ -2,13 +2,19 @@
 //!
 //! Owns these services for one mount; there are no globals. Knows no node.
 
+use crate::device::i2c::bus::Buses;
 use crate::errno::Error;
+
 use crate::events::{Poller, Schedule, lock};
+use crate::limits;
 use crate::log::Log;
+use crate::programs::Programs;
 use crate::transport::{Answer, Kernel, PollHandle, RequestId};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::io;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock};
+use std::time::Duration;
 
 /// The services of one mount.
 pub struct Engine {
@@ -18,6 +24,12 @@ pub struct Engine {
     pub schedule: Arc<Schedule>,
     /// The `log` file.
     pub log: Arc<Log>,
+    /// Programs that sensors need.
+    pub programs: Arc<Programs>,
+    /// The I2C buses.
+    pub buses: Arc<Buses>,
+    /// Times of sampling on one bus each, by the path of the bus.
+    bus_schedules: Mutex<HashMap<PathBuf, Arc<Schedule>>>,
     kernel: OnceLock<Arc<dyn Kernel>>,
     parked: Mutex<HashSet<RequestId>>,
 }
@@ -25,13 +37,33 @@ pub struct Engine {
 impl Engine {
     /// Starts the event threads.
     pub fn start() -> io::Result<Arc<Self>> {
+        let log = Arc::new(Log::new());
         Ok(Arc::new(Self {
             poller: Poller::start()?,
             schedule: Schedule::start()?,
-            log: Arc::new(Log::new()),
+            programs: Programs::new(log.clone()),
+            log,
+            buses: Arc::default(),
+            bus_schedules: Mutex::default(),
             kernel: OnceLock::new(),
             parked: Mutex::default(),
         }))
+    }
+
+    /// Where background samples from a bus are scheduled: with a thread of its own for each bus, so that a slow one
+    /// delays nobody else's samples. When there are too many buses or no thread can be made, where all others are.
+    pub fn schedule_of(&self, bus: &Path) -> Arc<Schedule> {
+        let mut schedules = lock(&self.bus_schedules);
+        if let Some(schedule) = schedules.get(bus) {
+            return schedule.clone();
+        }
+        if schedules.len() < limits::BUS_THREADS_MAX
+            && let Ok(schedule) = Schedule::start_crew("bus", 1)
+        {
+            schedules.insert(bus.to_owned(), schedule.clone());
+            return schedule;
+        }
+        self.schedule.clone()
     }
 
     /// The mount is live; later calls are ignored.
@@ -90,9 +122,14 @@ impl Engine {
         }
     }
 
-    /// Ends the event threads.
+    /// Ends the event threads and the programs that are up.
     pub fn stop(&self) {
+        self.programs
+            .stop_all(Duration::from_millis(limits::PROGRAM_END_MS));
         self.poller.stop();
         self.schedule.stop();
+        for schedule in lock(&self.bus_schedules).values() {
+            schedule.stop();
+        }
     }
 }

@@ -50,6 +50,8 @@ pub enum Error {
     WouldBlock,
     /// No sample within the deadline, or the newest one is too old.
     TimedOut(String),
+    /// Another program holds the lease of the actuator.
+    Busy(String),
     /// The device failed with an errno of its own.
     Device(i32, String),
     /// The converter failed.
@@ -79,6 +81,21 @@ pub enum Error {
 }
 
 impl Error {
+    /// What a converter said. A first word tells who is to blame when it is not the converter: `ERANGE: `, `EINVAL: `
+    /// the caller, `ENODEV: ` the device. See docs/converters/tutorial.md.
+    pub fn of_converter(text: String) -> Self {
+        let rest = |word: &str| text.strip_prefix(word).map(str::to_owned);
+        if let Some(reason) = rest("ERANGE: ") {
+            Self::OutOfRange(reason)
+        } else if let Some(reason) = rest("EINVAL: ") {
+            Self::Invalid(reason)
+        } else if let Some(reason) = rest("ENODEV: ") {
+            Self::NoDevice(reason)
+        } else {
+            Self::Converter(text)
+        }
+    }
+
     /// The number that the program sees.
     pub fn errno(&self) -> i32 {
         match self {
@@ -91,6 +108,7 @@ impl Error {
             Self::NoDevice(_) => libc::ENODEV,
             Self::WouldBlock => libc::EAGAIN,
             Self::TimedOut(_) => libc::ETIMEDOUT,
+            Self::Busy(_) => libc::EBUSY,
             Self::Device(errno, _) => device_errno(*errno),
             Self::Converter(_) => libc::EIO,
             Self::Stale => libc::ESTALE,
@@ -117,6 +135,7 @@ impl Error {
             | Self::Invalid(_)
             | Self::OutOfRange(_)
             | Self::WouldBlock
+            | Self::Busy(_)
             | Self::Stale
             | Self::TooManyOpen
             | Self::NoBuffers
@@ -159,6 +178,7 @@ impl fmt::Display for Error {
             | Self::OutOfRange(what)
             | Self::NoDevice(what)
             | Self::TimedOut(what)
+            | Self::Busy(what)
             | Self::Converter(what)
             | Self::Internal(what) => f.write_str(what),
             Self::WouldBlock => f.write_str("no sample yet"),

@@ -134,6 +134,7 @@ impl Poller {
 
 /// Times at which somebody acts.
 pub struct Schedule {
+    origin: Instant,
     queue: Mutex<Queue>,
     changed: Condvar,
 }
@@ -169,19 +170,30 @@ impl Ord for Entry {
 }
 
 impl Schedule {
-    /// Starts the thread that watches the clock.
+    /// Starts the thread that watches the clock, with others that step in when it is late.
     pub fn start() -> io::Result<Arc<Self>> {
+        Self::start_crew("schedule", limits::MAX_THREADS)
+    }
+
+    /// Starts one with threads of this name, at most so many.
+    pub fn start_crew(name: &str, threads: usize) -> io::Result<Arc<Self>> {
         let schedule = Arc::new(Self {
+            origin: Instant::now(),
             queue: Mutex::default(),
             changed: Condvar::new(),
         });
         let cycling = schedule.clone();
         Crew::run(
-            "schedule",
-            limits::MAX_THREADS,
+            name,
+            threads,
             Arc::new(move |seat: &Seat| cycling.cycle(seat)),
         )?;
         Ok(schedule)
+    }
+
+    /// The moment from which periods count.
+    pub fn origin(&self) -> Instant {
+        self.origin
     }
 
     /// Calls `target` at (not before) a time; not at all if it is gone by then.

@@ -6,7 +6,9 @@ pub mod config;
 pub mod control;
 pub mod device;
 pub mod log;
+pub mod owner;
 pub mod ownership;
+pub mod param;
 pub mod value;
 
 use crate::errno::Error;

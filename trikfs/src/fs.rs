@@ -11,6 +11,8 @@ use crate::files::config::ConfigFile;
 use crate::files::control::{PeriodFile, StopFile, TextFile, fault_line, status_lines};
 use crate::files::device::DeviceFile;
 use crate::files::log::LogFile;
+use crate::files::owner::OwnerFile;
+use crate::files::param::ParamFile;
 use crate::files::value::ValueFile;
 use crate::files::{OpenFile, READY};
 use crate::limits;
@@ -133,6 +135,7 @@ impl Fs {
         kind: &Kind,
         ino: u64,
         flags: i32,
+        caller: Caller,
     ) -> Result<(Arc<dyn OpenFile>, Access, bool), Error> {
         let (read, write) = match flags & libc::O_ACCMODE {
             libc::O_RDONLY => (true, false),
@@ -175,11 +178,23 @@ impl Fs {
                 let is_owned = write && node.description.rest.is_some();
                 Ok((file, access, is_owned))
             }
+            Kind::Owner(node) if !write => {
+                let lease = node.lease.clone();
+                let file = Arc::new(TextFile::new(move || lease.line()));
+                Ok((file, Access::Direct, false))
+            }
+            Kind::Owner(node) => {
+                let file = OwnerFile::open(node, read, caller)?;
+                Ok((file, Access::Direct, true))
+            }
             Kind::Period(node) => {
                 if write && node.period_ms() == 0 {
                     return Err(Error::AccessDenied);
                 }
                 Ok((Arc::new(PeriodFile::new(node)), Access::Direct, false))
+            }
+            Kind::Param(node, name) => {
+                Ok((Arc::new(ParamFile::new(node, name)), Access::Direct, false))
             }
             Kind::Status | Kind::Units(_) | Kind::Format(_) | Kind::Fault(_) | Kind::Stats(_) => {
                 Err(Error::Internal("a text without a text".to_owned()))
@@ -195,7 +210,11 @@ impl Fs {
                 let (reloader, forest) = (self.reloader.clone(), self.forest.clone());
                 Box::new(move || {
                     let lines = status_lines(forest.tree().nodes());
-                    format!("{}\n{lines}", reloader.result_line())
+                    format!(
+                        "{}\n{}{lines}",
+                        reloader.result_line(),
+                        reloader.setup_lines()
+                    )
                 })
             }
             (Kind::Units(_), Some(node)) => {
@@ -265,9 +284,9 @@ impl Operations for Fs {
         self.forest.tree().list(ino, from, add)
     }
 
-    fn open(&self, ino: u64, flags: i32, _caller: Caller) -> Result<Opened, Error> {
+    fn open(&self, ino: u64, flags: i32, caller: Caller) -> Result<Opened, Error> {
         let kind = self.forest.tree().entry(ino)?.kind.clone();
-        let (file, access, flush) = self.open_kind(&kind, ino, flags)?;
+        let (file, access, flush) = self.open_kind(&kind, ino, flags, caller)?;
         let added = self.files.add(file.clone());
         if added.is_err() {
             file.release();

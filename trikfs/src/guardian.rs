@@ -5,9 +5,10 @@
 //! It holds the connection to the kernel, so that the connection cannot end before that is done.
 //! It serves no request, runs no converter and reads no configuration, so it has little to crash of.
 //!
-//! `ledger` is what both processes share, `inherit` the daemon's side of it; `child` starts the daemon, `watch` waits
+//! `ledger` is what both processes share (`actions` a part of it), `inherit` the daemon's side of it; `child` starts the daemon, `watch` waits
 //! for its end, `mounted` knows our mount from others at the same place, `rest` stops the actuators.
 
+pub mod actions;
 mod child;
 pub mod inherit;
 pub mod ledger;

@@ -31,6 +31,8 @@ struct Inner {
     is_over: bool,
     /// Somebody has subscribed, so the source is watched.
     listens: bool,
+    /// When the source is read again without an event.
+    wakes_at: Option<Instant>,
     /// Looks whether the source is still the one that is open.
     presence: Option<Arc<dyn Due>>,
 }
@@ -66,6 +68,7 @@ impl Hub {
             raw_len: 0,
             is_over: false,
             listens: false,
+            wakes_at: None,
             presence: None,
         };
         Arc::new_cyclic(|me| Self {
@@ -125,7 +128,7 @@ impl Hub {
             }
         }
         if let Some(at) = at {
-            self.wake_at(&node, at);
+            self.wake_once(&mut inner.wakes_at, &node, at);
         } else if inner.watch.is_none() {
             inner.stream = None;
             inner.is_over = true;
@@ -138,6 +141,14 @@ impl Hub {
     fn wake_at(&self, node: &Node, at: Instant) {
         let me: Weak<dyn Due> = self.me.clone();
         node.engine.schedule.at(at, me);
+    }
+
+    /// As `wake_at`, unless that comes before anyway.
+    fn wake_once(&self, wakes_at: &mut Option<Instant>, node: &Node, at: Instant) {
+        if wakes_at.is_none_or(|before| at < before || before <= Instant::now()) {
+            *wakes_at = Some(at);
+            self.wake_at(node, at);
+        }
     }
 
     /// Takes what the source has and passes it on. Readers are called with no lock held.
@@ -167,6 +178,7 @@ impl Hub {
             stream: Some(stream),
             raw,
             raw_len,
+            wakes_at,
             ..
         } = &mut *inner
         else {
@@ -185,7 +197,7 @@ impl Hub {
             }
             Ok(Got::Nothing) => {
                 if let Some(at) = stream.wake_at() {
-                    self.wake_at(node, at);
+                    self.wake_once(wakes_at, node, at);
                 }
                 None
             }

@@ -4,6 +4,31 @@
 
 /// Threads that may serve one role (the kernel, events, the schedule) while others of that role are late.
 pub const MAX_THREADS: usize = 64;
+/// Transfers that wait for one bus at once.
+pub const BUS_WAITERS_MAX: usize = 24;
+/// Transfers that may join those who wait for a bus that is stuck. With [`LATE_PER_NODE_MAX`] operations on each of
+/// their nodes, those of two dead buses leave threads for everything else.
+pub const BUS_WAITERS_STUCK_MAX: usize = 6;
+/// Milliseconds that one transfer may take before a bus counts as stuck.
+pub const BUS_STUCK_MS: u64 = 50;
+/// Microseconds from which a transfer counts as slow: others must not wait for it.
+pub const BUS_SLOW_US: u64 = 500;
+/// Fast transfers after a slow one until a bus counts as fast again.
+pub const BUS_SLOW_TRANSFERS: u32 = 64;
+/// Bytes of data that a bus of 100 kHz moves within [`BUS_SLOW_US`], about.
+pub const BUS_SHORT_BYTES: usize = 8;
+/// Buses whose nodes are sampled by a thread of their own.
+pub const BUS_THREADS_MAX: usize = 16;
+/// Registers of one bus that are remembered, in each of two ways.
+pub const BUS_MEMORY_MAX: usize = 4_096;
+/// Milliseconds that the actions of `setup` may keep a configuration from coming into force.
+pub const SETUP_WAIT_MS: u64 = 3_000;
+/// Milliseconds beyond its time limit after which an action that hangs in a device is left behind.
+pub const SETUP_GRACE_MS: u64 = 100;
+/// Actions that may hang in a device before no further ones are tried.
+pub const SETUP_STUCK_MAX: usize = 8;
+/// Bytes of the output of a program of `setup` that are told.
+pub const SETUP_OUTPUT_BYTES: usize = 512;
 /// Open files at once; the next open gets EMFILE.
 pub const OPEN_FILES_MAX: usize = 65_536;
 /// Tuples that a slow reader of a shared source may be behind before the oldest are dropped.
@@ -39,10 +64,41 @@ pub const LATE_PER_NODE_MAX: usize = 4;
 /// Milliseconds of one `stop` before it goes on to the next actuator is bounded by each node's `timeout_ms`;
 /// this bounds the number of actuators brought to rest at once.
 pub const REST_THREADS_MAX: usize = 8;
+/// Highest priority that a lease can be asked for with.
+pub const LEASE_PRIORITY_MAX: u32 = 100;
+/// Longest time in milliseconds that a dead-man's clock can be set to.
+pub const DEADMAN_MS_MAX: u32 = 60_000;
 /// Bytes of data in one read or write request of the kernel; a larger one is served in part.
 pub const TRANSFER_BYTES_MAX: usize = 128 << 10;
 /// Requests without a waiting caller (releases, read-ahead) that the kernel may have under way.
 pub const BACKGROUND_MAX: u16 = 64;
+
+/// Bytes that a port of lines, packets or samples reads at once.
+pub const PORT_READ_BYTES: usize = 4096;
+/// Bytes that such a port looks at without finding anything before others get their turn.
+pub const CUT_BYTES_MAX: usize = 64 << 10;
+/// Entries of the folder of IIO devices that are looked at.
+pub const IIO_DEVICES_MAX: usize = 256;
+/// Files of one IIO device's scan elements that are looked at.
+pub const IIO_FILES_MAX: usize = 1024;
+/// Samples that the kernel keeps of an IIO device while nobody reads.
+pub const IIO_BUFFER_SAMPLES: u32 = 128;
+/// Milliseconds that the start of a sensor's program may take.
+pub const PROGRAM_START_MS_MAX: u32 = 30_000;
+/// Milliseconds that its stop may take.
+pub const PROGRAM_STOP_MS_MAX: u32 = 10_000;
+/// Milliseconds that a program goes on after its last user: who comes back at once finds it running.
+pub const PROGRAM_LINGER_MS: u64 = 1_000;
+/// Milliseconds until a start that has failed is tried again.
+pub const PROGRAM_RETRY_MS: u64 = 5_000;
+/// Milliseconds that the end of a mount waits for programs to stop.
+pub const PROGRAM_END_MS: u64 = 1_500;
+/// Bytes of output of a start or stop that go to the log.
+pub const PROGRAM_OUTPUT_BYTES_MAX: usize = 4096;
+/// Milliseconds that a sensor's pipe may take to appear once its program has been started.
+pub const LINES_APPEAR_MS: u64 = 20_000;
+/// Milliseconds between two looks for it.
+pub const LINES_LOOK_MS: u64 = 50;
 
 /// Libraries that the cache directory keeps.
 pub const CACHE_FILES_MAX: usize = 256;

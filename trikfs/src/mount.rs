@@ -9,13 +9,14 @@
 use crate::transport::native::received::receive_descriptor;
 use nix::errno::Errno;
 use nix::mount::{MntFlags, MsFlags, umount2};
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::statfs::statfs;
 use nix::unistd::{getegid, geteuid};
 use std::ffi::{OsStr, OsString};
 use std::fmt;
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Read};
-use std::os::fd::{AsRawFd, OwnedFd};
+use std::os::fd::{AsFd, AsRawFd, OwnedFd};
 use std::os::unix::ffi::{OsStrExt, OsStringExt};
 use std::os::unix::net::UnixStream;
 use std::path::{Path, PathBuf};
@@ -31,6 +32,10 @@ const TYPE: &str = "fuse.trikfs";
 const SUBTYPE: &str = "trikfs";
 /// Bytes of the helper's complaint that are passed on.
 const COMPLAINT_BYTES_MAX: u64 = 4096;
+/// The list of mounts.
+const TABLE: &str = "/proc/self/mountinfo";
+/// How often a list that changes while it is read is read again before it is taken as it is.
+const TABLE_READS_MAX: usize = 16;
 /// Bytes of the mount table that are read; a longer one is not believed.
 const TABLE_BYTES_MAX: u64 = 16 << 20;
 
@@ -189,15 +194,32 @@ pub fn is_mounted(path: &Path) -> Result<bool, MountError> {
 /// If the mount table cannot be read.
 pub fn find(path: &Path) -> Result<Option<MountEntry>, MountError> {
     let path = absolute(path);
-    let table = PathBuf::from("/proc/self/mountinfo");
-    let mut text = Vec::new();
-    let read =
-        File::open(&table).and_then(|file| file.take(TABLE_BYTES_MAX).read_to_end(&mut text));
-    read.map_err(|error| MountError::System(table, error))?;
+    let text = table().map_err(|error| MountError::System(TABLE.into(), error))?;
     // Later lines lie over earlier ones.
     Ok(parse_mountinfo(&text)
         .filter(|entry| entry.mountpoint == path)
         .last())
+}
+
+/// The text of /proc/self/mountinfo as it was at one moment.
+///
+/// A list that is read while others mount and unmount can lack an entry that is there all the time (before Linux 5.8),
+/// so it is read again when it has changed meanwhile, which poll(2) tells (proc(5)).
+///
+/// # Errors
+/// If it cannot be read.
+pub fn table() -> io::Result<Vec<u8>> {
+    let mut text = Vec::new();
+    for _ in 0..TABLE_READS_MAX {
+        let file = File::open(TABLE)?;
+        text.clear();
+        (&file).take(TABLE_BYTES_MAX).read_to_end(&mut text)?;
+        let mut changed = [PollFd::new(file.as_fd(), PollFlags::POLLPRI)];
+        if poll(&mut changed, PollTimeout::ZERO)? == 0 {
+            break;
+        }
+    }
+    Ok(text)
 }
 
 /// One line of /proc/self/mountinfo; see proc(5).

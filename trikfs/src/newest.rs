@@ -8,6 +8,7 @@ mod pace;
 mod page;
 
 use crate::clock::Stamp;
+use crate::crew::lock_patiently;
 use crate::device::Got;
 use crate::errno::Error;
 use crate::events::{Due, Ready, lock};
@@ -71,6 +72,14 @@ pub trait Waiter: Send + Sync {
     fn serve(&self, id: RequestId, error: Option<Error>);
 }
 
+/// One sample and when it was taken.
+pub struct Sample {
+    /// The converted tuple.
+    pub tuple: Vec<u8>,
+    /// When it was taken.
+    pub stamp: Stamp,
+}
+
 impl Newest {
     /// No sample yet.
     pub fn new(node: Weak<Node>, tuple_size: usize) -> Self {
@@ -113,13 +122,11 @@ impl Newest {
     fn schedule_sampling(&self, node: &Arc<Node>) {
         let sampler: Arc<dyn Due> = Arc::new(Sampling {
             node: self.node.clone(),
-            planned: Mutex::new(Instant::now()),
         });
         let ageing: Arc<dyn Due> = Arc::new(Ageing {
             node: self.node.clone(),
         });
-        node.engine
-            .schedule
+        node.sampling_schedule()
             .at(Instant::now(), Arc::downgrade(&sampler));
         node.engine
             .schedule
@@ -164,7 +171,7 @@ impl Newest {
             };
         }
         let _inside = node.enter()?;
-        let mut work = lock(&self.work);
+        let mut work = lock_patiently(&self.work);
         work.open(&node)?;
         self.users.fetch_add(1, Ordering::Relaxed);
         Ok(!matches!(&work.source, Source::Stream(reader) if reader.is_shared()))
@@ -212,18 +219,53 @@ impl Newest {
             return Ok(None);
         };
         let age_ns = stamp.age_ns();
-        if matches!(node.description.pace, Pace::Every { .. })
-            && u128::from(age_ns) > too_old(&node).as_nanos()
-        {
-            return Err(Error::TimedOut(format!(
-                "the newest sample is {} ms old",
-                age_ns / 1_000_000
-            )));
-        }
+        check_age(&node, age_ns)?;
         tuple.clear();
         tuple.extend_from_slice(&latch.tuple);
         node.stats.age.add(age_ns);
         Ok(Some(latch.events))
+    }
+
+    /// The newest samples of several nodes as they stood at one moment: no publisher comes in between.
+    /// None: there is none yet.
+    pub fn of_all(all: &[&Self]) -> Vec<Result<Option<Sample>, Error>> {
+        // Latches are locked in the order of their addresses, each once, so that two such readers cannot wait for
+        // each other; nobody else holds two.
+        let mut order: Vec<&Self> = all.to_vec();
+        order.sort_by_key(|newest| std::ptr::from_ref::<Self>(newest));
+        order.dedup_by_key(|newest| std::ptr::from_ref::<Self>(newest));
+        let latches: Vec<_> = order.iter().map(|newest| lock(&newest.latch)).collect();
+        let sample = |newest: &&Self| {
+            let at = order.iter().position(|other| std::ptr::eq(*other, *newest));
+            match at.and_then(|at| latches.get(at)) {
+                Some(latch) => newest.sample_of(latch),
+                None => Ok(None),
+            }
+        };
+        all.iter().map(sample).collect()
+    }
+
+    fn sample_of(&self, latch: &Latch) -> Result<Option<Sample>, Error> {
+        let Some(node) = self.node.upgrade() else {
+            return Err(Error::Stale);
+        };
+        if let Some(error) = &latch.error {
+            return Err(error.clone());
+        }
+        let Some(stamp) = latch.stamp else {
+            return Ok(None);
+        };
+        check_age(&node, stamp.age_ns())?;
+        Ok(Some(Sample {
+            tuple: latch.tuple.clone(),
+            stamp,
+        }))
+    }
+
+    /// Samples are taken without anybody reading.
+    pub fn is_in_background(&self) -> bool {
+        let node = self.node.upgrade();
+        node.is_some_and(|node| node.description.pace != Pace::OnRead)
     }
 
     /// When the newest sample was taken, however old it is.
@@ -261,7 +303,7 @@ impl Newest {
         if matches!(node.description.pace, Pace::Every { .. }) {
             return;
         }
-        let reader = match &lock(&self.work).source {
+        let reader = match &lock_patiently(&self.work).source {
             Source::Stream(reader) => reader.clone(),
             _ => return,
         };
@@ -329,7 +371,7 @@ impl Newest {
 
     /// Takes one sample (a state, an own stream) or everything that has come (a shared stream).
     fn sample(&self, node: &Arc<Node>) {
-        let mut work = lock(&self.work);
+        let mut work = lock_patiently(&self.work);
         if let Err(error) = work.open(node) {
             drop(work);
             return self.fail(error);
@@ -351,7 +393,7 @@ impl Newest {
         };
         let listens = match node.description.pace {
             Pace::OnEvent => true,
-            Pace::OnRead => matches!(lock(&self.work).source, Source::Stream(_)),
+            Pace::OnRead => matches!(lock_patiently(&self.work).source, Source::Stream(_)),
             Pace::Every { .. } => false,
         };
         if listens {
@@ -384,20 +426,28 @@ impl Newest {
         node.stats.samples.add(1);
         self.page.fill(node, tuple);
         self.tell();
+        if let Some(regulation) = node.regulation() {
+            regulation.step(node, tuple);
+        }
     }
 
     fn fail(&self, error: Error) {
         let is_new = {
             let mut latch = lock(&self.latch);
             let is_new = latch.error.as_ref() != Some(&error);
-            latch.error = Some(error);
+            latch.error = Some(error.clone());
             if is_new {
                 latch.events = latch.events.wrapping_add(1);
             }
             is_new
         };
-        if is_new && let Some(node) = self.node.upgrade() {
-            self.page.drop(&node);
+        if let Some(node) = self.node.upgrade() {
+            if is_new {
+                self.page.drop(&node);
+            }
+            if let Some(regulation) = node.regulation() {
+                regulation.fail(&node, &error);
+            }
         }
         self.tell();
     }
@@ -414,19 +464,19 @@ impl Newest {
     }
 
     /// Whether an open of `bin_data` may be served from the page cache: there is a good sample, and a publisher.
-    pub fn can_cache(&self) -> bool {
+    pub fn can_cache(&self, ino: u64) -> bool {
         let Some(node) = self.node.upgrade() else {
             return false;
         };
         let background = node.description.pace != Pace::OnRead;
         let latch = lock(&self.latch);
         let good = latch.stamp.is_some() && latch.error.is_none();
-        background && good && Page::can_hold(&node, latch.tuple.len())
+        background && good && Page::can_hold(&node, latch.tuple.len()) && self.page.is_of(ino)
     }
 
     /// A cached open file comes (true) or goes.
-    pub fn count_cached(&self, ino: u64, comes: bool) {
-        self.page.count_reader(ino, comes);
+    pub fn count_cached(&self, comes: bool) {
+        self.page.count_reader(comes);
     }
 
     /// A cached open file starts being polled (true) or goes.
@@ -446,6 +496,19 @@ impl Newest {
 fn too_old(node: &Node) -> Duration {
     let ms = u64::from(node.period_ms()) * 2;
     Duration::from_millis(ms.max(node.description.timeout_ms.into()))
+}
+
+/// Refuses a sample taken by the clock that is too old to be shown.
+fn check_age(node: &Node, age_ns: u64) -> Result<(), Error> {
+    if matches!(node.description.pace, Pace::Every { .. })
+        && u128::from(age_ns) > too_old(node).as_nanos()
+    {
+        let age_ms = age_ns / 1_000_000;
+        return Err(Error::TimedOut(format!(
+            "the newest sample is {age_ms} ms old"
+        )));
+    }
+    Ok(())
 }
 
 impl Work {

@@ -3,23 +3,28 @@
 //! Owns the joints between these, the node's fault and the flag that a reload sets when the description is gone.
 //! Knows no file of the tree and no request of the kernel.
 
+mod rest;
+
 use crate::clock::Stamp;
 use crate::convert::{LogSink, Pipeline, Recipe};
 use crate::device::{self, Device, Sink, Stream, Surroundings};
 use crate::engine::Engine;
 use crate::errno::Error;
-use crate::events::{Due, Ready, lock};
+use crate::events::{Due, Ready, Schedule, lock};
 use crate::hub::Hub;
+use crate::lease::Lease;
 use crate::limits;
 use crate::newest::Newest;
 use crate::reader::{Origin, Reader};
+use crate::regulation::Regulation;
 use crate::state_reader::StateReader;
 use crate::stats::Stats;
 use crate::writer::Writer;
-use config::description::{NodeDescription, Pace};
+use config::description::{NodeDescription, Pace, SourceDescription};
 use config::format::Format;
 use config::problem::Problem;
 use config::program::Direction;
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, Weak};
@@ -36,6 +41,10 @@ pub struct Node {
     pub format: Format,
     /// The mount's services.
     pub engine: Arc<Engine>,
+    /// Who may write the files of the node's directory.
+    pub lease: Arc<Lease>,
+    /// The same, and those of the nodes that a write passes on its way to the device.
+    pub leases: Vec<Arc<Lease>>,
     /// Counts and times.
     pub stats: Stats,
     /// The newest sample, and how it is got.
@@ -49,6 +58,10 @@ pub struct Node {
     rate: Mutex<Rate>,
     retired: AtomicBool,
     period_ms: AtomicU32,
+    /// How often a tuple went to the device. Wraps.
+    writes: AtomicU32,
+    /// Only for the source `regulator{...}`.
+    regulation: Option<Regulation>,
     /// When each of the operations that are inside now began, in coarse ms.
     inside: [AtomicU32; limits::LATE_PER_NODE_MAX],
 }
@@ -70,14 +83,31 @@ impl Node {
         recipe: Recipe,
         links: Vec<(String, Arc<Self>)>,
         engine: Arc<Engine>,
+        lease: Arc<Lease>,
     ) -> Arc<Self> {
         let format = description
             .format
             .clone()
             .unwrap_or_else(|| Format::bytes(description.output_tuple_size));
+        let regulation = match &description.source {
+            SourceDescription::Regulator(regulator) => links
+                .iter()
+                .find(|(path, _)| *path == regulator.actuator)
+                .map(|(_, actuator)| Regulation::new(actuator.clone())),
+            _ => None,
+        };
+        let stats = Stats::default();
+        let mut leases = vec![lease.clone()];
+        if let Some(other) = written_node(&description.source) {
+            let linked = links.iter().filter(|(path, _)| path == other);
+            leases.extend(linked.flat_map(|(_, node)| node.leases.clone()));
+        }
         let around = Surroundings {
             links,
             timeout_ms: description.timeout_ms,
+            damaged: stats.damaged.clone(),
+            log: log_sink(&engine, &description.path),
+            ..Surroundings::new(&engine)
         };
         let period_ms = match description.pace {
             Pace::Every { period_ms } => period_ms,
@@ -88,7 +118,9 @@ impl Node {
             fingerprint,
             format,
             engine,
-            stats: Stats::default(),
+            lease,
+            leases,
+            stats,
             newest: Newest::new(me.clone(), description.output_tuple_size),
             recipe,
             around,
@@ -103,6 +135,8 @@ impl Node {
             }),
             retired: AtomicBool::new(false),
             period_ms: AtomicU32::new(period_ms),
+            writes: AtomicU32::new(0),
+            regulation,
             inside: Default::default(),
             description,
         })
@@ -111,6 +145,11 @@ impl Node {
     /// Path below the mount point.
     pub fn path(&self) -> &str {
         &self.description.path
+    }
+
+    /// Path of the directory that holds the node's files.
+    pub fn directory(&self) -> &str {
+        directory_of(&self.description.path, self.is_attribute)
     }
 
     /// A reload has changed or removed the description.
@@ -154,11 +193,36 @@ impl Node {
 
     /// Bytes of one tuple that goes to the device.
     pub fn device_tuple_size(&self) -> usize {
-        if self.description.write_converter.is_some() {
-            self.description.input_tuple_size
-        } else {
-            self.description.output_tuple_size
+        self.description.write_conversion_sizes().1
+    }
+
+    /// Holds what is written by driving another node.
+    pub fn regulation(&self) -> Option<&Regulation> {
+        self.regulation.as_ref()
+    }
+
+    /// Changes whenever a lease that a write to this node touches changes hands.
+    pub fn lease_generation(&self) -> u32 {
+        let generations = self.leases.iter().map(|lease| lease.generation());
+        generations.fold(0, u32::wrapping_add)
+    }
+
+    /// How often a tuple went to the device, for an alias to the device of the node that it stands for. Wraps.
+    pub fn writes(&self) -> u32 {
+        match &self.description.source {
+            SourceDescription::Node(path) => {
+                match self.around.links.iter().find(|(name, _)| name == path) {
+                    Some((_, other)) => other.writes(),
+                    None => 0,
+                }
+            }
+            _ => self.writes.load(Ordering::Relaxed),
         }
+    }
+
+    /// A tuple went to the device.
+    pub fn count_write(&self) {
+        self.writes.fetch_add(1, Ordering::Relaxed);
     }
 
     /// Whether programs may read or write at all: root passes the kernel's check of the mode bits.
@@ -216,14 +280,9 @@ impl Node {
     pub fn open_pipeline(self: &Arc<Self>) -> Result<Arc<Mutex<Pipeline>>, Error> {
         let pipeline = self
             .recipe
-            .open(&self.log_sink())
+            .open(&self.around.log)
             .inspect_err(|error| self.report(error))?;
         Ok(Arc::new(Mutex::new(pipeline)))
-    }
-
-    fn log_sink(self: &Arc<Self>) -> LogSink {
-        let (log, path) = (self.engine.log.clone(), self.description.path.clone());
-        Arc::new(move |text| log.line(&format!("{path}: {text}")))
     }
 
     /// Opens the node for reading with a pipeline of its own.
@@ -306,6 +365,9 @@ impl Node {
         self: &Arc<Self>,
         pipeline: Option<Arc<Mutex<Pipeline>>>,
     ) -> Result<Writer, Error> {
+        if self.regulation.is_some() {
+            return Ok(Writer::to_regulation(self.clone()));
+        }
         let pipeline = pipeline.map_or_else(|| self.open_pipeline(), Ok)?;
         let sink: Box<dyn Sink> = device::open_sink(&self.description.source, &self.around)
             .inspect_err(|error| self.report(error))?;
@@ -320,13 +382,14 @@ impl Node {
         input: &[u8],
         output: &mut [u8],
     ) -> (usize, usize, Option<Error>) {
+        if let Err(error) = self.recipe.renew(pipeline, || self.around.log.clone()) {
+            self.report(&error);
+            return (1, 0, Some(error));
+        }
         let start = self.stats.measures_this_conversion().then(Stamp::now);
         let batch = pipeline.convert(direction, input, output);
         let (in_size, out_size) = match direction {
-            Direction::Write => (
-                self.description.written_tuple_size(),
-                self.device_tuple_size(),
-            ),
+            Direction::Write => self.description.write_conversion_sizes(),
             Direction::Read => (
                 self.description.input_tuple_size,
                 self.description.output_tuple_size,
@@ -380,17 +443,6 @@ impl Node {
         lock(&self.fault).clone()
     }
 
-    /// The tuple that brings the actuator to rest, as a program would write it.
-    pub fn rest_tuple(&self) -> Result<Option<Vec<u8>>, Error> {
-        let Some(rest) = &self.description.rest else {
-            return Ok(None);
-        };
-        let text: Vec<String> = rest.iter().map(ToString::to_string).collect();
-        let mut tuple = vec![0; self.description.written_tuple_size()];
-        crate::text::encode(&self.written_format(), &text.join(" "), &mut tuple)?;
-        Ok(Some(tuple))
-    }
-
     /// Samples per second since the rate was last asked for, over at least a fifth of a second.
     pub fn rate_hz(&self) -> f64 {
         let mut rate = lock(&self.rate);
@@ -434,33 +486,20 @@ impl Node {
         }
     }
 
-    /// Brings the actuator to rest now.
-    pub fn rest(self: &Arc<Self>) -> Result<(), Error> {
-        let Some(tuple) = self.rest_tuple()? else {
-            return Ok(());
-        };
-        self.open_writer(None)?.write_whole(&tuple, true)
+    /// Where background samples of this node are scheduled: a node that reads one bus, itself or through other nodes,
+    /// has its turn on the thread of that bus. One that reads several would make each wait for the others.
+    pub fn sampling_schedule(&self) -> Arc<Schedule> {
+        let mut buses = BTreeSet::new();
+        self.add_buses(&mut buses);
+        match (buses.pop_first(), buses.is_empty()) {
+            (Some(bus), true) => self.engine.schedule_of(&bus),
+            _ => self.engine.schedule.clone(),
+        }
     }
 
-    /// What the guardian writes to which path if this process is no longer there.
-    pub fn rest_bytes(self: &Arc<Self>) -> Result<Option<(PathBuf, Vec<u8>)>, Error> {
-        let Some(tuple) = self.rest_tuple()? else {
-            return Ok(None);
-        };
-        let Some(path) = device::paths(&self.description.source)
-            .first()
-            .map(|path| path.to_path_buf())
-        else {
-            return Ok(None);
-        };
-        let mut bytes = vec![0; self.device_tuple_size()];
-        let pipeline = self.open_pipeline()?;
-        let (_, produced, fault) =
-            self.convert(&mut lock(&pipeline), Direction::Write, &tuple, &mut bytes);
-        match fault {
-            Some(error) => Err(error),
-            None => Ok((produced > 0).then_some((path, bytes))),
-        }
+    /// The buses whose transfers this node waits for.
+    pub fn add_buses(&self, buses: &mut BTreeSet<PathBuf>) {
+        device::add_buses(&self.description.source, &self.around, buses);
     }
 
     /// A problem at the place of this node's description.
@@ -471,6 +510,28 @@ impl Node {
             place.line,
             format!("node {}: {reason}", self.path()),
         )
+    }
+}
+
+/// Lines of the log that begin with a node's path.
+fn log_sink(engine: &Engine, path: &str) -> LogSink {
+    let (log, path) = (engine.log.clone(), path.to_owned());
+    Arc::new(move |text| log.line(&format!("{path}: {text}")))
+}
+
+/// The directory of a node, or of an attribute.
+pub fn directory_of(path: &str, is_attribute: bool) -> &str {
+    let parent = path.rsplit_once('/').filter(|_| is_attribute);
+    parent.map_or(path, |(parent, _)| parent)
+}
+
+/// The node that a write to this source goes to.
+fn written_node(source: &SourceDescription) -> Option<&str> {
+    match source {
+        SourceDescription::Node(path) => Some(path),
+        SourceDescription::Regulator(regulator) => Some(&regulator.actuator),
+        SourceDescription::Faulty(faulty) => written_node(&faulty.source),
+        _ => None,
     }
 }
 

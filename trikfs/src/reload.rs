@@ -12,10 +12,13 @@ use crate::engine::Engine;
 use crate::events::lock;
 use crate::files::control::rest_all;
 use crate::fs::{Forest, OpenFiles};
-use crate::guardian::ledger::{Ledger, RestAction};
-use crate::node::Node;
+use crate::guardian::actions::RestAction;
+use crate::guardian::ledger::Ledger;
+use crate::lease::Lease;
+use crate::node::{Node, directory_of};
+use crate::setup::SetupRunner;
 use crate::tree::{Owner, Tree};
-use config::description::{Config, NodeDescription, SourceDescription, StageKind};
+use config::description::{Alias, Config, NodeDescription, SourceDescription, StageKind};
 use config::load::Loader;
 use config::problem::Problem;
 use std::collections::{BTreeSet, HashMap};
@@ -23,7 +26,7 @@ use std::io;
 use std::os::unix::fs::MetadataExt;
 use std::path::PathBuf;
 use std::sync::mpsc::{Sender, channel};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, Weak};
 
 /// What the reloader works with for the life of the mount.
 pub struct Setup {
@@ -51,6 +54,7 @@ pub struct Setup {
 pub struct Reloader {
     setup: Setup,
     maker: StateMaker,
+    setup_runner: Arc<SetupRunner>,
     state: Mutex<State>,
     one_at_a_time: Mutex<()>,
     work: Sender<Job>,
@@ -89,7 +93,9 @@ impl Reloader {
             cached: BTreeSet::new(),
         };
         let maker = StateMaker::start()?;
+        let root = setup.loader.device_root.clone();
         Ok(Arc::new(Self {
+            setup_runner: SetupRunner::new(setup.engine.clone(), root),
             setup,
             maker,
             state: Mutex::new(state),
@@ -111,6 +117,11 @@ impl Reloader {
     /// What became of the last configuration, on one line.
     pub fn result_line(&self) -> String {
         lock(&self.state).result.clone()
+    }
+
+    /// What of `setup` failed, a line each.
+    pub fn setup_lines(&self) -> String {
+        self.setup_runner.status_lines()
     }
 
     /// Notes that something was not applied, and why.
@@ -205,6 +216,11 @@ impl Reloader {
                 .map(|node| (node.path(), node))
                 .collect(),
             made: HashMap::new(),
+            leases: before
+                .nodes()
+                .iter()
+                .map(|node| (node.directory().to_owned(), node.lease.clone()))
+                .collect(),
             kept: Vec::new(),
         };
         let nodes = builder.build(&loaded.config)?;
@@ -216,13 +232,15 @@ impl Reloader {
             .collect::<Vec<_>>();
         problems.extend(loaded.log);
         let rest = self.rest_actions(&nodes, &mut problems);
-        // Nothing fails from here on.
+        // Nothing fails from here on: what `setup` cannot do is only told.
+        self.setup_runner.run(&loaded.config.setup);
         for node in &kept {
             if let Some(pool) = &pool {
                 node.recipe().move_to(pool);
             }
         }
-        self.put_in_force(nodes, &before, bytes, pool, &rest);
+        let aliases = &loaded.config.aliases;
+        self.put_in_force((nodes, aliases), &before, bytes, pool, &rest);
         for line in problems {
             setup.engine.log.line(&line);
         }
@@ -232,8 +250,12 @@ impl Reloader {
     fn rest_actions(&self, nodes: &[Arc<Node>], problems: &mut Vec<String>) -> Vec<RestAction> {
         let mut actions = Vec::new();
         for node in nodes.iter().filter(|node| node.description.rest.is_some()) {
-            match node.rest_bytes() {
-                Ok(Some((path, bytes))) => actions.push(RestAction { path, bytes }),
+            match node.rest_action() {
+                Ok(Some(action)) if action.can_be_noted() => actions.push(action),
+                Ok(Some(_)) => {
+                    let what = "rest: the guardian cannot do it when the daemon is dead: the path is too long";
+                    problems.push(node.problem(what).to_string());
+                }
                 Ok(None) => {}
                 Err(error) => problems.push(node.problem(&format!("rest: {error}")).to_string()),
             }
@@ -243,7 +265,7 @@ impl Reloader {
 
     fn put_in_force(
         &self,
-        nodes: Vec<Arc<Node>>,
+        (nodes, aliases): (Vec<Arc<Node>>, &[Alias]),
         before: &Arc<Tree>,
         bytes: Vec<u8>,
         pool: Option<Arc<crate::convert::lua::StatePool>>,
@@ -261,9 +283,16 @@ impl Reloader {
                 "an actuator that leaves the tree did not come to rest: {error}"
             ));
         }
+        set_actuators(&nodes);
         let old_pool = {
             let mut state = lock(&self.state);
-            let tree = Tree::build(nodes, setup.owner, Some(before), &mut state.next_ino);
+            let tree = Tree::build(
+                nodes,
+                aliases,
+                setup.owner,
+                Some(before),
+                &mut state.next_ino,
+            );
             setup.forest.replace(tree);
             state.bytes = Arc::new(bytes);
             std::mem::replace(&mut state.pool, pool)
@@ -294,6 +323,22 @@ impl Reloader {
     }
 }
 
+/// Tells each lease what comes to rest at its end.
+fn set_actuators(nodes: &[Arc<Node>]) {
+    let mut actuators: HashMap<&str, Vec<Weak<Node>>> = HashMap::new();
+    for node in nodes {
+        let of_directory = actuators.entry(node.directory()).or_default();
+        if node.description.rest.is_some() {
+            of_directory.push(Arc::downgrade(node));
+        }
+    }
+    for node in nodes {
+        if let Some(of_directory) = actuators.remove(node.directory()) {
+            node.lease.set_actuators(of_directory);
+        }
+    }
+}
+
 fn one_line(text: &str) -> String {
     text.lines()
         .map(str::trim_end)
@@ -318,6 +363,8 @@ struct Builder<'a> {
     pool: Option<Arc<crate::convert::lua::StatePool>>,
     before: HashMap<&'a str, &'a Arc<Node>>,
     made: HashMap<String, Arc<Node>>,
+    /// By directory.
+    leases: HashMap<String, Arc<Lease>>,
     kept: Vec<Arc<Node>>,
 }
 
@@ -377,6 +424,10 @@ impl Builder<'_> {
             return Ok(old.clone());
         }
         let recipe = Recipe::prepare(description, &self.workshop, self.pool.clone())?;
+        let directory = directory_of(path, is_attribute);
+        let lease = self.leases.entry(directory.to_owned());
+        let lease = lease.or_insert_with(|| Lease::new(directory, self.engine));
+        let lease = lease.clone();
         let node = Node::new(
             description.clone(),
             is_attribute,
@@ -384,6 +435,7 @@ impl Builder<'_> {
             recipe,
             links,
             self.engine.clone(),
+            lease,
         );
         if let Err(error) = node.rest_tuple() {
             return Err(node.problem(&format!("rest: {error}")));
@@ -417,9 +469,17 @@ fn libraries(description: &NodeDescription) -> impl Iterator<Item = u128> {
 /// Paths of the nodes that a source names.
 fn linked(source: &SourceDescription) -> Vec<&str> {
     match source {
-        SourceDescription::Node(path) => vec![path],
-        SourceDescription::Several(parts) => {
-            parts.iter().flat_map(|part| linked(&part.source)).collect()
+        SourceDescription::Node(path) | SourceDescription::Newest(path) => vec![path],
+        SourceDescription::Several(several) => {
+            let parts = several.parts.iter();
+            parts.flat_map(|part| linked(&part.source)).collect()
+        }
+        SourceDescription::Regulator(regulator) => {
+            let feedback = regulator.feedback.parts.iter();
+            feedback
+                .flat_map(|part| linked(&part.source))
+                .chain([regulator.actuator.as_str()])
+                .collect()
         }
         SourceDescription::Faulty(faulty) => linked(&faulty.source),
         _ => Vec::new(),

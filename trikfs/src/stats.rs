@@ -3,6 +3,7 @@
 //! Owns 64-bit counters for a processor that has no 64-bit atomics, and the logarithmic histograms behind mean and p99.
 
 use std::fmt::Write;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// A counter that goes on after 2^32. Two readers of it may see the carry late, never a smaller low part for long.
@@ -113,6 +114,8 @@ pub struct Stats {
     pub faults: Counter,
     /// Tuples dropped because a reader was slow.
     pub dropped: Counter,
+    /// Lines, packets and samples of the source that made no sense.
+    pub damaged: Arc<Counter>,
     /// Age of the newest value when it was read.
     pub age: Times,
     /// Time of a conversion; measured on every 16th.
@@ -135,6 +138,7 @@ impl Stats {
             ("writes", &self.writes),
             ("faults", &self.faults),
             ("dropped", &self.dropped),
+            ("damaged", &self.damaged),
         ];
         for (name, counter) in counts {
             let _ = writeln!(out, "{name} {}", counter.get());

@@ -8,8 +8,8 @@ use crate::errno::Error;
 use crate::files::value::View;
 use crate::node::Node;
 use crate::transport::{Attr, DirEntry, FileKind};
-use config::description::Pace;
-use std::collections::{BTreeMap, HashMap};
+use config::description::{Alias, Pace};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 use std::time::{Duration, SystemTime};
 
@@ -46,10 +46,14 @@ pub enum Kind {
     Format(Arc<Node>),
     /// `poll_ms`
     Period(Arc<Node>),
+    /// `params/NAME`
+    Param(Arc<Node>, Arc<str>),
     /// `fault`
     Fault(Arc<Node>),
     /// `stats`
     Stats(Arc<Node>),
+    /// `owner`
+    Owner(Arc<Node>),
 }
 
 /// One file or directory.
@@ -93,10 +97,11 @@ pub struct Gone {
 }
 
 impl Tree {
-    /// Builds the tree of these nodes (attributes included). Numbers of `before` are kept for everything that
+    /// Builds the tree of these nodes (attributes included) and of their second names. Numbers of `before` are kept for everything that
     /// stands for the same thing; new ones are taken from `next_ino`.
     pub fn build(
         nodes: Vec<Arc<Node>>,
+        aliases: &[Alias],
         owner: Owner,
         before: Option<&Self>,
         next_ino: &mut u64,
@@ -121,18 +126,23 @@ impl Tree {
         ] {
             builder.add(ROOT, name, kind);
         }
+        let actuators: HashSet<&str> = nodes
+            .iter()
+            .filter(|node| node.description.rest.is_some())
+            .map(|node| node.directory())
+            .collect();
+        let is_actuator = |node: &Node| actuators.contains(node.directory());
         for node in &nodes {
-            let mut at = ROOT;
-            let mut parts = node.path().split('/').peekable();
-            while let Some(part) = parts.next() {
-                if parts.peek().is_none() && node.is_attribute {
-                    builder.add(at, part, Kind::Value(node.clone(), View::Text));
-                } else {
-                    at = builder.directory(at, part);
+            builder.add_node(node.path(), node, is_actuator(node));
+        }
+        for Alias { path, node: target } in aliases {
+            for node in &nodes {
+                match node.path().strip_prefix(target.as_str()) {
+                    Some(rest) if rest.is_empty() || node.is_attribute && rest.starts_with('/') => {
+                        builder.add_node(&format!("{path}{rest}"), node, is_actuator(node));
+                    }
+                    _ => {}
                 }
-            }
-            if !node.is_attribute {
-                builder.add_node_files(at, node);
             }
         }
         Self {
@@ -260,6 +270,8 @@ impl Tree {
                     0o444
                 }
             }
+            Kind::Owner(node) => attr.mode = 0o444 | node.lease.write_mode(),
+            Kind::Param(..) => attr.mode = 0o644,
             Kind::Device(node) => {
                 attr.mode = node.description.mode;
                 attr.size = node.description.output_tuple_size as u64;
@@ -312,8 +324,10 @@ impl Kind {
             | Self::Units(node)
             | Self::Format(node)
             | Self::Period(node)
+            | Self::Param(node, _)
             | Self::Fault(node)
-            | Self::Stats(node) => Some(node),
+            | Self::Stats(node)
+            | Self::Owner(node) => Some(node),
         }
     }
 
@@ -326,6 +340,7 @@ impl Kind {
         };
         let same_view = match (self, other) {
             (Self::Value(_, a), Self::Value(_, b)) => a == b,
+            (Self::Param(_, a), Self::Param(_, b)) => a == b,
             _ => true,
         };
         std::mem::discriminant(self) == std::mem::discriminant(other) && same_node && same_view
@@ -373,7 +388,24 @@ impl Builder<'_> {
         existing.unwrap_or_else(|| self.add(parent, name, Kind::Directory))
     }
 
-    fn add_node_files(&mut self, at: u64, node: &Arc<Node>) {
+    /// A node's directory with its files at a path, or an attribute's file.
+    fn add_node(&mut self, path: &str, node: &Arc<Node>, is_actuator: bool) {
+        let mut at = ROOT;
+        let mut parts = path.split('/').peekable();
+        while let Some(part) = parts.next() {
+            if parts.peek().is_none() && node.is_attribute {
+                self.add(at, part, Kind::Value(node.clone(), View::Text));
+                self.add_params(at, &format!("{part}."), node);
+            } else {
+                at = self.directory(at, part);
+            }
+        }
+        if !node.is_attribute {
+            self.add_node_files(at, node, is_actuator);
+        }
+    }
+
+    fn add_node_files(&mut self, at: u64, node: &Arc<Node>, is_actuator: bool) {
         self.add(at, "device", Kind::Device(node.clone()));
         self.add(at, "bin_data", Kind::Value(node.clone(), View::Bytes));
         self.add(at, "value", Kind::Value(node.clone(), View::Text));
@@ -391,5 +423,21 @@ impl Builder<'_> {
         self.add(at, "poll_ms", Kind::Period(node.clone()));
         self.add(at, "fault", Kind::Fault(node.clone()));
         self.add(at, "stats", Kind::Stats(node.clone()));
+        if is_actuator {
+            self.add(at, "owner", Kind::Owner(node.clone()));
+        }
+        self.add_params(at, "", node);
+    }
+
+    /// The params of a node, or of one of its attributes, whose name and a dot then stand before theirs.
+    fn add_params(&mut self, at: u64, before: &str, node: &Arc<Node>) {
+        if node.description.params.is_empty() {
+            return;
+        }
+        let directory = self.directory(at, "params");
+        for name in node.description.params.keys() {
+            let kind = Kind::Param(node.clone(), name.as_str().into());
+            self.add(directory, &format!("{before}{name}"), kind);
+        }
     }
 }

@@ -13,10 +13,20 @@ use std::sync::{Arc, Mutex};
 /// One program's way to a device.
 pub struct Writer {
     node: Arc<Node>,
-    sink: Box<dyn Sink>,
-    pipeline: Arc<Mutex<Pipeline>>,
+    way: Way,
     partial: Vec<u8>,
     output: Vec<u8>,
+}
+
+/// What becomes of a written tuple.
+enum Way {
+    /// It is converted and goes to the device.
+    Device {
+        sink: Box<dyn Sink>,
+        pipeline: Arc<Mutex<Pipeline>>,
+    },
+    /// It is an order to the node's regulator.
+    Regulation,
 }
 
 impl Writer {
@@ -25,10 +35,19 @@ impl Writer {
         let output = vec![0; node.device_tuple_size()];
         Self {
             node,
-            sink,
-            pipeline,
+            way: Way::Device { sink, pipeline },
             partial: Vec::new(),
             output,
+        }
+    }
+
+    /// A writer to a node that holds what is written by driving another.
+    pub fn to_regulation(node: Arc<Node>) -> Self {
+        Self {
+            node,
+            way: Way::Regulation,
+            partial: Vec::new(),
+            output: Vec::new(),
         }
     }
 
@@ -75,10 +94,16 @@ impl Writer {
                 tuple.len()
             )));
         }
-        let direction = Direction::Write;
+        let (sink, pipeline) = match (&mut self.way, self.node.regulation()) {
+            (Way::Device { sink, pipeline }, _) => (sink, pipeline),
+            (Way::Regulation, Some(regulation)) => return regulation.order(&self.node, tuple),
+            (Way::Regulation, None) => {
+                return Err(Error::Internal("an order without a regulator".to_owned()));
+            }
+        };
         let (_, produced, fault) = self.node.convert(
-            &mut lock(&self.pipeline),
-            direction,
+            &mut lock(pipeline),
+            Direction::Write,
             tuple,
             &mut self.output,
         );
@@ -86,11 +111,12 @@ impl Writer {
             return Err(error);
         }
         if produced > 0 {
-            self.sink.write(&self.output, waits).inspect_err(|error| {
+            sink.write(&self.output, waits).inspect_err(|error| {
                 if *error != Error::WouldBlock {
                     self.node.report(error);
                 }
             })?;
+            self.node.count_write();
         }
         Ok(())
     }

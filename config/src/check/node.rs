@@ -3,26 +3,30 @@
 use super::fields::Fields;
 use super::source::is_read_only;
 use super::stages::{StageDraft, sized};
-use crate::description::{NodeDescription, Pace, SourceDescription, StageDescription};
+use crate::description::{
+    NodeDescription, Pace, RegulatorDescription, SourceDescription, StageDescription,
+};
 use crate::format::Format;
 use crate::limits::{
     BUDGET_US, BUDGET_US_MAX, MEMORY_KB, MEMORY_KB_MAX, NAME_BYTES_MAX, PERIOD_MS_MAX, TIMEOUT_MS,
     TUPLE_BYTES_MAX,
 };
 use crate::problem::Problem;
-use crate::value::{Key, Value};
+use crate::value::Value;
 use crate::vm::fingerprint::hash;
 use nix::unistd::{Group, User};
-use std::collections::BTreeMap;
 
 /// All fields of a description.
-pub(super) const FIELDS: [&str; 19] = [
+pub(super) const FIELDS: [&str; 23] = [
+    "about",
+    "ages",
     "attributes",
     "budget_us",
     "converter",
     "format",
     "group",
     "input_tuple_size",
+    "interval",
     "memory_kb",
     "mode",
     "on_event",
@@ -34,14 +38,15 @@ pub(super) const FIELDS: [&str; 19] = [
     "share",
     "src",
     "timeout_ms",
+    "trigger",
     "units",
     "write_converter",
 ];
 
 /// A state with the program takes about 50 KiB; with less than this no converter would ever run.
 const MEMORY_KB_MIN: u32 = 128;
-const PARAMS_MAX: usize = 256;
 const UNITS_BYTES_MAX: usize = 64;
+const ABOUT_BYTES_MAX: usize = 200;
 
 /// Sizes and what depends on them.
 struct Layout {
@@ -57,8 +62,15 @@ impl Fields<'_, '_> {
         let (source, input) = self.source()?;
         let read = self.stages("converter")?.unwrap_or_default();
         let write = self.stages("write_converter")?;
-        let layout = self.layout(input, &read)?;
-        let read_only = is_read_only(&source);
+        let mut layout = self.layout(input, &read)?;
+        if layout.format.is_none() && read.is_empty() {
+            layout.format = self.joined_format(&source);
+        }
+        let read_only = match &source {
+            // Writing through another node has to be asked for.
+            SourceDescription::Node(other) => write.is_none() || !self.checker.takes_tuples(other),
+            source => is_read_only(source),
+        };
         if write.is_some() && read_only {
             return Err(self.problem(
                 "write_converter",
@@ -73,13 +85,8 @@ impl Fields<'_, '_> {
         let (input_size, output_size) = (layout.input, layout.output);
         let converter = sized(read, input_size, output_size)
             .map_err(|reason| self.problem("converter", reason))?;
-        let write_converter = match write {
-            None => None,
-            Some(stages) => {
-                let stages = sized(stages, output_size, input_size);
-                Some(stages.map_err(|reason| self.problem("write_converter", reason))?)
-            }
-        };
+        let write_converter = self.write_stages(write, &source, &layout)?;
+        let (params, param_ranges) = self.params()?;
         let mut node = NodeDescription {
             path: self.path.clone(),
             place: self.own_place(),
@@ -89,10 +96,8 @@ impl Fields<'_, '_> {
             converter,
             write_converter,
             format: layout.format,
-            units: self
-                .text("units", UNITS_BYTES_MAX)?
-                .unwrap_or_default()
-                .to_owned(),
+            about: self.words("about", ABOUT_BYTES_MAX)?,
+            units: self.words("units", UNITS_BYTES_MAX)?,
             pace: self.pace()?,
             mode: self
                 .mode()?
@@ -109,14 +114,44 @@ impl Fields<'_, '_> {
             memory_kb: self
                 .whole("memory_kb", MEMORY_KB_MIN, MEMORY_KB_MAX)?
                 .unwrap_or(MEMORY_KB),
-            params: self.params()?,
+            params,
+            param_ranges,
             attributes: Vec::new(),
             share: self.boolean("share")?,
             fingerprint: 0,
         };
+        self.check_regulator(&mut node)?;
         self.check_rest(&node, read_only)?;
         node.fingerprint = fingerprint(&node, &digests);
         Ok(node)
+    }
+
+    /// A text that may be left out.
+    fn words(&self, field: &str, bytes_max: usize) -> Result<String, Problem> {
+        Ok(self.text(field, bytes_max)?.unwrap_or_default().to_owned())
+    }
+
+    /// The stages from program to device; for a regulator, those of its control law.
+    fn write_stages(
+        &self,
+        write: Option<Vec<StageDraft>>,
+        source: &SourceDescription,
+        layout: &Layout,
+    ) -> Result<Option<Vec<StageDescription>>, Problem> {
+        let Some(drafts) = write else {
+            return Ok(None);
+        };
+        let (before, after) = match source {
+            SourceDescription::Regulator(regulator) => (
+                RegulatorDescription::law_input_size(layout.output),
+                regulator.actuator_tuple_size,
+            ),
+            _ => (layout.output, layout.input),
+        };
+        let stages = sized(drafts, before, after);
+        stages
+            .map(Some)
+            .map_err(|reason| self.problem("write_converter", reason))
     }
 
     fn own_place(&self) -> crate::description::Place {
@@ -299,61 +334,6 @@ impl Fields<'_, '_> {
         let encoded = format.encode_numbers(rest, &mut vec![0; size]);
         encoded.map_err(|error| self.problem("rest", format!("rest: {error}")))
     }
-
-    fn params(&self) -> Result<BTreeMap<String, f64>, Problem> {
-        let Some(value) = self.get("params") else {
-            return Ok(BTreeMap::new());
-        };
-        let Some(table) = self.table_of(value) else {
-            return Err(self.wrong_type("params", "a table of numbers", value));
-        };
-        if table.entries.len() > PARAMS_MAX {
-            return Err(self.problem(
-                "params",
-                format!("params has more than {PARAMS_MAX} numbers"),
-            ));
-        }
-        let mut params = BTreeMap::new();
-        for (key, value) in &table.entries {
-            let name = match key {
-                Key::Text(text) => std::str::from_utf8(text)
-                    .ok()
-                    .filter(|name| is_param_name(name)),
-                _ => None,
-            };
-            let Some(name) = name else {
-                return Err(self.problem(
-                    "params",
-                    "the name of a param is a word of letters, digits and '_'",
-                ));
-            };
-            let Value::Number(number) = value else {
-                return Err(self.problem(
-                    "params",
-                    format!(
-                        "params: '{name}' must be a number, not {}",
-                        value.describe()
-                    ),
-                ));
-            };
-            if !number.is_finite() {
-                return Err(self.problem(
-                    "params",
-                    format!("params: '{name}' must be finite, not {number}"),
-                ));
-            }
-            params.insert(name.to_owned(), *number);
-        }
-        Ok(params)
-    }
-}
-
-fn is_param_name(name: &str) -> bool {
-    !name.is_empty()
-        && name.len() <= 64
-        && name
-            .bytes()
-            .all(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
 }
 
 /// Digest of everything that makes the node behave as it does; not of where it stands in the text.
@@ -389,6 +369,7 @@ fn fingerprint(node: &NodeDescription, digests: &[u128]) -> u128 {
         node.budget_us,
         node.memory_kb,
         &node.params,
+        &node.param_ranges,
     );
     hash(format!("{:?}", (&node.path, source, stages, sizes, access, limits)).as_bytes())
 }

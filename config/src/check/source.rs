@@ -1,17 +1,18 @@
-//! The `src` of a description: paths, constructors, other nodes, several sources.
+//! The `src` of a description: paths, constructors, other nodes. Several sources stand in `several`.
 //!
 //! Owns which sources can be written, and which know the size of their tuples.
 
+use super::bus::i2c_size;
 use super::fields::Fields;
 use crate::description::{
-    EvdevDescription, EvdevLayout, FakeDescription, FaultyDescription, PartDescription,
+    EvdevDescription, EvdevLayout, FakeDescription, FaultyDescription, GpioDirection,
     ReplayDescription, SourceDescription,
 };
 use crate::evdev_codes::event_code;
-use crate::limits::{NAME_BYTES_MAX, PERIOD_MS_MAX, SOURCES_MAX, TUPLE_BYTES_MAX};
+use crate::limits::{PERIOD_MS_MAX, TUPLE_BYTES_MAX};
 use crate::problem::Problem;
 use crate::search::path_of;
-use crate::value::{Key, Table, Value};
+use crate::value::{Table, Value};
 
 /// Codes of one evdev tuple.
 const CODES_MAX: usize = 256;
@@ -42,11 +43,21 @@ pub(super) fn is_read_only(source: &SourceDescription) -> bool {
     match source {
         SourceDescription::Path(_)
         | SourceDescription::Attribute(_)
-        | SourceDescription::Fifo(_) => false,
+        | SourceDescription::Fifo(_)
+        // A port that is absent on this board is described like one that is there.
+        | SourceDescription::Absent(_)
+        | SourceDescription::Regulator(_)
+        | SourceDescription::I2c(_) => false,
+        SourceDescription::Pwm(_) => false,
+        SourceDescription::Gpio(gpio) => gpio.direction == GpioDirection::In,
+        SourceDescription::Lines(lines) => lines.input.is_none(),
         SourceDescription::Evdev(_)
+        | SourceDescription::Iio(_)
+        | SourceDescription::Packets(_)
         | SourceDescription::Fake(_)
         | SourceDescription::Replay(_)
         | SourceDescription::Node(_)
+        | SourceDescription::Newest(_)
         | SourceDescription::Several(_) => true,
         SourceDescription::Faulty(faulty) => is_read_only(&faulty.source),
     }
@@ -61,15 +72,22 @@ impl<'a> Fields<'_, 'a> {
         if let Some(table) = self.table_of(value)
             && table.get("").is_none()
         {
-            let parts = self.parts(table)?;
-            let size = parts.iter().map(|part| part.tuple_size).sum();
+            let several = self.several(table)?;
+            let size = several.tuple_size();
             if size > TUPLE_BYTES_MAX {
                 let reason = format!(
                     "the tuples of all sources have {size} bytes, more than {TUPLE_BYTES_MAX}"
                 );
                 return Err(self.problem("src", reason));
             }
-            return Ok((SourceDescription::Several(parts), Some(size)));
+            return Ok((SourceDescription::Several(several), Some(size)));
+        }
+        if let Some(field) = ["ages", "interval", "trigger"]
+            .into_iter()
+            .find(|field| self.get(field).is_some())
+        {
+            let reason = format!("{field} is for several sources: src = {{ a = ..., b = ... }}");
+            return Err(self.problem(field, reason));
         }
         let source = self.single(value)?;
         let known = self.size_of(&source)?;
@@ -100,7 +118,11 @@ impl<'a> Fields<'_, 'a> {
     }
 
     /// The bytes of a fake source are whole tuples.
-    fn check_data(&self, source: &SourceDescription, size: usize) -> Result<(), Problem> {
+    pub(super) fn check_data(
+        &self,
+        source: &SourceDescription,
+        size: usize,
+    ) -> Result<(), Problem> {
         match source {
             SourceDescription::Fake(fake) if !fake.data.len().is_multiple_of(size) => {
                 let reason = format!(
@@ -109,121 +131,46 @@ impl<'a> Fields<'_, 'a> {
                 );
                 Err(self.problem("src", reason))
             }
+            SourceDescription::Packets(packets) => self.check_packets(packets, size),
             SourceDescription::Faulty(faulty) => self.check_data(&faulty.source, size),
+            SourceDescription::I2c(i2c) => self.check_i2c_size(i2c, size),
             _ => Ok(()),
         }
     }
 
     /// Bytes of one tuple, if the source knows.
-    fn size_of(&mut self, source: &SourceDescription) -> Result<Option<usize>, Problem> {
+    pub(super) fn size_of(&mut self, source: &SourceDescription) -> Result<Option<usize>, Problem> {
         match source {
             SourceDescription::Evdev(evdev) => Ok(Some(4 * evdev.codes.len())),
+            SourceDescription::Iio(iio) => Ok(Some(iio.tuple_size())),
+            SourceDescription::Pwm(_) => Ok(Some(4)),
+            SourceDescription::Gpio(_) => Ok(Some(1)),
             SourceDescription::Faulty(faulty) => self.size_of(&faulty.source),
-            SourceDescription::Node(other) => match self.checker.size_of_node(other, self.depth)? {
-                Some(size) => Ok(Some(size)),
-                None => {
-                    let hint = self.checker.nearest_node(other);
-                    Err(self.problem("src", format!("there is no node '{other}'{hint}")))
+            SourceDescription::I2c(i2c) => Ok(i2c_size(i2c.transfer)),
+            SourceDescription::Regulator(regulator) => Ok(Some(regulator.feedback.tuple_size())),
+            SourceDescription::Node(other) | SourceDescription::Newest(other) => {
+                match self.checker.size_of_node(other, self.depth)? {
+                    Some(size) => Ok(Some(size)),
+                    None => {
+                        let hint = self.checker.nearest_node(other);
+                        Err(self.problem("src", format!("there is no node '{other}'{hint}")))
+                    }
                 }
-            },
+            }
             _ => Ok(None),
         }
     }
 
-    /// Several sources: a list or a named table.
-    fn parts(&mut self, table: &'a Table) -> Result<Vec<PartDescription>, Problem> {
-        if table.entries.is_empty() {
-            return Err(self.problem("src", "src is an empty table"));
-        }
-        if table.entries.len() > SOURCES_MAX {
-            return Err(self.problem("src", format!("src has more than {SOURCES_MAX} sources")));
-        }
-        let list = table.list();
-        let sizes = self.get("input_tuple_size");
-        let sizes_table = sizes.and_then(|value| self.table_of(value));
-        if let (Some(value), None) = (sizes, sizes_table) {
-            let reason = format!(
-                "input_tuple_size of several sources is a table with a size for each, not {}",
-                value.describe()
-            );
-            return Err(self.problem("input_tuple_size", reason));
-        }
-        if !list.is_empty() && list.len() != table.entries.len() {
-            return Err(self.problem("src", "src mixes a list with names"));
-        }
-        let mut parts = Vec::new();
-        for (key, value) in &table.entries {
-            let name = self.part_name(key)?;
-            let source = self.single(value)?;
-            let given =
-                sizes_table.and_then(|sizes| sizes.entries.iter().find(|(other, _)| other == key));
-            let given = given
-                .map(|(_, value)| self.tuple_size("input_tuple_size", value))
-                .transpose()?;
-            let known = self.size_of(&source)?;
-            let tuple_size = match (known, given) {
-                (Some(known), Some(given)) if known != given => {
-                    let reason = format!(
-                        "input_tuple_size of '{name}' is {given}, but the source gives tuples of {known} bytes"
-                    );
-                    return Err(self.problem("input_tuple_size", reason));
-                }
-                (Some(size), _) | (None, Some(size)) => size,
-                (None, None) => {
-                    return Err(self.problem(
-                        "input_tuple_size",
-                        format!("input_tuple_size of '{name}' is missing"),
-                    ));
-                }
-            };
-            self.check_data(&source, tuple_size)?;
-            parts.push(PartDescription {
-                name,
-                source,
-                tuple_size,
-            });
-        }
-        if let Some(sizes) = sizes_table {
-            let stray = sizes
-                .entries
-                .iter()
-                .find(|(key, _)| !table.entries.iter().any(|(other, _)| other == key));
-            if let Some((key, _)) = stray {
-                let name = self.part_name(key)?;
-                return Err(self.problem(
-                    "input_tuple_size",
-                    format!("input_tuple_size has '{name}', but src has not"),
-                ));
-            }
-        }
-        Ok(parts)
-    }
-
-    fn part_name(&self, key: &Key) -> Result<String, Problem> {
-        match key {
-            Key::Text(text) => match std::str::from_utf8(text) {
-                Ok(name)
-                    if !name.is_empty()
-                        && name.len() <= NAME_BYTES_MAX
-                        && !name.chars().any(char::is_control) =>
-                {
-                    Ok(name.to_owned())
-                }
-                _ => Err(self.problem("src", "the name of a source is not a short text")),
-            },
-            Key::Number(number) => Ok(number.to_string()),
-            Key::Other(kind) => {
-                Err(self.problem("src", format!("the name of a source is a {kind}")))
-            }
-        }
-    }
-
     /// One source: a path, another node, or what a constructor made.
-    fn single(&mut self, value: &'a Value) -> Result<SourceDescription, Problem> {
+    pub(super) fn single(&mut self, value: &'a Value) -> Result<SourceDescription, Problem> {
         if let Value::Text(text) = value {
             if let Some(other) = text.strip_prefix(b"trikfs:") {
                 let other = String::from_utf8_lossy(other).into_owned();
                 return Ok(SourceDescription::Node(other));
+            }
+            if let Some(other) = text.strip_prefix(b"newest:") {
+                let other = String::from_utf8_lossy(other).into_owned();
+                return Ok(SourceDescription::Newest(other));
             }
             return Ok(SourceDescription::Path(path_of(
                 self.absolute("src", value)?,
@@ -244,15 +191,23 @@ impl<'a> Fields<'_, 'a> {
                 .map(SourceDescription::Attribute),
             b"fifo" => self.device("fifo", table).map(SourceDescription::Fifo),
             b"evdev" => self.evdev(table),
+            b"iio" => self.iio(table),
+            b"pwm" => self.pwm(table),
+            b"gpio" => self.gpio(table),
+            b"lines" => self.lines(table),
+            b"packets" => self.packets(table),
             b"fake" => self.fake(table),
             b"replay" => self.replay(table),
             b"faulty" => self.faulty(table),
+            b"regulator" => self.regulator(table),
+            b"i2c" => self.i2c(table),
+            b"absent" => self.absent(table),
             _ => Err(self.problem("src", "src is of an unknown kind")),
         }
     }
 
     /// A path of the system, which never depends on the working directory.
-    fn absolute(&self, field: &str, value: &'a Value) -> Result<&'a [u8], Problem> {
+    pub(super) fn absolute(&self, field: &str, value: &'a Value) -> Result<&'a [u8], Problem> {
         let path = self.path_bytes(field, value)?;
         if path.first() == Some(&b'/') {
             return Ok(path);
@@ -271,7 +226,7 @@ impl<'a> Fields<'_, 'a> {
     }
 
     /// A field of a constructor, read with the checks of a description's field.
-    fn inner<T>(
+    pub(super) fn inner<T>(
         &mut self,
         table: &'a Table,
         read: impl FnOnce(&mut Self) -> Result<T, Problem>,

@@ -242,7 +242,7 @@ fn attributes_are_nodes_of_their_own_with_names_of_their_own() {
     };
     for name in [
         "device", "bin_data", "value", "value0", "value12", "units", "format", "poll_ms", "fault",
-        "stats",
+        "stats", "owner",
     ] {
         let reason =
             format!("robot.lua:3: x: '{name}' is a file of every node and cannot be an attribute");
@@ -382,13 +382,14 @@ fn sources_that_make_their_own_bytes_are_read() {
         source(&format!("faulty{{ src = {inner}, short = 1 }}")),
         faulty(libc::EIO, u32::MAX, 1, 1)
     );
-    let SourceDescription::Several(parts) =
+    let SourceDescription::Several(several) =
         node("src = { gyro = '/g', accel = 'trikfs:other' }, input_tuple_size = { gyro = 6 }")
             .source
     else {
         panic!("several sources");
     };
-    let parts: Vec<_> = parts
+    let parts: Vec<_> = several
+        .parts
         .iter()
         .map(|part| (part.name.as_str(), part.tuple_size))
         .collect();
@@ -417,7 +418,7 @@ fn sources_that_cannot_be_are_refused() {
     );
     assert_eq!(
         source("'trikfs:x'"),
-        "robot.lua:2: x: the node reads itself in a circle"
+        "robot.lua:2: x: the node reads itself in a circle: x -> x"
     );
     assert_eq!(
         source("attribute{}"),
@@ -515,7 +516,7 @@ fn sources_that_cannot_make_bytes_are_refused() {
 fn circles_and_long_rows_of_nodes_are_refused() {
     assert_eq!(
         refused_program("trikfs = {\na = { src = 'trikfs:b' },\nb = { src = 'trikfs:a' } }"),
-        "robot.lua:2: a: the node reads itself in a circle"
+        "robot.lua:2: a: the node reads itself in a circle: a -> b -> a"
     );
     let row = "trikfs = { n0 = { src = '/d', input_tuple_size = 1 } } for i = 1, N do trikfs['n' .. i] = { src = 'trikfs:n' .. (i - 1) } end";
     assert!(load(&row.replace('N', "60")).is_ok());
@@ -672,7 +673,27 @@ fn rest_must_be_something_that_can_be_written() {
         "robot.lua:2: x: rest makes no sense: the source cannot be written"
     );
     assert_eq!(
-        refused("src = 'trikfs:other', write_converter = id_create(4)"),
+        refused(
+            "src = fake{ data = 'abcd' }, input_tuple_size = 4, write_converter = id_create(4)"
+        ),
+        "robot.lua:2: x: write_converter makes no sense: the source cannot be written"
+    );
+}
+
+#[test]
+fn a_node_writes_through_another_if_it_says_how_and_the_other_can_be_written() {
+    let through = |mode: &str| {
+        load(&format!(
+            "trikfs = {{ a = {{ src = '/d', input_tuple_size = 4, mode = {mode} }},
+              x = {{ src = 'trikfs:a', write_converter = id_create(4), rest = {{ 0, 0, 0, 0 }} }} }}"
+        ))
+    };
+    let config = through("0644").unwrap().config;
+    assert_eq!(config.nodes[1].mode, 0o644);
+    assert_eq!(config.nodes[1].written_tuple_size(), 4);
+    let refused = through("0444").unwrap_err().to_string();
+    assert_eq!(
+        refused,
         "robot.lua:2: x: write_converter makes no sense: the source cannot be written"
     );
 }

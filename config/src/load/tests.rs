@@ -30,7 +30,7 @@ impl Folder {
     fn load(&self, source: &str) -> Result<Loaded, Problem> {
         let loader = Loader {
             include_dirs: vec![self.0.clone()],
-            library_dirs: Vec::new(),
+            ..Loader::default()
         };
         loader.load("robot.lua", Some(&self.0), source.as_bytes())
     }

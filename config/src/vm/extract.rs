@@ -1,4 +1,4 @@
-//! Copies the global `trikfs` out of a state as plain values, without running any of the program's code.
+//! Copies the globals `trikfs` and `setup` out of a state as plain values, without running any of the program's code.
 //!
 //! Owns the limits of what is copied. Shared tables are copied each time they are met, cycles are refused.
 
@@ -18,7 +18,7 @@ const TEXT_BYTES_MAX: usize = 8 * CONFIG_BYTES_MAX;
 /// Why a tree could not be copied.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Refusal {
-    /// Keys from `trikfs` to the place.
+    /// Keys to the place, from the global on.
     pub(crate) path: Vec<String>,
     /// Lower case, no trailing stop.
     pub(crate) reason: String,
@@ -36,7 +36,9 @@ pub(crate) fn extract(state: &State) -> Result<Values, Refusal> {
         // of Lua skips no destructor.
         unsafe {
             lua::lua_newtable(l);
+            target.path.push(b"trikfs".to_vec());
             let fits = target.value(l, 1).map(|value| target.values.root = value);
+            let fits = fits.and_then(|()| target.setup(l));
             lua::lua_pushvalue(l, 2);
             lua::lua_replace(l, 1);
             lua::lua_settop(l, 1);
@@ -108,6 +110,23 @@ impl Copier {
                 other => Value::Other(type_name(other)),
             }))
         }
+    }
+
+    /// Copies the global `setup`, which the program leaves beside the tree.
+    ///
+    /// # Safety
+    /// As `value`.
+    unsafe fn setup(&mut self, l: *mut lua::lua_State) -> Option<()> {
+        self.path = vec![b"setup".to_vec()];
+        // SAFETY: as `value`; the globals are a table, and a raw access runs none of the program's code.
+        unsafe {
+            lua::lua_pushlstring_(l, c"setup".as_ptr(), 5);
+            lua::lua_rawget_(l, lua::LUA_GLOBALSINDEX);
+            let at = lua::lua_gettop(l);
+            self.values.setup = self.value(l, at)?;
+            lua::lua_settop(l, at - 1);
+        }
+        Some(())
     }
 
     unsafe fn text(&mut self, l: *mut lua::lua_State, index: c_int) -> Option<Vec<u8>> {

@@ -128,3 +128,49 @@ assert open(left, 'rb').read() == b'\\x64\\1'
 ",
     );
 }
+
+/// execve(2) closes descriptors while the kernel keeps others from looking at the process: whoever answers those
+/// closes must not wait for the process (found as a mount that hung for good).
+#[test]
+fn a_program_that_replaces_itself_is_answered_and_keeps_or_hands_over_its_actuator() {
+    let Some(m) = mount_on(board(), MOTORS) else {
+        return;
+    };
+    m.python(
+        "left = D + '/left'
+def replaced(inherits, times):
+    fd = os.open(M + '/left/value', os.O_WRONLY)
+    draft = os.open(M + '/config', os.O_WRONLY)
+    os.write(draft, b'')
+    os.write(fd, b'100 1')
+    os.set_inheritable(fd, inherits)
+    if inherits:
+        script = 'import os, signal; signal.pause()'
+        os.execv(sys.executable, [sys.executable, '-c', script])
+    script = '''
+import os, sys
+times = int(sys.argv[1])
+fd = os.open(os.environ['MNT'] + '/left/value', os.O_WRONLY)
+draft = os.open(os.environ['MNT'] + '/config', os.O_RDWR)
+os.write(draft, os.read(draft, 10)[:0])
+os.write(fd, b'100 1')
+if times:
+    os.execv(sys.executable, [sys.executable, '-S', '-c', os.environ['SCRIPT'], str(times - 1)])
+os.close(fd)
+'''
+    os.environ['SCRIPT'] = script
+    os.environ['MNT'] = M
+    os.execv(sys.executable, [sys.executable, '-S', '-c', script, str(times)])
+children = [forked(lambda: replaced(False, 20)) for _ in range(4)]
+for child in children:
+    assert ended(child) == 0
+assert open(left, 'rb').read() == b'\\x64\\1', 'closed by execve: handed over'
+child = forked(lambda: replaced(True, 0))
+eventually(lambda: b'signal.pause' in open('/proc/%d/cmdline' % child, 'rb').read() and asleep(child))
+assert open(left, 'rb').read() == b'\\x64\\1', 'inherited through execve'
+os.kill(child, signal.SIGKILL)
+ended(child)
+eventually(lambda: open(left, 'rb').read() == b'\\0\\7', 'rest')
+",
+    );
+}

@@ -184,6 +184,7 @@ pub(super) fn serve(args: ServeArgs) -> Result<(), Failure> {
             .flatten(),
         include_dirs: paths.include_dirs,
         library_dirs: paths.library_dirs,
+        device_root: paths.device_root,
         cache: paths.cache,
         owner: Owner {
             uid: getuid().as_raw(),

@@ -1,18 +1,17 @@
 //! Inline C: source text of a configuration in, a shared library in the cache out.
 //!
 //! Owns the choice of the compiler, its arguments, and the translation of what it says into a problem at a
-//! line of the configuration. Runs it through `process`, which owns the limits. Loads nothing: the
+//! line of the configuration. Runs it through `command`, which owns the limits. Loads nothing: the
 //! library goes to `shared` like any other. Compiled code is native code and trusted as such; the
 //! compiler itself is kept within time, memory and output, because `#include "/dev/zero"` is a line of C.
 
-mod process;
-
 use super::shared::Cache;
+use crate::command::{self, Ended, Limits};
 use crate::hash::Hash;
 use crate::limits;
 use config::description::Place;
 use config::problem::Problem;
-use process::{Ended, Limits};
+
 use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::io::Read;
@@ -131,7 +130,7 @@ impl Compiler {
     }
 
     fn command(&self, cache: &Cache, source: &Path, output: &Path) -> Command {
-        let mut command = process::confined(
+        let mut command = command::confined(
             &self.program,
             limits::COMPILE_MEMORY_KB_MAX,
             u32::try_from(limits::LIBRARY_BYTES_MAX >> 10).unwrap_or(u32::MAX),
@@ -179,7 +178,7 @@ fn compile_with(
                 time: limit,
                 output_bytes: limits::COMPILE_OUTPUT_BYTES_MAX,
             };
-            process::run(compiler.command(cache, &source, &output), &limits).map_err(|error| {
+            command::run(compiler.command(cache, &source, &output), &limits).map_err(|error| {
                 problem(
                     place.line,
                     format!("c compiler {}: {error}", compiler.program.display()),

@@ -161,3 +161,50 @@ fn a_panic_during_work_costs_that_work() {
     };
     Crew::run("panics", 2, Arc::new(role)).unwrap().wait();
 }
+
+/// A crew in which the first gives way and then waits for its end. True if the watchdog took no part.
+fn gives_way_in_time() -> bool {
+    let (begun, told) = channel();
+    let (end, ended) = channel::<()>();
+    let ended = Mutex::new(ended);
+    let turns = AtomicU32::new(0);
+    let role = move |seat: &Seat| {
+        let turn = turns.fetch_add(1, Ordering::SeqCst);
+        if turn == 2 {
+            return ControlFlow::Break(());
+        }
+        seat.begin();
+        if turn == 0 {
+            give_way();
+            give_way();
+        }
+        let _ = begun.send(std::thread::current().id());
+        if turn == 0 {
+            let _ = ended.lock().unwrap().recv();
+        }
+        seat.end();
+        ControlFlow::Continue(())
+    };
+    let crew = Crew::run("giver", 4, Arc::new(role)).unwrap();
+    let first = told.recv_timeout(PATIENCE).expect("the first");
+    let second = told.recv_timeout(PATIENCE).expect("the second");
+    assert_ne!(first, second);
+    crew.wait();
+    assert!(crew.late_count() <= 1, "relieved twice");
+    assert!(crew.threads() <= 3, "{} threads", crew.threads());
+    drop(end);
+    crew.late_count() == 0
+}
+
+#[test]
+fn who_gives_way_is_replaced_without_the_watchdog() {
+    // On a loaded machine the watchdog may come between the beginning of work and the giving way.
+    assert!((0..50).any(|_| gives_way_in_time()));
+}
+
+#[test]
+fn a_thread_without_a_role_gives_nothing_away() {
+    give_way();
+    let lock = Mutex::new(7);
+    assert_eq!(*lock_patiently(&lock), 7);
+}

@@ -1,13 +1,17 @@
 //! Linux input devices decoded: the newest value of each watched code, one tuple per SYN_REPORT.
 //!
 //! Owns the layout of `struct input_event` (linux/input.h: two time fields, u16 type, u16 code, s32 value) for
-//! 32- and 64-bit times and the rule for SYN_DROPPED: everything up to the next SYN_REPORT is thrown away.
+//! 32- and 64-bit times and the rule for SYN_DROPPED: everything up to the next SYN_REPORT is thrown away. A real
+//! device is asked for its present values when it is opened and after such a gap; no event means the same value.
+
+mod present;
 
 use super::{Got, Stream, chardev, fifo};
 use crate::errno::Error;
 use config::description::{EvdevDescription, EvdevLayout};
 use std::os::fd::BorrowedFd;
 use std::os::unix::fs::FileTypeExt;
+use std::time::Instant;
 
 const EV_SYN: u16 = 0;
 const SYN_REPORT: u16 = 0;
@@ -30,11 +34,29 @@ impl Evdev {
         } else {
             Box::new(chardev::CharDevice::open(path)?)
         };
-        Ok(Self {
+        let mut evdev = Self {
             bytes,
             decoder: Decoder::new(description),
             raw: vec![0; 64 * 24],
-        })
+        };
+        evdev.ask();
+        Ok(evdev)
+    }
+
+    /// Makes a report of the present values, if the device can be asked. A FIFO of events cannot.
+    fn ask(&mut self) {
+        let Some(fd) = self.bytes.fd() else { return };
+        let decoder = &mut self.decoder;
+        let mut is_answered = false;
+        for (value, (kind, code)) in decoder.values.iter_mut().zip(&decoder.codes) {
+            if let Some(present) = present::present_value(fd, *kind, *code) {
+                *value = present;
+                is_answered = true;
+            }
+        }
+        if is_answered {
+            decoder.report();
+        }
     }
 }
 
@@ -46,7 +68,12 @@ impl Stream for Evdev {
                 return Ok(Got::Bytes(given));
             }
             match self.bytes.read(&mut self.raw)? {
-                Got::Bytes(n) => self.decoder.feed(&self.raw[..n]),
+                Got::Bytes(n) => {
+                    self.decoder.feed(&self.raw[..n]);
+                    if std::mem::take(&mut self.decoder.has_lost) {
+                        self.ask();
+                    }
+                }
                 other => return Ok(other),
             }
         }
@@ -54,6 +81,11 @@ impl Stream for Evdev {
 
     fn fd(&self) -> Option<BorrowedFd<'_>> {
         self.bytes.fd()
+    }
+
+    /// The answer to a question comes without an event.
+    fn wake_at(&self) -> Option<Instant> {
+        (!self.decoder.ready.is_empty()).then(Instant::now)
     }
 
     fn is_still_there(&self) -> bool {
@@ -69,6 +101,8 @@ struct Decoder {
     partial: Vec<u8>,
     ready: Vec<u8>,
     dropping: bool,
+    /// Events were lost, so the values may be old.
+    has_lost: bool,
 }
 
 impl Decoder {
@@ -85,6 +119,7 @@ impl Decoder {
             partial: Vec::with_capacity(event_size),
             ready: Vec::new(),
             dropping: false,
+            has_lost: false,
         }
     }
 
@@ -108,12 +143,11 @@ impl Decoder {
     fn event(&mut self, kind: u16, code: u16, value: i32) {
         match (kind, code) {
             (EV_SYN, SYN_DROPPED) => self.dropping = true,
-            (EV_SYN, SYN_REPORT) if self.dropping => self.dropping = false,
-            (EV_SYN, SYN_REPORT) => {
-                for value in &self.values {
-                    self.ready.extend_from_slice(&value.to_le_bytes());
-                }
+            (EV_SYN, SYN_REPORT) if self.dropping => {
+                self.dropping = false;
+                self.has_lost = true;
             }
+            (EV_SYN, SYN_REPORT) => self.report(),
             _ if self.dropping => {}
             _ => {
                 if let Some(at) = self
@@ -124,6 +158,12 @@ impl Decoder {
                     self.values[at] = value;
                 }
             }
+        }
+    }
+
+    fn report(&mut self) {
+        for value in &self.values {
+            self.ready.extend_from_slice(&value.to_le_bytes());
         }
     }
 

@@ -10,6 +10,7 @@ use crate::limits;
 use crate::node::Node;
 use crate::text;
 use crate::transport::{Outcome, Transfer};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
 /// A text that is made anew at each read from its beginning.
@@ -97,31 +98,32 @@ impl OpenFile for StopFile {
     }
 }
 
-/// Brings every actuator to rest, slow ones beside each other. All are tried; the first failure is returned.
+/// Brings every actuator to rest, slow ones beside each other: one that hangs keeps one thread. All are tried; the
+/// first failure is returned.
 pub fn rest_all(nodes: &[Arc<Node>]) -> Result<(), Error> {
-    let actuators: Vec<_> = nodes
-        .iter()
-        .filter(|node| node.description.rest.is_some())
-        .collect();
-    let per_thread = actuators.len().div_ceil(limits::REST_THREADS_MAX).max(1);
+    let has_rest = |node: &&Arc<Node>| node.description.rest.is_some();
+    let actuators: Vec<_> = nodes.iter().filter(has_rest).collect();
+    let threads = actuators.len().min(limits::REST_THREADS_MAX);
+    let next = AtomicUsize::new(0);
     let failures = Mutex::new(Vec::new());
-    std::thread::scope(|scope| {
-        let rest = |group: &[&Arc<Node>]| {
-            for node in group {
-                if let Err(error) = node.rest() {
-                    node.report(&error);
-                    lock(&failures).push(error);
-                }
+    // First nobody may drive them any more.
+    for regulation in nodes.iter().filter_map(|node| node.regulation()) {
+        regulation.release();
+    }
+    let work = || {
+        while let Some(node) = actuators.get(next.fetch_add(1, Ordering::Relaxed)) {
+            if let Err(error) = node.rest() {
+                node.report(&error);
+                lock(&failures).push(error);
             }
-        };
-        let mut groups = actuators.chunks(per_thread);
-        let mine = groups.next();
-        for group in groups {
-            scope.spawn(move || rest(group));
         }
-        if let Some(group) = mine {
-            rest(group);
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..threads {
+            // Without further threads it takes longer.
+            let _ = std::thread::Builder::new().spawn_scoped(scope, work);
         }
+        work();
     });
     let first = lock(&failures).first().cloned();
     first.map_or(Ok(()), Err)

@@ -4,6 +4,7 @@
 
 use super::ownership::Ownership;
 use super::{OpenFile, READABLE, WRITABLE};
+use crate::crew::lock_patiently;
 use crate::device::Got;
 use crate::engine::Engine;
 use crate::errno::Error;
@@ -153,7 +154,7 @@ impl OpenFile for DeviceFile {
             None => Err(Error::AccessDenied),
             Some(Source::Stream(reader)) => self.read_stream(reader, request, out),
             Some(Source::State(state)) => {
-                let n = lock(state).read_at(request.offset, out)?;
+                let n = lock_patiently(state).read_at(request.offset, out)?;
                 self.node.stats.reads.add(1);
                 Ok(Outcome::Done(n))
             }
@@ -164,9 +165,9 @@ impl OpenFile for DeviceFile {
         let Some(writer) = self.writer.get() else {
             return Err(Error::AccessDenied);
         };
+        let _admitted = self.ownership.admit(&self.node, request.caller)?;
         let _inside = self.node.enter()?;
-        let taken = lock(writer).write(data, !request.nonblocking)?;
-        self.ownership.wrote();
+        let taken = lock_patiently(writer).write(data, !request.nonblocking)?;
         self.node.stats.writes.add(1);
         Ok(Outcome::Done(taken))
     }

@@ -3,41 +3,86 @@
 //! Owns the rule of `rest` at a program's end. A program that closes the file itself has handed the actuator over
 //! (`echo 50 > value` must last); one that exits or is killed with the file open has lost it, and the actuator comes
 //! to rest. Of several processes that share the open file, the last one to close it counts.
+//!
+//! Also remembers which thread was let in by the leases last, so that only its first write has to be looked into.
 
+use crate::errno::Error;
+use crate::events::lock;
+use crate::lease::Lease;
 use crate::node::Node;
 use crate::process::is_ending;
 use crate::transport::Caller;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 
 /// What is known of the program behind one open file.
 #[derive(Default)]
 pub struct Ownership {
-    has_written: AtomicBool,
     has_ended: AtomicBool,
+    /// The last write that was let in.
+    admitted: Mutex<Option<Admitted>>,
+}
+
+struct Admitted {
+    thread: u32,
+    /// Of each lease of the node.
+    generations: Vec<u32>,
+}
+
+/// A write that the leases let in, for as long as it lasts.
+pub struct Admission<'a> {
+    leases: &'a [Arc<Lease>],
+    generations: Vec<u32>,
+}
+
+impl Drop for Admission<'_> {
+    fn drop(&mut self) {
+        for (lease, generation) in self.leases.iter().zip(&self.generations) {
+            lease.wrote(*generation);
+        }
+    }
 }
 
 impl Ownership {
-    /// A write reached the node.
-    pub fn wrote(&self) {
-        self.has_written.store(true, Ordering::Relaxed);
+    /// Asks every lease that a write to the node touches. Keep the result until the device has the bytes.
+    pub fn admit<'a>(&self, node: &'a Node, caller: Caller) -> Result<Admission<'a>, Error> {
+        let mut admission = Admission {
+            leases: &node.leases,
+            generations: Vec::with_capacity(node.leases.len()),
+        };
+        let mut admitted = lock(&self.admitted);
+        let known = admitted.as_ref().filter(|last| last.thread == caller.pid);
+        for (index, lease) in node.leases.iter().enumerate() {
+            let known = known.and_then(|last| last.generations.get(index).copied());
+            admission.generations.push(lease.admit(caller.pid, known)?);
+        }
+        *admitted = Some(Admitted {
+            thread: caller.pid,
+            generations: admission.generations.clone(),
+        });
+        Ok(admission)
     }
 
     /// A descriptor was closed by this caller.
     pub fn closed(&self, node: &Node, caller: Caller) {
-        if node.description.rest.is_some() && self.has_written.load(Ordering::Relaxed) {
+        if node.description.rest.is_some() && lock(&self.admitted).is_some() {
             self.has_ended
                 .store(is_ending(caller.pid), Ordering::Relaxed);
         }
     }
 
-    /// The last descriptor is gone.
+    /// The last descriptor is gone. Who has lost the actuator to a lease since does not stop it any more.
     pub fn released(&self, node: &Arc<Node>) {
-        if self.has_ended.load(Ordering::Relaxed) && !node.is_retired() {
-            let outcome = node.rest();
-            if let Err(error) = outcome {
-                node.report(&error);
-            }
+        if !self.has_ended.load(Ordering::Relaxed) || node.is_retired() {
+            return;
+        }
+        let generation = lock(&self.admitted)
+            .as_ref()
+            .and_then(|last| last.generations.first().copied());
+        if generation == Some(node.lease.generation())
+            && let Err(error) = node.rest()
+        {
+            node.report(&error);
         }
     }
 }

@@ -139,7 +139,7 @@ impl Farewell {
     ) -> io::Result<Self> {
         Ok(Self {
             guardian: handover.guardian,
-            mounted: Mounted::named(mountpoint.to_owned(), handover.mount.0, handover.mount.1),
+            mounted: Mounted::inherited(mountpoint.to_owned(), handover.mount),
             device: inheritance.device.try_clone()?,
             ledger: inheritance.ledger.clone(),
         })

@@ -7,36 +7,25 @@
 //!
 //! ```text
 //! slot:    magic u32 | section u32 | sequence u32 | length u32 | checksum u128 | payload
-//! rest:    { path length u32 | path | length u32 | bytes }
+//! rest:    { action }, see `actions`
 //! cached:  { node id u64 }
 //! ```
 //! All numbers are little endian. The checksum covers the payload and the three numbers before the length.
 
+use super::actions::{self, RestAction};
 use crate::hash::Hash;
 use crate::limits;
 use nix::sys::memfd::{MFdFlags, memfd_create};
-use std::ffi::OsStr;
 use std::fs::{File, OpenOptions};
 use std::io;
 use std::os::fd::{AsRawFd, RawFd};
-use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::FileExt;
-use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// "trkL" in the order of the bytes.
 const MAGIC: u32 = u32::from_le_bytes(*b"trkL");
 /// Bytes before the payload of a slot.
 const HEADER_BYTES: usize = 32;
-
-/// Bytes that bring one actuator to rest.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct RestAction {
-    /// The device itself, not a file of the tree: at that moment nobody serves the tree.
-    pub path: PathBuf,
-    /// One write(2).
-    pub bytes: Vec<u8>,
-}
 
 /// The shared file. Clones write to the same one.
 #[derive(Clone, Debug)]
@@ -116,7 +105,8 @@ impl Ledger {
         if actions.len() > limits::REST_ACTIONS_MAX {
             return Err(io::ErrorKind::FileTooLarge.into());
         }
-        self.write(Section::Rest, &encode_rest(actions))
+        let bytes = actions::encode(actions).ok_or(io::ErrorKind::InvalidInput)?;
+        self.write(Section::Rest, &bytes)
     }
 
     /// Records the node ids whose values may be in the page cache; replaces what was there. At most 4096.
@@ -133,7 +123,7 @@ impl Ledger {
     /// The rest actions; none if nothing readable was recorded.
     pub fn rest(&self) -> Vec<RestAction> {
         self.read(Section::Rest)
-            .and_then(|bytes| decode_rest(&bytes))
+            .and_then(|bytes| actions::decode(&bytes))
             .unwrap_or_default()
     }
 
@@ -212,44 +202,6 @@ fn header(section: Section, sequence: u32, payload: &[u8]) -> [u8; HEADER_BYTES]
     );
     bytes[16..].copy_from_slice(&checksum.to_le_bytes());
     bytes
-}
-
-fn encode_rest(actions: &[RestAction]) -> Vec<u8> {
-    let mut out = Vec::new();
-    let mut part = |bytes: &[u8]| {
-        // A length that does not fit makes the payload too large for its section, which `write` refuses.
-        out.extend_from_slice(&u32::try_from(bytes.len()).unwrap_or(u32::MAX).to_le_bytes());
-        out.extend_from_slice(bytes);
-    };
-    for action in actions {
-        part(action.path.as_os_str().as_bytes());
-        part(&action.bytes);
-    }
-    out
-}
-
-/// Nothing if the payload is not exactly a list of actions.
-fn decode_rest(mut bytes: &[u8]) -> Option<Vec<RestAction>> {
-    let mut actions = Vec::new();
-    while !bytes.is_empty() {
-        let path = take_part(&mut bytes)?;
-        let data = take_part(&mut bytes)?;
-        if actions.len() == limits::REST_ACTIONS_MAX {
-            return None;
-        }
-        actions.push(RestAction {
-            path: PathBuf::from(OsStr::from_bytes(path)),
-            bytes: data.to_vec(),
-        });
-    }
-    Some(actions)
-}
-
-fn take_part<'a>(bytes: &mut &'a [u8]) -> Option<&'a [u8]> {
-    let (length, rest) = bytes.split_first_chunk()?;
-    let (part, rest) = rest.split_at_checked(u32::from_le_bytes(*length) as usize)?;
-    *bytes = rest;
-    Some(part)
 }
 
 #[cfg(test)]

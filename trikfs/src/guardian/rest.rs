@@ -1,15 +1,15 @@
 //! Brings actuators to rest when nobody serves them any more.
 //!
 //! Owns the order and the patience: actions run one after the other, but one that hangs in its driver delays the
-//! others only for a moment, and all of them together have a deadline. Knows nothing of the tree.
+//! others only for a moment, and all of them together have a deadline. The devices are opened like those of the daemon.
+//! Knows nothing of the tree.
 
-use super::ledger::RestAction;
+use super::actions::RestAction;
+use crate::device::i2c::bus::Buses;
+use crate::device::{self, Surroundings};
+use crate::errno::Error;
 use crate::limits;
 use std::collections::VecDeque;
-use std::fs::OpenOptions;
-use std::io::{self, Write};
-use std::os::unix::fs::OpenOptionsExt;
-use std::path::{Display, Path};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -28,6 +28,7 @@ fn bring_to_rest_within(actions: &[RestAction], limit: Duration) -> Vec<String> 
     let deadline = Instant::now() + limit;
     let queue: Queue = Arc::new(Mutex::new(actions.iter().cloned().enumerate().collect()));
     let mut open: Vec<bool> = vec![true; actions.len()];
+    let buses = Arc::default();
     let mut complaints = Vec::new();
     let (sender, results) = mpsc::channel();
     let mut workers = 0;
@@ -37,7 +38,7 @@ fn bring_to_rest_within(actions: &[RestAction], limit: Duration) -> Vec<String> 
             break;
         }
         if workers == 0 {
-            workers += usize::from(start_worker(&queue, &sender));
+            workers += usize::from(start_worker(&queue, &buses, &sender));
         }
         let patience = if workers < limits::REST_THREADS_MAX {
             PATIENCE
@@ -48,26 +49,29 @@ fn bring_to_rest_within(actions: &[RestAction], limit: Duration) -> Vec<String> 
             Ok((index, result)) => {
                 open[index] = false;
                 if let Err(error) = result {
-                    complaints.push(format!("rest of {}: {error}", shown(&actions[index].path)));
+                    complaints.push(format!("rest of {}: {error}", shown(&actions[index])));
                 }
             }
             Err(RecvTimeoutError::Timeout) if workers < limits::REST_THREADS_MAX => {
-                workers += usize::from(start_worker(&queue, &sender));
+                workers += usize::from(start_worker(&queue, &buses, &sender));
             }
             Err(_) => {}
         }
     }
     let late = actions.iter().zip(&open).filter(|(_, open)| **open);
-    complaints.extend(
-        late.map(|(action, _)| format!("rest of {}: not done in time", shown(&action.path))),
-    );
+    complaints
+        .extend(late.map(|(action, _)| format!("rest of {}: not done in time", shown(action))));
     complaints
 }
 
 /// A thread that works through the queue. One that hangs is left behind: the process is about to end, or to
 /// start a daemon that finds the device busy and says so.
-fn start_worker(queue: &Queue, results: &Sender<(usize, io::Result<()>)>) -> bool {
-    let queue = Arc::clone(queue);
+fn start_worker(
+    queue: &Queue,
+    buses: &Arc<Buses>,
+    results: &Sender<(usize, Result<(), Error>)>,
+) -> bool {
+    let (queue, buses) = (Arc::clone(queue), Arc::clone(buses));
     let results = results.clone();
     let work = move || {
         loop {
@@ -76,7 +80,7 @@ fn start_worker(queue: &Queue, results: &Sender<(usize, io::Result<()>)>) -> boo
                 .unwrap_or_else(PoisonError::into_inner)
                 .pop_front();
             let Some((index, action)) = next else { return };
-            if results.send((index, perform(&action))).is_err() {
+            if results.send((index, perform(&action, &buses))).is_err() {
                 return;
             }
         }
@@ -87,30 +91,23 @@ fn start_worker(queue: &Queue, results: &Sender<(usize, io::Result<()>)>) -> boo
         .is_ok()
 }
 
-fn perform(action: &RestAction) -> io::Result<()> {
-    // Not blocking: opening a FIFO that nobody reads must fail, not wait. A file that is missing is not made.
-    let mut device = OpenOptions::new()
-        .write(true)
-        .custom_flags(libc::O_NONBLOCK | libc::O_NOCTTY)
-        .open(&action.path)?;
-    let written = device.write(&action.bytes)?;
-    if written < action.bytes.len() {
-        return Err(io::Error::other(format!(
-            "took {written} of {} bytes",
-            action.bytes.len()
-        )));
-    }
-    Ok(())
+fn perform(action: &RestAction, buses: &Arc<Buses>) -> Result<(), Error> {
+    let around = Surroundings::alone(action.timeout_ms.min(limits::REST_MS_MAX), buses);
+    device::open_sink(&action.sink, &around)?.write(&action.tuple, true)
 }
 
-fn shown(path: &Path) -> Display<'_> {
-    path.display()
+/// The path of the device.
+fn shown(action: &RestAction) -> String {
+    let paths = device::paths(&action.sink);
+    let path = paths.first().map(|path| path.display().to_string());
+    path.unwrap_or_default()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scratch::Scratch;
+    use config::description::SourceDescription;
     use nix::sys::stat::Mode;
     use std::fs::{self, File};
     use std::io::Read;
@@ -118,8 +115,9 @@ mod tests {
 
     fn action(path: PathBuf, bytes: &[u8]) -> RestAction {
         RestAction {
-            path,
-            bytes: bytes.to_vec(),
+            sink: SourceDescription::Path(path),
+            tuple: bytes.to_vec(),
+            timeout_ms: 1000,
         }
     }
 

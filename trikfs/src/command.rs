@@ -1,6 +1,6 @@
 //! One child process within limits of time, output and memory.
 //!
-//! Knows nothing of compilers.
+//! Compilers and the programs of sensors run through it. Knows nothing of either.
 
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::signal::{Signal, killpg};
@@ -18,25 +18,27 @@ const LOOK_MS: u16 = 50;
 const SETTLE: Duration = Duration::from_millis(1);
 
 /// What a process may take.
-pub(super) struct Limits {
+pub(crate) struct Limits {
     /// From start to end; then its whole process group is killed.
-    pub(super) time: Duration,
+    pub(crate) time: Duration,
     /// Bytes of output that are kept; the rest is read and dropped.
-    pub(super) output_bytes: usize,
+    pub(crate) output_bytes: usize,
 }
 
 /// How it ended.
-pub(super) struct Ended {
+pub(crate) struct Ended {
     /// Absent if it was killed because its time was up.
-    pub(super) status: Option<ExitStatus>,
+    pub(crate) status: Option<ExitStatus>,
     /// What it wrote to standard output and standard error; bytes that are no UTF-8 are replaced.
-    pub(super) output: String,
+    pub(crate) output: String,
+    /// Where what it has left running still can write to.
+    pub(crate) pipe: Option<PipeReader>,
 }
 
 /// A command for `program` whose processes may each take so much memory and write files of such a size.
 ///
 /// The shell sets the limits, since setting them between fork and exec takes unsafe code.
-pub(super) fn confined(program: &Path, memory_kb: u32, file_kb: u32) -> Command {
+pub(crate) fn confined(program: &Path, memory_kb: u32, file_kb: u32) -> Command {
     let mut command = Command::new("/bin/sh");
     // POSIX counts the size of files in blocks of 512 bytes. Not every shell knows every limit.
     let script = format!(
@@ -48,7 +50,16 @@ pub(super) fn confined(program: &Path, memory_kb: u32, file_kb: u32) -> Command 
 }
 
 /// Runs it in a process group of its own with empty standard input.
-pub(super) fn run(mut command: Command, limits: &Limits) -> io::Result<Ended> {
+pub(crate) fn run(command: Command, limits: &Limits) -> io::Result<Ended> {
+    run_unless(command, limits, &|| false)
+}
+
+/// The same; as soon as `is_over` says so, its time is up.
+pub(crate) fn run_unless(
+    mut command: Command,
+    limits: &Limits,
+    is_over: &dyn Fn() -> bool,
+) -> io::Result<Ended> {
     let deadline = Instant::now() + limits.time;
     let (reader, writer) = io::pipe()?;
     command
@@ -65,13 +76,14 @@ pub(super) fn run(mut command: Command, limits: &Limits) -> io::Result<Ended> {
         output: Vec::new(),
         output_bytes: limits.output_bytes,
     };
-    let status = running.wait(deadline);
+    let status = running.wait(deadline, is_over);
     if !matches!(status, Ok(Some(_))) {
         running.kill();
     }
     Ok(Ended {
         status: status?,
         output: running.text(),
+        pipe: running.reader,
     })
 }
 
@@ -84,8 +96,12 @@ struct Running {
 }
 
 impl Running {
-    /// The status of the process, or nothing when the deadline came first.
-    fn wait(&mut self, deadline: Instant) -> io::Result<Option<ExitStatus>> {
+    /// The status of the process, or nothing when the deadline or the end of all came first.
+    fn wait(
+        &mut self,
+        deadline: Instant,
+        is_over: &dyn Fn() -> bool,
+    ) -> io::Result<Option<ExitStatus>> {
         loop {
             if self.reader.is_some() {
                 self.read_some(LOOK_MS)?;
@@ -97,7 +113,7 @@ impl Running {
                 while self.read_some(0)? {}
                 return Ok(Some(status));
             }
-            if Instant::now() >= deadline {
+            if Instant::now() >= deadline || is_over() {
                 return Ok(None);
             }
         }

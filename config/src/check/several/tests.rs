@@ -1,0 +1,141 @@
+//! Tests of several sources: layout, triggers, formats that follow from other nodes, circles.
+
+use crate::description::{NodeDescription, SeveralDescription, SourceDescription};
+use crate::load::Loader;
+
+/// The node `x` with these fields, beside two nodes that it can read.
+fn load(fields: &str) -> Result<NodeDescription, String> {
+    let source = format!(
+        "trikfs = {{ x = {{ {fields} }}, gyro = {{ src = '/g', format = 'i32 x, i32 y' }},\n\
+         wheels = {{ left = {{ src = '/l', format = 'f32 angle' }}, plain = {{ src = '/p', input_tuple_size = 2 }} }} }}"
+    );
+    let loaded = Loader::default().load("robot.lua", None, source.as_bytes());
+    let nodes = loaded.map_err(|problem| problem.to_string())?.config.nodes;
+    Ok(nodes.into_iter().find(|node| node.path == "x").unwrap())
+}
+
+fn several(fields: &str) -> SeveralDescription {
+    match load(fields).unwrap().source {
+        SourceDescription::Several(several) => several,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn times_stand_behind_the_tuples_and_count_in_the_size() {
+    let parts = "src = { 'trikfs:gyro', 'newest:wheels/left' }";
+    assert_eq!(load(parts).unwrap().input_tuple_size, 12);
+    let node = load(&format!("{parts}, ages = true, interval = true")).unwrap();
+    assert_eq!(node.input_tuple_size, 12 + 2 * 4 + 4);
+    assert!(several(&format!("{parts}, ages = true")).ages);
+    assert_eq!(
+        several(parts).parts[1].source,
+        SourceDescription::Newest("wheels/left".into())
+    );
+}
+
+#[test]
+fn only_the_named_sources_trigger() {
+    let triggers = |fields: &str| -> Vec<bool> {
+        let several = several(&format!(
+            "src = {{ a = 'trikfs:gyro', b = 'trikfs:wheels/left', c = 'newest:gyro' }}{fields}"
+        ));
+        several.parts.iter().map(|part| part.is_trigger).collect()
+    };
+    assert_eq!(triggers(""), [true, true, true]);
+    assert_eq!(triggers(", trigger = 'b'"), [false, true, false]);
+    assert_eq!(triggers(", trigger = { 'a', 'b' }"), [true, true, false]);
+    assert!(several("src = { 'trikfs:gyro', 'newest:gyro' }, trigger = 1").parts[0].is_trigger);
+}
+
+#[test]
+fn the_format_of_nodes_side_by_side_follows_from_theirs() {
+    let format = |fields: &str| {
+        load(fields)
+            .unwrap()
+            .format
+            .map(|format| format.to_string())
+    };
+    assert_eq!(
+        format(
+            "src = { g = 'newest:gyro', left = 'newest:wheels/left' }, ages = true, interval = true"
+        )
+        .unwrap(),
+        "i32 g_x, i32 g_y, f32 left, u32 age_g_us, u32 age_left_us, u32 interval_us"
+    );
+    assert_eq!(
+        format("src = { 'newest:wheels/left', 'trikfs:gyro' }, ages = true").unwrap(),
+        "f32 wheels_left, i32 gyro_x, i32 gyro_y, u32 age1_us, u32 age2_us"
+    );
+    // Bytes without names, the same name twice, and files of the system give none.
+    assert_eq!(format("src = { 'newest:wheels/plain' }"), None);
+    assert_eq!(format("src = { 'newest:gyro', 'trikfs:gyro' }"), None);
+    assert_eq!(
+        format("src = { a = '/dev/a', b = 'newest:gyro' }, input_tuple_size = { a = 1 }"),
+        None
+    );
+    // What is given stands.
+    assert_eq!(
+        format("src = { 'newest:gyro' }, format = 'i64 both'").unwrap(),
+        "i64 both"
+    );
+}
+
+#[test]
+fn what_makes_no_sense_is_refused_with_its_reason() {
+    let cases = [
+        (
+            "src = { 'trikfs:gyro' }, trigger = 'gyor'",
+            "robot.lua:1: x: trigger: there is no source 'gyor'",
+        ),
+        (
+            "src = { gyro = 'trikfs:gyro' }, trigger = 'gyor'",
+            "robot.lua:1: x: trigger: there is no source 'gyor', did you mean 'gyro'",
+        ),
+        (
+            "src = { a = 'newest:gyro' }, trigger = 'a'",
+            "robot.lua:1: x: trigger: 'newest:gyro' has no events of its own; 'trikfs:gyro' delivers each tuple",
+        ),
+        (
+            "src = { 'trikfs:gyro' }, trigger = {}",
+            "robot.lua:1: x: trigger is an empty list",
+        ),
+        (
+            "src = { 'trikfs:gyro' }, ages = 1",
+            "robot.lua:1: x: ages must be true or false, not a number",
+        ),
+        (
+            "src = 'trikfs:gyro', ages = true",
+            "robot.lua:1: x: ages is for several sources: src = { a = ..., b = ... }",
+        ),
+        (
+            "src = 'trikfs:gyro', trigger = 'a'",
+            "robot.lua:1: x: trigger is for several sources: src = { a = ..., b = ... }",
+        ),
+        (
+            "src = 'newest:giro'",
+            "robot.lua:1: x: there is no node 'giro', did you mean 'gyro'",
+        ),
+        (
+            "src = { 'newest:x' }",
+            "robot.lua:1: x: the node reads itself in a circle: x -> x",
+        ),
+    ];
+    for (fields, expected) in cases {
+        assert_eq!(load(fields).unwrap_err(), expected, "{fields}");
+    }
+}
+
+#[test]
+fn a_circle_is_named_from_its_beginning() {
+    let source = "trikfs = {\n\
+        a = { src = 'trikfs:b' },\n\
+        b = { src = { 'newest:c', '/dev/zero' }, input_tuple_size = { [2] = 1 } },\n\
+        c = { src = 'trikfs:d' },\n\
+        d = { src = 'trikfs:b' } }";
+    let problem = Loader::default().load("robot.lua", None, source.as_bytes());
+    assert_eq!(
+        problem.unwrap_err().to_string(),
+        "robot.lua:3: b: the node reads itself in a circle: b -> c -> d -> b"
+    );
+}

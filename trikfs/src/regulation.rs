@@ -1,0 +1,149 @@
+//! Regulators at work: what was ordered of a node is held by driving another one, step by step.
+//!
+//! Owns the order, the control law's pipeline and the way to the driven node. An order lasts until the node or the driven
+//! node comes to rest, the feedback fails, somebody else writes to the driven node, or a lease of
+//! either changes hands. What is measured, and when, is the
+//! business of the node's sampling; the law is a converter like any other.
+
+use crate::clock::Stamp;
+use crate::convert::Pipeline;
+use crate::errno::Error;
+use crate::events::lock;
+use crate::node::Node;
+use crate::writer::Writer;
+use config::program::Direction;
+use std::sync::{Arc, Mutex};
+
+/// The regulator of one node.
+pub struct Regulation {
+    actuator: Arc<Node>,
+    order: Mutex<Option<Order>>,
+}
+
+struct Order {
+    target: Vec<u8>,
+    law: Arc<Mutex<Pipeline>>,
+    writer: Writer,
+    /// When the step before was made.
+    before: Option<Stamp>,
+    /// How often the driven node had been written, our own writes included.
+    writes: u32,
+    /// Of the leases when the order was given.
+    generation: u32,
+    input: Vec<u8>,
+    output: Vec<u8>,
+}
+
+impl Regulation {
+    /// Nothing is ordered yet.
+    pub fn new(actuator: Arc<Node>) -> Self {
+        Self {
+            actuator,
+            order: Mutex::default(),
+        }
+    }
+
+    /// A program wrote what is to be held from the next step on. The law goes on if it is at work, else it begins afresh.
+    pub fn order(&self, node: &Arc<Node>, target: &[u8]) -> Result<(), Error> {
+        let mut order = lock(&self.order);
+        if let Some(order) = order.as_mut()
+            && order.writes == self.writes()
+            && order.generation == node.lease_generation()
+        {
+            order.target.copy_from_slice(target);
+            return Ok(());
+        }
+        let (input, output) = node.description.write_conversion_sizes();
+        *order = Some(Order {
+            target: target.to_vec(),
+            law: node.open_pipeline()?,
+            writer: self.actuator.open_writer(None)?,
+            before: None,
+            writes: self.writes(),
+            generation: node.lease_generation(),
+            input: Vec::with_capacity(input),
+            output: vec![0; output],
+        });
+        Ok(())
+    }
+
+    /// Nothing is held any more; the driven node stays as it is.
+    pub fn release(&self) {
+        *lock(&self.order) = None;
+    }
+
+    /// Nothing is held any more, and the driven node comes to rest.
+    pub fn rest(&self) -> Result<(), Error> {
+        self.release();
+        self.actuator.rest()
+    }
+
+    /// The feedback was measured: one step of the law.
+    pub fn step(&self, node: &Node, measured: &[u8]) {
+        let mut slot = lock(&self.order);
+        let Some(order) = slot.as_mut() else {
+            return;
+        };
+        if order.writes != self.writes() || order.generation != node.lease_generation() {
+            // Somebody drives the actuator directly, or has taken the lease.
+            *slot = None;
+            return;
+        }
+        match order.step(node, measured) {
+            Ok(true) => order.writes = order.writes.wrapping_add(1),
+            Ok(false) => {}
+            Err(error) => {
+                *slot = None;
+                drop(slot);
+                self.stop(node, &error);
+            }
+        }
+    }
+
+    /// The feedback failed: without it nothing can be held.
+    pub fn fail(&self, node: &Node, error: &Error) {
+        if lock(&self.order).take().is_some() {
+            self.stop(node, error);
+        }
+    }
+
+    fn stop(&self, node: &Node, error: &Error) {
+        let path = self.actuator.path();
+        let log = &node.engine.log;
+        log.line(&format!("{}: {path} comes to rest: {error}", node.path()));
+        if let Err(error) = self.actuator.rest() {
+            self.actuator.report(&error);
+        }
+    }
+
+    /// Writes to what is driven in the end: an alias and its target are one.
+    fn writes(&self) -> u32 {
+        self.actuator.writes()
+    }
+}
+
+impl Order {
+    /// True if the driven node was written: a law may give nothing.
+    fn step(&mut self, node: &Node, measured: &[u8]) -> Result<bool, Error> {
+        let now = Stamp::now();
+        let interval_us = self.before.map_or(0, |before| {
+            u32::try_from(now.0.saturating_sub(before.0) / 1000).unwrap_or(u32::MAX)
+        });
+        self.before = Some(now);
+        self.input.clear();
+        self.input.extend_from_slice(&self.target);
+        self.input.extend_from_slice(measured);
+        self.input.extend_from_slice(&interval_us.to_le_bytes());
+        let mut law = lock(&self.law);
+        let (_, produced, fault) =
+            node.convert(&mut law, Direction::Write, &self.input, &mut self.output);
+        drop(law);
+        if let Some(error) = fault {
+            return Err(error);
+        }
+        if produced > 0 {
+            self.writer.write_whole(&self.output, true)?;
+        }
+        Ok(produced > 0)
+    }
+}
