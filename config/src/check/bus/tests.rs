@@ -132,7 +132,6 @@ fn what_no_bus_can_do_is_refused() {
 #[test]
 fn sizes_that_no_transfer_has_are_refused() {
     let i2c = |rest: &str| format!("i2c{{ path = '/dev/i2c-2', {rest} }}");
-    let at = "robot.lua:2: x: ";
     let block = i2c("address = 0x48, register = 1, transfer = 'block'");
     assert_eq!(
         refused(&block, "input_tuple_size = 33"),
