@@ -1,4 +1,4 @@
-//! Tests of registers on buses and of absent ports: what is read, and what is refused with which words.
+//! Tests of registers and absent ports: defaults, sizes, every refusal with its words.
 
 use crate::description::{I2cDescription, I2cTransfer, SourceDescription};
 use crate::load::Loader;
