@@ -58,11 +58,13 @@ function ba.len(array)
 end
 
 raw.get, raw.set = ba.get, ba.set
--- Of the foreign function interface only these are kept: the rest of it is larger than everything else here.
-local pointer, new, copy, text_of, scratch
+-- What is used of the foreign function interface. The library itself is kept as well: it holds tables that LuaJIT reaches
+-- without the collector's knowledge whenever a pointer or a union is made.
+local pointer, new, copy, text_of, scratch, kept
 
 local function open_ffi()
   local library = ffi()
+  kept = library
   pointer, new, copy, text_of = library.typeof('uint8_t *'), library.new, library.copy, library.string
 end
 

@@ -14,7 +14,7 @@ mod several;
 mod source;
 mod stages;
 
-use crate::description::{Config, NodeDescription, SetupAction};
+use crate::description::{Alias, Config, NodeDescription, SetupAction};
 use crate::format::Format;
 use crate::limits::{GROUP_DEPTH_MAX, NAME_BYTES_MAX, NODES_MAX, SOURCES_MAX};
 use crate::nearest::{nearest, suggestion};
@@ -51,12 +51,14 @@ pub(crate) fn check(
         drafts: Vec::new(),
         index: HashMap::new(),
         warnings: Vec::new(),
+        aliases: Vec::new(),
         trail: Vec::new(),
     };
     checker.root()?;
     for number in 0..checker.drafts.len() {
         checker.build(number, 0)?;
     }
+    checker.check_aliases()?;
     let setup = checker.setup()?;
     Ok(checker.finish(setup))
 }
@@ -89,6 +91,8 @@ struct Checker<'a> {
     /// Number of each draft by its path.
     index: HashMap<String, usize>,
     warnings: Vec<Problem>,
+    /// Second names, with the keys in the text.
+    aliases: Vec<(Alias, Vec<String>)>,
     /// Paths of the nodes that are being built, each because the one before reads it.
     trail: Vec<String>,
 }
@@ -155,6 +159,9 @@ impl<'a> Checker<'a> {
             };
             if table.get("src").is_some() && !self.is_group_with_node_called_src(table) {
                 self.node(path, keys, table, None)?;
+            } else if let Some(Value::Text(node)) = table.get("alias") {
+                let node = String::from_utf8_lossy(node).into_owned();
+                self.alias(Alias { path, node }, keys, table)?;
             } else if let Some(known) = node::FIELDS.iter().find(|known| table.get(known).is_some())
             {
                 let hint = table_hint(table);
@@ -343,6 +350,54 @@ impl<'a> Checker<'a> {
             }))
     }
 
+    /// Takes note of a second name.
+    fn alias(&mut self, alias: Alias, keys: Vec<String>, table: &Table) -> Result<(), Problem> {
+        let Alias { path, node } = &alias;
+        if table.entries.len() > 1 {
+            let reason = format!(
+                "{path}: with 'alias' there is nothing else to say: the files are those of '{node}'"
+            );
+            return Err(self.problem(&keys, reason));
+        }
+        if self.aliases.len() == NODES_MAX {
+            return Err(self.problem(&keys, format!("more than {NODES_MAX} second names")));
+        }
+        self.aliases.push((alias, keys));
+        Ok(())
+    }
+
+    /// Every second name stands for a node; attributes, groups and other second names have none.
+    fn check_aliases(&self) -> Result<(), Problem> {
+        for (Alias { path, node }, keys) in &self.aliases {
+            let number = self.index.get(node).copied();
+            match number.and_then(|number| self.drafts.get(number)) {
+                Some(draft) if draft.parent.is_none() => {}
+                Some(_) => {
+                    let reason =
+                        format!("{path}: '{node}' is an attribute and can have no second name");
+                    return Err(self.problem(keys, reason));
+                }
+                None => {
+                    let hint = self.nearest_node(node);
+                    let reason = format!("{path}: there is no node '{node}'{hint}");
+                    return Err(self.problem(keys, reason));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// True if what another node gives can also be written to it. It has been built.
+    fn takes_tuples(&self, other: &str) -> bool {
+        let draft = self.index.get(other).and_then(|n| self.drafts.get(*n));
+        match draft.map(|draft| &draft.built) {
+            Some(Built::Done(node)) => {
+                node.mode & 0o222 != 0 && node.written_tuple_size() == node.output_tuple_size
+            }
+            _ => false,
+        }
+    }
+
     /// A node that is built already.
     fn built(&self, path: &str) -> Option<&NodeDescription> {
         match &self.drafts.get(*self.index.get(path)?)?.built {
@@ -385,7 +440,14 @@ impl<'a> Checker<'a> {
             })
             .collect();
         nodes.sort_by(|a, b| a.path.cmp(&b.path));
-        (Config { nodes, setup }, self.warnings)
+        let mut aliases: Vec<Alias> = self.aliases.into_iter().map(|(alias, _)| alias).collect();
+        aliases.sort_by(|a, b| a.path.cmp(&b.path));
+        let config = Config {
+            nodes,
+            setup,
+            aliases,
+        };
+        (config, self.warnings)
     }
 }
 

@@ -21,6 +21,17 @@ pub struct Config {
     pub nodes: Vec<NodeDescription>,
     /// The global `setup`: what is done once, in this order, when the configuration comes into force.
     pub setup: Vec<SetupAction>,
+    /// Second names of nodes, sorted by path.
+    pub aliases: Vec<Alias>,
+}
+
+/// `{ alias = 'motors/M1' }`: the same node, with all its files, at a second place.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Alias {
+    /// Where the second directory is.
+    pub path: String,
+    /// Path of the node.
+    pub node: String,
 }
 
 /// One node of the tree.
@@ -44,6 +55,8 @@ pub struct NodeDescription {
     pub write_converter: Option<Vec<StageDescription>>,
     /// Named fields of the converted tuple.
     pub format: Option<Format>,
+    /// What the node is, in a few words, for tables and people; empty when none was given.
+    pub about: String,
     /// Physical unit as the user wrote it; empty when none was given.
     pub units: String,
     /// When samples are taken.

@@ -11,9 +11,10 @@ stage() {
     "$compiler" -shared -fPIC -O2 -std=gnu99 -s -o "$prefix/lib/trikfs/libhello.so" "$root/config/lua/hello/hello.c"
     chmod 644 "$prefix/lib/trikfs/libhello.so"
     local file
-    for file in "$root"/config/lua/*.lua; do
+    for file in "$root"/config/lua/*.lua "$root"/config/lua/trik/*.lua "$root"/config/lua/robots/*.lua; do
         # The prelude is inside the program.
-        [ "$(basename "$file")" = prelude.lua ] || install -D -m 644 "$file" "$prefix/share/trikfs/lua/$(basename "$file")"
+        [ "$(basename "$file")" = prelude.lua ] ||
+            install -D -m 644 "$file" "$prefix/share/trikfs/lua/${file#"$root"/config/lua/}"
     done
     install -D -m 644 "$root/converter/include/trikfs_converter.h" "$prefix/include/trikfs_converter.h"
 }

@@ -5,12 +5,14 @@
 
 pub mod board;
 pub mod documents;
+pub mod i2c_bus;
 pub mod mount;
 pub mod processes;
 pub mod tools;
 pub mod wait;
 
 pub use board::Board;
+pub use i2c_bus::I2cBus;
 pub use mount::{Mount, Setting};
 pub use tools::{Output, run};
 pub use wait::{eventually, skip};

@@ -26,8 +26,29 @@ mod converters {
     /// The shipped filters in both languages against the golden vectors.
     mod vectors;
 }
+/// Devices that are more than a file, with files, pipes and sockets in their place.
+mod devices {
+    /// Single lines.
+    mod gpio;
+    /// Registers on a bus that is fine, slow, dead, gone and back.
+    mod i2c;
+    /// Sampled sensors.
+    mod iio;
+    /// Text of sensor programs.
+    mod lines;
+    /// Serial lines.
+    mod packets;
+    /// Pulses.
+    mod pwm;
+    /// Actions that are done once, and the root of a virtual board.
+    mod setup;
+    /// A slow bus delays nobody who does not use it.
+    mod slow_bus;
+}
 /// One module for each operation or file of a mounted tree.
 mod mount {
+    /// Second names of nodes, and nodes that are written through others.
+    mod aliases;
     /// Further files in a node's directory.
     mod attributes;
     /// Writing and reading the configuration of a live tree.
@@ -84,6 +105,21 @@ mod mount {
     mod write;
     /// Extended attributes.
     mod xattr;
+}
+/// The shipped description of the controller, without hardware: bytes against numbers worked out by hand.
+mod trik_lua {
+    /// Analog ports, battery, encoders.
+    mod inputs;
+    /// Motors and servos.
+    mod outputs;
+    /// Robot files, good and bad.
+    mod robots;
+    /// A robot whose converters are called one by one.
+    pub mod run;
+    /// Sensors that deliver by themselves: distance, keys, IIO, lines, packets.
+    mod streams;
+    /// The tables of docs/user/trik.md.
+    mod tables;
 }
 /// The documents: their examples run, their tables are complete.
 mod docs;

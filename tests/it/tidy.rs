@@ -3,7 +3,15 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-const CRATES: [&str; 5] = ["config", "converter", "filters", "tests", "trikfs"];
+const CRATES: [&str; 7] = [
+    "config",
+    "converter",
+    "filters",
+    "sim",
+    "tests",
+    "trik",
+    "trikfs",
+];
 /// Files that may hold `unsafe`, as beginnings of paths.
 const UNSAFE: [&str; 9] = [
     "config/src/vm",

@@ -11,6 +11,8 @@ mod notify;
 mod paths;
 mod run;
 
+pub use paths::find_shipped;
+
 use crate::check::SearchPaths;
 use crate::daemon::Transport;
 use crate::guardian::inherit::Handover;

@@ -450,7 +450,7 @@ impl Stage {
         Batch {
             consumed,
             produced,
-            fault: fault.map(Error::Converter),
+            fault: fault.map(Error::of_converter),
         }
     }
 }
@@ -463,11 +463,11 @@ impl Code {
         output: &mut [u8],
     ) -> Result<Conversion, Error> {
         match (self, vm) {
-            (Self::Native(native), _) => native.convert(input, output).map_err(Error::Converter),
+            (Self::Native(native), _) => native.convert(input, output).map_err(Error::of_converter),
             (Self::Lua(stage), Some(vm)) => {
                 let outcome = vm
                     .convert(*stage, input, output)
-                    .map_err(Error::Converter)?;
+                    .map_err(Error::of_converter)?;
                 Ok(match outcome {
                     config::program::Conversion::Produced => Conversion::Produced,
                     config::program::Conversion::Consumed => Conversion::Consumed,

@@ -79,6 +79,7 @@ pub fn run(options: Options) -> Result<(), String> {
     let mut last_ino = crate::tree::ROOT;
     let forest = Arc::new(Forest::new(Tree::build(
         Vec::new(),
+        &[],
         options.owner,
         None,
         &mut last_ino,

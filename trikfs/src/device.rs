@@ -2,8 +2,8 @@
 //!
 //! Owns the traits, the decision which of them a description gets, and nothing else. Each kind of device is one
 //! file below; only those files open device nodes. Nothing here knows converters, handles or the kernel's requests.
-//! A bus that needs more than a file (I2C, IIO, PWM) is one more file and one more arm of [`open`]; who uses a bus that
-//! may be slow finds it through [`bus_of`].
+//! A bus that needs more than a file (I2C, IIO, PWM) is one more file and one more arm of [`open`]; [`add_buses`]
+//! tells who waits for which bus.
 
 pub mod attribute;
 pub mod chardev;
@@ -25,15 +25,17 @@ pub mod several;
 mod sysfs;
 
 use crate::convert::LogSink;
+use crate::engine::Engine;
 use crate::errno::Error;
 use crate::log::Log;
 use crate::node::Node;
 use crate::programs::Programs;
 use crate::stats::Counter;
 use config::description::{GpioDirection, SourceDescription};
+use std::collections::BTreeSet;
 use std::os::fd::BorrowedFd;
 use std::os::unix::fs::{FileTypeExt, MetadataExt};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -116,6 +118,19 @@ pub struct Surroundings {
 }
 
 impl Surroundings {
+    /// Those of a mount, without links and with the usual time limit.
+    pub fn new(engine: &Engine) -> Self {
+        let log = engine.log.clone();
+        Self {
+            links: Vec::new(),
+            timeout_ms: config::limits::TIMEOUT_MS,
+            damaged: Arc::default(),
+            programs: engine.programs.clone(),
+            log: Arc::new(move |text| log.line(text)),
+            buses: engine.buses.clone(),
+        }
+    }
+
     /// For who has a device and nothing else: no nodes, nobody to talk to.
     pub fn alone(timeout_ms: u32, buses: &Arc<i2c::bus::Buses>) -> Self {
         Self {
@@ -313,12 +328,31 @@ pub fn paths(source: &SourceDescription) -> Vec<&Path> {
     }
 }
 
-/// The bus whose transfers a source waits for, if it is one alone: nodes of one bus are sampled by a thread of its own.
-pub fn bus_of(source: &SourceDescription) -> Option<&Path> {
+/// The buses whose transfers a source waits for, itself or through nodes that it reads or drives.
+pub fn add_buses(source: &SourceDescription, around: &Surroundings, buses: &mut BTreeSet<PathBuf>) {
+    let mut of_node = |path: &str| {
+        if let Ok(node) = around.link(path) {
+            node.add_buses(buses);
+        }
+    };
     match source {
-        SourceDescription::I2c(i2c) => Some(&i2c.path),
-        SourceDescription::Faulty(faulty) => bus_of(&faulty.source),
-        _ => None,
+        SourceDescription::I2c(i2c) => {
+            buses.insert(i2c.path.clone());
+        }
+        SourceDescription::Faulty(faulty) => add_buses(&faulty.source, around, buses),
+        SourceDescription::Node(path) | SourceDescription::Newest(path) => of_node(path),
+        SourceDescription::Regulator(regulator) => {
+            of_node(&regulator.actuator);
+            for part in &regulator.feedback.parts {
+                add_buses(&part.source, around, buses);
+            }
+        }
+        SourceDescription::Several(several) => {
+            for part in &several.parts {
+                add_buses(&part.source, around, buses);
+            }
+        }
+        _ => {}
     }
 }
 

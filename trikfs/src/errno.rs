@@ -81,6 +81,21 @@ pub enum Error {
 }
 
 impl Error {
+    /// What a converter said. A first word tells who is to blame when it is not the converter: `ERANGE: `, `EINVAL: `
+    /// the caller, `ENODEV: ` the device. See docs/converters/tutorial.md.
+    pub fn of_converter(text: String) -> Self {
+        let rest = |word: &str| text.strip_prefix(word).map(str::to_owned);
+        if let Some(reason) = rest("ERANGE: ") {
+            Self::OutOfRange(reason)
+        } else if let Some(reason) = rest("EINVAL: ") {
+            Self::Invalid(reason)
+        } else if let Some(reason) = rest("ENODEV: ") {
+            Self::NoDevice(reason)
+        } else {
+            Self::Converter(text)
+        }
+    }
+
     /// The number that the program sees.
     pub fn errno(&self) -> i32 {
         match self {

@@ -210,7 +210,11 @@ impl Fs {
                 let (reloader, forest) = (self.reloader.clone(), self.forest.clone());
                 Box::new(move || {
                     let lines = status_lines(forest.tree().nodes());
-                    format!("{}\n{lines}", reloader.result_line())
+                    format!(
+                        "{}\n{}{lines}",
+                        reloader.result_line(),
+                        reloader.setup_lines()
+                    )
                 })
             }
             (Kind::Units(_), Some(node)) => {

@@ -35,6 +35,7 @@ pub mod regulation;
 pub mod reload;
 #[cfg(test)]
 mod scratch;
+pub mod setup;
 pub mod state_reader;
 pub mod stats;
 pub mod text;

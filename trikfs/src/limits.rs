@@ -4,8 +4,13 @@
 
 /// Threads that may serve one role (the kernel, events, the schedule) while others of that role are late.
 pub const MAX_THREADS: usize = 64;
-/// Transfers that wait for one bus at once; together those of four dead buses leave threads for everything else.
-pub const BUS_WAITERS_MAX: usize = MAX_THREADS / 5;
+/// Transfers that wait for one bus at once.
+pub const BUS_WAITERS_MAX: usize = 24;
+/// Transfers that may join those who wait for a bus that is stuck. With [`LATE_PER_NODE_MAX`] operations on each of
+/// their nodes, those of two dead buses leave threads for everything else.
+pub const BUS_WAITERS_STUCK_MAX: usize = 6;
+/// Milliseconds that one transfer may take before a bus counts as stuck.
+pub const BUS_STUCK_MS: u64 = 50;
 /// Microseconds from which a transfer counts as slow: others must not wait for it.
 pub const BUS_SLOW_US: u64 = 500;
 /// Fast transfers after a slow one until a bus counts as fast again.
@@ -16,6 +21,14 @@ pub const BUS_SHORT_BYTES: usize = 8;
 pub const BUS_THREADS_MAX: usize = 16;
 /// Registers of one bus that are remembered, in each of two ways.
 pub const BUS_MEMORY_MAX: usize = 4_096;
+/// Milliseconds that the actions of `setup` may keep a configuration from coming into force.
+pub const SETUP_WAIT_MS: u64 = 3_000;
+/// Milliseconds beyond its time limit after which an action that hangs in a device is left behind.
+pub const SETUP_GRACE_MS: u64 = 100;
+/// Actions that may hang in a device before no further ones are tried.
+pub const SETUP_STUCK_MAX: usize = 8;
+/// Bytes of the output of a program of `setup` that are told.
+pub const SETUP_OUTPUT_BYTES: usize = 512;
 /// Open files at once; the next open gets EMFILE.
 pub const OPEN_FILES_MAX: usize = 65_536;
 /// Tuples that a slow reader of a shared source may be behind before the oldest are dropped.

@@ -122,7 +122,6 @@ impl Newest {
     fn schedule_sampling(&self, node: &Arc<Node>) {
         let sampler: Arc<dyn Due> = Arc::new(Sampling {
             node: self.node.clone(),
-            planned: Mutex::new(Instant::now()),
         });
         let ageing: Arc<dyn Due> = Arc::new(Ageing {
             node: self.node.clone(),
@@ -465,19 +464,19 @@ impl Newest {
     }
 
     /// Whether an open of `bin_data` may be served from the page cache: there is a good sample, and a publisher.
-    pub fn can_cache(&self) -> bool {
+    pub fn can_cache(&self, ino: u64) -> bool {
         let Some(node) = self.node.upgrade() else {
             return false;
         };
         let background = node.description.pace != Pace::OnRead;
         let latch = lock(&self.latch);
         let good = latch.stamp.is_some() && latch.error.is_none();
-        background && good && Page::can_hold(&node, latch.tuple.len())
+        background && good && Page::can_hold(&node, latch.tuple.len()) && self.page.is_of(ino)
     }
 
     /// A cached open file comes (true) or goes.
-    pub fn count_cached(&self, ino: u64, comes: bool) {
-        self.page.count_reader(ino, comes);
+    pub fn count_cached(&self, comes: bool) {
+        self.page.count_reader(comes);
     }
 
     /// A cached open file starts being polled (true) or goes.

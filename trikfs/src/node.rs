@@ -24,6 +24,7 @@ use config::description::{NodeDescription, Pace, SourceDescription};
 use config::format::Format;
 use config::problem::Problem;
 use config::program::Direction;
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, Weak};
@@ -107,9 +108,8 @@ impl Node {
             links,
             timeout_ms: description.timeout_ms,
             damaged: stats.damaged.clone(),
-            programs: engine.programs.clone(),
             log: log_sink(&engine, &description.path),
-            buses: engine.buses.clone(),
+            ..Surroundings::new(&engine)
         };
         let period_ms = match description.pace {
             Pace::Every { period_ms } => period_ms,
@@ -488,21 +488,20 @@ impl Node {
         }
     }
 
-    /// Where background samples of this node are scheduled: a node that reads one bus, itself or through another node,
-    /// has its turn on the thread of that bus.
+    /// Where background samples of this node are scheduled: a node that reads one bus, itself or through other nodes,
+    /// has its turn on the thread of that bus. One that reads several would make each wait for the others.
     pub fn sampling_schedule(&self) -> Arc<Schedule> {
-        match self.bus() {
-            Some(bus) => self.engine.schedule_of(&bus),
-            None => self.engine.schedule.clone(),
+        let mut buses = BTreeSet::new();
+        self.add_buses(&mut buses);
+        match (buses.pop_first(), buses.is_empty()) {
+            (Some(bus), true) => self.engine.schedule_of(&bus),
+            _ => self.engine.schedule.clone(),
         }
     }
 
-    fn bus(&self) -> Option<PathBuf> {
-        if let SourceDescription::Node(_) = &self.description.source {
-            let (_, other) = self.around.links.first()?;
-            return other.bus();
-        }
-        device::bus_of(&self.description.source).map(std::path::Path::to_path_buf)
+    /// The buses whose transfers this node waits for.
+    pub fn add_buses(&self, buses: &mut BTreeSet<PathBuf>) {
+        device::add_buses(&self.description.source, &self.around, buses);
     }
 
     /// A problem at the place of this node's description.
@@ -514,6 +513,12 @@ impl Node {
             format!("node {}: {reason}", self.path()),
         )
     }
+}
+
+/// Lines of the log that begin with a node's path.
+fn log_sink(engine: &Engine, path: &str) -> LogSink {
+    let (log, path) = (engine.log.clone(), path.to_owned());
+    Arc::new(move |text| log.line(&format!("{path}: {text}")))
 }
 
 /// The directory of a node, or of an attribute.
@@ -530,12 +535,6 @@ fn written_node(source: &SourceDescription) -> Option<&str> {
         SourceDescription::Faulty(faulty) => written_node(&faulty.source),
         _ => None,
     }
-}
-
-/// Lines of the log that begin with a node's path.
-fn log_sink(engine: &Engine, path: &str) -> LogSink {
-    let (log, path) = (engine.log.clone(), path.to_owned());
-    Arc::new(move |text| log.line(&format!("{path}: {text}")))
 }
 
 /// One operation inside a node: its place among those that may be there at once.

@@ -16,8 +16,9 @@ use crate::guardian::actions::RestAction;
 use crate::guardian::ledger::Ledger;
 use crate::lease::Lease;
 use crate::node::{Node, directory_of};
+use crate::setup::SetupRunner;
 use crate::tree::{Owner, Tree};
-use config::description::{Config, NodeDescription, SourceDescription, StageKind};
+use config::description::{Alias, Config, NodeDescription, SourceDescription, StageKind};
 use config::load::Loader;
 use config::problem::Problem;
 use std::collections::{BTreeSet, HashMap};
@@ -53,6 +54,7 @@ pub struct Setup {
 pub struct Reloader {
     setup: Setup,
     maker: StateMaker,
+    setup_runner: Arc<SetupRunner>,
     state: Mutex<State>,
     one_at_a_time: Mutex<()>,
     work: Sender<Job>,
@@ -91,7 +93,9 @@ impl Reloader {
             cached: BTreeSet::new(),
         };
         let maker = StateMaker::start()?;
+        let root = setup.loader.device_root.clone();
         Ok(Arc::new(Self {
+            setup_runner: SetupRunner::new(setup.engine.clone(), root),
             setup,
             maker,
             state: Mutex::new(state),
@@ -113,6 +117,11 @@ impl Reloader {
     /// What became of the last configuration, on one line.
     pub fn result_line(&self) -> String {
         lock(&self.state).result.clone()
+    }
+
+    /// What of `setup` failed, a line each.
+    pub fn setup_lines(&self) -> String {
+        self.setup_runner.status_lines()
     }
 
     /// Notes that something was not applied, and why.
@@ -223,13 +232,15 @@ impl Reloader {
             .collect::<Vec<_>>();
         problems.extend(loaded.log);
         let rest = self.rest_actions(&nodes, &mut problems);
-        // Nothing fails from here on.
+        // Nothing fails from here on: what `setup` cannot do is only told.
+        self.setup_runner.run(&loaded.config.setup);
         for node in &kept {
             if let Some(pool) = &pool {
                 node.recipe().move_to(pool);
             }
         }
-        self.put_in_force(nodes, &before, bytes, pool, &rest);
+        let aliases = &loaded.config.aliases;
+        self.put_in_force((nodes, aliases), &before, bytes, pool, &rest);
         for line in problems {
             setup.engine.log.line(&line);
         }
@@ -254,7 +265,7 @@ impl Reloader {
 
     fn put_in_force(
         &self,
-        nodes: Vec<Arc<Node>>,
+        (nodes, aliases): (Vec<Arc<Node>>, &[Alias]),
         before: &Arc<Tree>,
         bytes: Vec<u8>,
         pool: Option<Arc<crate::convert::lua::StatePool>>,
@@ -275,7 +286,13 @@ impl Reloader {
         set_actuators(&nodes);
         let old_pool = {
             let mut state = lock(&self.state);
-            let tree = Tree::build(nodes, setup.owner, Some(before), &mut state.next_ino);
+            let tree = Tree::build(
+                nodes,
+                aliases,
+                setup.owner,
+                Some(before),
+                &mut state.next_ino,
+            );
             setup.forest.replace(tree);
             state.bytes = Arc::new(bytes);
             std::mem::replace(&mut state.pool, pool)

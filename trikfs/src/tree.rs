@@ -8,7 +8,7 @@ use crate::errno::Error;
 use crate::files::value::View;
 use crate::node::Node;
 use crate::transport::{Attr, DirEntry, FileKind};
-use config::description::Pace;
+use config::description::{Alias, Pace};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 use std::time::{Duration, SystemTime};
@@ -97,10 +97,11 @@ pub struct Gone {
 }
 
 impl Tree {
-    /// Builds the tree of these nodes (attributes included). Numbers of `before` are kept for everything that
+    /// Builds the tree of these nodes (attributes included) and of their second names. Numbers of `before` are kept for everything that
     /// stands for the same thing; new ones are taken from `next_ino`.
     pub fn build(
         nodes: Vec<Arc<Node>>,
+        aliases: &[Alias],
         owner: Owner,
         before: Option<&Self>,
         next_ino: &mut u64,
@@ -131,18 +132,16 @@ impl Tree {
             builder.add(ROOT, name, kind);
         }
         for node in &nodes {
-            let mut at = ROOT;
-            let mut parts = node.path().split('/').peekable();
-            while let Some(part) = parts.next() {
-                if parts.peek().is_none() && node.is_attribute {
-                    builder.add(at, part, Kind::Value(node.clone(), View::Text));
-                    builder.add_params(at, &format!("{part}."), node);
-                } else {
-                    at = builder.directory(at, part);
+            builder.add_node(node.path(), node);
+        }
+        for Alias { path, node: target } in aliases {
+            for node in &nodes {
+                match node.path().strip_prefix(target.as_str()) {
+                    Some(rest) if rest.is_empty() || node.is_attribute && rest.starts_with('/') => {
+                        builder.add_node(&format!("{path}{rest}"), node);
+                    }
+                    _ => {}
                 }
-            }
-            if !node.is_attribute {
-                builder.add_node_files(at, node);
             }
         }
         Self {
@@ -395,6 +394,23 @@ impl Builder<'_> {
         let is_link = node.lease.path() != node.directory();
         let is_written = node.description.mode & 0o222 != 0;
         self.leased.contains(node.lease.path()) && (is_written || !is_link)
+    }
+
+    /// A node's directory with its files at a path, or an attribute's file.
+    fn add_node(&mut self, path: &str, node: &Arc<Node>) {
+        let mut at = ROOT;
+        let mut parts = path.split('/').peekable();
+        while let Some(part) = parts.next() {
+            if parts.peek().is_none() && node.is_attribute {
+                self.add(at, part, Kind::Value(node.clone(), View::Text));
+                self.add_params(at, &format!("{part}."), node);
+            } else {
+                at = self.directory(at, part);
+            }
+        }
+        if !node.is_attribute {
+            self.add_node_files(at, node);
+        }
     }
 
     fn add_node_files(&mut self, at: u64, node: &Arc<Node>) {

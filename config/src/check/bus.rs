@@ -208,11 +208,14 @@ mod tests {
         );
     }
 
-    #[test]
-    fn what_no_bus_can_do_is_refused() {
-        let i2c = |rest: &str| format!("i2c{{ path = '/dev/i2c-2', {rest} }}");
-        let at = "robot.lua:2: x: ";
-        let cases = [
+    const AT: &str = "robot.lua:2: x: ";
+
+    fn i2c(rest: &str) -> String {
+        format!("i2c{{ path = '/dev/i2c-2', {rest} }}")
+    }
+
+    fn wrong_registers() -> Vec<(String, &'static str)> {
+        vec![
             (
                 i2c("register = 1, transfer = 'byte'"),
                 "i2c: address is missing",
@@ -268,24 +271,34 @@ mod tests {
                 "absent{ reason = 'no', why = 1 }".to_owned(),
                 "absent: unknown key 'why'",
             ),
-        ];
-        for (src, reason) in cases {
+        ]
+    }
+
+    #[test]
+    fn what_no_bus_can_do_is_refused() {
+        for (src, reason) in wrong_registers() {
             let more = if src.contains("block") || src.contains("absent") {
                 "input_tuple_size = 1"
             } else {
                 ""
             };
-            assert_eq!(refused(&src, more), format!("{at}{reason}"), "{src}");
+            assert_eq!(refused(&src, more), format!("{AT}{reason}"), "{src}");
         }
+    }
+
+    #[test]
+    fn sizes_that_no_transfer_has_are_refused() {
+        let i2c = |rest: &str| format!("i2c{{ path = '/dev/i2c-2', {rest} }}");
+        let at = "robot.lua:2: x: ";
         let block = i2c("address = 0x48, register = 1, transfer = 'block'");
         assert_eq!(
             refused(&block, "input_tuple_size = 33"),
-            format!("{at}i2c: a tuple has 33 bytes, but transfer = 'block' takes at most 32")
+            format!("{AT}i2c: a tuple has 33 bytes, but transfer = 'block' takes at most 32")
         );
         let word = i2c("address = 0x48, register = 1, transfer = 'word'");
         assert_eq!(
             refused(&word, "input_tuple_size = 4"),
-            format!("{at}input_tuple_size is 4, but the source gives tuples of 2 bytes")
+            format!("{AT}input_tuple_size is 4, but the source gives tuples of 2 bytes")
         );
     }
 

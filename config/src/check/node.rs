@@ -17,7 +17,8 @@ use crate::vm::fingerprint::hash;
 use nix::unistd::{Group, User};
 
 /// All fields of a description.
-pub(super) const FIELDS: [&str; 22] = [
+pub(super) const FIELDS: [&str; 23] = [
+    "about",
     "ages",
     "attributes",
     "budget_us",
@@ -45,6 +46,7 @@ pub(super) const FIELDS: [&str; 22] = [
 /// A state with the program takes about 50 KiB; with less than this no converter would ever run.
 const MEMORY_KB_MIN: u32 = 128;
 const UNITS_BYTES_MAX: usize = 64;
+const ABOUT_BYTES_MAX: usize = 200;
 
 /// Sizes and what depends on them.
 struct Layout {
@@ -64,7 +66,13 @@ impl Fields<'_, '_> {
         if layout.format.is_none() && read.is_empty() {
             layout.format = self.joined_format(&source);
         }
-        let read_only = is_read_only(&source);
+        let read_only = is_read_only(&source)
+            || match &source {
+                SourceDescription::Node(other) => {
+                    !self.checker.takes_tuples(other) || !read.is_empty() && write.is_none()
+                }
+                _ => false,
+            };
         if write.is_some() && read_only {
             return Err(self.problem(
                 "write_converter",
@@ -90,10 +98,8 @@ impl Fields<'_, '_> {
             converter,
             write_converter,
             format: layout.format,
-            units: self
-                .text("units", UNITS_BYTES_MAX)?
-                .unwrap_or_default()
-                .to_owned(),
+            about: self.short_text("about", ABOUT_BYTES_MAX)?,
+            units: self.short_text("units", UNITS_BYTES_MAX)?,
             pace: self.pace()?,
             mode: self
                 .mode()?
@@ -120,6 +126,12 @@ impl Fields<'_, '_> {
         self.check_rest(&node, read_only)?;
         node.fingerprint = fingerprint(&node, &digests);
         Ok(node)
+    }
+
+    /// A text that may be missing, which is the same as empty.
+    fn short_text(&self, field: &str, most_bytes: usize) -> Result<String, Problem> {
+        let text = self.text(field, most_bytes)?;
+        Ok(text.unwrap_or_default().to_owned())
     }
 
     /// The stages from program to device; for a regulator, those of its control law.

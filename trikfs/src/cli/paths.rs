@@ -27,6 +27,20 @@ pub(super) fn search_paths(
     })
 }
 
+/// The file that a configuration would get with `include`, for a program that has this crate in it.
+///
+/// # Errors
+/// No directory of the search path has it.
+pub fn find_shipped(name: &Path, include: Vec<PathBuf>) -> Result<PathBuf, String> {
+    let program = std::env::current_exe().ok();
+    let dirs = Dirs::beside(program.as_deref().and_then(Path::parent), include).include;
+    let found = dirs.iter().map(|dir| dir.join(name));
+    found.clone().find(|path| path.is_file()).ok_or_else(|| {
+        let dirs: Vec<_> = dirs.iter().map(|dir| dir.display().to_string()).collect();
+        format!("there is no {} in {}", name.display(), dirs.join(", "))
+    })
+}
+
 /// Directories in the order in which they are searched.
 struct Dirs {
     /// For `include` and `replay`; the first that has the name wins.
@@ -130,6 +144,20 @@ mod tests {
         assert_eq!(
             dirs.library,
             ["/usr/lib/trikfs", "/usr/local/lib/trikfs", "/usr/bin"].map(PathBuf::from)
+        );
+    }
+
+    #[test]
+    fn a_shipped_file_is_found_or_the_places_are_named() {
+        let found = find_shipped(Path::new("hello.lua"), vec!["/here".into()]).expect("found");
+        assert!(
+            found.is_absolute() && found.ends_with("hello.lua"),
+            "{found:?}"
+        );
+        let refusal = find_shipped(Path::new("none.lua"), vec!["/here".into()]).expect_err("none");
+        assert!(
+            refusal.starts_with("there is no none.lua in /here, /etc/trikfs, "),
+            "{refusal}"
         );
     }
 

@@ -38,7 +38,7 @@ pub struct ValueFile {
     view: View,
     reads: bool,
     /// Served from the page cache under this node id.
-    cached: Option<u64>,
+    cached: bool,
     is_polled: AtomicBool,
     always_ready: bool,
     writer: Option<Mutex<Writer>>,
@@ -80,9 +80,9 @@ impl ValueFile {
         } else {
             None
         };
-        let is_cached = view == View::Bytes && read && !write && node.newest.can_cache();
+        let is_cached = view == View::Bytes && read && !write && node.newest.can_cache(ino);
         if is_cached {
-            node.newest.count_cached(ino, true);
+            node.newest.count_cached(true);
         }
         let file = Arc::new_cyclic(|me| Self {
             node: node.clone(),
@@ -90,7 +90,7 @@ impl ValueFile {
             me: me.clone(),
             view,
             reads: read,
-            cached: is_cached.then_some(ino),
+            cached: is_cached,
             is_polled: AtomicBool::new(false),
             always_ready,
             writer,
@@ -167,7 +167,7 @@ impl ValueFile {
 
 impl OpenFile for ValueFile {
     fn is_cached(&self) -> bool {
-        self.cached.is_some()
+        self.cached
     }
 
     fn read(&self, request: &Transfer, out: &mut [u8]) -> Result<Outcome, Error> {
@@ -222,7 +222,7 @@ impl OpenFile for ValueFile {
         if is_first {
             let me: Weak<dyn Ready> = self.me.clone();
             self.node.newest.watch(me);
-            if self.cached.is_some() && !self.is_polled.swap(true, Ordering::SeqCst) {
+            if self.cached && !self.is_polled.swap(true, Ordering::SeqCst) {
                 self.node.newest.count_polled(true);
             }
         }
@@ -247,8 +247,8 @@ impl OpenFile for ValueFile {
 
     fn release(&self) {
         self.ownership.released(&self.node);
-        if let Some(ino) = self.cached {
-            self.node.newest.count_cached(ino, false);
+        if self.cached {
+            self.node.newest.count_cached(false);
             if self.is_polled.load(Ordering::SeqCst) {
                 self.node.newest.count_polled(false);
             }

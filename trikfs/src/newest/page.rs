@@ -29,9 +29,13 @@ impl Page {
         matches!(size, 1 | 2 | 4 | 8) && kernel.is_some_and(|kernel| kernel.can_store())
     }
 
+    /// Whether this file is the one that is cached. A node with second names has several; the first that is opened is it.
+    pub(super) fn is_of(&self, ino: u64) -> bool {
+        *self.ino.get_or_init(|| ino) == ino
+    }
+
     /// A reader of this file comes (true) or goes.
-    pub(super) fn count_reader(&self, ino: u64, comes: bool) {
-        let _ = self.ino.set(ino);
+    pub(super) fn count_reader(&self, comes: bool) {
         if comes {
             // Its first read comes to us and leaves the answer in the page.
             self.is_filled.store(true, Ordering::SeqCst);

@@ -4,8 +4,8 @@
 //! known of its speed, and what is remembered of its registers. Knows no node.
 //!
 //! A thread that would have to wait gives its role away first ([`give_way`]), so that a slow or dead bus delays nobody
-//! who does not use it. At most `limits::BUS_WAITERS_MAX` wait for one bus: the others hear that it is busy, and no bus
-//! can take all threads.
+//! who does not use it. Only so many wait for one bus, fewer for one that is stuck: the others hear that it
+//! is busy, and no bus can take all threads.
 
 use super::adapter::Adapter;
 use super::virtual_bus::VirtualBus;
@@ -204,9 +204,9 @@ impl Bus {
                 "{path} was busy with other transfers for {} ms",
                 timeout.as_millis()
             )),
-            Refusal::TooMany => Error::Device(
+            Refusal::TooMany(number) => Error::Device(
                 libc::EBUSY,
-                format!("{path}: {} transfers wait for it", limits::BUS_WAITERS_MAX),
+                format!("{path}: {number} transfers wait for it"),
             ),
         }
     }
@@ -301,6 +301,8 @@ struct Turn {
 #[derive(Default)]
 struct Line {
     taken: bool,
+    /// When it was taken.
+    since: Option<Instant>,
     next_ticket: u32,
     waiting: VecDeque<(u32, bool)>,
     /// Whose turn it is, until that thread has woken up.
@@ -312,7 +314,7 @@ struct Line {
 #[derive(Debug, PartialEq, Eq)]
 enum Refusal {
     Late,
-    TooMany,
+    TooMany(usize),
 }
 
 /// The turn, given back when dropped.
@@ -331,6 +333,7 @@ impl Turn {
         let free = !line.taken && line.waiting.is_empty();
         free.then(|| {
             line.taken = true;
+            line.since = Some(Instant::now());
             Taken(self)
         })
     }
@@ -340,10 +343,19 @@ impl Turn {
         let mut line = lock(&self.line);
         if !line.taken && line.waiting.is_empty() {
             line.taken = true;
+            line.since = Some(Instant::now());
             return Ok(Taken(self));
         }
-        if line.waiting.len() >= limits::BUS_WAITERS_MAX {
-            return Err(Refusal::TooMany);
+        let is_stuck = line
+            .since
+            .is_some_and(|since| since.elapsed() > Duration::from_millis(limits::BUS_STUCK_MS));
+        let most = if is_stuck {
+            limits::BUS_WAITERS_STUCK_MAX
+        } else {
+            limits::BUS_WAITERS_MAX
+        };
+        if line.waiting.len() >= most {
+            return Err(Refusal::TooMany(line.waiting.len()));
         }
         line.next_ticket = line.next_ticket.wrapping_add(1);
         let ticket = line.next_ticket;
@@ -361,6 +373,7 @@ impl Turn {
                 .0;
         }
         line.called = None;
+        line.since = Some(Instant::now());
         line.last_was_urgent = urgent;
         Ok(Taken(self))
     }
@@ -457,7 +470,29 @@ mod tests {
             })
             .collect();
         waiting(&turn, limits::BUS_WAITERS_MAX);
-        assert_eq!(turn.take(true, soon()).err(), Some(Refusal::TooMany));
+        let refused = turn.take(true, soon()).err();
+        assert_eq!(refused, Some(Refusal::TooMany(limits::BUS_WAITERS_MAX)));
+        drop(held);
+        assert!(threads.into_iter().all(|thread| thread.join().unwrap()));
+    }
+
+    #[test]
+    fn a_bus_that_is_stuck_takes_fewer() {
+        let turn = Arc::new(Turn::default());
+        let held = turn.try_take().expect("free");
+        lock(&turn.line).since = Instant::now().checked_sub(Duration::from_secs(1));
+        let threads: Vec<_> = (0..limits::BUS_WAITERS_STUCK_MAX)
+            .map(|_| {
+                let turn = turn.clone();
+                std::thread::spawn(move || turn.take(false, soon()).is_ok())
+            })
+            .collect();
+        waiting(&turn, limits::BUS_WAITERS_STUCK_MAX);
+        let refused = turn.take(false, soon()).err();
+        assert_eq!(
+            refused,
+            Some(Refusal::TooMany(limits::BUS_WAITERS_STUCK_MAX))
+        );
         drop(held);
         assert!(threads.into_iter().all(|thread| thread.join().unwrap()));
     }

@@ -1,0 +1,78 @@
+-- Servos S1 to S6: degrees or percent to the width of pulses of the processor's PWM channels.
+--
+-- Owns the channels of the ports and the widths of the servo types. No pulses means no power.
+local number = include 'trik/number.lua'
+
+local PERIOD_NS = 20000000
+-- The number that switches a servo off, for `rest`; no position is like it.
+local OFF = -2147483648
+
+-- Widths of the pulses in ns, and the numbers that mean the least and the greatest.
+local types = {
+  angularServomotor = { min = 700000, zero = 1425000, max = 2150000, least = -90, greatest = 90, units = 'deg' },
+  continuousRotationServomotor = {
+    min = 700000, zero = 1500000, max = 2300000, least = -100, greatest = 100, units = '%',
+  },
+  manipulatorServomotor = { min = 530000, zero = 1415000, max = 2300000, least = 0, greatest = 100, units = '%' },
+  quadroMotor = { min = 1160000, zero = 1580000, max = 2000000, least = 0, greatest = 100, units = '%' },
+  quadroEsc = { min = 1100000, zero = 1500000, max = 1900000, least = 0, greatest = 100, units = '%' },
+}
+
+local ports = {
+  S1 = { chip = 2, channel = 0 },
+  S2 = { chip = 1, channel = 0 },
+  S3 = { chip = 0, channel = 0 },
+  S4 = { chip = 3, channel = 1 },
+  S5 = { chip = 5, channel = 0 },
+  S6 = { chip = 5, channel = 1 },
+}
+
+local servos = { group = 'servos', ports = ports, types = types, default = 'angularServomotor' }
+
+-- The description of one servo.
+function servos.make(port, kind, entry)
+  local sort, place = types[kind], ports[port]
+  local inversed = entry:word('polarity', 'normal', { 'normal', 'inversed' }) == 'inversed'
+  local least, greatest = sort.least, sort.greatest
+  local span, mean = greatest - least, (least + greatest) / 2
+  local function mirrored(position) return inversed and 2 * mean - position or position end
+  local src = pwm {
+    chip = '/sys/class/pwm/pwmchip' .. place.chip, channel = place.channel, period_ns = PERIOD_NS,
+  }
+  local function width(position)
+    local range = position <= mean and sort.zero - sort.min or sort.max - sort.zero
+    return number.divide(sort.zero * span + (position - mean) * 2 * range, span)
+  end
+  return {
+    about = 'position of the servo on ' .. port .. ', ' .. least .. ' to ' .. greatest .. '; an error while it is off',
+    src = src, format = 'i32 position', units = sort.units, rest = OFF,
+    converter = function(a_s, a, b_s, b)
+      local duty = ba.u32(a, 0)
+      if duty == 0 then error('the servo is off', 0) end
+      local range = duty <= sort.zero and sort.zero - sort.min or sort.max - sort.zero
+      ba.i32(b, 0, mirrored(mean + number.round((duty - sort.zero) * span, 2 * range)))
+    end,
+    write_converter = function(a_s, a, b_s, b)
+      local position = ba.i32(a, 0)
+      if position == OFF then return ba.i32(b, 0, 0) end
+      number.within('position', position, least, greatest)
+      ba.i32(b, 0, width(mirrored(position)))
+    end,
+    attributes = {
+      power = {
+        about = '0 switches the servo off; reads 1 while it is on',
+        src = src, format = 'i32 power',
+        converter = function(a_s, a, b_s, b) ba.i32(b, 0, ba.u32(a, 0) > 0 and 1 or 0) end,
+        write_converter = function(a_s, a, b_s, b)
+          if ba.i32(a, 0) ~= 0 then error('EINVAL: only 0 can be written; a position switches the servo on', 0) end
+        end,
+      },
+      raw = {
+        about = 'width of the pulses, 0 while the servo is off',
+        src = src, format = 'u32 duty_cycle', units = 'ns', mode = 0444,
+      },
+    },
+  }
+end
+
+return servos

@@ -1,0 +1,359 @@
+//! A robot with two driven wheels, a castor and a ring of sensors: differential drive on a plane.
+//!
+//! Owns where its sensors sit and what they give; which port has what is the table of [`crate::robots`].
+
+use super::battery::Battery;
+use super::motor::Motor;
+use super::{Body, Drive, Senses};
+use crate::geometry::{Point, Pose, point};
+use crate::world::{Colour, World, colour};
+use std::f64::consts::FRAC_PI_2;
+
+const WHEEL_RADIUS_M: f64 = 0.028;
+const TRACK_M: f64 = 0.155;
+const RADIUS_M: f64 = 0.11;
+const GRAVITY_MPS2: f64 = 9.81;
+/// Indices of the ports: M3 and E3 left, M4 and E4 right.
+const LEFT: usize = 2;
+const RIGHT: usize = 3;
+/// The light sensors look down here: ahead of the axle, and to each side.
+const LIGHT_AHEAD_M: f64 = 0.09;
+const LIGHT_BESIDE_M: f64 = 0.03;
+const LIGHT_SPOT_M: f64 = 0.006;
+/// Half of the beam of an ultrasonic sensor, and how far and near it hears.
+const BEAM_RAD: f64 = 0.2;
+const ULTRASONIC_MAX_M: f64 = 4.0;
+const ULTRASONIC_MIN_M: f64 = 0.02;
+const LIDAR_MAX_M: f64 = 8.0;
+/// The camera: ahead of the axle, above the floor, looking down, and half of its picture.
+const CAMERA_AHEAD_M: f64 = 0.1;
+const CAMERA_HEIGHT_M: f64 = 0.1;
+const CAMERA_PITCH_RAD: f64 = 0.44;
+const CAMERA_HALF_WIDTH_RAD: f64 = 0.49;
+const CAMERA_HALF_HEIGHT_RAD: f64 = 0.37;
+const WALL_HEIGHT_M: f64 = 0.3;
+const SKY: Colour = colour(200, 210, 220);
+/// The chip's own filter of accelerations.
+const ACCELERATION_LAG_S: f64 = 0.01;
+
+/// The robot, its world, and how it moves.
+pub struct TwoWheels {
+    world: World,
+    pose: Pose,
+    motors: [Motor; 4],
+    battery: Battery,
+    touches: bool,
+    forward_mps: f64,
+    rate_rad_s: f64,
+    acceleration_mps2: [f64; 2],
+}
+
+impl TwoWheels {
+    /// Stands still at `pose`.
+    pub fn new(world: World, pose: Pose) -> Self {
+        Self {
+            world,
+            pose,
+            motors: [Motor::default(); 4],
+            battery: Battery::default(),
+            touches: false,
+            forward_mps: 0.0,
+            rate_rad_s: 0.0,
+            acceleration_mps2: [0.0; 2],
+        }
+    }
+
+    /// Moves along the arc of constant wheel speeds, and out of walls.
+    fn roll(&mut self, dt_s: f64, left_m: f64, right_m: f64) {
+        let before = self.pose;
+        let moved = roll(before, left_m, right_m);
+        let (at, touched) = self.world.pushed_out(moved.at, RADIUS_M);
+        self.pose = Pose { at, ..moved };
+        // The bumper is at the front: a wall behind does not press it.
+        let push = at.from(moved.at);
+        self.touches = touched && push.dot(Point::towards(moved.heading_rad)) < 0.0;
+        if dt_s <= 0.0 {
+            return;
+        }
+        let ahead = Point::towards(before.heading_rad);
+        let forward_mps = at.from(before.at).dot(ahead) / dt_s;
+        self.rate_rad_s = (moved.heading_rad - before.heading_rad) / dt_s;
+        let felt = [
+            (forward_mps - self.forward_mps) / dt_s,
+            forward_mps * self.rate_rad_s,
+        ];
+        self.forward_mps = forward_mps;
+        let share = (dt_s / ACCELERATION_LAG_S).min(1.0);
+        for (kept, new) in self.acceleration_mps2.iter_mut().zip(felt) {
+            *kept += (new - *kept) * share;
+        }
+    }
+
+    /// The echo that a sensor at this place of the body hears.
+    fn echo(&self, forward: f64, left: f64, direction_rad: f64) -> Option<f64> {
+        let origin = self.pose.place(forward, left);
+        let ray = |part: i32| {
+            let angle = self.pose.heading_rad + direction_rad + BEAM_RAD * f64::from(part) / 2.0;
+            self.world.ray(origin, Point::towards(angle))
+        };
+        let nearest = (-2..=2).filter_map(ray).min_by(f64::total_cmp)?;
+        (nearest <= ULTRASONIC_MAX_M).then_some(nearest.max(ULTRASONIC_MIN_M))
+    }
+
+    fn light(&self, left: f64) -> f64 {
+        let at = self.pose.place(LIGHT_AHEAD_M, left);
+        light_raw(self.world.darkness(at, LIGHT_SPOT_M))
+    }
+
+    fn sharp(&self) -> f64 {
+        let origin = self.pose.place(RADIUS_M, 0.0);
+        let ahead = Point::towards(self.pose.heading_rad);
+        sharp_gp2_raw(self.world.ray(origin, ahead).unwrap_or(10.0) * 100.0)
+    }
+}
+
+/// Where a body is after its wheels rolled so far: the arc of a circle.
+pub fn roll(from: Pose, left_m: f64, right_m: f64) -> Pose {
+    let turn = (right_m - left_m) / TRACK_M;
+    let way = (left_m + right_m) / 2.0;
+    let heading_rad = from.heading_rad + turn;
+    let at = if turn.abs() < 1e-9 {
+        let middle = Point::towards(from.heading_rad + turn / 2.0);
+        from.at.moved(middle, way)
+    } else {
+        let radius = way / turn;
+        let (start, end) = (from.heading_rad, heading_rad);
+        point(
+            from.at.x + radius * (end.sin() - start.sin()),
+            from.at.y - radius * (end.cos() - start.cos()),
+        )
+    };
+    Pose { at, heading_rad }
+}
+
+/// What TRIK's Sharp GP2 gives at a distance in centimetres: the inverse of `8697 / raw - 2`; nearer than 8 cm it falls.
+pub fn sharp_gp2_raw(cm: f64) -> f64 {
+    if cm >= 8.0 {
+        8697.0 / (cm + 2.0)
+    } else {
+        869.7 * (cm / 8.0).max(0.0)
+    }
+}
+
+/// What TRIK's light sensor gives: 30 would be pure white and 1023 pure black; paper and tape lie between.
+fn light_raw(darkness: f64) -> f64 {
+    30.0 + 993.0 * (0.05 + 0.85 * darkness)
+}
+
+impl Body for TwoWheels {
+    fn step(&mut self, dt_s: f64, drive: &Drive) {
+        let battery_v = self.battery.voltage_v();
+        let before = [self.motors[LEFT].angle_deg, self.motors[RIGHT].angle_deg];
+        let current = |motor: usize, wheels: &mut [Motor; 4]| {
+            wheels[motor].step(dt_s, drive.motors[motor], battery_v)
+        };
+        let taken = current(LEFT, &mut self.motors) + current(RIGHT, &mut self.motors);
+        self.battery.step(dt_s, taken);
+        let metres = |degrees: f64| degrees.to_radians() * WHEEL_RADIUS_M;
+        let left_m = metres(self.motors[LEFT].angle_deg - before[0]);
+        let right_m = metres(self.motors[RIGHT].angle_deg - before[1]);
+        self.roll(dt_s, left_m, right_m);
+    }
+
+    fn senses(&self) -> Senses {
+        let touch = if self.touches { 20.0 } else { 1000.0 };
+        Senses {
+            pose: self.pose,
+            encoders_deg: self.shafts_deg(),
+            analog: [
+                Some(self.sharp()),
+                None,
+                Some(touch),
+                None,
+                Some(self.light(LIGHT_BESIDE_M)),
+                Some(self.light(-LIGHT_BESIDE_M)),
+            ],
+            ultrasonic_m: [
+                self.echo(RADIUS_M, 0.0, 0.0),
+                self.echo(0.0, RADIUS_M, FRAC_PI_2),
+                None,
+            ],
+            battery_v: self.battery.voltage_v(),
+            acceleration_mps2: [
+                self.acceleration_mps2[0],
+                self.acceleration_mps2[1],
+                GRAVITY_MPS2,
+            ],
+            rate_dps: [0.0, 0.0, self.rate_rad_s.to_degrees()],
+        }
+    }
+
+    fn shafts_deg(&self) -> [f64; 4] {
+        self.motors.map(|motor| motor.angle_deg)
+    }
+
+    fn has_infrared_camera(&self) -> bool {
+        true
+    }
+
+    fn has_lidar(&self) -> bool {
+        true
+    }
+
+    fn range_m(&self, clockwise_rad: f64) -> Option<f64> {
+        let towards = Point::towards(self.pose.heading_rad - clockwise_rad);
+        let distance = self.world.ray(self.pose.at, towards)?;
+        (distance <= LIDAR_MAX_M).then_some(distance)
+    }
+
+    fn pixel(&self, right: f64, down: f64) -> Option<Colour> {
+        let beside = -right * CAMERA_HALF_WIDTH_RAD.tan();
+        let below = down * CAMERA_HALF_HEIGHT_RAD.tan();
+        let (sin, cos) = CAMERA_PITCH_RAD.sin_cos();
+        let (ahead, sinks) = (cos - below * sin, sin + below * cos);
+        let origin = self.pose.place(CAMERA_AHEAD_M, 0.0);
+        let flat = self.pose.place(CAMERA_AHEAD_M + ahead, beside).from(origin);
+        let length = flat.length();
+        let towards = point(flat.x / length, flat.y / length);
+        // How much the ray sinks for each metre on the map.
+        let slope = sinks / length;
+        let floor_m = if slope > 0.0 {
+            CAMERA_HEIGHT_M / slope
+        } else {
+            f64::INFINITY
+        };
+        let wall = self.world.wall_ahead(origin, towards, floor_m);
+        let limit = wall.map_or(floor_m, |(distance, _)| distance);
+        for ball in self.world.balls() {
+            if sees_ball(origin, towards, slope, ball.at, ball.radius_m, limit) {
+                return Some(ball.colour);
+            }
+        }
+        let seen = match wall {
+            Some((distance, seen)) if CAMERA_HEIGHT_M - distance * slope < WALL_HEIGHT_M => seen,
+            Some(_) => SKY,
+            None if floor_m.is_finite() => self.world.floor_colour(origin.moved(towards, floor_m)),
+            None => SKY,
+        };
+        Some(seen)
+    }
+}
+
+/// Whether a sinking ray from the camera meets a ball on the floor before `limit` metres on the map.
+fn sees_ball(
+    origin: Point,
+    towards: Point,
+    slope: f64,
+    ball: Point,
+    radius: f64,
+    limit: f64,
+) -> bool {
+    let centre = ball.from(origin);
+    let along = centre.dot(towards);
+    if along <= 0.0 || along - radius > limit {
+        return false;
+    }
+    let height = CAMERA_HEIGHT_M - along * slope - radius;
+    centre.cross(towards).hypot(height) <= radius
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::Power;
+
+    fn run(robot: &mut TwoWheels, seconds: f64, left: f64, right: f64) {
+        let mut drive = Drive::default();
+        drive.motors[LEFT] = Power::Duty(left);
+        drive.motors[RIGHT] = Power::Duty(right);
+        for _ in 0..(seconds * 1000.0) as u32 {
+            robot.step(0.001, &drive);
+        }
+    }
+
+    /// A quarter of a circle of radius 1 m around (0, 1): each wheel runs on a circle of its own.
+    #[test]
+    fn constant_wheel_speeds_make_an_arc() {
+        let quarter = FRAC_PI_2;
+        let left = (1.0 - TRACK_M / 2.0) * quarter;
+        let right = (1.0 + TRACK_M / 2.0) * quarter;
+        let end = roll(Pose::default(), left, right);
+        assert!((end.at.x - 1.0).abs() < 1e-12 && (end.at.y - 1.0).abs() < 1e-12);
+        assert!((end.heading_rad - quarter).abs() < 1e-12);
+        // The same in a thousand steps.
+        let mut pose = Pose::default();
+        for _ in 0..1000 {
+            pose = roll(pose, left / 1000.0, right / 1000.0);
+        }
+        assert!(pose.at.from(end.at).length() < 1e-9);
+    }
+
+    #[test]
+    fn forward_is_forward_and_the_encoders_count_up() {
+        let mut robot = TwoWheels::new(World::empty(), Pose::default());
+        run(&mut robot, 2.0, 100.0, 100.0);
+        let senses = robot.senses();
+        assert!(senses.pose.at.x > 0.9, "{:?}", senses.pose);
+        assert!(senses.pose.at.y.abs() < 1e-9);
+        assert!(senses.encoders_deg[LEFT] > 1900.0);
+        // 0.028 m of radius: the way is the angle times the radius.
+        let way = senses.encoders_deg[RIGHT].to_radians() * WHEEL_RADIUS_M;
+        assert!((way - senses.pose.at.x).abs() < 1e-9);
+        assert!(senses.battery_v < 12.21, "the load sags the battery");
+    }
+
+    #[test]
+    fn a_faster_right_wheel_turns_to_the_left() {
+        let mut robot = TwoWheels::new(World::empty(), Pose::default());
+        run(&mut robot, 0.5, 10.0, 20.0);
+        let senses = robot.senses();
+        assert!(senses.pose.heading_rad > 0.1 && senses.rate_dps[2] > 1.0);
+        assert!(senses.acceleration_mps2[1] > 0.0, "the centre is left");
+    }
+
+    #[test]
+    fn a_wall_stops_it_presses_the_bumper_and_is_seen() {
+        let mut world = World::empty();
+        world.add_wall(point(1.0, -5.0), point(1.0, 5.0));
+        let mut robot = TwoWheels::new(world, Pose::default());
+        let before = robot.senses();
+        assert!((before.ultrasonic_m[0].unwrap() - 0.89).abs() < 1e-9);
+        assert_eq!(before.ultrasonic_m[1], None, "there is no wall on the left");
+        assert!((before.analog[0].unwrap() - 8697.0 / 91.0).abs() < 1e-9);
+        assert!((robot.range_m(0.0).unwrap() - 1.0).abs() < 1e-9);
+        assert_eq!(before.analog[2], Some(1000.0));
+        run(&mut robot, 5.0, 100.0, 100.0);
+        let after = robot.senses();
+        assert!((after.pose.at.x - 0.89).abs() < 1e-6, "{:?}", after.pose);
+        assert_eq!(after.analog[2], Some(20.0));
+        assert!(
+            after.encoders_deg[LEFT] > 4000.0,
+            "the wheels slip on at the wall"
+        );
+    }
+
+    /// Three points of the sensor's table: 511 at 15 cm, 322 at 25 cm, 235 at 35 cm.
+    #[test]
+    fn the_sharp_sensor_has_the_three_points_of_its_table() {
+        for (cm, raw) in [(15.0, 511.0), (25.0, 322.0), (35.0, 235.0)] {
+            assert!((sharp_gp2_raw(cm) - raw).abs() < 1.0, "{cm}");
+        }
+        assert!(sharp_gp2_raw(3.0) < sharp_gp2_raw(8.0));
+    }
+
+    #[test]
+    fn the_camera_sees_floor_line_wall_and_ball() {
+        let robot = TwoWheels::new(World::room(), Pose::new(1.0, 0.4, 0.0));
+        let line = robot.pixel(0.0, 0.5).unwrap();
+        assert!(line.red < 30, "{line:?}");
+        assert!(robot.pixel(0.9, 0.9).unwrap().red > 200);
+        let robot = TwoWheels::new(World::room(), Pose::new(2.2, 1.0, 0.0));
+        let any_red = (-40..40).any(|row| {
+            robot
+                .pixel(0.0, f64::from(row) / 40.0)
+                .is_some_and(|seen| seen.red > 200 && seen.green < 50)
+        });
+        assert!(any_red, "the ball is ahead");
+        assert_eq!(robot.pixel(0.9, -0.9), Some(colour(120, 150, 190)));
+    }
+}

@@ -1,0 +1,287 @@
+//! Faults that are put into devices at run time: which there are, what a text asks for, what is in force.
+//!
+//! A text has one fault in each line: a kind and, for some kinds, a number. Owns the table of devices and kinds; what a
+//! fault does to its device is decided where the device is.
+
+use crate::limits::{MAX_NOISE, MAX_SLOW_MS};
+use std::fmt::Write;
+
+/// Index of the coprocessor.
+pub const MSP430: usize = 0;
+/// Index of bus 1; bus 2 follows.
+pub const I2C: usize = 1;
+/// Index of the accelerometer.
+pub const ACCELEROMETER: usize = 3;
+/// Index of the gyroscope.
+pub const GYROSCOPE: usize = 4;
+/// Index of the camera.
+pub const CAMERA: usize = 5;
+/// Index of the lidar.
+pub const LIDAR: usize = 6;
+/// Index of the battery.
+pub const BATTERY: usize = 7;
+/// Index of A1; the others follow.
+pub const ANALOG: usize = 8;
+/// Index of D1; the others follow.
+pub const DIGITAL: usize = 14;
+/// Index of E1; the others follow.
+pub const ENCODER: usize = 17;
+/// Index of M1; the others follow.
+pub const MOTOR: usize = 21;
+const COUNT: usize = 25;
+
+const NAMES: [&str; COUNT] = [
+    "msp430",
+    "i2c-1",
+    "i2c-2",
+    "accelerometer",
+    "gyroscope",
+    "camera",
+    "lidar",
+    "battery",
+    "A1",
+    "A2",
+    "A3",
+    "A4",
+    "A5",
+    "A6",
+    "D1",
+    "D2",
+    "D3",
+    "E1",
+    "E2",
+    "E3",
+    "E4",
+    "M1",
+    "M2",
+    "M3",
+    "M4",
+];
+
+/// What is wrong with one device.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Fault {
+    /// It is not there.
+    pub unplug: bool,
+    /// It does not change any more.
+    pub stuck: bool,
+    /// Probability that it does not acknowledge.
+    pub nack: f64,
+    /// It takes so much longer.
+    pub slow_ms: u32,
+    /// Amplitude of what is added to its values, in its own unit.
+    pub noise: f64,
+    /// Probability that a sample or an answer is lost.
+    pub drop: f64,
+    /// It gives random bytes.
+    pub garbage: bool,
+}
+
+impl Fault {
+    /// Both together, as for a device on a bus.
+    pub fn with(self, other: Self) -> Self {
+        Self {
+            unplug: self.unplug || other.unplug,
+            stuck: self.stuck || other.stuck,
+            nack: self.nack.max(other.nack),
+            slow_ms: self.slow_ms.saturating_add(other.slow_ms),
+            noise: self.noise + other.noise,
+            drop: self.drop.max(other.drop),
+            garbage: self.garbage || other.garbage,
+        }
+    }
+
+    /// From a text; `kinds` are those that the device can have.
+    pub fn parse(text: &str, kinds: &[&str]) -> Result<Self, String> {
+        let mut fault = Self::default();
+        for line in text.lines().map(str::trim).filter(|line| !line.is_empty()) {
+            let mut words = line.split_whitespace();
+            let kind = words.next().unwrap_or_default();
+            let number = words.next();
+            if words.next().is_some() {
+                return Err(format!(
+                    "'{line}' has too many words; write a kind and at most one number"
+                ));
+            }
+            if !kinds.contains(&kind) {
+                return Err(format!(
+                    "there is no fault '{kind}' here; possible are {}",
+                    kinds.join(", ")
+                ));
+            }
+            fault.add(kind, number)?;
+        }
+        Ok(fault)
+    }
+
+    fn add(&mut self, kind: &str, number: Option<&str>) -> Result<(), String> {
+        let value = |default: Option<f64>, most: f64| -> Result<f64, String> {
+            let Some(text) = number else {
+                return default.ok_or(format!("'{kind}' needs a number from 0 to {most}"));
+            };
+            let value: f64 = text.parse().map_err(|_| format!("'{text}' is no number"))?;
+            if (0.0..=most).contains(&value) {
+                Ok(value)
+            } else {
+                Err(format!("{kind} {text} is not between 0 and {most}"))
+            }
+        };
+        match kind {
+            "nack" => self.nack = value(Some(1.0), 1.0)?,
+            "slow" => self.slow_ms = value(None, f64::from(MAX_SLOW_MS))? as u32,
+            "noise" => self.noise = value(None, MAX_NOISE)?,
+            "drop" => self.drop = value(None, 1.0)?,
+            _ if number.is_some() => return Err(format!("'{kind}' has no number")),
+            "unplug" => self.unplug = true,
+            "stuck" => self.stuck = true,
+            _ => self.garbage = true,
+        }
+        Ok(())
+    }
+}
+
+/// The faults of all devices.
+#[derive(Debug, Clone, Copy)]
+pub struct Faults([Fault; COUNT]);
+
+impl Default for Faults {
+    fn default() -> Self {
+        Self([Fault::default(); COUNT])
+    }
+}
+
+impl std::ops::Index<usize> for Faults {
+    type Output = Fault;
+
+    fn index(&self, index: usize) -> &Fault {
+        &self.0[index]
+    }
+}
+
+impl Faults {
+    /// Puts the faults of `text` into the device `name`; an empty text makes it whole.
+    pub fn set(&mut self, name: &str, text: &str) -> Result<(), String> {
+        let Some(index) = NAMES.iter().position(|other| *other == name) else {
+            let mut reason = format!("there is no device '{name}' on this board; there are");
+            for name in NAMES {
+                let _ = write!(reason, " {name}");
+            }
+            return Err(reason);
+        };
+        self.0[index] = Fault::parse(text, kinds(index))?;
+        Ok(())
+    }
+}
+
+/// All devices by their names, with the kinds of faults that each can have.
+pub fn devices() -> impl Iterator<Item = (&'static str, &'static [&'static str])> {
+    let names = NAMES.iter().enumerate();
+    names.map(|(index, name)| (*name, kinds(index)))
+}
+
+/// What the device of this index can have.
+fn kinds(index: usize) -> &'static [&'static str] {
+    match index {
+        MSP430 => &[
+            "unplug", "stuck", "nack", "slow", "noise", "drop", "garbage",
+        ],
+        1..=2 => &["unplug", "stuck", "nack", "slow", "drop", "garbage"],
+        ACCELEROMETER | GYROSCOPE | CAMERA | LIDAR => {
+            &["unplug", "stuck", "slow", "noise", "drop", "garbage"]
+        }
+        DIGITAL..ENCODER => &["unplug", "stuck", "slow", "noise", "drop", "garbage"],
+        MOTOR.. => &["unplug", "stuck", "noise"],
+        _ => &["unplug", "stuck", "noise", "drop", "garbage"],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_text_may_hold_several_faults() {
+        let mut faults = Faults::default();
+        faults.set("msp430", "nack 0.25\n\n slow 40 \n").unwrap();
+        let expected = Fault {
+            nack: 0.25,
+            slow_ms: 40,
+            ..Fault::default()
+        };
+        assert_eq!(faults[MSP430], expected);
+        faults.set("msp430", "").unwrap();
+        assert_eq!(faults[MSP430], Fault::default());
+        faults.set("M4", "unplug").unwrap();
+        assert!(faults[MOTOR + 3].unplug);
+        faults.set("D3", "noise 3").unwrap();
+        assert_eq!(faults[DIGITAL + 2].noise, 3.0);
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused_and_changes_nothing() {
+        let mut faults = Faults::default();
+        faults.set("A1", "stuck").unwrap();
+        for (name, text, reason) in [
+            ("A7", "stuck", "there is no device 'A7' on this board"),
+            (
+                "A1",
+                "nack",
+                "there is no fault 'nack' here; possible are unplug, stuck, noise, drop, garbage",
+            ),
+            ("A1", "noise", "'noise' needs a number from 0 to 1000000"),
+            ("A1", "noise lots", "'lots' is no number"),
+            ("A1", "noise NaN", "noise NaN is not between 0 and 1000000"),
+            ("A1", "drop 1.5", "drop 1.5 is not between 0 and 1"),
+            ("A1", "stuck 3", "'stuck' has no number"),
+            (
+                "A1",
+                "drop 1 2",
+                "'drop 1 2' has too many words; write a kind and at most one number",
+            ),
+        ] {
+            let got = faults.set(name, text).unwrap_err();
+            assert!(got.starts_with(reason), "{got}");
+        }
+        assert!(faults[ANALOG].stuck);
+    }
+
+    /// Rows of the table in the manual: names in backquotes, then kinds.
+    #[test]
+    fn the_manual_names_every_device_and_its_faults() {
+        let manual = include_str!("../../docs/user/simulator.md");
+        let mut told: Vec<(&str, &str)> = Vec::new();
+        for line in manual.lines().filter(|line| line.starts_with("| `")) {
+            let mut cells = line.trim_matches('|').split('|').map(str::trim);
+            let (names, kinds) = (cells.next().unwrap(), cells.next().unwrap());
+            if kinds.starts_with("unplug stuck") {
+                told.extend(
+                    names
+                        .split(", ")
+                        .map(|name| (name.trim_matches('`'), kinds)),
+                );
+            }
+        }
+        told.sort_unstable();
+        let mut real: Vec<(&str, String)> = devices()
+            .map(|(name, kinds)| (name, kinds.join(" ")))
+            .collect();
+        real.sort_unstable();
+        let real: Vec<(&str, &str)> = real.iter().map(|(name, kinds)| (*name, &**kinds)).collect();
+        assert_eq!(told, real);
+    }
+
+    #[test]
+    fn the_indices_are_those_of_the_names() {
+        for (index, name) in [
+            (MSP430, "msp430"),
+            (I2C + 1, "i2c-2"),
+            (BATTERY, "battery"),
+            (ANALOG, "A1"),
+            (DIGITAL, "D1"),
+            (ENCODER, "E1"),
+            (MOTOR, "M1"),
+        ] {
+            assert_eq!(NAMES[index], name);
+        }
+    }
+}

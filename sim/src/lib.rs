@@ -1,0 +1,32 @@
+//! A virtual TRIK controller in a small world, for work without hardware.
+//!
+//! [`board::Board`] makes a directory with the devices of a controller below it, down to the bytes on its buses; whoever
+//! opens them cannot tell them from the real ones but by their kind of file. Behind the connectors is a
+//! [`body::Body`]. This crate knows no filesystem of ours and no configuration: the devices are the contract.
+
+mod attributes;
+pub mod board;
+pub mod body;
+mod bus;
+mod camera;
+mod control;
+pub mod faults;
+mod fifo;
+mod files;
+pub mod geometry;
+mod input;
+mod lidar;
+mod limits;
+pub mod machine;
+mod mems;
+mod mlx90640;
+mod msp430;
+mod random;
+pub mod robots;
+mod root;
+#[cfg(test)]
+mod scratch;
+mod sensors;
+mod shared;
+mod sysfs;
+pub mod world;

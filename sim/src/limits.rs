@@ -1,0 +1,28 @@
+//! Every limit of the virtual board.
+
+/// One step of the physics, in simulated time.
+pub const STEP_S: f64 = 0.001;
+/// Simulated time that one look at the clock makes up for; what is beyond it (a PC that slept) is left out.
+pub const MAX_CATCH_UP_S: f64 = 2.0;
+/// Fastest and slowest world, as factors of real time.
+pub const MAX_SPEED: f64 = 100.0;
+/// See [`MAX_SPEED`].
+pub const MIN_SPEED: f64 = 0.01;
+/// The board looks after its files at least so often.
+pub const TICK_MS: u16 = 20;
+/// Clients of one bus; more are accepted and closed at once.
+pub const MAX_CONNECTIONS: usize = 128;
+/// Bytes of one transaction in each direction.
+pub const MAX_TRANSFER_BYTES: usize = 8192;
+/// Longest delay that a fault adds to one transaction, sample or line.
+pub const MAX_SLOW_MS: u32 = 60_000;
+/// Largest amplitude of noise that a fault adds.
+pub const MAX_NOISE: f64 = 1e6;
+/// Bytes that are read from one attribute, fault or other plain file.
+pub const MAX_TEXT_BYTES: usize = 4096;
+/// Longest line that is understood in a FIFO.
+pub const MAX_LINE_BYTES: usize = 256;
+/// GPIO numbers of the processor: 9 banks of 16.
+pub const GPIO_COUNT: u32 = 144;
+/// What a FIFO holds before samples are dropped, in bytes: one page, the least that Linux gives.
+pub const FIFO_BYTES: i32 = 4096;

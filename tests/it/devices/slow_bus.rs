@@ -1,0 +1,134 @@
+//! A bus that is slow or dead, with many nodes on it, beside one that is fine.
+
+use crate::mount_on;
+use harness::{Board, I2cBus, Mount};
+use std::time::{Duration, Instant};
+
+/// Twelve sampled nodes and twelve that sample at the read on one bus, two on the other.
+const CONFIG: &str = "
+    local function slow(register, more)
+      local node = { src = i2c{ '$DIR/slow', address = 0x48, register = register, transfer = 'word' }, format = 'u16 raw' }
+      for key, value in pairs(more or {}) do node[key] = value end
+      return node
+    end
+    trikfs = {
+      good = { src = i2c{ '$DIR/good', address = 0x48, register = 1, transfer = 'word' }, format = 'u16 raw' },
+      steady = { src = i2c{ '$DIR/good', address = 0x48, register = 3, transfer = 'word' }, format = 'u16 raw', poll_ms = 20 },
+      plain = { src = '/dev/zero', input_tuple_size = 1 },
+      slow = {}, late = {},
+    }
+    for n = 1, 12 do
+      trikfs.slow['n' .. n] = slow(2 * n, { poll_ms = 20, timeout_ms = 10000 })
+      trikfs.late['n' .. n] = slow(2 * n)
+    end";
+
+fn mounted() -> Option<(I2cBus, I2cBus, Mount)> {
+    let board = Board::new();
+    let good = I2cBus::start(&board.path("good"), 0x48);
+    let slow = I2cBus::start(&board.path("slow"), 0x48);
+    good.set(0x48, 1, &[5, 0]);
+    mount_on(board, CONFIG).map(|m| (good, slow, m))
+}
+
+/// Durations of reads of the good bus, sorted.
+fn read_times(m: &Mount, count: usize) -> Vec<Duration> {
+    use std::os::unix::fs::FileExt;
+    let file = m.open("good/value");
+    let mut times: Vec<Duration> = (0..count)
+        .map(|_| {
+            let begin = Instant::now();
+            let mut text = [0; 8];
+            let size = file.read_at(&mut text, 0).expect("a read of the good bus");
+            assert_eq!(&text[..size], b"5\n");
+            begin.elapsed()
+        })
+        .collect();
+    times.sort_unstable();
+    times
+}
+
+fn p99(times: &[Duration]) -> Duration {
+    times[times.len() * 99 / 100]
+}
+
+#[test]
+fn a_bus_that_takes_200_ms_for_each_answer_delays_nobody_else() {
+    let Some((_good, slow, m)) = mounted() else {
+        return;
+    };
+    let alone = p99(&read_times(&m, 4000));
+    slow.behaviour().delay = Duration::from_millis(200);
+    let before = m.stat("steady", "samples");
+    let begin = Instant::now();
+    let beside = p99(&read_times(&m, 4000));
+    while begin.elapsed() < Duration::from_millis(1500) {
+        read_times(&m, 100);
+    }
+    let rate = (m.stat("steady", "samples") - before) / begin.elapsed().as_secs_f64();
+    // Loaded machines are slower at both; a delay by the watchdog would be more than a millisecond for many reads.
+    assert!(
+        beside < alone + Duration::from_millis(5),
+        "p99 alone {alone:?}, beside the slow bus {beside:?}"
+    );
+    assert!(
+        rate > 25.0,
+        "the good bus is sampled at {rate} Hz instead of 50"
+    );
+    let threads = harness::processes::threads(m.daemon());
+    assert!(threads < 40, "{threads} threads");
+    // The nodes of the slow bus have their turns one after the other.
+    let sampled = (1..=12)
+        .filter(|n| m.stat(&format!("slow/n{n}"), "samples") > 0.0)
+        .count();
+    assert!(sampled >= 5, "{sampled} of 12 nodes were ever sampled");
+    slow.behaviour().delay = Duration::ZERO;
+}
+
+#[test]
+fn a_dead_bus_with_many_readers_takes_no_more_than_its_share_of_the_threads() {
+    let Some((_good, slow, m)) = mounted() else {
+        return;
+    };
+    assert_eq!(m.text("late/n1/value"), "0\n");
+    slow.behaviour().is_dead = true;
+    let m = &m;
+    let over = &std::sync::atomic::AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        let readers: Vec<_> = (0..48)
+            .map(|n| {
+                scope.spawn(move || {
+                    let mut errors = Vec::new();
+                    while !over.load(std::sync::atomic::Ordering::Relaxed) {
+                        errors.push(m.errno(&format!("late/n{}/value", n % 12 + 1)));
+                    }
+                    errors
+                })
+            })
+            .collect();
+        let begin = Instant::now();
+        let mut worst = Duration::ZERO;
+        while begin.elapsed() < Duration::from_millis(2500) {
+            let one = Instant::now();
+            assert_eq!(m.errno("plain/value"), 0);
+            worst = worst.max(one.elapsed());
+        }
+        over.store(true, std::sync::atomic::Ordering::Relaxed);
+        let mut errors: Vec<i32> = readers
+            .into_iter()
+            .flat_map(|reader| reader.join().unwrap())
+            .collect();
+        errors.sort_unstable();
+        errors.dedup();
+        assert!(
+            worst < Duration::from_millis(900),
+            "a read waited {worst:?}"
+        );
+        let known = [libc::EBUSY, libc::EIO, libc::ETIMEDOUT];
+        assert!(
+            errors.contains(&libc::ETIMEDOUT) && errors.iter().all(|errno| known.contains(errno)),
+            "{errors:?}"
+        );
+    });
+    slow.behaviour().is_dead = false;
+    harness::eventually("the bus is used again", || m.errno("late/n3/value") == 0);
+}

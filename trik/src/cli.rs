@@ -1,0 +1,246 @@
+//! The command line of `trik`: what can be said, and which part of the crate does it.
+//!
+//! Owns the words, the help and the exit codes: 0 done, 1 refused or failed, 2 not understood.
+
+use crate::{fault, limits, manual, up};
+use clap::{Args, CommandFactory, Parser, Subcommand};
+use std::ffi::OsString;
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// A whole virtual TRIK robot in one command, for a person at a PC.
+#[derive(Parser)]
+#[command(name = "trik", version, max_term_width = 100, after_long_help = EXAMPLES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  trik up                            a robot with two wheels, until Ctrl-C
+  trik up --speed 2 /tmp/robot       twice as fast, its tree in /tmp/robot
+  trik fault D1 unplug               pull the plug of the distance sensor D1
+  trik fault D1 --clear              and put it back
+
+Exit status: 0 done; 1 refused, or something failed; 2 the command line was not understood.";
+
+#[derive(Subcommand)]
+enum Command {
+    /// Start a virtual robot and mount its tree of files.
+    ///
+    /// Needs no hardware: a virtual board stands in for the controller below the level of its buses, so the tree, its
+    /// configuration and programs that use it are those of a real robot. Says in one line when the tree can be used
+    /// and what to try, then shows the robot until Ctrl-C, SIGTERM, SIGHUP or an unmount. Then it brings all actuators
+    /// to rest, unmounts and leaves nothing behind. Several may run side by side.
+    Up(UpArgs),
+    /// Break a device of a running virtual robot, or mend it.
+    ///
+    /// Programs see what they would see with a real device that fails so. Without a MOUNTPOINT it is the only robot
+    /// that runs.
+    Fault(FaultArgs),
+    /// Print a completion script for a shell.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page, of the program or of one command, for example: trik man up | man -l -
+    Man {
+        /// The command.
+        command: Option<String>,
+    },
+    /// The process that serves the tree of a robot: ends with its parent.
+    #[command(hide = true)]
+    Tree {
+        /// Process id of the parent.
+        parent: u32,
+        /// Arguments of trikfs.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<OsString>,
+    },
+}
+
+/// What `trik up` can be told.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub(crate) struct UpArgs {
+    /// Which robot: its body in the simulator, and its configuration robots/NAME.lua.
+    #[arg(long, value_name = "NAME", default_value = up::DEFAULT_ROBOT, value_parser = up::robot_name)]
+    pub robot: String,
+    /// Configuration in the place of the robot's own.
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+    /// How fast simulated time runs, from 0.1 to 20 times real time. Programs see their own clock, so at 2 the robot
+    /// moves twice as far in a second of theirs.
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = speed)]
+    pub speed: f64,
+    /// Seed of everything that is random: noise of sensors, faults. The same seed gives the same noise.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    pub seed: u64,
+    /// Do not show the robot, also on a terminal.
+    #[arg(long)]
+    pub no_view: bool,
+    /// Directory for files that configurations include, before /etc/trikfs; may be given several times.
+    #[arg(long, value_name = "DIR")]
+    pub include: Vec<PathBuf>,
+    /// Private directory for compiled C and copies of libraries [default: as for trikfs].
+    #[arg(long, value_name = "DIR")]
+    pub cache: Option<PathBuf>,
+    /// An empty directory; made if nothing is there, and removed again [default: robot, or else robot-2 and so on, in
+    /// $XDG_RUNTIME_DIR/trik or /tmp/trik-UID].
+    pub mountpoint: Option<PathBuf>,
+}
+
+/// What `trik fault` can be told.
+#[derive(Args, Clone, Debug, PartialEq, Eq)]
+pub(crate) struct FaultArgs {
+    /// The robot that is mounted there; needed when several run.
+    #[arg(long, value_name = "MOUNTPOINT")]
+    pub at: Option<PathBuf>,
+    /// Print the devices, the kinds of faults, and the faults in force.
+    #[arg(long, conflicts_with_all = ["device", "kind", "clear"])]
+    pub list: bool,
+    /// Mend the device.
+    #[arg(long, requires = "device", conflicts_with = "kind")]
+    pub clear: bool,
+    /// The device, for example msp430, A1, D1, gyroscope; see --list.
+    #[arg(required_unless_present = "list")]
+    pub device: Option<String>,
+    /// What happens to it, with its numbers, for example: unplug; nack 0.5; slow 20.
+    #[arg(required_unless_present_any = ["list", "clear"], num_args = 1.., allow_negative_numbers = true)]
+    pub kind: Vec<String>,
+}
+
+/// The program: reads the arguments of the process, does it, gives the exit code.
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            let _ = error.print();
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+        }
+    };
+    match perform(cli.command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(reason) => {
+            // Empty if another process has told it.
+            if !reason.is_empty() {
+                let _ = writeln!(io::stderr(), "trik: {reason}");
+            }
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn perform(command: Command) -> Result<(), String> {
+    match command {
+        Command::Up(args) => up::up(args),
+        Command::Fault(args) => print(fault::fault(&args)?.as_bytes()),
+        Command::Completions { shell } => print(&manual::completions(shell, Cli::command())),
+        Command::Man { command } => print(&manual::page(command.as_deref(), Cli::command())?),
+        Command::Tree { parent, arguments } => Err(up::tree::become_tree(parent, &arguments)),
+    }
+}
+
+/// Standard output; a reader that has seen enough is no failure.
+fn print(text: &[u8]) -> Result<(), String> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(format!("standard output: {error}"))
+        }
+        _ => Ok(()),
+    }
+}
+
+fn speed(text: &str) -> Result<f64, String> {
+    let (min, max) = (limits::SPEED_MIN, limits::SPEED_MAX);
+    text.parse()
+        .ok()
+        .filter(|speed| (min..=max).contains(speed))
+        .ok_or_else(|| format!("not a number from {min} to {max}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(line: &[&str]) -> Result<Command, clap::Error> {
+        Cli::try_parse_from(std::iter::once(&"trik").chain(line)).map(|cli| cli.command)
+    }
+
+    fn refusal(line: &[&str]) -> String {
+        match parse(line) {
+            Err(error) if error.exit_code() == 2 => error.to_string(),
+            Err(error) => panic!("{line:?}: {error}"),
+            Ok(_) => panic!("{line:?} was understood"),
+        }
+    }
+
+    #[test]
+    fn the_definition_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn up_takes_all_its_options_and_none() {
+        let Ok(Command::Up(plain)) = parse(&["up"]) else {
+            panic!("not understood")
+        };
+        assert_eq!(
+            (plain.robot.as_str(), plain.speed, plain.mountpoint),
+            ("two-wheels", 1.0, None)
+        );
+        let line =
+            "up --robot two-wheels --speed 2 --seed 7 --config c.lua --no-view --include i /m";
+        let words: Vec<&str> = line.split(' ').collect();
+        let Ok(Command::Up(args)) = parse(&words) else {
+            panic!("not understood")
+        };
+        assert_eq!((args.speed, args.seed, args.no_view), (2.0, 7, true));
+        assert_eq!(args.mountpoint, Some("/m".into()));
+    }
+
+    #[test]
+    fn a_speed_out_of_range_and_an_unknown_robot_are_refused_with_what_is_possible() {
+        for speed in ["0", "-1", "21", "nan", "inf", "fast"] {
+            let text = refusal(&["up", &format!("--speed={speed}")]);
+            assert!(text.contains("not a number from 0.1 to 20"), "{text}");
+        }
+        let text = refusal(&["up", "--robot=tank"]);
+        assert!(
+            text.contains("there is no such robot; there are ") && text.contains("two-wheels"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn a_fault_has_a_device_and_a_kind_or_asks_for_the_list() {
+        let Ok(Command::Fault(args)) = parse(&["fault", "D1", "noise", "-2"]) else {
+            panic!("not understood")
+        };
+        assert_eq!(args.kind, ["noise", "-2"]);
+        assert!(parse(&["fault", "--list"]).is_ok());
+        assert!(parse(&["fault", "D1", "--clear"]).is_ok());
+        for line in [
+            &["fault"] as &[&str],
+            &["fault", "D1"],
+            &["fault", "--clear"],
+            &["fault", "--list", "D1", "unplug"],
+            &["fault", "D1", "unplug", "--clear"],
+        ] {
+            refusal(line);
+        }
+    }
+
+    #[test]
+    fn every_command_but_the_hidden_one_has_a_manual_page() {
+        for name in ["up", "fault", "man", "completions"] {
+            let page = manual::page(Some(name), Cli::command()).expect(name);
+            assert!(String::from_utf8_lossy(&page).contains(name));
+        }
+        assert!(manual::page(Some("tree"), Cli::command()).is_err());
+        let script = manual::completions(clap_complete::Shell::Bash, Cli::command());
+        assert!(String::from_utf8_lossy(&script).contains("--no-view"));
+    }
+}

@@ -1,0 +1,139 @@
+//! `trik fault`: breaks and mends devices of a running board.
+//!
+//! Owns the way to a board and the files in which it finds its faults; what may be asked for is the board's table, and
+//! what a fault does is the board's business.
+
+use crate::cli::FaultArgs;
+use crate::place::{self, Running};
+use sim::faults::{Faults, devices};
+use std::fs;
+use std::io;
+use std::path::Path;
+
+/// Does it, and gives what is to be printed.
+///
+/// # Errors
+/// No such robot, device or kind.
+pub(crate) fn fault(args: &FaultArgs) -> Result<String, String> {
+    let base = place::base()?;
+    let all = place::running(&base).map_err(|error| format!("{}: {error}", base.display()));
+    // Looking makes the directory; nobody needs it if no robot does.
+    let _ = fs::remove_dir(&base);
+    let robot = choose(all?, args.at.as_deref());
+    let Some(device) = &args.device else {
+        // The table is good to know also when nothing runs.
+        return Ok(table(robot.ok().as_ref()));
+    };
+    let text = match args.clear {
+        true => String::new(),
+        false => args.kind.join(" "),
+    };
+    Faults::default().set(device, &text)?;
+    let faults = robot?.board.join("faults");
+    put(&faults, device, &text)
+        .map_err(|error| format!("{}: {error}", faults.join(device).display()))?;
+    Ok(String::new())
+}
+
+/// The robot that is meant.
+fn choose(mut all: Vec<Running>, at: Option<&Path>) -> Result<Running, String> {
+    let points = |all: &[Running]| {
+        let points: Vec<_> = all
+            .iter()
+            .map(|robot| robot.mountpoint.display().to_string())
+            .collect();
+        points.join(", ")
+    };
+    if let Some(at) = at {
+        let path = at.canonicalize().unwrap_or_else(|_| at.to_owned());
+        let found = all.iter().position(|robot| robot.mountpoint == path);
+        return match found {
+            Some(index) => Ok(all.swap_remove(index)),
+            None if all.is_empty() => Err(NONE.to_owned()),
+            None => Err(format!(
+                "{}: no robot of yours runs there; there are {}",
+                at.display(),
+                points(&all)
+            )),
+        };
+    }
+    match all.len() {
+        0 => Err(NONE.to_owned()),
+        1 => Ok(all.swap_remove(0)),
+        _ => Err(format!(
+            "several robots run: say which with --at; there are {}",
+            points(&all)
+        )),
+    }
+}
+
+const NONE: &str = "no robot of yours runs: start one with trik up";
+
+/// Makes the text the fault of the device, at one stroke: the board must not see half of it.
+fn put(faults: &Path, device: &str, text: &str) -> io::Result<()> {
+    let path = faults.join(device);
+    if text.is_empty() {
+        return match fs::remove_file(path) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(error),
+            _ => Ok(()),
+        };
+    }
+    // Beside the folder, which is the board's to read, and on the same filesystem.
+    let fresh = faults.with_file_name(format!(".fault-{}", std::process::id()));
+    fs::write(&fresh, format!("{text}\n"))?;
+    fs::rename(fresh, path)
+}
+
+/// All devices, what can happen to them and what is in force.
+fn table(robot: Option<&Running>) -> String {
+    let mut text = String::new();
+    for (name, kinds) in devices() {
+        text.push_str(&format!("{name:<14} {}\n", kinds.join(", ")));
+    }
+    let Some(robot) = robot else {
+        return text;
+    };
+    for (name, _) in devices() {
+        // A board whose robot has just ended has no faults.
+        let now = fs::read_to_string(robot.board.join("faults").join(name)).unwrap_or_default();
+        for fault in now.lines().filter(|line| !line.is_empty()) {
+            text.push_str(&format!("in force: {name} {fault}\n"));
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn robot(mountpoint: &str) -> Running {
+        Running {
+            mountpoint: mountpoint.into(),
+            board: "/none".into(),
+        }
+    }
+
+    #[test]
+    fn the_only_robot_is_meant_and_among_several_the_named_one() {
+        assert_eq!(choose(vec![], None), Err(NONE.to_owned()));
+        assert_eq!(choose(vec![robot("/a")], None), Ok(robot("/a")));
+        let two = || vec![robot("/a"), robot("/b")];
+        assert_eq!(
+            choose(two(), None),
+            Err("several robots run: say which with --at; there are /a, /b".to_owned())
+        );
+        assert_eq!(choose(two(), Some(Path::new("/b"))), Ok(robot("/b")));
+        assert_eq!(
+            choose(two(), Some(Path::new("/c"))),
+            Err("/c: no robot of yours runs there; there are /a, /b".to_owned())
+        );
+    }
+
+    #[test]
+    fn the_table_names_every_device() {
+        let text = table(None);
+        assert!(text.contains("msp430 ") && text.contains("nack"), "{text}");
+        assert!(text.lines().count() >= 20, "{text}");
+    }
+}

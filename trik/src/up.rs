@@ -1,0 +1,368 @@
+//! `trik up`: a virtual board in this process, the tree over it in child processes, and the person in front of them.
+//!
+//! Owns the order of things: place, board, tree, and all three backwards, whatever ends them. Everything that happens
+//! is waited for in one poll(2) in the main thread. `tree` is the child, `view` says how the robot is, `screen` draws
+//! it, `hints` says what to try.
+
+mod hints;
+mod screen;
+pub(crate) mod tree;
+mod view;
+
+use crate::cli::UpArgs;
+use crate::limits;
+use crate::place::{self, Place};
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
+use nix::sys::signal::{SigSet, Signal, kill};
+use nix::sys::signalfd::{SfdFlags, SignalFd};
+use nix::unistd::getpid;
+use screen::Screen;
+use sim::board::{Board, Options};
+use std::ffi::OsString;
+use std::io::{self, Write};
+use std::os::fd::AsFd;
+use std::path::{Path, PathBuf};
+use std::process::ExitStatus;
+use std::time::{Duration, Instant};
+use tree::Tree;
+
+/// The robot of whoever names none.
+pub(crate) const DEFAULT_ROBOT: &str = "two-wheels";
+
+/// What ends `trik up` in order; a stop of the terminal is for the view.
+const SIGNALS: [Signal; 5] = [
+    Signal::SIGTERM,
+    Signal::SIGINT,
+    Signal::SIGHUP,
+    Signal::SIGQUIT,
+    Signal::SIGTSTP,
+];
+
+/// The name of a robot that there is.
+pub(crate) fn robot_name(text: &str) -> Result<String, String> {
+    match sim::robots::by_name(text) {
+        Some(_) => Ok(text.to_owned()),
+        None => Err(format!(
+            "there is no such robot; there are {}",
+            sim::robots::names().collect::<Vec<_>>().join(", ")
+        )),
+    }
+}
+
+/// Runs a virtual robot until somebody stops it.
+///
+/// # Errors
+/// Why it does not run, or how it ended, empty if another process has told it.
+pub(crate) fn up(args: UpArgs) -> Result<(), String> {
+    let config = configuration(&args)?;
+    let robot = sim::robots::by_name(&args.robot)
+        .ok_or_else(|| format!("there is no robot {}", args.robot))?;
+    // Before the board has threads, so that these come to the main thread alone.
+    let mask: SigSet = SIGNALS.into_iter().collect();
+    let own = |error: nix::Error| format!("signals: {error}");
+    mask.thread_block().map_err(own)?;
+    let signals =
+        SignalFd::with_flags(&mask, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC).map_err(own)?;
+    let mountpoint = args.mountpoint.as_deref().map(absolute).transpose()?;
+    let place = Place::claim(&place::base()?, mountpoint.as_deref())?;
+    let options = Options {
+        speed: args.speed,
+        seed: args.seed,
+        ..Options::default()
+    };
+    let board = Board::start(&place.board, robot.body(), options)
+        .map_err(|error| format!("the virtual board in {}: {error}", place.board.display()))?;
+    let arguments = arguments(&args, &config, &place);
+    let tree = start(&arguments)?;
+    let mut session = Session {
+        arguments: &arguments,
+        robot: &args.robot,
+        speed: args.speed,
+        place: &place,
+        board: &board,
+        screen: if args.no_view { None } else { Screen::new() },
+        signals,
+        tree,
+        stage: Stage::Starting(after(limits::START_MS)),
+        was_asked: false,
+        was_ready: false,
+        restarts: 0,
+    };
+    let end = session.run();
+    drop(session);
+    // Actuators have come to rest, so the board is not needed any more; then its place is free.
+    drop(board);
+    drop(place);
+    end
+}
+
+/// What the tree is to be made of.
+fn configuration(args: &UpArgs) -> Result<PathBuf, String> {
+    match &args.config {
+        Some(path) if path.is_file() => absolute(path),
+        Some(path) => Err(format!("{}: no such configuration", path.display())),
+        None => {
+            let include: Result<_, _> = args.include.iter().map(|dir| absolute(dir)).collect();
+            let name = PathBuf::from(format!("robots/{}.lua", args.robot));
+            trikfs::cli::find_shipped(&name, include?)
+        }
+    }
+}
+
+/// The command line of trikfs.
+fn arguments(args: &UpArgs, config: &Path, place: &Place) -> Vec<OsString> {
+    let mut list: Vec<OsString> = vec!["mount".into()];
+    let mut option = |name: &str, value: &Path| {
+        // In one word, so that a path that begins with a dash stays a value.
+        let mut argument = OsString::from(name);
+        argument.push("=");
+        argument.push(value);
+        list.push(argument);
+    };
+    option("--config", config);
+    option("--device-root", &place.board);
+    for dir in &args.include {
+        option("--include", dir);
+    }
+    if let Some(cache) = &args.cache {
+        option("--cache", cache);
+    }
+    list.push("--".into());
+    list.push(place.mountpoint.clone().into());
+    list
+}
+
+fn absolute(path: &Path) -> Result<PathBuf, String> {
+    std::path::absolute(path).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+fn start(arguments: &[OsString]) -> Result<Tree, String> {
+    Tree::start(arguments).map_err(|error| format!("starting the tree: {error}"))
+}
+
+fn after(ms: u32) -> Instant {
+    Instant::now() + Duration::from_millis(ms.into())
+}
+
+/// How far things are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Stage {
+    /// The tree has that long to be there.
+    Starting(Instant),
+    /// It can be used.
+    Ready,
+    /// It was asked to end and has that long.
+    Stopping(Instant),
+    /// The guardian is dead. Its daemon, if it lives, has that long to clean up.
+    Orphaned(Instant),
+}
+
+/// One run, from the start of the tree to its end.
+struct Session<'a> {
+    arguments: &'a [OsString],
+    robot: &'a str,
+    speed: f64,
+    place: &'a Place,
+    board: &'a Board,
+    screen: Option<Screen>,
+    signals: SignalFd,
+    tree: Tree,
+    stage: Stage,
+    /// By a signal.
+    was_asked: bool,
+    was_ready: bool,
+    /// How often a tree whose guardian was killed has been started again.
+    restarts: usize,
+}
+
+impl Session<'_> {
+    fn run(&mut self) -> Result<(), String> {
+        let mut status = None;
+        loop {
+            self.wait().map_err(|error| format!("waiting: {error}"))?;
+            self.hear_signals();
+            self.hear_tree();
+            if self.tree.said.is_over() && status.is_none() {
+                status = Some(
+                    self.tree
+                        .wait()
+                        .map_err(|error| format!("the tree: {error}"))?,
+                );
+                self.stage = Stage::Orphaned(after(limits::ORPHAN_MS));
+            }
+            if let Some(ended) = status
+                && (self.tree.complaints.is_over() || self.is_late())
+            {
+                if !self.is_worth_another(ended) {
+                    if let Some(screen) = &mut self.screen {
+                        screen.leave();
+                    }
+                    return self.judge(ended);
+                }
+                self.start_again(ended)?;
+                status = None;
+            }
+            if self.is_late() {
+                self.hurry();
+            }
+            self.show();
+        }
+    }
+
+    /// Waits for a signal, a word of the tree, the next picture or the end of patience.
+    fn wait(&self) -> io::Result<()> {
+        let picture = (self.stage == Stage::Ready && self.screen.is_some())
+            .then_some(PollTimeout::from(limits::VIEW_MS));
+        let patience = self.deadline().map(|at| {
+            // One more, so that the deadline has passed when the time is up.
+            let left = at.saturating_duration_since(Instant::now()) + Duration::from_millis(1);
+            left.try_into().unwrap_or(PollTimeout::MAX)
+        });
+        let mut watched = vec![PollFd::new(self.signals.as_fd(), PollFlags::POLLIN)];
+        let pipes = [self.tree.said.fd(), self.tree.complaints.fd()];
+        watched.extend(
+            pipes
+                .into_iter()
+                .flatten()
+                .map(|fd| PollFd::new(fd, PollFlags::POLLIN)),
+        );
+        match poll(
+            &mut watched,
+            picture.or(patience).unwrap_or(PollTimeout::NONE),
+        ) {
+            Err(nix::Error::EINTR) | Ok(_) => Ok(()),
+            Err(error) => Err(error.into()),
+        }
+    }
+
+    fn deadline(&self) -> Option<Instant> {
+        match self.stage {
+            Stage::Starting(at) | Stage::Stopping(at) | Stage::Orphaned(at) => Some(at),
+            Stage::Ready => None,
+        }
+    }
+
+    fn is_late(&self) -> bool {
+        self.deadline().is_some_and(|at| Instant::now() >= at)
+    }
+
+    fn hear_signals(&mut self) {
+        while let Ok(Some(info)) = self.signals.read_signal() {
+            let signal = i32::try_from(info.ssi_signo).unwrap_or(0);
+            if signal == Signal::SIGTSTP as i32 {
+                if let Some(screen) = &mut self.screen {
+                    screen.leave();
+                }
+                let _ = kill(getpid(), Signal::SIGSTOP);
+                continue;
+            }
+            self.was_asked = true;
+            match self.stage {
+                // Somebody has no patience.
+                Stage::Stopping(_) => self.hurry(),
+                Stage::Orphaned(_) => self.stage = Stage::Orphaned(Instant::now()),
+                Stage::Starting(_) | Stage::Ready => {
+                    self.tree.terminate();
+                    self.stage = Stage::Stopping(after(limits::STOP_MS));
+                }
+            }
+        }
+    }
+
+    fn hear_tree(&mut self) {
+        for line in self.tree.said.hear() {
+            let Some(rest) = line.strip_prefix("trikfs: ready on ") else {
+                continue;
+            };
+            if matches!(self.stage, Stage::Starting(_)) {
+                self.stage = Stage::Ready;
+            }
+            if !self.was_ready {
+                self.was_ready = true;
+                self.welcome(rest);
+            }
+        }
+        for line in self.tree.complaints.hear() {
+            self.note(&line);
+        }
+    }
+
+    /// A message for the person.
+    fn note(&mut self, line: &str) {
+        match &mut self.screen {
+            Some(screen) if self.was_ready => screen.note(line),
+            _ => {
+                let _ = writeln!(io::stderr(), "{line}");
+            }
+        }
+    }
+
+    /// A guardian that somebody has killed left a robot that is well.
+    fn is_worth_another(&self, status: ExitStatus) -> bool {
+        let was_killed = status.code().is_none();
+        was_killed && self.was_ready && !self.was_asked && self.restarts < limits::RESTARTS_MAX
+    }
+
+    /// What an init system does for a real robot.
+    fn start_again(&mut self, status: ExitStatus) -> Result<(), String> {
+        self.restarts += 1;
+        self.note(&format!(
+            "trik: the guardian of the tree was ended by {status}; starting it again"
+        ));
+        self.tree = start(self.arguments)?;
+        self.stage = Stage::Starting(after(limits::START_MS));
+        Ok(())
+    }
+
+    /// The time is up: does by force what was asked for.
+    fn hurry(&mut self) {
+        match self.stage {
+            Stage::Starting(_) => {
+                self.tree.terminate();
+                self.stage = Stage::Stopping(after(limits::STOP_MS));
+            }
+            Stage::Stopping(_) => {
+                self.tree.kill();
+                self.stage = Stage::Stopping(after(limits::STOP_MS));
+            }
+            Stage::Ready | Stage::Orphaned(_) => {}
+        }
+    }
+
+    /// Says where the robot is and what to try. `ready` is what trikfs said: a path, and a number of nodes in brackets.
+    fn welcome(&self, ready: &str) {
+        let nodes = ready
+            .rsplit_once(" (")
+            .and_then(|(_, rest)| rest.split_once(')'))
+            .map_or(String::new(), |(nodes, _)| format!(" ({nodes})"));
+        let root = self.place.mountpoint.display();
+        let mut text = format!(
+            "trik: the robot {} is ready on {root}{nodes}\n\nIn a second terminal:\n\n  cd {root}\n",
+            self.robot
+        );
+        for (command, meaning) in hints::of(self.robot) {
+            text.push_str(&format!("  {command:<54} # {meaning}\n"));
+        }
+        text.push_str("\nCtrl-C ends it.\n\n");
+        let mut out = io::stdout().lock();
+        let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    }
+
+    fn show(&mut self) {
+        if let (Stage::Ready, Some(screen)) = (self.stage, &mut self.screen) {
+            screen.draw(&view::lines(&self.board.view(), self.robot, self.speed));
+        }
+    }
+
+    /// What the end of the guardian means.
+    fn judge(&self, status: ExitStatus) -> Result<(), String> {
+        match status.code() {
+            Some(0) => Ok(()),
+            // It has said why.
+            Some(_) if !self.was_ready => Err(String::new()),
+            _ if self.was_asked => Ok(()),
+            Some(code) => Err(format!("the tree ended with status {code}")),
+            None => Err(format!("the guardian of the tree was ended by {status}")),
+        }
+    }
+}

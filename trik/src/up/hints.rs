@@ -1,0 +1,20 @@
+//! What to try first with each robot, as commands for a shell.
+//!
+//! Owns the texts; a test runs each of them on its robot.
+
+/// Commands for the directory of the tree, with what they do.
+pub(super) fn of(robot: &str) -> &'static [(&'static str, &'static str)] {
+    match robot {
+        "two-wheels" => &[
+            ("cat sensors/D1/value", "how far is the wall, in cm?"),
+            (
+                "echo 30 > motors/M3/value; echo 30 > motors/M4/value",
+                "drive, in percent",
+            ),
+            ("cat encoders/E3/value", "how far has the wheel turned?"),
+            ("echo -30 > motors/M3/value", "turn on the spot"),
+            ("echo > stop", "bring everything to rest"),
+        ],
+        _ => &[("cat status", "what is there?")],
+    }
+}

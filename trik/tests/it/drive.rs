@@ -1,0 +1,180 @@
+//! The robot moves and its sensors see it: from a write to a file of the tree to the room and back.
+//!
+//! The room is 3 m by 2 m; two-wheels starts at (0.8, 1.0) and looks along its longer side.
+
+use crate::rig::{Robot, robot};
+use harness::eventually;
+
+/// A number of a node, once its device has something to say.
+fn number(robot: &Robot, name: &str) -> f64 {
+    eventually(name, || robot.errno(name) == 0);
+    robot.number(name)
+}
+
+#[test]
+fn driving_forward_turns_both_encoders_forward_and_stop_stops() {
+    let Some(robot) = robot(&[]) else { return };
+    let before = [
+        number(&robot, "encoders/E3/value"),
+        number(&robot, "encoders/E4/value"),
+    ];
+    robot.drive(30, 30);
+    eventually("both wheels have turned", || {
+        robot.number("encoders/E3/value") > before[0] + 100.0
+            && robot.number("encoders/E4/value") > before[1] + 100.0
+    });
+    robot.write("stop", "1").expect("stop");
+    assert_eq!(
+        (
+            robot.duty(3).expect("the bus"),
+            robot.duty(4).expect("the bus")
+        ),
+        (0, 0)
+    );
+    // The wheels run out.
+    let mut last = f64::NAN;
+    eventually("a standstill", || {
+        let now = robot.number("encoders/E3/value");
+        std::mem::replace(&mut last, now) == now
+    });
+}
+
+#[test]
+fn an_encoder_is_reset_by_writing_0() {
+    let Some(robot) = robot(&[]) else { return };
+    robot.drive(30, 30);
+    eventually("a turn", || number(&robot, "encoders/E3/value") > 200.0);
+    robot.drive(0, 0);
+    let mut last = f64::NAN;
+    eventually("a standstill", || {
+        let now = robot.number("encoders/E3/value");
+        std::mem::replace(&mut last, now) == now
+    });
+    robot.write("encoders/E3/value", "0").expect("a reset");
+    eventually("zero", || robot.number("encoders/E3/value").abs() < 3.0);
+}
+
+#[test]
+fn a_wall_stops_the_robot_and_both_distance_sensors_saw_it_come() {
+    let Some(robot) = robot(&["--speed", "2"]) else {
+        return;
+    };
+    let far = number(&robot, "sensors/D1/value");
+    let infrared = number(&robot, "sensors/A1/value");
+    // Both look forward from nearly the same place.
+    assert!((far - infrared).abs() < 12.0, "{far} cm, {infrared} cm");
+    assert_eq!(number(&robot, "sensors/A3/value"), 0.0);
+    robot.drive(40, 40);
+    eventually("the bumper", || robot.number("sensors/A3/value") == 1.0);
+    let near = number(&robot, "sensors/D1/value");
+    assert!(near < far - 10.0 && near < 15.0, "{near} cm after {far} cm");
+}
+
+#[test]
+fn turning_on_the_spot_is_seen_by_encoders_and_gyroscope() {
+    let Some(robot) = robot(&[]) else { return };
+    // It measures its bias first, while the robot stands still.
+    eventually("a calibrated gyroscope", || {
+        robot.errno("gyroscope/value") == 0
+    });
+    robot.drive(-20, 20);
+    // Counter-clockwise, around the axis that points up.
+    eventually("a turn to the left", || {
+        robot.numbers("gyroscope/value")[2].abs() > 20_000.0
+    });
+    eventually("wheels in opposite directions", || {
+        robot.number("encoders/E3/value") < -100.0 && robot.number("encoders/E4/value") > 100.0
+    });
+    let left = robot.numbers("gyroscope/value")[2];
+    let heading = number(&robot, "gyroscope/heading");
+    eventually("20 degrees more", || {
+        (number(&robot, "gyroscope/heading") - heading).abs() > 20_000.0
+    });
+    robot.drive(20, -20);
+    eventually("a turn to the right", || {
+        let now = robot.numbers("gyroscope/value")[2];
+        now.abs() > 20_000.0 && now.signum() == -left.signum()
+    });
+}
+
+#[test]
+fn a_servo_gets_its_pulse_and_none_at_the_end() {
+    let Some(robot) = robot(&[]) else { return };
+    let attribute = |name: &str| {
+        let path = robot.devices.join("sys/class/pwm/pwmchip2/pwm0").join(name);
+        std::fs::read_to_string(path).expect(name).trim().to_owned()
+    };
+    robot.write("servos/S1/value", "0").expect("the middle");
+    assert_eq!(
+        (attribute("duty_cycle"), attribute("enable")),
+        ("1425000".into(), "1".into())
+    );
+    robot.write("servos/S1/value", "90").expect("one end");
+    assert_eq!(attribute("duty_cycle"), "2150000");
+    assert_eq!(attribute("period"), "20000000");
+    robot.write("stop", "1").expect("stop");
+    assert_eq!(attribute("enable"), "0");
+}
+
+#[test]
+fn the_light_shines() {
+    let Some(robot) = robot(&[]) else { return };
+    robot.write("led/red/value", "1").expect("red");
+    let brightness = robot.devices.join("sys/class/leds/led_red/brightness");
+    assert_eq!(
+        std::fs::read_to_string(brightness).expect("a light").trim(),
+        "1"
+    );
+    assert_eq!(number(&robot, "led/red/value"), 1.0);
+}
+
+#[test]
+fn battery_and_accelerometer_have_values_in_physical_units() {
+    let Some(robot) = robot(&[]) else { return };
+    let volts = number(&robot, "battery/value");
+    assert!((11.0..13.0).contains(&volts), "{volts} V");
+    let gravity = "accelerometer/value";
+    eventually(gravity, || robot.errno(gravity) == 0);
+    assert_eq!(robot.read("accelerometer/units").expect("a unit"), "mg");
+    let all = robot.numbers(gravity);
+    assert!((950.0..1050.0).contains(&all[2]), "{all:?}");
+    assert!(all[0].abs() < 50.0 && all[1].abs() < 50.0, "{all:?}");
+}
+
+#[test]
+fn a_pressed_key_is_seen_until_it_is_released() {
+    let Some(robot) = robot(&[]) else { return };
+    let press = |words: &str| {
+        let control = robot.devices.join("control/keys");
+        std::fs::write(control, format!("{words}\n")).expect("keys");
+    };
+    let pressed = || {
+        let names = robot.read("keys/format").expect("names");
+        let place = names.split(", ").position(|name| name.ends_with(" up"));
+        robot.numbers("keys/value")[place.expect("a key UP")]
+    };
+    eventually("keys", || robot.errno("keys/value") == 0);
+    assert_eq!(pressed(), 0.0);
+    press("press up");
+    eventually("a pressed key", || pressed() == 1.0);
+    press("release up");
+    eventually("a released key", || pressed() == 0.0);
+}
+
+#[test]
+fn the_line_sensor_starts_when_it_is_read_and_stops_afterwards() {
+    let Some(robot) = robot(&[]) else { return };
+    let fifo = robot.devices.join("run/line-sensor.out.fifo");
+    assert!(!fifo.exists());
+    let output = robot.sh("head -c 12 camera/line/device | wc -c");
+    assert_eq!(output.good().trim(), "12");
+    eventually("the end of the sensor", || !fifo.exists());
+}
+
+#[test]
+fn a_write_out_of_range_is_refused_and_moves_nothing() {
+    let Some(robot) = robot(&[]) else { return };
+    assert!(robot.write("motors/M3/value", "300").is_err());
+    assert!(robot.write("motors/M3/value", "fast").is_err());
+    assert_eq!(robot.duty(3).expect("the bus"), 0);
+}

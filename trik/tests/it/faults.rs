@@ -1,0 +1,88 @@
+//! Devices that fail on purpose: never a number, always a reason, and all is well again when they are.
+
+use crate::rig::robot;
+use harness::eventually;
+use std::time::{Duration, Instant};
+
+#[test]
+fn an_unplugged_sensor_gives_an_error_and_comes_back() {
+    let Some(robot) = robot(&[]) else { return };
+    let value = "sensors/D1/value";
+    eventually("a distance", || robot.errno(value) == 0);
+    robot.fault(&["D1", "unplug"]);
+    eventually("an error", || robot.errno(value) != 0);
+    assert_ne!(robot.read("sensors/D1/fault").expect("a text"), "");
+    robot.fault(&["D1", "--clear"]);
+    eventually("a distance again", || robot.errno(value) == 0);
+}
+
+#[test]
+fn a_coprocessor_that_does_not_answer_fails_what_is_behind_it_and_nothing_else() {
+    let Some(robot) = robot(&[]) else { return };
+    let others = ["sensors/D1/value", "accelerometer/value"];
+    let behind = ["encoders/E3/value", "battery/value", "sensors/A1/value"];
+    for name in others.iter().chain(&behind) {
+        eventually(name, || robot.errno(name) == 0);
+    }
+    robot.fault(&["msp430", "nack"]);
+    for name in behind {
+        eventually(name, || robot.errno(name) != 0);
+    }
+    assert!(robot.write("motors/M3/value", "10").is_err());
+    let fault = robot.read("encoders/E3/fault").expect("a text");
+    assert!(fault.contains("0x48"), "{fault}");
+    for name in others {
+        assert_eq!(robot.errno(name), 0, "{name}");
+    }
+    robot.fault(&["msp430", "--clear"]);
+    for name in behind {
+        eventually(name, || robot.errno(name) == 0);
+    }
+    robot.write("motors/M3/value", "10").expect("a motor");
+}
+
+#[test]
+fn a_slow_bus_does_not_delay_what_is_not_on_it() {
+    let Some(robot) = robot(&[]) else { return };
+    eventually("a distance", || robot.errno("sensors/D1/value") == 0);
+    robot.fault(&["i2c-2", "slow", "300"]);
+    let began = Instant::now();
+    let mut motor = std::process::Command::new("sh")
+        .args(["-c", "echo 10 > motors/M3/value"])
+        .current_dir(&robot.root)
+        .spawn()
+        .expect("a shell");
+    let mut slowest = Duration::ZERO;
+    while motor.try_wait().expect("a child").is_none() && began.elapsed() < Duration::from_secs(10)
+    {
+        let start = Instant::now();
+        assert_eq!(robot.errno("sensors/D1/value"), 0);
+        slowest = slowest.max(start.elapsed());
+    }
+    assert!(
+        began.elapsed() >= Duration::from_millis(250),
+        "the bus was not slow"
+    );
+    assert!(slowest < Duration::from_millis(200), "{slowest:?}");
+    robot.fault(&["i2c-2", "--clear"]);
+}
+
+#[test]
+fn a_stuck_encoder_stands_still_while_the_other_turns() {
+    let Some(robot) = robot(&[]) else { return };
+    eventually("encoders", || robot.errno("encoders/E3/value") == 0);
+    robot.fault(&["E3", "stuck"]);
+    let list = robot.fault(&["--list"]);
+    assert!(list.contains("in force: E3 stuck\n"), "{list}");
+    // The fault is noticed within moments; what the wheel did until then is over when it stands.
+    eventually("a fault in force", || {
+        let before = robot.number("encoders/E3/value");
+        robot.drive(30, 30);
+        let other = robot.number("encoders/E4/value");
+        eventually("the other wheel", || {
+            robot.number("encoders/E4/value") > other + 100.0
+        });
+        robot.drive(0, 0);
+        robot.number("encoders/E3/value") == before
+    });
+}

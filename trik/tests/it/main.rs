@@ -1,0 +1,16 @@
+//! `trik up` as people use it: a whole virtual robot, a real mount, programs that read and write files.
+//!
+//! One binary, so that linking happens once. Below is the table of contents.
+
+/// What documents show of a robot.
+mod documents;
+/// The robot moves and its sensors see it.
+mod drive;
+/// How it ends: every way leaves nothing behind and actuators at rest.
+mod end;
+/// Devices that fail on purpose.
+mod faults;
+/// A running `trik up`.
+mod rig;
+/// What is said to a person, and what is refused.
+mod words;
