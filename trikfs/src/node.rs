@@ -89,13 +89,6 @@ impl Node {
             .format
             .clone()
             .unwrap_or_else(|| Format::bytes(description.output_tuple_size));
-        let mut leases = vec![lease.clone()];
-        if let Some(other) = written_node(&description.source) {
-            let linked = links.iter().filter(|(path, _)| path == other);
-            // One that stands for another node has its lease.
-            let others = linked.flat_map(|(_, node)| node.leases.clone());
-            leases.extend(others.filter(|other| !Arc::ptr_eq(other, &lease)));
-        }
         let regulation = match &description.source {
             SourceDescription::Regulator(regulator) => links
                 .iter()
@@ -104,6 +97,13 @@ impl Node {
             _ => None,
         };
         let stats = Stats::default();
+        let mut leases = vec![lease.clone()];
+        if let Some(other) = written_node(&description.source) {
+            let linked = links.iter().filter(|(path, _)| path == other);
+            // One that stands for another node has its lease.
+            let others = linked.flat_map(|(_, node)| node.leases.clone());
+            leases.extend(others.filter(|other| !Arc::ptr_eq(other, &lease)));
+        }
         let around = Surroundings {
             links,
             timeout_ms: description.timeout_ms,

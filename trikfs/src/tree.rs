@@ -389,13 +389,6 @@ impl Builder<'_> {
         existing.unwrap_or_else(|| self.add(parent, name, Kind::Directory))
     }
 
-    /// Whether a node's directory shows a lease: there is something to rest, and a link can be written.
-    fn has_owner(&self, node: &Node) -> bool {
-        let is_link = node.lease.path() != node.directory();
-        let is_written = node.description.mode & 0o222 != 0;
-        self.leased.contains(node.lease.path()) && (is_written || !is_link)
-    }
-
     /// A node's directory with its files at a path, or an attribute's file.
     fn add_node(&mut self, path: &str, node: &Arc<Node>) {
         let mut at = ROOT;
@@ -411,6 +404,13 @@ impl Builder<'_> {
         if !node.is_attribute {
             self.add_node_files(at, node);
         }
+    }
+
+    /// Whether a node's directory shows a lease: there is something to rest, and a link can be written.
+    fn has_owner(&self, node: &Node) -> bool {
+        let is_link = node.lease.path() != node.directory();
+        let is_written = node.description.mode & 0o222 != 0;
+        self.leased.contains(node.lease.path()) && (is_written || !is_link)
     }
 
     fn add_node_files(&mut self, at: u64, node: &Arc<Node>) {
