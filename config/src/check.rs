@@ -389,13 +389,9 @@ impl<'a> Checker<'a> {
 
     /// True if what another node gives can also be written to it. It has been built.
     fn takes_tuples(&self, other: &str) -> bool {
-        let draft = self.index.get(other).and_then(|n| self.drafts.get(*n));
-        match draft.map(|draft| &draft.built) {
-            Some(Built::Done(node)) => {
-                node.mode & 0o222 != 0 && node.written_tuple_size() == node.output_tuple_size
-            }
-            _ => false,
-        }
+        self.built(other).is_some_and(|node| {
+            node.mode & 0o222 != 0 && node.written_tuple_size() == node.output_tuple_size
+        })
     }
 
     /// A node that is built already.

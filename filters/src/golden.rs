@@ -2,13 +2,14 @@
 //! through every filter.
 
 use crate::vectors::{self, Expected, Vectors};
-use crate::{Lanes, trikfs_library_entry};
+use crate::{Fused, LIBRARY_ONLY, Lanes, trikfs_library_entry};
 use converter::abi::descriptors;
 use converter::{Conversion, Converter, Direction, Fault, OpenInfo};
 use proptest::prelude::*;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
+use std::sync::OnceLock;
 
 /// One conversion, however it is made.
 type Convert = Box<dyn FnMut(&[u8], &mut [u8]) -> Result<Conversion, Fault>>;
@@ -67,7 +68,11 @@ fn open_as<T: Converter + 'static>(info: &OpenInfo<'_>) -> Result<Convert, Fault
 }
 
 fn open_in_rust(filter: &str, info: &OpenInfo<'_>) -> Result<Convert, Fault> {
+    use crate::{complementary::Complementary, heading::Heading, odometry::Odometry, pid::Pid};
     use crate::{dead_band::DeadBand, identity::Identity, inverse::Inverse, low_pass::LowPass};
+    use crate::{debounce::Debounce, hysteresis::Hysteresis, kalman::Kalman};
+    use crate::{kalman_linear::KalmanLinear, speed_hold::SpeedHold};
+    use crate::{madgwick::Madgwick, mahony::Mahony};
     use crate::{median3::Median3, moving_average::MovingAverage, rate::Rate, scale::Scale};
     match filter {
         "identity" => open_as::<Identity>(info),
@@ -85,6 +90,23 @@ fn open_in_rust(filter: &str, info: &OpenInfo<'_>) -> Result<Convert, Fault> {
         "dead_band_f32" => open_as::<Lanes<DeadBand<f32>>>(info),
         "rate" => open_as::<Lanes<Rate<i32>>>(info),
         "rate_f32" => open_as::<Lanes<Rate<f32>>>(info),
+        "debounce" => open_as::<Lanes<Debounce<i32>>>(info),
+        "debounce_f32" => open_as::<Lanes<Debounce<f32>>>(info),
+        "hysteresis" => open_as::<Lanes<Hysteresis<i32>>>(info),
+        "hysteresis_f32" => open_as::<Lanes<Hysteresis<f32>>>(info),
+        "kalman" => open_as::<Lanes<Kalman<i32>>>(info),
+        "kalman_f32" => open_as::<Lanes<Kalman<f32>>>(info),
+        "kalman_linear" => open_as::<Fused<KalmanLinear<i32>>>(info),
+        "kalman_linear_f32" => open_as::<Fused<KalmanLinear<f32>>>(info),
+        "complementary" => open_as::<Fused<Complementary<i32>>>(info),
+        "complementary_f32" => open_as::<Fused<Complementary<f32>>>(info),
+        "pid" => open_as::<Fused<Pid<i32>>>(info),
+        "pid_f32" => open_as::<Fused<Pid<f32>>>(info),
+        "speed_hold" => open_as::<Fused<SpeedHold>>(info),
+        "odometry" => open_as::<Fused<Odometry>>(info),
+        "heading" => open_as::<Fused<Heading>>(info),
+        "madgwick" => open_as::<Fused<Madgwick>>(info),
+        "mahony" => open_as::<Fused<Mahony>>(info),
         other => panic!("no filter {other}"),
     }
 }
@@ -115,6 +137,7 @@ fn every_filter_has_vectors_and_a_description() {
     let exported: BTreeSet<String> = descriptors.iter().map(|d| d.name().to_owned()).collect();
     assert_eq!(tested, exported);
     assert!(descriptors.iter().all(|d| !d.description().is_empty()));
+    assert!(LIBRARY_ONLY.iter().all(|name| exported.contains(*name)));
 }
 
 #[test]
@@ -136,28 +159,103 @@ fn a_refused_parameter_names_the_filter_through_the_c_abi() {
     );
 }
 
-/// What each tuple of `values` values becomes; a fault is kept as its text.
+/// Opens a filter for so many values in and out, or not if it does not take them.
+fn open_any(filter: &str, inputs: usize, outputs: usize) -> Option<Convert> {
+    let params = [
+        ("window", 3.0),
+        ("period_ms", 7.0),
+        ("wheel_diameter_mm", 56.0),
+        ("track_mm", 150.0),
+        ("bias_ms", 10.0),
+        ("still_mdps", 1e9),
+        ("stall_ms", 20.0),
+    ];
+    let params = params.map(|(name, value)| (name.to_owned(), value)).into();
+    let info = OpenInfo {
+        direction: Direction::Read,
+        input_size: 4 * inputs,
+        output_size: 4 * outputs,
+        node: "any",
+        params: &params,
+        log: &|_| (),
+    };
+    open_in_c(filter, &info).ok()
+}
+
+/// True for a filter that works on each value on its own, as far as sizes tell.
+fn has_lanes(filter: &str) -> bool {
+    (1..=11).all(|values| open_any(filter, values, values).is_some())
+}
+
+/// All sizes, in values, that the filters take which are not on single values.
+fn fusing_sizes() -> &'static [(String, usize, usize)] {
+    static SIZES: OnceLock<Vec<(String, usize, usize)>> = OnceLock::new();
+    SIZES.get_or_init(|| {
+        let mut sizes = Vec::new();
+        for descriptor in descriptors(trikfs_library_entry()).unwrap() {
+            let name = descriptor.name();
+            let any = (1..=11).flat_map(|inputs| (1..=8).map(move |outputs| (inputs, outputs)));
+            for (inputs, outputs) in any.filter(|_| !has_lanes(name)) {
+                if open_any(name, inputs, outputs).is_some() {
+                    sizes.push((name.to_owned(), inputs, outputs));
+                }
+            }
+        }
+        sizes
+    })
+}
+
+/// What each tuple becomes; a fault is kept as its text.
+fn run_all(
+    mut convert: Convert,
+    outputs: usize,
+    tuples: &[Vec<u8>],
+) -> Vec<Result<(Conversion, Vec<u8>), String>> {
+    let mut output = vec![0; 4 * outputs];
+    let mut one = |tuple: &Vec<u8>| {
+        output.fill(0);
+        match convert(tuple, &mut output) {
+            Ok(conversion) => Ok((conversion, output.clone())),
+            Err(fault) => Err(fault.to_string()),
+        }
+    };
+    tuples.iter().map(&mut one).collect()
+}
+
+/// What each tuple of `values` values becomes.
 fn run(
     filter: &str,
     values: usize,
     tuples: &[Vec<u8>],
 ) -> Vec<Result<(Conversion, Vec<u8>), String>> {
-    let params = [("window".to_owned(), 3.0), ("period_ms".to_owned(), 7.0)].into();
-    let info = OpenInfo {
-        direction: Direction::Read,
-        input_size: 4 * values,
-        output_size: 4 * values,
-        node: "any",
-        params: &params,
-        log: &|_| (),
-    };
-    let mut convert = open_in_c(filter, &info).unwrap();
-    let mut output = vec![0; 4 * values];
-    let mut one = |tuple: &Vec<u8>| match convert(tuple, &mut output) {
-        Ok(conversion) => Ok((conversion, output.clone())),
-        Err(fault) => Err(fault.to_string()),
-    };
-    tuples.iter().map(&mut one).collect()
+    run_all(open_any(filter, values, values).unwrap(), values, tuples)
+}
+
+/// True if this result stands where the filter gives floats and one of them is no finite number.
+fn is_no_number(filter: &str, bytes: &[u8]) -> bool {
+    let gives_floats =
+        filter.ends_with("_f32") || ["madgwick", "mahony", "odometry"].contains(&filter);
+    let (values, _) = bytes.as_chunks::<4>();
+    gives_floats
+        && values
+            .iter()
+            .any(|value| !f32::from_le_bytes(*value).is_finite())
+}
+
+#[test]
+fn filters_on_values_and_filters_that_fuse_are_told_apart_by_their_sizes() {
+    let fusing: BTreeSet<&str> = fusing_sizes()
+        .iter()
+        .map(|(name, ..)| name.as_str())
+        .collect();
+    let names = descriptors(trikfs_library_entry()).unwrap();
+    assert!(
+        names
+            .iter()
+            .all(|d| has_lanes(d.name()) != fusing.contains(d.name()))
+    );
+    let lanes = names.iter().filter(|d| has_lanes(d.name())).count();
+    assert_eq!((lanes, names.len() - lanes), (21, 11));
 }
 
 /// A value that is often an extreme and sometimes no number.
@@ -180,6 +278,9 @@ proptest! {
         let first: Vec<Vec<u8>> = tuples.iter().map(|(a, _)| a.to_vec()).collect();
         for descriptor in descriptors(trikfs_library_entry()).unwrap() {
             let name = descriptor.name();
+            if fusing_sizes().iter().any(|(fusing, ..)| fusing == name) {
+                continue;
+            }
             let together = run(name, 2, &both);
             let alone = run(name, 1, &first);
             for result in together.iter().chain(&alone) {
@@ -196,10 +297,29 @@ proptest! {
     }
 
     #[test]
+    fn no_bytes_make_a_fusing_filter_panic_or_give_no_number(
+        values in prop::collection::vec(value(), 11..150)
+    ) {
+        for (name, inputs, outputs) in fusing_sizes() {
+            let convert = open_any(name, *inputs, *outputs).unwrap();
+            let tuples: Vec<Vec<u8>> = values.chunks_exact(*inputs).map(|tuple| tuple.concat()).collect();
+            for result in run_all(convert, *outputs, &tuples) {
+                match result {
+                    Ok((_, bytes)) => prop_assert!(!is_no_number(name, &bytes), "{}: {:?}", name, bytes),
+                    Err(text) => {
+                        prop_assert!(!text.contains("panicked"), "{}: {}", name, text);
+                        prop_assert!(text.starts_with(name.trim_end_matches("_f32")), "{}: {}", name, text);
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
     fn calming_filters_stay_within_the_values_that_they_saw(values in prop::collection::vec(any::<i32>(), 1..60)) {
         let (least, greatest) = (values.iter().min().unwrap(), values.iter().max().unwrap());
         let tuples: Vec<Vec<u8>> = values.iter().map(|value| value.to_le_bytes().to_vec()).collect();
-        for name in ["median3", "moving_average", "low_pass"] {
+        for name in ["median3", "moving_average", "low_pass", "kalman", "debounce"] {
             for (_, output) in run(name, 1, &tuples).into_iter().flatten() {
                 let output = i32::from_le_bytes(output.try_into().unwrap());
                 prop_assert!((least..=greatest).contains(&&output), "{}: {}", name, output);

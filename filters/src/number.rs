@@ -20,6 +20,8 @@ pub trait Number: Copy + PartialOrd + Send + 'static {
     const LEAST: f64;
     /// Greatest value.
     const GREATEST: f64;
+    /// Nothing.
+    const ZERO: Self;
     /// Largest multiplier or divisor of [`Number::ratio`]: products of integers then fit 52 bits, exact for Lua as well.
     const SPAN_MAX: f64;
 
@@ -31,6 +33,11 @@ pub trait Number: Copy + PartialOrd + Send + 'static {
     fn wide(self) -> Self::Wide;
     /// The nearest value: integers saturate, floats round to even. Absent if the result is not a finite number.
     fn narrow(wide: Self::Wide) -> Option<Self>;
+    /// The same value as a real number.
+    fn real(self) -> f64;
+    /// The nearest value to a real number: integers round halves away from zero and saturate, floats round to even.
+    /// Absent if it is not a finite number, or none of the kind.
+    fn from_real(real: f64) -> Option<Self>;
     /// A parameter that [`crate::params::check`] has accepted.
     fn from_param(param: f64) -> Self::Wide;
     /// `value * multiplier / divisor`; integers round to nearest, halves away from zero.
@@ -45,6 +52,7 @@ impl Number for i32 {
     const WHOLE: bool = true;
     const LEAST: f64 = i32::MIN as f64;
     const GREATEST: f64 = i32::MAX as f64;
+    const ZERO: Self = 0;
     const SPAN_MAX: f64 = (1 << 20) as f64;
 
     fn decode(bytes: [u8; 4]) -> Option<Self> {
@@ -61,6 +69,16 @@ impl Number for i32 {
 
     fn narrow(wide: i64) -> Option<Self> {
         Some(wide.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32)
+    }
+
+    fn real(self) -> f64 {
+        f64::from(self)
+    }
+
+    fn from_real(real: f64) -> Option<Self> {
+        // The cast saturates. Adding the half first is what Lua does too.
+        let nearest = (real.abs() + 0.5).floor().copysign(real) as i32;
+        real.is_finite().then_some(nearest)
     }
 
     fn from_param(param: f64) -> i64 {
@@ -81,6 +99,7 @@ impl Number for f32 {
     const WHOLE: bool = false;
     const LEAST: f64 = f32::MIN as f64;
     const GREATEST: f64 = f32::MAX as f64;
+    const ZERO: Self = 0.0;
     const SPAN_MAX: f64 = f64::MAX;
 
     fn decode(bytes: [u8; 4]) -> Option<Self> {
@@ -97,6 +116,14 @@ impl Number for f32 {
 
     fn narrow(wide: f64) -> Option<Self> {
         Some(wide as f32).filter(|value| value.is_finite())
+    }
+
+    fn real(self) -> f64 {
+        f64::from(self)
+    }
+
+    fn from_real(real: f64) -> Option<Self> {
+        Self::narrow(real)
     }
 
     fn from_param(param: f64) -> f64 {
@@ -159,6 +186,12 @@ mod tests {
     fn integers_saturate_and_floats_are_finite_or_absent() {
         assert_eq!(i32::narrow(1 << 40), Some(i32::MAX));
         assert_eq!(i32::narrow(-(1 << 40)), Some(i32::MIN));
+        assert_eq!(i32::from_real(-2.5), Some(-3));
+        assert_eq!(i32::from_real(1e10), Some(i32::MAX));
+        assert_eq!(i32::from_real(-1e300), Some(i32::MIN));
+        assert_eq!(i32::from_real(f64::NAN), None);
+        assert_eq!(i32::from_real(f64::INFINITY), None);
+        assert_eq!(f32::from_real(0.5), Some(0.5));
         assert_eq!(f32::narrow(1e39), None);
         assert_eq!(f32::narrow(f64::NAN), None);
         assert_eq!(f32::narrow(0.1), Some(0.1_f32));

@@ -1,7 +1,7 @@
 //! The one check of a filter's parameter and the text of its refusal.
 
 use crate::number::Number;
-use converter::Fault;
+use converter::{Fault, OpenInfo};
 use std::fmt;
 use std::ops::RangeInclusive;
 
@@ -50,6 +50,81 @@ pub fn check<V: Number>(
 /// As [`check`].
 pub fn check_value<V: Number>(named: Named, value: f64) -> Result<V::Wide, Fault> {
     check::<V>(named, value, V::LEAST..=V::GREATEST)
+}
+
+/// The parameters of one opening, for filters whose parameters are all real numbers.
+#[derive(Clone, Copy)]
+pub struct Params<'a> {
+    filter: &'static str,
+    info: &'a OpenInfo<'a>,
+}
+
+impl<'a> Params<'a> {
+    /// The parameters that a node gives to a filter.
+    pub fn new(filter: &'static str, info: &'a OpenInfo<'a>) -> Self {
+        Self { filter, info }
+    }
+
+    /// A number within a range; `default` when the configuration does not say.
+    ///
+    /// # Errors
+    /// As [`check`].
+    pub fn real(
+        self,
+        param: &'static str,
+        default: f64,
+        range: RangeInclusive<f64>,
+    ) -> Result<f64, Fault> {
+        let value = self.info.param(param).unwrap_or(default);
+        check::<f32>(self.named(param), value, range)
+    }
+
+    /// A whole number within a range; `default` when the configuration does not say.
+    ///
+    /// # Errors
+    /// As [`check`].
+    pub fn whole(
+        self,
+        param: &'static str,
+        default: f64,
+        range: RangeInclusive<f64>,
+    ) -> Result<f64, Fault> {
+        let value = self.info.param(param).unwrap_or(default);
+        check::<i32>(self.named(param), value, range).map(|whole| whole as f64)
+    }
+
+    /// A number that the configuration must give, because any default would be a guess.
+    ///
+    /// # Errors
+    /// As [`check`], and a parameter that is missing.
+    pub fn required(self, param: &'static str, range: RangeInclusive<f64>) -> Result<f64, Fault> {
+        let named = self.named(param);
+        match self.info.param(param) {
+            Some(value) => check::<f32>(named, value, range),
+            None => Err(Fault::new(format!("{named} is missing"))),
+        }
+    }
+
+    /// The lower and the upper bound of a result: `min` and `max`.
+    ///
+    /// # Errors
+    /// As [`check`], and a `min` above `max`.
+    pub fn bounds(self, min: f64, max: f64, limit: f64) -> Result<(f64, f64), Fault> {
+        let min = self.real("min", min, -limit..=limit)?;
+        let max = self.real("max", max, -limit..=limit)?;
+        if min > max {
+            let text = format!("{}: min must not be above max", self.filter);
+            return Err(Fault::new(text));
+        }
+        Ok((min, max))
+    }
+
+    fn named(self, param: &'static str) -> Named {
+        Named {
+            filter: self.filter,
+            param,
+        }
+    }
 }
 
 #[cfg(test)]

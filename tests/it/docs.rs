@@ -2,11 +2,12 @@
 //!
 //! Marks are the words behind a fence: `lua config NAME` loads, `c converter NAME` and `rust converter NAME` compile
 //! without a warning and load, `python` is Python, `sh session` is a transcript: lines with `$ ` are run in a mounted
-//! hello.lua, the others are what they print.
+//! hello.lua, the others are what they print; `sh convert NAME` is one without a mount, where robot.lua is the
+//! configuration NAME of the same page.
 
 use crate::{mount_on, trikfs};
+use harness::Board;
 use harness::documents::{Example, examples};
-use harness::{Board, Mount};
 use std::path::{Path, PathBuf};
 
 fn root() -> &'static Path {
@@ -162,7 +163,7 @@ fn every_rust_converter_in_the_documents_compiles_without_a_warning_and_loads() 
 }
 
 /// Runs one transcript and compares what is printed, line by line.
-fn replay(m: &Mount, place: &str, example: &Example) {
+fn replay(run: impl Fn(&str) -> String, place: &str, example: &Example) {
     let mut script = String::new();
     let mut expected = String::new();
     let mut outputs = Vec::new();
@@ -177,9 +178,9 @@ fn replay(m: &Mount, place: &str, example: &Example) {
     }
     outputs.push((script, expected));
     for (script, expected) in outputs.into_iter().filter(|(script, _)| !script.is_empty()) {
-        let output = m.try_sh(&format!("exec 2>&1\n{script}"));
+        let printed = run(&script);
         let place = format!("{place}: $ {script}");
-        assert_eq!(output.stdout.trim_end(), expected.trim_end(), "{place}");
+        assert_eq!(printed.trim_end(), expected.trim_end(), "{place}");
     }
 }
 
@@ -204,7 +205,30 @@ fn every_transcript_in_the_documents_is_what_really_happens() {
             m = fresh;
             document = this;
         }
-        replay(&m, &place, &example);
+        let in_the_mount = |script: &str| m.try_sh(&format!("exec 2>&1\n{script}")).stdout;
+        replay(in_the_mount, &place, &example);
+    }
+}
+
+#[test]
+fn every_conversion_in_the_documents_gives_what_the_page_says() {
+    for (place, example) in marked("sh convert ") {
+        let document = place.rsplit_once(':').map_or("", |(document, _)| document);
+        let name = example.info.trim_start_matches("sh convert ");
+        let page = std::fs::read_to_string(document).unwrap();
+        let config = examples(&page)
+            .into_iter()
+            .find(|config| config.info == format!("lua config {name}"))
+            .unwrap_or_else(|| panic!("{place}: the page has no configuration {name}"));
+        let board = Board::new();
+        board.file("robot.lua", &config.text);
+        let in_a_shell = |script: &str| {
+            let program = crate::program();
+            let script = format!("exec 2>&1\ntrikfs() {{ '{program}' \"$@\"; }}\n{script}");
+            let mut command = std::process::Command::new("sh");
+            harness::run(command.args(["-c", &script]).current_dir(board.dir()), b"").stdout
+        };
+        replay(in_a_shell, &place, &example);
     }
 }
 

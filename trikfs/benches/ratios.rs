@@ -6,6 +6,8 @@
 
 mod ratios {
     pub mod bulk;
+    pub mod bus;
+    pub mod bus_peer;
     pub mod events;
     pub mod measure;
     pub mod newest;
@@ -17,7 +19,7 @@ mod ratios {
 }
 
 use ratios::measure::Plan;
-use ratios::{bulk, events, newest, open, peers, reads, reload, torn};
+use ratios::{bulk, bus, events, newest, open, peers, reads, reload, torn};
 
 /// A section's name and what it runs.
 type Section = (&'static str, fn(&Plan) -> Outcome);
@@ -25,13 +27,14 @@ type Section = (&'static str, fn(&Plan) -> Outcome);
 /// Benchmarks fail with a sentence.
 type Outcome = Result<(), String>;
 
-const SECTIONS: [Section; 6] = [
+const SECTIONS: [Section; 7] = [
     ("reads", reads::run),
     ("newest", newest::run),
     ("events", events::run),
     ("open", open::run),
     ("reload", reload::run),
     ("bulk", bulk::run),
+    ("bus", bus::run),
 ];
 
 fn main() {

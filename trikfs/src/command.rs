@@ -50,7 +50,16 @@ pub(crate) fn confined(program: &Path, memory_kb: u32, file_kb: u32) -> Command 
 }
 
 /// Runs it in a process group of its own with empty standard input.
-pub(crate) fn run(mut command: Command, limits: &Limits) -> io::Result<Ended> {
+pub(crate) fn run(command: Command, limits: &Limits) -> io::Result<Ended> {
+    run_unless(command, limits, &|| false)
+}
+
+/// The same; as soon as `is_over` says so, its time is up.
+pub(crate) fn run_unless(
+    mut command: Command,
+    limits: &Limits,
+    is_over: &dyn Fn() -> bool,
+) -> io::Result<Ended> {
     let deadline = Instant::now() + limits.time;
     let (reader, writer) = io::pipe()?;
     command
@@ -67,7 +76,7 @@ pub(crate) fn run(mut command: Command, limits: &Limits) -> io::Result<Ended> {
         output: Vec::new(),
         output_bytes: limits.output_bytes,
     };
-    let status = running.wait(deadline);
+    let status = running.wait(deadline, is_over);
     if !matches!(status, Ok(Some(_))) {
         running.kill();
     }
@@ -87,8 +96,12 @@ struct Running {
 }
 
 impl Running {
-    /// The status of the process, or nothing when the deadline came first.
-    fn wait(&mut self, deadline: Instant) -> io::Result<Option<ExitStatus>> {
+    /// The status of the process, or nothing when the deadline or the end of all came first.
+    fn wait(
+        &mut self,
+        deadline: Instant,
+        is_over: &dyn Fn() -> bool,
+    ) -> io::Result<Option<ExitStatus>> {
         loop {
             if self.reader.is_some() {
                 self.read_some(LOOK_MS)?;
@@ -100,7 +113,7 @@ impl Running {
                 while self.read_some(0)? {}
                 return Ok(Some(status));
             }
-            if Instant::now() >= deadline {
+            if Instant::now() >= deadline || is_over() {
                 return Ok(None);
             }
         }

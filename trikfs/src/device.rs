@@ -27,6 +27,7 @@ mod sysfs;
 use crate::convert::LogSink;
 use crate::engine::Engine;
 use crate::errno::Error;
+use crate::log::Log;
 use crate::node::Node;
 use crate::programs::Programs;
 use crate::stats::Counter;
@@ -119,16 +120,26 @@ pub struct Surroundings {
 impl Surroundings {
     /// Those of a mount, without links and with the usual time limit.
     pub fn new(engine: &Engine) -> Self {
+        let log = engine.log.clone();
         Self {
             links: Vec::new(),
             timeout_ms: config::limits::TIMEOUT_MS,
             damaged: Arc::default(),
             programs: engine.programs.clone(),
-            log: {
-                let log = engine.log.clone();
-                Arc::new(move |text| log.line(text))
-            },
+            log: Arc::new(move |text| log.line(text)),
             buses: engine.buses.clone(),
+        }
+    }
+
+    /// For who has a device and nothing else: no nodes, nobody to talk to.
+    pub fn alone(timeout_ms: u32, buses: &Arc<i2c::bus::Buses>) -> Self {
+        Self {
+            links: Vec::new(),
+            timeout_ms,
+            damaged: Arc::default(),
+            programs: Programs::new(Arc::new(Log::new())),
+            log: Arc::new(|_| {}),
+            buses: buses.clone(),
         }
     }
 

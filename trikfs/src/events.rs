@@ -134,6 +134,7 @@ impl Poller {
 
 /// Times at which somebody acts.
 pub struct Schedule {
+    origin: Instant,
     queue: Mutex<Queue>,
     changed: Condvar,
 }
@@ -177,6 +178,7 @@ impl Schedule {
     /// Starts one with threads of this name, at most so many.
     pub fn start_crew(name: &str, threads: usize) -> io::Result<Arc<Self>> {
         let schedule = Arc::new(Self {
+            origin: Instant::now(),
             queue: Mutex::default(),
             changed: Condvar::new(),
         });
@@ -187,6 +189,11 @@ impl Schedule {
             Arc::new(move |seat: &Seat| cycling.cycle(seat)),
         )?;
         Ok(schedule)
+    }
+
+    /// The moment from which periods count.
+    pub fn origin(&self) -> Instant {
+        self.origin
     }
 
     /// Calls `target` at (not before) a time; not at all if it is gone by then.

@@ -8,6 +8,7 @@
 //! Owns these rules and the dead-man's clock. Knows no open file and no request; bringing to rest is the nodes' work
 //! and is done with no lock held.
 
+use crate::crew::give_way;
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::{Due, Ready, lock};
@@ -15,10 +16,10 @@ use crate::files::control::rest_all;
 use crate::limits;
 use crate::node::Node;
 use crate::process::{line_of, name_of};
-use std::sync::{Arc, Mutex, Weak};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::{Duration, Instant};
 
-/// The lease of one directory. It outlives reloads, so that kept and new nodes of a directory obey the same one.
+/// The lease of one directory and of those that stand for it (`src = 'trikfs:...'`). It outlives reloads, so that kept and new nodes of a directory obey the same one.
 pub struct Lease {
     /// The directory, for messages.
     path: String,
@@ -26,6 +27,8 @@ pub struct Lease {
     me: Weak<Self>,
     actuators: Mutex<Vec<Weak<Node>>>,
     state: Mutex<State>,
+    /// The actuators have come to rest.
+    rested: Condvar,
 }
 
 #[derive(Default)]
@@ -153,7 +156,13 @@ impl Lease {
             me: me.clone(),
             actuators: Mutex::default(),
             state: Mutex::default(),
+            rested: Condvar::new(),
         })
+    }
+
+    /// The directory that it is named after.
+    pub fn path(&self) -> &str {
+        &self.path
     }
 
     /// Which nodes come to rest at its end.
@@ -281,12 +290,8 @@ impl Lease {
     /// same thread was let in through the same open file. [`Lease::wrote`] follows.
     pub fn admit(&self, thread: u32, known: Option<u32>) -> Result<u32, Error> {
         {
-            let mut state = lock(&self.state);
+            let mut state = self.at_rest()?;
             let generation = state.generation;
-            if state.resting > 0 {
-                let what = "the actuator is just coming to rest, because a lease ended";
-                return Err(Error::Busy(what.to_owned()));
-            }
             if state.claims.is_empty() {
                 return Ok(generation);
             }
@@ -341,6 +346,26 @@ impl Lease {
         lock(&self.state).generation
     }
 
+    /// Waits until the actuators have come to rest after a lease, but not for ever.
+    fn at_rest(&self) -> Result<MutexGuard<'_, State>, Error> {
+        let state = lock(&self.state);
+        if state.resting == 0 {
+            return Ok(state);
+        }
+        drop(state);
+        give_way();
+        let limit = Duration::from_millis(limits::REST_WAIT_MS);
+        let waited = self
+            .rested
+            .wait_timeout_while(lock(&self.state), limit, |state| state.resting > 0);
+        let (state, timeout) = waited.unwrap_or_else(PoisonError::into_inner);
+        if timeout.timed_out() {
+            let what = "the actuator is still coming to rest after a lease";
+            return Err(Error::Busy(what.to_owned()));
+        }
+        Ok(state)
+    }
+
     fn arm(&self, at: Instant) {
         let me: Weak<dyn Due> = self.me.clone();
         self.engine.schedule.at(at, me);
@@ -361,6 +386,7 @@ impl Lease {
         // Each node has noted its failure: its `fault` and the log tell.
         let _ = rest_all(&self.nodes());
         lock(&self.state).resting -= 1;
+        self.rested.notify_all();
     }
 }
 

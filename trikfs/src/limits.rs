@@ -64,6 +64,8 @@ pub const LATE_PER_NODE_MAX: usize = 4;
 /// Milliseconds of one `stop` before it goes on to the next actuator is bounded by each node's `timeout_ms`;
 /// this bounds the number of actuators brought to rest at once.
 pub const REST_THREADS_MAX: usize = 8;
+/// Milliseconds that a write waits for an actuator that is coming to rest after a lease.
+pub const REST_WAIT_MS: u64 = 1_000;
 /// Highest priority that a lease can be asked for with.
 pub const LEASE_PRIORITY_MAX: u32 = 100;
 /// Longest time in milliseconds that a dead-man's clock can be set to.

@@ -122,7 +122,6 @@ impl Newest {
     fn schedule_sampling(&self, node: &Arc<Node>) {
         let sampler: Arc<dyn Due> = Arc::new(Sampling {
             node: self.node.clone(),
-            planned: Mutex::new(Instant::now()),
         });
         let ageing: Arc<dyn Due> = Arc::new(Ageing {
             node: self.node.clone(),

@@ -100,15 +100,16 @@ impl Node {
         let mut leases = vec![lease.clone()];
         if let Some(other) = written_node(&description.source) {
             let linked = links.iter().filter(|(path, _)| path == other);
-            leases.extend(linked.flat_map(|(_, node)| node.leases.clone()));
+            // One that stands for another node has its lease.
+            let others = linked.flat_map(|(_, node)| node.leases.clone());
+            leases.extend(others.filter(|other| !Arc::ptr_eq(other, &lease)));
         }
         let around = Surroundings {
             links,
             timeout_ms: description.timeout_ms,
             damaged: stats.damaged.clone(),
-            programs: engine.programs.clone(),
             log: log_sink(&engine, &description.path),
-            buses: engine.buses.clone(),
+            ..Surroundings::new(&engine)
         };
         let period_ms = match description.pace {
             Pace::Every { period_ms } => period_ms,
@@ -200,6 +201,12 @@ impl Node {
     /// Holds what is written by driving another node.
     pub fn regulation(&self) -> Option<&Regulation> {
         self.regulation.as_ref()
+    }
+
+    /// Changes whenever a lease that a write to this node touches changes hands.
+    pub fn lease_generation(&self) -> u32 {
+        let generations = self.leases.iter().map(|lease| lease.generation());
+        generations.fold(0, u32::wrapping_add)
     }
 
     /// How often a tuple went to the device, for an alias to the device of the node that it stands for. Wraps.
@@ -524,6 +531,7 @@ pub fn directory_of(path: &str, is_attribute: bool) -> &str {
 fn written_node(source: &SourceDescription) -> Option<&str> {
     match source {
         SourceDescription::Node(path) => Some(path),
+        SourceDescription::Regulator(regulator) => Some(&regulator.actuator),
         SourceDescription::Faulty(faulty) => written_node(&faulty.source),
         _ => None,
     }

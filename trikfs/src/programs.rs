@@ -205,14 +205,23 @@ impl Program {
                 }
                 Job::Start => {
                     drop(state);
-                    let outcome = self.run(&self.commands.start, limits::PROGRAM_START_MS_MAX);
+                    let is_over = || lock(&self.state).is_ending;
+                    let time_ms = limits::PROGRAM_START_MS_MAX;
+                    let outcome = self.run(&self.commands.start, time_ms, &is_over);
                     state = lock(&self.state);
                     match outcome {
                         Ok(()) => {
                             state.up_since = Some(Instant::now());
                             state.was_seen = false;
                         }
-                        Err(reason) => state.failure = Some((Instant::now(), reason)),
+                        Err(failure) => {
+                            state.failure = Some((Instant::now(), failure.reason));
+                            // What was killed may be half up.
+                            if failure.was_killed {
+                                state.up_since = Some(Instant::now());
+                                state.must_restart = true;
+                            }
+                        }
                     }
                 }
                 Job::Stop => {
@@ -221,11 +230,11 @@ impl Program {
                     state.must_restart = false;
                     drop(state);
                     let outcome = match &self.commands.stop {
-                        Some(stop) => self.run(stop, limits::PROGRAM_STOP_MS_MAX),
+                        Some(stop) => self.run(stop, limits::PROGRAM_STOP_MS_MAX, &|| false),
                         None => Ok(()),
                     };
-                    if let Err(reason) = outcome {
-                        self.log.line(&reason);
+                    if let Err(failure) = outcome {
+                        self.log.line(&failure.reason);
                     }
                     state = lock(&self.state);
                 }
@@ -237,7 +246,12 @@ impl Program {
     }
 
     /// Runs one command to its end.
-    fn run(&self, description: &CommandDescription, time_ms: u32) -> Result<(), String> {
+    fn run(
+        &self,
+        description: &CommandDescription,
+        time_ms: u32,
+        is_over: &dyn Fn() -> bool,
+    ) -> Result<(), Failure> {
         let shown = format!(
             "{} {}",
             description.program.display(),
@@ -251,23 +265,34 @@ impl Program {
             time: Duration::from_millis(time_ms.into()),
             output_bytes: limits::PROGRAM_OUTPUT_BYTES_MAX,
         };
-        let ended = command::run(command, &limits);
-        let ended = ended.map_err(|error| format!("{shown} cannot be run: {error}"))?;
+        let failed = |reason: String, was_killed| Err(Failure { reason, was_killed });
+        let ended = match command::run_unless(command, &limits, is_over) {
+            Ok(ended) => ended,
+            Err(error) => return failed(format!("{shown} cannot be run: {error}"), false),
+        };
         for line in ended.output.lines() {
             self.log.line(&format!("{shown}: {line}"));
         }
-        let outcome = match ended.status {
-            Some(status) if status.success() => Ok(()),
-            Some(status) => Err(format!("{shown} failed: {status}{}", last_line(&ended))),
-            None => Err(format!(
-                "{shown} was killed: it had not ended within {} s{}",
-                time_ms / 1000,
-                last_line(&ended)
-            )),
-        };
+        let said = last_line(&ended);
+        let status = ended.status;
         drain(ended);
-        outcome
+        match status {
+            Some(status) if status.success() => Ok(()),
+            Some(status) => failed(format!("{shown} failed: {status}{said}"), false),
+            None => {
+                let limit = time_ms / 1000;
+                let reason = format!("{shown} was killed: it had not ended within {limit} s{said}");
+                failed(reason, true)
+            }
+        }
     }
+}
+
+/// Why a command did not end well.
+struct Failure {
+    reason: String,
+    /// Its time was up.
+    was_killed: bool,
 }
 
 /// The end of what a command said, for a reason.

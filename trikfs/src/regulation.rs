@@ -1,7 +1,8 @@
 //! Regulators at work: what was ordered of a node is held by driving another one, step by step.
 //!
 //! Owns the order, the control law's pipeline and the way to the driven node. An order lasts until the node or the driven
-//! node comes to rest, the feedback fails, or somebody else writes to the driven node. What is measured, and when, is the
+//! node comes to rest, the feedback fails, somebody else writes to the driven node, or a lease of
+//! either changes hands. What is measured, and when, is the
 //! business of the node's sampling; the law is a converter like any other.
 
 use crate::clock::Stamp;
@@ -27,6 +28,8 @@ struct Order {
     before: Option<Stamp>,
     /// How often the driven node had been written, our own writes included.
     writes: u32,
+    /// Of the leases when the order was given.
+    generation: u32,
     input: Vec<u8>,
     output: Vec<u8>,
 }
@@ -45,6 +48,7 @@ impl Regulation {
         let mut order = lock(&self.order);
         if let Some(order) = order.as_mut()
             && order.writes == self.writes()
+            && order.generation == node.lease_generation()
         {
             order.target.copy_from_slice(target);
             return Ok(());
@@ -56,6 +60,7 @@ impl Regulation {
             writer: self.actuator.open_writer(None)?,
             before: None,
             writes: self.writes(),
+            generation: node.lease_generation(),
             input: Vec::with_capacity(input),
             output: vec![0; output],
         });
@@ -79,8 +84,8 @@ impl Regulation {
         let Some(order) = slot.as_mut() else {
             return;
         };
-        if order.writes != self.writes() {
-            // Somebody drives the actuator directly.
+        if order.writes != self.writes() || order.generation != node.lease_generation() {
+            // Somebody drives the actuator directly, or has taken the lease.
             *slot = None;
             return;
         }

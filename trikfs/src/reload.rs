@@ -219,7 +219,7 @@ impl Reloader {
             leases: before
                 .nodes()
                 .iter()
-                .map(|node| (node.directory().to_owned(), node.lease.clone()))
+                .map(|node| (node.lease.path().to_owned(), node.lease.clone()))
                 .collect(),
             kept: Vec::new(),
         };
@@ -327,13 +327,13 @@ impl Reloader {
 fn set_actuators(nodes: &[Arc<Node>]) {
     let mut actuators: HashMap<&str, Vec<Weak<Node>>> = HashMap::new();
     for node in nodes {
-        let of_directory = actuators.entry(node.directory()).or_default();
+        let of_directory = actuators.entry(node.lease.path()).or_default();
         if node.description.rest.is_some() {
             of_directory.push(Arc::downgrade(node));
         }
     }
     for node in nodes {
-        if let Some(of_directory) = actuators.remove(node.directory()) {
+        if let Some(of_directory) = actuators.remove(node.lease.path()) {
             node.lease.set_actuators(of_directory);
         }
     }
@@ -363,7 +363,7 @@ struct Builder<'a> {
     pool: Option<Arc<crate::convert::lua::StatePool>>,
     before: HashMap<&'a str, &'a Arc<Node>>,
     made: HashMap<String, Arc<Node>>,
-    /// By directory.
+    /// By the directory that each is named after.
     leases: HashMap<String, Arc<Lease>>,
     kept: Vec<Arc<Node>>,
 }
@@ -406,6 +406,10 @@ impl Builder<'_> {
         for name in linked(&description.source) {
             links.push((name.to_owned(), self.make(name, descriptions)?));
         }
+        let directory = leased_directory(directory_of(path, is_attribute), descriptions);
+        let lease = self.leases.entry(directory.to_owned());
+        let lease = lease.or_insert_with(|| Lease::new(directory, self.engine));
+        let lease = lease.clone();
         let linked = links.iter().map(|(_, node)| node.fingerprint);
         let fingerprint =
             linked
@@ -418,16 +422,13 @@ impl Builder<'_> {
         if let Some(&old) = self.before.get(path)
             && old.fingerprint == fingerprint
             && old.is_attribute == is_attribute
+            && Arc::ptr_eq(&old.lease, &lease)
         {
             self.kept.push(old.clone());
             self.made.insert(path.to_owned(), old.clone());
             return Ok(old.clone());
         }
         let recipe = Recipe::prepare(description, &self.workshop, self.pool.clone())?;
-        let directory = directory_of(path, is_attribute);
-        let lease = self.leases.entry(directory.to_owned());
-        let lease = lease.or_insert_with(|| Lease::new(directory, self.engine));
-        let lease = lease.clone();
         let node = Node::new(
             description.clone(),
             is_attribute,
@@ -443,6 +444,26 @@ impl Builder<'_> {
         self.made.insert(path.to_owned(), node.clone());
         Ok(node)
     }
+}
+
+/// The directory whose lease a directory has: that of the node it stands for, else its own.
+fn leased_directory<'a>(
+    mut directory: &'a str,
+    descriptions: &HashMap<&str, (&'a NodeDescription, bool)>,
+) -> &'a str {
+    // Directories may lead back to each other through their attributes; then each has a lease of its own.
+    let mut passed = Vec::new();
+    while let Some((main, _)) = descriptions.get(directory)
+        && let SourceDescription::Node(target) = &main.source
+        && let Some((_, is_attribute)) = descriptions.get(target.as_str())
+    {
+        if passed.contains(&directory) {
+            return passed[0];
+        }
+        passed.push(directory);
+        directory = directory_of(target, *is_attribute);
+    }
+    directory
 }
 
 /// What tells one version of a library file from another: a replaced library is a changed description.

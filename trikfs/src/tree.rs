@@ -110,6 +110,11 @@ impl Tree {
             entries: HashMap::new(),
             before,
             next_ino,
+            leased: nodes
+                .iter()
+                .filter(|node| node.description.rest.is_some())
+                .map(|node| node.lease.path().to_owned())
+                .collect(),
         };
         let root = Entry {
             parent: ROOT,
@@ -126,20 +131,14 @@ impl Tree {
         ] {
             builder.add(ROOT, name, kind);
         }
-        let actuators: HashSet<&str> = nodes
-            .iter()
-            .filter(|node| node.description.rest.is_some())
-            .map(|node| node.directory())
-            .collect();
-        let is_actuator = |node: &Node| actuators.contains(node.directory());
         for node in &nodes {
-            builder.add_node(node.path(), node, is_actuator(node));
+            builder.add_node(node.path(), node);
         }
         for Alias { path, node: target } in aliases {
             for node in &nodes {
                 match node.path().strip_prefix(target.as_str()) {
                     Some(rest) if rest.is_empty() || node.is_attribute && rest.starts_with('/') => {
-                        builder.add_node(&format!("{path}{rest}"), node, is_actuator(node));
+                        builder.add_node(&format!("{path}{rest}"), node);
                     }
                     _ => {}
                 }
@@ -351,6 +350,8 @@ struct Builder<'a> {
     entries: HashMap<u64, Entry>,
     before: Option<&'a Tree>,
     next_ino: &'a mut u64,
+    /// Names of the leases at whose end something comes to rest.
+    leased: HashSet<String>,
 }
 
 impl Builder<'_> {
@@ -389,7 +390,7 @@ impl Builder<'_> {
     }
 
     /// A node's directory with its files at a path, or an attribute's file.
-    fn add_node(&mut self, path: &str, node: &Arc<Node>, is_actuator: bool) {
+    fn add_node(&mut self, path: &str, node: &Arc<Node>) {
         let mut at = ROOT;
         let mut parts = path.split('/').peekable();
         while let Some(part) = parts.next() {
@@ -401,11 +402,18 @@ impl Builder<'_> {
             }
         }
         if !node.is_attribute {
-            self.add_node_files(at, node, is_actuator);
+            self.add_node_files(at, node);
         }
     }
 
-    fn add_node_files(&mut self, at: u64, node: &Arc<Node>, is_actuator: bool) {
+    /// Whether a node's directory shows a lease: there is something to rest, and a link can be written.
+    fn has_owner(&self, node: &Node) -> bool {
+        let is_link = node.lease.path() != node.directory();
+        let is_written = node.description.mode & 0o222 != 0;
+        self.leased.contains(node.lease.path()) && (is_written || !is_link)
+    }
+
+    fn add_node_files(&mut self, at: u64, node: &Arc<Node>) {
         self.add(at, "device", Kind::Device(node.clone()));
         self.add(at, "bin_data", Kind::Value(node.clone(), View::Bytes));
         self.add(at, "value", Kind::Value(node.clone(), View::Text));
@@ -423,7 +431,7 @@ impl Builder<'_> {
         self.add(at, "poll_ms", Kind::Period(node.clone()));
         self.add(at, "fault", Kind::Fault(node.clone()));
         self.add(at, "stats", Kind::Stats(node.clone()));
-        if is_actuator {
+        if self.has_owner(node) {
             self.add(at, "owner", Kind::Owner(node.clone()));
         }
         self.add_params(at, "", node);

@@ -66,13 +66,11 @@ impl Fields<'_, '_> {
         if layout.format.is_none() && read.is_empty() {
             layout.format = self.joined_format(&source);
         }
-        let read_only = is_read_only(&source)
-            || match &source {
-                SourceDescription::Node(other) => {
-                    !self.checker.takes_tuples(other) || !read.is_empty() && write.is_none()
-                }
-                _ => false,
-            };
+        let read_only = match &source {
+            // Writing through another node has to be asked for.
+            SourceDescription::Node(other) => write.is_none() || !self.checker.takes_tuples(other),
+            source => is_read_only(source),
+        };
         if write.is_some() && read_only {
             return Err(self.problem(
                 "write_converter",
@@ -98,14 +96,8 @@ impl Fields<'_, '_> {
             converter,
             write_converter,
             format: layout.format,
-            about: self
-                .text("about", ABOUT_BYTES_MAX)?
-                .unwrap_or_default()
-                .to_owned(),
-            units: self
-                .text("units", UNITS_BYTES_MAX)?
-                .unwrap_or_default()
-                .to_owned(),
+            about: self.words("about", ABOUT_BYTES_MAX)?,
+            units: self.words("units", UNITS_BYTES_MAX)?,
             pace: self.pace()?,
             mode: self
                 .mode()?
@@ -132,6 +124,11 @@ impl Fields<'_, '_> {
         self.check_rest(&node, read_only)?;
         node.fingerprint = fingerprint(&node, &digests);
         Ok(node)
+    }
+
+    /// A text that may be left out.
+    fn words(&self, field: &str, bytes_max: usize) -> Result<String, Problem> {
+        Ok(self.text(field, bytes_max)?.unwrap_or_default().to_owned())
     }
 
     /// The stages from program to device; for a regulator, those of its control law.

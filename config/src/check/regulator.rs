@@ -71,7 +71,8 @@ impl<'a> Fields<'_, 'a> {
         let Some(description) = self.checker.built(actuator) else {
             return Err(self.problem("src", format!("there is no node '{actuator}'")));
         };
-        let reason = if is_read_only(&description.source) {
+        let is_linked = matches!(description.source, SourceDescription::Node(_));
+        let reason = if !is_linked && is_read_only(&description.source) {
             "it cannot be written"
         } else if description.rest.is_none() {
             "it has no rest, so nothing could stop it"

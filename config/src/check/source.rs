@@ -47,9 +47,7 @@ pub(super) fn is_read_only(source: &SourceDescription) -> bool {
         // A port that is absent on this board is described like one that is there.
         | SourceDescription::Absent(_)
         | SourceDescription::Regulator(_)
-        | SourceDescription::I2c(_)
-        // What the other node says is looked up where it is known.
-        | SourceDescription::Node(_) => false,
+        | SourceDescription::I2c(_) => false,
         SourceDescription::Pwm(_) => false,
         SourceDescription::Gpio(gpio) => gpio.direction == GpioDirection::In,
         SourceDescription::Lines(lines) => lines.input.is_none(),
@@ -58,6 +56,7 @@ pub(super) fn is_read_only(source: &SourceDescription) -> bool {
         | SourceDescription::Packets(_)
         | SourceDescription::Fake(_)
         | SourceDescription::Replay(_)
+        | SourceDescription::Node(_)
         | SourceDescription::Newest(_)
         | SourceDescription::Several(_) => true,
         SourceDescription::Faulty(faulty) => is_read_only(&faulty.source),

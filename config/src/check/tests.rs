@@ -673,7 +673,27 @@ fn rest_must_be_something_that_can_be_written() {
         "robot.lua:2: x: rest makes no sense: the source cannot be written"
     );
     assert_eq!(
-        refused("src = 'trikfs:other', write_converter = id_create(4)"),
+        refused(
+            "src = fake{ data = 'abcd' }, input_tuple_size = 4, write_converter = id_create(4)"
+        ),
+        "robot.lua:2: x: write_converter makes no sense: the source cannot be written"
+    );
+}
+
+#[test]
+fn a_node_writes_through_another_if_it_says_how_and_the_other_can_be_written() {
+    let through = |mode: &str| {
+        load(&format!(
+            "trikfs = {{ a = {{ src = '/d', input_tuple_size = 4, mode = {mode} }},
+              x = {{ src = 'trikfs:a', write_converter = id_create(4), rest = {{ 0, 0, 0, 0 }} }} }}"
+        ))
+    };
+    let config = through("0644").unwrap().config;
+    assert_eq!(config.nodes[1].mode, 0o644);
+    assert_eq!(config.nodes[1].written_tuple_size(), 4);
+    let refused = through("0444").unwrap_err().to_string();
+    assert_eq!(
+        refused,
         "robot.lua:2: x: write_converter makes no sense: the source cannot be written"
     );
 }

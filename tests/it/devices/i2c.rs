@@ -87,10 +87,13 @@ fn a_motor_that_cannot_be_read_back_shows_what_was_written_last() {
     assert_eq!(asked(&bus, 0x14), [(vec![0x14, 0], 0)]);
     m.write("motor/value", "50").unwrap();
     assert!(m.stop().success());
-    assert_eq!(
-        asked(&bus, 0x14),
-        [(vec![0x14, 50], 0), (vec![0x14, 0], 0)],
-        "at rest at the end"
+    // The guardian may do it once more behind the daemon.
+    let at_the_end = asked(&bus, 0x14);
+    let (first, rest) = at_the_end.split_first().expect("what was written");
+    assert_eq!(first, &(vec![0x14, 50], 0));
+    assert!(
+        !rest.is_empty() && rest.iter().all(|one| one == &(vec![0x14, 0], 0)),
+        "at rest at the end: {at_the_end:?}"
     );
 }
 

@@ -154,6 +154,7 @@ fn stats_count_what_happens() {
         "writes",
         "faults",
         "dropped",
+        "damaged",
         "age_last_us",
         "age_mean_us",
         "age_p99_us",

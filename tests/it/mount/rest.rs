@@ -1,6 +1,6 @@
 //! Rest of every kind of actuator when the daemon, the guardian, or one after the other is killed.
 
-use crate::mount_on;
+use crate::mount_with;
 use harness::{Board, Mount, eventually, processes};
 
 /// `motor` is on a bus, the next three are files; `hanging` and `gone` cannot be reached.
@@ -9,18 +9,21 @@ local function byte(path, register)
   return i2c{ path = path, address = 0x48, register = register, transfer = 'byte' }
 end
 trikfs = {
-  motor = { src = byte('$DIR/bus', 0x14), input_tuple_size = 1, output_tuple_size = 1, format = 'i8 power', rest = { 0 },
+  motor = { src = byte('/bus', 0x14), input_tuple_size = 1, output_tuple_size = 1, format = 'i8 power', rest = { 0 },
     converter = function(a_s, a, b_s, b) ba.set(b, 0, ba.get(a, 0)) end,
     write_converter = function(a_s, a, b_s, b) ba.set(b, 0, (ba.get(a, 0) + 1) % 256) end },
-  wheel = { src = '$DIR/wheel', input_tuple_size = 1, output_tuple_size = 1, rest = { 3 },
+  wheel = { src = '/wheel', input_tuple_size = 1, output_tuple_size = 1, rest = { 3 },
     converter = function(a_s, a, b_s, b) ba.set(b, 0, ba.get(a, 0) - 10) end,
     write_converter = function(a_s, a, b_s, b) ba.set(b, 0, ba.get(a, 0) + 10) end },
-  file = { src = '$DIR/file', input_tuple_size = 1, rest = { 7 } },
-  text = { src = attribute{ '$DIR/text' }, input_tuple_size = 8, output_tuple_size = 1, rest = { 9 },
+  file = { src = '/file', input_tuple_size = 1, rest = { 7 } },
+  text = { src = attribute{ '/text' }, input_tuple_size = 8, output_tuple_size = 1, rest = { 9 },
     converter = function(a_s, a, b_s, b) ba.set(b, 0, 0) end,
     write_converter = function(a_s, a, b_s, b) ba.set(b, 0, ba.get(a, 0) + 48) end },
-  a_hanging = { src = byte('$DIR/silent', 0x15), input_tuple_size = 1, rest = { 0 }, timeout_ms = 2000 },
-  a_gone = { src = byte('$DIR/nothing', 0x15), input_tuple_size = 1, rest = { 0 } },
+  servo = { src = pwm{ chip = '/sys/class/pwm/pwmchip2', channel = 1, period_ns = 20000000 }, input_tuple_size = 4,
+    format = 'u32 duty', rest = { 0 } },
+  lamp = { src = gpio{ number = 56, direction = 'out' }, input_tuple_size = 1, rest = { 1 } },
+  a_hanging = { src = byte('/silent', 0x15), input_tuple_size = 1, rest = { 0 }, timeout_ms = 2000 },
+  a_gone = { src = byte('/nothing', 0x15), input_tuple_size = 1, rest = { 0 } },
   absent = { src = absent{ reason = 'not on this board' }, input_tuple_size = 1, rest = { 0 } },
 }";
 
@@ -47,15 +50,20 @@ def never(peer):
 bus('bus', answers)
 bus('silent', never)
 def byte(name): return open(D + '/' + name, 'rb').read()
+def sys():
+    names = ('pwm/pwmchip2/pwm1/enable', 'pwm/pwmchip2/pwm1/duty_cycle', 'gpio/gpio56/value')
+    return tuple(text(D + '/sys/class/' + name).strip() for name in names)
 def put(name, text):
     with open(M + '/' + name + '/value', 'w') as file: file.write(text)
 def drive():
-    put('motor', '50'); put('wheel', '40'); put('file', '60'); put('text', '5')
+    put('motor', '50'); put('wheel', '40'); put('file', '60'); put('text', '5'); put('servo', '1500000'); put('lamp', '0')
     assert written[-1] == (0x48, b'\\x14\\x33'), written
     assert [byte(name) for name in ('wheel', 'file', 'text')] == [b'\\x32', b'\\x3c', b'5.'], [byte(name) for name in ('wheel', 'file', 'text')]
+    assert sys() == ('1', '1500000', '0'), sys()
     del written[:]
 def rests():
-    return (0x48, b'\\x14\\x01') in written and [byte(name) for name in ('wheel', 'file', 'text')] == [b'\\x0d', b'\\x07', b'9.']
+    return (0x48, b'\\x14\\x01') in written and [byte(name) for name in ('wheel', 'file', 'text')] == [b'\\x0d', b'\\x07', b'9.'] \\
+        and sys()[0] == '0' and sys()[1].startswith('0') and sys()[2] == '1'
 ";
 
 fn robot() -> Option<Mount> {
@@ -64,7 +72,20 @@ fn robot() -> Option<Mount> {
         board.file(name, ".");
     }
     board.file("text", "..");
-    mount_on(board, ROBOT)
+    let sys = board.path("sys/class");
+    let channel = sys.join("pwm/pwmchip2/pwm1");
+    let line = sys.join("gpio/gpio56");
+    for (folder, files) in [
+        (channel, &["period", "duty_cycle", "enable"][..]),
+        (line, &["direction", "value", "active_low"]),
+    ] {
+        std::fs::create_dir_all(&folder).unwrap();
+        for file in files {
+            std::fs::write(folder.join(file), "0\n").unwrap();
+        }
+    }
+    let root = board.dir().to_str().unwrap().to_owned();
+    mount_with(board, ROBOT, &["--device-root", &root])
 }
 
 #[test]

@@ -147,92 +147,94 @@ fn the_actions_of_a_robot_file_come_first() {
     assert!(robot.loaded.config.setup.len() > 5);
 }
 
+/// Entries that are wrong, and the reason.
+const MISTAKES: &[(&str, &str)] = &[
+    (
+        "{ port = 'M1' }, { port = 'M1' }",
+        "entry 2 (port 'M1'): the port is used already by entry 1",
+    ),
+    (
+        "{ port = 'A1', type = 'angularServomotor' }",
+        "entry 1 (port 'A1'): port A1 takes generic, light, sharpGP2, touch, not angularServomotor, which belongs to servos",
+    ),
+    (
+        "{ port = 'A1', type = 'sharp' }",
+        "entry 1 (port 'A1'): port A1 takes generic, light, sharpGP2, touch, not sharp",
+    ),
+    (
+        "{ port = 'M1', type = 5 }",
+        "entry 1 (port 'M1'): port M1 takes motor100, motor350, motor95, powerMotor; type must be one of these words",
+    ),
+    (
+        "{ type = 'touch' }",
+        "entry 1 (no port): the port is missing, for example port = 'M1'",
+    ),
+    (
+        "{ port = 'M1', speed = 5 }",
+        "entry 1 (port 'M1'): unknown option 'speed', there are: measures, name, polarity, port, type",
+    ),
+    (
+        "{ port = 'M1', polarity = 'wrong' }",
+        "entry 1 (port 'M1'): polarity must be 'normal' or 'inversed', not 'wrong'",
+    ),
+    (
+        "{ port = 'M1', name = 'M2' }",
+        "entry 1 (port 'M1'): the name 'M2' is that of a port",
+    ),
+    (
+        "{ port = 'M1', name = 'a/b' }",
+        "entry 1 (port 'M1'): name must be a word of letters, digits, _ and -, not 'a/b'",
+    ),
+    (
+        "{ port = 'M1', name = 'x' }, { port = 'M2', name = 'x' }",
+        "entry 2 (port 'M2'): the name 'x' is used twice in motors",
+    ),
+    (
+        "{ port = 'battery', type = 'x' }",
+        "entry 1 (port 'battery'): 'battery' is part of the board and has no type",
+    ),
+    (
+        "{ port = 'keys', name = 'x' }",
+        "entry 1 (port 'keys'): 'keys' is part of the board and takes no name",
+    ),
+    (
+        "{ port = 'A1', median3 = 1 }",
+        "entry 1 (port 'A1'): median3 must be true or false, not 1",
+    ),
+    (
+        "{ port = 'gyroscope', calibration_ms = 0 }",
+        "entry 1 (port 'gyroscope'): calibration_ms must be a number from 100 to 60000, not 0",
+    ),
+    (
+        "{ port = 'gyroscope', bias = { 1, 2 } }",
+        "entry 1 (port 'gyroscope'): bias must be a list of 3 numbers",
+    ),
+    (
+        "{ port = 'A1', type = 'sharpGP2', points = { {1, 2} } }",
+        "entry 1 (port 'A1'): points must be a list of 3 pairs of whole numbers from 0 to 1000000",
+    ),
+    (
+        "{ port = 'A1', type = 'sharpGP2', points = { {1, 2}, {1, 2}, {1, 2} } }",
+        "entry 1 (port 'A1'): points must be three points of a falling curve",
+    ),
+    (
+        "{ port = 'M1', measures = { {0, 0}, {50, 9}, {100, 9} } }",
+        "entry 1 (port 'M1'): measures must rise from point to point",
+    ),
+    (
+        "{ port = 'lidar', path = 'ttyS1' }",
+        "entry 1 (port 'lidar'): path must be a path that begins with a slash, not 'ttyS1'",
+    ),
+    ("'M1'", "entry 1 is not a table but a string"),
+    (
+        "M1 = {}",
+        "trik.robot takes a list of ports: { port = 'M1', ... }, { ... }; 'M1' does not belong there",
+    ),
+];
+
 #[test]
 fn mistakes_in_a_robot_file_are_refused_at_its_line() {
-    let cases = [
-        (
-            "{ port = 'M1' }, { port = 'M1' }",
-            "entry 2 (port 'M1'): the port is used already by entry 1",
-        ),
-        (
-            "{ port = 'A1', type = 'angularServomotor' }",
-            "entry 1 (port 'A1'): port A1 takes generic, light, sharpGP2, touch, not angularServomotor, which belongs to servos",
-        ),
-        (
-            "{ port = 'A1', type = 'sharp' }",
-            "entry 1 (port 'A1'): port A1 takes generic, light, sharpGP2, touch, not sharp",
-        ),
-        (
-            "{ port = 'M1', type = 5 }",
-            "entry 1 (port 'M1'): port M1 takes motor100, motor350, motor95, powerMotor; type must be one of these words",
-        ),
-        (
-            "{ type = 'touch' }",
-            "entry 1 (no port): the port is missing, for example port = 'M1'",
-        ),
-        (
-            "{ port = 'M1', speed = 5 }",
-            "entry 1 (port 'M1'): unknown option 'speed', there are: measures, name, polarity, port, type",
-        ),
-        (
-            "{ port = 'M1', polarity = 'wrong' }",
-            "entry 1 (port 'M1'): polarity must be 'normal' or 'inversed', not 'wrong'",
-        ),
-        (
-            "{ port = 'M1', name = 'M2' }",
-            "entry 1 (port 'M1'): the name 'M2' is that of a port",
-        ),
-        (
-            "{ port = 'M1', name = 'a/b' }",
-            "entry 1 (port 'M1'): name must be a word of letters, digits, _ and -, not 'a/b'",
-        ),
-        (
-            "{ port = 'M1', name = 'x' }, { port = 'M2', name = 'x' }",
-            "entry 2 (port 'M2'): the name 'x' is used twice in motors",
-        ),
-        (
-            "{ port = 'battery', type = 'x' }",
-            "entry 1 (port 'battery'): 'battery' is part of the board and has no type",
-        ),
-        (
-            "{ port = 'keys', name = 'x' }",
-            "entry 1 (port 'keys'): 'keys' is part of the board and takes no name",
-        ),
-        (
-            "{ port = 'A1', median3 = 1 }",
-            "entry 1 (port 'A1'): median3 must be true or false, not 1",
-        ),
-        (
-            "{ port = 'gyroscope', calibration_ms = 0 }",
-            "entry 1 (port 'gyroscope'): calibration_ms must be a number from 100 to 60000, not 0",
-        ),
-        (
-            "{ port = 'gyroscope', bias = { 1, 2 } }",
-            "entry 1 (port 'gyroscope'): bias must be a list of 3 numbers",
-        ),
-        (
-            "{ port = 'A1', type = 'sharpGP2', points = { {1, 2} } }",
-            "entry 1 (port 'A1'): points must be a list of 3 pairs of whole numbers from 0 to 1000000",
-        ),
-        (
-            "{ port = 'A1', type = 'sharpGP2', points = { {1, 2}, {1, 2}, {1, 2} } }",
-            "entry 1 (port 'A1'): points must be three points of a falling curve",
-        ),
-        (
-            "{ port = 'M1', measures = { {0, 0}, {50, 9}, {100, 9} } }",
-            "entry 1 (port 'M1'): measures must rise from point to point",
-        ),
-        (
-            "{ port = 'lidar', path = 'ttyS1' }",
-            "entry 1 (port 'lidar'): path must be a path that begins with a slash, not 'ttyS1'",
-        ),
-        ("'M1'", "entry 1 is not a table but a string"),
-        (
-            "M1 = {}",
-            "trik.robot takes a list of ports: { port = 'M1', ... }, { ... }; 'M1' does not belong there",
-        ),
-    ];
-    for (entries, reason) in cases {
+    for (entries, reason) in MISTAKES {
         assert_eq!(
             refused(entries),
             format!("robot.lua:3: {reason}"),

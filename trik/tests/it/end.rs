@@ -22,7 +22,9 @@ fn rests(robot: &Robot) -> bool {
 }
 
 /// The tree is served again, by new processes.
-fn comes_back(robot: &Robot) {
+fn comes_back(robot: &Robot, before: u32) {
+    // What the old daemon still answers says nothing.
+    eventually("the end of the old daemon", || !processes::is_alive(before));
     eventually("the tree again", || robot.errno("motors/M3/value") == 0);
     robot.drive(20, 20);
     assert_ne!(robot.duty(3).expect("the bus"), 0);
@@ -81,9 +83,10 @@ fn a_program_that_has_a_file_open_hears_of_the_end_and_does_not_delay_it() {
 #[test]
 fn after_a_kill_of_the_daemon_motors_rest_and_the_tree_comes_back() {
     let Some(robot) = moving() else { return };
-    processes::signal(robot.daemon(), Signal::SIGKILL);
+    let daemon = robot.daemon();
+    processes::signal(daemon, Signal::SIGKILL);
     eventually("rest", || rests(&robot));
-    comes_back(&robot);
+    comes_back(&robot, daemon);
     assert!(
         robot
             .complaints()
@@ -102,7 +105,7 @@ fn after_a_kill_of_the_guardian_motors_rest_and_the_tree_comes_back() {
     eventually("the end of both", || {
         !processes::is_alive(guardian) && !processes::is_alive(daemon)
     });
-    comes_back(&robot);
+    comes_back(&robot, daemon);
     assert!(
         robot
             .complaints()
@@ -116,11 +119,11 @@ fn after_a_kill_of_the_guardian_motors_rest_and_the_tree_comes_back() {
 fn after_kills_of_daemon_and_guardian_in_turn_motors_rest_each_time() {
     let Some(robot) = moving() else { return };
     for pid in [Robot::daemon, Robot::guardian, Robot::daemon] {
-        let victim = pid(&robot);
+        let (victim, daemon) = (pid(&robot), robot.daemon());
         robot.drive(30, 30);
         processes::signal(victim, Signal::SIGKILL);
         eventually("rest", || rests(&robot));
-        comes_back(&robot);
+        comes_back(&robot, daemon);
     }
 }
 

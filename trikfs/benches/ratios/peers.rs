@@ -26,6 +26,22 @@ pub fn pin_to_one_core() {
     }
 }
 
+/// Does something with this process, and what it starts meanwhile, on all processors there are.
+pub fn on_all_cores<R>(act: impl FnOnce() -> R) -> R {
+    let mut all = CpuSet::new();
+    // The kernel leaves out those that are not there.
+    for cpu in 0..CpuSet::count() {
+        let _ = all.set(cpu);
+    }
+    let before = sched_getaffinity(Pid::from_raw(0));
+    let _ = sched_setaffinity(Pid::from_raw(0), &all);
+    let result = act();
+    if let Ok(before) = before {
+        let _ = sched_setaffinity(Pid::from_raw(0), &before);
+    }
+    result
+}
+
 /// Another process of this program.
 pub struct Peer {
     child: Child,
@@ -69,6 +85,9 @@ pub fn play(role: &str, words: &[String]) {
         ("echo", [size]) => echo(size.parse().unwrap_or(4)),
         ("null", [mountpoint]) => null(Path::new(mountpoint)),
         ("relay", [from, to]) => super::events::relay(Path::new(from), Path::new(to)),
+        ("i2c", [path, delay_ms]) => {
+            super::bus_peer::serve(Path::new(path), delay_ms.parse().unwrap_or(0));
+        }
         ("reader", [mode, file]) => super::events::read_events(Path::new(file), mode == "epoll"),
         _ => eprintln!("no such role: {role}"),
     }

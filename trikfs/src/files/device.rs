@@ -165,8 +165,8 @@ impl OpenFile for DeviceFile {
         let Some(writer) = self.writer.get() else {
             return Err(Error::AccessDenied);
         };
-        let _admitted = self.ownership.admit(&self.node, request.caller)?;
         let _inside = self.node.enter()?;
+        let _admitted = self.ownership.admit(&self.node, request.caller)?;
         let taken = lock_patiently(writer).write(data, !request.nonblocking)?;
         self.node.stats.writes.add(1);
         Ok(Outcome::Done(taken))

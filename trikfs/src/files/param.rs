@@ -57,9 +57,9 @@ impl OpenFile for ParamFile {
         {
             return Err(Error::OutOfRange(format!("{name} is {min} to {max}")));
         }
+        let _inside = self.node.enter()?;
         // It changes what writes mean.
         let _admitted = Ownership::default().admit(&self.node, request.caller)?;
-        let _inside = self.node.enter()?;
         let changed = self.node.recipe().set_param(name, value);
         if let Err(error) = &changed {
             self.node.engine.log.line(&format!(

@@ -209,8 +209,8 @@ impl OpenFile for ValueFile {
             let line = format!("{}: {}: {error}", self.node.path(), error.blame());
             self.engine.log.line(&line);
         })?;
-        let _admitted = self.ownership.admit(&self.node, request.caller)?;
         let _inside = self.node.enter()?;
+        let _admitted = self.ownership.admit(&self.node, request.caller)?;
         lock_patiently(writer).write_whole(&tuple, !request.nonblocking)?;
         self.node.wrote(tuple);
         self.node.stats.writes.add(1);

@@ -9,8 +9,6 @@ use crate::device::i2c::bus::Buses;
 use crate::device::{self, Surroundings};
 use crate::errno::Error;
 use crate::limits;
-use crate::log::Log;
-use crate::programs::Programs;
 use std::collections::VecDeque;
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -94,15 +92,7 @@ fn start_worker(
 }
 
 fn perform(action: &RestAction, buses: &Arc<Buses>) -> Result<(), Error> {
-    let around = Surroundings {
-        links: Vec::new(),
-        timeout_ms: action.timeout_ms.min(limits::REST_MS_MAX),
-        // A sink that rests an actuator throws nothing away, and its sensor's program is not started for it.
-        damaged: Arc::default(),
-        programs: Programs::new(Arc::new(Log::new())),
-        log: Arc::new(|_| {}),
-        buses: buses.clone(),
-    };
+    let around = Surroundings::alone(action.timeout_ms.min(limits::REST_MS_MAX), buses);
     device::open_sink(&action.sink, &around)?.write(&action.tuple, true)
 }
 

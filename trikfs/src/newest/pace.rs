@@ -6,13 +6,21 @@ use super::{Source, too_old};
 use crate::events::{Due, lock};
 use crate::limits;
 use crate::node::Node;
-use std::sync::{Mutex, Weak};
+use std::sync::Weak;
 use std::time::{Duration, Instant};
 
 /// Background sampling by the clock.
 pub(super) struct Sampling {
     pub(super) node: Weak<Node>,
-    pub(super) planned: Mutex<Instant>,
+}
+
+/// The first time after `now` that is a whole number of periods from `origin`. Periods that were missed are not made up
+/// for. Nodes of the same period are due at the same moments: one wake-up serves them all.
+fn next_on_grid(origin: Instant, period: Duration, now: Instant) -> Instant {
+    let period_ns = period.as_nanos().max(1);
+    let since_ns = now.saturating_duration_since(origin).as_nanos();
+    let left_ns = period_ns - since_ns % period_ns;
+    now + Duration::from_nanos(u64::try_from(left_ns).unwrap_or(u64::MAX))
 }
 
 impl Due for Sampling {
@@ -23,13 +31,8 @@ impl Due for Sampling {
         }
         node.newest.sample(&node);
         let period = Duration::from_millis(node.period_ms().into());
-        let mut planned = lock(&self.planned);
-        *planned += period;
-        let now = Instant::now();
-        if *planned <= now {
-            *planned = now + period; // periods that were missed are not made up for
-        }
-        Some(*planned)
+        let origin = node.engine.schedule.origin();
+        Some(next_on_grid(origin, period, Instant::now()))
     }
 }
 
@@ -94,5 +97,26 @@ impl Due for Listening {
             limits::REOPEN_MS
         };
         Some(Instant::now() + Duration::from_millis(wait))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nodes_of_the_same_period_are_due_together_and_missed_periods_are_left_out() {
+        let origin = Instant::now();
+        let ms = Duration::from_millis;
+        let next = |at| next_on_grid(origin, ms(10), origin + at) - origin;
+        assert_eq!(next(ms(0)), ms(10));
+        assert_eq!(next(ms(3)), ms(10));
+        assert_eq!(next(ms(9) + Duration::from_nanos(999_999)), ms(10));
+        assert_eq!(next(ms(10)), ms(20));
+        assert_eq!(next(ms(47)), ms(50));
+        assert_eq!(
+            next_on_grid(origin + ms(5), ms(10), origin),
+            origin + ms(10)
+        );
     }
 }

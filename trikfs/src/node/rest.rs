@@ -1,7 +1,6 @@
-//! How a node comes to rest: now, and by the guardian when nobody else is left.
+//! How a node's actuator comes to rest: by this process, and by the guardian when this one is dead.
 //!
-//! Owns the tuple that is written for it and the way that it takes through other nodes. Who asks, and when, is the
-//! business of others.
+//! Owns the rest as a tuple and as an action of the guardian. When that happens is the business of others.
 
 use super::Node;
 use crate::device;
@@ -14,7 +13,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Between two attempts to bring an actuator to rest whose device is busy.
-const REST_PAUSE: Duration = Duration::from_millis(1);
+const PAUSE: Duration = Duration::from_millis(1);
 
 impl Node {
     /// The tuple that brings the actuator to rest, as a program would write it.
@@ -31,7 +30,7 @@ impl Node {
     /// Brings the actuator to rest now. One that this board does not have rests already; a bus that has too many to
     /// serve at the moment is asked again until the node's time limit.
     pub fn rest(self: &Arc<Self>) -> Result<(), Error> {
-        if let Some(regulation) = &self.regulation {
+        if let Some(regulation) = self.regulation() {
             return regulation.rest();
         }
         let Some(tuple) = self.rest_tuple()? else {
@@ -47,7 +46,7 @@ impl Node {
                 .and_then(|mut writer| writer.write_whole(&tuple, true));
             match outcome {
                 Err(Error::Device(libc::EBUSY, _)) if Instant::now() < deadline => {
-                    std::thread::sleep(REST_PAUSE);
+                    std::thread::sleep(PAUSE);
                 }
                 outcome => return outcome,
             }
@@ -56,7 +55,7 @@ impl Node {
 
     /// What the guardian has to do if this process is no longer there; nothing if there is no device to rest.
     pub fn rest_action(self: &Arc<Self>) -> Result<Option<RestAction>, Error> {
-        if self.regulation.is_some() {
+        if self.regulation().is_some() {
             // What it drives has a rest of its own.
             return Ok(None);
         }

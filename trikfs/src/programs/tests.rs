@@ -144,3 +144,13 @@ fn the_end_of_the_mount_stops_what_is_used() {
     assert_eq!(rig.calls(), "start stop ");
     assert_eq!(rig.use_one().err(), Some(Error::ShuttingDown));
 }
+
+#[test]
+fn the_end_of_the_mount_cuts_a_start_that_hangs_short_and_stops_what_it_left() {
+    let rig = Rig::new("[ $1 = stop ] || exec sleep 1000");
+    let one = rig.use_one().unwrap();
+    eventually("started", || rig.calls() == "start ");
+    rig.programs.stop_all(Duration::from_secs(60));
+    assert_eq!(rig.calls(), "start stop ");
+    assert!(matches!(one.progress(), Progress::Failed(_)));
+}
