@@ -9,9 +9,10 @@ local sin, cos, sqrt, pi = math.sin, math.cos, math.sqrt, math.pi
 -- 8.75 mdps for one count at the full scale of 250 degrees in a second; 4096 counts for one g at 2 g.
 local MDPS_NUMERATOR, MDPS_DIVISOR = 35, 4
 local COUNTS_OF_G = 4096
--- Standing still: the readings of each axis stay within so many counts (3.5 dps), and after the first calibration the
--- mean stays within so many counts of the bias (0.5 dps), so that a steady slow turn is no bias.
-local STILL_COUNTS, DRIFT_COUNTS = 400, 57
+-- Standing still: the readings of each axis stay within so many counts (3.5 dps), and their mean is what a chip may
+-- show at rest (10 dps, the zero-rate level of the data sheet); after the first calibration the mean stays within so many
+-- counts of the bias (0.5 dps). So no steady turn is taken for a bias, but one that is slower than that.
+local STILL_COUNTS, ZERO_RATE_COUNTS, DRIFT_COUNTS = 400, 1143, 57
 -- After a longer pause between two samples nobody knows how far the robot has turned.
 local GAP_US = 500000
 
@@ -47,7 +48,8 @@ local function watch(window_ms, bias)
     for axis = 1, 3 do
       mean[axis] = sum[axis] / count
       still = still and high[axis] - low[axis] <= STILL_COUNTS
-      if bias then still = still and math.abs(mean[axis] - bias[axis]) <= DRIFT_COUNTS end
+      local distance = math.abs(mean[axis] - (bias and bias[axis] or 0))
+      still = still and distance <= (bias and DRIFT_COUNTS or ZERO_RATE_COUNTS)
     end
     count, lasted_us = 0, 0
     if still then bias = mean end
@@ -116,7 +118,8 @@ local function integrator(window_ms, bias_given)
     local us = since(a, 16)
     if not us then return nil end
     if us <= 0 or us > GAP_US then
-      q, gx, gy, gz, count, calibrated = nil, 0, 0, 0, 0, watch(window_ms, bias_given)
+      -- The bias is still that of the chip; only the angles are lost.
+      q, gx, gy, gz, count = nil, 0, 0, 0, 0
       error('no samples for ' .. number.round(us, 1000) .. ' ms: the angles begin anew', 0)
     end
     local x, y, z = axes(a)

@@ -117,22 +117,24 @@ fn the_other_chip_has_other_axes_and_a_known_bias_needs_no_rest() {
 
 #[test]
 fn a_gyroscope_that_is_moved_from_the_start_is_not_calibrated() {
-    let mut robot = robot("{ port = 'gyroscope', calibration_ms = 100 }");
-    let mut faults = 0;
-    for step in 0..40 {
-        let shaken = if step % 2 == 0 { 5000 } else { -5000 };
-        match robot.read("gyroscope", &gyro(1, [0, 0, shaken], step)) {
-            Ok(value) => assert_eq!(value, "nothing"),
-            Err(fault) => {
-                assert_eq!(
-                    fault,
-                    "not calibrated yet: let the robot stand still for 100 ms"
-                );
-                faults += 1;
+    // Shaken, and in a steady turn: 1144 counts are faster than any chip shows at rest.
+    for rates in [[5000, -5000], [1144, 1144], [-1144, -1144]] {
+        let mut robot = robot("{ port = 'gyroscope', calibration_ms = 100 }");
+        let mut faults = 0;
+        for (step, rate) in (0..40).zip(rates.into_iter().cycle()) {
+            match robot.read("gyroscope", &gyro(1, [0, 0, rate], step)) {
+                Ok(value) => assert_eq!(value, "nothing"),
+                Err(fault) => {
+                    assert_eq!(
+                        fault,
+                        "not calibrated yet: let the robot stand still for 100 ms"
+                    );
+                    faults += 1;
+                }
             }
         }
+        assert_eq!(faults, 3, "{rates:?}");
     }
-    assert_eq!(faults, 3);
 }
 
 #[test]
@@ -216,6 +218,13 @@ fn lost_samples_begin_the_angles_anew() {
         lost,
         Err("no samples for 900 ms: the angles begin anew".into())
     );
+    // The bias is that of before: a steady turn is a turn at once, here of 875 mdeg to the left in each 10 ms.
+    for step in 0..3i32 {
+        let mut bytes = gyro(1, [0, 0, 10_000], 201 + step as u64);
+        bytes.extend(accelerometer([0, 0, 4096]));
+        let heading = robot.read("gyroscope/heading", &bytes);
+        assert_eq!(heading, Ok((-875 * (step + 1)).to_string()), "{step}");
+    }
 }
 
 #[test]

@@ -78,7 +78,7 @@ fn turning_on_the_spot_is_seen_by_encoders_and_gyroscope() {
     let Some(robot) = robot(&[]) else { return };
     // It measures its bias first, while the robot stands still.
     eventually("a calibrated gyroscope", || {
-        robot.errno("gyroscope/value") == 0
+        robot.errno("gyroscope/value") == 0 && robot.errno("gyroscope/heading") == 0
     });
     robot.drive(-20, 20);
     // Counter-clockwise, around the axis that points up.
