@@ -183,6 +183,8 @@ pub enum SourceDescription {
     Newest(String),
     /// Several sources, one converter.
     Several(SeveralDescription),
+    /// `program{ run = { ... } }`: each written text is the last argument of a program that is run for it.
+    Program(CommandDescription),
     /// `regulator{ feedback = ..., actuator = ... }`: what is written is held by driving another node.
     Regulator(RegulatorDescription),
 }

@@ -59,6 +59,7 @@ fn of_source(source: &mut SourceDescription, take: &mut dyn FnMut(&mut PathBuf))
                 take(&mut command.program);
             }
         }
+        SourceDescription::Program(command) => take(&mut command.program),
         SourceDescription::Packets(packets) => take(&mut packets.path),
         SourceDescription::Faulty(faulty) => of_source(&mut faulty.source, take),
         SourceDescription::Several(several) => {

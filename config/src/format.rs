@@ -2,7 +2,7 @@
 //!
 //! Owns the text of the `value` files. Little endian unless a field's type is preceded by `>`. Pure.
 
-use crate::limits::FIELDS_MAX;
+use crate::limits::{FIELDS_MAX, TUPLE_BYTES_MAX};
 use crate::nearest::suggestion;
 use std::fmt::{self, Write};
 use std::ops::Range;
@@ -15,6 +15,8 @@ pub struct Format {
     offsets: Vec<usize>,
     /// Unnamed bytes; used only if there are no fields.
     bytes: usize,
+    /// These bytes are one text, filled up with zero bytes.
+    is_text: bool,
 }
 
 /// One field of a format.
@@ -106,11 +108,14 @@ impl fmt::Display for EncodeError {
 impl std::error::Error for EncodeError {}
 
 impl Format {
-    /// Reads `'TYPE NAME, TYPE NAME'`. A type may be preceded by `>` for big endian.
+    /// Reads `'TYPE NAME, TYPE NAME'`, a type perhaps preceded by `>` for big endian, or `'text BYTES'`.
     ///
     /// # Errors
     /// The reason in lower case, naming the field.
     pub fn parse(text: &str) -> Result<Self, String> {
+        if let Some(size) = text.trim().strip_prefix("text ") {
+            return Self::text(size.trim());
+        }
         let mut fields: Vec<Field> = Vec::new();
         for part in text.split(',') {
             if fields.len() == FIELDS_MAX {
@@ -133,6 +138,7 @@ impl Format {
             fields,
             offsets,
             bytes: 0,
+            is_text: false,
         })
     }
 
@@ -144,6 +150,26 @@ impl Format {
         }
     }
 
+    fn text(size: &str) -> Result<Self, String> {
+        let bytes: usize = size.parse().unwrap_or(0);
+        if (1..=TUPLE_BYTES_MAX).contains(&bytes) {
+            return Ok(Self {
+                bytes,
+                is_text: true,
+                ..Self::default()
+            });
+        }
+        let shown: String = size.chars().take(20).flat_map(char::escape_debug).collect();
+        Err(format!(
+            "format: a text has 1 to {TUPLE_BYTES_MAX} bytes ('text 64'), not '{shown}'"
+        ))
+    }
+
+    /// The tuple is one text.
+    pub fn is_text(&self) -> bool {
+        self.is_text
+    }
+
     /// The named fields in order; empty for plain bytes.
     pub fn fields(&self) -> &[Field] {
         &self.fields
@@ -151,7 +177,9 @@ impl Format {
 
     /// How many numbers the text of a tuple has.
     pub fn len(&self) -> usize {
-        if self.fields.is_empty() {
+        if self.is_text {
+            0
+        } else if self.fields.is_empty() {
             self.bytes
         } else {
             self.fields.len()
@@ -175,6 +203,13 @@ impl Format {
     /// A number that is not finite, or a tuple of another size. `out` then holds a part.
     pub fn render(&self, tuple: &[u8], out: &mut String) -> Result<(), String> {
         self.check_size(tuple.len())?;
+        if self.is_text {
+            let end = tuple.iter().position(|&byte| byte == 0);
+            let text = std::str::from_utf8(&tuple[..end.unwrap_or(tuple.len())]);
+            let text = text.ok().filter(|text| !text.chars().any(char::is_control));
+            out.push_str(text.ok_or("the text is no UTF-8, or has control characters")?);
+            return Ok(());
+        }
         for index in 0..self.len() {
             if index > 0 {
                 out.push(' ');
@@ -217,6 +252,9 @@ impl Format {
     /// `out` may then hold a part.
     pub fn encode(&self, text: &str, out: &mut [u8]) -> Result<(), EncodeError> {
         self.check_size(out.len()).map_err(EncodeError::Syntax)?;
+        if self.is_text {
+            return encode_text(text, out);
+        }
         let mut words = text.split_ascii_whitespace();
         for index in 0..self.len() {
             let word = words.next().ok_or_else(|| self.wrong_count(index))?;
@@ -260,6 +298,11 @@ impl Format {
     /// # Errors
     /// As [`encode`](Self::encode).
     pub fn encode_numbers(&self, numbers: &[f64], out: &mut [u8]) -> Result<(), EncodeError> {
+        if self.is_text {
+            return Err(EncodeError::Syntax(
+                "numbers where a text belongs".to_owned(),
+            ));
+        }
         let mut text = String::new();
         for number in numbers {
             // Writing to a string cannot fail.
@@ -276,7 +319,7 @@ impl Format {
                 *start..start + field.kind.size(),
             ));
         }
-        if self.fields.is_empty() && index < self.bytes {
+        if index < self.len() {
             return Ok((FieldKind::U8, false, index..index + 1));
         }
         Err(format!(
@@ -313,6 +356,9 @@ impl Format {
 impl fmt::Display for Format {
     /// The canonical text: one space after each type, a comma and a space after each field.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.is_text {
+            return write!(f, "text {}", self.bytes);
+        }
         if self.fields.is_empty() {
             return write!(f, "u8 x {}", self.bytes);
         }
@@ -504,6 +550,21 @@ fn real<T: std::str::FromStr>(text: &str) -> Result<T, EncodeError> {
         .all(|c| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | 'e' | 'E'));
     let number = if digits { text.parse().ok() } else { None };
     number.ok_or_else(|| EncodeError::Syntax(format!("'{}' is not a number", shorten(text))))
+}
+
+fn encode_text(text: &str, out: &mut [u8]) -> Result<(), EncodeError> {
+    if text.chars().any(char::is_control) {
+        let reason = "the text has control characters; it is one line";
+        return Err(EncodeError::Syntax(reason.to_owned()));
+    }
+    let (size, most) = (text.len(), out.len());
+    let Some(place) = out.get_mut(..size) else {
+        let reason = format!("the text has {size} bytes, at most {most} fit");
+        return Err(EncodeError::Range(reason));
+    };
+    place.copy_from_slice(text.as_bytes());
+    out[size..].fill(0);
+    Ok(())
 }
 
 fn out_of_range(text: &str, min: impl fmt::Display, max: impl fmt::Display) -> EncodeError {

@@ -38,6 +38,8 @@ mod devices {
     mod lines;
     /// Serial lines.
     mod packets;
+    /// Texts for programs.
+    mod program;
     /// Pulses.
     mod pwm;
     /// Actions that are done once, and the root of a virtual board.

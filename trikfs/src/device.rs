@@ -19,6 +19,7 @@ pub mod latched;
 pub mod lines;
 pub mod linked;
 pub mod packets;
+pub mod program;
 pub mod pwm;
 pub mod replay;
 pub mod several;
@@ -190,6 +191,7 @@ pub fn open(
         ))),
         SourceDescription::Newest(path) => latched::open(around.link(path)?),
         SourceDescription::Several(several) => several::open(several, around),
+        SourceDescription::Program(_) => Err(Error::AccessDenied),
         SourceDescription::Regulator(regulator) => several::open(&regulator.feedback, around),
         SourceDescription::I2c(i2c) => {
             let register = i2c::Register::open(i2c, tuple_size, around.timeout_ms, &around.buses)?;
@@ -229,6 +231,10 @@ pub fn open_sink(
         SourceDescription::Gpio(gpio) if gpio.direction != GpioDirection::In => {
             Ok(Box::new(gpio::Gpio::open(gpio)?))
         }
+        SourceDescription::Program(command) => Ok(Box::new(program::ProgramSink::new(
+            command,
+            around.programs.clone(),
+        ))),
         SourceDescription::Lines(lines) => {
             Ok(Box::new(lines::LinesSink::open(lines, around.timeout_ms)?))
         }
@@ -275,6 +281,7 @@ pub fn is_shared(source: &SourceDescription) -> Result<bool, Error> {
         | SourceDescription::Node(_)
         | SourceDescription::Newest(_)
         | SourceDescription::Regulator(_)
+        | SourceDescription::Program(_)
         | SourceDescription::I2c(_)
         | SourceDescription::Absent(_)
         | SourceDescription::Pwm(_)
@@ -315,6 +322,7 @@ pub fn paths(source: &SourceDescription) -> Vec<&Path> {
             None => vec![&lines.path],
         },
         SourceDescription::Packets(packets) => vec![&packets.path],
+        SourceDescription::Program(command) => vec![&command.program],
         SourceDescription::Faulty(faulty) => paths(&faulty.source),
         SourceDescription::Several(several) => {
             let parts = several.parts.iter();

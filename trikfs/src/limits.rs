@@ -97,6 +97,10 @@ pub const PROGRAM_RETRY_MS: u64 = 5_000;
 pub const PROGRAM_END_MS: u64 = 1_500;
 /// Bytes of output of a start or stop that go to the log.
 pub const PROGRAM_OUTPUT_BYTES_MAX: usize = 4096;
+/// Texts that wait for a program that is run for each.
+pub const PROGRAM_TEXTS_MAX: usize = 8;
+/// How long one run of it may take.
+pub const PROGRAM_TEXT_MS_MAX: u32 = 60_000;
 /// Milliseconds that a sensor's pipe may take to appear once its program has been started.
 pub const LINES_APPEAR_MS: u64 = 20_000;
 /// Milliseconds between two looks for it.

@@ -4,6 +4,8 @@
 //! and stopped by a thread of its own, never by one that serves the kernel or samples. A start that has failed is not
 //! tried again for a while. Knows no device and no node.
 
+mod told;
+
 use crate::command::{self, Ended, Limits};
 use crate::errno::Error;
 use crate::events::lock;
@@ -12,6 +14,7 @@ use crate::log::Log;
 use config::description::CommandDescription;
 use std::io::Read;
 use std::process::Command;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -19,6 +22,10 @@ use std::time::{Duration, Instant};
 pub struct Programs {
     log: Arc<Log>,
     all: Mutex<Vec<Arc<Program>>>,
+    /// Those that are run once for each text.
+    told: Mutex<Vec<told::Told>>,
+    /// The mount ends.
+    is_ending: AtomicBool,
 }
 
 /// How to start and stop a program.
@@ -82,6 +89,8 @@ impl Programs {
         Arc::new(Self {
             log,
             all: Mutex::default(),
+            told: Mutex::default(),
+            is_ending: AtomicBool::new(false),
         })
     }
 
@@ -110,6 +119,7 @@ impl Programs {
 
     /// Stops everything that is up, and waits for it, at most so long.
     pub fn stop_all(&self, limit: Duration) {
+        self.is_ending.store(true, Ordering::Relaxed);
         let deadline = Instant::now() + limit;
         let all: Vec<_> = lock(&self.all).clone();
         for program in &all {

@@ -86,9 +86,12 @@ local function sound()
   return {
     volume = attribute_number('/sys/bus/i2c/devices/2-0050/volume', 'i32 volume', 'loudness of the loudspeaker, 0 to 20', 20),
     say = {
-      about = 'speech: not in this tree, the board has a program for it and no file',
-      src = absent { reason = 'the board speaks by the program /etc/trik/say and has no device to write to' },
-      input_tuple_size = 1,
+      about = 'a text to be spoken; one after the other, and at most 8 wait',
+      src = program { run = { '/etc/trik/say' } }, format = 'text 400',
+    },
+    play = {
+      about = 'path of a sound file (WAV) to be played; one after the other, and at most 8 wait',
+      src = program { run = { '/usr/bin/aplay', '--quiet' } }, format = 'text 400',
     },
   }
 end

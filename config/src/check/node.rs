@@ -77,6 +77,11 @@ impl Fields<'_, '_> {
                 "write_converter makes no sense: the source cannot be written",
             ));
         }
+        let usual_mode = match (&source, read_only) {
+            (SourceDescription::Program(_), _) => 0o222,
+            (_, true) => 0o444,
+            (_, false) => 0o644,
+        };
         let digests: Vec<u128> = read
             .iter()
             .chain(write.iter().flatten())
@@ -99,9 +104,7 @@ impl Fields<'_, '_> {
             about: self.words("about", ABOUT_BYTES_MAX)?,
             units: self.words("units", UNITS_BYTES_MAX)?,
             pace: self.pace()?,
-            mode: self
-                .mode()?
-                .unwrap_or(if read_only { 0o444 } else { 0o644 }),
+            mode: self.mode()?.unwrap_or(usual_mode),
             owner: self.owner()?,
             group: self.owning_group()?,
             rest: self.rest()?,

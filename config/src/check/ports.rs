@@ -222,6 +222,20 @@ impl<'a> Fields<'_, 'a> {
         })
     }
 
+    /// `program{ run = { '/etc/trik/say' } }`
+    pub(super) fn program(&mut self, table: &'a Table) -> Result<SourceDescription, Problem> {
+        self.inner(table, |fields| {
+            fields.only("program", table, &["", "run"])?;
+            match fields.command("program", "run")? {
+                Some(command) => Ok(SourceDescription::Program(command)),
+                None => Err(fields.problem(
+                    "src",
+                    "program: run is missing, for example run = { '/etc/trik/say' }",
+                )),
+            }
+        })
+    }
+
     /// A program and its arguments.
     fn command(&self, kind: &str, field: &str) -> Result<Option<CommandDescription>, Problem> {
         let Some(value) = self.get(field) else {

@@ -46,6 +46,7 @@ pub(super) fn is_read_only(source: &SourceDescription) -> bool {
         | SourceDescription::Fifo(_)
         // A port that is absent on this board is described like one that is there.
         | SourceDescription::Absent(_)
+        | SourceDescription::Program(_)
         | SourceDescription::Regulator(_)
         | SourceDescription::I2c(_) => false,
         SourceDescription::Pwm(_) => false,
@@ -199,6 +200,7 @@ impl<'a> Fields<'_, 'a> {
             b"fake" => self.fake(table),
             b"replay" => self.replay(table),
             b"faulty" => self.faulty(table),
+            b"program" => self.program(table),
             b"regulator" => self.regulator(table),
             b"i2c" => self.i2c(table),
             b"absent" => self.absent(table),

@@ -256,3 +256,40 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn a_text_is_one_line_filled_up_with_zero_bytes() {
+    let format = Format::parse("text 8").unwrap();
+    assert_eq!(format.to_string(), "text 8");
+    assert_eq!(
+        (format.size(), format.len(), format.is_text()),
+        (8, 0, true)
+    );
+    let mut tuple = [0xff; 8];
+    format.encode("na ja", &mut tuple).unwrap();
+    assert_eq!(&tuple, b"na ja\0\0\0");
+    let mut text = String::new();
+    format.render(&tuple, &mut text).unwrap();
+    assert_eq!(text, "na ja");
+    format.encode("\u{44d}\u{445}\u{43e}", &mut tuple).unwrap();
+    text.clear();
+    format.render(&tuple, &mut text).unwrap();
+    assert_eq!(text, "\u{44d}\u{445}\u{43e}");
+    let too_long = format.encode("123456789", &mut tuple);
+    assert_eq!(
+        too_long.unwrap_err().to_string(),
+        "the text has 9 bytes, at most 8 fit"
+    );
+    assert!(format.encode("a\nb", &mut tuple).is_err());
+    assert!(format.encode_numbers(&[1.0], &mut tuple).is_err());
+    assert!(format.encode_field(0, "1", &mut tuple).is_err());
+    assert!(format.render(b"a\x1b[2J\0\0\0", &mut text).is_err());
+    assert!(format.render(b"\xff\0\0\0\0\0\0\0", &mut text).is_err());
+    for wrong in ["text 0", "text 65537", "text x", "text 8, u8 a", "text -1"] {
+        let reason = Format::parse(wrong).unwrap_err();
+        assert!(
+            reason.contains("a text has 1 to 65536 bytes"),
+            "{wrong}: {reason}"
+        );
+    }
+}

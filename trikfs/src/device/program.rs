@@ -1,0 +1,46 @@
+//! A program as a sink: each written text is the last argument of one run.
+//!
+//! Owns what a text may be for that. When it runs, and for how long, is the business of `programs`.
+
+use super::Sink;
+use crate::errno::Error;
+use crate::programs::Programs;
+use config::description::CommandDescription;
+use std::sync::Arc;
+
+/// One way to a program.
+pub struct ProgramSink {
+    command: CommandDescription,
+    programs: Arc<Programs>,
+}
+
+impl ProgramSink {
+    /// Runs nothing yet.
+    pub fn new(command: &CommandDescription, programs: Arc<Programs>) -> Self {
+        Self {
+            command: command.clone(),
+            programs,
+        }
+    }
+}
+
+impl Sink for ProgramSink {
+    fn write(&mut self, tuple: &[u8], _waits: bool) -> Result<(), Error> {
+        let program = &self.command.program;
+        if !program.exists() {
+            return Err(Error::NoDevice(format!(
+                "{} does not exist",
+                program.display()
+            )));
+        }
+        let end = tuple.iter().position(|&byte| byte == 0);
+        let text = std::str::from_utf8(&tuple[..end.unwrap_or(tuple.len())])
+            .map_err(|_| Error::Invalid("the text is no UTF-8".to_owned()))?;
+        if text.starts_with('-') {
+            return Err(Error::Invalid(
+                "the program would take a text that begins with '-' for an option".to_owned(),
+            ));
+        }
+        self.programs.tell(&self.command, text)
+    }
+}
