@@ -293,6 +293,13 @@ impl Mount {
         self.try_sh(&format!("set -e\n{script}")).good()
     }
 
+    /// What the log holds, at most 64 KiB of it. One read, because a second would wait for the next line.
+    pub fn log(&self) -> String {
+        let mut bytes = vec![0; 64 << 10];
+        let size = self.open("log").read(&mut bytes).expect("log");
+        String::from_utf8_lossy(&bytes[..size]).into_owned()
+    }
+
     /// Output of a Python script that must succeed; see `prelude.py` for what it can use.
     pub fn python(&self, script: &str) -> String {
         tools::run(&mut self.at_home(tools::python(script)), b"").good()

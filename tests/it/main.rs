@@ -173,6 +173,15 @@ fn trikfs(board: &Board, arguments: &[&str], input: &[u8]) -> harness::Output {
     harness::run(command.args(arguments).current_dir(board.dir()), input)
 }
 
+/// True if a thread that waits for a device is relieved of serving the kernel: the fuser crate has a few fixed threads.
+fn late_threads_are_relieved() -> bool {
+    let are = harness::mount::transport() == "native";
+    if !are {
+        harness::wait::note_skip("the fuser transport serves the kernel with four threads");
+    }
+    are
+}
+
 /// True if a reader that waits in the daemon can be killed: a limit of the fuser crate, which its file documents.
 fn waiting_readers_can_be_killed() -> bool {
     let can = harness::mount::transport() == "native";

@@ -216,7 +216,7 @@ assert open(M + '/calm/params/alpha').read() == '0.5\\n'
 assert through(75) == 75
 ",
     );
-    let log = m.sh("dd if=$MNT/log bs=64K count=1 status=none");
+    let log = m.log();
     assert!(log.contains("params/alpha stays as it is"), "{log}");
 }
 
