@@ -9,7 +9,7 @@ use nix::sys::socket::{
     AddressFamily, MsgFlags, SockFlag, SockType, UnixAddr, connect, recv, send, setsockopt, socket,
     sockopt,
 };
-use nix::sys::time::TimeVal;
+use nix::sys::time::{TimeVal, TimeValLike};
 use std::os::fd::{AsFd, AsRawFd, OwnedFd};
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -68,8 +68,8 @@ impl VirtualBus {
         if timeout == self.timeout {
             return Ok(());
         }
-        let seconds = i64::try_from(timeout.as_secs()).unwrap_or(i64::MAX);
-        let value = TimeVal::new(seconds, timeout.subsec_micros().into());
+        // The fields of the two kernels' structures differ in size; limits of a configuration fit both.
+        let value = TimeVal::microseconds(i64::try_from(timeout.as_micros()).unwrap_or(i64::MAX));
         setsockopt(&self.socket.as_fd(), sockopt::SendTimeout, &value)?;
         setsockopt(&self.socket.as_fd(), sockopt::ReceiveTimeout, &value)?;
         self.timeout = timeout;
