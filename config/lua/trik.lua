@@ -64,6 +64,11 @@ local function entries_of(list)
         .. "' does not belong there", 0)
     end
   end
+  local last = table.maxn(list)
+  if last > 256 then error('trik.robot takes at most 256 entries, not ' .. last, 0) end
+  for number = 1, last do
+    if list[number] == nil then error('entry ' .. number .. ' of ' .. last .. ' is nil: is a name mistyped?', 0) end
+  end
   local entries = {}
   for number, given in ipairs(list) do
     if type(given) ~= 'table' then error('entry ' .. number .. ' is not a table but a ' .. type(given), 0) end

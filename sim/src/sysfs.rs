@@ -36,6 +36,8 @@ pub fn make(attributes: &mut Attributes) -> io::Result<()> {
         attributes.make(&format!("sys/class/leds/{led}/brightness"), "0")?;
         attributes.make(&format!("sys/class/leds/{led}/max_brightness"), "1")?;
     }
+    // The loudspeaker's amplifier, as the boot scripts leave it; nothing is heard here.
+    attributes.make("sys/bus/i2c/devices/2-0050/volume", "20")?;
     attributes.make("sys/class/gpio/export", "")?;
     attributes.make("sys/class/gpio/unexport", "")?;
     for (number, level) in LINES {

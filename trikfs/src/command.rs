@@ -2,6 +2,7 @@
 //!
 //! Compilers and the programs of sensors run through it. Knows nothing of either.
 
+use crate::events::lock;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::signal::{Signal, killpg};
 use nix::unistd::Pid;
@@ -10,6 +11,7 @@ use std::os::fd::AsFd;
 use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 /// How often a process that holds its output open is asked whether it has ended.
@@ -23,6 +25,21 @@ pub(crate) struct Limits {
     pub(crate) time: Duration,
     /// Bytes of output that are kept; the rest is read and dropped.
     pub(crate) output_bytes: usize,
+    /// Where its process group is noted while it runs, for who has to end all.
+    pub(crate) groups: Option<Arc<Groups>>,
+}
+
+/// Process groups that run now.
+#[derive(Default)]
+pub(crate) struct Groups(Mutex<Vec<i32>>);
+
+impl Groups {
+    /// Kills all of them: nobody is left who would end them when their time is up.
+    pub(crate) fn kill_all(&self) {
+        for &group in &*lock(&self.0) {
+            let _ = killpg(Pid::from_raw(group), Signal::SIGKILL);
+        }
+    }
 }
 
 /// How it ended.
@@ -75,7 +92,9 @@ pub(crate) fn run_unless(
         reader: Some(reader),
         output: Vec::new(),
         output_bytes: limits.output_bytes,
+        groups: limits.groups.clone(),
     };
+    running.note();
     let status = running.wait(deadline, is_over);
     if !matches!(status, Ok(Some(_))) {
         running.kill();
@@ -93,9 +112,30 @@ struct Running {
     reader: Option<PipeReader>,
     output: Vec<u8>,
     output_bytes: usize,
+    groups: Option<Arc<Groups>>,
 }
 
 impl Running {
+    fn note(&self) {
+        if let (Some(groups), Ok(group)) = (&self.groups, i32::try_from(self.child.id())) {
+            lock(&groups.0).push(group);
+        }
+    }
+
+    /// Whether it has ended. From then on its number may be another's, so it is forgotten in the same moment.
+    fn try_wait(&mut self) -> io::Result<Option<ExitStatus>> {
+        let Some(groups) = &self.groups else {
+            return self.child.try_wait();
+        };
+        let mut noted = lock(&groups.0);
+        let group = i32::try_from(self.child.id());
+        let status = self.child.try_wait()?;
+        if status.is_some() {
+            noted.retain(|&other| Ok(other) != group);
+        }
+        Ok(status)
+    }
+
     /// The status of the process, or nothing when the deadline or the end of all came first.
     fn wait(
         &mut self,
@@ -108,7 +148,7 @@ impl Running {
             } else {
                 std::thread::sleep(SETTLE);
             }
-            if let Some(status) = self.child.try_wait()? {
+            if let Some(status) = self.try_wait()? {
                 // A grandchild may keep the pipe open for ever: only what is in it now counts.
                 while self.read_some(0)? {}
                 return Ok(Some(status));
@@ -144,7 +184,9 @@ impl Running {
         if let Ok(group) = i32::try_from(self.child.id()) {
             let _ = killpg(Pid::from_raw(group), Signal::SIGKILL);
         }
-        let _ = self.child.wait();
+        while matches!(self.try_wait(), Ok(None)) {
+            std::thread::sleep(SETTLE);
+        }
     }
 
     fn text(&self) -> String {
@@ -166,6 +208,7 @@ mod tests {
         let limits = Limits {
             time: Duration::from_millis(time_ms),
             output_bytes,
+            groups: None,
         };
         run(command, &limits).expect("runs")
     }

@@ -126,6 +126,7 @@ impl Engine {
     pub fn stop(&self) {
         self.programs
             .stop_all(Duration::from_millis(limits::PROGRAM_END_MS));
+        self.programs.groups.kill_all();
         self.poller.stop();
         self.schedule.stop();
         for schedule in lock(&self.bus_schedules).values() {

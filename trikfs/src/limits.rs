@@ -97,6 +97,8 @@ pub const PROGRAM_RETRY_MS: u64 = 5_000;
 pub const PROGRAM_END_MS: u64 = 1_500;
 /// Bytes of output of a start or stop that go to the log.
 pub const PROGRAM_OUTPUT_BYTES_MAX: usize = 4096;
+/// How long actuators that hang may keep a new tree from being ready.
+pub const START_REST_MS_MAX: u32 = 2_000;
 /// Texts that wait for a program that is run for each.
 pub const PROGRAM_TEXTS_MAX: usize = 8;
 /// How long one run of it may take.

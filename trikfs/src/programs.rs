@@ -6,7 +6,7 @@
 
 mod told;
 
-use crate::command::{self, Ended, Limits};
+use crate::command::{self, Ended, Groups, Limits};
 use crate::errno::Error;
 use crate::events::lock;
 use crate::limits;
@@ -26,6 +26,8 @@ pub struct Programs {
     told: Mutex<Vec<told::Told>>,
     /// The mount ends.
     is_ending: AtomicBool,
+    /// Everything that runs now.
+    pub(crate) groups: Arc<Groups>,
 }
 
 /// How to start and stop a program.
@@ -51,6 +53,7 @@ pub enum Progress {
 struct Program {
     commands: Commands,
     log: Arc<Log>,
+    groups: Arc<Groups>,
     state: Mutex<State>,
     changed: Condvar,
 }
@@ -91,6 +94,7 @@ impl Programs {
             all: Mutex::default(),
             told: Mutex::default(),
             is_ending: AtomicBool::new(false),
+            groups: Arc::default(),
         })
     }
 
@@ -106,6 +110,7 @@ impl Programs {
                     let program = Arc::new(Program {
                         commands: commands.clone(),
                         log: self.log.clone(),
+                        groups: self.groups.clone(),
                         state: Mutex::default(),
                         changed: Condvar::new(),
                     });
@@ -272,6 +277,7 @@ impl Program {
         let mut command = Command::new(&description.program);
         command.args(&description.arguments).current_dir("/");
         let limits = Limits {
+            groups: Some(self.groups.clone()),
             time: Duration::from_millis(time_ms.into()),
             output_bytes: limits::PROGRAM_OUTPUT_BYTES_MAX,
         };

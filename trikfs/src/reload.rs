@@ -15,6 +15,7 @@ use crate::fs::{Forest, OpenFiles};
 use crate::guardian::actions::RestAction;
 use crate::guardian::ledger::Ledger;
 use crate::lease::Lease;
+use crate::limits;
 use crate::node::{Node, directory_of};
 use crate::setup::SetupRunner;
 use crate::tree::{Owner, Tree};
@@ -27,6 +28,7 @@ use std::os::unix::fs::MetadataExt;
 use std::path::PathBuf;
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, Weak};
+use std::time::Duration;
 
 /// What the reloader works with for the life of the mount.
 pub struct Setup {
@@ -272,6 +274,9 @@ impl Reloader {
         rest: &[RestAction],
     ) {
         let setup = &self.setup;
+        if before.nodes().is_empty() {
+            rest_first(nodes.clone());
+        }
         let is_new = |node: &Arc<Node>| !before.nodes().iter().any(|old| Arc::ptr_eq(old, node));
         let new: Vec<_> = nodes.iter().filter(|node| is_new(node)).cloned().collect();
         let stays = |old: &Arc<Node>| nodes.iter().any(|node| Arc::ptr_eq(node, old));
@@ -346,6 +351,21 @@ fn one_line(text: &str) -> String {
         .collect::<Vec<_>>()
         .join(" | ")
         .replace(|c: char| c.is_control(), " ")
+}
+
+/// Actuators may still do what a process before this one told them that is dead with its guardian. One that cannot be
+/// reached says so in `fault`, and the tree is not kept from being ready for longer than the limit.
+fn rest_first(nodes: Vec<Arc<Node>>) {
+    let (done, wait) = channel();
+    let rest = move || {
+        // Each failure has been told.
+        let _ = rest_all(&nodes);
+        let _ = done.send(());
+    };
+    let thread = std::thread::Builder::new().name("rest".to_owned());
+    if thread.spawn(rest).is_ok() {
+        let _ = wait.recv_timeout(Duration::from_millis(limits::START_REST_MS_MAX.into()));
+    }
 }
 
 /// Every description of a configuration, attributes behind their node.

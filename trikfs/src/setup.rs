@@ -186,6 +186,7 @@ impl SetupRunner {
         let mut command = Command::new(program);
         command.args(arguments).current_dir("/");
         let limits = Limits {
+            groups: Some(self.engine.programs.groups.clone()),
             time: timeout,
             output_bytes: limits::SETUP_OUTPUT_BYTES,
         };

@@ -32,11 +32,11 @@ local function attributes(sensor, script)
   script = '/etc/init.d/' .. script
   return {
     text = {
-      about = 'the lines of the sensor as bytes; the other files are made of them',
+      about = 'the lines of the sensor; the other files are made of them',
       src = lines {
         path = fifo .. 'out.fifo', input = fifo .. 'in.fifo', start = { script, 'start' }, stop = { script, 'stop' },
       },
-      input_tuple_size = text.SIZE, timeout_ms = START_MS,
+      format = 'text ' .. text.SIZE, timeout_ms = START_MS,
     },
   }
 end

@@ -61,7 +61,7 @@ function gamepad.make()
     gamepad = {
       text = {
         about = 'the lines of the gamepad as they come',
-        src = lines { path = '/run/gamepad-service.out.fifo' }, input_tuple_size = text.SIZE,
+        src = lines { path = '/run/gamepad-service.out.fifo' }, format = 'text ' .. text.SIZE,
       },
       pad1 = pad(1),
       pad2 = pad(2),

@@ -1,7 +1,7 @@
 -- Power motors M1 to M4: percent to the duty registers of the MSP430, linear in speed.
 --
 -- Owns the tables of the motor types and the signs of the ports. Facts: the motor section of the MSP430's register map
--- as trikRuntime uses it. The firmware reports nothing back: reading gives what was written last.
+-- as trikRuntime uses it. The firmware reports nothing back: reading gives the least power that has the duty that was sent last.
 local number = include 'trik/number.lua'
 local divide = number.divide
 
@@ -73,7 +73,7 @@ function motors.make(port, kind, entry)
   local sign = (ports[port].plain and 1 or -1) * (inversed and -1 or 1)
   local src = i2c { path = BUS, address = ADDRESS, register = register, transfer = 'byte', readable = false }
   return {
-    about = 'power of motor ' .. port .. ': -100 to 100, 0 lets it run out, 127 brakes; reads what was written last',
+    about = 'power of motor ' .. port .. ': -100 to 100, 0 lets it run out, 127 brakes; reads the least power with the duty that was sent last',
     src = src, format = 'i32 duty_cycle', units = '%', rest = 0,
     converter = function(a_s, a, b_s, b)
       local duty = ba.i8(a, 0)

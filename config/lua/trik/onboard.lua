@@ -61,7 +61,7 @@ local function attribute_number(path, format, about, greatest)
     converter = function(a_s, a, b_s, b)
       local text = ba.text(a)
       local value = tonumber(text:match('^%s*(%d+)'))
-      if not value then error("'" .. text:sub(1, 20) .. "' is no number", 0) end
+      if not value or value > 2147483647 then error("'" .. text:sub(1, 20) .. "' is no number", 0) end
       ba.i32(b, 0, value)
     end,
     write_converter = function(a_s, a, b_s, b)

@@ -42,7 +42,7 @@ fn a_second_name_has_the_same_files_and_the_same_node() {
         return;
     };
     assert_eq!(m.sh("ls motors/left"), m.sh("ls motors/M1"));
-    assert_eq!(m.text("motors/left/value"), "7\n");
+    assert_eq!(m.text("motors/left/value"), "0\n");
     m.write("motors/left/value", "50").unwrap();
     assert_eq!(m.text("motors/M1/value"), "50\n");
     assert_eq!(m.text("motors/left/half"), "25\n");
@@ -65,9 +65,9 @@ fn a_second_name_comes_and_goes_with_the_configuration() {
     let open = m.open("motors/M1/value");
     m.apply(&config.replace("left = {", "right = {")).unwrap();
     assert_eq!(m.errno("motors/left/value"), libc::ENOENT);
-    assert_eq!(m.text("motors/right/value"), "7\n");
+    assert_eq!(m.text("motors/right/value"), "0\n");
     // The node itself did not change.
-    assert_eq!(std::io::read_to_string(open).unwrap(), "7\n");
+    assert_eq!(std::io::read_to_string(open).unwrap(), "0\n");
 }
 
 #[test]
@@ -114,7 +114,7 @@ fn the_first_word_of_a_converter_says_who_is_to_blame() {
     assert_eq!(refused.raw_os_error(), Some(libc::ERANGE));
     let refused = m.write("motors/M1/value", "-1").unwrap_err();
     assert_eq!(refused.raw_os_error(), Some(libc::EINVAL));
-    assert_eq!(std::fs::read(m.board().path("M1")).unwrap(), [7]);
+    assert_eq!(std::fs::read(m.board().path("M1")).unwrap(), [0]);
     std::fs::write(m.board().path("M1"), [255]).unwrap();
     assert_eq!(m.errno("motors/M1/value"), libc::ENODEV);
     assert_eq!(m.text("motors/M1/fault"), "device: no motor\n");

@@ -22,7 +22,9 @@ fn row(table: &mut String, name: &str, node: &NodeDescription) {
         .flat_map(|format| format.fields())
         .map(|field| field.name.clone())
         .collect();
+    let is_text = node.format.as_ref().is_some_and(|format| format.is_text());
     let numbers = match names.len() {
+        0 if is_text => "one text".to_owned(),
         0 => "-".to_owned(),
         count if count > 9 => format!("{count}: {} to {}", names[0], names[count - 1]),
         _ => names.join(", "),
@@ -61,7 +63,7 @@ fn tables() -> String {
             .unwrap();
             text.push_str("| --- | --- | --- | --- | --- |\n");
         }
-        row(&mut text, &node.path, node);
+        row(&mut text, &format!("{}/", node.path), node);
         for attribute in &node.attributes {
             row(&mut text, &attribute.path, attribute);
         }

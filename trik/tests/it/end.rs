@@ -128,6 +128,22 @@ fn after_kills_of_daemon_and_guardian_in_turn_motors_rest_each_time() {
 }
 
 #[test]
+fn after_a_kill_of_both_at_once_motors_rest_before_the_tree_is_there_again() {
+    let Some(robot) = moving() else { return };
+    let (guardian, daemon) = (robot.guardian(), robot.daemon());
+    // Stopped first, the guardian cannot do anything about the daemon's death.
+    processes::signal(guardian, Signal::SIGSTOP);
+    eventually("a standstill", || processes::is_stopped(guardian));
+    processes::signal(daemon, Signal::SIGKILL);
+    processes::signal(guardian, Signal::SIGKILL);
+    eventually("the end of both", || {
+        !processes::is_alive(guardian) && !processes::is_alive(daemon)
+    });
+    eventually("the tree again", || robot.errno("motors/M3/value") == 0);
+    assert!(rests(&robot), "{}", robot.complaints());
+}
+
+#[test]
 fn a_kill_of_trik_itself_unmounts_and_the_next_start_removes_the_board() {
     let Some(mut robot) = moving() else { return };
     let (guardian, daemon) = (robot.guardian(), robot.daemon());

@@ -175,6 +175,7 @@ fn compile_with(
         .map_err(|error| problem(place.line, error))
         .and_then(|()| {
             let limits = Limits {
+                groups: None,
                 time: limit,
                 output_bytes: limits::COMPILE_OUTPUT_BYTES_MAX,
             };

@@ -77,6 +77,7 @@ impl Programs {
             .arg(text)
             .current_dir("/");
         let limits = Limits {
+            groups: Some(self.groups.clone()),
             time: Duration::from_millis(limits::PROGRAM_TEXT_MS_MAX.into()),
             output_bytes: limits::PROGRAM_OUTPUT_BYTES_MAX,
         };

@@ -85,6 +85,15 @@ impl VirtualBus {
         self.limit(timeout)
             .map_err(|errno| Failure::Errno(errno as i32))?;
         let read_len = encode(transfer, &mut self.request)?;
+        // An answer that nobody waits for would be taken for that of this request, and all others for that of the next.
+        let stray = recv(
+            self.socket.as_raw_fd(),
+            &mut [0],
+            MsgFlags::MSG_DONTWAIT | MsgFlags::MSG_PEEK,
+        );
+        if stray.is_ok() {
+            return Err(Failure::Lost);
+        }
         self.send(deadline)?;
         self.answer.resize(ANSWER_BYTES + read_len + 1, 0);
         let size = loop {
