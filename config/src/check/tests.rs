@@ -44,7 +44,7 @@ fn a_description_has_the_defaults_of_the_manual() {
     assert!(node.converter.is_empty() && node.write_converter.is_none() && node.format.is_none());
     assert_eq!(
         (node.timeout_ms, node.budget_us, node.memory_kb),
-        (1000, 10_000, 1024)
+        (1000, crate::limits::BUDGET_US, 1024)
     );
     assert_eq!(
         (node.mode, node.owner, node.group, node.share),
