@@ -41,7 +41,8 @@ while read -r name; do
 done <"$lib/tar-files"
 rm -f "$lib/tar-files" "$lib/tar-conffiles" "$lib/uninstall"
 # Those of this program alone.
-for dir in usr/lib/trikfs usr/share/trikfs/lua usr/share/trikfs etc/trikfs; do
+for dir in usr/lib/trikfs usr/share/trikfs/lua/robots usr/share/trikfs/lua/trik usr/share/trikfs/lua usr/share/trikfs \
+    etc/trikfs; do
     rmdir "$ROOT/$dir" 2>/dev/null || true
 done
 echo "trikfs is uninstalled"
