@@ -212,7 +212,7 @@ fn to_the_device(plan: &Plan, where_: &str) -> Result<(), String> {
         spread(ages)
     };
     // The motor was brought to rest before the tree was there.
-    behind.arrival().ok_or("the motor did not come to rest")?;
+    behind.arrival()?;
     let rows = vec![
         row("packet to the bus, without trikfs", 0, None, || {
             arrivals(&direct, &mut || direct.write_byte(&socket))
