@@ -134,3 +134,5 @@ pub const REST_ACTIONS_MAX: usize = 4096;
 pub const REST_BYTES_MAX: usize = 4 << 20;
 /// Node ids with cached values in one ledger.
 pub const CACHED_MAX: usize = 4096;
+/// A mistake that a caller repeats within so many ms is not told again.
+pub const MISTAKE_MS: u32 = 1000;
