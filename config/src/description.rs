@@ -5,8 +5,8 @@
 mod ports;
 
 pub use ports::{
-    ByteOrder, Checksum, CommandDescription, GpioDescription, GpioDirection, IioDescription,
-    LengthField, LinesDescription, PacketsDescription, PwmDescription,
+    AnswerDescription, ByteOrder, Checksum, CommandDescription, GpioDescription, GpioDirection,
+    IioDescription, LengthField, LinesDescription, PacketsDescription, PwmDescription,
 };
 
 use crate::format::Format;
@@ -69,6 +69,8 @@ pub struct NodeDescription {
     pub group: Option<u32>,
     /// Values that bring the actuator to rest, written like the text of `value`.
     pub rest: Option<Vec<f64>>,
+    /// A read shows the tuple that was written last while the device has the bytes that it became.
+    pub read_back: bool,
     /// How long a reader of the newest value waits for the first one.
     pub timeout_ms: u32,
     /// Time that one converter call may take.

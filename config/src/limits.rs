@@ -77,6 +77,8 @@ pub const GPIO_NUMBER_MAX: u32 = 65_535;
 pub const COMMAND_WORDS_MAX: usize = 32;
 /// Bytes of one argument of a command.
 pub const COMMAND_WORD_BYTES_MAX: usize = 1024;
+/// Bytes of `question` and of `answer` of `lines{...}`.
+pub const ANSWER_BYTES_MAX: usize = 64;
 /// Bytes of the `start` of packets.
 pub const PACKET_START_BYTES_MAX: usize = 16;
 /// Speeds of a serial line in bits per second, as Linux names them (asm-generic/termbits.h).

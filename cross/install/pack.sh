@@ -47,7 +47,7 @@ make_tree() {
     for name in etc/default/trikfs usr/lib/trikfs/common.sh; do
         install -D -m 644 "$controller/$name" "$tree/$name"
     done
-    for name in etc/init.d/trikfs usr/lib/trikfs/respawn; do
+    for name in etc/init.d/trikfs usr/lib/trikfs/respawn usr/lib/trikfs/tone; do
         install -D -m 755 "$controller/$name" "$tree/$name"
     done
     install -D -m 644 "$root/cross/install/robot.lua" "$tree/etc/trikfs/robot.lua"

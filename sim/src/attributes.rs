@@ -42,7 +42,9 @@ impl Attributes {
             | AddWatchFlags::IN_CLOSE_WRITE
             | AddWatchFlags::IN_MOVED_FROM
             | AddWatchFlags::IN_MOVED_TO
-            | AddWatchFlags::IN_DELETE;
+            | AddWatchFlags::IN_DELETE
+            | AddWatchFlags::IN_DELETE_SELF
+            | AddWatchFlags::IN_MOVE_SELF;
         self.watched(name, flags)
     }
 
@@ -71,9 +73,7 @@ impl Attributes {
 
     /// Makes or replaces a file in one moment: who sees it sees its text.
     pub fn appear(&self, name: &str, text: &str) -> io::Result<()> {
-        let fresh = self.root.join(".fresh");
-        std::fs::write(&fresh, format!("{text}\n"))?;
-        std::fs::rename(fresh, self.root.join(name))
+        appear(&self.root, name, text)
     }
 
     /// Writes a text, with the newline that attributes have.
@@ -115,13 +115,25 @@ impl Attributes {
         self.inotify.as_fd()
     }
 
-    /// Which files were written, made or removed since the last call, each once.
-    pub fn changed(&self) -> BTreeSet<String> {
+    /// Which files were written, made or removed since the last call, each once. A watched folder that somebody removed
+    /// or moved away is made again, and its own name stands for all that may have been in it.
+    pub fn changed(&mut self) -> BTreeSet<String> {
         let mut names = BTreeSet::new();
         let Ok(events) = self.inotify.read_events() else {
             return names;
         };
         for event in events {
+            let is_gone = AddWatchFlags::IN_DELETE_SELF | AddWatchFlags::IN_MOVE_SELF;
+            if event.mask.intersects(is_gone) {
+                if let Some(folder) = self.folders.remove(&event.wd) {
+                    let _ = self.inotify.rm_watch(event.wd);
+                    // Where it cannot be made again, nobody can write to it either.
+                    let _ = self.folder(&folder);
+                    names.extend(self.names(&folder));
+                    names.insert(folder);
+                }
+                continue;
+            }
             if event.mask.contains(AddWatchFlags::IN_Q_OVERFLOW) {
                 // Something was lost: everything may have changed.
                 names.extend(self.folders.values().flat_map(|folder| self.names(folder)));
@@ -145,6 +157,13 @@ impl Attributes {
             })
             .collect()
     }
+}
+
+/// Makes or replaces a file below `root` in one moment: who sees it sees its text.
+pub fn appear(root: &Path, name: &str, text: &str) -> io::Result<()> {
+    let fresh = root.join(".fresh");
+    std::fs::write(&fresh, format!("{text}\n"))?;
+    std::fs::rename(fresh, root.join(name))
 }
 
 #[cfg(test)]
@@ -179,5 +198,30 @@ mod tests {
         for name in ["folder", "bytes", "empty", "link", "missing"] {
             assert_eq!(attributes.line(name), None, "{name}");
         }
+    }
+
+    #[test]
+    fn a_folder_that_is_removed_or_moved_is_there_again_and_watched() {
+        let scratch = Scratch::new();
+        let mut attributes = Attributes::new(scratch.dir()).unwrap();
+        attributes.folder("faults").unwrap();
+        let (folder, aside) = (scratch.path("faults"), scratch.path("aside"));
+        for removed in [true, false] {
+            if removed {
+                std::fs::remove_dir(&folder).unwrap();
+            } else {
+                std::fs::rename(&folder, &aside).unwrap();
+            }
+            assert!(attributes.changed().contains("faults"));
+            std::fs::write(folder.join("A1"), "stuck").unwrap();
+            assert!(attributes.changed().contains("faults/A1"));
+            std::fs::remove_file(folder.join("A1")).unwrap();
+            attributes.changed();
+        }
+        std::fs::write(aside.join("A1"), "stuck").unwrap();
+        assert!(
+            attributes.changed().is_empty(),
+            "that one is somebody else's now"
+        );
     }
 }

@@ -1,6 +1,8 @@
 //! What people do to the controller from outside: a gamepad, and speech that somebody hears.
 //!
-//! Lines in `control/gamepad` go to the FIFO of the gamepad service as they are; `etc/trik/say` says its words.
+//! Lines in `control/gamepad` go to the FIFO of the gamepad service as they are. The loudspeaker is what it would give
+//! to an ear, in words: what `etc/trik/say` says, and in brackets the tones of `usr/lib/trikfs/tone` and the files of
+//! `usr/bin/aplay`.
 
 use crate::attributes::Attributes;
 use crate::fifo::{In, Out};
@@ -8,6 +10,23 @@ use crate::files::{Part, script};
 use crate::shared::Shared;
 use std::io;
 use std::os::fd::BorrowedFd;
+
+/// Programs that are heard, and what is heard of their arguments.
+const SPEAKERS: [(&str, &str); 3] = [
+    ("etc/trik/say", "words=$*\n"),
+    (
+        "usr/lib/trikfs/tone",
+        "words=\"(a tone of ${1%% *} Hz for ${1##* } ms)\"\n",
+    ),
+    (
+        "usr/bin/aplay",
+        "for file; do :; done\n[ -r \"$file\" ] || { echo \"$file: no such sound file\" >&2; exit 1; }\nwords=\"($file is played)\"\n",
+    ),
+];
+const SPEAK: &str = r#"control=$root/control/say
+[ -p "$control" ] || { echo "the virtual board is not running" >&2; exit 1; }
+printf '%s\n' "$words" 1<>"$control"
+"#;
 
 /// Gamepad and ears.
 pub struct Control {
@@ -20,10 +39,9 @@ impl Control {
     /// The FIFOs and the script.
     pub fn make(attributes: &Attributes) -> io::Result<Self> {
         let root = attributes.root();
-        script(
-            &root.join("etc/trik/say"),
-            "\ncontrol=$root/control/say\n[ -p \"$control\" ] || { echo \"the virtual board is not running\" >&2; exit 1; }\nprintf '%s\\n' \"$*\" 1<>\"$control\"\n",
-        )?;
+        for (name, words) in SPEAKERS {
+            script(root, name, &format!("{words}{SPEAK}"))?;
+        }
         Ok(Self {
             gamepad: In::make(root.join("control/gamepad"))?,
             gamepad_out: Out::make(root.join("run/gamepad-service.out.fifo"))?,

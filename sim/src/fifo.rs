@@ -122,7 +122,8 @@ pub struct In {
     path: PathBuf,
     file: File,
     line: Vec<u8>,
-    is_too_long: bool,
+    is_damaged: bool,
+    left_out: u32,
 }
 
 impl In {
@@ -138,7 +139,8 @@ impl In {
             path,
             file,
             line: Vec::new(),
-            is_too_long: false,
+            is_damaged: false,
+            left_out: 0,
         })
     }
 
@@ -156,15 +158,23 @@ impl In {
             match byte {
                 b'\n' => {
                     let line = std::mem::take(&mut self.line);
-                    let is_fine = !std::mem::take(&mut self.is_too_long);
-                    lines.extend(String::from_utf8(line).ok().filter(|_| is_fine));
+                    let is_fine = !std::mem::take(&mut self.is_damaged);
+                    match String::from_utf8(line).ok().filter(|_| is_fine) {
+                        Some(line) => lines.push(line),
+                        None => self.left_out += 1,
+                    }
                 }
                 b'\r' => {}
-                _ if self.line.len() >= MAX_LINE_BYTES || byte < b' ' => self.is_too_long = true,
+                _ if self.line.len() >= MAX_LINE_BYTES || byte < b' ' => self.is_damaged = true,
                 _ => self.line.push(byte),
             }
         }
         lines
+    }
+
+    /// How many lines were left out since the last call.
+    pub fn take_left_out(&mut self) -> u32 {
+        std::mem::take(&mut self.left_out)
     }
 }
 

@@ -5,6 +5,7 @@
 use crate::attributes::Attributes;
 use crate::bus::Bus;
 use crate::control::Control;
+use crate::faults;
 use crate::input::{Keys, Ultrasonic};
 use crate::lidar::Lidar;
 use crate::limits::TICK_MS;
@@ -100,14 +101,17 @@ fn parts(attributes: &mut Attributes, seed: u64) -> io::Result<Vec<Box<dyn Part>
     Ok(parts)
 }
 
-/// Makes a shell script that knows its root, two directories above its own.
-pub fn script(path: &Path, body: &str) -> io::Result<()> {
+/// Makes a shell script below the root, which it finds again wherever that is mounted.
+pub fn script(root: &Path, name: &str, body: &str) -> io::Result<()> {
+    let path = root.join(name);
+    let up = "/..".repeat(name.matches('/').count());
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder)?;
     }
-    let head = "#!/bin/sh\n# Made by the virtual board.\nroot=$(cd \"$(dirname \"$0\")/../..\" && pwd) || exit 1\n";
-    std::fs::write(path, format!("{head}{body}"))?;
-    std::fs::set_permissions(path, Permissions::from_mode(0o755))
+    let head = "#!/bin/sh\n# Made by the virtual board.\n";
+    let find = format!("root=$(cd \"$(dirname \"$0\"){up}\" && pwd) || exit 1\n");
+    std::fs::write(&path, format!("{head}{find}{body}"))?;
+    std::fs::set_permissions(&path, Permissions::from_mode(0o755))
 }
 
 struct Work {
@@ -134,6 +138,13 @@ impl Work {
     }
 
     fn changed(&mut self, name: &str) {
+        if name == FAULTS {
+            // The folder is a new one.
+            for (device, _) in faults::devices() {
+                self.fault(device);
+            }
+            return;
+        }
         if let Some(device) = name.strip_prefix("faults/") {
             self.fault(device);
             return;

@@ -1,18 +1,21 @@
 //! Ultrasonic sensors and keys as input devices: packets of `struct input_event`, as evdev gives them.
 //!
 //! HC-SR04 on D1 to D3: ABS_DISTANCE in cm and ABS_MISC in us, measured every 100 ms while somebody reads; -1 without an
-//! echo. Keys come from lines in `control/keys`: `press NAME`, `release NAME` or `click NAME`.
+//! echo. Keys come from lines in `control/keys`: `press NAME`, `release NAME` or `click NAME`; `control/keys.error` says
+//! what was wrong with the last ones.
 //! A FIFO cannot be asked for present values, so they are sent when a reader comes; then only changes, as the input core
 //! does it.
 
-use crate::attributes::Attributes;
+use crate::attributes::{Attributes, appear};
 use crate::faults::{self, Fault};
 use crate::fifo::{In, Out, Reader};
 use crate::files::Part;
+use crate::limits::MAX_LINE_BYTES;
 use crate::random::Random;
 use crate::shared::Shared;
 use std::io;
 use std::os::fd::BorrowedFd;
+use std::path::PathBuf;
 
 const EV_SYN: u16 = 0;
 const EV_KEY: u16 = 1;
@@ -24,6 +27,7 @@ const PERIOD_S: f64 = 0.1;
 const ECHO_US_PER_M: f64 = 2e6 / 343.0;
 const PORTS: [&str; 3] = ["trik_jd1", "trik_jd2", "trik_jf1"];
 const KEY_DEVICE: &str = "soc@1c00000:gpio-keys";
+const CONTROL: &str = "control/keys";
 const FOLDER: &str = "dev/input/by-path";
 const KEYS: [(&str, u16); 7] = [
     ("power", 116),
@@ -161,10 +165,35 @@ impl Part for Ultrasonic {
     }
 }
 
+/// A key, and what it is after each other, from a line.
+fn order(line: &str) -> Result<(usize, &'static [bool]), String> {
+    let mut words = line.split_whitespace();
+    let (verb, name) = (words.next().unwrap_or(""), words.next().unwrap_or(""));
+    let states: &[bool] = match verb {
+        "press" => &[true],
+        "release" => &[false],
+        "click" => &[true, false],
+        _ => {
+            return Err(format!(
+                "'{line}' does not begin with press, release or click"
+            ));
+        }
+    };
+    let key = KEYS.iter().position(|key| key.0 == name);
+    match (key, words.next()) {
+        (Some(key), None) => Ok((key, states)),
+        _ => {
+            let names = KEYS.map(|key| key.0).join(", ");
+            Err(format!("'{line}' does not name one of the keys {names}"))
+        }
+    }
+}
+
 /// The seven keys.
 pub struct Keys {
     out: Out,
     control: In,
+    root: PathBuf,
     is_pressed: [bool; KEYS.len()],
 }
 
@@ -173,7 +202,8 @@ impl Keys {
     pub fn make(attributes: &Attributes) -> io::Result<Self> {
         Ok(Self {
             out: Out::make(attributes.root().join(path(KEY_DEVICE)))?,
-            control: In::make(attributes.root().join("control/keys"))?,
+            control: In::make(attributes.root().join(CONTROL))?,
+            root: attributes.root().to_owned(),
             is_pressed: [false; KEYS.len()],
         })
     }
@@ -197,19 +227,28 @@ impl Part for Keys {
                 .collect();
             self.out.send(&packet(time_ns, EV_KEY, &values));
         }
+        let (mut good, mut complaint) = (0, None);
         for line in self.control.lines() {
-            let Some((verb, name)) = line.split_once(' ') else {
-                continue;
-            };
-            let Some(key) = KEYS.iter().position(|key| key.0 == name.trim()) else {
-                continue;
-            };
-            if verb == "press" || verb == "click" {
-                self.set(key, true, time_ns);
+            match order(&line) {
+                Ok((key, states)) => {
+                    good += 1;
+                    for state in states {
+                        self.set(key, *state, time_ns);
+                    }
+                }
+                Err(reason) => complaint = Some(reason),
             }
-            if verb == "release" || verb == "click" {
-                self.set(key, false, time_ns);
-            }
+        }
+        if self.control.take_left_out() > 0 {
+            let reason = format!("a line is printable and has at most {MAX_LINE_BYTES} bytes");
+            complaint = Some(reason);
+        }
+        let name = format!("{CONTROL}.error");
+        match complaint {
+            // Who cannot be told has lost the folder of the board.
+            Some(reason) => drop(appear(&self.root, &name, &reason)),
+            None if good > 0 => drop(std::fs::remove_file(self.root.join(name))),
+            None => {}
         }
         f64::INFINITY
     }

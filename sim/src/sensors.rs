@@ -48,7 +48,8 @@ impl Camera {
         let root = attributes.root();
         for name in NAMES {
             script(
-                &root.join(format!("etc/init.d/{name}-sensor-ov7670")),
+                root,
+                &format!("etc/init.d/{name}-sensor-ov7670"),
                 &start_script(name),
             )?;
         }

@@ -85,6 +85,8 @@ mod mount {
     mod pty;
     /// Streams, any read size, waiting and being killed while waiting.
     mod read;
+    /// What was written, read again.
+    mod read_back;
     /// Directories.
     mod readdir;
     /// A new configuration under open files.
@@ -122,6 +124,8 @@ mod trik_lua {
     mod streams;
     /// The tables of docs/user/trik.md.
     mod tables;
+    /// The program behind the tones.
+    mod tone;
 }
 /// The documents: their examples run, their tables are complete.
 mod docs;

@@ -116,6 +116,8 @@ pub struct Surroundings {
     pub log: LogSink,
     /// The I2C buses of the mount.
     pub buses: Arc<i2c::bus::Buses>,
+    /// What the sensor program of this node answered last.
+    pub answer: Arc<lines::answer::Answer>,
 }
 
 impl Surroundings {
@@ -129,6 +131,7 @@ impl Surroundings {
             programs: engine.programs.clone(),
             log: Arc::new(move |text| log.line(text)),
             buses: engine.buses.clone(),
+            answer: Arc::default(),
         }
     }
 
@@ -141,6 +144,7 @@ impl Surroundings {
             programs: Programs::new(Arc::new(Log::new())),
             log: Arc::new(|_| {}),
             buses: buses.clone(),
+            answer: Arc::default(),
         }
     }
 
@@ -235,9 +239,11 @@ pub fn open_sink(
             command,
             around.programs.clone(),
         ))),
-        SourceDescription::Lines(lines) => {
-            Ok(Box::new(lines::LinesSink::open(lines, around.timeout_ms)?))
-        }
+        SourceDescription::Lines(lines) => Ok(Box::new(lines::LinesSink::open(
+            lines,
+            around.timeout_ms,
+            around.answer.clone(),
+        )?)),
         SourceDescription::I2c(i2c) => {
             // The size only matters for reading.
             let register = i2c::Register::open(i2c, 0, around.timeout_ms, &around.buses)?;

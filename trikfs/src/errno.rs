@@ -54,6 +54,8 @@ pub enum Error {
     Busy(String),
     /// The device failed with an errno of its own.
     Device(i32, String),
+    /// The device answers, and what it says is no measurement: a converter has seen that.
+    Measurement(String),
     /// The converter failed.
     Converter(String),
     /// The open file belongs to a node that a reload changed or removed.
@@ -82,7 +84,7 @@ pub enum Error {
 
 impl Error {
     /// What a converter said. A first word tells who is to blame when it is not the converter: `ERANGE: `, `EINVAL: `
-    /// the caller, `ENODEV: ` the device. See docs/converters/tutorial.md.
+    /// the caller, `ENODEV: `, `ETIMEDOUT: `, `EIO: ` the device. See docs/converters/tutorial.md.
     pub fn of_converter(text: String) -> Self {
         let rest = |word: &str| text.strip_prefix(word).map(str::to_owned);
         if let Some(reason) = rest("ERANGE: ") {
@@ -91,8 +93,20 @@ impl Error {
             Self::Invalid(reason)
         } else if let Some(reason) = rest("ENODEV: ") {
             Self::NoDevice(reason)
+        } else if let Some(reason) = rest("ETIMEDOUT: ") {
+            Self::TimedOut(reason)
+        } else if let Some(reason) = rest("EIO: ") {
+            Self::Measurement(reason)
         } else {
             Self::Converter(text)
+        }
+    }
+
+    /// The same for a converter on the way from the device: there is no caller who could have written better.
+    pub fn of_reading(self) -> Self {
+        match self {
+            Self::Invalid(text) | Self::OutOfRange(text) => Self::Converter(text),
+            other => other,
         }
     }
 
@@ -110,6 +124,7 @@ impl Error {
             Self::TimedOut(_) => libc::ETIMEDOUT,
             Self::Busy(_) => libc::EBUSY,
             Self::Device(errno, _) => device_errno(*errno),
+            Self::Measurement(_) => libc::EIO,
             Self::Converter(_) => libc::EIO,
             Self::Stale => libc::ESTALE,
             Self::TooManyOpen => libc::EMFILE,
@@ -146,7 +161,9 @@ impl Error {
             | Self::Unsupported
             | Self::NoAttribute
             | Self::BufferTooSmall => Blame::Caller,
-            Self::NoDevice(_) | Self::TimedOut(_) | Self::Device(..) => Blame::Device,
+            Self::NoDevice(_) | Self::TimedOut(_) | Self::Device(..) | Self::Measurement(_) => {
+                Blame::Device
+            }
             Self::Converter(_) => Blame::Converter,
             Self::Internal(_) => Blame::Ours,
         }
@@ -179,6 +196,7 @@ impl fmt::Display for Error {
             | Self::NoDevice(what)
             | Self::TimedOut(what)
             | Self::Busy(what)
+            | Self::Measurement(what)
             | Self::Converter(what)
             | Self::Internal(what) => f.write_str(what),
             Self::WouldBlock => f.write_str("no sample yet"),

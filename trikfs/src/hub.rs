@@ -80,11 +80,16 @@ impl Hub {
         })
     }
 
-    /// A queue that gets every tuple from now on.
+    /// A queue that gets every tuple from now on, after what the source answered last.
     pub fn subscribe(self: &Arc<Self>, on_ready: Weak<dyn Ready>) -> Arc<Subscription> {
         let mut inner = lock(&self.inner);
+        let node = self.node.upgrade();
         let queue = Queue {
             is_over: inner.is_over,
+            bytes: node
+                .and_then(|node| node.answer().tuple())
+                .unwrap_or_default()
+                .into(),
             ..Queue::default()
         };
         let subscription = Arc::new(Subscription {
@@ -189,6 +194,8 @@ impl Hub {
                 *raw_len += n;
                 let whole = *raw_len / self.tuple_size * self.tuple_size;
                 if whole > 0 {
+                    let source = &node.description.source;
+                    node.answer().note(source, &raw[..whole], self.tuple_size);
                     self.each(|subscription| subscription.push(&raw[..whole]));
                     raw.copy_within(whole..*raw_len, 0);
                     *raw_len -= whole;

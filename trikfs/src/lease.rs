@@ -205,7 +205,7 @@ impl Lease {
         }
         let mut state = lock(&self.state);
         if state.holder.is_some() && !waits {
-            return Err(busy(&mut state));
+            return Err(self.busy(state));
         }
         state.next_claim = state.next_claim.wrapping_add(1);
         let number = state.next_claim;
@@ -235,13 +235,13 @@ impl Lease {
         let mut state = lock(&self.state);
         if state.holder != Some(claim) {
             let Some(priority) = wish.priority else {
-                return Err(busy(&mut state));
+                return Err(self.busy(state));
             };
             if state
                 .holder()
                 .is_some_and(|holder| holder.priority >= priority)
             {
-                return Err(busy(&mut state));
+                return Err(self.busy(state));
             }
             lost = state.take_away();
             state.give_to(Some(claim));
@@ -321,7 +321,7 @@ impl Lease {
                 holder.alive = Instant::now();
             }
         } else if state.holder.is_some() || nearest.is_some() {
-            return Err(busy(&mut state));
+            return Err(self.busy(state));
         }
         Ok(state.generation)
     }
@@ -382,23 +382,28 @@ impl Lease {
         }
     }
 
+    /// The refusal for everybody but the holder. Gives the lock back first: /proc is slow.
+    fn busy(&self, mut state: MutexGuard<'_, State>) -> Error {
+        let holder = state.holder();
+        let holder = holder.map(|holder| (holder.process, holder.priority));
+        drop(state);
+        Error::Busy(match holder {
+            Some((process, priority)) => format!(
+                "process {process} ({}) holds the lease with priority {priority}: see {}/owner",
+                name_of(process),
+                self.path
+            ),
+            None => "this program has lost the lease: write 'priority N' to owner to ask for it again, or close it"
+                .to_owned(),
+        })
+    }
+
     fn bring_to_rest(&self) {
         // Each node has noted its failure: its `fault` and the log tell.
         let _ = rest_all(&self.nodes());
         lock(&self.state).resting -= 1;
         self.rested.notify_all();
     }
-}
-
-/// The refusal for everybody but the holder.
-fn busy(state: &mut State) -> Error {
-    Error::Busy(match state.holder() {
-        Some(Claim {
-            process, priority, ..
-        }) => format!("process {process} holds the lease with priority {priority}"),
-        None => "this program has lost the lease: write 'priority N' to owner to ask for it again, or close it"
-            .to_owned(),
-    })
 }
 
 impl Due for Lease {

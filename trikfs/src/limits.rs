@@ -126,6 +126,8 @@ pub const CRASHES_MAX: usize = 5;
 pub const CRASH_WINDOW_SECONDS: u32 = 60;
 /// Milliseconds from asking the daemon to end to ending it.
 pub const GRACE_MS: u32 = 2_000;
+/// Milliseconds that a daemon may be stopped before it is taken for dead.
+pub const STOPPED_MS: u32 = 1_000;
 /// Milliseconds that bringing all actuators to rest may take.
 pub const REST_MS_MAX: u32 = 3_000;
 /// Rest actions in one ledger.
@@ -134,3 +136,5 @@ pub const REST_ACTIONS_MAX: usize = 4096;
 pub const REST_BYTES_MAX: usize = 4 << 20;
 /// Node ids with cached values in one ledger.
 pub const CACHED_MAX: usize = 4096;
+/// A mistake that a caller repeats within so many ms is not told again.
+pub const MISTAKE_MS: u32 = 1000;

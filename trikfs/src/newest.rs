@@ -172,7 +172,13 @@ impl Newest {
         }
         let _inside = node.enter()?;
         let mut work = lock_patiently(&self.work);
+        let was_closed = matches!(work.source, Source::Closed);
         work.open(&node)?;
+        if was_closed && matches!(work.source, Source::Stream(_)) {
+            // What a stream gave while it was open for others may be long ago.
+            let mut latch = lock(&self.latch);
+            (latch.stamp, latch.error) = (None, None);
+        }
         self.users.fetch_add(1, Ordering::Relaxed);
         Ok(!matches!(&work.source, Source::Stream(reader) if reader.is_shared()))
     }

@@ -3,10 +3,13 @@
 //! Owns the joints between these, the node's fault and the flag that a reload sets when the description is gone.
 //! Knows no file of the tree and no request of the kernel.
 
+mod fault;
 mod rest;
+mod written;
 
 use crate::clock::Stamp;
 use crate::convert::{LogSink, Pipeline, Recipe};
+use crate::device::lines::answer::Answer;
 use crate::device::{self, Device, Sink, Stream, Surroundings};
 use crate::engine::Engine;
 use crate::errno::Error;
@@ -24,10 +27,12 @@ use config::description::{NodeDescription, Pace, SourceDescription};
 use config::format::Format;
 use config::problem::Problem;
 use config::program::Direction;
+use fault::Trouble;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, Weak};
+use written::Written;
 
 /// One described peripheral.
 pub struct Node {
@@ -52,9 +57,8 @@ pub struct Node {
     recipe: Recipe,
     around: Surroundings,
     hub: Mutex<Weak<Hub>>,
-    fault: Mutex<Option<Error>>,
-    faulty: AtomicBool,
-    written: Mutex<Option<Vec<u8>>>,
+    trouble: Trouble,
+    written: Written,
     rate: Mutex<Rate>,
     retired: AtomicBool,
     period_ms: AtomicU32,
@@ -127,9 +131,8 @@ impl Node {
             recipe,
             around,
             hub: Mutex::default(),
-            fault: Mutex::default(),
-            faulty: AtomicBool::new(false),
-            written: Mutex::default(),
+            trouble: Trouble::default(),
+            written: Written::default(),
             rate: Mutex::new(Rate {
                 count: 0,
                 since: Stamp::now(),
@@ -191,6 +194,11 @@ impl Node {
         self.period_ms.store(period_ms, Ordering::Relaxed);
         self.newest.period_changed();
         Ok(())
+    }
+
+    /// What the sensor program of this node answered last.
+    pub fn answer(&self) -> &Answer {
+        &self.around.answer
     }
 
     /// Bytes of one tuple that goes to the device.
@@ -389,7 +397,10 @@ impl Node {
             return (1, 0, Some(error));
         }
         let start = self.stats.measures_this_conversion().then(Stamp::now);
-        let batch = pipeline.convert(direction, input, output);
+        let mut batch = pipeline.convert(direction, input, output);
+        if direction == Direction::Read {
+            batch.fault = batch.fault.map(Error::of_reading);
+        }
         let (in_size, out_size) = match direction {
             Direction::Write => self.description.write_conversion_sizes(),
             Direction::Read => (
@@ -417,34 +428,6 @@ impl Node {
         (consumed, produced, batch.fault)
     }
 
-    fn has_fault(&self) -> bool {
-        self.faulty.load(Ordering::Relaxed)
-    }
-
-    /// Notes a failure of the device or the converter: `fault`, `stats` and the log show it.
-    pub fn report(&self, error: &Error) {
-        self.stats.faults.add(1);
-        let mut fault = lock(&self.fault);
-        if fault.as_ref() != Some(error) {
-            self.engine
-                .log
-                .line(&format!("{}: {}: {error}", self.path(), error.blame()));
-            *fault = Some(error.clone());
-        }
-        self.faulty.store(true, Ordering::Relaxed);
-    }
-
-    /// All is well again.
-    pub fn recover(&self) {
-        self.faulty.store(false, Ordering::Relaxed);
-        *lock(&self.fault) = None;
-    }
-
-    /// The present fault.
-    pub fn fault(&self) -> Option<Error> {
-        lock(&self.fault).clone()
-    }
-
     /// Samples per second since the rate was last asked for, over at least a fifth of a second.
     pub fn rate_hz(&self) -> f64 {
         let mut rate = lock(&self.rate);
@@ -460,32 +443,6 @@ impl Node {
             };
         }
         rate.hz
-    }
-
-    /// Notes what was written last, for writes of single numbers.
-    pub fn wrote(&self, tuple: Vec<u8>) {
-        *lock(&self.written) = Some(tuple);
-    }
-
-    /// What was written last, or else the newest sample if it has the shape of what is written.
-    pub fn last_tuple(&self) -> Option<Vec<u8>> {
-        if let Some(tuple) = lock(&self.written).clone() {
-            return Some(tuple);
-        }
-        let mut tuple = Vec::new();
-        let newest = self.newest.get(&mut tuple).ok().flatten();
-        newest
-            .filter(|_| self.description.output_tuple_size == self.description.written_tuple_size())
-            .map(|_| tuple)
-    }
-
-    /// Format of what programs write.
-    pub fn written_format(&self) -> Format {
-        if self.format.size() == self.description.written_tuple_size() {
-            self.format.clone()
-        } else {
-            Format::bytes(self.description.written_tuple_size())
-        }
     }
 
     /// Where background samples of this node are scheduled: a node that reads one bus, itself or through other nodes,

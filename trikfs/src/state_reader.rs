@@ -72,6 +72,7 @@ impl StateReader {
                 return Err(error);
             }
             if produced > 0 {
+                self.node.read_back(&self.raw, tuple);
                 return Ok(true);
             }
         }
@@ -165,6 +166,9 @@ impl StateReader {
             drop(pipeline);
             self.next_tuple += consumed as u64;
             if produced > 0 {
+                if tuples == 1 {
+                    self.node.read_back(input, &mut target[..output_size]);
+                }
                 if whole > 0 {
                     return Ok(produced * output_size);
                 }

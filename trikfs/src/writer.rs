@@ -116,6 +116,7 @@ impl Writer {
                     self.node.report(error);
                 }
             })?;
+            self.node.sent(tuple, &self.output);
             self.node.count_write();
         }
         Ok(())

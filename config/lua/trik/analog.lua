@@ -71,7 +71,7 @@ function analog.make(port, kind, entry)
   local src = i2c { path = BUS, address = ADDRESS, register = ports[port].register, transfer = 'word' }
   local function reading(a)
     local raw = ba.u16(a, 0)
-    if raw > GREATEST then error('the coprocessor gave ' .. raw .. ', more than ten bits', 0) end
+    if raw > GREATEST then error('EIO: the coprocessor gave ' .. raw .. ', more than ten bits', 0) end
     return raw
   end
   local converter = function(a_s, a, b_s, b) ba.i32(b, 0, convert(reading(a))) end

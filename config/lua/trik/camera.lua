@@ -35,6 +35,7 @@ local function attributes(sensor, script)
       about = 'the lines of the sensor; the other files are made of them',
       src = lines {
         path = fifo .. 'out.fifo', input = fifo .. 'in.fifo', start = { script, 'start' }, stop = { script, 'stop' },
+        question = 'detect', answer = 'hsv:',
       },
       format = 'text ' .. text.SIZE, timeout_ms = START_MS,
     },
@@ -45,13 +46,13 @@ end
 local function detection(sensor, into)
   into.detect = command(sensor, 'writing 1 measures the colour in the middle of the picture', 'i32 detect', 1, 1, 'detect')
   into.hsv = {
-    about = 'colour to look for: hue, saturation, value, each with its tolerance; reads the answer to detect',
+    about = 'colour to look for: hue, saturation, value, each with its tolerance; reads the last answer to detect',
     src = 'trikfs:camera/' .. sensor .. '/text', timeout_ms = START_MS,
     format = 'i32 hue, i32 hue_tolerance, i32 saturation, i32 saturation_tolerance, i32 value, i32 value_tolerance',
     converter = function(a_s, a, b_s, b)
       local numbers = text.numbers(a, 'hsv:')
       if not numbers then return false end
-      if #numbers ~= 6 then error('the sensor gave ' .. #numbers .. ' numbers of a colour, not 6', 0) end
+      if #numbers ~= 6 then error('EIO: the sensor gave ' .. #numbers .. ' numbers of a colour, not 6', 0) end
       for index = 1, 6 do ba.i32(b, 4 * (index - 1), numbers[index]) end
     end,
     write_converter = function(a_s, a, b_s, b)
@@ -70,10 +71,10 @@ local function located(sensor, about, format)
     converter = function(a_s, a, b_s, b)
       local numbers = text.numbers(a, 'loc:')
       if not numbers then return false end
-      if #numbers ~= 3 then error('the sensor gave ' .. #numbers .. ' numbers of a place, not 3', 0) end
+      if #numbers ~= 3 then error('EIO: the sensor gave ' .. #numbers .. ' numbers of a place, not 3', 0) end
       for index = 1, 3 do
         if numbers[index] < -100 or numbers[index] > 100 then
-          error('the sensor gave ' .. numbers[index] .. ', which is not -100 to 100', 0)
+          error('EIO: the sensor gave ' .. numbers[index] .. ', which is not -100 to 100', 0)
         end
         ba.i32(b, 4 * (index - 1), numbers[index])
       end
@@ -99,10 +100,10 @@ local function colours(rows, columns)
       local numbers = text.numbers(a, 'color:')
       if not numbers then return false end
       if #numbers ~= #fields then
-        error('the sensor gave ' .. #numbers .. ' colours, not ' .. #fields .. ': write mxn', 0)
+        error('EIO: the sensor gave ' .. #numbers .. ' colours, not ' .. #fields .. ': write mxn', 0)
       end
       for index, value in ipairs(numbers) do
-        if value < 0 or value > 0xffffff then error('the sensor gave ' .. value .. ', which is no colour', 0) end
+        if value < 0 or value > 0xffffff then error('EIO: the sensor gave ' .. value .. ', which is no colour', 0) end
         ba.u32(b, 4 * (index - 1), value)
       end
     end,

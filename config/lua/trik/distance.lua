@@ -16,9 +16,9 @@ function distance.make(port, _, entry)
     output_tuple_size = 4,
     converter = function(a_s, a, b_s, b)
       local cm = ba.i32(a, 0)
-      if cm < 0 then error('no echo: nothing in reach', 0) end
+      if cm < 0 then error('ETIMEDOUT: no echo: nothing in reach', 0) end
       -- What the kernel has before the first measurement; the least that the sensor can measure is 2.
-      if cm == 0 then error('not measured yet', 0) end
+      if cm == 0 then error('ETIMEDOUT: not measured yet', 0) end
       ba.i32(b, 0, cm)
     end,
   }

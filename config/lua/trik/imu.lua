@@ -53,7 +53,7 @@ local function watch(window_ms, bias)
     end
     count, lasted_us = 0, 0
     if still then bias = mean end
-    if not bias then error('not calibrated yet: let the robot stand still for ' .. window_ms .. ' ms', 0) end
+    if not bias then error('EIO: not calibrated yet: let the robot stand still for ' .. window_ms .. ' ms', 0) end
     return bias
   end
 end
@@ -73,7 +73,7 @@ end
 -- The rotation that takes a direction of gravity to straight up, as a unit quaternion w, x, y, z.
 local function upright(x, y, z)
   local length = sqrt(x * x + y * y + z * z)
-  if length == 0 then error('the accelerometer gives no gravity', 0) end
+  if length == 0 then error('EIO: the accelerometer gives no gravity', 0) end
   x, y, z = x / length, y / length, z / length
   -- Half way between both directions: w = 1 + dot, the axis is the cross product.
   local w, qx, qy = 1 + z, y, -x
@@ -120,7 +120,7 @@ local function integrator(window_ms, bias_given)
     if us <= 0 or us > GAP_US then
       -- The bias is still that of the chip; only the angles are lost.
       q, gx, gy, gz, count = nil, 0, 0, 0, 0
-      error('no samples for ' .. number.round(us, 1000) .. ' ms: the angles begin anew', 0)
+      error('EIO: no samples for ' .. number.round(us, 1000) .. ' ms: the angles begin anew', 0)
     end
     local x, y, z = axes(a)
     local bias = calibrated({ x, y, z }, us)

@@ -20,7 +20,7 @@ local function converter()
   clear()
   local function add(a, start)
     local probes = math.floor((ba.u16_be(a, 6) - 5) / 3)
-    if probes < 0 or HEAD_BYTES + 3 * probes + 2 > ba.u16_be(a, 1) + 2 then error('the packet contradicts itself', 0) end
+    if probes < 0 or HEAD_BYTES + 3 * probes + 2 > ba.u16_be(a, 1) + 2 then error('EIO: the packet contradicts itself', 0) end
     for probe = 0, probes - 1 do
       local quarters = ba.u16_be(a, HEAD_BYTES + 3 * probe + 1)
       if quarters > 0 then
@@ -36,7 +36,7 @@ local function converter()
     -- Other packets tell of the state of the motor.
     if ba.get(a, 4) ~= 0x61 or ba.get(a, 5) ~= 0xAD then return false end
     local start = ba.u16_be(a, 11)
-    if start >= 36000 then error('the packet begins at ' .. start / 100 .. ' degrees', 0) end
+    if start >= 36000 then error('EIO: the packet begins at ' .. start / 100 .. ' degrees', 0) end
     local turned = before ~= nil and start < before
     local ready = turned and whole
     if ready then

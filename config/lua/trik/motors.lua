@@ -1,7 +1,8 @@
 -- Power motors M1 to M4: percent to the duty registers of the MSP430, linear in speed.
 --
 -- Owns the tables of the motor types and the signs of the ports. Facts: the motor section of the MSP430's register map
--- as trikRuntime uses it. The firmware reports nothing back: reading gives the least power that has the duty that was sent last.
+-- as trikRuntime uses it. The firmware reports nothing back: reading gives what was written last, and the least power with
+-- the duty that was sent when that is not known.
 local number = include 'trik/number.lua'
 local divide = number.divide
 
@@ -73,8 +74,8 @@ function motors.make(port, kind, entry)
   local sign = (ports[port].plain and 1 or -1) * (inversed and -1 or 1)
   local src = i2c { path = BUS, address = ADDRESS, register = register, transfer = 'byte', readable = false }
   return {
-    about = 'power of motor ' .. port .. ': -100 to 100, 0 lets it run out, 127 brakes; reads the least power with the duty that was sent last',
-    src = src, format = 'i32 duty_cycle', units = '%', rest = 0,
+    about = 'power of motor ' .. port .. ': -100 to 100, 0 lets it run out, 127 brakes; reads what was written last, after anything else the least power with the duty',
+    src = src, format = 'i32 duty_cycle', units = '%', rest = 0, read_back = true,
     converter = function(a_s, a, b_s, b)
       local duty = ba.i8(a, 0)
       if duty < -100 or duty > 100 then return ba.i32(b, 0, BRAKE) end

@@ -2,6 +2,7 @@
 --
 -- Owns their names and scales. None of them is plugged in, so a robot file need not name them.
 local number = include 'trik/number.lua'
+local text = include 'trik/text.lua'
 
 local onboard = { top = true, ports = { battery = {}, keys = {}, led = {}, sound = {} } }
 
@@ -10,7 +11,7 @@ local function battery()
   local src = i2c { path = '/dev/i2c-2', address = 0x48, register = 0x26, transfer = 'word' }
   local function reading(a)
     local raw = ba.u16(a, 0)
-    if raw > 1023 then error('the coprocessor gave ' .. raw .. ', more than ten bits', 0) end
+    if raw > 1023 then error('EIO: the coprocessor gave ' .. raw .. ', more than ten bits', 0) end
     return raw
   end
   return {
@@ -61,7 +62,7 @@ local function attribute_number(path, format, about, greatest)
     converter = function(a_s, a, b_s, b)
       local text = ba.text(a)
       local value = tonumber(text:match('^%s*(%d+)'))
-      if not value or value > 2147483647 then error("'" .. text:sub(1, 20) .. "' is no number", 0) end
+      if not value or value > 2147483647 then error("EIO: '" .. text:sub(1, 20) .. "' is no number", 0) end
       ba.i32(b, 0, value)
     end,
     write_converter = function(a_s, a, b_s, b)
@@ -82,8 +83,23 @@ local function led()
   return nodes
 end
 
+-- Numbers become the text that the program takes.
+local function tone()
+  return {
+    about = 'a tone of 20 to 7000 Hz for 1 to 10000 ms; one after the other, and at most 8 wait',
+    src = program { run = { '/usr/lib/trikfs/tone' } }, input_tuple_size = 32,
+    format = 'i32 frequency_hz, i32 duration_ms',
+    converter = function() return false end,
+    write_converter = function(a_s, a, b_s, b)
+      local frequency = number.within('frequency_hz', ba.i32(a, 0), 20, 7000)
+      text.put(b, frequency .. ' ' .. number.within('duration_ms', ba.i32(a, 4), 1, 10000))
+    end,
+  }
+end
+
 local function sound()
   return {
+    tone = tone(),
     volume = attribute_number('/sys/bus/i2c/devices/2-0050/volume', 'i32 volume', 'loudness of the loudspeaker, 0 to 20', 20),
     say = {
       about = 'a text to be spoken; one after the other, and at most 8 wait',

@@ -48,7 +48,7 @@ function servos.make(port, kind, entry)
     src = src, format = 'i32 position', units = sort.units, rest = OFF,
     converter = function(a_s, a, b_s, b)
       local duty = ba.u32(a, 0)
-      if duty == 0 then error('the servo is off', 0) end
+      if duty == 0 then error('EIO: the servo is off', 0) end
       local range = duty <= sort.zero and sort.zero - sort.min or sort.max - sort.zero
       ba.i32(b, 0, mirrored(mean + number.round((duty - sort.zero) * span, 2 * range)))
     end,

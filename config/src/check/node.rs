@@ -17,7 +17,7 @@ use crate::vm::fingerprint::hash;
 use nix::unistd::{Group, User};
 
 /// All fields of a description.
-pub(super) const FIELDS: [&str; 23] = [
+pub(super) const FIELDS: [&str; 24] = [
     "about",
     "ages",
     "attributes",
@@ -34,6 +34,7 @@ pub(super) const FIELDS: [&str; 23] = [
     "owner",
     "params",
     "poll_ms",
+    "read_back",
     "rest",
     "share",
     "src",
@@ -108,6 +109,7 @@ impl Fields<'_, '_> {
             owner: self.owner()?,
             group: self.owning_group()?,
             rest: self.rest()?,
+            read_back: self.boolean("read_back")?.unwrap_or(false),
             timeout_ms: self
                 .whole("timeout_ms", 1, PERIOD_MS_MAX)?
                 .unwrap_or(TIMEOUT_MS),
@@ -125,6 +127,7 @@ impl Fields<'_, '_> {
         };
         self.check_regulator(&mut node)?;
         self.check_rest(&node, read_only)?;
+        self.check_read_back(&node, read_only)?;
         node.fingerprint = fingerprint(&node, &digests);
         Ok(node)
     }
@@ -320,6 +323,24 @@ impl Fields<'_, '_> {
             .map(Some)
     }
 
+    /// What is written can be compared with what is read: the source keeps it, and the sizes are the same.
+    fn check_read_back(&self, node: &NodeDescription, read_only: bool) -> Result<(), Problem> {
+        let keeps = match innermost(&node.source) {
+            SourceDescription::Path(_)
+            | SourceDescription::Attribute(_)
+            | SourceDescription::I2c(_)
+            | SourceDescription::Pwm(_)
+            | SourceDescription::Gpio(_)
+            | SourceDescription::Node(_) => !read_only,
+            _ => false,
+        };
+        if node.read_back && !(keeps && node.write_converter.is_some()) {
+            let reason = "read_back is for devices that keep what is written, with a converter and a write_converter";
+            return Err(self.problem("read_back", reason));
+        }
+        Ok(())
+    }
+
     /// The rest value can be written: the source takes writes, and the numbers fit the tuple that a program writes.
     fn check_rest(&self, node: &NodeDescription, read_only: bool) -> Result<(), Problem> {
         let Some(rest) = &node.rest else {
@@ -336,6 +357,14 @@ impl Fields<'_, '_> {
             .unwrap_or_else(|| Format::bytes(size));
         let encoded = format.encode_numbers(rest, &mut vec![0; size]);
         encoded.map_err(|error| self.problem("rest", format!("rest: {error}")))
+    }
+}
+
+/// The source that others stand before.
+fn innermost(source: &SourceDescription) -> &SourceDescription {
+    match source {
+        SourceDescription::Faulty(faulty) => innermost(&faulty.source),
+        source => source,
     }
 }
 
@@ -365,7 +394,13 @@ fn fingerprint(node: &NodeDescription, digests: &[u128]) -> u128 {
         &node.units,
     );
     let access = (
-        node.pace, node.mode, node.owner, node.group, &node.rest, node.share,
+        node.pace,
+        node.mode,
+        node.owner,
+        node.group,
+        &node.rest,
+        node.share,
+        node.read_back,
     );
     let limits = (
         node.timeout_ms,

@@ -4,13 +4,14 @@
 
 use super::fields::Fields;
 use crate::description::{
-    ByteOrder, Checksum, CommandDescription, GpioDescription, GpioDirection, IioDescription,
-    LengthField, LinesDescription, PacketsDescription, PwmDescription, SourceDescription,
+    AnswerDescription, ByteOrder, Checksum, CommandDescription, GpioDescription, GpioDirection,
+    IioDescription, LengthField, LinesDescription, PacketsDescription, PwmDescription,
+    SourceDescription,
 };
 use crate::limits::{
-    BAUD_RATES, COMMAND_WORD_BYTES_MAX, COMMAND_WORDS_MAX, GPIO_NUMBER_MAX, IIO_CHANNELS_MAX,
-    IIO_FREQUENCY_MAX, IIO_NAME_BYTES_MAX, IIO_NAMES_MAX, PACKET_START_BYTES_MAX, PWM_CHANNEL_MAX,
-    TUPLE_BYTES_MAX,
+    ANSWER_BYTES_MAX, BAUD_RATES, COMMAND_WORD_BYTES_MAX, COMMAND_WORDS_MAX, GPIO_NUMBER_MAX,
+    IIO_CHANNELS_MAX, IIO_FREQUENCY_MAX, IIO_NAME_BYTES_MAX, IIO_NAMES_MAX, PACKET_START_BYTES_MAX,
+    PWM_CHANNEL_MAX, TUPLE_BYTES_MAX,
 };
 use crate::nearest::suggestion;
 use crate::problem::Problem;
@@ -202,7 +203,8 @@ impl<'a> Fields<'_, 'a> {
     /// `lines{ path = ..., input = ..., start = { '/etc/init.d/x', 'start' }, stop = {...} }`
     pub(super) fn lines(&mut self, table: &'a Table) -> Result<SourceDescription, Problem> {
         self.inner(table, |fields| {
-            fields.only("lines", table, &["", "path", "input", "start", "stop"])?;
+            let known = ["", "path", "input", "start", "stop", "question", "answer"];
+            fields.only("lines", table, &known)?;
             let path = fields.own_path("lines")?;
             let input = fields
                 .get("input")
@@ -213,13 +215,35 @@ impl<'a> Fields<'_, 'a> {
             if stop.is_some() && start.is_none() {
                 return Err(fields.problem("src", "lines: stop makes no sense without start"));
             }
+            let answer = fields.answer(input.is_some())?;
             Ok(SourceDescription::Lines(LinesDescription {
                 path,
                 input,
                 start,
                 stop,
+                answer,
             }))
         })
+    }
+
+    /// The line that asks, and how the line that answers begins.
+    fn answer(&self, has_input: bool) -> Result<Option<AnswerDescription>, Problem> {
+        let word = |field| self.text(field, ANSWER_BYTES_MAX);
+        let (question, answer) = match (word("question")?, word("answer")?) {
+            (None, None) => return Ok(None),
+            (Some(question), Some(answer)) if !question.is_empty() && !answer.is_empty() => {
+                (question.to_owned(), answer.to_owned())
+            }
+            _ => {
+                let reason = "lines: question and answer belong together, for example question = 'detect', answer = 'hsv:'";
+                return Err(self.problem("src", reason));
+            }
+        };
+        if !has_input {
+            let reason = "lines: question makes no sense without input";
+            return Err(self.problem("src", reason));
+        }
+        Ok(Some(AnswerDescription { question, answer }))
     }
 
     /// `program{ run = { '/etc/trik/say' } }`

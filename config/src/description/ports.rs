@@ -92,6 +92,17 @@ pub struct LinesDescription {
     pub start: Option<CommandDescription>,
     /// Stops it.
     pub stop: Option<CommandDescription>,
+    /// What is kept for those who come later.
+    pub answer: Option<AnswerDescription>,
+}
+
+/// A line to a sensor program that asks for one line from it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AnswerDescription {
+    /// The line that asks.
+    pub question: String,
+    /// What the line that answers begins with.
+    pub answer: String,
 }
 
 /// A program to run, without a shell.

@@ -48,6 +48,7 @@ usr/lib/trikfs/common.sh
 usr/lib/trikfs/libhello.so
 usr/lib/trikfs/libtrikfs_filters.so
 usr/lib/trikfs/respawn
+usr/lib/trikfs/tone
 usr/share/trikfs/lua/filters.lua
 usr/share/trikfs/lua/hello.lua
 FILES
@@ -74,7 +75,7 @@ test_ipk() {
     check "ipk: all configuration files are there" sh -c "cd '$dir/data' && sed 's|^/|./|' ../control/conffiles | xargs ls"
     check "ipk: everything is root's" not sh -c "tar tvzf '$dir/data.tar.gz' | grep -v ' 0/0 '"
     check "ipk: programs can be executed, data cannot" same \
-        <(printf '%s\n' etc/init.d/trikfs usr/bin/trikfs usr/lib/trikfs/respawn) \
+        <(printf '%s\n' etc/init.d/trikfs usr/bin/trikfs usr/lib/trikfs/respawn usr/lib/trikfs/tone) \
         <(cd "$dir/data" && find . -type f -perm /111 -printf '%P\n' | sort)
 
     # An image that is made on a PC: only its files change, by the scripts that opkg runs with $D.

@@ -17,7 +17,7 @@ test_scripts() {
 
 test_texts() {
     local file
-    for file in "$controller"/{etc/init.d/trikfs,usr/lib/trikfs/respawn,usr/lib/trikfs/common.sh,tar/*.sh,ipk/p*} \
+    for file in "$controller"/{etc/init.d/trikfs,usr/lib/trikfs/respawn,usr/lib/trikfs/tone,usr/lib/trikfs/common.sh,tar/*.sh,ipk/p*} \
         "$install"/deb/p*; do
         check "${file#"$install/"}: shellcheck" shellcheck -x -P "$root" "$file"
         check "${file#"$install/"}: busybox" busybox sh -n "$file"

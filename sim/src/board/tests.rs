@@ -251,6 +251,29 @@ fn faults_are_put_in_and_taken_out_through_files() {
 }
 
 #[test]
+fn a_folder_of_faults_that_is_removed_or_moved_away_mends_all_and_is_there_again() {
+    let scratch = Scratch::new();
+    let board = board(&scratch, "board");
+    let client = Client::connect(&board, 2);
+    let folder = board.root().join("faults");
+    for is_removed in [true, false] {
+        // Also the first one after the loss is seen.
+        wait("NACK", || {
+            let _ = std::fs::write(folder.join("msp430"), "nack\n");
+            (client.transact(0x48, &[0xEE], 2).0 == 121).then_some(())
+        });
+        if is_removed {
+            std::fs::remove_dir_all(&folder).unwrap();
+        } else {
+            std::fs::rename(&folder, board.root().join("aside")).unwrap();
+        }
+        wait("answer", || {
+            (client.transact(0x48, &[0xEE], 2).0 == 0).then_some(())
+        });
+    }
+}
+
+#[test]
 fn an_unplugged_bus_is_gone_and_comes_back() {
     let scratch = Scratch::new();
     let board = board(&scratch, "board");

@@ -60,6 +60,63 @@ eventually(lambda: text(D + '/calls') == 'start\\nstop\\nstart\\n', 'the next st
 }
 
 #[test]
+fn the_last_answer_is_there_for_who_comes_later_until_the_question_is_asked_anew() {
+    let board = Board::new();
+    board.fifo("out");
+    board.fifo("in");
+    let Some(m) = mount_on(
+        board,
+        "trikfs = {
+           camera = { src = lines{ path = '$DIR/out', input = '$DIR/in', question = 'detect', answer = 'hsv:' }, format = 'text 16' },
+           colour = { src = 'trikfs:camera', format = 'i32 hue', timeout_ms = 600000, converter = function(a_s, a, b_s, b)
+             local hue = ba.text(a):match('^hsv: (%d+)$')
+             if not hue then return false end
+             ba.i32(b, 0, tonumber(hue))
+           end },
+         }",
+    ) else {
+        return;
+    };
+    m.python(
+        "reader = open_ro(M + '/camera/device')
+pipe, back = feed('out'), open_ro(D + '/in', os.O_NONBLOCK)
+def ask(words):
+    fd = os.open(M + '/camera/value', os.O_WRONLY)
+    os.write(fd, words)
+    os.close(fd)
+    assert os.read(back, 100) == words + b'\\n'
+def line():
+    return read_exactly(reader, 16).rstrip(b'\\0')
+fd = open_ro(M + '/colour/value', os.O_NONBLOCK)
+expect('EAGAIN', os.read, fd, 99)
+os.close(fd)
+ask(b'detect')
+os.write(pipe, b'loc: 1 2 3\\nhsv: 120\\nloc: 4 5 6\\n')
+assert [line() for _ in range(3)] == [b'loc: 1 2 3', b'hsv: 120', b'loc: 4 5 6']
+for _ in range(3):
+    assert text(M + '/colour/value') == '120\\n'
+ask(b'hsv 1')
+assert text(M + '/colour/value') == '120\\n', 'that asked for nothing'
+late = open_ro(M + '/camera/device')
+assert os.read(late, 16).rstrip(b'\\0') == b'hsv: 120'
+ask(b'detect')
+fd = open_ro(M + '/colour/value', os.O_NONBLOCK)
+expect('EAGAIN', os.read, fd, 99)
+got = []
+waiting = threading.Thread(target=lambda: got.append(text(M + '/colour/value')))
+waiting.start()
+os.write(pipe, b'hsv: 7\\n')
+waiting.join()
+assert got == ['7\\n'], got
+os.close(reader)
+os.close(late)
+os.close(fd)
+assert text(M + '/colour/value') == '7\\n', 'also when nobody has read for a while'
+",
+    );
+}
+
+#[test]
 fn a_pipe_that_vanishes_makes_the_sensor_start_again() {
     let Some(m) = sensor("") else { return };
     m.python(

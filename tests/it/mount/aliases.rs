@@ -16,6 +16,9 @@ const MOTOR: &str = "
           src = '$DIR/M1', input_tuple_size = 1, format = 'i16 power', rest = 0,
           converter = function(a_s, a, b_s, b)
             if ba.get(a, 0) == 255 then error('ENODEV: no motor', 0) end
+            if ba.get(a, 0) == 254 then error('ETIMEDOUT: no echo', 0) end
+            if ba.get(a, 0) == 253 then error('EIO: nonsense', 0) end
+            if ba.get(a, 0) == 252 then error('ERANGE: too much', 0) end
             ba.i16(b, 0, ba.get(a, 0))
           end,
           write_converter = write,
@@ -115,9 +118,27 @@ fn the_first_word_of_a_converter_says_who_is_to_blame() {
     let refused = m.write("motors/M1/value", "-1").unwrap_err();
     assert_eq!(refused.raw_os_error(), Some(libc::EINVAL));
     assert_eq!(std::fs::read(m.board().path("M1")).unwrap(), [0]);
+    // Nothing is wrong with the motor: the log alone tells.
+    assert_eq!(m.text("motors/M1/fault"), "");
+    assert_eq!(m.stat("motors/M1", "faults"), 0.0);
+    let log = m.log();
+    for reason in ["power is at most 100, not 101", "there is no reverse"] {
+        let line = format!("motors/M1: caller: {reason}\n");
+        assert!(log.contains(&line), "{log}");
+    }
     std::fs::write(m.board().path("M1"), [255]).unwrap();
     assert_eq!(m.errno("motors/M1/value"), libc::ENODEV);
     assert_eq!(m.text("motors/M1/fault"), "device: no motor\n");
+    for (byte, errno, fault) in [
+        (254, libc::ETIMEDOUT, "device: no echo\n"),
+        (253, libc::EIO, "device: nonsense\n"),
+        // Who reads has written nothing wrong.
+        (252, libc::EIO, "converter: too much\n"),
+    ] {
+        std::fs::write(m.board().path("M1"), [byte]).unwrap();
+        assert_eq!(m.errno("motors/M1/value"), errno);
+        assert_eq!(m.text("motors/M1/fault"), fault);
+    }
 }
 
 #[test]

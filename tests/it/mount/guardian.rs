@@ -54,6 +54,29 @@ fn after_a_kill_actuators_rest_and_the_tree_comes_back_with_its_configuration() 
 }
 
 #[test]
+fn a_daemon_that_is_stopped_and_does_not_go_on_counts_as_dead() {
+    let Some(m) = robot() else { return };
+    let daemon = m.daemon();
+    processes::signal(daemon, Signal::SIGSTOP);
+    eventually("rest", || m.board().content("motor") == [0, 7]);
+    comes_back(&m, daemon);
+    let complaint = "trikfs: the daemon was stopped and did not go on; starting it again";
+    assert!(m.complaints().contains(complaint), "{}", m.complaints());
+}
+
+#[test]
+fn a_daemon_that_is_stopped_for_a_moment_goes_on() {
+    let Some(m) = robot() else { return };
+    let daemon = m.daemon();
+    for _ in 0..20 {
+        processes::signal(daemon, Signal::SIGSTOP);
+        processes::signal(daemon, Signal::SIGCONT);
+    }
+    assert_eq!(m.text("motor/value"), "100 1\n");
+    assert_eq!(m.daemon(), daemon);
+}
+
+#[test]
 fn a_cached_value_of_a_dead_daemon_is_not_served() {
     let Some(m) = robot() else { return };
     let open = m.open("gyro/bin_data");

@@ -487,3 +487,25 @@ fn a_lease_ends_with_the_daemon_and_the_actuator_rests() {
     holder.wait().unwrap();
     assert_eq!(m.board().content("motor"), [50, 2]);
 }
+
+#[test]
+fn who_is_kept_out_finds_the_holder_in_the_log_and_in_owner() {
+    let Some(m) = robot() else { return };
+    m.python(&format!(
+        "{WORDS}
+child = held()
+expect('EBUSY', put, 'motor/value', b'1 1')
+expect('EBUSY', put, 'motor/brake', b'1')
+expect('EBUSY', take)
+log = os.read(open_ro(M + '/log', os.O_NONBLOCK), 1 << 16).decode()
+name = text('/proc/%d/comm' % child).strip()
+reason = 'process %d (%s) holds the lease with priority 0: see motor/owner\\n' % (child, name)
+assert '] motor: caller: ' + reason in log, log
+assert '] motor/brake: caller: ' + reason in log, log
+assert owner() == '%d %s priority 0 deadman_ms 0\\n' % (child, name), owner()
+# Nothing is broken.
+assert text(M + '/motor/fault') == '' and stat_of(M + '/motor/stats', 'faults') == 0
+killed(child)
+"
+    ));
+}

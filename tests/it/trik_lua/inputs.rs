@@ -148,7 +148,7 @@ fn more_than_ten_bits_are_a_failure_and_no_number() {
         let failed = robot.read(path, &word(0xffff));
         assert_eq!(
             failed,
-            Err("the coprocessor gave 65535, more than ten bits".into())
+            Err("EIO: the coprocessor gave 65535, more than ten bits".into())
         );
     }
 }

@@ -144,7 +144,7 @@ fn a_servo_that_is_off_has_no_position() {
     let mut robot = robot("");
     assert_eq!(
         robot.read("servos/S1", &[0; 4]),
-        Err("the servo is off".into())
+        Err("EIO: the servo is off".into())
     );
     assert_eq!(robot.read("servos/S1/power", &[0; 4]), Ok("0".into()));
     assert_eq!(
@@ -156,6 +156,24 @@ fn a_servo_that_is_off_has_no_position() {
     assert_eq!(robot.write("servos/S1", &rest), Ok(vec![0; 4]));
     let refused = robot.write("servos/S1/power", &[1.0]).unwrap_err();
     assert!(refused.starts_with("EINVAL: only 0 "), "{refused}");
+}
+
+#[test]
+fn a_tone_is_a_text_for_its_program_and_refused_if_nobody_could_hear_it() {
+    let mut robot = robot("");
+    let mut text = b"440 500".to_vec();
+    text.resize(32, 0);
+    assert_eq!(robot.write("sound/tone", &[440.0, 500.0]), Ok(text));
+    for (tone, reason) in [
+        ([-440.0, 500.0], "frequency_hz is 20 to 7000, not -440"),
+        ([19.0, 500.0], "frequency_hz is 20 to 7000, not 19"),
+        ([7001.0, 500.0], "frequency_hz is 20 to 7000, not 7001"),
+        ([440.0, 0.0], "duration_ms is 1 to 10000, not 0"),
+        ([440.0, 10001.0], "duration_ms is 1 to 10000, not 10001"),
+    ] {
+        let refused = robot.write("sound/tone", &tone);
+        assert_eq!(refused, Err(format!("ERANGE: {reason}")));
+    }
 }
 
 #[test]

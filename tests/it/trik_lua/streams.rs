@@ -12,7 +12,7 @@ fn numbers(values: &[i32]) -> Vec<u8> {
 #[test]
 fn an_ultrasonic_sensor_without_an_echo_gives_no_number() {
     let mut robot = robot("{ port = 'D2', median3 = false }");
-    let none = Err("no echo: nothing in reach".to_owned());
+    let none = Err("ETIMEDOUT: no echo: nothing in reach".to_owned());
     assert_eq!(
         robot.read("sensors/D1", &numbers(&[25, 1455])),
         Ok("25".into())
@@ -127,7 +127,7 @@ fn a_gyroscope_that_is_moved_from_the_start_is_not_calibrated() {
                 Err(fault) => {
                     assert_eq!(
                         fault,
-                        "not calibrated yet: let the robot stand still for 100 ms"
+                        "EIO: not calibrated yet: let the robot stand still for 100 ms"
                     );
                     faults += 1;
                 }
@@ -216,7 +216,7 @@ fn lost_samples_begin_the_angles_anew() {
     let lost = robot.read("gyroscope/heading", &bytes);
     assert_eq!(
         lost,
-        Err("no samples for 900 ms: the angles begin anew".into())
+        Err("EIO: no samples for 900 ms: the angles begin anew".into())
     );
     // The bias is that of before: a steady turn is a turn at once, here of 875 mdeg to the left in each 10 ms.
     for step in 0..3i32 {
@@ -424,8 +424,8 @@ fn what_the_lidar_did_not_see_is_zero_and_wrong_packets_do_no_harm() {
     long[7] = 200;
     assert_eq!(
         robot.read("lidar", &long),
-        Err("the packet contradicts itself".into())
+        Err("EIO: the packet contradicts itself".into())
     );
     let beyond = robot.read("lidar", &packet(36_000, &[1]));
-    assert_eq!(beyond, Err("the packet begins at 360 degrees".into()));
+    assert_eq!(beyond, Err("EIO: the packet begins at 360 degrees".into()));
 }

@@ -15,6 +15,19 @@ pub(super) fn of(robot: &str) -> &'static [(&'static str, &'static str)] {
             ("echo -30 > motors/M3/value", "turn on the spot"),
             ("echo > stop", "bring everything to rest"),
         ],
+        "line-follower" => &[
+            (
+                "cat sensors/floor_left/value",
+                "how dark is the floor, in percent?",
+            ),
+            ("cat camera/line/value", "where is the line, -100 to 100?"),
+            (
+                "echo 30 > motors/left/value; echo 30 > motors/right/value",
+                "drive, in percent",
+            ),
+            ("echo 440 500 > sound/tone/value", "play a tone: Hz, ms"),
+            ("echo > stop", "bring everything to rest"),
+        ],
         _ => &[("cat status", "what is there?")],
     }
 }

@@ -181,3 +181,80 @@ fn a_write_out_of_range_is_refused_and_moves_nothing() {
     assert!(robot.write("motors/M3/value", "fast").is_err());
     assert_eq!(robot.duty(3).expect("the bus"), 0);
 }
+
+#[test]
+fn a_motor_reads_what_was_written_until_it_rests() {
+    let Some(robot) = robot(&[]) else { return };
+    // 30 and 27 percent of the greatest speed have the same duty.
+    for power in ["30", "27", "-30", "127"] {
+        robot.write("motors/M3/value", power).expect("a motor");
+        assert_eq!(robot.read("motors/left/value").expect("a number"), power);
+    }
+    robot.write("motors/M3/value", "30").expect("a motor");
+    robot.write("motors/M3/brake", "1").expect("a brake");
+    assert_eq!(robot.number("motors/M3/value"), 127.0);
+    robot.write("motors/M3/value", "30").expect("a motor");
+    robot.write("stop", "1").expect("stop");
+    assert_eq!(robot.number("motors/M3/value"), 0.0);
+}
+
+#[test]
+fn a_mistake_of_the_caller_is_no_fault_of_the_motor() {
+    let Some(robot) = robot(&[]) else { return };
+    let refused = robot.write("motors/left/value", "200").expect_err("200 %");
+    assert_eq!(refused.raw_os_error(), Some(libc::ERANGE));
+    assert_eq!(robot.read("motors/left/fault").expect("a text"), "");
+    let reason = "motors/M3: caller: duty_cycle is -100 to 100, not 200";
+    assert!(robot.sh("timeout 1 cat log").stdout.contains(reason));
+}
+
+#[test]
+fn the_line_follower_stands_over_its_line_and_sees_it() {
+    let Some(robot) = robot(&["--robot", "line-follower"]) else {
+        return;
+    };
+    // White on both sides of a line that the camera has before it.
+    for sensor in ["sensors/floor_left/value", "sensors/floor_right/value"] {
+        assert!(number(&robot, sensor) < 30.0, "{sensor}");
+    }
+    let line = robot.numbers("camera/line/value");
+    assert!(line[0].abs() < 20.0 && line[2] > 5.0, "{line:?}");
+    robot.drive(30, 30);
+    let way = number(&robot, "encoders/left/value");
+    eventually("a drive", || {
+        robot.number("encoders/left/value") > way + 100.0
+    });
+}
+
+#[test]
+fn the_colour_that_was_measured_is_there_for_who_reads_later() {
+    let Some(robot) = robot(&["--robot", "line-follower"]) else {
+        return;
+    };
+    let output = robot.sh("set -e
+cat camera/line/device > /dev/null & reader=$!
+cat camera/line/value > /dev/null
+echo 1 > camera/line/detect
+cat camera/line/hsv camera/line/hsv
+kill $reader; wait $reader || :
+cat camera/line/hsv");
+    let said = output.good();
+    let lines: Vec<&str> = said.lines().collect();
+    assert_eq!(lines.len(), 3, "{said}");
+    assert_eq!(lines[0].split(' ').count(), 6, "{said}");
+    assert!(lines.iter().all(|line| *line == lines[0]), "{said}");
+}
+
+#[test]
+fn a_tone_is_played_and_one_that_nobody_hears_is_refused() {
+    let Some(robot) = robot(&[]) else { return };
+    robot.write("sound/tone/value", "440 500").expect("a tone");
+    robot
+        .write("sound/tone/value1", "100")
+        .expect("a shorter one");
+    for wrong in ["-440 500", "440 20000", "440", "440 500 1", "a b"] {
+        assert!(robot.write("sound/tone/value", wrong).is_err(), "{wrong}");
+    }
+    assert!(robot.read("sound/tone/value").is_err());
+    assert_eq!(robot.read("sound/tone/fault").expect("a text"), "");
+}

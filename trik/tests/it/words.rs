@@ -5,12 +5,21 @@ use std::sync::Arc;
 
 #[test]
 fn the_ready_text_says_where_the_robot_is_and_every_command_in_it_works() {
-    let Some(robot) = robot(&[]) else { return };
+    let Some(one) = robot(&[]) else { return };
+    its_text_is_right(&one, "two-wheels");
+    drop(one);
+    let Some(other) = robot(&["--robot", "line-follower"]) else {
+        return;
+    };
+    its_text_is_right(&other, "line-follower");
+}
+
+fn its_text_is_right(robot: &Robot, name: &str) {
     let root = robot.root.display();
     assert!(
         robot
             .said()
-            .starts_with(&format!("trik: the robot two-wheels is ready on {root} (")),
+            .starts_with(&format!("trik: the robot {name} is ready on {root} (")),
         "{}",
         robot.said()
     );
@@ -162,4 +171,22 @@ fn on_a_terminal_the_robot_is_shown_in_place_and_the_terminal_is_given_back() {
     let text = row.and_then(|row| row.split('\x1b').next()).expect("a row");
     assert_eq!(text.len(), 59, "{text:?}");
     assert!(!home.base().exists());
+}
+
+#[test]
+fn every_robot_has_a_file_that_names_what_is_plugged_into_it() {
+    let root = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
+    let manual = std::fs::read_to_string(root.join("docs/user/trik.md")).expect("the manual");
+    for name in sim::robots::names() {
+        let file = format!("robots/{name}.lua");
+        let text = std::fs::read_to_string(root.join("config/lua").join(&file)).expect(&file);
+        for plug in sim::robots::by_name(name).expect(name).ports {
+            let entry = format!("{{ port = '{}', type = '{}'", plug.port, plug.kind);
+            assert!(
+                plug.kind.is_empty() || text.contains(&entry),
+                "{file}: {entry}"
+            );
+        }
+        assert!(manual.contains(&format!("| `{file}` |")), "{file}");
+    }
 }

@@ -3,13 +3,16 @@
 //! Owns what a line is, and the way from nothing to a running sensor: its program is started, its pipe appears, lines
 //! come. Nobody waits for that: until there are lines, there is nothing to read. How programs are run, `programs` knows.
 
+pub mod answer;
+
 use super::cutter::{Cut, Cutter, fill};
 use super::{Got, Sink, Stream, chardev, device_error, fifo};
 use crate::errno::Error;
 use crate::limits;
 use crate::programs::{Commands, Programs, Progress, Use};
 use crate::stats::Counter;
-use config::description::LinesDescription;
+use answer::Answer;
+use config::description::{AnswerDescription, LinesDescription};
 use nix::sys::epoll::{Epoll, EpollCreateFlags, EpollEvent, EpollFlags, EpollTimeout};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::os::unix::fs::FileTypeExt;
@@ -202,13 +205,24 @@ impl Cut for Splitter {
 pub struct LinesSink {
     path: PathBuf,
     timeout_ms: u32,
+    expected: Option<AnswerDescription>,
+    answer: Arc<Answer>,
 }
 
 impl LinesSink {
     /// Opens nothing yet.
-    pub fn open(description: &LinesDescription, timeout_ms: u32) -> Result<Self, Error> {
+    pub fn open(
+        description: &LinesDescription,
+        timeout_ms: u32,
+        answer: Arc<Answer>,
+    ) -> Result<Self, Error> {
         let path = description.input.clone().ok_or(Error::AccessDenied)?;
-        Ok(Self { path, timeout_ms })
+        Ok(Self {
+            path,
+            timeout_ms,
+            expected: description.answer.clone(),
+            answer,
+        })
     }
 }
 
@@ -240,6 +254,7 @@ impl Sink for LinesSink {
             Err(Error::NoDevice(_)) => return Err(not_running("nobody reads its pipe")),
             other => other?,
         };
+        self.answer.forget_if_asked(self.expected.as_ref(), text);
         let mut line = text.to_vec();
         line.push(b'\n');
         sink.write(&line, waits)

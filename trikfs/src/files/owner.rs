@@ -39,7 +39,8 @@ impl OwnerFile {
         });
         let me: Arc<dyn Ready> = file.clone();
         let process = process_of(caller.pid);
-        let claim = file.lease.claim(process, reads, Arc::downgrade(&me))?;
+        let claim = file.lease.claim(process, reads, Arc::downgrade(&me));
+        let claim = claim.inspect_err(|error| node.report(error))?;
         let _ = file.claim.set(claim);
         Ok(file)
     }

@@ -54,7 +54,9 @@ impl Ownership {
         let known = admitted.as_ref().filter(|last| last.thread == caller.pid);
         for (index, lease) in node.leases.iter().enumerate() {
             let known = known.and_then(|last| last.generations.get(index).copied());
-            admission.generations.push(lease.admit(caller.pid, known)?);
+            let admitted = lease.admit(caller.pid, known);
+            let admitted = admitted.inspect_err(|error| node.report(error))?;
+            admission.generations.push(admitted);
         }
         *admitted = Some(Admitted {
             thread: caller.pid,

@@ -205,10 +205,8 @@ impl OpenFile for ValueFile {
         let Some(writer) = &self.writer else {
             return Err(Error::AccessDenied);
         };
-        let tuple = self.tuple_of(data).inspect_err(|error| {
-            let line = format!("{}: {}: {error}", self.node.path(), error.blame());
-            self.engine.log.line(&line);
-        })?;
+        let tuple = self.tuple_of(data);
+        let tuple = tuple.inspect_err(|error| self.node.report(error))?;
         let _inside = self.node.enter()?;
         let _admitted = self.ownership.admit(&self.node, request.caller)?;
         lock_patiently(writer).write_whole(&tuple, !request.nonblocking)?;

@@ -168,6 +168,7 @@ fn decode_one(mut bytes: Bytes<'_>) -> Option<RestAction> {
             input: Some(bytes.path()?),
             start: None,
             stop: None,
+            answer: None,
         }),
         _ => return None,
     };
@@ -266,6 +267,7 @@ mod tests {
                 input: Some("/run/in".into()),
                 start: None,
                 stop: None,
+                answer: None,
             }),
         ];
         let action = |(sink, size)| RestAction {

@@ -7,6 +7,7 @@ use super::inherit::Handover;
 use super::ledger::Ledger;
 use super::mounted::Mounted;
 use nix::sys::signal::{Signal, kill};
+use nix::sys::wait::{Id, WaitPidFlag, WaitStatus, waitid};
 use nix::unistd::Pid;
 use std::ffi::OsString;
 use std::io::{self, PipeReader, Read};
@@ -130,6 +131,17 @@ impl Child {
     /// Ends it.
     pub(super) fn kill(&self) {
         self.signal(Signal::SIGKILL);
+    }
+
+    /// Whether somebody has stopped it (SIGSTOP, SIGTSTP) and it has not been continued since.
+    pub(super) fn is_stopped(&self) -> bool {
+        let Ok(pid) = i32::try_from(self.process.id()) else {
+            return false;
+        };
+        // Looks only: the stop stays to be seen, and an end is left to `wait`.
+        let flags = WaitPidFlag::WSTOPPED | WaitPidFlag::WNOHANG | WaitPidFlag::WNOWAIT;
+        let seen = waitid(Id::Pid(Pid::from_raw(pid)), flags);
+        matches!(seen, Ok(WaitStatus::Stopped(..)))
     }
 
     fn signal(&self, signal: Signal) {

@@ -98,6 +98,9 @@ impl Inheritance {
             .into_iter()
             .collect();
         mask.thread_block().map_err(|error| fail(error.into()))?;
+        // The guardian has it blocked; programs started from here need it as usual.
+        let child: SigSet = [Signal::SIGCHLD].into_iter().collect();
+        child.thread_unblock().map_err(|error| fail(error.into()))?;
         set_pdeathsig(Signal::SIGTERM).map_err(|error| fail(error.into()))?;
         // It may have died before the line above, and then no signal comes.
         if !is_parent(handover.guardian) {

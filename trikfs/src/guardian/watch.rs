@@ -39,9 +39,15 @@ pub(super) struct Watch {
 impl Watch {
     /// Blocks the signals that end a program in this thread, and listens to them from here on.
     pub(super) fn new() -> io::Result<Self> {
-        let mask: SigSet = [Signal::SIGTERM, Signal::SIGINT, Signal::SIGHUP]
-            .into_iter()
-            .collect();
+        // SIGCHLD comes also when the daemon is stopped.
+        let mask: SigSet = [
+            Signal::SIGTERM,
+            Signal::SIGINT,
+            Signal::SIGHUP,
+            Signal::SIGCHLD,
+        ]
+        .into_iter()
+        .collect();
         mask.thread_block()?;
         Ok(Self {
             signals: SignalFd::with_flags(&mask, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC)?,
@@ -50,7 +56,8 @@ impl Watch {
     }
 
     /// Waits for the daemon's end. Brings it about when a signal comes or the mount goes: first by asking, after two
-    /// seconds by force. `ready` is called when the daemon says that it serves.
+    /// seconds by force. A daemon that somebody stops (SIGSTOP) and does not soon continue is killed: it would leave
+    /// actuators driven and nobody who answers. `ready` is called when the daemon says that it serves.
     pub(super) fn until_end(
         &self,
         child: &mut Child,
@@ -60,15 +67,13 @@ impl Watch {
         let grace = Duration::from_millis(limits::GRACE_MS.into());
         let mut urgency = Urgency::None;
         let mut life = Life::Starting;
+        let mut standstill = Standstill::default();
         loop {
-            let [signal, mounts, word] = self.wait(child, urgency.deadline())?;
-            let mut stop = false;
-            if signal {
-                while self.signals.read_signal()?.is_some() {
-                    stop = true;
-                }
-            }
+            let deadline = urgency.deadline().into_iter().chain(standstill.until);
+            let [signal, mounts, word] = self.wait(child, deadline.min())?;
+            let mut stop = signal && self.asks_to_end()?;
             stop |= mounts && !mounted();
+            standstill.look(child, Instant::now());
             if word {
                 match child.hear()? {
                     Heard::Ready(nodes) => {
@@ -80,7 +85,11 @@ impl Watch {
                     // A signal from a terminal reaches the daemon as well, and it may be the first to end.
                     Heard::End => {
                         let asked = stop || urgency != Urgency::None;
-                        return Ok(judge(child.wait()?, asked, life));
+                        let status = child.wait()?;
+                        if standstill.was_killed && !asked {
+                            return Ok(End::Crashed("stopped and did not go on".to_owned()));
+                        }
+                        return Ok(judge(status, asked, life));
                     }
                 }
             }
@@ -99,6 +108,15 @@ impl Watch {
                 _ => {}
             }
         }
+    }
+
+    /// Takes the signals that came; whether one of them asks for the end.
+    fn asks_to_end(&self) -> io::Result<bool> {
+        let mut asks = false;
+        while let Some(info) = self.signals.read_signal()? {
+            asks |= i32::try_from(info.ssi_signo) != Ok(Signal::SIGCHLD as i32);
+        }
+        Ok(asks)
     }
 
     /// Which of signals, mounts and lifeline have something to say.
@@ -136,6 +154,30 @@ impl Urgency {
         match self {
             Self::None => None,
             Self::Asked(at) | Self::Forced(at) => Some(at),
+        }
+    }
+}
+
+/// A daemon that is stopped, as the kernel says: one that has much to do, or waits for a device, is not.
+#[derive(Default)]
+struct Standstill {
+    /// When it has to go on.
+    until: Option<Instant>,
+    was_killed: bool,
+}
+
+impl Standstill {
+    /// Begins or ends with what the kernel says now; a stop that lasted is ended by force.
+    fn look(&mut self, child: &Child, now: Instant) {
+        if !child.is_stopped() {
+            self.until = None;
+            return;
+        }
+        let patience = Duration::from_millis(limits::STOPPED_MS.into());
+        let until = *self.until.get_or_insert(now + patience);
+        if now >= until && !self.was_killed {
+            self.was_killed = true;
+            child.kill();
         }
     }
 }

@@ -48,7 +48,10 @@ impl Node {
                 Err(Error::Device(libc::EBUSY, _)) if Instant::now() < deadline => {
                     std::thread::sleep(PAUSE);
                 }
-                outcome => return outcome,
+                outcome => {
+                    self.forget_sent();
+                    return outcome;
+                }
             }
         }
     }

@@ -205,8 +205,17 @@ fn lines_have_a_pipe_and_perhaps_a_program() {
         input: Some("/run/s.in.fifo".into()),
         start: command("start"),
         stop: command("stop"),
+        answer: None,
     };
     assert_eq!(full.source, SourceDescription::Lines(expected));
+    let asks = node(
+        "lines{ '/run/out', input = '/run/in', question = 'detect', answer = 'hsv:' }, input_tuple_size = 8",
+    );
+    let SourceDescription::Lines(lines) = asks.source else {
+        panic!("{:?}", asks.source);
+    };
+    let answer = lines.answer.unwrap();
+    assert_eq!((&*answer.question, &*answer.answer), ("detect", "hsv:"));
     let plain = node("lines{ '/run/pad.fifo' }, input_tuple_size = 32");
     assert_eq!(plain.mode, 0o444);
 }
@@ -235,6 +244,22 @@ fn mistakes_in_lines_are_refused() {
         (
             "lines{ path = '/x', start = { '/s', 'a\\nb' } }, input_tuple_size = 4",
             "lines: an argument of start is not UTF-8 of at most 1024 bytes without control characters",
+        ),
+        (
+            "lines{ path = '/x', input = '/y', question = 'detect' }, input_tuple_size = 4",
+            "lines: question and answer belong together, for example question = 'detect', answer = 'hsv:'",
+        ),
+        (
+            "lines{ path = '/x', input = '/y', question = 'detect', answer = '' }, input_tuple_size = 4",
+            "lines: question and answer belong together, for example question = 'detect', answer = 'hsv:'",
+        ),
+        (
+            "lines{ path = '/x', question = 'detect', answer = 'hsv:' }, input_tuple_size = 4",
+            "lines: question makes no sense without input",
+        ),
+        (
+            "lines{ path = '/x', input = '/y', question = 5, answer = 'hsv:' }, input_tuple_size = 4",
+            "question must be a string, not a number",
         ),
         (
             "lines{ path = '/x', stop = { '/s' } }, input_tuple_size = 4",

@@ -180,6 +180,33 @@ fn keys_are_pressed_from_outside() {
     assert_eq!(packet(&mut file), [(1, 28, 1)]);
     assert_eq!(packet(&mut file), [(1, 103, 1)]);
     assert_eq!(packet(&mut file), [(1, 103, 0)]);
+    let complaint = board.root().join("control/keys.error");
+    let told = || std::fs::read_to_string(&complaint).unwrap_or_default();
+    for (text, reason) in [
+        (
+            "press nothing\n",
+            "'press nothing' does not name one of the keys power, up, esc, left, right, down, enter\n",
+        ),
+        (
+            "push up\n",
+            "'push up' does not begin with press, release or click\n",
+        ),
+        (
+            "press up now\n",
+            "'press up now' does not name one of the keys power, up, esc, left, right, down, enter\n",
+        ),
+        (
+            "press \u{7}up\n",
+            "a line is printable and has at most 256 bytes\n",
+        ),
+    ] {
+        write(&board, "control/keys", text);
+        wait(reason, || (told() == reason).then_some(()));
+    }
+    write(&board, "control/keys", "press up\nrelease up\n");
+    wait("no complaint", || (!complaint.exists()).then_some(()));
+    assert_eq!(packet(&mut file), [(1, 103, 1)]);
+    assert_eq!(packet(&mut file), [(1, 103, 0)]);
     drop(file);
     // At once, before the board can have seen that there was nobody.
     let mut file = open(
@@ -316,6 +343,18 @@ fn the_gamepad_and_speech_go_through() {
     wait("words", || {
         (board.view().said == "hello world").then_some(())
     });
+    for (program, words, heard) in [
+        (
+            "usr/lib/trikfs/tone",
+            "440 500",
+            "(a tone of 440 Hz for 500 ms)",
+        ),
+        ("usr/bin/aplay", "/dev/null", "(/dev/null is played)"),
+    ] {
+        let status = Command::new(board.root().join(program)).arg(words).status();
+        assert!(status.unwrap().success(), "{program}");
+        wait(heard, || (board.view().said == heard).then_some(()));
+    }
 }
 
 #[test]

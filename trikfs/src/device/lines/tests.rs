@@ -64,6 +64,7 @@ fn plain(scratch: &Scratch) -> LinesDescription {
         input: Some(scratch.path("in")),
         start: None,
         stop: None,
+        answer: None,
     }
 }
 
@@ -100,7 +101,7 @@ fn without_a_program_the_pipe_has_to_be_there() {
 fn what_is_written_becomes_a_line_for_whoever_reads_the_pipe() {
     let scratch = Scratch::new();
     let description = plain(&scratch);
-    let mut sink = LinesSink::open(&description, 100).unwrap();
+    let mut sink = LinesSink::open(&description, 100, Arc::default()).unwrap();
     let refused = |sink: &mut LinesSink| sink.write(b"detect\0\0", true).unwrap_err().to_string();
     let path = scratch.path("in");
     let reason = |what: &str| format!("{}: the sensor is not running ({what})", path.display());

@@ -1,0 +1,75 @@
+//! What is wrong with a node now, and what its callers did wrong.
+//!
+//! Owns the present fault, which lasts until something works again, and the memory that keeps a program that makes the
+//! same mistake over and over from filling the log. A caller's mistake is no fault: the device is as well as before.
+
+use super::Node;
+use crate::clock::coarse_ms;
+use crate::errno::{Blame, Error};
+use crate::events::lock;
+use crate::limits;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The troubles of one node.
+#[derive(Default)]
+pub(super) struct Trouble {
+    fault: Mutex<Option<Error>>,
+    /// The same, without a lock.
+    is_faulty: AtomicBool,
+    /// The mistake of a caller that was told last, and when, in coarse ms.
+    mistake: Mutex<Option<(Error, u32)>>,
+}
+
+impl Node {
+    pub(super) fn has_fault(&self) -> bool {
+        self.trouble.is_faulty.load(Ordering::Relaxed)
+    }
+
+    /// Notes a failure. One of the device or the converter is shown by `fault`, `stats` and the log; a mistake of the
+    /// caller, who has the errno, by the log alone.
+    pub fn report(&self, error: &Error) {
+        if error.blame() == Blame::Caller {
+            return self.tell_mistake(error);
+        }
+        self.stats.faults.add(1);
+        let mut fault = lock(&self.trouble.fault);
+        if fault.as_ref() != Some(error) {
+            self.tell(error);
+            *fault = Some(error.clone());
+        }
+        self.trouble.is_faulty.store(true, Ordering::Relaxed);
+    }
+
+    /// A line of the log for a mistake that was not told a moment ago. That there is nothing yet is none.
+    fn tell_mistake(&self, error: &Error) {
+        if *error == Error::WouldBlock {
+            return;
+        }
+        let now_ms = coarse_ms();
+        let mut mistake = lock(&self.trouble.mistake);
+        let is_old = |(told, at_ms): &(Error, u32)| {
+            told == error && now_ms.wrapping_sub(*at_ms) < limits::MISTAKE_MS
+        };
+        if !mistake.as_ref().is_some_and(is_old) {
+            self.tell(error);
+            *mistake = Some((error.clone(), now_ms));
+        }
+    }
+
+    fn tell(&self, error: &Error) {
+        let line = format!("{}: {}: {error}", self.path(), error.blame());
+        self.engine.log.line(&line);
+    }
+
+    /// All is well again.
+    pub fn recover(&self) {
+        self.trouble.is_faulty.store(false, Ordering::Relaxed);
+        *lock(&self.trouble.fault) = None;
+    }
+
+    /// The present fault.
+    pub fn fault(&self) -> Option<Error> {
+        lock(&self.trouble.fault).clone()
+    }
+}
