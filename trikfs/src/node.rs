@@ -62,6 +62,8 @@ pub struct Node {
     writes: AtomicU32,
     /// Only for the source `regulator{...}`.
     regulation: Option<Regulation>,
+    /// Why a regulator that drove this node gave up.
+    lost: Mutex<Option<Error>>,
     /// When each of the operations that are inside now began, in coarse ms.
     inside: [AtomicU32; limits::LATE_PER_NODE_MAX],
 }
@@ -139,6 +141,7 @@ impl Node {
             period_ms: AtomicU32::new(period_ms),
             writes: AtomicU32::new(0),
             regulation,
+            lost: Mutex::default(),
             inside: Default::default(),
             description,
         })
@@ -225,6 +228,7 @@ impl Node {
     /// A tuple went to the device.
     pub fn count_write(&self) {
         self.writes.fetch_add(1, Ordering::Relaxed);
+        *lock(&self.lost) = None;
     }
 
     /// Whether programs may read or write at all: root passes the kernel's check of the mode bits.
@@ -442,7 +446,8 @@ impl Node {
 
     /// The present fault.
     pub fn fault(&self) -> Option<Error> {
-        lock(&self.fault).clone()
+        let fault = lock(&self.fault).clone();
+        fault.or_else(|| self.lost())
     }
 
     /// Samples per second since the rate was last asked for, over at least a fifth of a second.
