@@ -2,7 +2,8 @@
 
 use super::run::{Robot, robot};
 
-const CAR: &str = "{ port = 'M3', encoder = 'E3' }, { port = 'M4', encoder = 'E4', speed_max = 600 },
+const CAR: &str =
+    "{ port = 'M3', encoder = 'E3' }, { port = 'M4', encoder = 'E4', speed_max = 600 },
     { port = 'odometry', left = 'E3', right = 'E4', wheel_diameter_mm = 56, track_mm = 155 }";
 
 fn numbers(values: &[i32]) -> Vec<u8> {
