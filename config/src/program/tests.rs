@@ -786,3 +786,50 @@ fn a_state_that_converts_a_lot_is_compiled_and_made_smaller() {
     }
     assert!(vm.memory() < 64 << 10, "{} bytes", vm.memory());
 }
+
+#[test]
+fn of_the_tree_remains_the_way_to_the_own_node() {
+    let source = "local function node(text) return { src = '/dev/null', params = { gain = 2 },
+        converter = function(a_s, a, b_s, b) return text ~= nil end } end
+      trikfs = { other = node(('x'):rep(100000)), group = { second = node(('y'):rep(100000)), inner = { x = {
+        src = '/dev/null', params = { gain = 2 }, attributes = { extra = {
+          src = '/dev/null', params = { gain = 3 },
+          converter = function(a_s, a, b_s, b)
+            local names = ''
+            for name in pairs(trikfs) do names = names .. name .. ' ' end
+            for name in pairs(trikfs.group) do names = names .. name .. ' ' end
+            for name in pairs(trikfs.group.inner) do names = names .. name .. ' ' end
+            error(names .. trikfs.group.inner.x.attributes.extra.params.gain, 0)
+          end } } } } } }";
+    let mut vm = program(source).prepare().unwrap();
+    let (node, direction) = ("group/inner/x/extra", Direction::Read);
+    let stage = vm.bind(node, direction, 0, 4, 4).unwrap();
+    let before = vm.memory();
+    vm.keep_only(node).unwrap();
+    vm.stages.state().collect().unwrap();
+    assert!(vm.memory() + 200_000 < before, "{} {before}", vm.memory());
+    let mut told = || vm.convert(stage, &[0; 4], &mut [0; 4]).unwrap_err();
+    assert_eq!(told(), "group inner x 3");
+    let params = BTreeMap::from([("gain".to_owned(), 7.0)]);
+    vm.set_params(node, &params).unwrap();
+    let mut told = || vm.convert(stage, &[0; 4], &mut [0; 4]).unwrap_err();
+    assert_eq!(told(), "group inner x 7");
+    // Another node is not there any more, and that is an error and no crash.
+    vm.bind("other", direction, 0, 4, 4).unwrap_err();
+    vm.keep_only("absent/node").unwrap();
+    vm.bind(node, direction, 0, 4, 4).unwrap_err();
+    assert!(vm.convert(stage, &[0; 4], &mut [0; 4]).is_err());
+}
+
+#[test]
+fn a_state_keeps_only_the_filters_that_it_uses() {
+    let memory = |source: &str| program(source).prepare().unwrap().memory();
+    let none = memory("trikfs = {}");
+    let one = memory("trikfs = { x = { src = '/dev/null', converter = filter.median3{} } }");
+    let all = "local kept, names = {}, { 'identity', 'median3', 'moving_average', 'low_pass', 'scale', 'inverse',
+        'dead_band', 'rate', 'debounce', 'hysteresis', 'kalman', 'complementary', 'pid', 'speed_hold' }
+      for _, name in ipairs(names) do kept[name] = filter[name] end
+      assert(filter.none == nil and filter.pid == kept.pid)
+      trikfs = { x = { src = '/dev/null', converter = function() return kept ~= nil end } }";
+    assert!(2 * (one - none) < memory(all) - none, "{none} {one}");
+}
