@@ -151,6 +151,15 @@ impl Vm {
             .map(StageId)
     }
 
+    /// Lets go of all nodes but the one whose converters this state is for: of the global `trikfs` remain that node and the
+    /// groups on the way to it. A node that is not there is told of by [`bind`](Self::bind).
+    ///
+    /// # Errors
+    /// No memory.
+    pub fn keep_only(&mut self, node: &str) -> Result<(), String> {
+        self.stages.keep_only(node)
+    }
+
     /// Converts one tuple. `output` is zeroed before the converter sees it and keeps its old bytes unless the tuple was
     /// produced.
     ///

@@ -104,6 +104,7 @@ impl Recipe {
                 vm.set_log(log.clone());
                 vm.set_params(&self.node, &params)
                     .map_err(Error::Converter)?;
+                vm.keep_only(&self.node).map_err(Error::Converter)?;
                 Some(vm)
             }
         };

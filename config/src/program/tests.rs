@@ -788,89 +788,48 @@ fn a_state_that_converts_a_lot_is_compiled_and_made_smaller() {
 }
 
 #[test]
-fn zz_measure() {
-    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("lua");
-    let mut files = BTreeMap::new();
-    let mut add = |name: &str| {
-        let text = std::fs::read(folder.join(name)).unwrap();
-        files.insert(
-            name.as_bytes().to_vec(),
-            compile(&format!("@{name}"), &text, false).unwrap(),
-        );
-    };
-    add("trik.lua");
-    for f in std::fs::read_dir(folder.join("trik")).unwrap() {
-        add(&format!(
-            "trik/{}",
-            f.unwrap().file_name().to_str().unwrap()
-        ));
-    }
-    let files = std::sync::Arc::new(files);
-    let run = |what: &str, source: &str| {
-        let p = Program {
-            code: compile("@test.lua", source.as_bytes(), false).unwrap(),
-            files: files.clone(),
-        };
-        let start = std::time::Instant::now();
-        let mut vms: Vec<_> = (0..10).map(|_| p.prepare().unwrap()).collect();
-        let t = start.elapsed() / 10;
-        println!("{what:30} {:8} bytes {:?}", vms.pop().unwrap().memory(), t);
-    };
-    run("empty", "trikfs = {}");
-    run(
-        "converter",
-        "trikfs = { x = { src = '/dev/null', converter = function() end } }",
-    );
-    run(
-        "i32 converter",
-        "trikfs = { x = { src = '/dev/null', converter = function(n,a,m,b) ba.i32(b,0,ba.i32(a,0)) end } } local x = ba.i32",
-    );
-    run("filter", "local f = filter trikfs = {}");
-    run(
-        "filter.median3",
-        "trikfs = { x = { src = '/dev/null', converter = filter.median3{} } }",
-    );
-    run(
-        "filter.pid",
-        "trikfs = { x = { src = '/dev/null', converter = filter.pid{} } }",
-    );
-    run("i2c", "local x = i2c trikfs = {}");
-    run("string", "local x = string.len trikfs = {}");
-    run("table", "local x = table.sort trikfs = {}");
-    run("math", "local x = math.floor trikfs = {}");
-    for f in [
-        "entry",
-        "number",
-        "text",
-        "motors",
-        "encoders",
-        "analog",
-        "distance",
-        "servos",
-        "imu",
-        "onboard",
-        "camera",
-        "lidar",
-        "ir_camera",
-        "gamepad",
-    ] {
-        run(f, &format!("include 'trik/{f}.lua' trikfs = {{}}"));
-    }
-    run("trik.lua", "trik = include 'trik.lua' trikfs = {}");
-    run(
-        "trik.lua bare robot",
-        "local trik = include 'trik.lua' trikfs = trik.robot {}",
-    );
-    run(
-        "two-wheels",
-        &std::fs::read_to_string(folder.join("robots/two-wheels.lua")).unwrap(),
-    );
-    run(
-        "bare, tree dropped",
-        "local trik = include 'trik.lua' local t = trik.robot {} trikfs = { motors = { M1 = t.motors.M1 } } trik = nil",
-    );
-    run(
-        "one motor",
-        "local m = include 'trik/motors.lua' local e = include 'trik/entry.lua' trikfs = { motors = { M1 = m.make('M1','motor100', e.new({port='M1'},1)) } }",
-    );
+fn of_the_tree_remains_the_way_to_the_own_node() {
+    let source = "local function node(text) return { src = '/dev/null', params = { gain = 2 },
+        converter = function(a_s, a, b_s, b) return text ~= nil end } end
+      trikfs = { other = node(('x'):rep(100000)), group = { second = node(('y'):rep(100000)), inner = { x = {
+        src = '/dev/null', params = { gain = 2 }, attributes = { extra = {
+          src = '/dev/null', params = { gain = 3 },
+          converter = function(a_s, a, b_s, b)
+            local names = ''
+            for name in pairs(trikfs) do names = names .. name .. ' ' end
+            for name in pairs(trikfs.group) do names = names .. name .. ' ' end
+            for name in pairs(trikfs.group.inner) do names = names .. name .. ' ' end
+            error(names .. trikfs.group.inner.x.attributes.extra.params.gain, 0)
+          end } } } } } }";
+    let mut vm = program(source).prepare().unwrap();
+    let (node, direction) = ("group/inner/x/extra", Direction::Read);
+    let stage = vm.bind(node, direction, 0, 4, 4).unwrap();
+    let before = vm.memory();
+    vm.keep_only(node).unwrap();
+    vm.stages.state().collect().unwrap();
+    assert!(vm.memory() + 200_000 < before, "{} {before}", vm.memory());
+    let mut told = || vm.convert(stage, &[0; 4], &mut [0; 4]).unwrap_err();
+    assert_eq!(told(), "group inner x 3");
+    let params = BTreeMap::from([("gain".to_owned(), 7.0)]);
+    vm.set_params(node, &params).unwrap();
+    let mut told = || vm.convert(stage, &[0; 4], &mut [0; 4]).unwrap_err();
+    assert_eq!(told(), "group inner x 7");
+    // Another node is not there any more, and that is an error and no crash.
+    vm.bind("other", direction, 0, 4, 4).unwrap_err();
+    vm.keep_only("absent/node").unwrap();
+    vm.bind(node, direction, 0, 4, 4).unwrap_err();
+    assert!(vm.convert(stage, &[0; 4], &mut [0; 4]).is_err());
+}
+
+#[test]
+fn a_state_keeps_only_the_filters_that_it_uses() {
+    let memory = |source: &str| program(source).prepare().unwrap().memory();
+    let none = memory("trikfs = {}");
+    let one = memory("trikfs = { x = { src = '/dev/null', converter = filter.median3{} } }");
+    let all = "local kept, names = {}, { 'identity', 'median3', 'moving_average', 'low_pass', 'scale', 'inverse',
+        'dead_band', 'rate', 'debounce', 'hysteresis', 'kalman', 'complementary', 'pid', 'speed_hold' }
+      for _, name in ipairs(names) do kept[name] = filter[name] end
+      assert(filter.none == nil and filter.pid == kept.pid)
+      trikfs = { x = { src = '/dev/null', converter = function() return kept ~= nil end } }";
+    assert!(2 * (one - none) < memory(all) - none, "{none} {one}");
 }

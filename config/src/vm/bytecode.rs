@@ -32,6 +32,8 @@ pub(crate) enum Part {
     /// The source constructors.
     Sources,
     /// The global `filter`.
+    Filter,
+    /// What it finds the filters in.
     Filters,
     /// Digests functions.
     Fingerprint,
@@ -48,6 +50,7 @@ impl Part {
             Self::Coroutine => include_str!("lua/coroutine.lua"),
             Self::Sources => include_str!("lua/sources.lua"),
             Self::Fingerprint => include_str!("lua/fingerprint.lua"),
+            Self::Filter => include_str!("lua/filter.lua"),
             Self::Filters => include_str!("../../lua/filters.lua"),
         }
     }

@@ -187,8 +187,10 @@ unsafe extern "C-unwind" fn part(l: *mut lua::lua_State) -> c_int {
                 3
             }
             b"filter" => {
-                push_maker(l, Part::Filters);
-                1
+                push_maker(l, Part::Filter);
+                lua::lua_pushvalue(l, raw);
+                lua::lua_pushcfunction(l, filters);
+                3
             }
             b"include" | b"load" | b"loadstring" | b"print" | b"trikfs_log" | b"xpcall" => {
                 push_maker(l, Part::Rare);
@@ -223,6 +225,13 @@ unsafe extern "C-unwind" fn part(l: *mut lua::lua_State) -> c_int {
             }
         }
     }
+}
+
+/// `filters()`: the function that makes all filters.
+unsafe extern "C-unwind" fn filters(l: *mut lua::lua_State) -> c_int {
+    // SAFETY: Lua calls with a live state.
+    unsafe { push_maker(l, Part::Filters) };
+    1
 }
 
 /// Pushes the same table of raw libraries into another function.

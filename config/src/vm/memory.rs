@@ -2,7 +2,8 @@
 //!
 //! Owns the allocator function that LuaJIT calls. A state consists of some five hundred blocks of a few dozen bytes;
 //! malloc would add a sixth to them for its own notes. LuaJIT tells the size of a block when it gives it back, so small
-//! blocks are cut from chunks and kept in lists by size; large ones come from malloc.
+//! blocks are cut from chunks and kept in lists by size; large ones come from malloc. Chunks go back when the state is
+//! closed, and those that hold nothing when `trim` finds them.
 //! Knows nothing of what the memory holds.
 
 use std::cell::Cell;
@@ -13,10 +14,15 @@ use std::ptr;
 const GRAIN: usize = 8;
 /// Largest small block.
 const SMALL_MAX: usize = 512;
-/// A chunk with malloc's notes fills half a page; what is left of the newest one is wasted.
+/// A chunk with malloc's notes fills half a page.
 const CHUNK_BYTES: usize = 2048 - 2 * GRAIN;
 /// Chunks may take so much more than the limit, for blocks of sizes that are not wanted any more.
 const CHUNKS_SLACK: usize = 256 << 10;
+
+/// What a chunk has for blocks: all but the address of another one.
+const CHUNK_ROOM: usize = CHUNK_BYTES - GRAIN;
+/// Free memory in chunks from which on it is worth looking for chunks that hold nothing.
+const TRIM_BYTES: usize = 16 << 10;
 
 const _: () = assert!(GRAIN >= size_of::<*mut c_void>());
 
@@ -30,7 +36,7 @@ pub(crate) struct Memory {
     /// What is left of the newest chunk.
     rest: Cell<*mut u8>,
     rest_bytes: Cell<usize>,
-    /// The newest chunk; each begins with the address of the one before.
+    /// One of the chunks; each begins with the address of another.
     chunks: Cell<*mut c_void>,
     chunk_bytes: Cell<usize>,
 }
@@ -121,19 +127,79 @@ impl Memory {
         if !shrinks && self.chunk_bytes.get() >= most.saturating_add(CHUNKS_SLACK) {
             return false;
         }
-        // SAFETY: the size is not zero, and a chunk is larger than the address that it begins with.
+        // SAFETY: the size is not zero, and a chunk is larger than the address that it begins with. What is left of the
+        // newest chunk is a multiple of the grain and below the size that was asked for, hence a small block.
         unsafe {
             let chunk = libc::malloc(CHUNK_BYTES);
             if chunk.is_null() {
                 return false;
             }
+            if self.rest_bytes.get() > 0 {
+                self.give(self.rest.get().cast(), self.rest_bytes.get());
+            }
             chunk.cast::<*mut c_void>().write(self.chunks.get());
             self.chunks.set(chunk);
             self.rest.set(chunk.cast::<u8>().add(GRAIN));
         }
-        self.rest_bytes.set(CHUNK_BYTES - GRAIN);
+        self.rest_bytes.set(CHUNK_ROOM);
         self.chunk_bytes.set(self.chunk_bytes.get() + CHUNK_BYTES);
         true
+    }
+
+    /// Gives chunks that hold nothing back, if that may be worth the time: after a collection much of what a program
+    /// needed while it ran is free, and this state will hardly ask for it again.
+    pub(crate) fn trim(&self) {
+        if self.chunk_bytes.get().saturating_sub(self.used.get()) < TRIM_BYTES {
+            return;
+        }
+        // Where each chunk begins and how much of it is free, by address.
+        let mut chunks = Vec::new();
+        // SAFETY: chunks and free blocks were made by `add_chunk` and `give`, which wrote the address of the next into each.
+        let next = |place: *mut c_void| unsafe { place.cast::<*mut c_void>().read() };
+        let mut chunk = self.chunks.get();
+        while !chunk.is_null() {
+            chunks.push((chunk, 0));
+            chunk = next(chunk);
+        }
+        chunks.sort_unstable_by_key(|(chunk, _)| chunk.addr());
+        let home = |chunks: &[(*mut c_void, usize)], block: *mut c_void| {
+            let after = chunks.partition_point(|(chunk, _)| chunk.addr() <= block.addr());
+            after.saturating_sub(1)
+        };
+        for (list, size) in self.free.iter().zip((GRAIN..).step_by(GRAIN)) {
+            let mut block = list.get();
+            while !block.is_null() {
+                let at = home(&chunks, block);
+                chunks[at].1 += size;
+                block = next(block);
+            }
+        }
+        for list in &self.free {
+            let mut block = list.replace(ptr::null_mut());
+            while !block.is_null() {
+                let after = next(block);
+                if chunks[home(&chunks, block)].1 < CHUNK_ROOM {
+                    // SAFETY: as above; the block stays a free one.
+                    unsafe { block.cast::<*mut c_void>().write(list.get()) };
+                    list.set(block);
+                }
+                block = after;
+            }
+        }
+        self.chunks.set(ptr::null_mut());
+        for (chunk, free) in chunks {
+            // SAFETY: of a chunk whose whole room was in the lists nobody has a block, and the lists have none of it any
+            // more. `rest` is in no list, so that it does not point into such a chunk, or it is empty.
+            unsafe {
+                if free == CHUNK_ROOM {
+                    libc::free(chunk);
+                    self.chunk_bytes.set(self.chunk_bytes.get() - CHUNK_BYTES);
+                } else {
+                    chunk.cast::<*mut c_void>().write(self.chunks.get());
+                    self.chunks.set(chunk);
+                }
+            }
+        }
     }
 }
 
@@ -142,7 +208,7 @@ impl Drop for Memory {
     fn drop(&mut self) {
         let mut chunk = self.chunks.get();
         while !chunk.is_null() {
-            // SAFETY: chunks were made by `add_chunk`, which wrote the address of the one before into each.
+            // SAFETY: chunks were made by `add_chunk`, which wrote the address of another into each.
             unsafe {
                 let before = chunk.cast::<*mut c_void>().read();
                 libc::free(chunk);
@@ -278,6 +344,36 @@ mod tests {
                 assert!(blocks.resize(number, (number * 7 + round * 31) % 1500));
             }
         }
+    }
+
+    #[test]
+    fn chunks_that_hold_nothing_are_given_back_and_the_others_keep_their_bytes() {
+        let mut blocks = Blocks::new(1 << 20);
+        for number in 0..3000 {
+            assert!(blocks.resize(number, 1 + (number * 7) % 300));
+        }
+        let full = blocks.memory.chunk_bytes.get();
+        blocks.memory.trim();
+        assert_eq!(blocks.memory.chunk_bytes.get(), full, "all are in use");
+        // A long run and single ones out of the rest.
+        for number in (500..2500).chain((0..500).step_by(2)) {
+            blocks.resize(number, 0);
+        }
+        blocks.memory.trim();
+        let left = blocks.memory.chunk_bytes.get();
+        assert!(left < full / 2, "{left} of {full}");
+        blocks.memory.trim();
+        assert_eq!(blocks.memory.chunk_bytes.get(), left);
+        for number in 0..3000 {
+            assert!(blocks.resize(number, 1 + (number * 11) % 400));
+        }
+        for number in 0..3000 {
+            blocks.resize(number, 0);
+        }
+        blocks.memory.trim();
+        // The chunk that new blocks are cut from stays, and nothing else.
+        assert!(blocks.memory.chunk_bytes.get() <= CHUNK_BYTES);
+        assert!(blocks.resize(0, 100));
     }
 
     #[test]

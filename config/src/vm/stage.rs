@@ -143,6 +143,23 @@ impl Stages {
         Ok(self.stages.len() - 1)
     }
 
+    /// Lets go of all nodes but one: of the tree remains the path to that node. What only the others needed is thrown away
+    /// when the state next collects, at the latest when the compiler is turned on.
+    pub(crate) fn keep_only(&mut self, node: &str) -> Result<(), String> {
+        self.state.protect(&[TREE_SLOT], |l| {
+            // SAFETY: inside a protected call with the tree as the only value; leaves the new tree above it.
+            unsafe {
+                push_path(l, node);
+                lua::lua_pushlstring_(l, c"trikfs".as_ptr(), 6);
+                lua::lua_pushvalue(l, -2);
+                lua::lua_rawset(l, lua::LUA_GLOBALSINDEX);
+            }
+        })?;
+        // SAFETY: `protect` left the new tree on the top.
+        unsafe { lua::lua_replace(self.state.raw(), TREE_SLOT) };
+        Ok(())
+    }
+
     /// Bytes that a stage takes and gives.
     pub(crate) fn sizes(&self, index: usize) -> Option<(usize, usize)> {
         self.stages
@@ -226,6 +243,8 @@ impl Stages {
                 // SAFETY: inside a protected call on a state with the sandbox.
                 unsafe { library::compile_from_here(l) };
             });
+            // It has collected, too.
+            self.state.host().memory.trim();
         }
     }
 
@@ -314,6 +333,45 @@ unsafe fn push_node(l: *mut lua::lua_State, tree: c_int, node: &str) -> Result<(
         } else {
             Err(NONE)
         }
+    }
+}
+
+/// Pushes a tree that has only the groups on the way to a node, and the node itself, out of the tree at index 1.
+unsafe fn push_path(l: *mut lua::lua_State, node: &str) {
+    /// Stack places: the group that is looked at, and its copy.
+    const GROUP: c_int = 3;
+    const COPY: c_int = 4;
+    // SAFETY: the caller is in a protected call with the tree as the only value; only tables are indexed.
+    unsafe {
+        lua::lua_createtable(l, 0, 1);
+        lua::lua_pushvalue(l, 1);
+        lua::lua_pushvalue(l, 2);
+        for segment in node.split('/') {
+            if lua::lua_type(l, GROUP) != lua::LUA_TTABLE {
+                break;
+            }
+            get_raw(l, GROUP, segment.as_bytes());
+            let mut is_group = lua::lua_type(l, -1) == lua::LUA_TTABLE;
+            if is_group {
+                get_raw(l, -1, b"src");
+                is_group = lua::lua_type(l, -1) == lua::LUA_TNIL;
+                lua::lua_settop(l, -2);
+            }
+            if is_group {
+                lua::lua_createtable(l, 0, 1);
+            } else {
+                lua::lua_pushvalue(l, -1);
+            }
+            lua::lua_pushlstring_(l, segment.as_ptr().cast(), segment.len());
+            lua::lua_pushvalue(l, -2);
+            lua::lua_rawset(l, COPY);
+            if !is_group {
+                break;
+            }
+            lua::lua_replace(l, COPY);
+            lua::lua_replace(l, GROUP);
+        }
+        lua::lua_settop(l, 2);
     }
 }
 

@@ -245,6 +245,7 @@ impl State {
             // SAFETY: inside a protected call.
             unsafe { lua::lua_gc(l, lua::LUA_GCCOLLECT, 0) };
         })?;
+        self.host().memory.trim();
         Ok(self.host().memory.used())
     }
 
