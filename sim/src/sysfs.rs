@@ -43,7 +43,9 @@ pub fn make(attributes: &mut Attributes) -> io::Result<()> {
     }
     for (port, folder) in CAPTURES {
         attributes.make(&format!("{PULSES}/{port}"), "")?;
-        attributes.make(&format!("{folder}/capture"), "0")?;
+        for name in ["capture", "freq", "duty_percentage"] {
+            attributes.make(&format!("{folder}/{name}"), "0")?;
+        }
         measure(attributes, port, folder)?;
     }
     for led in LEDS {

@@ -40,7 +40,7 @@ local function captured(path, count, about, format, units, make)
     about = about, src = attribute { path = path }, input_tuple_size = 64, format = format, units = units,
     timeout_ms = CAPTURE_MS, mode = 0444,
     converter = function(a_s, a, b_s, b)
-      local text, numbers = ba.text(a):match('^%s*(.-)%s*$'), {}
+      local text, numbers = ba.text(a):match('^[^\n]*'), {}
       for part in (text .. ','):gmatch('([^,]*),') do
         if not part:find('^ *-?%d+ *$') or #part > 11 then error("EIO: '" .. text:sub(1, 40) .. "' is no measurement", 0) end
         numbers[#numbers + 1] = tonumber(part)
