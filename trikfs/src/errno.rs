@@ -86,7 +86,7 @@ pub enum Error {
 
 impl Error {
     /// What a converter said. A first word tells who is to blame when it is not the converter: `ERANGE: `, `EINVAL: `
-    /// the caller, `ENODEV: `, `ETIMEDOUT: `, `EIO: ` the device. See docs/converters/tutorial.md.
+    /// the caller, `ENODEV: `, `ETIMEDOUT: `, `EIO: ` the device. See docs/user/config.md.
     pub fn of_converter(text: String) -> Self {
         let rest = |word: &str| text.strip_prefix(word).map(str::to_owned);
         if let Some(reason) = rest("ERANGE: ") {
