@@ -8,10 +8,11 @@
 --
 -- Owns the tree and the messages about robot files. What each kind of port means stands in the folder trik.
 local Entry = include 'trik/entry.lua'
+local speed = include 'trik/speed.lua'
 local families = {
   include 'trik/motors.lua', include 'trik/encoders.lua', include 'trik/analog.lua', include 'trik/distance.lua',
   include 'trik/servos.lua', include 'trik/imu.lua', include 'trik/onboard.lua', include 'trik/camera.lua',
-  include 'trik/lidar.lua', include 'trik/ir_camera.lua', include 'trik/gamepad.lua',
+  include 'trik/lidar.lua', include 'trik/ir_camera.lua', include 'trik/gamepad.lua', include 'trik/odometry.lua',
 }
 
 -- Names of all ports in order, and the family of each.
@@ -127,7 +128,10 @@ local function build(list)
       add_name(group, entry, port, family)
       if family.setup then extra[#extra + 1] = family.setup(port, kind) end
     end
-    if listed then entry:close() end
+  end
+  speed.add(tree.motors, entries, function(port, entry) return fitting_type(entry, port, family_of[port]) end)
+  for _, port in ipairs(port_names) do
+    if entries[port] then entries[port]:close() end
   end
   return tree, extra
 end

@@ -2,7 +2,7 @@
 //!
 //! Owns one thread of the process and one real-time signal. Both are process-wide because signal handlers are:
 //! this is the one singleton of the crate. The thread ticks every millisecond while anybody works and sleeps
-//! otherwise, so marking work costs two atomic stores and no system call.
+//! otherwise, so marking work costs two atomic stores, and a system call only after a few milliseconds without any.
 //! Knows nothing of requests and nothing of what a Lua call computes.
 //!
 //! How a Lua call is ended. LuaJIT documents that `lua_sethook` may be called from a signal handler of the thread that
@@ -27,8 +27,9 @@ use std::time::{Duration, Instant};
 
 /// Time between two looks, and the time after which a piece of work is late.
 const TICK: Duration = Duration::from_millis(1);
-/// Ticks without any work before the thread goes to sleep.
-const IDLE_TICKS: u32 = 20;
+/// Ticks without any work before the thread goes to sleep. Few: being woken costs about as much as two ticks, and what
+/// is done a hundred times per second should not keep it awake.
+const IDLE_TICKS: u32 = 2;
 /// Added to SIGRTMIN: far from the first ones, which libraries like to take.
 const SIGNAL_OFFSET: c_int = 7;
 /// Functions that are asked for a line.
@@ -489,7 +490,7 @@ impl Dog {
             let mut rounds = self.lock();
             let busy = rounds.look(Instant::now(), &mut late);
             idle = if busy { 0 } else { idle + 1 };
-            if idle > IDLE_TICKS {
+            if idle >= IDLE_TICKS {
                 self.asleep.store(true, Ordering::SeqCst);
                 if rounds.look(Instant::now(), &mut late) {
                     self.asleep.store(false, Ordering::SeqCst);

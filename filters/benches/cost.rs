@@ -15,7 +15,7 @@ use std::time::Instant;
 type Case = (&'static str, usize, usize);
 
 /// The least tuples that mean something; one value for filters on single values.
-const CASES: [Case; 27] = [
+const CASES: [Case; 30] = [
     ("identity", 1, 1),
     ("median3", 1, 1),
     ("moving_average", 1, 1),
@@ -43,7 +43,14 @@ const CASES: [Case; 27] = [
     ("mahony", 6, 4),
     ("mahony", 9, 4),
     ("madgwick", 6, 7),
+    ("madgwick", 9, 7),
+    ("mahony", 6, 7),
+    ("mahony", 9, 7),
 ];
+
+/// Filters of orientation, and the most that a sample may cost in them on a PC, the C interface included.
+const QUATERNIONS: [&str; 2] = ["madgwick", "mahony"];
+const GOAL_NS: f64 = 300.0;
 
 /// Rounds, of which the median counts, and samples in each.
 const ROUNDS: usize = 31;
@@ -153,9 +160,15 @@ fn main() -> ExitCode {
             .map(|(time, base)| time / base)
             .collect();
         let sizes = format!("{inputs} to {outputs}");
+        let ns = median(times);
+        let goal = if QUATERNIONS.contains(name) {
+            let verdict = if ns <= GOAL_NS { "met" } else { "NOT MET" };
+            format!("  goal <= {GOAL_NS} ns {verdict}")
+        } else {
+            String::new()
+        };
         println!(
-            "{name:<22}{sizes:>8}{:>10.1}{:>8.2}x",
-            median(times),
+            "{name:<22}{sizes:>8}{ns:>10.1}{:>8.2}x{goal}",
             median(ratios)
         );
     }

@@ -59,12 +59,17 @@ pub struct Senses {
     pub acceleration_mps2: [f64; 3],
     /// Rates around the same axes, in degrees per second.
     pub rate_dps: [f64; 3],
+    /// How often it has run into a wall. No sensor counts them.
+    pub bumps: u32,
 }
 
 /// A robot in its world.
 pub trait Body: Send {
     /// Time goes on; `dt_s` is at most [`crate::limits::STEP_S`].
     fn step(&mut self, dt_s: f64, drive: &Drive);
+
+    /// The battery gives so much less than a good one.
+    fn weaken_battery(&mut self, volts: f64);
 
     /// What the connectors carry now.
     fn senses(&self) -> Senses;

@@ -3,7 +3,7 @@
 //! A text has one fault in each line: a kind and, for some kinds, a number. Owns the table of devices and kinds; what a
 //! fault does to its device is decided where the device is.
 
-use crate::limits::{MAX_NOISE, MAX_SLOW_MS};
+use crate::limits::{MAX_NOISE, MAX_SAG_V, MAX_SLOW_MS};
 use std::fmt::Write;
 
 /// Index of the coprocessor.
@@ -75,6 +75,8 @@ pub struct Fault {
     pub drop: f64,
     /// It gives random bytes.
     pub garbage: bool,
+    /// A battery gives so much less.
+    pub sag_v: f64,
 }
 
 impl Fault {
@@ -88,6 +90,7 @@ impl Fault {
             noise: self.noise + other.noise,
             drop: self.drop.max(other.drop),
             garbage: self.garbage || other.garbage,
+            sag_v: self.sag_v.max(other.sag_v),
         }
     }
 
@@ -131,6 +134,7 @@ impl Fault {
             "slow" => self.slow_ms = value(None, f64::from(MAX_SLOW_MS))? as u32,
             "noise" => self.noise = value(None, MAX_NOISE)?,
             "drop" => self.drop = value(None, 1.0)?,
+            "sag" => self.sag_v = value(None, MAX_SAG_V)?,
             _ if number.is_some() => return Err(format!("'{kind}' has no number")),
             "unplug" => self.unplug = true,
             "stuck" => self.stuck = true,
@@ -190,6 +194,7 @@ fn kinds(index: usize) -> &'static [&'static str] {
             &["unplug", "stuck", "slow", "noise", "drop", "garbage"]
         }
         DIGITAL..ENCODER => &["unplug", "stuck", "slow", "noise", "drop", "garbage"],
+        BATTERY => &["unplug", "stuck", "noise", "drop", "garbage", "sag"],
         MOTOR.. => &["unplug", "stuck", "noise"],
         _ => &["unplug", "stuck", "noise", "drop", "garbage"],
     }
@@ -213,6 +218,8 @@ mod tests {
         assert_eq!(faults[MSP430], Fault::default());
         faults.set("M4", "unplug").unwrap();
         assert!(faults[MOTOR + 3].unplug);
+        faults.set("battery", "sag 2.5").unwrap();
+        assert_eq!(faults[BATTERY].sag_v, 2.5);
         faults.set("D3", "noise 3").unwrap();
         assert_eq!(faults[DIGITAL + 2].noise, 3.0);
     }

@@ -10,6 +10,7 @@ use crate::input::{Keys, Ultrasonic};
 use crate::lidar::Lidar;
 use crate::limits::TICK_MS;
 use crate::mems::Mems;
+use crate::pose::PoseFile;
 use crate::sensors::Camera;
 use crate::shared::Shared;
 use crate::sysfs;
@@ -98,6 +99,7 @@ fn parts(attributes: &mut Attributes, seed: u64) -> io::Result<Vec<Box<dyn Part>
     parts.push(Box::new(Lidar::make(attributes)?));
     parts.push(Box::new(Camera::make(attributes)?));
     parts.push(Box::new(Control::make(attributes)?));
+    parts.push(Box::new(PoseFile::make(attributes)?));
     Ok(parts)
 }
 

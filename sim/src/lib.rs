@@ -21,6 +21,7 @@ pub mod machine;
 mod mems;
 mod mlx90640;
 mod msp430;
+mod pose;
 mod random;
 pub mod robots;
 mod root;

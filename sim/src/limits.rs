@@ -16,6 +16,8 @@ pub const MAX_CONNECTIONS: usize = 128;
 pub const MAX_TRANSFER_BYTES: usize = 8192;
 /// Longest delay that a fault adds to one transaction, sample or line.
 pub const MAX_SLOW_MS: u32 = 60_000;
+/// Most that a weak battery lacks.
+pub const MAX_SAG_V: f64 = 12.0;
 /// Largest amplitude of noise that a fault adds.
 pub const MAX_NOISE: f64 = 1e6;
 /// Bytes that are read from one attribute, fault or other plain file.

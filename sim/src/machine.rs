@@ -138,6 +138,7 @@ impl Machine {
             let runs = pwm.enable && pwm.duty_ns <= pwm.period_ns;
             *servo = if runs { pwm.duty_ns } else { 0 };
         }
+        self.body.weaken_battery(self.faults[faults::BATTERY].sag_v);
         self.body.step(STEP_S, &self.drive);
         self.steps += 1;
         let shafts = self.body.shafts_deg();

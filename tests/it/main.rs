@@ -112,6 +112,8 @@ mod mount {
 }
 /// The shipped description of the controller, without hardware: bytes against numbers worked out by hand.
 mod trik_lua {
+    /// Speed that is held, heading, place.
+    mod drive;
     /// Analog ports, battery, encoders.
     mod inputs;
     /// Motors and servos.

@@ -15,11 +15,12 @@ mod ratios {
     pub mod peers;
     pub mod reads;
     pub mod reload;
+    pub mod together;
     pub mod torn;
 }
 
 use ratios::measure::Plan;
-use ratios::{bulk, bus, events, newest, open, peers, reads, reload, torn};
+use ratios::{bulk, bus, events, newest, open, peers, reads, reload, together, torn};
 
 /// A section's name and what it runs.
 type Section = (&'static str, fn(&Plan) -> Outcome);
@@ -27,13 +28,14 @@ type Section = (&'static str, fn(&Plan) -> Outcome);
 /// Benchmarks fail with a sentence.
 type Outcome = Result<(), String>;
 
-const SECTIONS: [Section; 7] = [
+const SECTIONS: [Section; 8] = [
     ("reads", reads::run),
     ("newest", newest::run),
     ("events", events::run),
     ("open", open::run),
     ("reload", reload::run),
     ("bulk", bulk::run),
+    ("together", together::run),
     ("bus", bus::run),
 ];
 

@@ -5,6 +5,8 @@
 //! work and becomes a spare. A second thread in the role all the time would be simpler and costs 12 to 21 % of every
 //! request, because the kernel wakes the waiters in turn.
 //!
+//! A crew of one has nobody to step in: it is not watched, and so costs nothing when it wakes.
+//!
 //! Who knows that its work will last, a device before a transfer on a slow bus, calls [`give_way`] and does not make the
 //! others wait for the watchdog.
 //!
@@ -62,7 +64,8 @@ pub(crate) fn lock_patiently<T: ?Sized>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 /// A thread's place in a crew.
 pub struct Seat {
-    watched: watchdog::Seat,
+    /// None in a crew of one: nobody could take the role over, so nobody needs to know that it is late.
+    watched: Option<watchdog::Seat>,
     work: Arc<Work>,
     /// Between `begin` and `end`.
     working: Cell<bool>,
@@ -77,13 +80,17 @@ impl Seat {
         if !self.relieved.get() {
             self.work.begin();
         }
-        self.watched.begin();
+        if let Some(watched) = &self.watched {
+            watched.begin();
+        }
     }
 
     /// The work is done.
     pub fn end(&self) {
         self.working.set(false);
-        self.watched.end();
+        if let Some(watched) = &self.watched {
+            watched.end();
+        }
         if self.work.end() {
             self.relieved.set(true);
         }
@@ -246,19 +253,9 @@ impl Shared {
     /// The life of one thread.
     fn play(self: &Arc<Self>, make: &MakeRole) {
         let work = Arc::new(Work::default());
-        let relieve = {
-            let (shared, work, make) = (Arc::clone(self), Arc::clone(&work), Arc::clone(make));
-            move |late: u32| {
-                if work.relieve() {
-                    shared.late.fetch_add(late, Ordering::Relaxed);
-                    shared.hand_over(&make);
-                }
-            }
-        };
-        let on_late = relieve.clone();
-        HAND_OVER.set(Some(Arc::new(move || relieve(0))));
+        let watched = (self.limit > 1).then(|| self.watch(&work, make));
         let seat = Seat {
-            watched: watchdog::Seat::take(Arc::new(move || on_late(1))),
+            watched,
             work,
             working: Cell::new(false),
             relieved: Cell::new(false),
@@ -272,6 +269,20 @@ impl Shared {
                 }
             }
         }
+    }
+
+    /// Makes this thread one that the watchdog and [`give_way`] can relieve.
+    fn watch(self: &Arc<Self>, work: &Arc<Work>, make: &MakeRole) -> watchdog::Seat {
+        let (shared, work, make) = (Arc::clone(self), Arc::clone(work), Arc::clone(make));
+        let relieve = move |late: u32| {
+            if work.relieve() {
+                shared.late.fetch_add(late, Ordering::Relaxed);
+                shared.hand_over(&make);
+            }
+        };
+        let on_late = relieve.clone();
+        HAND_OVER.set(Some(Arc::new(move || relieve(0))));
+        watchdog::Seat::take(Arc::new(move || on_late(1)))
     }
 
     /// Waits until the role is vacant and takes it. False when the crew has ended.

@@ -51,6 +51,7 @@ pub enum Device {
 /// A source that can be asked again: a sysfs attribute, a register, a regular file.
 pub trait State: Send {
     /// Reads from a byte position of the source; 0 means its end. May take as long as the device takes.
+    /// [`Error::WouldBlock`]: there is nothing to read yet.
     fn read_at(&mut self, offset: u64, buf: &mut [u8]) -> Result<usize, Error>;
 
     /// Text that ends before the tuple does is filled up with zero bytes (`read_at` at 0 gives all there is).

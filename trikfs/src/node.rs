@@ -66,6 +66,8 @@ pub struct Node {
     writes: AtomicU32,
     /// Only for the source `regulator{...}`.
     regulation: Option<Regulation>,
+    /// Why a regulator that drove this node gave up.
+    lost: Mutex<Option<Error>>,
     /// When each of the operations that are inside now began, in coarse ms.
     inside: [AtomicU32; limits::LATE_PER_NODE_MAX],
 }
@@ -142,6 +144,7 @@ impl Node {
             period_ms: AtomicU32::new(period_ms),
             writes: AtomicU32::new(0),
             regulation,
+            lost: Mutex::default(),
             inside: Default::default(),
             description,
         })
@@ -233,6 +236,7 @@ impl Node {
     /// A tuple went to the device.
     pub fn count_write(&self) {
         self.writes.fetch_add(1, Ordering::Relaxed);
+        *lock(&self.lost) = None;
     }
 
     /// Whether programs may read or write at all: root passes the kernel's check of the mode bits.

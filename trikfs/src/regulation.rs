@@ -1,14 +1,16 @@
 //! Regulators at work: what was ordered of a node is held by driving another one, step by step.
 //!
 //! Owns the order, the control law's pipeline and the way to the driven node. An order lasts until the node or the driven
-//! node comes to rest, the feedback fails, somebody else writes to the driven node, or a lease of
+//! node comes to rest, the feedback or the law fails, somebody else writes to the driven node, or a lease of
 //! either changes hands. What is measured, and when, is the
-//! business of the node's sampling; the law is a converter like any other.
+//! business of the node's sampling; the law is a converter like any other. The first step of an order is made when it is
+//! given, with the newest sample, so that whoever gives it hears what the law or the driven node refuses.
 
 use crate::clock::Stamp;
 use crate::convert::Pipeline;
-use crate::errno::Error;
+use crate::errno::{Blame, Error};
 use crate::events::lock;
+use crate::newest::Newest;
 use crate::node::Node;
 use crate::writer::Writer;
 use config::program::Direction;
@@ -43,18 +45,56 @@ impl Regulation {
         }
     }
 
-    /// A program wrote what is to be held from the next step on. The law goes on if it is at work, else it begins afresh.
+    /// A program wrote what is to be held. The law goes on if it is at work, else it begins afresh.
+    ///
+    /// # Errors
+    /// What the law refuses as the caller's mistake; then what was held before is held on. Any other failure of the
+    /// feedback, the law or the driven node; then nothing is held, and the driven node is at rest.
     pub fn order(&self, node: &Arc<Node>, target: &[u8]) -> Result<(), Error> {
-        let mut order = lock(&self.order);
-        if let Some(order) = order.as_mut()
-            && order.writes == self.writes()
-            && order.generation == node.lease_generation()
-        {
-            order.target.copy_from_slice(target);
+        let mut slot = lock(&self.order);
+        let measured = Newest::of_all(&[&node.newest]).pop();
+        let before = match slot.as_mut() {
+            Some(order) if self.is_mine(order, node) => {
+                Some(std::mem::replace(&mut order.target, target.to_vec()))
+            }
+            _ => {
+                *slot = Some(self.begin(node, target)?);
+                None
+            }
+        };
+        let Some(order) = slot.as_mut() else {
             return Ok(());
+        };
+        let outcome = match measured {
+            Some(Ok(Some(sample))) => order.step(node, &sample.tuple),
+            // The first sample makes the first step.
+            Some(Ok(None)) | None => Ok(false),
+            Some(Err(error)) => Err(error),
+        };
+        match (outcome, before) {
+            (Ok(wrote), _) => {
+                order.count(wrote);
+                Ok(())
+            }
+            (Err(error), Some(before)) if error.blame() == Blame::Caller => {
+                order.target = before;
+                Err(error)
+            }
+            (Err(error), before) => {
+                *slot = None;
+                drop(slot);
+                // A motor that nobody had set going is not to be touched.
+                if before.is_some() || error.blame() != Blame::Caller {
+                    self.stop(node, &error);
+                }
+                Err(error)
+            }
         }
+    }
+
+    fn begin(&self, node: &Arc<Node>, target: &[u8]) -> Result<Order, Error> {
         let (input, output) = node.description.write_conversion_sizes();
-        *order = Some(Order {
+        Ok(Order {
             target: target.to_vec(),
             law: node.open_pipeline()?,
             writer: self.actuator.open_writer(None)?,
@@ -63,8 +103,12 @@ impl Regulation {
             generation: node.lease_generation(),
             input: Vec::with_capacity(input),
             output: vec![0; output],
-        });
-        Ok(())
+        })
+    }
+
+    /// False when somebody drives the actuator directly, or has taken the lease.
+    fn is_mine(&self, order: &Order, node: &Node) -> bool {
+        order.writes == self.writes() && order.generation == node.lease_generation()
     }
 
     /// Nothing is held any more; the driven node stays as it is.
@@ -84,14 +128,12 @@ impl Regulation {
         let Some(order) = slot.as_mut() else {
             return;
         };
-        if order.writes != self.writes() || order.generation != node.lease_generation() {
-            // Somebody drives the actuator directly, or has taken the lease.
+        if !self.is_mine(order, node) {
             *slot = None;
             return;
         }
         match order.step(node, measured) {
-            Ok(true) => order.writes = order.writes.wrapping_add(1),
-            Ok(false) => {}
+            Ok(wrote) => order.count(wrote),
             Err(error) => {
                 *slot = None;
                 drop(slot);
@@ -114,6 +156,12 @@ impl Regulation {
         if let Err(error) = self.actuator.rest() {
             self.actuator.report(&error);
         }
+        self.actuator.lose(error);
+    }
+
+    /// Why the driven node came to rest, until it is driven again.
+    pub fn lost(&self) -> Option<Error> {
+        self.actuator.lost()
     }
 
     /// Writes to what is driven in the end: an alias and its target are one.
@@ -123,6 +171,11 @@ impl Regulation {
 }
 
 impl Order {
+    /// A write of our own is not one of somebody else.
+    fn count(&mut self, wrote: bool) {
+        self.writes = self.writes.wrapping_add(wrote.into());
+    }
+
     /// True if the driven node was written: a law may give nothing.
     fn step(&mut self, node: &Node, measured: &[u8]) -> Result<bool, Error> {
         let now = Stamp::now();

@@ -62,8 +62,11 @@ impl StateReader {
         }
         self.raw.resize(self.node.description.input_tuple_size, 0);
         for _ in 0..limits::CONSUMED_TUPLES_MAX {
-            let sampled = whole_tuple(self.device.as_mut(), &mut self.raw);
-            sampled.inspect_err(|error| self.node.report(error))?;
+            match whole_tuple(self.device.as_mut(), &mut self.raw) {
+                // The clock asks again soon, and whoever reads waits for that.
+                Err(Error::WouldBlock) if self.node.newest.is_in_background() => return Ok(false),
+                sampled => sampled.map_err(|error| self.failed(error))?,
+            }
             let mut pipeline = lock(&self.pipeline);
             let (_, produced, fault) =
                 self.node
@@ -111,6 +114,16 @@ impl StateReader {
         Ok(filled)
     }
 
+    /// A failure of the source, reported. One that only has nothing yet is late for whoever asks now.
+    fn failed(&self, error: Error) -> Error {
+        let error = match error {
+            Error::WouldBlock => Error::TimedOut("not every source has a sample yet".to_owned()),
+            other => other,
+        };
+        self.node.report(&error);
+        error
+    }
+
     fn take_rest(&mut self, out: &mut [u8]) -> usize {
         let n = self.rest.len().min(out.len());
         out[..n].copy_from_slice(&self.rest[..n]);
@@ -149,7 +162,7 @@ impl StateReader {
             self.raw.resize(wanted * input_size, 0);
             let from = self.next_tuple.saturating_mul(input_size as u64);
             let got = self.device.read_at(from, &mut self.raw);
-            let tuples = got.inspect_err(|error| self.node.report(error))? / input_size;
+            let tuples = got.map_err(|error| self.failed(error))? / input_size;
             if tuples == 0 {
                 return Ok(0);
             }

@@ -4,8 +4,8 @@
 local trik = include 'trik.lua'
 
 trikfs = trik.robot {
-  { port = 'M3', type = 'motor100', name = 'left' },
-  { port = 'M4', type = 'motor100', name = 'right' },
+  { port = 'M3', type = 'motor100', name = 'left', encoder = 'E3' },
+  { port = 'M4', type = 'motor100', name = 'right', encoder = 'E4' },
   { port = 'E3', type = 'encoder95', name = 'left' },
   { port = 'E4', type = 'encoder95', name = 'right' },
   { port = 'A1', type = 'sharpGP2', name = 'front_infrared' },
@@ -17,4 +17,5 @@ trikfs = trik.robot {
   { port = 'S1', type = 'angularServomotor', name = 'arm' },
   { port = 'S6', type = 'manipulatorServomotor', name = 'gripper' },
   { port = 'lidar' },
+  { port = 'odometry', left = 'E3', right = 'E4', wheel_diameter_mm = 56, track_mm = 155 },
 }

@@ -20,13 +20,28 @@ local ports = {
   E4 = { register = 0x32, plain = true },
 }
 
+-- A wheel that seems to have turned so far, and to be near 0 now, was set to 0.
+local RESET_DEG, NEAR = 60, 4
+
 local encoders = { group = 'encoders', ports = ports, types = types, default = 'encoder95' }
+
+-- What makes degrees of ticks: so many ticks in so many degrees, and 1 or -1.
+function encoders.scale(port, kind, entry)
+  local inversed = entry:word('polarity', 'normal', { 'normal', 'inversed' }) == 'inversed'
+  return types[kind], (ports[port].plain and 1 or -1) * (inversed and -1 or 1)
+end
+
+-- The way from one count to the next, for a counter of 32 bits of which `turn` make one degree. One that was set to 0 in
+-- between counts from there.
+function encoders.way(before, now, turn)
+  local way = (now - before + 2 ^ 31) % 2 ^ 32 - 2 ^ 31
+  if math.abs(way) > RESET_DEG * turn and math.abs(now) * NEAR < math.abs(way) then return now end
+  return way
+end
 
 -- The description of one encoder.
 function encoders.make(port, kind, entry)
-  local scale = types[kind]
-  local inversed = entry:word('polarity', 'normal', { 'normal', 'inversed' }) == 'inversed'
-  local sign = (ports[port].plain and 1 or -1) * (inversed and -1 or 1)
+  local scale, sign = encoders.scale(port, kind, entry)
   local src = i2c {
     path = BUS, address = ADDRESS, register = ports[port].register, transfer = 'block', write_transfer = 'byte',
   }

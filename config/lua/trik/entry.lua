@@ -19,7 +19,7 @@ end
 local function shown(value)
   if type(value) == 'string' then return "'" .. value .. "'" end
   if type(value) == 'number' or type(value) == 'boolean' then return tostring(value) end
-  return 'a ' .. type(value)
+  return value == nil and 'nothing' or 'a ' .. type(value)
 end
 Entry.shown = shown
 

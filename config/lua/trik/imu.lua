@@ -209,9 +209,22 @@ local function accelerometer()
   }
 end
 
+-- The direction of the robot: the newest angle of the gyroscope, in degrees and counted as in geometry.
+local function heading(timeout_ms)
+  return {
+    about = 'direction of the robot since the start, -180 to 180: grows to the left, seen from above',
+    src = { 'newest:gyroscope/heading' }, format = 'f32 heading', units = 'deg', poll_ms = 10, timeout_ms = timeout_ms,
+    mode = 0444,
+    converter = function(a_s, a, b_s, b) ba.f32(b, 0, 0 - ba.i32(a, 0) / 1000) end,
+  }
+end
+
 -- The nodes of both sensors, by their paths.
 function imu.make(port, entry)
-  if port == 'gyroscope' then return { gyroscope = gyroscope(entry) } end
+  if port == 'gyroscope' then
+    local node = gyroscope(entry)
+    return { gyroscope = node, heading = heading(node.timeout_ms) }
+  end
   return { accelerometer = accelerometer() }
 end
 

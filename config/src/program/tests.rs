@@ -786,3 +786,91 @@ fn a_state_that_converts_a_lot_is_compiled_and_made_smaller() {
     }
     assert!(vm.memory() < 64 << 10, "{} bytes", vm.memory());
 }
+
+#[test]
+fn zz_measure() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("lua");
+    let mut files = BTreeMap::new();
+    let mut add = |name: &str| {
+        let text = std::fs::read(folder.join(name)).unwrap();
+        files.insert(
+            name.as_bytes().to_vec(),
+            compile(&format!("@{name}"), &text, false).unwrap(),
+        );
+    };
+    add("trik.lua");
+    for f in std::fs::read_dir(folder.join("trik")).unwrap() {
+        add(&format!(
+            "trik/{}",
+            f.unwrap().file_name().to_str().unwrap()
+        ));
+    }
+    let files = std::sync::Arc::new(files);
+    let run = |what: &str, source: &str| {
+        let p = Program {
+            code: compile("@test.lua", source.as_bytes(), false).unwrap(),
+            files: files.clone(),
+        };
+        let start = std::time::Instant::now();
+        let mut vms: Vec<_> = (0..10).map(|_| p.prepare().unwrap()).collect();
+        let t = start.elapsed() / 10;
+        println!("{what:30} {:8} bytes {:?}", vms.pop().unwrap().memory(), t);
+    };
+    run("empty", "trikfs = {}");
+    run(
+        "converter",
+        "trikfs = { x = { src = '/dev/null', converter = function() end } }",
+    );
+    run(
+        "i32 converter",
+        "trikfs = { x = { src = '/dev/null', converter = function(n,a,m,b) ba.i32(b,0,ba.i32(a,0)) end } } local x = ba.i32",
+    );
+    run("filter", "local f = filter trikfs = {}");
+    run(
+        "filter.median3",
+        "trikfs = { x = { src = '/dev/null', converter = filter.median3{} } }",
+    );
+    run(
+        "filter.pid",
+        "trikfs = { x = { src = '/dev/null', converter = filter.pid{} } }",
+    );
+    run("i2c", "local x = i2c trikfs = {}");
+    run("string", "local x = string.len trikfs = {}");
+    run("table", "local x = table.sort trikfs = {}");
+    run("math", "local x = math.floor trikfs = {}");
+    for f in [
+        "entry",
+        "number",
+        "text",
+        "motors",
+        "encoders",
+        "analog",
+        "distance",
+        "servos",
+        "imu",
+        "onboard",
+        "camera",
+        "lidar",
+        "ir_camera",
+        "gamepad",
+    ] {
+        run(f, &format!("include 'trik/{f}.lua' trikfs = {{}}"));
+    }
+    run("trik.lua", "trik = include 'trik.lua' trikfs = {}");
+    run(
+        "trik.lua bare robot",
+        "local trik = include 'trik.lua' trikfs = trik.robot {}",
+    );
+    run(
+        "two-wheels",
+        &std::fs::read_to_string(folder.join("robots/two-wheels.lua")).unwrap(),
+    );
+    run(
+        "bare, tree dropped",
+        "local trik = include 'trik.lua' local t = trik.robot {} trikfs = { motors = { M1 = t.motors.M1 } } trik = nil",
+    );
+    run(
+        "one motor",
+        "local m = include 'trik/motors.lua' local e = include 'trik/entry.lua' trikfs = { motors = { M1 = m.make('M1','motor100', e.new({port='M1'},1)) } }",
+    );
+}

@@ -16,6 +16,8 @@ const LAG_S: f64 = 0.02;
 pub struct Battery {
     charge_ah: f64,
     current_a: f64,
+    /// So much less than a good one gives.
+    pub sag_v: f64,
 }
 
 impl Default for Battery {
@@ -24,6 +26,7 @@ impl Default for Battery {
         Self {
             charge_ah: CAPACITY_AH * 0.9,
             current_a: BOARD_A,
+            sag_v: 0.0,
         }
     }
 }
@@ -39,7 +42,7 @@ impl Battery {
     /// At its terminals.
     pub fn voltage_v(&self) -> f64 {
         let open = EMPTY_V + (FULL_V - EMPTY_V) * self.charge_ah / CAPACITY_AH;
-        (open - RESISTANCE_OHM * self.current_a).max(0.0)
+        (open - self.sag_v - RESISTANCE_OHM * self.current_a).max(0.0)
     }
 }
 
@@ -60,5 +63,8 @@ mod tests {
             battery.step(1.0, 2.0);
         }
         assert!(battery.voltage_v() < 9.6);
+        let good_v = battery.voltage_v();
+        battery.sag_v = 2.0;
+        assert!((good_v - 2.0 - battery.voltage_v()).abs() < 1e-9);
     }
 }

@@ -15,6 +15,10 @@ impl Body for Bench {
         self.battery.step(dt_s, 0.0);
     }
 
+    fn weaken_battery(&mut self, volts: f64) {
+        self.battery.sag_v = volts;
+    }
+
     fn senses(&self) -> Senses {
         Senses {
             battery_v: self.battery.voltage_v(),

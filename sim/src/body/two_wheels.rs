@@ -43,6 +43,9 @@ pub struct TwoWheels {
     motors: [Motor; 4],
     battery: Battery,
     touches: bool,
+    /// Any side of it touches a wall, and how often that began.
+    is_at_wall: bool,
+    bumps: u32,
     forward_mps: f64,
     rate_rad_s: f64,
     acceleration_mps2: [f64; 2],
@@ -57,6 +60,8 @@ impl TwoWheels {
             motors: [Motor::default(); 4],
             battery: Battery::default(),
             touches: false,
+            is_at_wall: false,
+            bumps: 0,
             forward_mps: 0.0,
             rate_rad_s: 0.0,
             acceleration_mps2: [0.0; 2],
@@ -69,6 +74,8 @@ impl TwoWheels {
         let moved = roll(before, left_m, right_m);
         let (at, touched) = self.world.pushed_out(moved.at, RADIUS_M);
         self.pose = Pose { at, ..moved };
+        self.bumps += u32::from(touched && !self.is_at_wall);
+        self.is_at_wall = touched;
         // The bumper is at the front: a wall behind does not press it.
         let push = at.from(moved.at);
         self.touches = touched && push.dot(Point::towards(moved.heading_rad)) < 0.0;
@@ -160,6 +167,10 @@ impl Body for TwoWheels {
         self.roll(dt_s, left_m, right_m);
     }
 
+    fn weaken_battery(&mut self, volts: f64) {
+        self.battery.sag_v = volts;
+    }
+
     fn senses(&self) -> Senses {
         let touch = if self.touches { 20.0 } else { 1000.0 };
         Senses {
@@ -185,6 +196,7 @@ impl Body for TwoWheels {
                 GRAVITY_MPS2,
             ],
             rate_dps: [0.0, 0.0, self.rate_rad_s.to_degrees()],
+            bumps: self.bumps,
         }
     }
 
@@ -322,10 +334,12 @@ mod tests {
         assert!((before.analog[0].unwrap() - 8697.0 / 91.0).abs() < 1e-9);
         assert!((robot.range_m(0.0).unwrap() - 1.0).abs() < 1e-9);
         assert_eq!(before.analog[2], Some(1000.0));
+        assert_eq!(before.bumps, 0);
         run(&mut robot, 5.0, 100.0, 100.0);
         let after = robot.senses();
         assert!((after.pose.at.x - 0.89).abs() < 1e-6, "{:?}", after.pose);
         assert_eq!(after.analog[2], Some(20.0));
+        assert_eq!(after.bumps, 1, "it stays there");
         assert!(
             after.encoders_deg[LEFT] > 4000.0,
             "the wheels slip on at the wall"

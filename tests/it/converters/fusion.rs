@@ -234,6 +234,7 @@ trikfs = {
           assert(a_s == 12 and b_s == 4)
           local ordered, measured, interval_us = ba.i32(a, 0), ba.i32(a, 4), ba.u32(a, 8)
           if ordered == 666 then error('no such speed', 0) end
+          if ordered > 666 then error('ERANGE: too fast', 0) end
           ba.i32(b, 0, params.gain * (ordered - measured) + (interval_us < 1000000 and 0 or 1000))
         end,
       },
@@ -291,6 +292,70 @@ eventually(lambda: power() == 3)
     ));
 }
 
+/// Whoever gives an order hears at once that it cannot be.
+#[test]
+fn an_order_that_the_law_refuses_changes_nothing() {
+    let Some(m) = regulated() else {
+        return;
+    };
+    m.python(&format!(
+        "{POWER}
+expect('ERANGE', put, 'motor/speed', '700')
+assert power() == 0
+put('motor/value', '33')
+expect('ERANGE', put, 'motor/speed', '700')
+assert power() == 33, 'it was not touched'
+# The first step is made before the write returns.
+put('motor/speed', '50')
+assert power() == 80
+expect('ERANGE', put, 'motor/speed', '700')
+encoder(45)
+eventually(lambda: power() == 10, 'the order before is held')
+# Without feedback nothing can be held; the reason stays until somebody drives again.
+os.truncate(D + '/encoder', 0)
+eventually(lambda: power() == 0)
+expect('EIO', put, 'motor/speed', '50')
+assert 'bytes of a tuple' in text(M + '/motor/fault'), text(M + '/motor/fault')
+put('motor/value', '5')
+assert text(M + '/motor/fault') == ''
+"
+    ));
+}
+
+/// A node that is sampled by the clock has its first value when its sources have.
+#[test]
+fn a_sampled_node_waits_for_the_first_samples_of_others() {
+    let board = Board::new();
+    board.fifo("in");
+    let Some(m) = mount_on(
+        board,
+        "trikfs = {
+           early = { src = '$DIR/in', format = 'u8 x', on_event = true },
+           one = { src = 'newest:early', format = 'u8 x', poll_ms = 5, timeout_ms = 60000 },
+           both = { src = { 'newest:early', 'newest:one' }, poll_ms = 5, timeout_ms = 60000 },
+           asked = { src = 'newest:early', format = 'u8 x' },
+         }",
+    ) else {
+        return;
+    };
+    m.python(
+        "expect('ETIMEDOUT', text, M + '/asked/value')
+for name in ('one', 'both'):
+    fd = open_ro(M + '/' + name + '/value', os.O_NONBLOCK)
+    expect('EAGAIN', os.pread, fd, 10, 0)
+    assert text(M + '/' + name + '/fault') == '', name
+pipe = feed('in')
+def late():
+    time.sleep(0.05)
+    os.write(pipe, b'\\x07')
+threading.Thread(target=late).start()
+assert text(M + '/both/value') == '7 7\\n'
+assert text(M + '/one/value') == '7\\n'
+assert text(M + '/asked/value') == '7\\n'
+",
+    );
+}
+
 #[test]
 fn a_regulator_ends_in_rest_by_every_way() {
     let Some(m) = regulated() else {
@@ -300,6 +365,7 @@ fn a_regulator_ends_in_rest_by_every_way() {
         "{POWER}
 def begin(speed='50'):
     encoder(10)
+    eventually(lambda: error_of(text, M + '/motor/speed') is None)
     put('motor/speed', speed)
     eventually(lambda: power() == 120 or power() == 80)
 def ends(why):
@@ -315,8 +381,9 @@ os.truncate(D + '/encoder', 0)
 ends('feedback')
 assert 'comes to rest' in os.read(open_ro(M + '/log'), 65536).decode()
 begin()
-put('motor/speed', '666')
+expect('EIO', put, 'motor/speed', '666')
 ends('law')
+assert text(M + '/motor/fault').strip().endswith('no such speed'), text(M + '/motor/fault')
 # A program that dies with the file open has lost the motor.
 def drive():
     fd = os.open(M + '/motor/speed', os.O_WRONLY)

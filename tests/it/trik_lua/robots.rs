@@ -50,6 +50,8 @@ fn every_shipped_robot_has_every_port_and_says_what_everything_is() {
             "sound/say",
             "gyroscope/tilt",
             "gyroscope/heading",
+            "heading",
+            "odometry",
         ] {
             robot.node(path);
         }
@@ -171,7 +173,7 @@ const MISTAKES: &[(&str, &str)] = &[
     ),
     (
         "{ port = 'M1', speed = 5 }",
-        "entry 1 (port 'M1'): unknown option 'speed', there are: measures, name, polarity, port, type",
+        "entry 1 (port 'M1'): unknown option 'speed', there are: encoder, measures, name, polarity, port, speed_max, type",
     ),
     (
         "{ port = 'M1', polarity = 'wrong' }",
@@ -224,6 +226,38 @@ const MISTAKES: &[(&str, &str)] = &[
     (
         "{ port = 'lidar', path = 'ttyS1' }",
         "entry 1 (port 'lidar'): path must be a path that begins with a slash, not 'ttyS1'",
+    ),
+    (
+        "{ port = 'M1', encoder = 'M1' }",
+        "entry 1 (port 'M1'): encoder must be 'E1', 'E2', 'E3' or 'E4', not 'M1'",
+    ),
+    (
+        "{ port = 'M1', encoder = true }",
+        "entry 1 (port 'M1'): encoder must be 'E1', 'E2', 'E3' or 'E4', not true",
+    ),
+    (
+        "{ port = 'M1', encoder = 'E1' }, { port = 'M2', encoder = 'E1' }",
+        "entry 2 (port 'M2'): encoder 'E1' measures motor M1 already",
+    ),
+    (
+        "{ port = 'M1', speed_max = 500 }",
+        "entry 1 (port 'M1'): speed_max is for a motor with an encoder: name it, for example encoder = 'E1'",
+    ),
+    (
+        "{ port = 'M1', encoder = 'E1', speed_max = 0 }",
+        "entry 1 (port 'M1'): speed_max must be a number from 1 to 100000, not 0",
+    ),
+    (
+        "{ port = 'odometry', left = 'E1' }",
+        "entry 1 (port 'odometry'): right must be the encoder of the right wheel: 'E1', 'E2', 'E3' or 'E4', not nothing",
+    ),
+    (
+        "{ port = 'odometry', left = 'E1', right = 'E1' }",
+        "entry 1 (port 'odometry'): left and right are the same encoder, 'E1'",
+    ),
+    (
+        "{ port = 'odometry', left = 'E1', right = 'E2', track_mm = 155 }",
+        "entry 1 (port 'odometry'): wheel_diameter_mm must be a number from 1 to 1000, not nothing",
     ),
     ("'M1'", "entry 1 is not a table but a string"),
     (

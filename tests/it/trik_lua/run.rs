@@ -78,7 +78,7 @@ impl Robot {
             _ => node.converter.clone(),
         };
         let takes = if writes {
-            node.written_tuple_size()
+            node.write_conversion_sizes().0
         } else {
             node.input_tuple_size
         };
@@ -124,6 +124,21 @@ impl Robot {
             .render(&tuple, &mut text)
             .unwrap();
         Ok(text.trim_end().to_owned())
+    }
+
+    /// One step of a regulator: the bytes for what is driven.
+    pub fn step(
+        &mut self,
+        path: &str,
+        ordered: i32,
+        measured: i32,
+        interval_us: u32,
+    ) -> Result<Vec<u8>, String> {
+        let mut tuple = ordered.to_le_bytes().to_vec();
+        tuple.extend(measured.to_le_bytes());
+        tuple.extend(interval_us.to_le_bytes());
+        let driven = self.convert(path, true, &tuple)?;
+        Ok(driven.expect("a law that gives something"))
     }
 
     /// From program to device: the bytes of these numbers.

@@ -44,7 +44,10 @@ fn row(table: &mut String, name: &str, node: &NodeDescription) {
 
 /// One table for each group of the tree; a port stands for its likes, unless its type is another.
 fn tables() -> String {
-    let robot = robot("{ port = 'lidar' }, { port = 'ir_camera' }");
+    let robot = robot(
+        "{ port = 'lidar' }, { port = 'ir_camera' }, { port = 'M1', encoder = 'E1' },
+         { port = 'odometry', left = 'E1', right = 'E2', wheel_diameter_mm = 56, track_mm = 155 }",
+    );
     let mut text = String::new();
     let mut group = "";
     for node in &robot.loaded.config.nodes {

@@ -10,6 +10,8 @@ mod drive;
 mod end;
 /// Devices that fail on purpose.
 mod faults;
+/// Speed that is held, heading and place.
+mod hold;
 /// A running `trik up`.
 mod rig;
 /// What is said to a person, and what is refused.

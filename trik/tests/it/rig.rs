@@ -74,6 +74,24 @@ pub struct Robot {
     _alive: Sender<()>,
 }
 
+/// What the board's file `pose` says.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Pose {
+    pub x_m: f64,
+    pub y_m: f64,
+    pub heading_deg: f64,
+    pub time_s: f64,
+    /// How often it has run into a wall.
+    pub bumps: f64,
+}
+
+impl Pose {
+    /// Metres between two places.
+    pub fn away_from(&self, other: &Self) -> f64 {
+        (self.x_m - other.x_m).hypot(self.y_m - other.y_m)
+    }
+}
+
 /// A robot in a home of its own; None if nothing can be mounted here.
 pub fn robot(words: &[&str]) -> Option<Robot> {
     Some(Robot::start(Arc::new(Home::new()?), words))
@@ -253,6 +271,29 @@ impl Robot {
     pub fn duty(&self, motor: u8) -> io::Result<i8> {
         let byte = probe(&self.devices.join("dev/i2c-2"), 0x48, &[0x13 + motor], 1)?[0];
         Ok(i8::from_le_bytes([byte]))
+    }
+
+    /// Where the robot truly is.
+    pub fn pose(&self) -> Pose {
+        let mut pose = Pose::default();
+        eventually("a pose", || {
+            let text = fs::read_to_string(self.devices.join("pose")).unwrap_or_default();
+            let numbers: Vec<f64> = text
+                .split_whitespace()
+                .filter_map(|word| word.parse().ok())
+                .collect();
+            if let [x_m, y_m, heading_deg, time_s, bumps] = numbers[..] {
+                pose = Pose {
+                    x_m,
+                    y_m,
+                    heading_deg,
+                    time_s,
+                    bumps,
+                };
+            }
+            numbers.len() == 5
+        });
+        pose
     }
 
     /// Sends a signal and waits for the end.

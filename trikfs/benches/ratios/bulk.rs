@@ -1,6 +1,6 @@
 //! Many tuples in one read.
 
-use super::measure::{Plan, median};
+use super::measure::{Plan, median, verdict};
 use super::peers::Mount;
 use std::fs::File;
 use std::io::Read;
@@ -49,10 +49,7 @@ pub fn run(plan: &Plan) -> Result<(), String> {
             limit = rate;
         }
         let goal = goal.map_or(String::new(), |goal| {
-            format!(
-                "goal >= {goal} {}",
-                if rate >= goal { "met" } else { "NOT MET" }
-            )
+            format!("goal >= {goal} {}", verdict(rate >= goal))
         });
         println!(
             "{name:<10} {rate:>8.1} million tuples/s {:>6.2} of the limit  {goal}",

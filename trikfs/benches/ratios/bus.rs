@@ -1,15 +1,16 @@
-//! I2C: what sampling costs, what a slow or dead bus does to others, how soon a written byte is at the device, and how
-//! much of a bus of 100 kHz the inputs of the controller take.
+//! I2C: what sampling costs (beside it that of attributes), what a slow or dead bus does to others, how soon a written
+//! byte is at the device, and how much of a bus of 100 kHz the inputs of the controller take.
 //!
 //! The bus is virtual and another process serves it (`serve`), which also counts the bits that the wire would carry.
 
 use super::bus_peer::BusPeer;
-use super::measure::{Plan, Spread, median, row, spread, table, time};
-use super::peers::{Mount, on_all_cores};
+use super::measure::{Plan, Spread, median, row, spread, table, time, verdict};
+use super::peers::{Mount, Place, on_all_cores};
 use nix::time::{ClockId, clock_getcpuclockid, clock_gettime};
 use nix::unistd::Pid;
 use std::fs::File;
 use std::os::unix::fs::FileExt;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -40,44 +41,85 @@ fn word(bus: &BusPeer, register: usize, more: &str) -> String {
     )
 }
 
-/// 40 words at 100 Hz: processor time of the daemon and of the other side of the bus.
+/// Nodes that are sampled at 100 Hz.
+const SAMPLED: usize = 40;
+
+/// 40 words at 100 Hz: processor time of the daemon and of the other side of the bus. And of as many attributes, whose
+/// reading is a system call without any waiting.
 fn sampling(duration: Duration) -> Result<(), String> {
     let mut bus = BusPeer::start("sampling", 0)?;
-    let mut text = "trikfs = {\n".to_owned();
-    for number in 0..40 {
-        text.push_str(&format!(
-            "n{number} = {},\n",
-            word(&bus, number, "poll_ms = 10")
-        ));
-    }
-    let mount = Mount::start("bus-sampling", &(text + "}\n"))?;
-    let daemon = mount.daemon()?;
+    let words = |number| word(&bus, number, "poll_ms = 10");
+    let mount = Mount::start("bus-sampling", &sampled_nodes(words))?;
     std::thread::sleep(Duration::from_millis(300));
     let begin = Instant::now();
-    let (before, bus_before) = (processor_time(daemon)?, bus.count()?);
-    std::thread::sleep(duration);
-    let (after, bus_after) = (processor_time(daemon)?, bus.count()?);
-    let elapsed = begin.elapsed().as_secs_f64();
-    let transfers = bus_after.transfers - bus_before.transfers;
-    let rate = transfers as f64 / elapsed;
-    if rate < 3_600.0 {
-        return Err(format!(
-            "only {rate:.0} transfers per second instead of 4000"
-        ));
-    }
-    let share = (after - before).as_secs_f64() / elapsed * 100.0;
+    let bus_before = bus.count()?;
+    let (rate, share) = sampling_cost(&mount, duration)?;
+    let (bus_after, elapsed) = (bus.count()?, begin.elapsed().as_secs_f64());
+    let transfers = (bus_after.transfers - bus_before.transfers) as f64 / elapsed;
     let bus_share = (bus_after.processor_ns - bus_before.processor_ns) as f64 / elapsed / 1e7;
-    println!("\nsampling 40 registers at 100 Hz ({rate:.0} transfers per second)");
+    println!(
+        "\nsampling {SAMPLED} registers at 100 Hz ({rate:.0} samples and {transfers:.0} transfers per second)"
+    );
+    tell_share(share);
+    println!("the other side of the bus {bus_share:>7.2} %");
+    drop(mount);
+
+    let place = Place::new("attributes")?;
+    let paths: Vec<PathBuf> = (0..SAMPLED)
+        .map(|number| place.0.join(format!("in_voltage{number}_raw")))
+        .collect();
+    for path in &paths {
+        std::fs::write(path, "1234\n").map_err(|error| error.to_string())?;
+    }
+    let attribute = |number: usize| {
+        let path = paths[number].display();
+        format!("{{ src = attribute{{ '{path}' }}, input_tuple_size = 16, poll_ms = 10 }}")
+    };
+    let mount = Mount::start("attribute-sampling", &sampled_nodes(attribute))?;
+    std::thread::sleep(Duration::from_millis(300));
+    let (rate, share) = sampling_cost(&mount, duration)?;
+    println!("\nsampling {SAMPLED} attributes at 100 Hz ({rate:.0} samples per second)");
+    tell_share(share);
+    for path in &paths {
+        let _ = std::fs::remove_file(path);
+    }
+    Ok(())
+}
+
+fn tell_share(share: f64) {
     println!(
         "daemon {share:>26.2} % of one core   goal <= 3 % {}",
         verdict(share <= 3.0)
     );
-    println!("the other side of the bus {bus_share:>7.2} %");
-    Ok(())
 }
 
-fn verdict(met: bool) -> &'static str {
-    if met { "met" } else { "NOT MET" }
+fn sampled_nodes(node: impl Fn(usize) -> String) -> String {
+    let mut text = "trikfs = {\n".to_owned();
+    for number in 0..SAMPLED {
+        text.push_str(&format!("n{number} = {},\n", node(number)));
+    }
+    text + "}\n"
+}
+
+/// Samples per second of all nodes, and the share of a core that the daemon takes for them, in percent.
+fn sampling_cost(mount: &Mount, duration: Duration) -> Result<(f64, f64), String> {
+    let daemon = mount.daemon()?;
+    let samples = || -> Result<f64, String> {
+        let text = std::fs::read_to_string(mount.file("n0/stats"));
+        let text = text.map_err(|error| format!("stats: {error}"))?;
+        let count = text.lines().find_map(|line| line.strip_prefix("samples "));
+        let count: Option<f64> = count.and_then(|count| count.trim().parse().ok());
+        count.ok_or_else(|| "stats: no samples".to_owned())
+    };
+    let (begin, count, before) = (Instant::now(), samples()?, processor_time(daemon)?);
+    std::thread::sleep(duration);
+    let after = processor_time(daemon)?;
+    let elapsed = begin.elapsed().as_secs_f64();
+    let rate = (samples()? - count) / elapsed * SAMPLED as f64;
+    if rate < 3_600.0 {
+        return Err(format!("only {rate:.0} samples per second instead of 4000"));
+    }
+    Ok((rate, (after - before).as_secs_f64() / elapsed * 100.0))
 }
 
 /// All inputs of the controller's coprocessor at 50 Hz, in bits of the wire as they were really asked for.

@@ -78,6 +78,11 @@ pub fn row<'a>(
     }
 }
 
+/// How a goal went.
+pub fn verdict(met: bool) -> &'static str {
+    if met { "met" } else { "NOT MET" }
+}
+
 pub fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]
@@ -108,10 +113,7 @@ pub fn table(title: &str, rounds: usize, mut rows: Vec<Row<'_>>) {
                 .collect(),
         );
         let goal = row.goal.map_or(String::new(), |goal| {
-            format!(
-                "<= {goal:.2} {}",
-                if ratio <= goal { "met" } else { "NOT MET" }
-            )
+            format!("<= {goal:.2} {}", verdict(ratio <= goal))
         });
         println!(
             "{:<44} {:>9.2} {:>9.2} {:>6.2}x  {goal}",

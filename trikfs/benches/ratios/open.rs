@@ -1,6 +1,6 @@
 //! Opening and the first read, and what open files cost in memory.
 
-use super::measure::{Plan, Spread, row, spread, table};
+use super::measure::{Plan, Spread, row, spread, table, verdict};
 use super::peers::{Mount, NullMount, resident_kib};
 use std::fs::File;
 use std::io::Read;
@@ -86,7 +86,6 @@ pub fn run(plan: &Plan) -> Result<(), String> {
         }
     }
     let each_kib = (resident_kib(daemon) - before_kib) as f64 / HANDLES as f64;
-    let verdict = |met: bool| if met { "met" } else { "NOT MET" };
     println!("\nmemory of the daemon");
     println!(
         "idle, after the mount {idle_kib:>26} KiB         goal <= 6144 KiB {}",

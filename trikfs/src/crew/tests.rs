@@ -129,6 +129,24 @@ fn at_the_limit_the_first_late_thread_to_finish_takes_the_role() {
 }
 
 #[test]
+fn a_crew_of_one_is_not_watched_and_goes_on() {
+    let (alone, watched) = (Rig::new(1), Rig::new(2));
+    let (begun, end) = alone.job();
+    begun.recv_timeout(PATIENCE).unwrap();
+    let (other_begun, other_end) = watched.job();
+    other_begun.recv_timeout(PATIENCE).unwrap();
+    eventually("who began later is late", || watched.crew.late_count() == 1);
+    assert_eq!(alone.crew.late_count(), 0);
+    drop((end, other_end));
+    let (begun, end) = alone.job();
+    begun.recv_timeout(PATIENCE).unwrap();
+    assert_eq!(alone.crew.threads(), 1);
+    drop(end);
+    alone.finish();
+    watched.finish();
+}
+
+#[test]
 fn the_end_does_not_wait_for_late_threads() {
     let rig = Rig::new(2);
     let (begun, end) = rig.job();

@@ -82,28 +82,31 @@ impl Register {
         self.bus.transfer(&mut transfer, self.timeout)
     }
 
-    fn sample(&mut self) -> Result<Vec<u8>, Error> {
-        let mut tuple = vec![0; self.tuple_size];
+    /// Fills a tuple with what the register holds.
+    fn sample(&self, tuple: &mut [u8]) -> Result<(), Error> {
         if !self.description.readable {
-            self.bus.written(self.key(), &mut tuple);
-            return Ok(tuple);
+            self.bus.written(self.key(), tuple);
+            return Ok(());
         }
-        if self.description.once && self.bus.remembered(self.key(), &mut tuple) {
-            return Ok(tuple);
+        if self.description.once && self.bus.remembered(self.key(), tuple) {
+            return Ok(());
         }
-        self.transfer(self.description.transfer, Data::Read(&mut tuple))?;
+        self.transfer(self.description.transfer, Data::Read(tuple))?;
         if self.description.once {
-            self.bus.remember(self.key(), &tuple);
+            self.bus.remember(self.key(), tuple);
         }
-        Ok(tuple)
+        Ok(())
     }
 }
 
 impl State for Register {
     fn read_at(&mut self, offset: u64, buf: &mut [u8]) -> Result<usize, Error> {
         if offset == 0 {
-            self.current.clear();
-            self.current = self.sample()?;
+            let mut tuple = std::mem::take(&mut self.current);
+            tuple.clear();
+            tuple.resize(self.tuple_size, 0);
+            self.sample(&mut tuple)?;
+            self.current = tuple;
         }
         Ok(copy_at(&self.current, offset, buf))
     }

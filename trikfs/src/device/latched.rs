@@ -90,8 +90,7 @@ impl State for LatchedState {
         if offset == 0 {
             let (mut tuples, mut taken) = (Vec::new(), Vec::new());
             if !sample_all(&[&self.latched], &mut tuples, &mut taken)? {
-                let path = self.latched.0.path();
-                return Err(Error::TimedOut(format!("{path} has no sample yet")));
+                return Err(Error::WouldBlock);
             }
             self.current = tuples.pop().unwrap_or_default();
         }

@@ -189,9 +189,7 @@ impl State for States {
         if offset == 0 {
             self.current.clear();
             if !self.joint.join(&mut self.current)? {
-                return Err(Error::TimedOut(
-                    "not every source has a sample yet".to_owned(),
-                ));
+                return Err(Error::WouldBlock);
             }
         }
         Ok(copy_at(&self.current, offset, buf))

@@ -17,10 +17,11 @@ pub(super) struct Sampling {
 /// The first time after `now` that is a whole number of periods from `origin`. Periods that were missed are not made up
 /// for. Nodes of the same period are due at the same moments: one wake-up serves them all.
 fn next_on_grid(origin: Instant, period: Duration, now: Instant) -> Instant {
-    let period_ns = period.as_nanos().max(1);
-    let since_ns = now.saturating_duration_since(origin).as_nanos();
-    let left_ns = period_ns - since_ns % period_ns;
-    now + Duration::from_nanos(u64::try_from(left_ns).unwrap_or(u64::MAX))
+    // 64 bits hold 500 years, and a division of 128 bits is long.
+    let whole_ns = |time: Duration| u64::try_from(time.as_nanos()).unwrap_or(u64::MAX);
+    let period_ns = whole_ns(period).max(1);
+    let since_ns = whole_ns(now.saturating_duration_since(origin));
+    now + Duration::from_nanos(period_ns - since_ns % period_ns)
 }
 
 impl Due for Sampling {

@@ -70,6 +70,7 @@ impl Node {
 
     /// The present fault.
     pub fn fault(&self) -> Option<Error> {
-        lock(&self.trouble.fault).clone()
+        let fault = lock(&self.trouble.fault).clone();
+        fault.or_else(|| self.lost())
     }
 }

@@ -56,6 +56,19 @@ impl Node {
         }
     }
 
+    /// A regulator that drove this node had to give up: `fault` says why until somebody drives the node again.
+    pub fn lose(&self, error: &Error) {
+        *lock(&self.lost) = Some(error.clone());
+    }
+
+    /// Why the regulator of this node, or the one that drives it, gave up.
+    pub fn lost(&self) -> Option<Error> {
+        match self.regulation() {
+            Some(regulation) => regulation.lost(),
+            None => lock(&self.lost).clone(),
+        }
+    }
+
     /// What the guardian has to do if this process is no longer there; nothing if there is no device to rest.
     pub fn rest_action(self: &Arc<Self>) -> Result<Option<RestAction>, Error> {
         if self.regulation().is_some() {

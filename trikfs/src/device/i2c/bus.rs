@@ -59,6 +59,15 @@ pub(super) enum Failure {
     Garbage(String),
 }
 
+/// How long one transfer may last.
+#[derive(Clone, Copy)]
+pub(super) struct Time {
+    /// From its begin.
+    pub(super) limit: Duration,
+    /// The same as a moment.
+    pub(super) deadline: Instant,
+}
+
 enum Connection {
     Real(Adapter),
     Virtual(VirtualBus),
@@ -74,10 +83,10 @@ impl Connection {
         }
     }
 
-    fn transfer(&mut self, transfer: &mut Transfer<'_>, timeout: Duration) -> Result<(), Failure> {
+    fn transfer(&mut self, transfer: &mut Transfer<'_>, time: Time) -> Result<(), Failure> {
         match self {
             Self::Real(adapter) => adapter.transfer(transfer),
-            Self::Virtual(bus) => bus.transfer(transfer, timeout),
+            Self::Virtual(bus) => bus.transfer(transfer, time),
         }
     }
 }
@@ -133,10 +142,11 @@ impl Bus {
         transfer: &mut Transfer<'_>,
         timeout: Duration,
     ) -> Result<(), Error> {
+        // The clock is read once before and once after a transfer that need not wait: it costs a tenth of a short one.
         let begin = Instant::now();
         let urgent = matches!(transfer.data, Data::Write(_));
-        let mut left = timeout;
-        let _turn = if let Some(turn) = self.turn.try_take() {
+        let mut started = begin;
+        let _turn = if let Some(turn) = self.turn.try_take(begin) {
             if self.is_slow() || is_long(transfer) {
                 give_way();
             }
@@ -144,16 +154,19 @@ impl Bus {
         } else {
             give_way();
             let turn = self.turn.take(urgent, begin + timeout);
-            left = timeout.saturating_sub(begin.elapsed());
+            started = Instant::now();
             turn.map_err(|refusal| self.refusal(&refusal, timeout))?
+        };
+        let time = Time {
+            limit: timeout.saturating_sub(started - begin),
+            deadline: begin + timeout,
         };
         let mut connection = lock(&self.connection);
         let was_open = connection.is_some();
-        let started = Instant::now();
-        let mut result = self.transfer_once(&mut connection, transfer, left);
+        let mut result = self.transfer_once(&mut connection, transfer, time);
         if was_open && matches!(result, Err(Failure::Gone(_))) {
             // The bus was closed since the last transfer, and nothing has been sent: there may be a new one.
-            result = self.transfer_once(&mut connection, transfer, left);
+            result = self.transfer_once(&mut connection, transfer, time);
         }
         self.note_speed(started.elapsed());
         result.map_err(|failure| self.error(failure, transfer.address, timeout))
@@ -163,19 +176,19 @@ impl Bus {
         &self,
         connection: &mut Option<Connection>,
         transfer: &mut Transfer<'_>,
-        timeout: Duration,
+        time: Time,
     ) -> Result<(), Failure> {
         let open = match connection.as_mut() {
             Some(open) => open,
             None => {
                 // Opening may wait, too.
                 give_way();
-                let fresh = Connection::open(&self.path, timeout)?;
+                let fresh = Connection::open(&self.path, time.limit)?;
                 lock(&self.memory).remembered.clear();
                 connection.insert(fresh)
             }
         };
-        let result = open.transfer(transfer, timeout);
+        let result = open.transfer(transfer, time);
         if !matches!(&result, Ok(()) | Err(Failure::Errno(_))) {
             *connection = None;
         }
@@ -328,12 +341,12 @@ impl Drop for Taken<'_> {
 
 impl Turn {
     /// The turn, if nobody has it or waits for it.
-    fn try_take(&self) -> Option<Taken<'_>> {
+    fn try_take(&self, now: Instant) -> Option<Taken<'_>> {
         let mut line = lock(&self.line);
         let free = !line.taken && line.waiting.is_empty();
         free.then(|| {
             line.taken = true;
-            line.since = Some(Instant::now());
+            line.since = Some(now);
             Taken(self)
         })
     }
@@ -418,8 +431,8 @@ mod tests {
     #[test]
     fn writes_come_first_and_reads_in_between() {
         let turn = Arc::new(Turn::default());
-        let held = turn.try_take().expect("free");
-        assert!(turn.try_take().is_none());
+        let held = turn.try_take(Instant::now()).expect("free");
+        assert!(turn.try_take(Instant::now()).is_none());
         let (said, heard) = channel();
         let mut threads = Vec::new();
         for (place, (name, urgent)) in [
@@ -445,13 +458,13 @@ mod tests {
         threads
             .into_iter()
             .for_each(|thread| thread.join().unwrap());
-        assert!(turn.try_take().is_some());
+        assert!(turn.try_take(Instant::now()).is_some());
     }
 
     #[test]
     fn who_waits_too_long_leaves_the_line_and_the_turn_goes_on() {
         let turn = Turn::default();
-        let held = turn.try_take().expect("free");
+        let held = turn.try_take(Instant::now()).expect("free");
         let late = turn.take(true, Instant::now() + Duration::from_millis(5));
         assert_eq!(late.err(), Some(Refusal::Late));
         assert!(lock(&turn.line).waiting.is_empty());
@@ -462,7 +475,7 @@ mod tests {
     #[test]
     fn no_more_wait_than_the_limit_allows() {
         let turn = Arc::new(Turn::default());
-        let held = turn.try_take().expect("free");
+        let held = turn.try_take(Instant::now()).expect("free");
         // However long it takes until all wait, the bus is not stuck.
         lock(&turn.line).since = Some(Instant::now() + Duration::from_secs(3600));
         let threads: Vec<_> = (0..limits::BUS_WAITERS_MAX)
@@ -481,7 +494,7 @@ mod tests {
     #[test]
     fn a_bus_that_is_stuck_takes_fewer() {
         let turn = Arc::new(Turn::default());
-        let held = turn.try_take().expect("free");
+        let held = turn.try_take(Instant::now()).expect("free");
         lock(&turn.line).since = Instant::now().checked_sub(Duration::from_secs(1));
         let threads: Vec<_> = (0..limits::BUS_WAITERS_STUCK_MAX)
             .map(|_| {

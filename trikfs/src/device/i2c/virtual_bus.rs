@@ -3,7 +3,7 @@
 //! Owns the packets. Request: version 1, flags 0, address u16, length of what is written u16, length of what is read
 //! u16, then the written bytes. Answer: errno i32 (0 is fine), then the bytes read. All numbers are little-endian.
 
-use super::bus::Failure;
+use super::bus::{Failure, Time};
 use super::{Data, Transfer};
 use nix::sys::socket::{
     AddressFamily, MsgFlags, SockFlag, SockType, UnixAddr, connect, recv, send, setsockopt, socket,
@@ -79,10 +79,9 @@ impl VirtualBus {
     pub(super) fn transfer(
         &mut self,
         transfer: &mut Transfer<'_>,
-        timeout: Duration,
+        time: Time,
     ) -> Result<(), Failure> {
-        let deadline = Instant::now() + timeout;
-        self.limit(timeout)
+        self.limit(time.limit)
             .map_err(|errno| Failure::Errno(errno as i32))?;
         let read_len = encode(transfer, &mut self.request)?;
         // An answer that nobody waits for would be taken for that of this request, and all others for that of the next.
@@ -94,13 +93,13 @@ impl VirtualBus {
         if stray.is_ok() {
             return Err(Failure::Lost);
         }
-        self.send(deadline)?;
+        self.send(time.deadline)?;
         self.answer.resize(ANSWER_BYTES + read_len + 1, 0);
         let size = loop {
             match recv(self.socket.as_raw_fd(), &mut self.answer, MsgFlags::empty()) {
                 Ok(0) => return Err(Failure::Lost),
                 Ok(size) => break size,
-                Err(nix::Error::EINTR) if Instant::now() < deadline => {}
+                Err(nix::Error::EINTR) if Instant::now() < time.deadline => {}
                 Err(nix::Error::EINTR | nix::Error::EAGAIN) => return Err(Failure::Silent),
                 Err(_) => return Err(Failure::Lost),
             }
