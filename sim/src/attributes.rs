@@ -8,7 +8,7 @@ use crate::limits::MAX_TEXT_BYTES;
 use nix::sys::inotify::{AddWatchFlags, InitFlags, Inotify, WatchDescriptor};
 use std::collections::{BTreeSet, HashMap};
 use std::fs::File;
-use std::io::{self, Read};
+use std::io::{self, Read, Write};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
@@ -76,9 +76,12 @@ impl Attributes {
         appear(&self.root, name, text)
     }
 
-    /// Writes a text, with the newline that attributes have.
+    /// Writes a text, with the newline that attributes have. Its first line is whole at any moment.
     pub fn write(&self, name: &str, text: &str) -> io::Result<()> {
-        std::fs::write(self.root.join(name), format!("{text}\n"))
+        let line = format!("{text}\n");
+        let mut file = File::options().write(true).open(self.root.join(name))?;
+        file.write_all(line.as_bytes())?;
+        file.set_len(line.len() as u64)
     }
 
     /// Removes a file, if it is there.

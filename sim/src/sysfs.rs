@@ -1,4 +1,4 @@
-//! The attributes of the controller: servos (PWM), LEDs and GPIO, and what their texts mean.
+//! The attributes of the controller: servos (PWM), measured pulses, LEDs and GPIO, and what their texts mean.
 
 use crate::attributes::Attributes;
 use crate::limits::GPIO_COUNT;
@@ -7,6 +7,15 @@ use std::io;
 
 /// Chip and channel of S1 to S6.
 const SERVOS: [(u8, u8); 6] = [(2, 0), (1, 0), (0, 0), (3, 1), (5, 0), (5, 1)];
+/// Ports that can measure pulses, and their channels.
+const CAPTURES: [(&str, &str); 3] = [
+    ("S1", "sys/class/pwm/ecap_cap.2"),
+    ("S2", "sys/class/pwm/ecap_cap.1"),
+    ("S3", "sys/class/pwm/ecap_cap.0"),
+];
+/// Where a person says which pulses come in.
+const PULSES: &str = "control/pulses";
+const MAX_PULSES_HZ: u32 = 100_000;
 const LEDS: [&str; 2] = ["led_green", "led_red"];
 /// Lines that the controller has exported or that its start exports, with their levels.
 const LINES: [(u32, &str); 7] = [
@@ -31,6 +40,13 @@ pub fn make(attributes: &mut Attributes) -> io::Result<()> {
         for name in ["enable", "duty_cycle", "period"] {
             attributes.make(&format!("{chip}/pwm{channel}/{name}"), "0")?;
         }
+    }
+    for (port, folder) in CAPTURES {
+        attributes.make(&format!("{PULSES}/{port}"), "")?;
+        for name in ["capture", "freq", "duty_percentage"] {
+            attributes.make(&format!("{folder}/{name}"), "0")?;
+        }
+        measure(attributes, port, folder)?;
     }
     for led in LEDS {
         attributes.make(&format!("sys/class/leds/{led}/brightness"), "0")?;
@@ -58,6 +74,14 @@ fn export(attributes: &mut Attributes, number: u32, level: &str) -> io::Result<(
 
 /// The file `name` was written; whether it is one of ours.
 pub fn changed(attributes: &mut Attributes, name: &str, machine: &mut Machine) -> bool {
+    let is_at = |(port, folder): &&(&str, &str)| {
+        name == format!("{PULSES}/{port}") || name == format!("{folder}/capture")
+    };
+    if let Some((port, folder)) = CAPTURES.iter().find(is_at) {
+        // A board without a folder has nobody who could be told.
+        let _ = measure(attributes, port, folder);
+        return true;
+    }
     let Some(path) = name.strip_prefix("sys/class/") else {
         return false;
     };
@@ -113,6 +137,43 @@ fn servo(attributes: &Attributes, chip: &str, channel: &str, name: &str, machine
         "duty_cycle" => pwm.duty_ns = value,
         "period" => pwm.period_ns = value,
         _ => {}
+    }
+}
+
+/// Shows in the attributes what the channel measures: the pulses that come in, if it is to measure.
+fn measure(attributes: &Attributes, port: &str, folder: &str) -> io::Result<()> {
+    let control = format!("{PULSES}/{port}");
+    let complaint = format!("{control}.error");
+    let pulses = match attributes.line(&control).as_deref().map(pulses) {
+        Some(Err(reason)) => return attributes.appear(&complaint, &reason),
+        Some(Ok(pulses)) => pulses,
+        None => None,
+    };
+    attributes.remove(&complaint);
+    let captures = number(attributes, &format!("{folder}/capture")) == Some(1);
+    let (frequency, duty) = pulses.filter(|_| captures).map_or_else(
+        || ("-1".to_owned(), "-1".to_owned()),
+        |(hz, percent)| (hz.to_string(), percent.to_string()),
+    );
+    // The same files, since who reads them may have them open.
+    attributes.write(
+        &format!("{folder}/freq"),
+        &format!("{frequency},{frequency},{frequency}"),
+    )?;
+    attributes.write(&format!("{folder}/duty_percentage"), &duty)
+}
+
+/// Frequency and duty from a line; none for `0`.
+fn pulses(line: &str) -> Result<Option<(u32, u32)>, String> {
+    let numbers: Option<Vec<u32>> = line.split(' ').map(|word| word.parse().ok()).collect();
+    match numbers.as_deref() {
+        Some([0]) => Ok(None),
+        Some(&[hz, percent]) if (1..=MAX_PULSES_HZ).contains(&hz) && percent <= 100 => {
+            Ok(Some((hz, percent)))
+        }
+        _ => Err(format!(
+            "'{line}' is not a frequency from 1 to {MAX_PULSES_HZ} Hz and a duty from 0 to 100 %, as in '50 7', or 0"
+        )),
     }
 }
 

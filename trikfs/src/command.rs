@@ -2,6 +2,8 @@
 //!
 //! Compilers and the programs of sensors run through it. Knows nothing of either.
 
+mod signals;
+
 use crate::events::lock;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::signal::{Signal, killpg};
@@ -84,6 +86,7 @@ pub(crate) fn run_unless(
         .stdout(writer.try_clone()?)
         .stderr(writer)
         .process_group(0);
+    signals::unblock(&mut command);
     let child = command.spawn()?;
     // The command holds our copies of the writing end, and the end of the output is only seen without them.
     drop(command);
@@ -244,6 +247,19 @@ mod tests {
             }
         }
         false
+    }
+
+    #[test]
+    fn a_program_begins_with_no_signal_blocked() {
+        let blocked: nix::sys::signal::SigSet = [Signal::SIGTERM].into_iter().collect();
+        blocked.thread_block().expect("this thread's own mask");
+        let ended = shell("kill -TERM $$; echo it lives", 20_000, 100);
+        blocked.thread_unblock().expect("this thread's own mask");
+        let signal = ended.status.and_then(|status| {
+            use std::os::unix::process::ExitStatusExt;
+            status.signal()
+        });
+        assert_eq!((signal, &*ended.output), (Some(libc::SIGTERM), ""));
     }
 
     #[test]

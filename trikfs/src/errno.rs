@@ -50,8 +50,10 @@ pub enum Error {
     WouldBlock,
     /// No sample within the deadline, or the newest one is too old.
     TimedOut(String),
-    /// Another program holds the lease of the actuator.
+    /// Another program holds the lease of the actuator, or as many texts wait for a program as may.
     Busy(String),
+    /// A line for a sensor program that runs while somebody reads it, and nobody does.
+    NotRunning(String),
     /// The device failed with an errno of its own.
     Device(i32, String),
     /// The device answers, and what it says is no measurement: a converter has seen that.
@@ -84,7 +86,7 @@ pub enum Error {
 
 impl Error {
     /// What a converter said. A first word tells who is to blame when it is not the converter: `ERANGE: `, `EINVAL: `
-    /// the caller, `ENODEV: `, `ETIMEDOUT: `, `EIO: ` the device. See docs/converters/tutorial.md.
+    /// the caller, `ENODEV: `, `ETIMEDOUT: `, `EIO: ` the device. See docs/user/config.md.
     pub fn of_converter(text: String) -> Self {
         let rest = |word: &str| text.strip_prefix(word).map(str::to_owned);
         if let Some(reason) = rest("ERANGE: ") {
@@ -123,6 +125,7 @@ impl Error {
             Self::WouldBlock => libc::EAGAIN,
             Self::TimedOut(_) => libc::ETIMEDOUT,
             Self::Busy(_) => libc::EBUSY,
+            Self::NotRunning(_) => libc::ENODEV,
             Self::Device(errno, _) => device_errno(*errno),
             Self::Measurement(_) => libc::EIO,
             Self::Converter(_) => libc::EIO,
@@ -151,6 +154,7 @@ impl Error {
             | Self::OutOfRange(_)
             | Self::WouldBlock
             | Self::Busy(_)
+            | Self::NotRunning(_)
             | Self::Stale
             | Self::TooManyOpen
             | Self::NoBuffers
@@ -196,6 +200,7 @@ impl fmt::Display for Error {
             | Self::NoDevice(what)
             | Self::TimedOut(what)
             | Self::Busy(what)
+            | Self::NotRunning(what)
             | Self::Measurement(what)
             | Self::Converter(what)
             | Self::Internal(what) => f.write_str(what),

@@ -190,6 +190,47 @@ fn a_hundred_connections_are_served_and_far_more_are_refused_not_fatal() {
 }
 
 #[test]
+fn pulses_are_measured_by_the_port_that_was_asked_to() {
+    let scratch = Scratch::new();
+    let board = board(&scratch, "board");
+    let folder = "sys/class/pwm/ecap_cap.1";
+    let measured = |what: &str, frequency: &str, duty: &str| {
+        wait(what, || {
+            let are = |name, text: &str| {
+                read(&board, &format!("{folder}/{name}"))?
+                    .strip_suffix('\n')?
+                    .eq(text)
+                    .then_some(())
+            };
+            are("freq", frequency)?;
+            are("duty_percentage", duty)
+        });
+    };
+    measured("nothing", "-1,-1,-1", "-1");
+    write(&board, "control/pulses/S2", "50 7\n");
+    write(&board, &format!("{folder}/capture"), "1");
+    measured("pulses", "50,50,50", "7");
+    assert_eq!(
+        read(&board, "sys/class/pwm/ecap_cap.2/freq").unwrap(),
+        "-1,-1,-1\n"
+    );
+    write(&board, "control/pulses/S2", "fast\n");
+    let complaint = wait("a complaint", || read(&board, "control/pulses/S2.error"));
+    assert!(complaint.starts_with("'fast' is not a frequency from 1 to 100000 Hz"));
+    write(&board, "control/pulses/S2", "0\n");
+    measured("the end", "-1,-1,-1", "-1");
+    wait("no complaint", || {
+        read(&board, "control/pulses/S2.error")
+            .is_none()
+            .then_some(())
+    });
+    write(&board, "control/pulses/S2", "100000 100\n");
+    measured("fast ones", "100000,100000,100000", "100");
+    write(&board, &format!("{folder}/capture"), "0");
+    measured("a servo", "-1,-1,-1", "-1");
+}
+
+#[test]
 fn servos_leds_and_gpio_are_files() {
     let scratch = Scratch::new();
     let board = board(&scratch, "board");

@@ -48,7 +48,10 @@ os.write(commands, b'detect'.ljust(16, b'\\0'))
 assert os.read(back, 100) == b'detect\\n'
 os.close(back)
 expect('ENODEV', os.write, commands, b'detect'.ljust(16, b'\\0'))
-assert 'the sensor is not running (nobody reads its pipe)' in text(M + '/line/fault')
+log = os.read(open_ro(M + '/log', os.O_NONBLOCK), 1 << 16).decode()
+reason = 'the sensor is not running (nobody reads its pipe): keep one of its files open for reading\\n'
+assert 'line: caller: ' in log and reason in log, log
+assert text(M + '/line/fault') == ''
 os.close(one)
 assert text(D + '/calls') == 'start\\n'
 os.close(two)

@@ -140,6 +140,39 @@ fn each_servo_type_has_its_widths_and_reads_its_position_back() {
 }
 
 #[test]
+fn three_servo_ports_can_measure_pulses_instead() {
+    let mut robot = robot("{ port = 'S2', type = 'pwmCapture', name = 'receiver' }");
+    let text = |words: &str| {
+        let mut tuple = words.as_bytes().to_vec();
+        tuple.resize(64, 0);
+        tuple
+    };
+    let good = text("50,52,49\n");
+    assert_eq!(robot.read("servos/S2", &good), Ok("50".into()));
+    assert_eq!(robot.read("servos/S2/raw", &good), Ok("50 52 49".into()));
+    let duty = robot.read("servos/S2/duty_cycle", &text("7\n"));
+    assert_eq!(duty, Ok("7".into()));
+    for (words, reason) in [
+        ("-1,-1,-1\n", "ETIMEDOUT: no pulses"),
+        ("50,-1,50\n", "ETIMEDOUT: no pulses"),
+        ("50,50\n", "EIO: '50,50' is no measurement"),
+        ("", "EIO: '' is no measurement"),
+        ("50,fast,50", "EIO: '50,fast,50' is no measurement"),
+        ("50,50,9999999999", "EIO: 9999999999 is no measurement"),
+    ] {
+        assert_eq!(robot.read("servos/S2", &text(words)), Err(reason.into()));
+    }
+    assert_eq!(robot.node("servos/S2").rest, None);
+    assert_eq!(robot.node("servos/S2").mode, 0o444);
+    let setup = format!("{:?}", robot.loaded.config.setup);
+    assert!(setup.contains("ecap_cap.1/capture") && !setup.contains("ecap_cap.2"));
+    assert_eq!(
+        super::run::refused("{ port = 'S4', type = 'pwmCapture' }"),
+        "robot.lua:3: entry 1 (port 'S4'): only S1, S2 and S3 can measure pulses"
+    );
+}
+
+#[test]
 fn a_servo_that_is_off_has_no_position() {
     let mut robot = robot("");
     assert_eq!(

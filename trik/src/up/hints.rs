@@ -22,7 +22,7 @@ pub(super) fn of(robot: &str) -> &'static [(&'static str, &'static str)] {
             ),
             ("cat camera/line/value", "where is the line, -100 to 100?"),
             (
-                "echo 30 > motors/left/value; echo 30 > motors/right/value",
+                "echo 30 > motors/M3/value; echo 30 > motors/M4/value",
                 "drive, in percent",
             ),
             ("echo 440 500 > sound/tone/value", "play a tone: Hz, ms"),

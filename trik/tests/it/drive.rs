@@ -258,3 +258,28 @@ fn a_tone_is_played_and_one_that_nobody_hears_is_refused() {
     assert!(robot.read("sound/tone/value").is_err());
     assert_eq!(robot.read("sound/tone/fault").expect("a text"), "");
 }
+
+#[test]
+fn a_servo_port_measures_pulses_if_the_robot_file_says_so() {
+    let Some(home) = crate::rig::Home::new() else {
+        return;
+    };
+    let text = "local trik = include 'trik.lua'\ntrikfs = trik.robot { { port = 'S1', type = 'pwmCapture', name = 'receiver' } }\n";
+    home.0.file("robot.lua", text);
+    let robot = Robot::start(std::sync::Arc::new(home), &["--config", "robot.lua"]);
+    assert_eq!(robot.errno("servos/receiver/value"), libc::ETIMEDOUT);
+    let fault = robot.read("servos/S1/fault").expect("a text");
+    assert_eq!(fault, "device: no pulses");
+    let control = robot.devices.join("control/pulses/S1");
+    std::fs::write(control, "50 7\n").expect("pulses");
+    eventually("pulses", || {
+        robot.read("servos/S1/value").is_ok_and(|hz| hz == "50")
+    });
+    eventually("a duty", || {
+        robot
+            .read("servos/S1/duty_cycle")
+            .is_ok_and(|duty| duty == "7")
+    });
+    assert_eq!(robot.numbers("servos/S1/raw"), [50.0; 3]);
+    assert_eq!(robot.errno("servos/S2/value"), libc::EIO, "that is a servo");
+}

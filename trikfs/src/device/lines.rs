@@ -205,6 +205,8 @@ impl Cut for Splitter {
 pub struct LinesSink {
     path: PathBuf,
     timeout_ms: u32,
+    /// It runs while somebody reads it.
+    is_started: bool,
     expected: Option<AnswerDescription>,
     answer: Arc<Answer>,
 }
@@ -220,6 +222,7 @@ impl LinesSink {
         Ok(Self {
             path,
             timeout_ms,
+            is_started: description.start.is_some(),
             expected: description.answer.clone(),
             answer,
         })
@@ -236,10 +239,14 @@ impl Sink for LinesSink {
             return Err(Error::Invalid(what.to_owned()));
         }
         let not_running = |reason: &str| {
-            Error::NoDevice(format!(
-                "{}: the sensor is not running ({reason})",
-                self.path.display()
-            ))
+            let path = self.path.display();
+            let what = format!("{path}: the sensor is not running ({reason})");
+            if self.is_started {
+                let advice = "keep one of its files open for reading";
+                Error::NotRunning(format!("{what}: {advice}"))
+            } else {
+                Error::NoDevice(what)
+            }
         };
         let meta = std::fs::metadata(&self.path);
         match meta.map_err(|error| device_error(&self.path, &error)) {

@@ -34,7 +34,7 @@ impl Programs {
                     told.texts.len(),
                     command.program.display()
                 );
-                return Err(Error::Device(libc::EBUSY, what));
+                return Err(Error::Busy(what));
             }
             told.texts.push_back(text.to_owned());
             return Ok(());
