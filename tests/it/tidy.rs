@@ -157,8 +157,8 @@ fn nothing_is_left_to_be_done() {
 #[test]
 fn sources_and_documents_are_ascii() {
     let mut found = Vec::new();
-    for name in CRATES.iter().chain(&["docs"]) {
-        for ending in ["rs", "md", "lua", "h", "c", "toml", "py"] {
+    for name in CRATES.iter().chain(&["docs", "examples"]) {
+        for ending in ["rs", "md", "lua", "h", "c", "toml", "py", "js", "sh"] {
             files(&root().join(name), ending, &mut found);
         }
     }
@@ -346,7 +346,7 @@ fn every_path_that_a_document_names_exists() {
             for quoted in line.split('`').skip(1).step_by(2) {
                 let looks_like_ours = CRATES
                     .iter()
-                    .chain(&["docs", "cross", ".ci"])
+                    .chain(&["docs", "cross", "examples", ".ci"])
                     .any(|name| quoted.starts_with(&format!("{name}/")));
                 let is_plain = quoted
                     .chars()

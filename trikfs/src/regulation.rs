@@ -49,7 +49,7 @@ impl Regulation {
     ///
     /// # Errors
     /// What the law refuses as the caller's mistake; then what was held before is held on. Any other failure of the
-    /// feedback, the law or the driven node; then nothing is held, and the driven node is at rest.
+    /// feedback, the law or the driven node; then nothing is held, and what was held before came to rest.
     pub fn order(&self, node: &Arc<Node>, target: &[u8]) -> Result<(), Error> {
         let mut slot = lock(&self.order);
         let measured = Newest::of_all(&[&node.newest]).pop();
@@ -83,8 +83,8 @@ impl Regulation {
             (Err(error), before) => {
                 *slot = None;
                 drop(slot);
-                // A motor that nobody had set going is not to be touched.
-                if before.is_some() || error.blame() != Blame::Caller {
+                // What this regulator did not drive yet is not to be touched.
+                if before.is_some() {
                     self.stop(node, &error);
                 }
                 Err(error)

@@ -20,8 +20,8 @@ local KP, KI = 0.05, 0.2
 local JUMP_DPS = 200000
 -- An encoder that turned by less than the first while the second was ordered is dead, or its wheel is stuck.
 local STILL_DEG, ORDERED_DEG = 2, 180
--- So long may a wheel turn against full power.
-local AGAINST_US = 500000
+-- So long may a wheel turn against so much power without slowing down.
+local AGAINST_US, AGAINST_POWER = 200000, 50
 
 -- A converter from ticks and the time since the ones before, in us, to the speed.
 local function measured(scale, sign)
@@ -43,7 +43,7 @@ end
 
 -- A chain from the ordered speed, the measured one and the time since the step before to the power in percent.
 local function law(speed_max)
-  local since_us, us, turned, anchor, ordered, against_us = 0, 0, 0, 0, 0, 0
+  local since_us, us, turned, anchor, ordered, against_us, size_before = 0, 0, 0, 0, 0, 0, 0
   local function prepare(a_s, a, b_s, b)
     local wanted, dps = number.within('speed', ba.i32(a, 0), -speed_max, speed_max), ba.i32(a, 4)
     since_us = ba.u32(a, 8)
@@ -61,7 +61,13 @@ local function law(speed_max)
   local function judge(a_s, a, b_s, b)
     local power, tenths = ba.i32(a, 0), ba.i32(a, 4)
     if ba.i32(a, 8) == 1 then error('ENODEV: the wheel does not turn with full power', 0) end
-    against_us = abs(power) == 100 and power * tenths < 0 and against_us + since_us or 0
+    local size = abs(tenths)
+    if power * tenths >= 0 or abs(power) < AGAINST_POWER then
+      against_us = 0
+    elseif size >= size_before then
+      against_us = against_us + since_us
+    end
+    size_before = size
     if against_us > AGAINST_US then
       error('ENODEV: the encoder counts against the power: change the polarity of the motor or of the encoder', 0)
     end

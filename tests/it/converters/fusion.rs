@@ -318,6 +318,8 @@ expect('EIO', put, 'motor/speed', '50')
 assert 'bytes of a tuple' in text(M + '/motor/fault'), text(M + '/motor/fault')
 put('motor/value', '5')
 assert text(M + '/motor/fault') == ''
+expect('EIO', put, 'motor/speed', '50')
+assert power() == 5, 'what another drives is left alone'
 "
     ));
 }

@@ -7,12 +7,14 @@ pub(super) fn of(robot: &str) -> &'static [(&'static str, &'static str)] {
     match robot {
         "two-wheels" => &[
             ("cat sensors/D1/value", "how far is the wall, in cm?"),
+            ("cat heading/value", "where does it look, in degrees?"),
             (
                 "echo 30 > motors/M3/value; echo 30 > motors/M4/value",
                 "drive, in percent",
             ),
             ("cat encoders/E3/value", "how far has the wheel turned?"),
             ("echo -30 > motors/M3/value", "turn on the spot"),
+            ("echo 300 > motors/left/speed", "hold a speed, in deg/s"),
             ("echo > stop", "bring everything to rest"),
         ],
         "line-follower" => &[

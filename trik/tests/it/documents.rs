@@ -10,7 +10,12 @@ use std::path::Path;
 fn every_transcript_of_a_robot_is_what_really_happens() {
     let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
     let mut count = 0;
-    for document in ["README.md", "docs/user/start.md", "docs/user/simulator.md"] {
+    for document in [
+        "README.md",
+        "docs/user/start.md",
+        "docs/user/simulator.md",
+        "docs/user/trik.md",
+    ] {
         let Ok(text) = std::fs::read_to_string(root.join(document)) else {
             continue;
         };

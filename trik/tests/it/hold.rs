@@ -1,7 +1,8 @@
 //! Speed that is held, heading and place on the virtual board: what the tree says against where the robot truly is.
 
-use crate::rig::{Robot, robot};
+use crate::rig::{Home, Robot, robot};
 use harness::eventually;
+use std::sync::Arc;
 
 /// Both wheels, in deg/s.
 fn order(robot: &Robot, left: i32, right: i32) {
@@ -110,6 +111,23 @@ fn a_dead_encoder_stops_its_motor_and_says_why() {
     eventually("a measured speed", || robot.errno("motors/left/speed") == 0);
     assert!(fault().contains("0x48"), "{}", fault());
     order(&robot, 0, 0);
+    assert!(is_at_rest(&robot));
+}
+
+/// Whoever mounts an encoder the other way round must not see the motor run away.
+#[test]
+fn an_encoder_that_counts_backwards_stops_its_motor() {
+    let Some(home) = Home::new() else { return };
+    let shipped = include_str!("../../../config/lua/robots/two-wheels.lua");
+    let wrong = shipped.replace("port = 'E3',", "port = 'E3', polarity = 'inversed',");
+    assert_ne!(wrong, shipped);
+    home.0.file("wrong.lua", wrong);
+    let robot = Robot::start(Arc::new(home), &["--config", "wrong.lua"]);
+    order(&robot, 200, 0);
+    eventually("a fault", || {
+        let fault = robot.read("motors/left/fault").expect("a text");
+        fault.contains("change the polarity")
+    });
     assert!(is_at_rest(&robot));
 }
 

@@ -8,6 +8,8 @@ mod documents;
 mod drive;
 /// How it ends: every way leaves nothing behind and actuators at rest.
 mod end;
+/// The programs of `examples`, in every language.
+mod examples;
 /// Devices that fail on purpose.
 mod faults;
 /// Speed that is held, heading and place.
