@@ -134,3 +134,7 @@ pub const REST_ACTIONS_MAX: usize = 4096;
 pub const REST_BYTES_MAX: usize = 4 << 20;
 /// Node ids with cached values in one ledger.
 pub const CACHED_MAX: usize = 4096;
+/// Bytes that `trikfs convert` reads at a time.
+pub const CONVERT_CHUNK_BYTES: usize = 64 << 10;
+/// Reasons of refusals that `trikfs convert` tells apart.
+pub const FAULT_REASONS_MAX: usize = 16;
