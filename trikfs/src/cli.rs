@@ -68,7 +68,7 @@ enum Command {
     Convert(author::ConvertArgs),
     /// Write a project for a converter of your own: working, with tests, to be changed.
     ///
-    /// Prints the commands that try it. Nothing is downloaded, also not later.
+    /// Prints the commands that try it. Nothing is downloaded, not by its builds either.
     NewConverter(author::NewConverterArgs),
     /// Unmount a tree; one that is in use is detached: it disappears at once, and programs get ENOTCONN from it.
     Umount {

@@ -109,7 +109,7 @@ const LUA: &[File] = &[
     ("README.md", template!("lua/README.md")),
     ("robot.lua", template!("lua/robot.lua")),
     ("vectors.txt", template!("vectors.txt")),
-    ("Makefile", template!("lua/Makefile")),
+    ("test.sh", template!("lua/test.sh")),
     (".gitignore", template!("lua/.gitignore")),
 ];
 
