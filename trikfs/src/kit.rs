@@ -279,16 +279,18 @@ fn without_tests(text: &str) -> String {
         .split_once("\n#[cfg(test)]\nmod tests {")
         .map_or(text, |(code, _)| code);
     let mut code = String::with_capacity(text.len());
-    let mut lines = text.lines();
+    let mut lines = text.lines().peekable();
     while let Some(line) = lines.next() {
         if line == "#[cfg(test)]" {
-            // `mod NAME;`
+            // `mod NAME;` and the empty line behind it.
             lines.next();
+            lines.next_if(|line| line.is_empty());
         } else {
             code.push_str(line);
             code.push('\n');
         }
     }
+    code.truncate(code.trim_end().len() + 1);
     code
 }
 

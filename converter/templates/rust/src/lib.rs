@@ -75,8 +75,7 @@ mod tests {
     fn the_vectors_hold() {
         let vectors = vectors::parse(include_str!("../vectors.txt")).unwrap();
         let (input_size, output_size) = (vectors.input_size, vectors.output_size);
-        let mut open =
-            trial::opener::<BatteryMeanState>(input_size, output_size, &vectors.params);
+        let mut open = trial::opener::<BatteryMeanState>(input_size, output_size, &vectors.params);
         trial::check_vectors(&vectors, &mut open).unwrap();
     }
 
