@@ -26,20 +26,23 @@ use std::sync::Arc;
 /// One node of a configuration file, ready to be tried.
 pub struct Subject {
     description: NodeDescription,
+    /// Of a result; bytes of a device have none.
     format: Format,
+    direction: Direction,
     recipe: Recipe,
     /// Makes the states of the pool, until it is dropped.
     _maker: StateMaker,
 }
 
 impl Subject {
-    /// Loads the configuration and prepares the converter of the node; `params` replace those of the description.
+    /// Loads the configuration and prepares the converter of the node in one direction; `params` replace those of the
+    /// description.
     ///
     /// # Errors
     /// What `trikfs check` would say, or the nodes that there are.
     pub fn load(
-        file: &Path,
-        node: &str,
+        (file, node): (&Path, &str),
+        direction: Direction,
         paths: &SearchPaths,
         params: &BTreeMap<String, f64>,
     ) -> Result<Self, String> {
@@ -71,9 +74,12 @@ impl Subject {
             .then(|| maker.pool(loaded.program.clone()));
         let recipe = Recipe::prepare(&description, &workshop, pool)
             .map_err(|problem| problem.to_string())?;
-        let bytes = || Format::bytes(description.output_tuple_size);
+        let (_, output_size) = sizes(&description, direction);
+        let format = description.format.clone();
+        let format = format.filter(|_| direction == Direction::Read);
         Ok(Self {
-            format: description.format.clone().unwrap_or_else(bytes),
+            format: format.unwrap_or_else(|| Format::bytes(output_size)),
+            direction,
             description,
             recipe,
             _maker: maker,
@@ -97,8 +103,9 @@ impl Subject {
     fn opener(&self) -> impl FnMut() -> Result<Opened, String> {
         || {
             let mut pipeline = self.open()?;
+            let direction = self.direction;
             Ok(Box::new(move |input: &[u8], output: &mut [u8]| {
-                convert(&mut pipeline, input, output).map_err(|error| error.to_string())
+                convert(&mut pipeline, direction, input, output).map_err(|error| error.to_string())
             }))
         }
     }
@@ -110,10 +117,11 @@ impl Subject {
 /// The fault.
 pub fn convert(
     pipeline: &mut Pipeline,
+    direction: Direction,
     input: &[u8],
     output: &mut [u8],
 ) -> Result<Conversion, Error> {
-    let batch = pipeline.convert(Direction::Read, input, output);
+    let batch = pipeline.convert(direction, input, output);
     match batch.fault {
         Some(fault) => Err(fault),
         // An empty chain counts in tuples of nobody.
@@ -127,8 +135,8 @@ pub fn convert(
 /// # Errors
 /// Vectors of other sizes than the node's, or the first one that is not met.
 pub fn check_vectors(
-    file: &Path,
-    node: &str,
+    (file, node): (&Path, &str),
+    direction: Direction,
     paths: &SearchPaths,
     vectors: &Path,
 ) -> Result<String, String> {
@@ -137,14 +145,14 @@ pub fn check_vectors(
         .and_then(|bytes| String::from_utf8(bytes).map_err(|error| error.to_string()))
         .and_then(|text| vectors::parse(&text))
         .map_err(|reason| format!("{shown}: {reason}"))?;
-    let subject = Subject::load(file, node, paths, &parsed.params)?;
-    let sizes = |(input, output)| format!("{input} and {output} bytes");
+    let subject = Subject::load((file, node), direction, paths, &parsed.params)?;
+    let shown_sizes = |(input, output)| format!("{input} and {output} bytes");
     let (theirs, ours) = ((parsed.input_size, parsed.output_size), subject.sizes());
     if theirs != ours {
         return Err(format!(
             "{shown}: the vectors have tuples of {}, node {node} of {}",
-            sizes(theirs),
-            sizes(ours)
+            shown_sizes(theirs),
+            shown_sizes(ours)
         ));
     }
     let count = trial::check_vectors(&parsed, &mut subject.opener());
@@ -204,8 +212,15 @@ fn render(node: &str, random: &Random, report: &Report) -> String {
 impl Subject {
     /// Bytes of a tuple before and after the converter.
     fn sizes(&self) -> (usize, usize) {
-        let description = &self.description;
-        (description.input_tuple_size, description.output_tuple_size)
+        sizes(&self.description, self.direction)
+    }
+}
+
+/// Bytes of a tuple before and after the conversion in a direction.
+fn sizes(description: &NodeDescription, direction: Direction) -> (usize, usize) {
+    match direction {
+        Direction::Read => (description.input_tuple_size, description.output_tuple_size),
+        Direction::Write => description.write_conversion_sizes(),
     }
 }
 

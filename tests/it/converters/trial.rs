@@ -126,6 +126,57 @@ fn times_are_told_with_every_count_also_when_a_tuple_was_refused() {
 }
 
 #[test]
+fn what_programs_write_is_tried_as_well() {
+    let board = Board::new();
+    board.file(
+        "robot.lua",
+        "trikfs = { motor = { src = '/dev/null', input_tuple_size = 1, format = 'i16 power',
+           converter = function(a_s, a, b_s, b) ba.i16(b, 0, ba.i8(a, 0)) end,
+           write_converter = function(a_s, a, b_s, b)
+             local power = ba.i16(a, 0)
+             if power < -100 or power > 100 then error('ERANGE: power is -100 to 100', 0) end
+             ba.i8(b, 0, power)
+           end } }",
+    );
+    let written = convert(
+        &board,
+        "--write --hex --keep-going robot.lua motor",
+        &[50, 0, 200, 0, 0x9c, 0xff],
+    );
+    assert_eq!((written.code(), written.stdout.as_str()), (1, "32\n9c\n"));
+    assert!(
+        written
+            .stderr
+            .contains("tuple 2 at byte 2 (c800): power is -100 to 100"),
+        "{}",
+        written.stderr
+    );
+    assert_eq!(
+        convert(&board, "--write --text robot.lua motor", &[0x9c, 0xff]).good(),
+        "156\n"
+    );
+    assert_eq!(
+        convert(&board, "--text robot.lua motor", &[0x9c]).good(),
+        "-100\n"
+    );
+    board.file("v.txt", "size 2 1\n3200 > 32\nc800 > fault\n");
+    assert_eq!(
+        convert(&board, "--write --vectors v.txt robot.lua motor", b"").good(),
+        "v.txt: 2 vectors hold\n"
+    );
+    let random = convert(
+        &board,
+        "--write --random 1000 --seed 3 robot.lua motor",
+        b"",
+    )
+    .good();
+    assert!(
+        random.contains(" times: power is -100 to 100\n"),
+        "{random}"
+    );
+}
+
+#[test]
 fn a_recording_keeps_its_times() {
     let board = board();
     board.file("run.rec", "# hand\n0 02\n12.5 01 03\n20 04 05\n");

@@ -8,6 +8,7 @@ use crate::limits::RECORDING_BYTES_MAX;
 use crate::trial::stream::{self, Input, Shape, Wishes};
 use crate::trial::{self, Random, Subject};
 use clap::{Args, ValueEnum};
+use config::program::Direction;
 use converter::limits::TRIAL_TUPLES_MAX;
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -31,6 +32,9 @@ pub(super) struct ConvertArgs {
     /// Go on behind a tuple that is refused, and report all of them at the end; the exit status is 1 then as well.
     #[arg(long)]
     keep_going: bool,
+    /// From the program to the device: the input is what programs write, the output what the device gets.
+    #[arg(long)]
+    write: bool,
     /// The input is a recording, lines `TIME_MS HEX` as `replay` takes them; lines of output begin with the time.
     #[arg(long)]
     replay: bool,
@@ -85,11 +89,17 @@ pub(super) fn new_converter(args: &NewConverterArgs) -> Result<(), Failure> {
 
 pub(super) fn convert(args: &ConvertArgs) -> Result<(), Failure> {
     let paths = args.search.paths()?;
+    let place = (args.file.as_path(), args.node.as_str());
+    let direction = if args.write {
+        Direction::Write
+    } else {
+        Direction::Read
+    };
     if let Some(vectors) = &args.vectors {
-        let text = trial::check_vectors(&args.file, &args.node, &paths, vectors)?;
+        let text = trial::check_vectors(place, direction, &paths, vectors)?;
         return print(text.as_bytes());
     }
-    let subject = Subject::load(&args.file, &args.node, &paths, &BTreeMap::new())?;
+    let subject = Subject::load(place, direction, &paths, &BTreeMap::new())?;
     match args.random {
         Some(tuples) => random(args, &subject, tuples),
         None => stream(args, &subject),

@@ -10,6 +10,7 @@ use crate::device::replay;
 use crate::errno::Error;
 use crate::limits::{CONVERT_CHUNK_BYTES, RECORDING_BYTES_MAX};
 use config::format::Format;
+use config::program::Direction;
 use converter::Conversion;
 use converter::trial::hex;
 use std::io::{self, Read, Write};
@@ -145,6 +146,7 @@ pub fn run(
 
 struct Run<'a> {
     pipeline: Pipeline,
+    direction: Direction,
     wishes: Wishes,
     format: &'a Format,
     input_size: usize,
@@ -160,6 +162,7 @@ impl<'a> Run<'a> {
         let (input_size, output_size) = subject.sizes();
         Ok(Self {
             pipeline: subject.open()?,
+            direction: subject.direction,
             wishes,
             format: &subject.format,
             input_size,
@@ -209,7 +212,12 @@ impl<'a> Run<'a> {
         };
         self.tuples += 1;
         let start = self.timing.is_some().then(Instant::now);
-        let outcome = convert(&mut self.pipeline, tuple, &mut self.converted);
+        let outcome = convert(
+            &mut self.pipeline,
+            self.direction,
+            tuple,
+            &mut self.converted,
+        );
         if let (Some(timing), Some(start)) = (&mut self.timing, start) {
             timing.add(start.elapsed());
         }
