@@ -567,4 +567,13 @@ for name, make_filter in pairs(fuse) do
   end
 end
 
-return filter
+-- A mistyped name is told with the right ones.
+return setmetatable(filter, {
+  __index = function(_, name)
+    local names = {}
+    for known in pairs(filter) do names[#names + 1] = known end
+    table.sort(names)
+    error('there is no filter.' .. tostring(name) .. ' in Lua; there are: ' .. table.concat(names, ', ')
+      .. "; others are in the library, as 'libtrikfs_filters.so#NAME'", 2)
+  end,
+})

@@ -87,7 +87,7 @@ setmetatable(ba, {
     if not make then return nil end
     if not pointer then open_ffi() end
     scratch = scratch or new(
-      'union { uint8_t b[8]; int16_t i16; uint16_t u16; int32_t i32; uint32_t u32; float f32; double f64; }')
+      'union { uint8_t b[8]; uint16_t h[4]; int16_t i16; uint16_t u16; int32_t i32; uint32_t u32; float f32; double f64; }')
     local access = make(sizes, bytes, scratch, copy, refuse, wrap, type, error, select)
     rawset(ba, name, access)
     return access

@@ -377,6 +377,12 @@ impl<'a> Checker<'a> {
                         format!("{path}: '{node}' is an attribute and can have no second name");
                     return Err(self.problem(keys, reason));
                 }
+                None if self.aliases.iter().any(|(other, _)| other.path == *node) => {
+                    let reason = format!(
+                        "{path}: '{node}' is a second name itself; name the node that it stands for"
+                    );
+                    return Err(self.problem(keys, reason));
+                }
                 None => {
                     let hint = self.nearest_node(node);
                     let reason = format!("{path}: there is no node '{node}'{hint}");

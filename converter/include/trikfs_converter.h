@@ -3,7 +3,7 @@
  *
  * A converter turns one tuple of bytes into another: what a device sends into what a program wants to read, or what a
  * program writes into what a device takes. Include this file, export one of the two forms below, build a shared
- * library and name it in the configuration. templates/c holds one example of each form to copy.
+ * library and name it in the configuration. `trikfs new-converter --lang c NAME` writes a whole project.
  *
  * Valid C99 and C++. It needs no other header of this project and no library to link with.
  *

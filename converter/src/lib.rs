@@ -4,13 +4,15 @@
 //! This crate owns what both sides must agree on and links nothing, so that anybody can depend on it.
 //! It knows nothing of files, devices, Lua or of how a library is found and loaded.
 //!
-//! To write a converter: implement [`Converter`] for a struct and name it in [`export_converters!`]; `templates/rust` is a
-//! whole project to copy.
+//! To write a converter: implement [`Converter`] for a struct and name it in [`export_converters!`];
+//! `trikfs new-converter --lang rust NAME` writes a whole project.
 //! To load one: `abi.rs` begins with the steps.
 
 pub mod abi;
 pub mod export;
 pub mod limits;
+pub mod trial;
+pub mod vectors;
 
 #[cfg(test)]
 mod templates;

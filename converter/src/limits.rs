@@ -12,3 +12,9 @@ pub const NAME_BYTES_MAX: usize = 64;
 pub const TEXT_BYTES_MAX: usize = 1024;
 /// Parameters given to one converter at open.
 pub const PARAMS_MAX: usize = 1024;
+/// Bytes of a file of vectors.
+pub const VECTORS_BYTES_MAX: usize = 1 << 20;
+/// Tuples of one trial with random bytes.
+pub const TRIAL_TUPLES_MAX: usize = 1_000_000;
+/// Reasons of refusals that a trial tells apart.
+pub const TRIAL_REASONS_MAX: usize = 16;

@@ -36,10 +36,10 @@ fn compiler(name: &str) -> Command {
     command
 }
 
-/// Builds `templates/c/NAME.c` and returns the library.
-pub(crate) fn build_c(name: &str) -> PathBuf {
+/// Builds `templates/FOLDER/NAME.c` and returns the library.
+pub(crate) fn build_c(folder: &str, name: &str) -> PathBuf {
     let library = build_directory(name).join(format!("lib{name}.so"));
-    let source = crate_root().join(format!("templates/c/{name}.c"));
+    let source = crate_root().join(format!("templates/{folder}/{name}.c"));
     run(compiler("cc")
         .args(["-std=c99", "-fPIC", "-shared", "-o"])
         .arg(&library)
@@ -51,14 +51,14 @@ pub(crate) fn build_c(name: &str) -> PathBuf {
 pub(crate) fn build_rust() -> PathBuf {
     let target = build_directory("rust");
     let manifest = crate_root().join("templates/rust/Cargo.toml");
-    // Locked versions would land beside the template; a copy of it keeps the checkout clean.
+    // In a copy, with this crate in the place of the one that `trikfs new-converter` writes beside it.
     let copy = target.join("project");
     fs::create_dir_all(copy.join("src")).unwrap();
     let text = fs::read_to_string(manifest).unwrap();
     let path = format!("path = \"{}\"", crate_root().display());
     fs::write(
         copy.join("Cargo.toml"),
-        text.replace("path = \"../..\"", &path),
+        text.replace("path = \"converter\"", &path),
     )
     .unwrap();
     fs::copy(
@@ -77,7 +77,7 @@ pub(crate) fn build_rust() -> PathBuf {
         .arg(copy.join("Cargo.toml"))
         .env("CARGO_TARGET_DIR", target.join("target"))
         .env_remove("RUSTFLAGS"));
-    target.join("target/release/libmy_converters.so")
+    target.join("target/release/libbattery_mean.so")
 }
 
 /// Compiles a C program and returns what it prints.

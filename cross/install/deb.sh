@@ -77,7 +77,7 @@ make_docs() {
 
 # The commands that the help names.
 commands() {
-    "$built/trikfs" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z]\{1,\}\) .*/\1/p' | grep -vx help
+    "$built/trikfs" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]\{1,\}\) .*/\1/p' | grep -vx help
 }
 
 completion() {

@@ -1,9 +1,9 @@
 //! Runs every file of `tests/golden/filters` through the Rust trait and through the C ABI of this library, and any bytes
 //! through every filter.
 
-use crate::vectors::{self, Expected, Vectors};
 use crate::{Fused, LIBRARY_ONLY, Lanes, trikfs_library_entry};
 use converter::abi::descriptors;
+use converter::vectors::{self, Expected, Vectors};
 use converter::{Conversion, Converter, Direction, Fault, OpenInfo};
 use proptest::prelude::*;
 use std::collections::BTreeSet;

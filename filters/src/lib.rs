@@ -19,7 +19,6 @@ pub mod lanes;
 pub mod limits;
 pub mod number;
 pub mod params;
-pub mod vectors;
 
 // What filters of orientation are made of.
 pub mod inertial;

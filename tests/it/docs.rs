@@ -3,7 +3,7 @@
 //! Marks are the words behind a fence: `lua config NAME` loads, `c converter NAME` and `rust converter NAME` compile
 //! without a warning and load, `python` is Python, `sh session` is a transcript: lines with `$ ` are run in a mounted
 //! hello.lua, the others are what they print; `sh convert NAME` is one without a mount, where robot.lua is the
-//! configuration NAME of the same page.
+//! configuration NAME of the same page, and `sh mount NAME` one that mounts it by itself; all of a page share a folder.
 
 use crate::{mount_on, trikfs};
 use harness::Board;
@@ -212,24 +212,43 @@ fn every_transcript_in_the_documents_is_what_really_happens() {
 
 #[test]
 fn every_conversion_in_the_documents_gives_what_the_page_says() {
-    for (place, example) in marked("sh convert ") {
-        let document = place.rsplit_once(':').map_or("", |(document, _)| document);
-        let name = example.info.trim_start_matches("sh convert ");
-        let page = std::fs::read_to_string(document).unwrap();
-        let config = examples(&page)
-            .into_iter()
-            .find(|config| config.info == format!("lua config {name}"))
-            .unwrap_or_else(|| panic!("{place}: the page has no configuration {name}"));
+    for document in documents() {
+        let page = std::fs::read_to_string(&document).unwrap();
+        let found = examples(&page);
+        // What one example of a page leaves behind, the next one finds.
         let board = Board::new();
-        board.file("robot.lua", &config.text);
-        let in_a_shell = |script: &str| {
-            let program = crate::program();
-            let script = format!("exec 2>&1\ntrikfs() {{ '{program}' \"$@\"; }}\n{script}");
-            let mut command = std::process::Command::new("sh");
-            harness::run(command.args(["-c", &script]).current_dir(board.dir()), b"").stdout
-        };
-        replay(in_a_shell, &place, &example);
+        for example in &found {
+            let place = format!("{}:{}", document.display(), example.line);
+            let words: Vec<&str> = example.info.split(' ').collect();
+            let ["sh", kind @ ("convert" | "mount"), name] = words[..] else {
+                continue;
+            };
+            if kind == "mount" && !can_mount() {
+                continue;
+            }
+            let config = found
+                .iter()
+                .find(|config| config.info == format!("lua config {name}"))
+                .unwrap_or_else(|| panic!("{place}: the page has no configuration {name}"));
+            board.file("robot.lua", &config.text);
+            replay(|script| in_a_shell(&board, script), &place, example);
+        }
     }
+}
+
+/// What a line of shell prints in the folder of the board, where `trikfs` is the program under test.
+fn in_a_shell(board: &Board, script: &str) -> String {
+    let program = crate::program();
+    let script = format!("exec 2>&1\ntrikfs() {{ '{program}' \"$@\"; }}\n{script}");
+    let mut command = std::process::Command::new("sh");
+    harness::run(command.args(["-c", &script]).current_dir(board.dir()), b"").stdout
+}
+
+/// False if nothing can be mounted here, which is said.
+fn can_mount() -> bool {
+    let obstacle = harness::mount::obstacle();
+    obstacle.into_iter().for_each(harness::skip);
+    obstacle.is_none()
 }
 
 #[test]

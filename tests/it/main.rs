@@ -19,10 +19,14 @@ mod converters {
     mod hostile;
     /// C source in the configuration.
     mod inline_c;
+    /// Projects for authors, from the first command to the mounted node.
+    mod kit;
     /// Functions of the configuration, each open file with a state of its own.
     mod lua;
     /// Libraries: plain, versioned, replaced.
     mod shared;
+    /// `trikfs convert`: forms, reports, times, vectors, random bytes.
+    mod trial;
     /// The shipped filters in both languages against the golden vectors.
     mod vectors;
 }

@@ -1,9 +1,10 @@
 //! The command line: what can be said, and which part of the crate does it.
 //!
 //! Owns the words, the help and the exit codes: 0 done, 1 refused or failed, 2 not understood. `run` mounts and serves,
-//! `paths` knows where files are looked for, `edit` changes the configuration of a mounted tree, `notify` speaks to a
-//! service manager.
+//! `author` has the commands for authors of converters, `paths` knows where files are looked for, `edit` changes the
+//! configuration of a mounted tree, `notify` speaks to a service manager.
 
+mod author;
 mod edit;
 #[cfg(feature = "manual")]
 mod manual;
@@ -42,7 +43,8 @@ Examples:
   trikfs mount --config robot.lua /trikfs         serve it until Ctrl-C
   cat /trikfs/distance/value                      the newest value, as text
   trikfs edit /trikfs                             change the configuration in use
-  trikfs convert robot.lua distance < raw | xxd   try a converter without a device
+  trikfs convert --text robot.lua distance raw    try a converter without a device
+  trikfs new-converter --lang c sonar             begin a converter of your own
   trikfs umount /trikfs
 
 Exit status: 0 done; 1 the configuration was refused, or something failed; 2 the command line was not understood.";
@@ -59,8 +61,15 @@ enum Command {
     /// Prints `FILE:LINE: REASON` and exits with 1 if the configuration would be refused. Warnings, such as a device
     /// that is not there, do not change the exit status.
     Check(CheckArgs),
-    /// Run one node's converter: raw bytes on standard input, converted bytes on standard output.
-    Convert(ConvertArgs),
+    /// Run one node's converter over recorded bytes, without mounting and without a device.
+    ///
+    /// Writes the converted bytes to standard output. A tuple that is refused ends it with its place and the reason, and
+    /// exit status 1. With --vectors or --random the converter is tested instead.
+    Convert(author::ConvertArgs),
+    /// Write a project for a converter of your own: working, with tests, to be changed.
+    ///
+    /// Prints the commands that try it. Nothing is downloaded, not by its builds either.
+    NewConverter(author::NewConverterArgs),
     /// Unmount a tree; one that is in use is detached: it disappears at once, and programs get ENOTCONN from it.
     Umount {
         /// Where the tree is mounted.
@@ -178,16 +187,6 @@ struct CheckArgs {
     file: PathBuf,
 }
 
-#[derive(Args)]
-struct ConvertArgs {
-    #[command(flatten)]
-    search: SearchArgs,
-    /// The configuration.
-    file: PathBuf,
-    /// Path of the node in the tree, for example motors/M1.
-    node: String,
-}
-
 /// Why a command did not do what it should.
 enum Failure {
     /// Printed after the name of the program.
@@ -228,12 +227,8 @@ fn perform(command: Command) -> Result<(), Failure> {
         Command::Mount(args) => run::mount(args),
         Command::Serve(args) => run::serve(args),
         Command::Check(args) => check(args),
-        Command::Convert(args) => {
-            let (mut input, mut output) = (io::stdin().lock(), io::stdout().lock());
-            let paths = args.search.paths()?;
-            crate::check::convert(&args.file, &args.node, &paths, &mut input, &mut output)
-                .map_err(Failure::Reason)
-        }
+        Command::Convert(args) => author::convert(&args),
+        Command::NewConverter(args) => author::new_converter(&args),
         Command::Umount { mountpoint } => match mount::unmount(&mountpoint) {
             Ok(Unmounted::Clean) => Ok(()),
             Ok(Unmounted::Detached) => {

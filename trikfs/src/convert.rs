@@ -426,17 +426,28 @@ fn one_through(
             .last()
             .map_or(input, |stage| stage.between.as_slice());
         let outcome = if index == last {
-            stage.code.convert(vm.as_deref_mut(), from, output)?
+            stage.code.convert(vm.as_deref_mut(), from, output)
         } else {
             stage
                 .code
-                .convert(vm.as_deref_mut(), from, &mut stage.between)?
+                .convert(vm.as_deref_mut(), from, &mut stage.between)
         };
+        let outcome = outcome.map_err(|error| in_stage(error, index, last))?;
         if outcome == Conversion::Consumed {
             return Ok(Conversion::Consumed);
         }
     }
     Ok(Conversion::Produced)
+}
+
+/// A converter's own fault with its place in the chain.
+fn in_stage(error: Error, index: usize, last: usize) -> Error {
+    match error {
+        Error::Converter(text) => {
+            Error::Converter(format!("stage {} of {}: {text}", index + 1, last + 1))
+        }
+        other => other,
+    }
 }
 
 const NO_STATE: &str = "a Lua stage without a Lua state";

@@ -3,7 +3,7 @@
 //! From the kernel inwards: `transport` (the only part that knows FUSE), `fs` (operations), `tree` (names),
 //! `files` (what is open), `node` (what is behind a name), `reader`, `state_reader`, `writer`, `newest` (the ways
 //! data takes), `hub` (one opening for many readers), `device` (sources), `convert` (converters).
-//! Beside them: `reload` and `daemon`, `events` and `engine`, `mount`, `guardian`, `check`, `cli`.
+//! Beside them: `reload` and `daemon`, `events` and `engine`, `mount`, `guardian`, `check`, `trial`, `kit`, `cli`.
 
 pub mod bytes;
 pub mod check;
@@ -22,6 +22,7 @@ pub mod fs;
 pub mod guardian;
 pub mod hash;
 pub mod hub;
+pub mod kit;
 pub mod lease;
 pub mod limits;
 pub mod log;
@@ -41,4 +42,5 @@ pub mod stats;
 pub mod text;
 pub mod transport;
 pub mod tree;
+pub mod trial;
 pub mod writer;

@@ -138,3 +138,7 @@ pub const REST_BYTES_MAX: usize = 4 << 20;
 pub const CACHED_MAX: usize = 4096;
 /// A mistake that a caller repeats within so many ms is not told again.
 pub const MISTAKE_MS: u32 = 1000;
+/// Bytes that `trikfs convert` reads at a time.
+pub const CONVERT_CHUNK_BYTES: usize = 64 << 10;
+/// Reasons of refusals that `trikfs convert` tells apart.
+pub const FAULT_REASONS_MAX: usize = 16;

@@ -99,6 +99,10 @@ impl Fields<'_, '_> {
                 format!("params: '{name}' has no value: {{ VALUE, min = ..., max = ... }}");
             return Err(self.problem("params", reason));
         };
+        if min > max {
+            let reason = format!("params: '{name}': min, {min}, is above max, {max}");
+            return Err(self.problem("params", reason));
+        }
         if !(min..=max).contains(&number) {
             let reason = format!("params: '{name}' is {number}, outside of {min} to {max}");
             return Err(self.problem("params", reason));
@@ -146,6 +150,10 @@ mod tests {
             (
                 "{ a = {} }",
                 "params: 'a' has no value: { VALUE, min = ..., max = ... }",
+            ),
+            (
+                "{ a = { 5, min = 9, max = 1 } }",
+                "params: 'a': min, 9, is above max, 1",
             ),
             (
                 "{ a = { 2, max = 1 } }",

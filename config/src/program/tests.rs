@@ -280,6 +280,32 @@ fn typed_accessors_read_and_write_both_byte_orders() {
 }
 
 #[test]
+fn no_bits_of_a_float_become_anything_but_a_number() {
+    // In a loop, so that compiled code is seen as well; a table, a string or nil would be told by `type`.
+    let is_number = |name: &str, bytes: &[u8]| {
+        let look = format!(
+            "function(_, a, _, b) for i = 1, 300 do local v = ba.{name}(a, 0)
+               if type(v) ~= 'number' or v == v then error('it is a ' .. type(v), 0) end end ba.u8(b, 0, 1) end"
+        );
+        assert_eq!(converted(&look, bytes, 1), Ok(vec![1]), "{name} {bytes:x?}");
+    };
+    for low in [0_u64, 1, 0x4141_4141_4141, 0xffff_ffff_ffff] {
+        for high in 0xfff8..=0xffff_u64 {
+            let bits = high << 48 | low;
+            is_number("f64", &bits.to_le_bytes());
+            is_number("f64_be", &bits.to_be_bytes());
+        }
+        for high in (0xff81..=0xffff_u32).step_by(9).chain([0xffff, 0x7fc1]) {
+            let bits = high << 16 | low as u32 & 0xffff;
+            is_number("f32", &bits.to_le_bytes());
+            if high & 3 == 0 {
+                is_number("f32_be", &bits.to_be_bytes());
+            }
+        }
+    }
+}
+
+#[test]
 fn two_arrays_of_a_stage_and_two_stages_do_not_mix() {
     let source = "trikfs = { x = { src = '/dev/null', converter = {
         function(n, a, m, b) for i = 0, n - 1 do ba.set(b, i, ba.get(a, i) + 1) end end,

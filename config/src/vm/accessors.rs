@@ -2,7 +2,7 @@
 //!
 //! Each is written out for its type, so that LuaJIT compiles it to a check and a move, and made when it is first used,
 //! so that a state holds only those that it needs. Numbers go through a union beside the array because the controller's
-//! processor cannot read a number at an odd address. Pure.
+//! processor cannot read a number at an odd address. A NaN comes out as a NaN whatever its bits. Pure.
 
 use crate::format::FieldKind;
 
@@ -51,6 +51,13 @@ pub(crate) fn source(name: &str) -> Option<String> {
     let load = match kind {
         FieldKind::U8 => "s.b[0]".to_owned(),
         FieldKind::I8 => "(s.b[0] < 128 and s.b[0] or s.b[0] - 256)".to_owned(),
+        // LuaJIT keeps tags and addresses of its values in the bits of negative NaNs, and takes what it finds in memory
+        // for its own: bytes of a device could name any table. So such a NaN is never loaded but made afresh.
+        FieldKind::F32 => "(s.u32 > 0xff800000 and 0/0 or s.f32)".to_owned(),
+        FieldKind::F64 => format!(
+            "(s.h[{}] >= 0xfff8 and 0/0 or s.f64)",
+            if cfg!(target_endian = "big") { 0 } else { 3 }
+        ),
         _ => format!("s.{word}"),
     };
     let check = if float {

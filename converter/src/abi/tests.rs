@@ -297,7 +297,7 @@ int main(void) {
 
 #[test]
 fn the_plain_template_converts_a_battery() {
-    let descriptors = load(&templates::build_c("plain")).unwrap();
+    let descriptors = load(&templates::build_c("plain", "plain")).unwrap();
     let mut instance = open(&descriptors[0], (2, 4), &[]).unwrap();
     let mut output = [0; 4];
     // By hand: 512 * 13256 / 1023 = 6634.48 mV, 6634 = 0x19ea.
@@ -348,7 +348,7 @@ fn check_battery_mean(descriptors: &[Descriptor]) {
 
 #[test]
 fn the_versioned_template_in_c_keeps_a_state_for_each_opening() {
-    check_battery_mean(&load(&templates::build_c("versioned")).unwrap());
+    check_battery_mean(&load(&templates::build_c("c", "battery_mean")).unwrap());
 }
 
 #[test]

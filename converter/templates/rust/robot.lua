@@ -1,19 +1,15 @@
--- A configuration for the library of this folder. Run `cargo build --release` first:
---
---     trikfs check robot.lua
---     trikfs mount --config robot.lua /tmp/trikfs
---     cat /tmp/trikfs/battery_mean/value
---
--- A library's path is relative to this file. Replace /dev/urandom by your device.
+-- A configuration for the library of this folder; README.md has the commands.
+-- A library's path is relative to this file.
 
 trikfs = {
   battery_mean = {
-    src = '/dev/urandom',
+    -- Words 500, 510, 520 and 530, one in each 5 ms. Replace it by your device: src = '/dev/...'
+    src = fake{ data = '\244\1\254\1\8\2\18\2', period_ms = 5, loop = true },
     input_tuple_size = 2,
     output_tuple_size = 4,
     format = 'i32 millivolts',
     units = 'mV',
-    converter = 'target/release/libmy_converters.so#battery_mean',
+    converter = 'target/release/libbattery_mean.so#battery_mean',
     params = { count = 16 },
   },
 }

@@ -26,10 +26,10 @@ test_deb() {
     check "the service is there and not enabled" says disabled layer systemctl is-enabled trikfs.service
     check "systemd-analyze verify" layer systemd-analyze verify trikfs.service
     local page
-    for page in trikfs trikfs-mount trikfs-check trikfs-convert trikfs-edit trikfs-umount trikfs-completions trikfs-man; do
+    for page in trikfs trikfs-mount trikfs-check trikfs-convert trikfs-new-converter trikfs-edit trikfs-umount trikfs-completions trikfs-man; do
         check "man $page" man_page "$page"
     done
-    check "no other man page" test "$(find "$layer/usr/share/man" -name 'trikfs*' | wc -l)" -eq 8
+    check "no other man page" test "$(find "$layer/usr/share/man" -name 'trikfs*' | wc -l)" -eq 9
     check "bash completion" layer bash -n /usr/share/bash-completion/completions/trikfs
     check "the configuration is good" layer trikfs check /etc/trikfs/robot.lua
     check "so is the shipped example" layer trikfs check /usr/share/trikfs/lua/hello.lua

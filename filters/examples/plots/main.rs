@@ -83,6 +83,11 @@ mod tests {
             .collect();
         assert_eq!(files, drawn);
         let page = std::fs::read_to_string(folder().join("../filters.md")).unwrap();
+        let command = "\n```sh\ncargo run -p filters --example plots\n```\n";
+        assert!(
+            page.contains(command),
+            "filters.md does not say how they are made"
+        );
         for name in &drawn {
             assert!(
                 page.contains(&format!("](plots/{name}.svg)")),

@@ -111,6 +111,129 @@ fn mistakes_are_told_with_their_line_and_the_nearest_right_word() {
 }
 
 #[test]
+fn circles_are_told_with_every_node_on_the_way() {
+    let size = ", input_tuple_size = 1";
+    for (config, expected) in [
+        (
+            format!(
+                "trikfs = {{\n a = {{ src = 'trikfs:b'{size} }},\n b = {{ src = 'newest:c'{size}, poll_ms = 5 }},\n c = {{ src = 'trikfs:a'{size}, poll_ms = 5 }} }}"
+            ),
+            "2: a: the node reads itself in a circle: a -> b -> c -> a",
+        ),
+        (
+            format!(
+                "trikfs = {{ a = {{ src = 'trikfs:b/x'{size} }}, b = {{ src = '/dev/zero'{size}, attributes = {{ x = {{ src = 'trikfs:a'{size} }} }} }} }}"
+            ),
+            "1: a: the node reads itself in a circle: a -> b/x -> a",
+        ),
+        (
+            "trikfs = { a = { alias = 'b' }, b = { alias = 'a' } }".to_owned(),
+            "1: a: 'b' is a second name itself; name the node that it stands for",
+        ),
+        (
+            "local c = {} c[1] = c trikfs = { a = { src = '/dev/zero', converter = c } }"
+                .to_owned(),
+            "1: a/converter/1: the table holds itself",
+        ),
+    ] {
+        assert_eq!(problem(&config), expected, "{config}");
+    }
+}
+
+#[test]
+fn what_does_not_fit_into_a_chain_or_a_range_is_told_with_both_sides() {
+    let chain = |converter: &str, params: &str| {
+        format!(
+            "trikfs = {{ a = {{ src = '/dev/zero', input_tuple_size = 4, format = 'i16 x', params = {{ {params} }}, converter = {converter} }} }}"
+        )
+    };
+    for (config, expected) in [
+        // Sizes that do not fit in a chain.
+        (
+            chain(
+                "{ 'libtrikfs_filters.so#median3', 'libtrikfs_filters.so#scale' }",
+                "",
+            ),
+            "1: node a: libtrikfs_filters.so#scale: scale: tuples of 4 to 2 bytes; it needs equal sizes, a multiple of 4",
+        ),
+        (
+            chain(
+                "{ id_create(4), { converter = id_create(2), output_tuple_size = 3 } }",
+                "",
+            ),
+            "1: a: the last stage gives 3 bytes, but the tuple has 2",
+        ),
+        // Parameters out of range, not finite, mistyped.
+        (
+            chain("filter.moving_average{ window = 0 / 0 }", ""),
+            "1: moving_average: window must be a whole number from 1 to 256, not nan",
+        ),
+        (
+            chain("filter.low_pass{ alpha = 1 / 0 }", ""),
+            "1: low_pass: alpha must be from 3.0517578125e-05 to 1, not inf",
+        ),
+        (
+            chain("'libtrikfs_filters.so#identity'", "window = 0 / 0"),
+            "1: a: params: 'window' must be finite, not NaN",
+        ),
+        (
+            chain("id_create(2)", "gain = { 5, min = 9, max = 1 }"),
+            "1: a: params: 'gain': min, 9, is above max, 1",
+        ),
+        (
+            chain("filter.low_pass{ alhpa = 0.5 }", ""),
+            "1: low_pass: no parameter 'alhpa'",
+        ),
+    ] {
+        assert_eq!(problem(&config), expected, "{config}");
+    }
+    let mistyped = problem(&chain("filter.meddian3{}", ""));
+    assert!(
+        mistyped.starts_with("1: there is no filter.meddian3 in Lua; there are: ")
+            && mistyped.contains(" median3, ")
+            && mistyped.ends_with("'libtrikfs_filters.so#NAME'"),
+        "{mistyped}"
+    );
+}
+
+#[test]
+fn points_that_make_no_curve_are_refused_at_the_line_that_has_them() {
+    for (points, expected) in [
+        ("{ { 10, 700 } }", "there are 2 to 20 of them, not 1"),
+        (
+            "{ { 10, 700 }, { 20 } }",
+            "number 2 is no pair { distance, raw } of numbers",
+        ),
+        (
+            "{ { 10, 700 }, { 20, 0 / 0 } }",
+            "number 2 is no pair { distance, raw } of numbers",
+        ),
+        (
+            "{ { 10, 700 }, 5 }",
+            "number 2 is no pair { distance, raw } of numbers",
+        ),
+        ("5", "a list of { distance, raw } pairs, not a number"),
+        (
+            "{ { 10, 200 }, { 20, 700 } }",
+            "they do not lie on a curve that falls as the signal grows",
+        ),
+        (
+            "{ { 10, 200 }, { 10, 200 }, { 10, 200 } }",
+            "they do not lie on a curve that falls as the signal grows",
+        ),
+    ] {
+        let config = format!(
+            "local calibrate = include 'calibrate'\nlocal curve = calibrate.inverse({points})\ntrikfs = {{ a = {{ src = '/dev/zero' }} }}"
+        );
+        assert_eq!(
+            problem(&config),
+            format!("2: points: {expected}"),
+            "{points}"
+        );
+    }
+}
+
+#[test]
 fn files_that_cannot_be_read_are_named() {
     let board = Board::new();
     for (name, words) in [("absent.lua", "absent.lua: "), (".", ".: ")] {
@@ -132,7 +255,15 @@ fn files_that_cannot_be_read_are_named() {
 fn the_command_line_explains_itself() {
     let board = Board::new();
     let help = trikfs(&board, &["--help"], b"").good();
-    for word in ["mount", "check", "convert", "umount", "edit", "Exit status"] {
+    for word in [
+        "mount",
+        "check",
+        "convert",
+        "new-converter",
+        "umount",
+        "edit",
+        "Exit status",
+    ] {
         assert!(help.contains(word), "{word} is missing in:\n{help}");
     }
     assert!(
@@ -172,4 +303,13 @@ fn the_command_line_explains_itself() {
             .contains("trikfs")
     );
     assert!(trikfs(&board, &["man"], b"").good().starts_with(".ie"));
+    for (command, option) in [("convert", "keep\\-going"), ("new-converter", "lang")] {
+        let page = trikfs(&board, &["man", command], b"").good();
+        assert!(page.contains(&format!("\\-\\-{option}")), "{page}");
+        let words = trikfs(&board, &["completions", "bash"], b"").good();
+        assert!(
+            words.contains(&option.replace('\\', "")),
+            "{command}: {option}"
+        );
+    }
 }

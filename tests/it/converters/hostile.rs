@@ -148,6 +148,37 @@ assert stat_of(M + '/n/stats', 'faults') == 24
 }
 
 #[test]
+fn no_bits_of_a_float_harm_the_daemon_and_the_stage_that_fails_is_named() {
+    let board = Board::new();
+    board.fifo("in");
+    let Some(m) = mount_on(
+        board,
+        "trikfs = { n = { src = '$DIR/in', input_tuple_size = 8, output_tuple_size = 4, format = 'f32 x', converter = {
+          { converter = function(a_s, a, b_s, b)
+              local x = ba.f64(a, 0)
+              if type(x) ~= 'number' then error('bits became a ' .. type(x), 0) end
+              local ok, what = pcall(function() return x.y, #x, x() end)
+              if ok then error('a number was indexed', 0) end
+              ba.f32(b, 0, x)
+            end, output_tuple_size = 4 },
+          filter.low_pass_f32{} } } }",
+    ) else {
+        return;
+    };
+    m.python(
+        "fd, pipe = open_ro(M + '/n/device'), feed('in')
+for high in range(0xfff0, 0x10000):
+    for low in (1, 0x4141, 0xffffffffffff):
+        os.write(pipe, (high << 48 | low).to_bytes(8, 'little'))
+        expect('EIO', os.read, fd, 4)
+        assert text(M + '/n/fault') == 'converter: stage 2 of 2: low_pass: value 0: not a finite number\\n', text(M + '/n/fault')
+os.write(pipe, bytes([0, 0, 0, 0, 0, 0, 0xf8, 0x3f]))
+assert os.read(fd, 4) == bytes([0, 0, 0xc0, 0x3f])
+",
+    );
+}
+
+#[test]
 fn a_budget_of_ones_own_is_kept() {
     let Some(m) = mount(
         "local function busy() while true do end end

@@ -220,7 +220,11 @@ fn converters_can_be_tried_without_a_mount() {
     );
     let fault = convert(b"\x20\x21\xfe\x00");
     assert_eq!((fault.code(), fault.stdout.as_str()), (1, "A"));
-    assert!(fault.stderr.contains("tuple 2: no"), "{}", fault.stderr);
+    assert!(
+        fault.stderr.contains("tuple 2 at byte 2 (fe00): no"),
+        "{}",
+        fault.stderr
+    );
     let absent = crate::trikfs(&board, &["convert", "robot.lua", "m"], b"");
     assert_eq!(absent.code(), 1);
     assert!(

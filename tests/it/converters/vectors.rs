@@ -1,12 +1,12 @@
 //! The golden vectors of the shipped filters, through mounted pipes: the library and the Lua versions alike.
 
 use crate::mount_on;
+use converter::vectors::{self, Expected, Vectors};
 use harness::{Board, Mount};
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{Read, Write};
 use trikfs_filters::LIBRARY_ONLY;
-use trikfs_filters::vectors::{self, Expected, Vectors};
 
 /// Name of a file of vectors without its ending, and what it holds.
 fn golden() -> Vec<(String, Vectors)> {

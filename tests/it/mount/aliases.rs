@@ -151,7 +151,7 @@ fn a_second_name_of_nothing_is_refused() {
         ),
         (
             "b = { alias = 'c' }, c = { alias = 'a' }",
-            "b: there is no node 'c'",
+            "b: 'c' is a second name itself; name the node that it stands for",
         ),
         (
             "b = { alias = 'a', mode = 0444 }",

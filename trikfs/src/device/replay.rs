@@ -24,9 +24,11 @@ pub struct Replay {
 
 /// One line of a recording.
 #[derive(Debug, PartialEq, Eq)]
-struct Record {
-    time_us: u32,
-    bytes: Vec<u8>,
+pub struct Record {
+    /// From the start.
+    pub time_us: u32,
+    /// What came then, no whole tuples necessarily.
+    pub bytes: Vec<u8>,
 }
 
 impl Replay {
@@ -49,7 +51,7 @@ impl Replay {
                 path.display()
             )));
         }
-        let records = parse(path, &text)?;
+        let records = parse(path, &text).map_err(Error::NoDevice)?;
         Ok(Self {
             records,
             at: 0,
@@ -67,10 +69,14 @@ impl Replay {
     }
 }
 
-fn parse(path: &Path, text: &str) -> Result<Vec<Record>, Error> {
+/// The lines of a recording; `path` is for messages.
+///
+/// # Errors
+/// The first line that is none, with its number.
+pub fn parse(path: &Path, text: &str) -> Result<Vec<Record>, String> {
     let mut records: Vec<Record> = Vec::new();
     for (index, line) in text.lines().enumerate() {
-        let bad = |what: &str| Error::NoDevice(format!("{}:{}: {what}", path.display(), index + 1));
+        let bad = |what: &str| format!("{}:{}: {what}", path.display(), index + 1);
         let line = line.split('#').next().unwrap_or("").trim();
         let Some((time, hex)) = line.split_once(char::is_whitespace) else {
             if line.is_empty() {
@@ -183,7 +189,7 @@ mod tests {
         ] {
             assert_eq!(
                 parse(Path::new("r"), text),
-                Err(Error::NoDevice(reason.to_owned())),
+                Err(reason.to_owned()),
                 "{text}"
             );
         }

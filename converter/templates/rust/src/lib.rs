@@ -1,6 +1,7 @@
-//! Converters of my robot: the battery behind its voltage divider, calmed by a mean.
+//! The converter battery_mean: README.md says how it is built and tested.
 //!
-//! The low 10 bits of a little-endian 16-bit word are the voltage, 1023 stands for 13256 mV.
+//! The example to replace by your own: the battery of the TRIK controller behind its voltage divider.
+//! The low 10 bits of a little-endian 16-bit word are the voltage, and 1023 stands for 13256 mV.
 //! Each output is a little-endian 32-bit number of millivolts, the mean of `count` inputs; the inputs in between give none.
 
 #![forbid(unsafe_code)]
@@ -9,7 +10,7 @@ use converter::{Conversion, Converter, Fault, OpenInfo};
 use std::ffi::CStr;
 
 /// The state of one open file.
-struct BatteryMean {
+struct BatteryMeanState {
     /// Inputs for one output.
     count: u32,
     /// Inputs since the last output.
@@ -18,7 +19,7 @@ struct BatteryMean {
     sum: u32,
 }
 
-impl Converter for BatteryMean {
+impl Converter for BatteryMeanState {
     const DESCRIPTION: &'static CStr =
         c"voltage of the battery in millivolts, mean of `count` samples";
     const INPUT_SIZE: u32 = 2;
@@ -60,5 +61,55 @@ impl Converter for BatteryMean {
 }
 
 converter::export_converters! {
-    "battery_mean" => BatteryMean,
+    "battery_mean" => BatteryMeanState,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use converter::trial::{self, Trial};
+    use converter::vectors;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn the_vectors_hold() {
+        let vectors = vectors::parse(include_str!("../vectors.txt")).unwrap();
+        let (input_size, output_size) = (vectors.input_size, vectors.output_size);
+        let mut open = trial::opener::<BatteryMeanState>(input_size, output_size, &vectors.params);
+        trial::check_vectors(&vectors, &mut open).unwrap();
+    }
+
+    #[test]
+    fn whatever_comes_the_output_is_a_voltage_and_no_state_is_shared() {
+        let params = BTreeMap::from([("count".to_owned(), 2.0)]);
+        // SEED=5 cargo test repeats a failure.
+        let seed = trial::seed();
+        let trial = Trial {
+            input_size: 2,
+            output_size: 4,
+            tuples: 20_000,
+            seed,
+            recorded: &[],
+            // For floats there is trial::finite_f32.
+            check: &|output| match u32::from_le_bytes(output.try_into().unwrap()) {
+                0..=13256 => Ok(()),
+                millivolts => Err(format!("{millivolts} mV")),
+            },
+        };
+        let mut open = trial::opener::<BatteryMeanState>(2, 4, &params);
+        let report = trial::check_properties(&trial, &mut open).unwrap();
+        println!("seed {seed}: {report:?}");
+    }
+
+    #[test]
+    fn a_count_out_of_range_is_refused() {
+        for count in [0.0, 1001.0, f64::NAN] {
+            let params = BTreeMap::from([("count".to_owned(), count)]);
+            let refused = trial::opener::<BatteryMeanState>(2, 4, &params)().err();
+            assert_eq!(
+                refused.as_deref(),
+                Some("battery_mean: count must be from 1 to 1000")
+            );
+        }
+    }
 }

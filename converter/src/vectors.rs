@@ -1,6 +1,6 @@
-//! Test vectors of filters as text: one opening of one filter, inputs and what must become of them.
+//! Test vectors of converters as text: one opening of one converter, inputs and what must become of them.
 //!
-//! Owns the format of `tests/golden/filters/*.txt`, which every way to run a filter shares (Rust, C ABI, Lua, a mount):
+//! Owns the format, which every way to run a converter shares (Rust, C, Lua, `trikfs convert --vectors`, a mount):
 //!
 //! ```text
 //! # any comment
@@ -10,9 +10,9 @@
 //! 02000000 > consumed
 //! ff000000 > fault
 //! ```
-//! Bytes are hexadecimal. `params` may be empty or left out. The filter's name is the file's name up to its first dot, so
-//! that `scale.txt` and `scale.clamp.txt` test the same filter. Knows nothing of files; it is given the text.
+//! Bytes are hexadecimal. `params` may be empty or left out. Knows nothing of files; it is given the text.
 
+use crate::limits::{TUPLE_BYTES_MAX, VECTORS_BYTES_MAX};
 use std::collections::BTreeMap;
 
 /// One file of vectors.
@@ -55,6 +55,9 @@ pub enum Expected {
 /// # Errors
 /// `line N: reason` for the first line that is none.
 pub fn parse(text: &str) -> Result<Vectors, String> {
+    if text.len() > VECTORS_BYTES_MAX {
+        return Err(format!("line 0: more than {VECTORS_BYTES_MAX} bytes"));
+    }
     let mut vectors = Vectors::default();
     for (index, line) in text.lines().enumerate() {
         parse_line(&mut vectors, index + 1, line.trim())
@@ -72,6 +75,9 @@ fn parse_line(vectors: &mut Vectors, number: usize, line: &str) -> Result<(), St
         return Ok(());
     }
     if let Some((input, expected)) = line.split_once('>') {
+        if vectors.input_size == 0 {
+            return Err("the size must stand before the first vector".to_owned());
+        }
         let expected = match expected.trim() {
             "consumed" => Expected::Consumed,
             "fault" => Expected::Fault,
@@ -105,7 +111,17 @@ fn parse_line(vectors: &mut Vectors, number: usize, line: &str) -> Result<(), St
                     .and_then(|word| word.parse().ok())
                     .ok_or("a size is a number of bytes")
             };
-            (vectors.input_size, vectors.output_size) = (size()?, size()?);
+            let sizes = (size()?, size()?);
+            if [sizes.0, sizes.1]
+                .iter()
+                .any(|size| !(1..=TUPLE_BYTES_MAX).contains(size))
+            {
+                return Err(format!("a tuple has 1 to {TUPLE_BYTES_MAX} bytes"));
+            }
+            if !vectors.steps.is_empty() {
+                return Err("the size stands before the first vector".to_owned());
+            }
+            (vectors.input_size, vectors.output_size) = sizes;
         }
         _ => return Err("neither params, size nor a vector".to_owned()),
     }
@@ -165,6 +181,18 @@ mod tests {
             "line 2: '0000' is not 1 bytes in hexadecimal"
         );
         assert_eq!(refused("size 1"), "line 1: a size is a number of bytes");
+        assert_eq!(
+            refused("size 1 65537"),
+            "line 1: a tuple has 1 to 65536 bytes"
+        );
+        assert_eq!(
+            refused("00 > 00"),
+            "line 1: the size must stand before the first vector"
+        );
+        assert_eq!(
+            refused("size 1 1\n00 > 00\nsize 2 2"),
+            "line 3: the size stands before the first vector"
+        );
         assert_eq!(refused("params a"), "line 1: 'a' is not name=number");
         assert_eq!(
             refused("hello"),

@@ -1,15 +1,9 @@
 /*
- * A library of the versioned form, to copy: a converter with a name, a parameter and a state for each open file.
- * Build it with one command (-I names the folder of trikfs_converter.h; a copy beside this file does as well, with -I.):
+ * The converter battery_mean: README.md says how it is built and tested, trikfs_converter.h what it may rely on.
  *
- *     cc -std=c99 -O2 -Wall -Wextra -fPIC -shared -I../../include -o libversioned.so versioned.c
- *
- * and name it in a configuration (robot.lua beside this file does):
- *     converter = 'libversioned.so', params = { count = 4 }
- * or, when a library holds several:
- *     converter = 'libversioned.so#battery_mean'
- *
- * The same battery as in plain.c, calmed: each output is the mean of `count` inputs, and the inputs in between give none.
+ * The example to replace by your own: the battery of the TRIK controller behind its voltage divider. The low 10 bits of
+ * a little-endian 16-bit word are the voltage, and 1023 stands for 13256 mV. The result is a little-endian 32-bit number
+ * of millivolts: each output is the mean of `count` inputs, and the inputs in between give none.
  */
 #include "trikfs_converter.h"
 
@@ -22,7 +16,7 @@ enum { COUNT_DEFAULT = 4, COUNT_MAX = 1000 };
 enum { BAD_COUNT = 2, BAD_SIZES = 3, NO_MEMORY = 4, BAD_WORD = 5 };
 
 /* The state of one open file. */
-struct battery_mean {
+struct battery_mean_state {
   uint32_t count; /* inputs for one output */
   uint32_t taken; /* inputs since the last output */
   uint32_t sum;   /* of their raw values: at most 1000 * 1023 */
@@ -31,7 +25,7 @@ struct battery_mean {
 static int battery_mean_open(const trikfs_open_info *info, void **state)
 {
   double count = COUNT_DEFAULT;
-  struct battery_mean *mean;
+  struct battery_mean_state *mean;
   uint32_t i;
 
   if (info->input_size != 2 || info->output_size != 4)
@@ -52,7 +46,7 @@ static int battery_mean_open(const trikfs_open_info *info, void **state)
 
 static int battery_mean_convert(void *state, const uint8_t *in, uint32_t in_size, uint8_t *out, uint32_t out_size)
 {
-  struct battery_mean *mean = state;
+  struct battery_mean_state *mean = state;
   uint32_t raw = in[0] | (uint32_t)in[1] << 8;
   uint32_t millivolts;
 
@@ -97,7 +91,7 @@ static const char *battery_mean_explain(void *state, int code)
   }
 }
 
-static const trikfs_converter battery_mean = {
+static const trikfs_converter battery_mean_converter = {
   TRIKFS_ABI_VERSION,
   sizeof(trikfs_converter),
   "battery_mean",
@@ -112,7 +106,7 @@ static const trikfs_converter battery_mean = {
 
 /* One line for each converter of the library. */
 static const trikfs_converter *const converters[] = {
-  &battery_mean,
+  &battery_mean_converter,
 };
 
 static const trikfs_library library = {
