@@ -124,6 +124,16 @@ impl Drop for Directory {
     }
 }
 
+/// Removes what killed publishers of this user left anywhere in shared memory, as far as it can be removed.
+pub fn sweep(shared_memory: &Path) {
+    let entries = std::fs::read_dir(shared_memory).into_iter().flatten();
+    for entry in entries.flatten() {
+        if entry.file_name().as_bytes().starts_with(b"trikfs+") {
+            remove_left(&entry.path());
+        }
+    }
+}
+
 /// Removes what a killed publisher left. False: there is nothing, or it is not ours, or its publisher lives.
 pub fn remove_left(path: &Path) -> bool {
     if !path.exists() {
