@@ -13,7 +13,7 @@ mod reader;
 mod writer;
 
 pub use reader::{Event, Reader, Step};
-pub use writer::Writer;
+pub use writer::{Rights, Writer};
 
 #[cfg(test)]
 mod tests;

@@ -2,13 +2,18 @@
 
 use crate::layout::{self, HEADER_BYTES, Layout};
 use crate::place::{self, Directory};
-use crate::{Event, Reader, Step, Writer};
+use crate::{Event, Reader, Rights, Step, Writer};
 use proptest::prelude::*;
 use std::fs::File;
 use std::io::{self, ErrorKind};
 use std::os::unix::fs::{FileExt, PermissionsExt, symlink};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+
+const READABLE: Rights = Rights {
+    mode: 0o444,
+    group: None,
+};
 
 /// A directory for one test, gone with it.
 struct Folder(PathBuf);
@@ -32,7 +37,7 @@ impl Folder {
 
     fn ring(&self, tuple_bytes: usize) -> (Writer, Reader) {
         let path = self.path("ring");
-        let writer = Writer::create(&path, tuple_bytes, 0o444).unwrap();
+        let writer = Writer::create(&path, tuple_bytes, READABLE).unwrap();
         (writer, Reader::open_file(&path).unwrap())
     }
 }
@@ -199,8 +204,8 @@ fn a_ring_can_be_read_by_all_who_may_and_written_by_nobody() {
         .unwrap()
         .permissions()
         .mode();
-    assert_eq!(mode & 0o7777, 0o444);
-    let again = Writer::create(&folder.path("ring"), 4, 0o444).unwrap_err();
+    assert_eq!(mode & 0o7777, READABLE.mode);
+    let again = Writer::create(&folder.path("ring"), 4, READABLE).unwrap_err();
     assert_eq!(again.kind(), ErrorKind::AlreadyExists);
 }
 

@@ -8,9 +8,18 @@ use crate::map::Map;
 use nix::fcntl::posix_fallocate;
 use std::fs::{File, Permissions};
 use std::io;
-use std::os::unix::fs::{OpenOptionsExt, PermissionsExt};
+use std::os::unix::fs::{OpenOptionsExt, PermissionsExt, fchown};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{Ordering, fence};
+
+/// Who may open a ring. Its owner is always the publisher: an owner could shorten the file under it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Rights {
+    /// Permission bits.
+    pub mode: u32,
+    /// Group of the file, if not the publisher's.
+    pub group: Option<u32>,
+}
 
 /// One published node. Dropping it tells the readers and removes the file.
 #[derive(Debug)]
@@ -22,13 +31,13 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// Makes a ring at a path where nothing is; `mode` are the rights of its file.
+    /// Makes a ring at a path where nothing is, for a file with these rights.
     ///
     /// All of its memory is taken now, so that publishing cannot fail later.
     ///
     /// # Errors
     /// There is something, no memory is left, or the tuples are too large.
-    pub fn create(path: &Path, tuple_bytes: usize, mode: u32) -> io::Result<Self> {
+    pub fn create(path: &Path, tuple_bytes: usize, rights: Rights) -> io::Result<Self> {
         let layout = Layout::new(tuple_bytes)?;
         let file = File::options()
             .read(true)
@@ -36,7 +45,7 @@ impl Writer {
             .create_new(true)
             .mode(0o600)
             .open(path)?;
-        let made = Self::fill(&file, layout, mode);
+        let made = Self::fill(&file, layout, rights);
         let map = made.inspect_err(|_| {
             let _ = std::fs::remove_file(path);
         })?;
@@ -48,7 +57,7 @@ impl Writer {
         })
     }
 
-    fn fill(file: &File, layout: Layout, mode: u32) -> io::Result<Map> {
+    fn fill(file: &File, layout: Layout, rights: Rights) -> io::Result<Map> {
         let bytes = layout.bytes();
         let length = i64::try_from(bytes).map_err(io::Error::other)?;
         posix_fallocate(file, 0, length)?;
@@ -63,7 +72,10 @@ impl Writer {
         // A reader that comes before this finds no ring.
         fence(Ordering::Release);
         map.copy_in(0, &layout::MAGIC);
-        file.set_permissions(Permissions::from_mode(mode))?;
+        if rights.group.is_some() {
+            fchown(file, None, rights.group)?;
+        }
+        file.set_permissions(Permissions::from_mode(rights.mode))?;
         Ok(map)
     }
 

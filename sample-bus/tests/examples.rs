@@ -1,9 +1,15 @@
 //! The examples, run as a newcomer would run them: each follows a ring that this test publishes.
 
+use sample_bus::layout;
 use sample_bus::place::{self, Directory};
-use sample_bus::{Event, Writer};
+use sample_bus::{Rights, Writer};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+
+const READABLE: Rights = Rights {
+    mode: 0o444,
+    group: None,
+};
 
 fn folder() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -27,7 +33,7 @@ impl Stage {
         let file = path.join(place::file_name("sensors/A1").unwrap());
         Self {
             mountpoint,
-            writer: Some(Writer::create(&file, 4, 0o444).unwrap()),
+            writer: Some(Writer::create(&file, 4, READABLE).unwrap()),
             _directory: directory,
         }
     }
@@ -140,6 +146,94 @@ fn c() {
     std::fs::remove_file(program).unwrap();
 }
 
+/// Asserts in C that header, manual and layout say the same.
+fn comparisons() -> String {
+    let mut program = String::new();
+    let rings = [
+        "header_bytes",
+        "slot_bytes",
+        "slots",
+        "tuple_bytes",
+        "stale_ms",
+        "state",
+        "newest",
+        "reserved",
+    ];
+    let slots = ["begin", "end", "size", "error", "time_ns", "reserved"];
+    for (of, fields) in [("ring", &rings[..]), ("slot", &slots[..])] {
+        for field in fields {
+            program.push_str(&format!(
+                "_Static_assert(offsetof(struct trikfs_{of}, {field}) == offsetof(struct manual_{of}, {field}), \"{field}\");\n"
+            ));
+        }
+        program.push_str(&format!(
+            "_Static_assert(sizeof(struct trikfs_{of}) == sizeof(struct manual_{of}), \"{of}\");\n"
+        ));
+    }
+    let offsets = [
+        ("ring, slot_bytes", layout::AT_SLOT_BYTES),
+        ("ring, slots", layout::AT_SLOTS),
+        ("ring, tuple_bytes", layout::AT_TUPLE_BYTES),
+        ("ring, stale_ms", layout::AT_STALE_MS),
+        ("ring, state", layout::AT_STATE),
+        ("ring, newest", layout::AT_NEWEST),
+        ("slot, end", layout::AT_END),
+        ("slot, size", layout::AT_SIZE),
+    ];
+    for (field, at) in offsets {
+        program.push_str(&format!(
+            "_Static_assert(offsetof(struct trikfs_{field}) == {at}, \"{field}\");\n"
+        ));
+    }
+    program
+}
+
+/// The C of the manual compiles, and its structures are those of the header.
+#[test]
+fn the_manual() {
+    let manual = folder().join("../docs/user/sample-bus.md");
+    let manual = std::fs::read_to_string(manual).unwrap();
+    let parts = manual.split("```c\n").skip(1);
+    let fences: Vec<&str> = parts.filter_map(|part| part.split("```").next()).collect();
+    let [first, in_place, layout] = fences.as_slice() else {
+        panic!("{} pieces of C", fences.len());
+    };
+    let first = first.replace("#include \"trikfs_samples.h\"\n", "");
+    let layout = layout.replace("struct trikfs_", "struct manual_");
+    let mut program = format!(
+        "#include \"trikfs_samples.h\"
+         {layout}
+         #include <stddef.h>
+         static unsigned mean_of(const void *at, uint32_t size) {{ return at != NULL && size; }}
+         static void use(unsigned number) {{ printf(\"%u\", number); }}
+         int main(void) {{ {first} {in_place} return 0; }}\n"
+    );
+    program.push_str(&comparisons());
+    let source = std::env::temp_dir().join(format!("manual-{}.c", std::process::id()));
+    std::fs::write(&source, &program).unwrap();
+    let mut compiler = Command::new(std::env::var("CC").unwrap_or_else(|_| "cc".to_owned()));
+    compiler.args([
+        "-std=c11",
+        "-D_GNU_SOURCE",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "-fsyntax-only",
+        "-I",
+    ]);
+    let compiled = compiler
+        .arg(folder().join("include"))
+        .arg(&source)
+        .output()
+        .unwrap();
+    std::fs::remove_file(source).unwrap();
+    assert!(
+        compiled.status.success(),
+        "{}\n{program}",
+        String::from_utf8_lossy(&compiled.stderr)
+    );
+}
+
 #[test]
 fn the_header_is_good_for_cpp() {
     let mut compiler = Command::new(std::env::var("CXX").unwrap_or_else(|_| "c++".to_owned()));
@@ -170,32 +264,4 @@ fn python() {
     let mut command = Command::new("python3");
     command.arg(folder().join("examples/follow.py"));
     check("python", command);
-}
-
-#[test]
-fn the_c_header_has_the_sizes_of_the_layout() {
-    let header = std::fs::read_to_string(folder().join("include/trikfs_samples.h")).unwrap();
-    let field = |name: &str| {
-        header
-            .find(&format!(" {name};"))
-            .unwrap_or_else(|| panic!("no {name}"))
-    };
-    // In the order of their offsets.
-    let ring = [
-        "header_bytes",
-        "slot_bytes",
-        "slots",
-        "tuple_bytes",
-        "stale_ms",
-        "state",
-        "newest",
-    ];
-    assert!(ring.windows(2).all(|pair| field(pair[0]) < field(pair[1])));
-    assert!(header.contains(std::str::from_utf8(&sample_bus::layout::MAGIC).unwrap()));
-    let event = Event {
-        sequence: 0,
-        time_ns: u64::MAX,
-        errno: 0,
-    };
-    assert_eq!(event.age_ns(), 0);
 }

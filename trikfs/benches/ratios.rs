@@ -15,11 +15,12 @@ mod ratios {
     pub mod peers;
     pub mod reads;
     pub mod reload;
+    pub mod samples;
     pub mod torn;
 }
 
 use ratios::measure::Plan;
-use ratios::{bulk, bus, events, newest, open, peers, reads, reload, torn};
+use ratios::{bulk, bus, events, newest, open, peers, reads, reload, samples, torn};
 
 /// A section's name and what it runs.
 type Section = (&'static str, fn(&Plan) -> Outcome);
@@ -27,7 +28,7 @@ type Section = (&'static str, fn(&Plan) -> Outcome);
 /// Benchmarks fail with a sentence.
 type Outcome = Result<(), String>;
 
-const SECTIONS: [Section; 7] = [
+const SECTIONS: [Section; 8] = [
     ("reads", reads::run),
     ("newest", newest::run),
     ("events", events::run),
@@ -35,6 +36,7 @@ const SECTIONS: [Section; 7] = [
     ("reload", reload::run),
     ("bulk", bulk::run),
     ("bus", bus::run),
+    ("samples", samples::run),
 ];
 
 fn main() {

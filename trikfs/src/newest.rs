@@ -127,12 +127,9 @@ impl Newest {
     }
 
     fn join_bus(&self, node: &Node) {
-        let size = node.description.output_tuple_size;
-        let mode = node.description.mode.into();
-        let path = node.path();
-        match node.engine.samples.ring(path, size, mode) {
+        match node.engine.samples.ring(&node.description) {
             Ok(ring) => lock(&self.latch).ring = ring,
-            Err(reason) => node.engine.log.line(&format!("{path}: {reason}")),
+            Err(reason) => (node.engine.log).line(&format!("{}: {reason}", node.path())),
         }
         self.tell_bus_of_period(node);
     }

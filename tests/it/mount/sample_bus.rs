@@ -1,6 +1,6 @@
 //! Samples in shared memory: what subscribers see of samples, failures, reloads and deaths, and who may look.
 
-use crate::{mount, mount_on, mount_with, program};
+use crate::{mount, mount_with, program};
 use harness::{Board, Mount, eventually, processes};
 use nix::sys::signal::Signal;
 use sample_bus::place::{self, SHARED_MEMORY};

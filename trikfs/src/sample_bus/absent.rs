@@ -3,6 +3,7 @@
 use super::Readers;
 use crate::clock::Stamp;
 use crate::errno::Error;
+use config::description::NodeDescription;
 use std::path::Path;
 use std::time::Duration;
 
@@ -34,7 +35,7 @@ impl SampleBus {
     ///
     /// # Errors
     /// None.
-    pub fn ring(&self, _path: &str, _size: usize, _mode: u32) -> Result<Option<Ring>, String> {
+    pub fn ring(&self, _description: &NodeDescription) -> Result<Option<Ring>, String> {
         Ok(None)
     }
 }

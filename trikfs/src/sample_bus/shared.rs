@@ -8,8 +8,9 @@ use crate::clock::Stamp;
 use crate::errno::Error;
 use crate::events::lock;
 use crate::limits;
-use sample_bus::Writer;
+use config::description::NodeDescription;
 use sample_bus::place::{self, Directory, SHARED_MEMORY};
+use sample_bus::{Rights, Writer};
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
@@ -79,20 +80,25 @@ impl SampleBus {
             .map_or_else(String::new, |line| format!("{line}\n"))
     }
 
-    /// A ring for a node with tuples of one size and files of one mode. None: the mount has no sample bus.
+    /// A ring for a node, with the rights of its files. None: the mount has no sample bus.
     ///
     /// # Errors
     /// A line that says why this node has none.
-    pub fn ring(&self, path: &str, tuple_bytes: usize, mode: u32) -> Result<Option<Ring>, String> {
+    pub fn ring(&self, description: &NodeDescription) -> Result<Option<Ring>, String> {
         let place = lock(&self.place);
         let Some(place) = place.as_ref() else {
             return Ok(None);
         };
-        let mode = match place.readers {
-            Readers::Owner => mode & 0o400,
-            Readers::All => mode & 0o444,
+        let shown = match place.readers {
+            Readers::Owner => 0o400,
+            Readers::All => 0o444,
         };
-        let ring = self.make(place, path, tuple_bytes, mode);
+        let rights = Rights {
+            mode: u32::from(description.mode) & shown,
+            group: description.group,
+        };
+        let size = description.output_tuple_size;
+        let ring = self.make(place, &description.path, size, rights);
         ring.map(Some).map_err(|error| {
             format!("sample bus: not published: {error}; the node's files are not affected")
         })
@@ -103,7 +109,7 @@ impl SampleBus {
         place: &Place,
         path: &str,
         tuple_bytes: usize,
-        mode: u32,
+        rights: Rights,
     ) -> std::io::Result<Ring> {
         let file = place.directory.path().join(place::file_name(path)?);
         let bytes = Writer::bytes_for(tuple_bytes)?;
@@ -114,7 +120,7 @@ impl SampleBus {
                 limits::SAMPLE_BUS_BYTES_MAX >> 20
             )))
         } else {
-            Writer::create(&file, tuple_bytes, mode).map_err(|error| {
+            Writer::create(&file, tuple_bytes, rights).map_err(|error| {
                 std::io::Error::other(format!("{} ({bytes} bytes): {error}", file.display()))
             })
         };
@@ -169,23 +175,26 @@ mod tests {
     fn memory_is_given_back_and_its_limit_names_itself() {
         let scratch = Scratch::new();
         let bus = SampleBus::default();
-        assert!(bus.ring("a", 4, 0o444).unwrap().is_none());
         let directory = Directory::take(&scratch.path("trikfs+test"), 0o700).unwrap();
         let readers = Readers::Owner;
-        *lock(&bus.place) = Some(Place { directory, readers });
+        let place = Place { directory, readers };
+        let rights = Rights {
+            mode: 0o400,
+            group: None,
+        };
         let large = 4 << 20;
-        let rings: Vec<_> = (0..3)
-            .map(|number| bus.ring(&format!("n{number}"), large, 0o444).unwrap())
-            .collect();
-        let refused = bus.ring("n3", large, 0o444).err().unwrap();
+        let make = |name: &str, size| bus.make(&place, name, size, rights);
+        let rings: Vec<_> = ["n0", "n1", "n2"]
+            .map(|name| make(name, large).unwrap())
+            .into();
+        let refused = make("n3", large).err().unwrap().to_string();
         assert!(refused.contains("more than 64 MiB"), "{refused}");
         drop(rings);
         assert_eq!(bus.used_bytes.load(Ordering::Relaxed), 0);
-        let ring = bus.ring("n3", large, 0o444).unwrap();
-        let again = bus.ring("n3", 4, 0o444).err().unwrap();
+        let _ring = make("n3", large).unwrap();
+        let again = make("n3", 4).err().unwrap().to_string();
         assert!(again.contains("n3"), "{again}");
-        drop(ring);
-        bus.close();
+        drop(place);
         assert!(!scratch.path("trikfs+test").exists());
     }
 }
