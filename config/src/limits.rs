@@ -4,8 +4,8 @@
 
 /// Bytes of one configuration file, and of everything written to the `config` node at once.
 pub const CONFIG_BYTES_MAX: usize = 1 << 20;
-/// Bytes of one tuple, before or after a converter.
-pub const TUPLE_BYTES_MAX: usize = 64 << 10;
+/// Bytes of one tuple, before or after a converter; a camera's picture is the largest.
+pub const TUPLE_BYTES_MAX: usize = 4 << 20;
 /// Nodes and attributes in one configuration.
 pub const NODES_MAX: usize = 4096;
 /// Depth of nested groups.

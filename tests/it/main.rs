@@ -99,6 +99,8 @@ mod mount {
     mod replay;
     /// Every kind of actuator comes to rest.
     mod rest;
+    /// Samples in shared memory.
+    mod sample_bus;
     /// The ready line, the background, the service manager, refusals.
     mod start;
     /// One line per node.

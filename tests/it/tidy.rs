@@ -3,22 +3,24 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-const CRATES: [&str; 7] = [
+const CRATES: [&str; 8] = [
     "config",
     "converter",
     "filters",
+    "sample-bus",
     "sim",
     "tests",
     "trik",
     "trikfs",
 ];
 /// Files that may hold `unsafe`, as beginnings of paths.
-const UNSAFE: [&str; 10] = [
+const UNSAFE: [&str; 11] = [
     "config/src/vm",
     "config/src/watchdog",
     "converter/src/abi",
     "converter/src/export",
     "trikfs/src/command/signals",
+    "sample-bus/src/map",
     "trikfs/src/convert/shared",
     "trikfs/src/device/evdev/present",
     "trikfs/src/device/i2c/adapter",

@@ -15,12 +15,13 @@ mod ratios {
     pub mod peers;
     pub mod reads;
     pub mod reload;
+    pub mod samples;
     pub mod together;
     pub mod torn;
 }
 
 use ratios::measure::Plan;
-use ratios::{bulk, bus, events, newest, open, peers, reads, reload, together, torn};
+use ratios::{bulk, bus, events, newest, open, peers, reads, reload, samples, together, torn};
 
 /// A section's name and what it runs.
 type Section = (&'static str, fn(&Plan) -> Outcome);
@@ -28,7 +29,7 @@ type Section = (&'static str, fn(&Plan) -> Outcome);
 /// Benchmarks fail with a sentence.
 type Outcome = Result<(), String>;
 
-const SECTIONS: [Section; 8] = [
+const SECTIONS: [Section; 10] = [
     ("reads", reads::run),
     ("newest", newest::run),
     ("events", events::run),
@@ -37,6 +38,7 @@ const SECTIONS: [Section; 8] = [
     ("bulk", bulk::run),
     ("together", together::run),
     ("bus", bus::run),
+    ("samples", samples::run),
 ];
 
 fn main() {

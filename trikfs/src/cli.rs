@@ -114,6 +114,9 @@ struct TreeArgs {
     /// How to speak to the kernel.
     #[arg(long, value_name = "NAME", value_enum, default_value_t = TransportName::Native)]
     transport: TransportName,
+    /// Do not put samples into shared memory.
+    #[arg(long)]
+    no_sample_bus: bool,
 }
 
 /// A transport as it is called here.
@@ -176,6 +179,8 @@ struct ServeArgs {
     handover: Handover,
     #[arg(long)]
     detached: bool,
+    #[arg(long)]
+    allow_other: bool,
     mountpoint: PathBuf,
 }
 
@@ -355,6 +360,7 @@ impl TreeArgs {
         if let Some(name) = self.transport.to_possible_value() {
             option("--transport", Path::new(name.get_name()));
         }
+        arguments.extend(self.no_sample_bus.then(|| "--no-sample-bus".into()));
         arguments
     }
 }

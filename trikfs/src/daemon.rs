@@ -10,7 +10,9 @@ use crate::errno::Error;
 use crate::files::control::rest_all;
 use crate::fs::{Forest, Fs, OpenFiles};
 use crate::guardian::ledger::Ledger;
+use crate::node::Node;
 use crate::reload::{Reloader, Setup};
+use crate::sample_bus::Readers;
 use crate::transport::Operations;
 use crate::tree::{Owner, Tree};
 use config::load::Loader;
@@ -54,6 +56,8 @@ pub struct Options {
     pub owner: Owner,
     /// Which transport serves the kernel.
     pub transport: Transport,
+    /// Who may read the samples in shared memory; None: there are none.
+    pub sample_bus: Option<Readers>,
     /// What the guardian must know.
     pub ledger: Option<Ledger>,
     /// Called when the first configuration is in force, with its number of nodes.
@@ -118,6 +122,7 @@ pub fn run(options: Options) -> Result<(), String> {
         .log
         .line(&format!("mounted on {}", options.mountpoint.display()));
 
+    engine.open_sample_bus(&options.mountpoint, options.sample_bus);
     let loaded = first_configuration(options.config.as_deref(), options.in_force);
     let applied = loaded.and_then(|(name, bytes)| {
         let applied = reloader.apply(&name, bytes, &options.progress);
@@ -136,9 +141,18 @@ pub fn run(options: Options) -> Result<(), String> {
     if let Err(error) = rest_all(forest.tree().nodes()) {
         eprintln!("trikfs: an actuator could not be brought to rest: {error}");
     }
+    leave_bus(&engine, forest.tree().nodes());
     engine.refuse_all(&Error::ShuttingDown);
     engine.stop();
     outcome
+}
+
+/// Readers of shared memory see the end, whoever still holds a node.
+fn leave_bus(engine: &Engine, nodes: &[Arc<Node>]) {
+    for node in nodes {
+        node.newest.leave_bus();
+    }
+    engine.samples.close();
 }
 
 /// Every thread started from here on leaves these signals to the one that waits for them.

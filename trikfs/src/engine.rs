@@ -9,6 +9,7 @@ use crate::events::{Poller, Schedule, lock};
 use crate::limits;
 use crate::log::Log;
 use crate::programs::Programs;
+use crate::sample_bus::{Readers, SampleBus};
 use crate::transport::{Answer, Kernel, PollHandle, RequestId};
 use std::collections::{HashMap, HashSet};
 use std::io;
@@ -28,6 +29,8 @@ pub struct Engine {
     pub programs: Arc<Programs>,
     /// The I2C buses.
     pub buses: Arc<Buses>,
+    /// Samples in shared memory, once the mount has a place for them.
+    pub samples: SampleBus,
     /// Times of sampling on one bus each, by the path of the bus.
     bus_schedules: Mutex<HashMap<PathBuf, Arc<Schedule>>>,
     kernel: OnceLock<Arc<dyn Kernel>>,
@@ -44,6 +47,7 @@ impl Engine {
             programs: Programs::new(log.clone()),
             log,
             buses: Arc::default(),
+            samples: Default::default(),
             bus_schedules: Mutex::default(),
             kernel: OnceLock::new(),
             parked: Mutex::default(),
@@ -64,6 +68,15 @@ impl Engine {
             return schedule;
         }
         self.schedule.clone()
+    }
+
+    /// Takes a place in shared memory for the samples, if there are to be any; a failure is told and disturbs nobody.
+    pub fn open_sample_bus(&self, mountpoint: &Path, readers: Option<Readers>) {
+        if let Some(readers) = readers
+            && let Err(reason) = self.samples.open(mountpoint, readers)
+        {
+            self.log.line(&reason);
+        }
     }
 
     /// The mount is live; later calls are ignored.

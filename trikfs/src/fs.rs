@@ -208,12 +208,14 @@ impl Fs {
         Some(match (kind, node) {
             (Kind::Status, _) => {
                 let (reloader, forest) = (self.reloader.clone(), self.forest.clone());
+                let engine = self.engine.clone();
                 Box::new(move || {
                     let lines = status_lines(forest.tree().nodes());
                     format!(
-                        "{}\n{}{lines}",
+                        "{}\n{}{}{lines}",
                         reloader.result_line(),
-                        reloader.setup_lines()
+                        reloader.setup_lines(),
+                        engine.samples.status_line()
                     )
                 })
             }

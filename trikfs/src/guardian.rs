@@ -18,6 +18,7 @@ mod watch;
 
 use crate::limits;
 use crate::mount::{self, MountOptions};
+use crate::sample_bus;
 use crate::transport::native::invalidate_message;
 use child::Child;
 use ledger::Ledger;
@@ -110,6 +111,7 @@ fn clean_up(ledger: &Ledger, mounted: &Mounted, device: OwnedFd) {
     {
         complain(&format!("unmounting {}: {error}", mounted.path().display()));
     }
+    sample_bus::remove_left(mounted.path());
     // The next daemon begins with nothing to undo.
     if let Err(error) = ledger.set_rest(&[]).and_then(|()| ledger.set_cached(&[])) {
         complain(&format!("ledger: {error}"));

@@ -355,7 +355,8 @@ impl Subscription {
     }
 
     fn push(&self, tuples: &[u8]) {
-        let limit = limits::QUEUE_TUPLES * self.tuple_size;
+        let most = (limits::QUEUE_BYTES / self.tuple_size).clamp(1, limits::QUEUE_TUPLES);
+        let limit = most * self.tuple_size;
         let mut queue = lock(&self.queue);
         queue.ended = false;
         queue.bytes.extend(tuples);

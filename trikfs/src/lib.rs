@@ -34,6 +34,7 @@ pub mod programs;
 pub mod reader;
 pub mod regulation;
 pub mod reload;
+pub mod sample_bus;
 #[cfg(test)]
 mod scratch;
 pub mod setup;

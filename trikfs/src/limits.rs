@@ -33,12 +33,16 @@ pub const SETUP_OUTPUT_BYTES: usize = 512;
 pub const OPEN_FILES_MAX: usize = 65_536;
 /// Tuples that a slow reader of a shared source may be behind before the oldest are dropped.
 pub const QUEUE_TUPLES: usize = 256;
+/// Bytes of such tuples, if fewer than [`QUEUE_TUPLES`] take them.
+pub const QUEUE_BYTES: usize = 16 << 20;
 /// Bytes read from a source at once.
 pub const READ_BYTES: usize = 128 << 10;
 /// Tuples that one request converts without getting any output before it gives way.
 pub const CONSUMED_TUPLES_MAX: usize = 4_096;
 /// Rounds of reading one shared source before other events get their turn.
 pub const PUMP_ROUNDS: usize = 64;
+/// Bytes of shared memory that the sample bus of one mount takes.
+pub const SAMPLE_BUS_BYTES_MAX: usize = 64 << 20;
 /// Bytes of the log that are kept.
 pub const LOG_BYTES: usize = 64 << 10;
 /// Bytes of one recording.

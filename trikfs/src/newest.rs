@@ -15,6 +15,7 @@ use crate::events::{Due, Ready, lock};
 use crate::limits;
 use crate::node::{Feed, Node};
 use crate::reader::Reader;
+use crate::sample_bus::Ring;
 use crate::state_reader::StateReader;
 use crate::transport::RequestId;
 use config::description::Pace;
@@ -44,6 +45,8 @@ struct Latch {
     error: Option<Error>,
     /// Counts samples and failures; a reader that has seen this number has nothing new to read.
     events: u32,
+    /// The same for programs that read shared memory.
+    ring: Option<Ring>,
 }
 
 #[derive(Default)]
@@ -88,6 +91,7 @@ impl Newest {
             stamp: None,
             error: None,
             events: 0,
+            ring: None,
         };
         Self {
             node,
@@ -106,6 +110,9 @@ impl Newest {
         let Some(node) = self.node.upgrade() else {
             return;
         };
+        if node.description.pace != Pace::OnRead {
+            self.join_bus(&node);
+        }
         match node.description.pace {
             Pace::OnRead => {}
             Pace::Every { .. } => self.schedule_sampling(&node),
@@ -117,6 +124,27 @@ impl Newest {
                 lock(&self.jobs).push(me);
             }
         }
+    }
+
+    fn join_bus(&self, node: &Node) {
+        match node.engine.samples.ring(&node.description) {
+            Ok(ring) => lock(&self.latch).ring = ring,
+            Err(reason) => (node.engine.log).line(&format!("{}: {reason}", node.path())),
+        }
+        self.tell_bus_of_period(node);
+    }
+
+    fn tell_bus_of_period(&self, node: &Node) {
+        if let Pace::Every { .. } = node.description.pace
+            && let Some(ring) = &mut lock(&self.latch).ring
+        {
+            ring.set_too_old(too_old(node));
+        }
+    }
+
+    /// Ends the node's part of the sample bus.
+    pub fn leave_bus(&self) {
+        lock(&self.latch).ring = None;
     }
 
     fn schedule_sampling(&self, node: &Arc<Node>) {
@@ -138,6 +166,7 @@ impl Newest {
     /// The sampling period was changed.
     pub fn period_changed(&self) {
         if let Some(node) = self.node.upgrade() {
+            self.tell_bus_of_period(&node);
             self.schedule_sampling(&node);
         }
     }
@@ -145,6 +174,7 @@ impl Newest {
     /// Stops sampling and answers everybody who waits with ESTALE.
     pub fn stop(&self) {
         lock(&self.jobs).clear();
+        self.leave_bus();
         for waiting in std::mem::take(&mut *lock(&self.waiting)) {
             self.finish(&waiting, Some(Error::Stale));
         }
@@ -425,9 +455,13 @@ impl Newest {
         {
             let mut latch = lock(&self.latch);
             latch.tuple.copy_from_slice(tuple);
-            latch.stamp = Some(Stamp::now());
+            let stamp = Stamp::now();
+            latch.stamp = Some(stamp);
             latch.error = None;
             latch.events = latch.events.wrapping_add(1);
+            if let Some(ring) = &mut latch.ring {
+                ring.publish(stamp, tuple);
+            }
         }
         node.stats.samples.add(1);
         self.page.fill(node, tuple);
@@ -444,6 +478,9 @@ impl Newest {
             latch.error = Some(error.clone());
             if is_new {
                 latch.events = latch.events.wrapping_add(1);
+                if let Some(ring) = &mut latch.ring {
+                    ring.fail(Stamp::now(), &error);
+                }
             }
             is_new
         };

@@ -105,15 +105,15 @@ fn sizes_follow_from_each_other() {
 fn sizes_that_cannot_be_are_refused() {
     let number = |text: &str| {
         format!(
-            "robot.lua:2: x: input_tuple_size must be a whole number from 1 to 65536, not {text}"
+            "robot.lua:2: x: input_tuple_size must be a whole number from 1 to 4194304, not {text}"
         )
     };
     assert_eq!(refused("src = '/d', input_tuple_size = 0"), number("0"));
     assert_eq!(refused("src = '/d', input_tuple_size = -1"), number("-1"));
     assert_eq!(refused("src = '/d', input_tuple_size = 1.5"), number("1.5"));
     assert_eq!(
-        refused("src = '/d', input_tuple_size = 65537"),
-        number("65537")
+        refused("src = '/d', input_tuple_size = 4194305"),
+        number("4194305")
     );
     assert_eq!(
         refused("src = '/d', input_tuple_size = 0 / 0"),

@@ -285,10 +285,16 @@ fn a_text_is_one_line_filled_up_with_zero_bytes() {
     assert!(format.encode_field(0, "1", &mut tuple).is_err());
     assert!(format.render(b"a\x1b[2J\0\0\0", &mut text).is_err());
     assert!(format.render(b"\xff\0\0\0\0\0\0\0", &mut text).is_err());
-    for wrong in ["text 0", "text 65537", "text x", "text 8, u8 a", "text -1"] {
+    for wrong in [
+        "text 0",
+        "text 4194305",
+        "text x",
+        "text 8, u8 a",
+        "text -1",
+    ] {
         let reason = Format::parse(wrong).unwrap_err();
         assert!(
-            reason.contains("a text has 1 to 65536 bytes"),
+            reason.contains("a text has 1 to 4194304 bytes"),
             "{wrong}: {reason}"
         );
     }

@@ -13,7 +13,7 @@ use std::path::Path;
 use std::time::Duration;
 
 /// Nanoseconds of a clock that all processes share.
-fn now_ns() -> u64 {
+pub fn now_ns() -> u64 {
     let now = clock_gettime(ClockId::CLOCK_MONOTONIC).expect("the monotonic clock");
     u64::try_from(Duration::from(now).as_nanos()).expect("less than 500 years")
 }
@@ -50,10 +50,9 @@ pub fn read_events(file: &Path, polls: bool) {
     }
 }
 
-/// Sends events into `source` and collects their ages from the reader of `file`.
-fn latency(count: usize, source: &File, file: &Path, polls: bool) -> Result<Spread, String> {
-    let mode = if polls { "epoll" } else { "block" };
-    let mut reader = Peer::start("reader", &[mode, &file.display().to_string()])?;
+/// Sends events into `source` and collects their ages from a reader, whose mode and place the words say.
+pub fn latency(count: usize, source: &File, reader: &[&str]) -> Result<Spread, String> {
+    let mut reader = Peer::start("reader", reader)?;
     let mut answer = [0; 8];
     let mut samples = Vec::with_capacity(count);
     let warm_up = 50;
@@ -119,8 +118,11 @@ pub fn run(plan: &Plan) -> Result<(), String> {
     ];
     let _relay = Peer::start("relay", &[&words[0], &words[1]])?;
     let count = plan.samples / 4;
-    let measure =
-        |source: &File, file: &Path, polls| latency(count, source, file, polls).expect("latency");
+    let measure = |source: &File, file: &Path, polls| {
+        let mode = if polls { "epoll" } else { "block" };
+        let file = file.display().to_string();
+        latency(count, source, &[mode, &file]).expect("latency")
+    };
     let rows = vec![
         row("relay process, blocking read", 0, None, || {
             measure(&relay_in, &relay_out_path, false)

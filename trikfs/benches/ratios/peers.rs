@@ -88,6 +88,7 @@ pub fn play(role: &str, words: &[String]) {
         ("i2c", [path, delay_ms]) => {
             super::bus_peer::serve(Path::new(path), delay_ms.parse().unwrap_or(0));
         }
+        ("reader", [_, mountpoint, node]) => super::samples::read_ring(Path::new(mountpoint), node),
         ("reader", [mode, file]) => super::events::read_events(Path::new(file), mode == "epoll"),
         _ => eprintln!("no such role: {role}"),
     }

@@ -8,6 +8,7 @@ use crate::daemon::{self, Options};
 use crate::guardian::inherit::{Farewell, Inheritance};
 use crate::guardian::{self, Plan};
 use crate::mount::MountOptions;
+use crate::sample_bus::Readers;
 use crate::tree::Owner;
 use nix::sys::prctl;
 use nix::sys::stat::{SFlag, fstat};
@@ -98,6 +99,7 @@ fn guard(args: &MountArgs) -> Result<(), Failure> {
     }
     let mut arguments: Vec<OsString> = args.tree.to_arguments();
     arguments.extend(args.detached.then(|| "--detached".into()));
+    arguments.extend(args.allow_other.then(|| "--allow-other".into()));
     let plan = Plan {
         mountpoint: args.mountpoint.clone(),
         mount: MountOptions {
@@ -192,6 +194,10 @@ pub(super) fn serve(args: ServeArgs) -> Result<(), Failure> {
             config_group: args.tree.config_group,
         },
         transport: args.tree.transport.transport(),
+        sample_bus: (!args.tree.no_sample_bus).then_some(match args.allow_other {
+            true => Readers::All,
+            false => Readers::Owner,
+        }),
         ledger: Some(inheritance.ledger),
         ready: Box::new(move |nodes| {
             if detached {

@@ -331,7 +331,7 @@ fn mistakes_in_packets_are_refused() {
         ),
         (
             "path = '/t', start = 'S', length = { at = 1, add = 0.5 }",
-            "packets: length: add must be a whole number from -65536 to 65536, not 0.5",
+            "packets: length: add must be a whole number from -4194304 to 4194304, not 0.5",
         ),
         (
             "path = '/t', start = 'S', length = { at = 1, byte = 1 }",

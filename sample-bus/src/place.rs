@@ -1,0 +1,181 @@
+//! Where the rings of a mounted tree are: a directory in shared memory, named after the mount point.
+//!
+//! Owns the names, and the directory of one publisher: that it is the only one, that nobody else put it there, that
+//! what a killed publisher left is removed. Knows nothing of what is in a ring.
+
+use crate::limits;
+use nix::unistd::geteuid;
+use std::fs::{File, Permissions, TryLockError};
+use std::io;
+use std::os::unix::ffi::OsStrExt;
+use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt, PermissionsExt};
+use std::path::{Path, PathBuf};
+
+/// Where shared memory is.
+pub const SHARED_MEMORY: &str = "/dev/shm";
+/// What the names of all directories begin with.
+const PREFIX: &str = "trikfs";
+/// Longest name of a file.
+const NAME_BYTES_MAX: usize = 255;
+
+/// The directory of the tree at a mount point, which is absolute and without links: `/mnt/robot` is
+/// `trikfs+mnt+robot`.
+///
+/// # Errors
+/// The name would be too long.
+pub fn directory(shared_memory: &Path, mountpoint: &Path) -> io::Result<PathBuf> {
+    let mut name = PREFIX.to_owned();
+    escape(mountpoint.as_os_str().as_bytes(), &mut name);
+    fitting(name).map(|name| shared_memory.join(name))
+}
+
+/// The file of a node in that directory: `sensors/A1` is `sensors+A1`.
+///
+/// # Errors
+/// The name would be too long, or is none.
+pub fn file_name(node: &str) -> io::Result<String> {
+    let mut name = String::new();
+    escape(node.as_bytes(), &mut name);
+    if name.is_empty() || name.starts_with('.') {
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "not the path of a node",
+        ));
+    }
+    fitting(name)
+}
+
+fn fitting(name: String) -> io::Result<String> {
+    if name.len() > NAME_BYTES_MAX {
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            format!(
+                "the path is too long: its name in shared memory would have {} bytes",
+                name.len()
+            ),
+        ));
+    }
+    Ok(name)
+}
+
+/// `/` becomes `+`; all but letters, digits, `.`, `_` and `-` becomes `%` and two hexadecimal digits.
+fn escape(path: &[u8], name: &mut String) {
+    for &byte in path {
+        match byte {
+            b'/' => name.push('+'),
+            b'.' | b'_' | b'-' => name.push(char::from(byte)),
+            _ if byte.is_ascii_alphanumeric() => name.push(char::from(byte)),
+            _ => name.push_str(&format!("%{byte:02X}")),
+        }
+    }
+}
+
+/// The directory of one publisher. Dropping it removes it with all that is in it.
+#[derive(Debug)]
+pub struct Directory {
+    path: PathBuf,
+    /// Holds the lock that keeps others out for as long as this process lives.
+    _lock: File,
+}
+
+impl Directory {
+    /// Takes the directory with the given rights; makes it or removes what a killed publisher left in it.
+    ///
+    /// # Errors
+    /// There is no shared memory, somebody else's directory is there, or another publisher of this mount point lives.
+    pub fn take(path: &Path, mode: u32) -> io::Result<Self> {
+        for _ in 0..limits::DIRECTORY_ATTEMPTS {
+            match std::fs::DirBuilder::new().mode(0o700).create(path) {
+                Err(error) if error.kind() != io::ErrorKind::AlreadyExists => return Err(error),
+                _ => {}
+            }
+            let Some(lock) = lock(path)? else {
+                // Somebody else has just removed it.
+                continue;
+            };
+            let taken = Self {
+                path: path.to_owned(),
+                _lock: lock,
+            };
+            taken.empty()?;
+            std::fs::set_permissions(path, Permissions::from_mode(mode))?;
+            return Ok(taken);
+        }
+        Err(io::Error::other("others make and remove it all the time"))
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn empty(&self) -> io::Result<()> {
+        for entry in std::fs::read_dir(&self.path)? {
+            std::fs::remove_file(entry?.path())?;
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Directory {
+    fn drop(&mut self) {
+        // What cannot be removed is removed by the next one.
+        let _ = self.empty().and_then(|()| std::fs::remove_dir(&self.path));
+    }
+}
+
+/// Removes what killed publishers of this user left anywhere in shared memory, as far as it can be removed.
+pub fn sweep(shared_memory: &Path) {
+    let entries = std::fs::read_dir(shared_memory).into_iter().flatten();
+    for entry in entries.flatten() {
+        if entry.file_name().as_bytes().starts_with(b"trikfs+") {
+            remove_left(&entry.path());
+        }
+    }
+}
+
+/// Removes what a killed publisher left. False: there is nothing, or it is not ours, or its publisher lives.
+pub fn remove_left(path: &Path) -> bool {
+    if !path.exists() {
+        return false;
+    }
+    match lock(path) {
+        Ok(Some(lock)) => {
+            drop(Directory {
+                path: path.to_owned(),
+                _lock: lock,
+            });
+            !path.exists()
+        }
+        _ => false,
+    }
+}
+
+/// Opens a directory that is ours and locks it. None: it is gone, or another one is in its place.
+fn lock(path: &Path) -> io::Result<Option<File>> {
+    let flags = libc::O_DIRECTORY | libc::O_NOFOLLOW | libc::O_CLOEXEC;
+    let file = match File::options().read(true).custom_flags(flags).open(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        result => result?,
+    };
+    let meta = file.metadata()?;
+    if meta.uid() != geteuid().as_raw() {
+        let owner = meta.uid();
+        return Err(io::Error::new(
+            io::ErrorKind::PermissionDenied,
+            format!("it belongs to user {owner}; remove it"),
+        ));
+    }
+    match file.try_lock() {
+        Ok(()) => {}
+        Err(TryLockError::WouldBlock) => {
+            return Err(io::Error::new(
+                io::ErrorKind::ResourceBusy,
+                "another daemon publishes there: a tree is mounted on top of another",
+            ));
+        }
+        Err(TryLockError::Error(error)) => return Err(error),
+    }
+    let same = |found: std::fs::Metadata| (found.dev(), found.ino()) == (meta.dev(), meta.ino());
+    Ok(path.symlink_metadata().is_ok_and(same).then_some(file))
+}

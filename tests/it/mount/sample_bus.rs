@@ -1,0 +1,314 @@
+//! Samples in shared memory: what subscribers see of samples, failures, reloads and deaths, and who may look.
+
+use crate::{mount, mount_with, program};
+use harness::{Board, Mount, eventually, processes};
+use nix::sys::signal::Signal;
+use sample_bus::place::{self, SHARED_MEMORY};
+use sample_bus::{Reader, Step};
+use std::io::ErrorKind;
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const TREE: &str = "trikfs = {
+  sensors = {
+    ramp = { src = fake{ data = 'abcd', period_ms = 5, loop = true }, input_tuple_size = 1, on_event = true },
+    zero = { src = '/dev/zero', input_tuple_size = 4, poll_ms = 5 },
+    quiet = { src = '/dev/zero', input_tuple_size = 4 },
+  },
+}";
+
+/// Where the rings of a mount are.
+fn directory(m: &Mount) -> PathBuf {
+    place::directory(Path::new(SHARED_MEMORY), &m.root().canonicalize().unwrap()).unwrap()
+}
+
+fn open(m: &Mount, node: &str) -> Reader {
+    Reader::open(m.root(), node).unwrap_or_else(|error| panic!("{node}: {error}"))
+}
+
+fn errno(reader: &Reader) -> i32 {
+    let newest = reader.newest(&mut Vec::new());
+    newest
+        .err()
+        .map_or(0, |error| error.raw_os_error().unwrap())
+}
+
+#[test]
+fn a_subscriber_gets_what_the_files_show_in_order() {
+    let Some(mut m) = mount(TREE) else { return };
+    let mut reader = open(&m, "sensors/ramp");
+    let mut seen = Vec::new();
+    let mut tuple = Vec::new();
+    let mut last = None;
+    eventually("six samples", || {
+        if let Step::Event(event) = reader.next_event(&mut tuple) {
+            assert!(last.is_none_or(
+                |(sequence, time_ns)| event.sequence == sequence + 1 && event.time_ns > time_ns
+            ));
+            last = Some((event.sequence, event.time_ns));
+            seen.extend(&tuple);
+        }
+        seen.len() == 6
+    });
+    let text = String::from_utf8(seen).unwrap();
+    assert!("abcdabcdabcd".contains(&text), "{text}");
+    eventually("a sample", || errno(&open(&m, "sensors/zero")) == 0);
+    // Nodes that nobody samples have none, and nobody but the owner may look.
+    let missing = Reader::open(m.root(), "sensors/quiet").unwrap_err();
+    assert_eq!(missing.kind(), ErrorKind::NotFound);
+    let mode = std::fs::metadata(directory(&m))
+        .unwrap()
+        .permissions()
+        .mode();
+    assert_eq!(mode & 0o777, 0o700);
+    let place = directory(&m);
+    m.stop();
+    assert!(!place.exists());
+    assert_eq!(errno(&reader), libc::ESTALE);
+}
+
+#[test]
+fn a_failure_is_an_event_and_no_value() {
+    let config = "trikfs = {
+      loose = { src = faulty{ src = '/dev/zero', fail = 'EIO', from = 3, count = 2 }, input_tuple_size = 4, poll_ms = 5 },
+      broken = { src = faulty{ src = '/dev/zero', fail = 'EIO', from = 3, count = 0 }, input_tuple_size = 4, poll_ms = 5 },
+    }";
+    let Some(m) = mount(config) else { return };
+    let mut reader = open(&m, "loose");
+    let (mut errors, mut samples, mut tuple) = (Vec::new(), 0, Vec::new());
+    eventually("samples before and after", || {
+        match reader.next_event(&mut tuple) {
+            Step::Event(event) if event.errno == 0 => samples += 1,
+            Step::Event(event) => errors.push(event.errno),
+            _ => {}
+        }
+        samples > 3
+    });
+    // Twice the same failure is one event, as for readers of the files; who comes late may have missed it.
+    let only_that = errors.iter().all(|errno| *errno == libc::EIO);
+    assert!(errors.len() <= 1 && only_that, "{errors:?}");
+    let broken = open(&m, "broken");
+    eventually("no value", || errno(&broken) == libc::EIO);
+    assert_eq!(m.errno("broken/bin_data"), libc::EIO);
+}
+
+#[test]
+fn a_reload_ends_what_has_changed_and_leaves_the_rest() {
+    let Some(m) = mount(TREE) else { return };
+    let (ramp, zero) = (open(&m, "sensors/ramp"), open(&m, "sensors/zero"));
+    eventually("samples", || errno(&ramp) == 0 && errno(&zero) == 0);
+    let before = zero.newest_sequence();
+    m.apply(&TREE.replace("'abcd'", "'wxyz'")).unwrap();
+    assert_eq!(errno(&ramp), libc::ESTALE);
+    assert!(!ramp.is_current() && zero.is_current());
+    eventually("more of the same ring", || zero.newest_sequence() > before);
+    let again = open(&m, "sensors/ramp");
+    let mut tuple = Vec::new();
+    eventually("a sample of the new node", || {
+        again.newest(&mut tuple).is_ok()
+    });
+    assert!(b"wxyz".contains(&tuple[0]), "{tuple:?}");
+    m.apply("trikfs = {}").unwrap();
+    assert!(!again.is_current() && !zero.is_current());
+    assert_eq!(std::fs::read_dir(directory(&m)).unwrap().count(), 0);
+    m.apply(TREE).unwrap();
+    eventually("a sample", || errno(&open(&m, "sensors/ramp")) == 0);
+}
+
+#[test]
+fn a_killed_daemon_leaves_nothing_and_the_next_one_publishes_again() {
+    let Some(mut m) = mount(TREE) else { return };
+    let reader = open(&m, "sensors/zero");
+    eventually("a sample", || errno(&reader) == 0);
+    processes::signal(m.daemon(), Signal::SIGKILL);
+    eventually("the end of the ring", || !reader.is_current());
+    eventually("an old value", || errno(&reader) == libc::ETIMEDOUT);
+    eventually("another ring", || {
+        Reader::open(m.root(), "sensors/zero").is_ok_and(|reader| errno(&reader) == 0)
+    });
+    let left = directory(&m);
+    m.kill_everything();
+    assert!(left.exists());
+    // Whoever is next cleans up, at whichever mount point.
+    let Some(other) = mount(TREE) else { return };
+    assert!(!left.exists() && directory(&other).exists());
+}
+
+#[test]
+fn two_trees_do_not_meet() {
+    let (Some(one), Some(other)) = (mount(TREE), mount(&TREE.replace("abcd", "wxyz"))) else {
+        return;
+    };
+    let mut tuple = Vec::new();
+    for (m, letters) in [(&one, b"abcd"), (&other, b"wxyz")] {
+        let reader = open(m, "sensors/ramp");
+        eventually("a sample", || reader.newest(&mut tuple).is_ok());
+        assert!(letters.contains(&tuple[0]));
+    }
+}
+
+#[test]
+fn a_tree_without_a_bus_is_like_any_other() {
+    let Some(m) = mount_with(Board::new(), TREE, &["--no-sample-bus"]) else {
+        return;
+    };
+    eventually("a sample", || m.errno("sensors/zero/bin_data") == 0);
+    assert!(!directory(&m).exists());
+    assert!(!m.text("status").contains("bus"));
+}
+
+#[test]
+fn pictures_travel_and_a_subscriber_that_stalls_disturbs_nobody() {
+    let config = "trikfs = { camera = {
+      src = fake{ data = ('x'):rep(100 * 1024) .. ('y'):rep(100 * 1024), period_ms = 2, loop = true },
+      input_tuple_size = 100 * 1024, on_event = true,
+    } }";
+    let Some(m) = mount(config) else { return };
+    let mut reader = open(&m, "camera");
+    let mut tuple = Vec::new();
+    let whole =
+        |tuple: &[u8]| tuple.len() == 100 << 10 && tuple.iter().all(|byte| *byte == tuple[0]);
+    eventually("a picture", || {
+        matches!(reader.next_event(&mut tuple), Step::Event(_))
+    });
+    assert!(whole(&tuple));
+    let ring = std::fs::metadata(directory(&m).join("camera"))
+        .unwrap()
+        .len();
+    let samples = m.stat("camera", "samples");
+    eventually("more pictures than the ring keeps", || {
+        m.stat("camera", "samples") > samples + 40.0
+    });
+    assert_eq!(
+        std::fs::metadata(directory(&m).join("camera"))
+            .unwrap()
+            .len(),
+        ring
+    );
+    eventually("what was missed", || {
+        matches!(reader.next_event(&mut tuple), Step::Missed(10..))
+    });
+    eventually("a picture", || {
+        matches!(reader.next_event(&mut tuple), Step::Event(_)) && whole(&tuple)
+    });
+    // The file has the same, however small the pieces.
+    assert!(whole(&m.read("camera/bin_data").unwrap()));
+    assert_eq!(
+        m.sh("head -c 1048576 camera/device | wc -c").trim(),
+        "1048576"
+    );
+}
+
+#[test]
+fn other_users_see_what_the_mode_of_a_node_lets_them_see() {
+    if !nix::unistd::geteuid().is_root() {
+        return harness::skip("only root can be two users");
+    }
+    let config = TREE.replace("poll_ms = 5", "poll_ms = 5, mode = 0600");
+    let Some(m) = mount_with(Board::new(), &config, &["--allow-other"]) else {
+        return;
+    };
+    // The board's folder belongs to its user alone.
+    std::fs::set_permissions(m.board().dir(), PermissionsExt::from_mode(0o755)).unwrap();
+    let script = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../sample-bus/examples/follow.py"
+    );
+    let follow = |node: &str| {
+        let mut nobody = Command::new("setpriv");
+        nobody.args(["--reuid=65534", "--regid=65534", "--clear-groups"]);
+        // Its own file may be out of reach for nobody.
+        nobody
+            .args(["/usr/bin/python3", "-S", "-c"])
+            .arg(std::fs::read_to_string(script).unwrap());
+        harness::run(nobody.arg(m.root()).args([node, "5"]).current_dir("/"), b"")
+    };
+    eventually("samples", || errno(&open(&m, "sensors/zero")) == 0);
+    let output = follow("sensors/ramp");
+    assert_eq!(output.code(), 0, "{}", output.stderr);
+    assert_eq!(output.stdout.lines().count(), 5, "{}", output.stdout);
+    let refused = follow("sensors/zero");
+    assert!(
+        refused.stderr.contains("Permission denied"),
+        "{}",
+        refused.stderr
+    );
+    // Neither can they write, shorten, remove or replace what they see.
+    let place = directory(&m);
+    for attempt in [
+        ": > ramp",
+        "rm -f ramp && test ! -e ramp",
+        "mv ramp other",
+        "touch new",
+    ] {
+        let mut nobody = Command::new("setpriv");
+        nobody.args([
+            "--reuid=65534",
+            "--regid=65534",
+            "--clear-groups",
+            "sh",
+            "-c",
+        ]);
+        let attempt = format!(
+            "cd {} && {}",
+            place.display(),
+            attempt.replace("ramp", "sensors+ramp")
+        );
+        assert_ne!(
+            harness::run(nobody.arg(&attempt).current_dir("/"), b"").code(),
+            0,
+            "{attempt}"
+        );
+    }
+}
+
+/// Runs a script with a shared memory of its own, which `mounting` puts in place, and reads so many lines of the log.
+/// None: not possible here.
+fn with_shared_memory(board: &Board, mounting: &str, lines: u32) -> Option<String> {
+    if !nix::unistd::geteuid().is_root() || harness::mount::obstacle().is_some() {
+        harness::skip("only root can have another /dev/shm");
+        return None;
+    }
+    let file = board.file("robot.lua", board.fill_in(TREE));
+    let script = format!(
+        "{mounting}
+        {program} mount --background --cache {dir}/cache --config {file} {dir}/mnt >{dir}/said 2>&1 || {{ cat {dir}/said; exit 1; }}
+        cat {dir}/mnt/status; head -n {lines} {dir}/mnt/log
+        until head -c 1 {dir}/mnt/sensors/zero/bin_data >{dir}/byte 2>{dir}/byte; do sleep 0.01; done
+        echo samples come
+        {program} umount {dir}/mnt",
+        program = program(),
+        dir = board.dir().display(),
+        file = file.display(),
+    );
+    let mut command = Command::new("unshare");
+    command.args(["-m", "sh", "-ec", &script]);
+    Some(harness::run(&mut command, b"").good())
+}
+
+#[test]
+fn shared_memory_that_is_full_is_told_and_files_go_on() {
+    let board = Board::new();
+    let full = "mount -t tmpfs -o size=4k,nr_inodes=64 none /dev/shm; head -c 4096 /dev/zero > /dev/shm/full";
+    let Some(text) = with_shared_memory(&board, full, 3) else {
+        return;
+    };
+    assert!(
+        text.contains("No space left") || text.contains("ENOSPC"),
+        "{text}"
+    );
+    assert!(text.contains("sample bus: not published"), "{text}");
+    assert!(text.ends_with("samples come\n"), "{text}");
+}
+
+#[test]
+fn shared_memory_that_is_missing_is_told_and_files_go_on() {
+    let board = Board::new();
+    let missing = "mount -t tmpfs none /dev; mknod /dev/fuse c 10 229; mknod /dev/null c 1 3; mknod /dev/zero c 1 5";
+    let Some(text) = with_shared_memory(&board, missing, 2) else {
+        return;
+    };
+    assert!(text.contains("sample bus: off: /dev/shm/trikfs+"), "{text}");
+    assert!(text.ends_with("samples come\n"), "{text}");
+}

@@ -1,0 +1,200 @@
+//! The sample bus of one mount.
+//!
+//! Owns the mount's directory in shared memory and the sum of what its rings take. Whatever fails here becomes a line
+//! for the log and for `status`; files never notice.
+
+use super::Readers;
+use crate::clock::Stamp;
+use crate::errno::Error;
+use crate::events::lock;
+use crate::limits;
+use config::description::NodeDescription;
+use sample_bus::place::{self, Directory, SHARED_MEMORY};
+use sample_bus::{Rights, Writer};
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+/// Samples of one mount in shared memory. Without a directory there are none.
+#[derive(Default)]
+pub struct SampleBus {
+    place: Mutex<Option<Place>>,
+    /// Why there is no directory.
+    problem: Mutex<Option<String>>,
+    used_bytes: Arc<AtomicUsize>,
+}
+
+struct Place {
+    directory: Directory,
+    readers: Readers,
+}
+
+/// One node's part of it.
+pub struct Ring {
+    writer: Writer,
+    bytes: usize,
+    used_bytes: Arc<AtomicUsize>,
+}
+
+impl SampleBus {
+    /// Takes the directory of a mount point.
+    ///
+    /// # Errors
+    /// A line that says why there is no sample bus; `status` shows it as well.
+    pub fn open(&self, mountpoint: &Path, readers: Readers) -> Result<(), String> {
+        let shared_memory = Path::new(SHARED_MEMORY);
+        let mode = match readers {
+            Readers::Owner => 0o700,
+            Readers::All => 0o755,
+        };
+        place::sweep(shared_memory);
+        let taken = place::directory(shared_memory, mountpoint).and_then(|path| {
+            let taken = Directory::take(&path, mode);
+            taken.map_err(|error| std::io::Error::other(format!("{}: {error}", path.display())))
+        });
+        match taken {
+            Ok(directory) => {
+                *lock(&self.place) = Some(Place { directory, readers });
+                Ok(())
+            }
+            Err(error) => {
+                let line = format!("sample bus: off: {error}; files are not affected");
+                *lock(&self.problem) = Some(line.clone());
+                Err(line)
+            }
+        }
+    }
+
+    /// Removes the directory.
+    pub fn close(&self) {
+        let place = lock(&self.place).take();
+        drop(place);
+    }
+
+    /// A line for `status`, or nothing if all is well.
+    pub fn status_line(&self) -> String {
+        let problem = lock(&self.problem);
+        problem
+            .as_ref()
+            .map_or_else(String::new, |line| format!("{line}\n"))
+    }
+
+    /// A ring for a node, with the rights of its files. None: the mount has no sample bus.
+    ///
+    /// # Errors
+    /// A line that says why this node has none.
+    pub fn ring(&self, description: &NodeDescription) -> Result<Option<Ring>, String> {
+        let place = lock(&self.place);
+        let Some(place) = place.as_ref() else {
+            return Ok(None);
+        };
+        let shown = match place.readers {
+            Readers::Owner => 0o400,
+            Readers::All => 0o444,
+        };
+        let rights = Rights {
+            mode: u32::from(description.mode) & shown,
+            group: description.group,
+        };
+        let size = description.output_tuple_size;
+        let ring = self.make(place, &description.path, size, rights);
+        ring.map(Some).map_err(|error| {
+            format!("sample bus: not published: {error}; the node's files are not affected")
+        })
+    }
+
+    fn make(
+        &self,
+        place: &Place,
+        path: &str,
+        tuple_bytes: usize,
+        rights: Rights,
+    ) -> std::io::Result<Ring> {
+        let file = place.directory.path().join(place::file_name(path)?);
+        let bytes = Writer::bytes_for(tuple_bytes)?;
+        let before = self.used_bytes.fetch_add(bytes, Ordering::Relaxed);
+        let made = if before + bytes > limits::SAMPLE_BUS_BYTES_MAX {
+            Err(std::io::Error::other(format!(
+                "the rings of this mount would take more than {} MiB",
+                limits::SAMPLE_BUS_BYTES_MAX >> 20
+            )))
+        } else {
+            Writer::create(&file, tuple_bytes, rights).map_err(|error| {
+                std::io::Error::other(format!("{} ({bytes} bytes): {error}", file.display()))
+            })
+        };
+        let writer = made.inspect_err(|_| {
+            self.used_bytes.fetch_sub(bytes, Ordering::Relaxed);
+        })?;
+        Ok(Ring {
+            writer,
+            bytes,
+            used_bytes: self.used_bytes.clone(),
+        })
+    }
+}
+
+impl Ring {
+    /// A new sample.
+    pub fn publish(&mut self, stamp: Stamp, tuple: &[u8]) {
+        self.writer.publish(stamp.0, tuple);
+    }
+
+    /// There is no newest value any more.
+    pub fn fail(&mut self, stamp: Stamp, error: &Error) {
+        self.writer.fail(stamp.0, error.errno());
+    }
+
+    /// The age from which a sample is not shown.
+    pub fn set_too_old(&mut self, age: Duration) {
+        let ms = u32::try_from(age.as_millis()).unwrap_or(u32::MAX);
+        self.writer.set_stale_ms(ms);
+    }
+}
+
+impl Drop for Ring {
+    fn drop(&mut self) {
+        self.used_bytes.fetch_sub(self.bytes, Ordering::Relaxed);
+    }
+}
+
+/// Removes what a daemon that was killed left of its part of the bus.
+pub fn remove_left(mountpoint: &Path) {
+    if let Ok(path) = place::directory(Path::new(SHARED_MEMORY), mountpoint) {
+        place::remove_left(&path);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scratch::Scratch;
+
+    #[test]
+    fn memory_is_given_back_and_its_limit_names_itself() {
+        let scratch = Scratch::new();
+        let bus = SampleBus::default();
+        let directory = Directory::take(&scratch.path("trikfs+test"), 0o700).unwrap();
+        let readers = Readers::Owner;
+        let place = Place { directory, readers };
+        let rights = Rights {
+            mode: 0o400,
+            group: None,
+        };
+        let large = 4 << 20;
+        let make = |name: &str, size| bus.make(&place, name, size, rights);
+        let rings: Vec<_> = ["n0", "n1", "n2"]
+            .map(|name| make(name, large).unwrap())
+            .into();
+        let refused = make("n3", large).err().unwrap().to_string();
+        assert!(refused.contains("more than 64 MiB"), "{refused}");
+        drop(rings);
+        assert_eq!(bus.used_bytes.load(Ordering::Relaxed), 0);
+        let _ring = make("n3", large).unwrap();
+        let again = make("n3", 4).err().unwrap().to_string();
+        assert!(again.contains("n3"), "{again}");
+        drop(place);
+        assert!(!scratch.path("trikfs+test").exists());
+    }
+}
