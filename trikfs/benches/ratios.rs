@@ -29,7 +29,7 @@ type Section = (&'static str, fn(&Plan) -> Outcome);
 /// Benchmarks fail with a sentence.
 type Outcome = Result<(), String>;
 
-const SECTIONS: [Section; 10] = [
+const SECTIONS: [Section; 9] = [
     ("reads", reads::run),
     ("newest", newest::run),
     ("events", events::run),
