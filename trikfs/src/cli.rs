@@ -115,7 +115,7 @@ struct TreeArgs {
     #[arg(long, value_name = "NAME", value_enum, default_value_t = TransportName::Native)]
     transport: TransportName,
     /// Do not put samples into shared memory.
-    #[arg(long)]
+    #[arg(long, hide = !cfg!(feature = "sample-bus"))]
     no_sample_bus: bool,
 }
 

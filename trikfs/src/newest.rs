@@ -144,7 +144,8 @@ impl Newest {
 
     /// Ends the node's part of the sample bus.
     pub fn leave_bus(&self) {
-        lock(&self.latch).ring = None;
+        // It goes after the lock.
+        let _ended = lock(&self.latch).ring.take();
     }
 
     fn schedule_sampling(&self, node: &Arc<Node>) {

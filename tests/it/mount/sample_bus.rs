@@ -1,6 +1,6 @@
 //! Samples in shared memory: what subscribers see of samples, failures, reloads and deaths, and who may look.
 
-use crate::{mount, mount_with, program};
+use crate::{mount_with, program};
 use harness::{Board, Mount, eventually, processes};
 use nix::sys::signal::Signal;
 use sample_bus::place::{self, SHARED_MEMORY};
@@ -21,6 +21,30 @@ const TREE: &str = "trikfs = {
 /// Where the rings of a mount are.
 fn directory(m: &Mount) -> PathBuf {
     place::directory(Path::new(SHARED_MEMORY), &m.root().canonicalize().unwrap()).unwrap()
+}
+
+/// An installed program may have been built without a sample bus, like that of the controller.
+fn has_a_bus(board: &Board) -> bool {
+    if std::env::var_os(crate::UNDER_TEST).is_none() {
+        return true;
+    }
+    let words = crate::trikfs(board, &["mount", "--help"], b"").stdout;
+    let has = words.contains("--no-sample-bus");
+    if !has {
+        harness::wait::note_skip("the program under test has no sample bus");
+    }
+    has
+}
+
+fn mount_on(board: Board, config: &str, options: &[&str]) -> Option<Mount> {
+    if !has_a_bus(&board) {
+        return None;
+    }
+    mount_with(board, config, options)
+}
+
+fn mount(config: &str) -> Option<Mount> {
+    mount_on(Board::new(), config, &[])
 }
 
 fn open(m: &Mount, node: &str) -> Reader {
@@ -150,7 +174,7 @@ fn two_trees_do_not_meet() {
 
 #[test]
 fn a_tree_without_a_bus_is_like_any_other() {
-    let Some(m) = mount_with(Board::new(), TREE, &["--no-sample-bus"]) else {
+    let Some(m) = mount_on(Board::new(), TREE, &["--no-sample-bus"]) else {
         return;
     };
     eventually("a sample", || m.errno("sensors/zero/bin_data") == 0);
@@ -206,7 +230,7 @@ fn other_users_see_what_the_mode_of_a_node_lets_them_see() {
         return harness::skip("only root can be two users");
     }
     let config = TREE.replace("poll_ms = 5", "poll_ms = 5, mode = 0600");
-    let Some(m) = mount_with(Board::new(), &config, &["--allow-other"]) else {
+    let Some(m) = mount_on(Board::new(), &config, &["--allow-other"]) else {
         return;
     };
     // The board's folder belongs to its user alone.
@@ -266,6 +290,9 @@ fn other_users_see_what_the_mode_of_a_node_lets_them_see() {
 /// Runs a script with a shared memory of its own, which `mounting` puts in place, and reads so many lines of the log.
 /// None: not possible here.
 fn with_shared_memory(board: &Board, mounting: &str, lines: u32) -> Option<String> {
+    if !has_a_bus(board) {
+        return None;
+    }
     if !nix::unistd::geteuid().is_root() || harness::mount::obstacle().is_some() {
         harness::skip("only root can have another /dev/shm");
         return None;

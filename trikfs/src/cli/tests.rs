@@ -32,6 +32,7 @@ fn mount_takes_all_its_options() {
         "--include",
         "b",
         "--allow-other",
+        "--no-sample-bus",
         "--background",
         "--config-group",
         "12",
@@ -46,6 +47,7 @@ fn mount_takes_all_its_options() {
     assert_eq!(args.tree.search.cache, Some("c".into()));
     assert_eq!(args.tree.config_group, Some(12));
     assert!(args.allow_other && args.background && !args.detached);
+    assert!(args.tree.no_sample_bus);
     assert_eq!(args.mountpoint, PathBuf::from("/trikfs"));
 }
 
@@ -56,6 +58,7 @@ fn what_the_guardian_passes_on_means_the_same() {
         "--config=-odd name.lua",
         "--include=--x",
         "--config-group=7",
+        "--no-sample-bus",
         "--cache=c",
         "m",
     ]);
