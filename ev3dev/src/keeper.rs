@@ -28,7 +28,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 use trikfs::guardian::mounted::Mounted;
 use trikfs::mount::{self, MountOptions};
-use trikfs::transport::native;
+use trikfs::transport::{Operations, native};
 
 /// First column of /proc/mounts.
 const SOURCE: &str = "trikfs-ev3dev";
@@ -66,6 +66,8 @@ pub struct Handover {
 /// # Errors
 /// Why there is no view, or how it ended; empty if the serving process has told the reason.
 pub fn keep(plan: &Plan, ready: &mut dyn FnMut(usize)) -> Result<(), String> {
+    // Started through /proc/self/exe it would be listed as `exe`.
+    let _ = set_name(c"trikfs-ev3dev");
     let own = |error: Errno| format!("signals: {error}");
     let mask: SigSet = SIGNALS.into_iter().collect();
     mask.thread_block().map_err(own)?;
@@ -270,7 +272,8 @@ pub fn serve(
     // Nobody may listen any more; the view can be used all the same.
     let mut out = io::stdout();
     let _ = writeln!(out, "ready {devices}").and_then(|()| out.flush());
-    native::serve(device, view).map_err(failed)?;
+    // The view outlives its mount: dropped, it would close its files of the tree, and what it drives would go on.
+    native::serve(device, Arc::clone(&view) as Arc<dyn Operations>).map_err(failed)?;
     std::process::exit(0)
 }
 

@@ -1,0 +1,693 @@
+//! The view of ev3dev: motors, sensors and lights by the files that libraries of ev3dev know, with plain file operations.
+//!
+//! Judged by what the coprocessor of the virtual board has: the byte of a motor, the ticks of an encoder.
+
+mod python;
+
+use crate::rig::{Home, Robot, TRIK, robot};
+use harness::wait::SOON;
+use harness::{board, eventually, processes};
+use nix::sys::signal::Signal;
+use std::fs::{self, File};
+use std::io::{self, BufRead, BufReader, Read, Seek, Write};
+use std::os::fd::AsFd;
+use std::os::unix::fs::PermissionsExt;
+use std::os::unix::process::CommandExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::Arc;
+use std::time::Instant;
+
+const LEFT: &str = "tacho-motor/motor2";
+const RIGHT: &str = "tacho-motor/motor3";
+
+/// A view, wherever it is.
+struct View(PathBuf);
+
+impl View {
+    /// That of a robot which was started with `--ev3dev`.
+    fn of(robot: &Robot) -> Self {
+        Self(robot.root.with_extension("ev3dev"))
+    }
+
+    fn read(&self, name: &str) -> io::Result<String> {
+        fs::read_to_string(self.0.join(name)).map(|text| text.trim_end().to_owned())
+    }
+
+    fn text(&self, name: &str) -> String {
+        self.read(name)
+            .unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+
+    fn number(&self, name: &str) -> i32 {
+        let text = self.text(name);
+        text.parse().unwrap_or_else(|_| panic!("{name}: {text:?}"))
+    }
+
+    fn try_write(&self, name: &str, text: &str) -> io::Result<()> {
+        let mut file = File::options().write(true).open(self.0.join(name))?;
+        file.write_all(text.as_bytes())
+    }
+
+    fn write(&self, name: &str, text: &str) {
+        self.try_write(name, text)
+            .unwrap_or_else(|error| panic!("{text} to {name}: {error}"));
+    }
+
+    fn errno_of_read(&self, name: &str) -> i32 {
+        errno(self.read(name).map(drop))
+    }
+
+    fn errno_of_write(&self, name: &str, text: &str) -> i32 {
+        errno(self.try_write(name, text))
+    }
+
+    /// Setpoints, then a command.
+    fn run(&self, motor: &str, setpoints: &[(&str, i32)], command: &str) {
+        for (name, value) in setpoints {
+            self.write(&format!("{motor}/{name}"), &value.to_string());
+        }
+        self.write(&format!("{motor}/command"), command);
+    }
+
+    fn state(&self, motor: &str) -> String {
+        self.text(&format!("{motor}/state"))
+    }
+
+    fn until_done(&self, motor: &str) {
+        eventually("the end of the run", || {
+            !self.state(motor).contains("running")
+        });
+    }
+
+    /// Waits until a shaft stands.
+    fn until_still(&self, motor: &str) {
+        eventually("a shaft that stands", || {
+            self.number(&format!("{motor}/speed")) == 0
+        });
+    }
+}
+
+fn errno(result: io::Result<()>) -> i32 {
+    result
+        .err()
+        .map_or(0, |error| error.raw_os_error().unwrap_or(-1))
+}
+
+fn seen() -> Option<(Robot, View)> {
+    let robot = robot(&["--ev3dev"])?;
+    let view = View::of(&robot);
+    Some((robot, view))
+}
+
+#[test]
+fn every_class_has_its_devices_with_the_modes_that_libraries_look_at() {
+    let Some((_robot, view)) = seen() else { return };
+    let list = |class: &str| {
+        let entries = fs::read_dir(view.0.join(class)).expect(class);
+        let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        let mut names: Vec<_> = names.collect();
+        names.sort();
+        names
+    };
+    assert_eq!(
+        list(""),
+        [
+            "board-info",
+            "dc-motor",
+            "leds",
+            "lego-sensor",
+            "power_supply",
+            "servo-motor",
+            "tacho-motor"
+        ]
+    );
+    assert_eq!(
+        list("tacho-motor"),
+        ["motor0", "motor1", "motor2", "motor3"]
+    );
+    assert_eq!((list("lego-sensor").len(), list("dc-motor").len()), (11, 0));
+    assert_eq!(view.text("tacho-motor/motor2/address"), "ev3-ports:outC:M3");
+    for (name, mode) in [("command", 0o220), ("state", 0o444), ("position", 0o664)] {
+        let found = fs::metadata(view.0.join(LEFT).join(name)).unwrap();
+        assert_eq!(found.permissions().mode() & 0o7777, mode, "{name}");
+        assert_eq!(found.len(), 4096);
+    }
+    assert_eq!(view.errno_of_read(&format!("{LEFT}/command")), libc::EACCES);
+    assert_eq!(
+        view.errno_of_write(&format!("{LEFT}/state"), "x"),
+        libc::EACCES
+    );
+    assert_eq!(view.errno_of_read("tacho-motor/motor9/state"), libc::ENOENT);
+    assert!(
+        fs::create_dir(view.0.join("x")).is_err()
+            && fs::remove_file(view.0.join(LEFT).join("state")).is_err()
+    );
+}
+
+#[test]
+fn text_is_read_anew_from_the_start_and_rubbish_is_refused() {
+    let Some((_robot, view)) = seen() else { return };
+    let path = view.0.join(LEFT).join("speed_sp");
+    let mut file = File::options().read(true).write(true).open(path).unwrap();
+    let mut text = String::new();
+    for speed in ["300", "-45"] {
+        file.rewind().unwrap();
+        file.write_all(speed.as_bytes()).unwrap();
+        file.rewind().unwrap();
+        text.clear();
+        file.read_to_string(&mut text).unwrap();
+        assert_eq!(text, format!("{speed}\n"));
+    }
+    for (name, bad) in [
+        ("speed_sp", "fast"),
+        ("speed_sp", "1001"),
+        ("speed_sp", "10 20"),
+        ("duty_cycle_sp", "-101"),
+        ("position_sp", "0x10"),
+        ("time_sp", "-5"),
+        ("ramp_up_sp", "60001"),
+        ("stop_action", "explode"),
+        ("polarity", "sideways"),
+        ("command", "fly"),
+        ("hold_pid/Kp", "much"),
+    ] {
+        let name = format!("{LEFT}/{name}");
+        assert_eq!(
+            view.errno_of_write(&name, bad),
+            libc::EINVAL,
+            "{name} {bad}"
+        );
+    }
+    assert_eq!(
+        view.errno_of_write(&format!("{LEFT}/position_sp"), "99999999999"),
+        libc::ERANGE
+    );
+    let long = "1".repeat(100_000);
+    assert_eq!(
+        view.errno_of_write(&format!("{LEFT}/speed_sp"), &long),
+        libc::EINVAL
+    );
+    assert_eq!(view.number(&format!("{LEFT}/speed_sp")), -45);
+    assert_eq!(view.state(LEFT), "");
+}
+
+#[test]
+fn a_motor_runs_at_its_speed_and_stops_as_it_was_told() {
+    let Some((robot, view)) = seen() else { return };
+    let at = |name: &str| format!("{LEFT}/{name}");
+    view.run(LEFT, &[("speed_sp", 400)], "run-forever");
+    assert_eq!(view.state(LEFT), "running");
+    eventually("the speed", || {
+        (380..=420).contains(&view.number(&at("speed")))
+    });
+    assert!((20..50).contains(&view.number(&at("duty_cycle"))));
+    assert_ne!(robot.duty(3).unwrap(), 0);
+    view.write(&at("stop_action"), "brake");
+    view.write(&at("command"), "stop");
+    assert_eq!(
+        (view.state(LEFT).as_str(), robot.duty(3).unwrap()),
+        ("", 127)
+    );
+    view.until_still(LEFT);
+    view.run(LEFT, &[("duty_cycle_sp", -40)], "run-direct");
+    let power = |wanted: f64| {
+        // The tree reads the least power that has the same duty.
+        let found = robot.number("motors/M3/value") / wanted;
+        (0.9..=1.0).contains(&found)
+    };
+    assert!(power(-40.0));
+    view.write(&at("duty_cycle_sp"), "-60");
+    eventually("the new power", || power(-60.0));
+    view.write(&at("stop_action"), "coast");
+    view.write(&at("command"), "stop");
+    assert_eq!(robot.duty(3).unwrap(), 0);
+    // Without regulation it also has run out by itself when the encoder is as often sampled as before.
+    eventually("the usual period", || {
+        robot.number("encoders/E3/poll_ms") == 20.0
+    });
+}
+
+#[test]
+fn positions_are_reached_by_the_ticks_of_the_encoder() {
+    let Some((robot, view)) = seen() else { return };
+    let near = |encoder: u8, wanted: f64| {
+        let turned = robot.turned_deg(encoder);
+        assert!(
+            (turned - wanted).abs() < 4.0,
+            "E{encoder}: {turned} for {wanted}"
+        );
+    };
+    view.write(&format!("{LEFT}/stop_action"), "hold");
+    view.run(
+        LEFT,
+        &[("speed_sp", 600), ("position_sp", 360)],
+        "run-to-rel-pos",
+    );
+    view.until_done(LEFT);
+    assert_eq!(view.state(LEFT), "holding");
+    near(3, 360.0);
+    view.run(LEFT, &[("position_sp", -90)], "run-to-abs-pos");
+    view.until_done(LEFT);
+    near(3, -90.0);
+    view.write(&format!("{LEFT}/position"), "1000");
+    assert!((view.number(&format!("{LEFT}/position")) - 1000).abs() <= 2);
+    view.run(LEFT, &[("position_sp", 1090)], "run-to-abs-pos");
+    view.until_done(LEFT);
+    near(3, 0.0);
+    // Backwards by name, so the same wheel turns the other way.
+    view.write(&format!("{RIGHT}/polarity"), "inversed");
+    view.write(&format!("{RIGHT}/stop_action"), "hold");
+    view.run(
+        RIGHT,
+        &[("speed_sp", 500), ("position_sp", 180)],
+        "run-to-rel-pos",
+    );
+    view.until_done(RIGHT);
+    near(4, -180.0);
+    assert!((view.number(&format!("{RIGHT}/position")) - 180).abs() <= 2);
+    for motor in [LEFT, RIGHT] {
+        view.write(&format!("{motor}/command"), "reset");
+        assert_eq!(view.text(&format!("{motor}/stop_action")), "coast");
+        assert_eq!(view.text(&format!("{motor}/polarity")), "normal");
+        assert_eq!(view.number(&format!("{motor}/position_sp")), 0);
+        view.until_still(motor);
+        assert!(view.number(&format!("{motor}/position")).abs() <= 3);
+    }
+    assert_eq!((robot.duty(3).unwrap(), robot.duty(4).unwrap()), (0, 0));
+}
+
+#[test]
+fn a_timed_run_ends_by_itself_and_ramps_are_told() {
+    let Some((robot, view)) = seen() else { return };
+    view.run(LEFT, &[("speed_sp", 500), ("time_sp", 300)], "run-timed");
+    assert_eq!(view.state(LEFT), "running");
+    view.until_done(LEFT);
+    assert!(robot.turned_deg(3) > 50.0);
+    assert_eq!(robot.duty(3).unwrap(), 0);
+    view.run(
+        LEFT,
+        &[("ramp_up_sp", 1000), ("ramp_down_sp", 1000)],
+        "run-forever",
+    );
+    assert_eq!(view.state(LEFT), "running ramping");
+    eventually("the end of the ramp", || view.state(LEFT) == "running");
+    view.write(&format!("{LEFT}/command"), "stop");
+    assert_eq!(view.state(LEFT), "running ramping");
+    view.until_done(LEFT);
+}
+
+#[test]
+fn a_motor_that_cannot_turn_is_stalled_until_it_can() {
+    let Some((robot, view)) = seen() else { return };
+    robot.fault(&["M3", "stuck"]);
+    view.run(LEFT, &[("speed_sp", 500)], "run-forever");
+    eventually("stalled", || view.state(LEFT).contains("stalled"));
+    robot.fault(&["M3", "--clear"]);
+    eventually("running freely", || view.state(LEFT) == "running");
+}
+
+/// Waits for POLLPRI as a library does; gives the events.
+fn poll_pri(file: &File) -> nix::poll::PollFlags {
+    use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
+    let mut watched = [PollFd::new(file.as_fd(), PollFlags::POLLPRI)];
+    let patience = PollTimeout::try_from(SOON).expect("a timeout");
+    poll(&mut watched, patience).expect("poll");
+    watched[0].revents().expect("events")
+}
+
+#[test]
+fn who_polls_the_state_is_woken_when_it_changes_and_not_before() {
+    use nix::poll::PollFlags;
+    let Some((_robot, view)) = seen() else { return };
+    let mut file = File::open(view.0.join(LEFT).join("state")).unwrap();
+    let read = |file: &mut File| {
+        let mut text = String::new();
+        file.rewind().unwrap();
+        file.read_to_string(&mut text).unwrap();
+        text.trim_end().to_owned()
+    };
+    assert!(
+        poll_pri(&file).contains(PollFlags::POLLPRI),
+        "nothing was read yet"
+    );
+    assert_eq!(read(&mut file), "");
+    let mut watched = [nix::poll::PollFd::new(file.as_fd(), PollFlags::POLLPRI)];
+    assert_eq!(
+        nix::poll::poll(&mut watched, 0_u8),
+        Ok(0),
+        "nothing has changed"
+    );
+    let start = Instant::now();
+    view.run(LEFT, &[("speed_sp", 300), ("time_sp", 400)], "run-timed");
+    assert!(poll_pri(&file).contains(PollFlags::POLLPRI | PollFlags::POLLERR));
+    assert_eq!(read(&mut file), "running");
+    // Woken by the end of the run, long before the time limit of the call.
+    assert!(poll_pri(&file).contains(PollFlags::POLLPRI));
+    assert_eq!(read(&mut file), "");
+    assert!(start.elapsed() < SOON);
+}
+
+#[test]
+fn sensors_lights_servos_and_battery_show_what_the_board_has() {
+    let Some((robot, view)) = seen() else { return };
+    let sensor = |driver: &str| {
+        let find =
+            |number: &u32| view.text(&format!("lego-sensor/sensor{number}/driver_name")) == driver;
+        let number = (0..11).find(find).unwrap_or_else(|| panic!("no {driver}"));
+        format!("lego-sensor/sensor{number}")
+    };
+    let us = sensor("lego-ev3-us");
+    assert_eq!(view.text(&format!("{us}/mode")), "US-DIST-CM");
+    let cm = robot.number("sensors/D1/value");
+    assert!((f64::from(view.number(&format!("{us}/value0"))) / 10.0 - cm).abs() <= 2.0);
+    assert_eq!(view.errno_of_read(&format!("{us}/value1")), libc::ENODEV);
+    view.write(&format!("{us}/mode"), "US-DIST-IN\n");
+    assert!((f64::from(view.number(&format!("{us}/value0"))) * 0.254 - cm).abs() <= 2.0);
+    assert_eq!(
+        view.errno_of_write(&format!("{us}/mode"), "US-LISTEN"),
+        libc::EINVAL
+    );
+    robot.fault(&["D1", "unplug"]);
+    eventually("the plug", || {
+        view.errno_of_read(&format!("{us}/value0")) == libc::ENODEV
+    });
+    robot.fault(&["D1", "--clear"]);
+    eventually("the sensor again", || {
+        view.read(&format!("{us}/value0")).is_ok()
+    });
+    assert_eq!(
+        view.number(&format!("{}/value0", sensor("lego-ev3-touch"))),
+        0
+    );
+    assert!(view.number(&format!("{}/value0", sensor("lego-ev3-color"))) > 80);
+    view.write("leds/led0:red:brick-status/brightness", "1");
+    assert_eq!(robot.number("led/red/value"), 1.0);
+    assert_eq!(view.number("leds/led1:red:brick-status/brightness"), 1);
+    let volts = f64::from(view.number("power_supply/trik-battery/voltage_now")) / 1e6;
+    assert!((volts - robot.number("battery/value")).abs() < 0.2);
+    let servo = "servo-motor/motor0";
+    assert_eq!(view.text(&format!("{servo}/state")), "");
+    view.write(&format!("{servo}/position_sp"), "50");
+    assert_eq!(view.text(&format!("{servo}/state")), "");
+    view.write(&format!("{servo}/command"), "run");
+    assert_eq!(
+        (
+            robot.number("servos/S1/value"),
+            view.text(&format!("{servo}/state"))
+        ),
+        (45.0, "running".to_owned())
+    );
+    view.write(&format!("{servo}/position_sp"), "-100");
+    assert_eq!(robot.number("servos/S1/value"), -90.0);
+    view.write(&format!("{servo}/command"), "float");
+    assert_eq!(robot.number("servos/S1/power"), 0.0);
+    // The gripper on S6 has no place for less than 0.
+    let gripper = "servo-motor/motor5";
+    view.write(&format!("{gripper}/position_sp"), "-10");
+    assert_eq!(
+        view.errno_of_write(&format!("{gripper}/command"), "run"),
+        libc::EINVAL
+    );
+}
+
+#[test]
+fn the_gyroscope_turns_clockwise_as_the_robot_does() {
+    let Some((robot, view)) = seen() else { return };
+    let gyro = "lego-sensor/sensor9";
+    assert_eq!(view.text(&format!("{gyro}/driver_name")), "lego-ev3-gyro");
+    let mut angle = File::open(view.0.join(gyro).join("value0")).unwrap();
+    let mut value = || -> Option<i32> {
+        let mut text = String::new();
+        angle.rewind().ok()?;
+        angle.read_to_string(&mut text).ok()?;
+        text.trim_end().parse().ok()
+    };
+    // Rates and angles calibrate each for themselves, while it stands.
+    eventually("the calibration", || {
+        value().is_some() && robot.errno("gyroscope/value") == 0
+    });
+    let start = value().expect("an angle");
+    // On the spot: the left wheel forwards is clockwise. More than a whole turn, slowly enough to follow.
+    for (motor, way) in [(LEFT, 1200), (RIGHT, -1200)] {
+        view.write(&format!("{motor}/stop_action"), "hold");
+        view.run(
+            motor,
+            &[("speed_sp", 400), ("position_sp", way)],
+            "run-to-rel-pos",
+        );
+    }
+    eventually("the end of the turn", || {
+        value();
+        !view.state(LEFT).contains("running") && !view.state(RIGHT).contains("running")
+    });
+    // Wheels of 28 mm, 155 mm apart.
+    let turned = (robot.turned_deg(3) - robot.turned_deg(4)) * 28.0 / 155.0;
+    assert!(turned > 400.0, "{turned}");
+    eventually("the whole angle", || {
+        value().is_some_and(|now| (f64::from(now - start) - turned).abs() < 8.0)
+    });
+    view.write(&format!("{gyro}/mode"), "GYRO-RATE");
+    for (motor, power) in [(LEFT, 20), (RIGHT, -20)] {
+        view.run(motor, &[("duty_cycle_sp", power)], "run-direct");
+    }
+    eventually("a rate", || value().is_some_and(|rate| rate > 20));
+}
+
+/// The processes of the view of a robot: the one that keeps the mount, and the one that serves it.
+fn view_processes(robot: &Robot) -> (u32, u32) {
+    let is_keeper = |pid: &u32| {
+        fs::read_to_string(format!("/proc/{pid}/comm"))
+            .is_ok_and(|name| name.trim() == "trikfs-ev3dev")
+    };
+    let mut found = (0, 0);
+    eventually("the view's processes", || {
+        let keeper = processes::children(robot.pid()).into_iter().find(is_keeper);
+        found.0 = keeper.unwrap_or(0);
+        let server = keeper.and_then(|keeper| processes::children(keeper).first().copied());
+        found.1 = server.unwrap_or(0);
+        server.is_some()
+    });
+    found
+}
+
+#[test]
+fn after_a_kill_of_either_process_motors_rest_and_the_view_comes_back() {
+    let Some((robot, view)) = seen() else { return };
+    for round in 0..2 {
+        view.run(LEFT, &[("speed_sp", 400)], "run-forever");
+        view.run("servo-motor/motor0", &[("position_sp", 20)], "run");
+        view.run(RIGHT, &[("duty_cycle_sp", 30)], "run-direct");
+        assert_ne!((robot.duty(3).unwrap(), robot.duty(4).unwrap()), (0, 0));
+        let (keeper, server) = view_processes(&robot);
+        processes::signal(if round == 0 { server } else { keeper }, Signal::SIGKILL);
+        eventually("rest", || {
+            (robot.duty(3).unwrap(), robot.duty(4).unwrap()) == (0, 0)
+        });
+        eventually("a servo without power", || {
+            robot.number("servos/S1/power") == 0.0
+        });
+        eventually("both processes gone", || {
+            !processes::is_alive(keeper) && !processes::is_alive(server)
+        });
+        eventually("the view again", || {
+            view.read(&format!("{LEFT}/state")).is_ok()
+        });
+        assert_eq!(view.state(LEFT), "");
+    }
+    assert!(
+        robot
+            .complaints()
+            .contains("the view of ev3dev has ended; started again")
+    );
+}
+
+#[test]
+fn an_unmount_of_the_view_brings_its_motors_to_rest() {
+    let Some(robot) = robot(&[]) else { return };
+    let mut alone = Alone::start(&robot.home, &robot.root, &[]);
+    alone.view.run(LEFT, &[("speed_sp", 400)], "run-forever");
+    eventually("power", || robot.duty(3).unwrap() != 0);
+    let done = Command::new("umount").arg(&alone.view.0).status();
+    assert!(done.expect("umount").success());
+    eventually("the end", || {
+        alone.process.try_wait().expect("a child").is_some()
+    });
+    eventually("rest", || robot.duty(3).unwrap() == 0);
+}
+
+#[test]
+fn the_end_of_the_robot_ends_the_view_with_motors_that_run() {
+    let Some((mut robot, view)) = seen() else {
+        return;
+    };
+    view.run(LEFT, &[("speed_sp", 400)], "run-forever");
+    let held = File::open(view.0.join(LEFT).join("state")).unwrap();
+    let (keeper, server) = view_processes(&robot);
+    assert_eq!(
+        robot.end(Signal::SIGTERM).code(),
+        Some(0),
+        "{}",
+        robot.complaints()
+    );
+    assert!(!processes::is_alive(keeper) && !processes::is_alive(server));
+    assert!(
+        !robot.complaints().contains("detached"),
+        "{}",
+        robot.complaints()
+    );
+    assert!((&held).read(&mut [0; 8]).is_err());
+    drop(held);
+    assert!(board::mounts_below(&view.0).is_empty() && !view.0.exists());
+    robot.leaves_nothing();
+}
+
+/// A view that was started by itself.
+struct Alone {
+    process: Child,
+    view: View,
+}
+
+impl Alone {
+    fn start(home: &Home, tree: &Path, words: &[&str]) -> Self {
+        let at = home.0.path("view");
+        let mut tree_word = std::ffi::OsString::from("--tree=");
+        tree_word.push(tree);
+        let process = Command::new(TRIK)
+            .arg0("trikfs-ev3dev")
+            .arg(tree_word)
+            .args(words)
+            .arg(&at)
+            .stdout(Stdio::null())
+            .spawn()
+            .expect("a view");
+        eventually("the view", || at.join("tacho-motor").is_dir());
+        Self {
+            process,
+            view: View(at),
+        }
+    }
+}
+
+impl Drop for Alone {
+    fn drop(&mut self) {
+        if let Ok(None) = self.process.try_wait() {
+            processes::signal(self.process.id(), Signal::SIGTERM);
+        }
+        let status = self.process.wait();
+        if !std::thread::panicking() {
+            assert!(status.is_ok_and(|status| status.success()));
+            assert!(board::mounts_below(&self.view.0).is_empty());
+        }
+    }
+}
+
+#[test]
+fn a_tree_that_goes_and_comes_back_is_seen_through_the_same_open_files() {
+    let Some(home) = Home::new() else { return };
+    let home = Arc::new(home);
+    let tree = home.0.path("tree");
+    let alone = Alone::start(&home, &tree, &[]);
+    let view = &alone.view;
+    assert_eq!(fs::read_dir(view.0.join("tacho-motor")).unwrap().count(), 0);
+    let words = ["tree"];
+    let mut robot = Robot::start(Arc::clone(&home), &words);
+    eventually("devices", || view.read(&format!("{LEFT}/position")).is_ok());
+    let mut file = File::open(view.0.join(LEFT).join("position")).unwrap();
+    let mut position = || -> i32 {
+        let mut text = String::new();
+        errno(
+            file.rewind()
+                .and_then(|()| file.read_to_string(&mut text).map(drop)),
+        )
+    };
+    assert_eq!(position(), 0);
+    view.run(LEFT, &[("speed_sp", 400)], "run-forever");
+    assert_eq!(
+        robot.end(Signal::SIGTERM).code(),
+        Some(0),
+        "{}",
+        robot.complaints()
+    );
+    eventually("a motor that is gone", || view.state(LEFT).is_empty());
+    assert_eq!(position(), libc::ENODEV);
+    assert_eq!(
+        view.errno_of_read("lego-sensor/sensor6/value0"),
+        libc::ENODEV
+    );
+    assert_eq!(
+        view.errno_of_write(&format!("{LEFT}/command"), "run-forever"),
+        libc::ENODEV
+    );
+    assert!(
+        view.text(&format!("{LEFT}/fault"))
+            .contains("motors/M3/value")
+    );
+    assert_eq!(
+        view.errno_of_write("leds/led0:red:brick-status/brightness", "1"),
+        libc::ENODEV
+    );
+    let robot = Robot::start(Arc::clone(&home), &words);
+    assert_eq!(position(), 0);
+    view.run(LEFT, &[("speed_sp", 400)], "run-forever");
+    eventually("movement", || robot.turned_deg(3) > 90.0);
+    assert_eq!(view.text(&format!("{LEFT}/fault")), "");
+    drop(robot);
+}
+
+#[test]
+fn a_motor_without_encoder_is_a_dc_motor_and_a_leased_one_is_busy() {
+    let Some(robot) = robot(&[]) else { return };
+    let alone = Alone::start(&robot.home, &robot.root, &["--encoder", "M3=none"]);
+    let view = &alone.view;
+    let motor = "dc-motor/motor0";
+    assert_eq!(view.text(&format!("{motor}/address")), "ev3-ports:outC:M3");
+    assert_eq!(view.text("tacho-motor/motor2/address"), "ev3-ports:outD:M4");
+    view.run(motor, &[("duty_cycle_sp", 55)], "run-forever");
+    assert!((50.0..=55.0).contains(&robot.number("motors/M3/value")));
+    view.write(&format!("{motor}/stop_action"), "brake");
+    view.run(
+        motor,
+        &[("time_sp", 200), ("duty_cycle_sp", -30)],
+        "run-timed",
+    );
+    view.until_done(motor);
+    assert_eq!(robot.duty(3).unwrap(), 127);
+    // The view is a child of this process, which would share its lease with it.
+    let script = "exec 3> \"$1\"; echo held; exec sleep 1000";
+    let mut holder = Command::new("setsid")
+        .args(["--fork", "sh", "-c", &format!("echo $$; {script}"), "sh"])
+        .arg(robot.path("motors/M3/owner"))
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("a holder");
+    let mut lines = BufReader::new(holder.stdout.take().expect("a pipe")).lines();
+    let pid = lines.next().expect("a line").expect("a number");
+    assert_eq!(lines.next().expect("a line").expect("text"), "held");
+    holder.wait().expect("setsid");
+    let busy = view.errno_of_write(&format!("{motor}/command"), "run-forever");
+    processes::signal(pid.parse().expect("a number"), Signal::SIGKILL);
+    assert_eq!(busy, libc::EBUSY);
+    assert_eq!(view.state(motor), "");
+    // The rest at the end of the lease comes a moment after it.
+    eventually("a free motor", || {
+        view.try_write(&format!("{motor}/command"), "run-forever")
+            .is_ok()
+    });
+    view.write(&format!("{motor}/stop_action"), "coast");
+    view.write(&format!("{motor}/command"), "stop");
+}
+
+#[test]
+fn a_directory_that_cannot_be_used_ends_the_robot_with_a_reason() {
+    let Some(home) = Home::new() else { return };
+    fs::create_dir_all(home.0.path("full/x")).unwrap();
+    let refusal = home.run(&["up", "--ev3dev=full"]);
+    assert_eq!(refusal.code(), 1);
+    assert!(
+        refusal.stderr.contains("full is not empty"),
+        "{}",
+        refusal.stderr
+    );
+    assert!(!home.base().exists());
+}
