@@ -14,10 +14,12 @@ pub const SCAN_MS: u64 = 500;
 pub const NAME_TTL_MS: u64 = 500;
 /// Period of the loop of a motor that runs.
 pub const LOOP_MS: u64 = 10;
+/// How often a motor that cannot be reached is tried to be let go.
+pub const RETRY_MS: u64 = 100;
 /// How long the loop goes on after somebody has asked for the speed of a motor that stands.
 pub const OBSERVE_S: f64 = 0.3;
-/// How long a motor may run without its encoder before it is stopped.
-pub const ENCODER_LOST_S: f64 = 0.2;
+/// How long the encoder or the power of a motor may fail before it is stopped.
+pub const LOST_S: f64 = 0.2;
 /// Longest ramp.
 pub const RAMP_MS_MAX: i32 = 60_000;
 /// Longest ramp of a motor without an encoder.

@@ -4,12 +4,12 @@
 //! opened by a command and stay open until the motor has been let go, so that the tree brings the motor to rest if this
 //! process dies. While it runs the encoder is sampled as often as the loop asks.
 //!
-//! Locks: `files`, then `control`. Whoever holds `files` is the one who drives: the loop, or a program's command, whose
+//! Locks: `files`, then `control` or `turns`. Whoever holds `files` is the one who drives: the loop, or a program's command, whose
 //! first step is done in its own call so that it hears of a failure.
 
 use super::control::{Command, Control, Output};
 use crate::device::{Changes, lock};
-use crate::limits::{ENCODER_LOST_S, LOOP_MS, OBSERVE_S};
+use crate::limits::{LOOP_MS, LOST_S, OBSERVE_S, RETRY_MS};
 use crate::tree::{KeptFile, Tree, TreeFile};
 use std::io::{self, Write};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -49,6 +49,8 @@ struct Files {
     encoder: Option<KeptFile>,
     /// When the encoder was last read, while it is needed.
     heard_s: f64,
+    /// When the power file last had what it should.
+    wrote_s: f64,
     /// The period of the encoder before this motor ran.
     usual_ms: Option<u64>,
     fault: String,
@@ -61,6 +63,8 @@ struct Turns {
     retired: bool,
     /// There is something to do at once.
     due: bool,
+    /// The power file has not got yet what it should.
+    pending: bool,
     observe_until_s: f64,
 }
 
@@ -80,6 +84,7 @@ impl Driver {
                 sent: None,
                 encoder,
                 heard_s: 0.0,
+                wrote_s: 0.0,
                 usual_ms: None,
                 fault: String::new(),
             }),
@@ -188,6 +193,7 @@ impl Driver {
             files.power = Some(self.tree.open_to_write(&self.paths.power)?);
             files.sent = None;
         }
+        files.wrote_s = now_s;
         if files.usual_ms.is_none() {
             files.usual_ms = self.hasten_encoder();
         }
@@ -206,13 +212,8 @@ impl Driver {
                 files.heard_s = self.now_s();
                 counts
             }
-            // A transfer may fail now and then.
-            Err(Error::Device(..) | Error::TimedOut(_) | Error::WouldBlock)
-                if self.now_s() - files.heard_s < ENCODER_LOST_S =>
-            {
-                None
-            }
-            Err(_) if is_let_go && files.power.is_none() => None,
+            Err(error) if is_passing(&error) && self.now_s() - files.heard_s < LOST_S => None,
+            Err(_) if is_let_go => None,
             Err(error) => return Err(error),
         };
         let mut control = self.control();
@@ -223,27 +224,54 @@ impl Driver {
             Output::Power(percent) => percent,
             Output::Brake => BRAKE,
         };
-        if let Some(power) = &files.power
-            && files.sent != Some(wanted)
-        {
-            power.write(&wanted.to_string())?;
-            files.sent = Some(wanted);
-        }
-        if is_let_go {
+        self.send(files, wanted)?;
+        let has_all = files.sent == Some(wanted);
+        lock(&self.turns).pending = files.power.is_some() && !has_all;
+        if is_let_go && has_all {
             files.power = None;
         }
         Ok(())
     }
 
-    /// Lets the motor go, because it cannot be driven.
+    /// Writes the power if it is another one. A transfer that fails is tried again at the next step, for a while.
+    fn send(&self, files: &mut Files, wanted: i32) -> Result<(), Error> {
+        let now_s = self.now_s();
+        let Some(power) = &files.power else {
+            return Ok(());
+        };
+        if files.sent == Some(wanted) {
+            files.wrote_s = now_s;
+            return Ok(());
+        }
+        match power.write(&wanted.to_string()) {
+            Ok(()) => {
+                files.sent = Some(wanted);
+                files.wrote_s = now_s;
+                Ok(())
+            }
+            // A motor that is to be let go is tried for ever.
+            Err(error)
+                if is_passing(&error)
+                    && (now_s - files.wrote_s < LOST_S || self.control().is_let_go()) =>
+            {
+                Ok(())
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Lets the motor go, because it cannot be driven. If it does not even take that now, the loop tries again.
     fn give_up(&self, files: &mut Files, error: &Error) {
         self.control().let_go();
-        if let Some(power) = files.power.take() {
-            // The lease may be another's, or the tree gone, which stops the motor by itself.
-            let _ = power.write("0");
-        }
-        files.sent = None;
         files.fault = error.to_string().replace('\n', " ");
+        files.sent = None;
+        // The lease may be another's, or the tree gone, which brings the motor to rest by itself.
+        let refused = self.send(files, 0).is_err();
+        let has_all = files.sent == Some(0);
+        if refused || has_all {
+            files.power = None;
+        }
+        lock(&self.turns).pending = files.power.is_some();
     }
 
     fn observe_if_idle(&self) -> Result<(), Error> {
@@ -282,11 +310,13 @@ impl Driver {
     /// The loop.
     fn work(&self) {
         let period = Duration::from_millis(LOOP_MS);
+        let retry = Duration::from_millis(RETRY_MS);
         let mut next = Instant::now();
         while self.wait_until(next) {
             self.turn();
             let now = Instant::now();
-            next += period;
+            let is_waiting = lock(&self.turns).pending && self.control().is_let_go();
+            next += if is_waiting { retry } else { period };
             // What was missed is not made up for.
             if next < now {
                 next = now;
@@ -309,7 +339,7 @@ impl Driver {
                 return true;
             }
             let left = next.saturating_duration_since(Instant::now());
-            if is_busy || self.now_s() < turns.observe_until_s {
+            if is_busy || turns.pending || self.now_s() < turns.observe_until_s {
                 if left.is_zero() {
                     return true;
                 }
@@ -350,11 +380,8 @@ impl Driver {
         let before = self.state();
         let result = self.step(&mut files);
         if let Err(error) = result {
-            let was_driven = files.power.is_some();
             self.give_up(&mut files, &error);
-            if was_driven {
-                complain(&format!("{}: {error}: let go", self.paths.power));
-            }
+            complain(&format!("{}: let go: {error}", self.paths.power));
         }
         drop(files);
         self.tell_if_changed(before);
@@ -378,6 +405,11 @@ impl Driver {
             let _ = self.tree.write(&name, &usual.to_string());
         }
     }
+}
+
+/// A transfer may fail now and then.
+fn is_passing(error: &Error) -> bool {
+    matches!(error, Error::Device(..) | Error::TimedOut(_))
 }
 
 /// Degrees, if there is an encoder.

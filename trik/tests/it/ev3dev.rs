@@ -307,6 +307,49 @@ fn a_motor_that_cannot_turn_is_stalled_until_it_can() {
     eventually("running freely", || view.state(LEFT) == "running");
 }
 
+#[test]
+fn a_bus_that_fails_now_and_then_is_borne_and_a_dead_one_lets_the_motor_go() {
+    let Some((robot, view)) = seen() else { return };
+    view.run(LEFT, &[("speed_sp", 400)], "run-forever");
+    robot.fault(&["msp430", "nack", "0.3"]);
+    let from = robot.turned_deg(3);
+    eventually("a long way", || robot.turned_deg(3) - from > 400.0);
+    assert_eq!(view.state(LEFT), "running");
+    robot.fault(&["msp430", "unplug"]);
+    eventually("a motor that is let go", || view.state(LEFT).is_empty());
+    assert!(view.text(&format!("{LEFT}/fault")).contains("E3"));
+    // The coprocessor has kept the power that it got last.
+    robot.fault(&["msp430", "--clear"]);
+    eventually("rest", || robot.duty(3).unwrap() == 0);
+    view.write(&format!("{LEFT}/command"), "run-forever");
+    assert_eq!(view.text(&format!("{LEFT}/fault")), "");
+}
+
+#[test]
+fn another_configuration_brings_other_devices() {
+    let Some((robot, view)) = seen() else { return };
+    let mut old = File::open(view.0.join("lego-sensor/sensor0/value0")).unwrap();
+    assert!(old.read(&mut [0; 16]).is_ok());
+    let config = fs::read_to_string(robot.path("config")).unwrap();
+    let changed = config.replace("sharpGP2", "touch");
+    assert_ne!(config, changed);
+    fs::write(robot.path("config"), changed).unwrap();
+    eventually("the new sensor", || {
+        let driver = view.read("lego-sensor/sensor11/driver_name");
+        driver.is_ok_and(|driver| driver == "lego-ev3-touch")
+    });
+    assert!(!view.0.join("lego-sensor/sensor0").exists());
+    assert_eq!(
+        errno(old.rewind().and_then(|()| old.read(&mut [0; 16]).map(drop))),
+        libc::ENODEV
+    );
+    // What has not changed is the same.
+    assert_eq!(
+        view.text("lego-sensor/sensor2/driver_name"),
+        "lego-ev3-touch"
+    );
+}
+
 /// Waits for POLLPRI as a library does; gives the events.
 fn poll_pri(file: &File) -> nix::poll::PollFlags {
     use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
