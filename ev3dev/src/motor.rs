@@ -1,9 +1,12 @@
 //! Motors: the attributes of the classes tacho-motor and dc-motor over one [`Driver`].
 //!
-//! Owns which attributes there are and what texts they take. `control` decides what the motor does, `driver` does it.
+//! Owns which attributes there are and what texts they take. `command` has what can be said to a motor, `control` decides
+//! what it does, by its `shaft`, and `driver` does it.
 
+pub mod command;
 pub mod control;
 pub mod driver;
+mod shaft;
 
 use crate::device::{
     Attribute, Changes, Device, KernelSlot, Shown, line, no_such_word, number_within, read,
@@ -11,7 +14,8 @@ use crate::device::{
 };
 use crate::limits::{DC_RAMP_MS_MAX, RAMP_MS_MAX};
 use crate::tree::Tree;
-use control::{Command, Control, Gains, Polarity, StopAction};
+use command::{Command, Gains, Polarity, StopAction};
+use control::Control;
 use driver::{Driver, Paths};
 use std::sync::Arc;
 use trikfs::errno::Error;

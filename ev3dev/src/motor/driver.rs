@@ -7,7 +7,8 @@
 //! Locks: `files`, then `control` or `turns`. Whoever holds `files` is the one who drives: the loop, or a program's command, whose
 //! first step is done in its own call so that it hears of a failure.
 
-use super::control::{Command, Control, Output};
+use super::command::{Command, Output};
+use super::control::Control;
 use crate::device::{Changes, lock};
 use crate::limits::{LOOP_MS, LOST_S, OBSERVE_S, RETRY_MS};
 use crate::tree::{KeptFile, Tree, TreeFile};

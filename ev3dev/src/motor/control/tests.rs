@@ -1,6 +1,7 @@
 //! Commands and regulation on a motor made of equations: 1200 counts per second at full power, a lag of 80 ms.
 
 use super::*;
+use crate::motor::command::Polarity;
 
 const MAX_SPEED: i32 = 1000;
 const TICK_S: f64 = 0.01;
