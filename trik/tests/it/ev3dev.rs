@@ -230,12 +230,11 @@ fn a_motor_runs_at_its_speed_and_stops_as_it_was_told() {
 #[test]
 fn positions_are_reached_by_the_ticks_of_the_encoder() {
     let Some((robot, view)) = seen() else { return };
+    // Held, so a swing at the end of the move is soon over.
     let near = |encoder: u8, wanted: f64| {
-        let turned = robot.turned_deg(encoder);
-        assert!(
-            (turned - wanted).abs() < 4.0,
-            "E{encoder}: {turned} for {wanted}"
-        );
+        eventually(&format!("E{encoder} at {wanted}"), || {
+            (robot.turned_deg(encoder) - wanted).abs() < 3.0
+        });
     };
     view.write(&format!("{LEFT}/stop_action"), "hold");
     view.run(
@@ -250,7 +249,7 @@ fn positions_are_reached_by_the_ticks_of_the_encoder() {
     view.until_done(LEFT);
     near(3, -90.0);
     view.write(&format!("{LEFT}/position"), "1000");
-    assert!((view.number(&format!("{LEFT}/position")) - 1000).abs() <= 2);
+    assert!((view.number(&format!("{LEFT}/position")) - 1000).abs() <= 3);
     view.run(LEFT, &[("position_sp", 1090)], "run-to-abs-pos");
     view.until_done(LEFT);
     near(3, 0.0);
@@ -264,7 +263,7 @@ fn positions_are_reached_by_the_ticks_of_the_encoder() {
     );
     view.until_done(RIGHT);
     near(4, -180.0);
-    assert!((view.number(&format!("{RIGHT}/position")) - 180).abs() <= 2);
+    assert!((view.number(&format!("{RIGHT}/position")) - 180).abs() <= 3);
     for motor in [LEFT, RIGHT] {
         view.write(&format!("{motor}/command"), "reset");
         assert_eq!(view.text(&format!("{motor}/stop_action")), "coast");
@@ -337,7 +336,10 @@ fn another_configuration_brings_other_devices() {
         let driver = view.read("lego-sensor/sensor11/driver_name");
         driver.is_ok_and(|driver| driver == "lego-ev3-touch")
     });
-    assert!(!view.0.join("lego-sensor/sensor0").exists());
+    // The kernel keeps the name for a moment.
+    eventually("the end of the old one", || {
+        !view.0.join("lego-sensor/sensor0").exists()
+    });
     assert_eq!(
         errno(old.rewind().and_then(|()| old.read(&mut [0; 16]).map(drop))),
         libc::ENODEV
