@@ -17,7 +17,7 @@ arm_gcc=arm-linux-gnueabi-gcc
 qemu="qemu-arm-static"
 cpu=arm926
 # The crates whose products run on the robot, for cargo; `filters` is a shared library.
-robot_crates=(-p trikfs -p filters)
+robot_crates=(-p trikfs -p filters -p trikfs-ev3dev)
 
 say() { printf '\n== %s\n' "$*"; }
 note() { printf '%s\n' "$*"; }

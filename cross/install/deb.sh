@@ -33,9 +33,12 @@ main() {
     need_packages dpkg-dev binutils
     if [ -n "$build" ]; then
         say "building for this PC"
-        (cd "$root" && cargo build --release -p trikfs -p filters --locked)
+        (cd "$root" && cargo build --release -p trikfs -p filters -p trikfs-ev3dev --locked)
     fi
-    [ -x "$built/trikfs" ] || die "$built/trikfs is missing" "run this without --no-build"
+    local program
+    for program in trikfs trikfs-ev3dev; do
+        [ -x "$built/$program" ] || die "$built/$program is missing" "run this without --no-build"
+    done
     mkdir -p "$packages"
     work=$(mktemp -d)
     trap 'rm -rf "$work"' EXIT
@@ -70,6 +73,11 @@ make_docs() {
     completion bash "$share/bash-completion/completions/trikfs"
     completion zsh "$share/zsh/vendor-completions/_trikfs"
     completion fish "$share/fish/vendor_completions.d/trikfs.fish"
+    local view=$built/trikfs-ev3dev
+    "$view" --man | gzip -9n >"$share/man/man1/trikfs-ev3dev.1.gz"
+    "$view" --completions bash >"$share/bash-completion/completions/trikfs-ev3dev"
+    "$view" --completions zsh >"$share/zsh/vendor-completions/_trikfs-ev3dev"
+    "$view" --completions fish >"$share/fish/vendor_completions.d/trikfs-ev3dev.fish"
     install -m 644 "$from/copyright" "$doc"
     gzip -9n <"$work/debian/changelog" >"$doc/changelog.gz"
     install -m 644 "$root"/docs/user/*.md "$doc"
@@ -102,7 +110,7 @@ make_control() {
         install -m 755 "$from/$script" "$tree/DEBIAN/$script"
     done
     echo /etc/trikfs/robot.lua >"$tree/DEBIAN/conffiles"
-    (cd "$work" && dpkg-shlibdeps -O debian/trikfs/usr/bin/trikfs debian/trikfs/usr/lib/trikfs/*.so) >"$work/substvars"
+    (cd "$work" && dpkg-shlibdeps -O debian/trikfs/usr/bin/trikfs* debian/trikfs/usr/lib/trikfs/*.so) >"$work/substvars"
     arch=$(dpkg --print-architecture)
     (cd "$work" && dpkg-gencontrol -ptrikfs -T"$work/substvars" -Pdebian/trikfs -v"$version" \
         -DArchitecture="$arch")

@@ -31,7 +31,7 @@ main() {
 
 need_build() {
     local file header
-    for file in bin/trikfs lib/trikfs/libtrikfs_filters.so lib/trikfs/libhello.so; do
+    for file in bin/trikfs bin/trikfs-ev3dev lib/trikfs/libtrikfs_filters.so lib/trikfs/libhello.so; do
         [ -e "$robot/$file" ] || die "$robot/$file is missing" "build it: cross/build.sh"
         header=$(readelf -h "$robot/$file" 2>/dev/null) || die "$robot/$file is no program" "build it: cross/build.sh"
         grep -q 'Machine: *ARM$' <<<"$header" ||

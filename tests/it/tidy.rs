@@ -3,9 +3,10 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-const CRATES: [&str; 8] = [
+const CRATES: [&str; 9] = [
     "config",
     "converter",
+    "ev3dev",
     "filters",
     "sample-bus",
     "sim",

@@ -50,12 +50,14 @@ enum Command {
         /// The command.
         command: Option<String>,
     },
-    /// The process that serves the tree of a robot: ends with its parent.
+    /// A process that serves a mount of a robot: ends with its parent.
     #[command(hide = true)]
     Tree {
         /// Process id of the parent.
         parent: u32,
-        /// Arguments of trikfs.
+        /// Under which name this program is started.
+        name: String,
+        /// Its arguments.
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         arguments: Vec<OsString>,
     },
@@ -86,6 +88,10 @@ pub(crate) struct UpArgs {
     /// Private directory for compiled C and copies of libraries [default: as for trikfs].
     #[arg(long, value_name = "DIR")]
     pub cache: Option<PathBuf>,
+    /// Mount the devices of the robot a second time as the classes of ev3dev, for programs that know those [default: the
+    /// mount point of the robot with .ev3dev behind, in the directory of the robots].
+    #[arg(long, value_name = "DIR", num_args = 0..=1, require_equals = true)]
+    pub ev3dev: Option<Option<PathBuf>>,
     /// An empty directory; made if nothing is there, and removed again [default: robot, or else robot-2 and so on, in
     /// $XDG_RUNTIME_DIR/trik or /tmp/trik-UID].
     pub mountpoint: Option<PathBuf>,
@@ -138,7 +144,11 @@ fn perform(command: Command) -> Result<(), String> {
         Command::Fault(args) => print(fault::fault(&args)?.as_bytes()),
         Command::Completions { shell } => print(&manual::completions(shell, Cli::command())),
         Command::Man { command } => print(&manual::page(command.as_deref(), Cli::command())?),
-        Command::Tree { parent, arguments } => Err(up::tree::become_tree(parent, &arguments)),
+        Command::Tree {
+            parent,
+            name,
+            arguments,
+        } => Err(up::tree::become_program(parent, &name, &arguments)),
     }
 }
 
@@ -198,7 +208,17 @@ mod tests {
             panic!("not understood")
         };
         assert_eq!((args.speed, args.seed, args.no_view), (2.0, 7, true));
-        assert_eq!(args.mountpoint, Some("/m".into()));
+        assert_eq!((args.mountpoint, args.ev3dev), (Some("/m".into()), None));
+        for (words, dir) in [
+            (&["up", "--ev3dev", "m"] as &[&str], None),
+            (&["up", "--ev3dev=e", "m"], Some("e".into())),
+        ] {
+            let Ok(Command::Up(args)) = parse(words) else {
+                panic!("not understood")
+            };
+            assert_eq!(args.ev3dev, Some(dir));
+            assert_eq!(args.mountpoint, Some("m".into()));
+        }
     }
 
     #[test]

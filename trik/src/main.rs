@@ -1,12 +1,14 @@
-//! The program `trik`; started under the name `trikfs` it is that program, so that one file serves a whole robot.
+//! The program `trik`; started under the name `trikfs` or `trikfs-ev3dev` it is that program, so that one file serves a
+//! whole robot.
 
 use std::path::Path;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let name = std::env::args_os().next().unwrap_or_default();
-    if Path::new(&name).file_name() == Some("trikfs".as_ref()) {
-        return trikfs::cli::main();
+    match Path::new(&name).file_name().and_then(|name| name.to_str()) {
+        Some("trikfs") => trikfs::cli::main(),
+        Some("trikfs-ev3dev") => trikfs_ev3dev::cli::main(),
+        _ => trik::cli::main(),
     }
-    trik::cli::main()
 }

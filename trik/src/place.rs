@@ -1,7 +1,7 @@
 //! Where the virtual robots of a user are: names, locks, records, and what dead ones left behind.
 //!
 //! Owns one private directory, `$XDG_RUNTIME_DIR/trik` or `/tmp/trik-UID`. For a robot NAME it has `NAME` (the default
-//! mount point), `NAME.board` (devices) and `NAME.lock`: who holds the lock is alive, whatever its process number, and
+//! mount point), `NAME.board` (devices), `NAME.ev3dev` (the view of ev3dev) and `NAME.lock`: who holds the lock is alive, whatever its process number, and
 //! the file tells where the robot is. Knows nothing of what a board or a tree is.
 
 use crate::limits;
@@ -13,6 +13,9 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
+
+/// Ending of the directory for the view of ev3dev.
+const VIEW: &str = "ev3dev";
 
 /// The directory for the robots of this user.
 ///
@@ -53,6 +56,8 @@ pub struct Place {
     /// For its devices; nothing is there yet.
     pub board: PathBuf,
     made_mountpoint: bool,
+    /// Made for the view of ev3dev.
+    made_view: Option<PathBuf>,
     lock: PathBuf,
     held: File,
 }
@@ -90,6 +95,7 @@ impl Place {
                 mountpoint: mountpoint.unwrap_or(&default).to_owned(),
                 board: base.join(format!("{name}.board")),
                 made_mountpoint: false,
+                made_view: None,
                 lock,
                 held,
             };
@@ -104,6 +110,19 @@ impl Place {
             "{} robots run already: stop one",
             limits::ROBOTS_MAX
         ))
+    }
+
+    /// A directory for the view of ev3dev: this one, or the one of the robot.
+    ///
+    /// # Errors
+    /// It is not empty, or cannot be made.
+    pub fn make_view(&mut self, wanted: Option<&Path>) -> Result<PathBuf, String> {
+        let default = self.lock.with_extension(VIEW);
+        let path = wanted.unwrap_or(&default);
+        if make_mountpoint(path)? || wanted.is_none() {
+            self.made_view = Some(path.to_owned());
+        }
+        Ok(path.to_owned())
     }
 
     /// Tells others where this robot is.
@@ -123,6 +142,7 @@ impl Drop for Place {
             // Not if it is not empty: somebody has put something there, or it is still mounted.
             let _ = fs::remove_dir(&self.mountpoint);
         }
+        let _ = self.made_view.as_ref().map(fs::remove_dir);
         let _ = fs::remove_dir_all(&self.board);
         let _ = fs::remove_file(&self.lock);
         // Only the last robot succeeds.
@@ -222,6 +242,11 @@ fn sweep(base: &Path) {
                 let _ = fs::remove_dir(&mountpoint);
             }
         }
+        let view = lock.with_extension(VIEW);
+        if is_dead(&view) {
+            let _ = trikfs::mount::unmount(&view);
+        }
+        let _ = fs::remove_dir(view);
         let _ = fs::remove_dir_all(base.join(format!("{name}.board")));
         let _ = fs::remove_file(&lock);
     }

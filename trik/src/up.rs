@@ -1,9 +1,10 @@
 //! `trik up`: a virtual board in this process, the tree over it in child processes, and the person in front of them.
 //!
 //! Owns the order of things: place, board, tree, and all three backwards, whatever ends them. Everything that happens
-//! is waited for in one poll(2) in the main thread. `tree` is the child, `view` says how the robot is, `screen` draws
-//! it, `hints` says what to try.
+//! is waited for in one poll(2) in the main thread. `tree` is the child, `ev3dev` another one beside it, `view` says how
+//! the robot is, `screen` draws it, `hints` says what to try.
 
+mod ev3dev;
 mod hints;
 mod screen;
 pub(crate) mod tree;
@@ -12,6 +13,7 @@ mod view;
 use crate::cli::UpArgs;
 use crate::limits;
 use crate::place::{self, Place};
+use ev3dev::Ev3dev;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::signal::{SigSet, Signal, kill};
 use nix::sys::signalfd::{SfdFlags, SignalFd};
@@ -64,7 +66,15 @@ pub(crate) fn up(args: UpArgs) -> Result<(), String> {
     let signals =
         SignalFd::with_flags(&mask, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC).map_err(own)?;
     let mountpoint = args.mountpoint.as_deref().map(absolute).transpose()?;
-    let place = Place::claim(&place::base()?, mountpoint.as_deref())?;
+    let mut place = Place::claim(&place::base()?, mountpoint.as_deref())?;
+    let ev3dev = match &args.ev3dev {
+        Some(wanted) => {
+            let wanted = wanted.as_deref().map(absolute).transpose()?;
+            let at = place.make_view(wanted.as_deref())?;
+            Some(Ev3dev::new(&place.mountpoint, at))
+        }
+        None => None,
+    };
     let options = Options {
         speed: args.speed,
         seed: args.seed,
@@ -82,7 +92,9 @@ pub(crate) fn up(args: UpArgs) -> Result<(), String> {
         board: &board,
         screen: if args.no_view { None } else { Screen::new() },
         signals,
+        ev3dev,
         tree,
+        failure: None,
         stage: Stage::Starting(after(limits::START_MS)),
         was_asked: false,
         was_ready: false,
@@ -137,7 +149,7 @@ fn absolute(path: &Path) -> Result<PathBuf, String> {
 }
 
 fn start(arguments: &[OsString]) -> Result<Tree, String> {
-    Tree::start(arguments).map_err(|error| format!("starting the tree: {error}"))
+    Tree::start("trikfs", arguments).map_err(|error| format!("starting the tree: {error}"))
 }
 
 fn after(ms: u32) -> Instant {
@@ -166,7 +178,11 @@ struct Session<'a> {
     board: &'a Board,
     screen: Option<Screen>,
     signals: SignalFd,
+    /// Before the tree, so that it ends before that.
+    ev3dev: Option<Ev3dev>,
     tree: Tree,
+    /// What went wrong beside the tree.
+    failure: Option<String>,
     stage: Stage,
     /// By a signal.
     was_asked: bool,
@@ -182,6 +198,7 @@ impl Session<'_> {
             self.wait().map_err(|error| format!("waiting: {error}"))?;
             self.hear_signals();
             self.hear_tree();
+            self.hear_view();
             if self.tree.said.is_over() && status.is_none() {
                 status = Some(
                     self.tree
@@ -197,7 +214,13 @@ impl Session<'_> {
                     if let Some(screen) = &mut self.screen {
                         screen.leave();
                     }
-                    return self.judge(ended);
+                    if let Some(view) = &mut self.ev3dev {
+                        view.stop();
+                    }
+                    return match self.failure.take() {
+                        Some(failure) => Err(failure),
+                        None => self.judge(ended),
+                    };
                 }
                 self.start_again(ended)?;
                 status = None;
@@ -224,6 +247,7 @@ impl Session<'_> {
             pipes
                 .into_iter()
                 .flatten()
+                .chain(self.ev3dev.iter().flat_map(Ev3dev::fds))
                 .map(|fd| PollFd::new(fd, PollFlags::POLLIN)),
         );
         match poll(
@@ -261,11 +285,28 @@ impl Session<'_> {
                 // Somebody has no patience.
                 Stage::Stopping(_) => self.hurry(),
                 Stage::Orphaned(_) => self.stage = Stage::Orphaned(Instant::now()),
-                Stage::Starting(_) | Stage::Ready => {
-                    self.tree.terminate();
-                    self.stage = Stage::Stopping(after(limits::STOP_MS));
-                }
+                Stage::Starting(_) | Stage::Ready => self.stop(),
             }
+        }
+    }
+
+    /// Asks for the end, first of what stands on the tree.
+    fn stop(&mut self) {
+        if let Some(view) = &mut self.ev3dev {
+            view.stop();
+        }
+        self.tree.terminate();
+        self.stage = Stage::Stopping(after(limits::STOP_MS));
+    }
+
+    fn hear_view(&mut self) {
+        // At the end its files of the tree fail, which is no news.
+        if self.stage != Stage::Ready {
+            return;
+        }
+        let lines = self.ev3dev.as_mut().map(Ev3dev::hear);
+        for line in lines.into_iter().flatten() {
+            self.note(&line);
         }
     }
 
@@ -279,6 +320,10 @@ impl Session<'_> {
             }
             if !self.was_ready {
                 self.was_ready = true;
+                if let Some(Err(reason)) = self.ev3dev.as_mut().map(Ev3dev::start) {
+                    self.failure = Some(reason);
+                    return self.stop();
+                }
                 self.welcome(rest);
             }
         }
@@ -342,6 +387,12 @@ impl Session<'_> {
         );
         for (command, meaning) in hints::of(self.robot) {
             text.push_str(&format!("  {command:<54} # {meaning}\n"));
+        }
+        if let Some(view) = &self.ev3dev {
+            let at = view.mountpoint.display();
+            text.push_str(&format!(
+                "\nAs the classes of ev3dev:\n\n  ls {at}/tacho-motor\n"
+            ));
         }
         text.push_str("\nCtrl-C ends it.\n\n");
         let mut out = io::stdout().lock();

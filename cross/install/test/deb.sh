@@ -23,14 +23,16 @@ test_deb() {
     check "dpkg -i" layer dpkg -i /tmp/trikfs.deb
     check "every dependency is there" layer dpkg --audit
     check "trikfs --version" says "trikfs $version" layer trikfs --version
+    check "trikfs-ev3dev --version" says "trikfs-ev3dev $version" layer trikfs-ev3dev --version
     check "the service is there and not enabled" says disabled layer systemctl is-enabled trikfs.service
     check "systemd-analyze verify" layer systemd-analyze verify trikfs.service
     local page
-    for page in trikfs trikfs-mount trikfs-check trikfs-convert trikfs-new-converter trikfs-edit trikfs-umount trikfs-completions trikfs-man; do
+    for page in trikfs trikfs-mount trikfs-check trikfs-convert trikfs-new-converter trikfs-edit trikfs-umount trikfs-completions trikfs-man trikfs-ev3dev; do
         check "man $page" man_page "$page"
     done
-    check "no other man page" test "$(find "$layer/usr/share/man" -name 'trikfs*' | wc -l)" -eq 9
+    check "no other man page" test "$(find "$layer/usr/share/man" -name 'trikfs*' | wc -l)" -eq 10
     check "bash completion" layer bash -n /usr/share/bash-completion/completions/trikfs
+    check "bash completion of the view" layer bash -n /usr/share/bash-completion/completions/trikfs-ev3dev
     check "the configuration is good" layer trikfs check /etc/trikfs/robot.lua
     check "so is the shipped example" layer trikfs check /usr/share/trikfs/lua/hello.lua
     check "the header compiles" layer sh -c "echo '#include <trikfs_converter.h>' | gcc -fsyntax-only -Wall -x c -"

@@ -43,6 +43,7 @@ etc/init.d/trikfs
 etc/rc5.d/S99trikfs
 etc/trikfs/robot.lua
 usr/bin/trikfs
+usr/bin/trikfs-ev3dev
 usr/include/trikfs_converter.h
 usr/lib/trikfs/common.sh
 usr/lib/trikfs/libhello.so
@@ -75,7 +76,7 @@ test_ipk() {
     check "ipk: all configuration files are there" sh -c "cd '$dir/data' && sed 's|^/|./|' ../control/conffiles | xargs ls"
     check "ipk: everything is root's" not sh -c "tar tvzf '$dir/data.tar.gz' | grep -v ' 0/0 '"
     check "ipk: programs can be executed, data cannot" same \
-        <(printf '%s\n' etc/init.d/trikfs usr/bin/trikfs usr/lib/trikfs/respawn usr/lib/trikfs/tone) \
+        <(printf '%s\n' etc/init.d/trikfs usr/bin/trikfs usr/bin/trikfs-ev3dev usr/lib/trikfs/respawn usr/lib/trikfs/tone) \
         <(cd "$dir/data" && find . -type f -perm /111 -printf '%P\n' | sort)
 
     # An image that is made on a PC: only its files change, by the scripts that opkg runs with $D.

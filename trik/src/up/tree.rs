@@ -1,4 +1,5 @@
-//! The tree of a robot as a child process: trikfs out of this same program, its ready line, its words, its end.
+//! A mount of a robot as a child process: trikfs, or the view of ev3dev, out of this same program; its ready line, its
+//! words, its end.
 //!
 //! The child is in a process group of its own, so that Ctrl-C reaches only its parent, who ends things in order. If the
 //! parent dies without a word the kernel tells the child, which then unmounts as after any SIGTERM.
@@ -18,8 +19,9 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 /// This program, whatever has happened to its file since it was started.
 const SELF: &str = "/proc/self/exe";
 
-/// What the hidden command `tree` does: replaces this process by trikfs, which ends with `parent`. Returns why not.
-pub(crate) fn become_tree(parent: u32, arguments: &[OsString]) -> String {
+/// What the hidden command `tree` does: replaces this process by the program of this name, which ends with `parent`.
+/// Returns why not.
+pub(crate) fn become_program(parent: u32, name: &str, arguments: &[OsString]) -> String {
     // The parent waits for these; a program begins without.
     let reset = SigSet::empty().thread_swap_mask(SigmaskHow::SIG_SETMASK);
     if let Err(error) = reset.and_then(|_| set_pdeathsig(Signal::SIGTERM)) {
@@ -29,7 +31,7 @@ pub(crate) fn become_tree(parent: u32, arguments: &[OsString]) -> String {
     if u32::try_from(getppid().as_raw()) != Ok(parent) {
         return "tree: the process that started this one is gone".to_owned();
     }
-    let error = Command::new(SELF).arg0("trikfs").args(arguments).exec();
+    let error = Command::new(SELF).arg0(name).args(arguments).exec();
     format!("tree: {SELF}: {error}")
 }
 
@@ -43,13 +45,14 @@ pub(super) struct Tree {
 }
 
 impl Tree {
-    /// Starts trikfs with these arguments. Call it in a thread that lives as long as the process: the kernel takes its
-    /// end for the parent's.
-    pub(super) fn start(arguments: &[OsString]) -> io::Result<Self> {
+    /// Starts this program under a name with these arguments. Call it in a thread that lives as long as the process: the
+    /// kernel takes its end for the parent's.
+    pub(super) fn start(name: &str, arguments: &[OsString]) -> io::Result<Self> {
         let mut child = Command::new(SELF)
             .arg0("trik")
             .arg("tree")
             .arg(std::process::id().to_string())
+            .arg(name)
             .args(arguments)
             .stdin(Stdio::null())
             .stdout(Stdio::piped())

@@ -1,6 +1,6 @@
 //! What documents show of a robot: transcripts in fences `sh robot` are run on a fresh one.
 //!
-//! Lines with `$ ` are run in order in the tree, the others are what they print.
+//! Lines with `$ ` are run in order in the tree, the others are what they print. The view of ev3dev is beside the tree.
 
 use crate::rig::robot;
 use harness::documents::examples;
@@ -15,6 +15,7 @@ fn every_transcript_of_a_robot_is_what_really_happens() {
         "docs/user/start.md",
         "docs/user/simulator.md",
         "docs/user/trik.md",
+        "docs/user/ev3dev.md",
     ] {
         let Ok(text) = std::fs::read_to_string(root.join(document)) else {
             continue;
@@ -23,7 +24,9 @@ fn every_transcript_of_a_robot_is_what_really_happens() {
             if example.info != "sh robot" {
                 continue;
             }
-            let Some(robot) = robot(&[]) else { return };
+            let Some(robot) = robot(&["--ev3dev"]) else {
+                return;
+            };
             count += 1;
             for step in example.text.split("$ ").skip(1) {
                 let (script, expected) = step.split_once('\n').unwrap_or((step, ""));

@@ -8,6 +8,8 @@ mod documents;
 mod drive;
 /// How it ends: every way leaves nothing behind and actuators at rest.
 mod end;
+/// The view of ev3dev: motors, sensors and lights by the files that libraries of ev3dev know.
+mod ev3dev;
 /// The programs of `examples`, in every language.
 mod examples;
 /// Devices that fail on purpose.

@@ -296,6 +296,18 @@ impl Robot {
         pose
     }
 
+    /// Degrees that a wheel on E3 or E4 has turned, with a probe at the chip.
+    pub fn turned_deg(&self, encoder: u8) -> f64 {
+        let (register, sign) = if encoder == 3 {
+            (0x33, -1.0)
+        } else {
+            (0x32, 1.0)
+        };
+        let bytes = probe(&self.devices.join("dev/i2c-2"), 0x48, &[register], 4).expect("the bus");
+        let bytes = bytes.try_into().expect("four bytes");
+        sign * f64::from(i32::from_le_bytes(bytes)) * 100.0 / 157.0
+    }
+
     /// Sends a signal and waits for the end.
     pub fn end(&mut self, signal: Signal) -> ExitStatus {
         processes::signal(self.pid(), signal);
@@ -329,6 +341,7 @@ impl Robot {
             &self.root,
             &self.devices,
             &self.devices.with_extension("lock"),
+            &self.devices.with_extension("ev3dev"),
         ] {
             assert!(!path.exists(), "{} is left", path.display());
         }

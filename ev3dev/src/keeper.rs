@@ -1,0 +1,282 @@
+//! The two processes of the view: one that serves it, and one that keeps the mount and cleans up behind it.
+//!
+//! The keeper mounts, starts the serving process and waits for a signal, an unmount or its end; then it unmounts, so that a
+//! kill of the serving process leaves no dead mount. If the keeper is killed, the kernel tells the serving process, which
+//! unmounts by itself. The serving process ends with its files of the tree open: the tree then brings to rest what
+//! it drove. So nothing has to be done for the motors here, whatever ends the view.
+
+use crate::cli::SERVE;
+use crate::limits::GRACE_MS;
+use crate::scan::Options;
+use crate::tree::Tree;
+use crate::view::View;
+use nix::errno::Errno;
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
+use nix::sys::prctl::{set_name, set_pdeathsig};
+use nix::sys::signal::{SigSet, Signal, kill};
+use nix::sys::signalfd::{SfdFlags, SignalFd};
+use nix::unistd::{Pid, getppid};
+use std::ffi::OsString;
+use std::fs::File;
+use std::io::{self, PipeReader, Read, Write};
+use std::os::fd::{AsFd, OwnedFd};
+use std::os::unix::process::CommandExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus};
+use std::sync::Arc;
+use std::thread;
+use std::time::{Duration, Instant};
+use trikfs::guardian::mounted::Mounted;
+use trikfs::mount::{self, MountOptions};
+use trikfs::transport::{Operations, native};
+
+/// First column of /proc/mounts.
+const SOURCE: &str = "trikfs-ev3dev";
+/// What ends the view in order.
+const SIGNALS: [Signal; 3] = [Signal::SIGTERM, Signal::SIGINT, Signal::SIGHUP];
+/// Longest line of the serving process.
+const LINE_BYTES_MAX: usize = 64;
+
+/// What to show where.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The mount point of the tree.
+    pub tree: PathBuf,
+    /// Of the view; made if nothing is there.
+    pub mountpoint: PathBuf,
+    /// Let other users in.
+    pub allow_other: bool,
+    /// Arguments for the serving process, without those of [`Handover`] and the mount point.
+    pub arguments: Vec<OsString>,
+}
+
+/// What the serving process has to know of its keeper.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Handover {
+    /// Process id.
+    pub keeper: u32,
+    /// Numbers of the mount.
+    pub mount: (u32, u32),
+}
+
+/// Mounts, serves, and unmounts at the end. `ready` gets the number of devices.
+///
+/// Call it while the process has one thread.
+///
+/// # Errors
+/// Why there is no view, or how it ended; empty if the serving process has told the reason.
+pub fn keep(plan: &Plan, ready: &mut dyn FnMut(usize)) -> Result<(), String> {
+    // Started through /proc/self/exe it would be listed as `exe`.
+    let _ = set_name(c"trikfs-ev3dev");
+    let own = |error: Errno| format!("signals: {error}");
+    let mask: SigSet = SIGNALS.into_iter().collect();
+    mask.thread_block().map_err(own)?;
+    let signals =
+        SignalFd::with_flags(&mask, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC).map_err(own)?;
+    let path = &plan.mountpoint;
+    if matches!(path.symlink_metadata(), Err(error) if error.kind() == io::ErrorKind::NotFound) {
+        std::fs::create_dir_all(path)
+            .map_err(|error| format!("the mount point {}: {error}", path.display()))?;
+    }
+    let options = MountOptions {
+        allow_other: plan.allow_other,
+        source: SOURCE.to_owned(),
+        ..MountOptions::default()
+    };
+    let device = mount::mount(path, &options).map_err(|error| error.to_string())?;
+    let mounted = match Mounted::find(path) {
+        Ok(mounted) => mounted,
+        Err(error) => {
+            drop(device);
+            let _ = mount::unmount(path);
+            return Err(error);
+        }
+    };
+    let end = start(plan, &device, &mounted)
+        .and_then(|mut server| server.until_end(&signals, &mounted, ready));
+    // With the last descriptor whoever waits in the mount is let go.
+    drop(device);
+    unmount(&mounted);
+    end.map_err(|error| format!("serving: {error}"))?
+}
+
+/// Takes our mount away, if it is still there.
+fn unmount(mounted: &Mounted) {
+    if mounted.is_there()
+        && let Err(error) = mount::unmount(mounted.path())
+    {
+        complain(&format!("unmounting {}: {error}", mounted.path().display()));
+    }
+}
+
+/// Starts this program again to serve.
+fn start(plan: &Plan, device: &OwnedFd, mounted: &Mounted) -> io::Result<Server> {
+    let (said, writer) = io::pipe()?;
+    let (id, connection) = mounted.numbers();
+    // Through this link it is the same program even if its file has been replaced since.
+    let mut command = Command::new("/proc/self/exe");
+    command
+        .arg0("trikfs-ev3dev")
+        .arg(format!("{SERVE}{},{id},{connection}", std::process::id()))
+        .args(&plan.arguments)
+        .arg("--")
+        .arg(mounted.path())
+        .stdin(device.try_clone()?)
+        .stdout(writer);
+    let child = command.spawn()?;
+    Ok(Server {
+        child,
+        said,
+        heard: Vec::new(),
+    })
+}
+
+/// The serving process. Dropping it kills it.
+struct Server {
+    child: Child,
+    /// Ends with the process.
+    said: PipeReader,
+    heard: Vec<u8>,
+}
+
+impl Server {
+    /// Waits for the end and brings it about when somebody wants it.
+    fn until_end(
+        &mut self,
+        signals: &SignalFd,
+        mounted: &Mounted,
+        ready: &mut dyn FnMut(usize),
+    ) -> io::Result<Result<(), String>> {
+        // Has an exceptional condition when the list of mounts changes.
+        let mounts = File::open("/proc/self/mountinfo")?;
+        let mut stopping: Option<Instant> = None;
+        loop {
+            let mut watched = [
+                PollFd::new(signals.as_fd(), PollFlags::POLLIN),
+                PollFd::new(mounts.as_fd(), PollFlags::POLLPRI),
+                PollFd::new(self.said.as_fd(), PollFlags::POLLIN),
+            ];
+            let patience = stopping.map_or(PollTimeout::NONE, |at| {
+                let left = at.saturating_duration_since(Instant::now()) + Duration::from_millis(1);
+                left.try_into().unwrap_or(PollTimeout::MAX)
+            });
+            match poll(&mut watched, patience) {
+                Err(Errno::EINTR) => continue,
+                result => result?,
+            };
+            let [signal, changed, word] = watched.map(|fd| fd.any().unwrap_or(true));
+            let mut stop = changed && !mounted.is_there();
+            if signal {
+                while signals.read_signal()?.is_some() {
+                    stop = true;
+                }
+            }
+            if stop && stopping.is_none() {
+                self.signal(Signal::SIGTERM);
+                stopping = Some(Instant::now() + Duration::from_millis(GRACE_MS));
+            }
+            if stopping.is_some_and(|at| Instant::now() >= at) {
+                self.signal(Signal::SIGKILL);
+            }
+            if word && self.hear(ready)? {
+                return Ok(judge(self.child.wait()?, stopping.is_some(), mounted));
+            }
+        }
+    }
+
+    /// Takes what it says; true at its end.
+    fn hear(&mut self, ready: &mut dyn FnMut(usize)) -> io::Result<bool> {
+        let mut piece = [0; LINE_BYTES_MAX];
+        let size = match self.said.read(&mut piece) {
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => return Ok(false),
+            result => result?,
+        };
+        self.heard.extend_from_slice(&piece[..size]);
+        if let Some(end) = self.heard.iter().position(|byte| *byte == b'\n') {
+            let line: Vec<u8> = self.heard.drain(..=end).collect();
+            let line = String::from_utf8_lossy(&line);
+            if let Some(Ok(devices)) = line.trim().strip_prefix("ready ").map(str::parse) {
+                ready(devices);
+            }
+        }
+        self.heard.truncate(LINE_BYTES_MAX);
+        Ok(size == 0)
+    }
+
+    fn signal(&self, signal: Signal) {
+        // The number is its own until `wait`: a dead child keeps it.
+        if let Ok(pid) = i32::try_from(self.child.id()) {
+            let _ = kill(Pid::from_raw(pid), signal);
+        }
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        if let Ok(None) = self.child.try_wait() {
+            self.signal(Signal::SIGKILL);
+            let _ = self.child.wait();
+        }
+    }
+}
+
+/// What the end of the serving process means.
+fn judge(status: ExitStatus, was_asked: bool, mounted: &Mounted) -> Result<(), String> {
+    match status.code() {
+        _ if was_asked => Ok(()),
+        Some(0) => Ok(()),
+        // It has said why.
+        Some(_) => Err(String::new()),
+        // An unmount ends it too, and may be seen later.
+        None if !mounted.is_there() => Ok(()),
+        None => Err(format!("the serving process was ended by {status}")),
+    }
+}
+
+/// Serves the view, as the keeper starts it: the mounted device is the standard input.
+///
+/// # Errors
+/// Why it cannot.
+pub fn serve(
+    tree: &Path,
+    mountpoint: PathBuf,
+    options: Options,
+    handover: Handover,
+) -> Result<(), String> {
+    let own = |error: Errno| format!("serving: {error}");
+    // Started through /proc/self/exe it would be listed as `exe`.
+    let _ = set_name(c"trikfs-ev3dev");
+    set_pdeathsig(Signal::SIGTERM).map_err(own)?;
+    let mounted = Mounted::inherited(mountpoint, handover.mount);
+    // It may have died before the line above, and then no signal comes.
+    if u32::try_from(getppid().as_raw()) != Ok(handover.keeper) {
+        unmount(&mounted);
+        return Err("the process that keeps the mount is gone".to_owned());
+    }
+    let mask: SigSet = SIGNALS.into_iter().collect();
+    mask.thread_block().map_err(own)?;
+    let signals = SignalFd::with_flags(&mask, SfdFlags::SFD_CLOEXEC).map_err(own)?;
+    let failed = |error: io::Error| format!("serving: {error}");
+    thread::Builder::new()
+        .name("signals".to_owned())
+        .spawn(move || {
+            while matches!(signals.read_signal(), Ok(None) | Err(Errno::EINTR)) {}
+            unmount(&mounted);
+            // With the files of the tree open: what they drive comes to rest.
+            std::process::exit(0);
+        })
+        .map_err(failed)?;
+    let device = io::stdin().as_fd().try_clone_to_owned().map_err(failed)?;
+    let view = Arc::new(View::new(Tree::new(tree.to_owned()), options));
+    let devices = view.devices();
+    // Nobody may listen any more; the view can be used all the same.
+    let mut out = io::stdout();
+    let _ = writeln!(out, "ready {devices}").and_then(|()| out.flush());
+    // The view outlives its mount: dropped, it would close its files of the tree, and what it drives would go on.
+    native::serve(device, Arc::clone(&view) as Arc<dyn Operations>).map_err(failed)?;
+    std::process::exit(0)
+}
+
+fn complain(text: &str) {
+    let _ = writeln!(io::stderr(), "trikfs-ev3dev: {text}");
+}

@@ -1,0 +1,340 @@
+//! What the tree has: its motors, sensors and lights as devices of ev3dev, with the address of each.
+//!
+//! Owns the map from ports of the controller to addresses, and which encoder belongs to which motor. Looks at names,
+//! `format` and `units` of the tree; opens nothing that moves or measures.
+
+use crate::device::{Device, KernelSlot};
+use crate::fixed::{Battery, BoardInfo, Led};
+use crate::motor::Motor;
+use crate::motor::driver::Paths;
+use crate::sensor::{Kind, Sensor};
+use crate::servo::Servo;
+use crate::tree::Tree;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Directories of the view.
+pub const CLASSES: [&str; 7] = [
+    "board-info",
+    "dc-motor",
+    "lego-sensor",
+    "leds",
+    "power_supply",
+    "servo-motor",
+    "tacho-motor",
+];
+
+/// Ports with motors, and their names on an EV3.
+const MOTORS: [(&str, &str); 4] = [
+    ("M1", "outA"),
+    ("M2", "outB"),
+    ("M3", "outC"),
+    ("M4", "outD"),
+];
+/// Ports with sensors. No number has two digits, because programs look for a part of the address.
+const SENSORS: [(&str, &str); 9] = [
+    ("A1", "in1"),
+    ("A2", "in2"),
+    ("A3", "in3"),
+    ("A4", "in4"),
+    ("A5", "in5"),
+    ("A6", "in6"),
+    ("D1", "in7"),
+    ("D2", "in8"),
+    ("D3", "in9"),
+];
+const SERVOS: [(&str, &str); 6] = [
+    ("S1", "sv1"),
+    ("S2", "sv2"),
+    ("S3", "sv3"),
+    ("S4", "sv4"),
+    ("S5", "sv5"),
+    ("S6", "sv6"),
+];
+/// Lights, under the names of both sides of an EV3: there is one of each colour.
+const LIGHTS: [(&str, &str); 4] = [
+    ("led0:green:brick-status", "led/green/value"),
+    ("led0:red:brick-status", "led/red/value"),
+    ("led1:green:brick-status", "led/green/value"),
+    ("led1:red:brick-status", "led/red/value"),
+];
+
+/// What a person has said about the motors.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// Greatest speed of motors with encoders, in degrees per second.
+    pub max_speed: i32,
+    /// Encoders of ports, where they are not those with the same number; empty for a motor that has none.
+    pub encoders: BTreeMap<String, String>,
+}
+
+/// A device that is there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Found {
+    /// One of [`CLASSES`].
+    pub class: &'static str,
+    /// What it is in the tree; one device for each in a class.
+    pub key: String,
+    /// Its directory, or where its number is put behind.
+    pub name: Name,
+    what: What,
+}
+
+/// How the directory of a device is called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Name {
+    /// So.
+    Exact(&'static str),
+    /// So with a number behind that no device of the class had before.
+    Numbered(&'static str),
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum What {
+    Motor(String, Paths),
+    Servo(String, bool),
+    Sensor(String, String, Kind),
+    Led(&'static str),
+    Battery,
+    Board,
+}
+
+impl Found {
+    /// Makes the device. Touches no file.
+    pub fn make(&self, tree: &Tree, options: &Options, kernel: &KernelSlot) -> Arc<dyn Device> {
+        let tree = tree.clone();
+        match &self.what {
+            What::Motor(address, paths) => Arc::new(Motor::new(
+                tree,
+                address.clone(),
+                paths.clone(),
+                options.max_speed,
+                Arc::clone(kernel),
+            )),
+            What::Servo(address, in_degrees) => Arc::new(Servo::new(
+                tree,
+                address.clone(),
+                self.key.clone(),
+                *in_degrees,
+            )),
+            What::Sensor(address, node, kind) => {
+                Arc::new(Sensor::new(&tree, address.clone(), node, *kind))
+            }
+            What::Led(file) => Arc::new(Led::new(tree, (*file).to_owned())),
+            What::Battery => Arc::new(Battery::new(tree)),
+            What::Board => Arc::new(BoardInfo),
+        }
+    }
+}
+
+/// All devices of the tree; nothing if there is no tree now.
+pub fn scan(tree: &Tree, options: &Options) -> Option<Vec<Found>> {
+    if !tree.is_there() {
+        return None;
+    }
+    let mut found = vec![Found {
+        class: "board-info",
+        key: String::new(),
+        name: Name::Exact("board0"),
+        what: What::Board,
+    }];
+    add_motors(tree, options, &mut found);
+    add_sensors(tree, &mut found);
+    for (port, name) in SERVOS {
+        let node = format!("servos/{port}");
+        if has(tree, &node) {
+            let in_degrees = tree.text(&format!("{node}/units")).as_deref() == Ok("deg");
+            let what = What::Servo(address(name, port), in_degrees);
+            found.push(numbered("servo-motor", &node, "motor", what));
+        }
+    }
+    for (name, file) in LIGHTS {
+        if has(tree, file) {
+            found.push(Found {
+                class: "leds",
+                key: name.to_owned(),
+                name: Name::Exact(name),
+                what: What::Led(file),
+            });
+        }
+    }
+    if has(tree, "battery") {
+        found.push(Found {
+            class: "power_supply",
+            key: "battery".to_owned(),
+            name: Name::Exact("trik-battery"),
+            what: What::Battery,
+        });
+    }
+    // The tree may have gone meanwhile, and what it seemed to lack then says nothing.
+    tree.is_there().then_some(found)
+}
+
+fn numbered(class: &'static str, node: &str, prefix: &'static str, what: What) -> Found {
+    Found {
+        class,
+        key: node.to_owned(),
+        name: Name::Numbered(prefix),
+        what,
+    }
+}
+
+/// As on an EV3, with the name of the port of the controller behind.
+fn address(name: &str, port: &str) -> String {
+    format!("ev3-ports:{name}:{port}")
+}
+
+fn has(tree: &Tree, name: &str) -> bool {
+    tree.path(name).metadata().is_ok()
+}
+
+fn add_motors(tree: &Tree, options: &Options, found: &mut Vec<Found>) {
+    for (port, name) in MOTORS {
+        let node = format!("motors/{port}");
+        if !has(tree, &node) {
+            continue;
+        }
+        let usual = port.replace('M', "E");
+        let encoder = options.encoders.get(port).unwrap_or(&usual);
+        let encoder = format!("encoders/{encoder}");
+        // Without a name it is the group itself, which has no values.
+        let encoder = has(tree, &format!("{encoder}/value0")).then_some(encoder);
+        let class = if encoder.is_some() {
+            "tacho-motor"
+        } else {
+            "dc-motor"
+        };
+        let paths = Paths {
+            power: format!("{node}/value"),
+            encoder,
+        };
+        let what = What::Motor(address(name, port), paths);
+        found.push(numbered(class, &node, "motor", what));
+    }
+}
+
+fn add_sensors(tree: &Tree, found: &mut Vec<Found>) {
+    for (port, name) in SENSORS {
+        let node = format!("sensors/{port}");
+        if !has(tree, &node) {
+            continue;
+        }
+        let kind = if port.starts_with('D') {
+            Kind::Ultrasonic
+        } else {
+            Kind::of_format(&tree.text(&format!("{node}/format")).unwrap_or_default())
+        };
+        let what = What::Sensor(address(name, port), node.clone(), kind);
+        found.push(numbered("lego-sensor", &node, "sensor", what));
+    }
+    for (node, kind) in [
+        ("gyroscope", Kind::Gyroscope),
+        ("accelerometer", Kind::Accelerometer),
+    ] {
+        if has(tree, node) {
+            let what = What::Sensor(format!("trik:{node}"), node.to_owned(), kind);
+            found.push(numbered("lego-sensor", node, "sensor", what));
+        }
+    }
+}
+
+/// Reads `PORT=ENCODER`, or `PORT=none`.
+///
+/// # Errors
+/// There is no such port, or no such encoder.
+pub fn encoder_of(text: &str) -> Result<(String, String), String> {
+    let ports: Vec<&str> = MOTORS.iter().map(|(port, _)| *port).collect();
+    let (port, encoder) = text.split_once('=').unwrap_or((text, ""));
+    if !ports.contains(&port) {
+        return Err(format!(
+            "there is no motor {port:?}; there are {}",
+            ports.join(", ")
+        ));
+    }
+    let encoders: Vec<String> = ports.iter().map(|port| port.replace('M', "E")).collect();
+    match encoder {
+        "none" => Ok((port.to_owned(), String::new())),
+        _ if encoders.iter().any(|other| other == encoder) => {
+            Ok((port.to_owned(), encoder.to_owned()))
+        }
+        _ => Err(format!(
+            "there is no encoder {encoder:?}; there are {}, and none",
+            encoders.join(", ")
+        )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn options(encoders: &[&str]) -> Options {
+        let encoders = encoders.iter().map(|text| encoder_of(text).unwrap());
+        Options {
+            max_speed: 1000,
+            encoders: encoders.collect(),
+        }
+    }
+
+    #[test]
+    fn a_motor_has_the_encoder_of_its_number_or_the_one_that_was_said_or_none() {
+        let root = std::env::temp_dir().join(format!("ev3dev-scan-{}", std::process::id()));
+        for folder in [
+            "motors/M1",
+            "motors/M2",
+            "motors/M3",
+            "encoders/E1",
+            "encoders/E4",
+        ] {
+            std::fs::create_dir_all(root.join(folder)).unwrap();
+            std::fs::write(root.join(folder).join("value0"), "").unwrap();
+        }
+        std::fs::write(root.join("status"), "").unwrap();
+        let pairs = |said: &[&str]| -> Vec<_> {
+            let found = scan(&Tree::new(root.clone()), &options(said)).unwrap();
+            let of = |one: Found| match one.what {
+                What::Motor(_, paths) => Some((one.class, paths.encoder.unwrap_or_default())),
+                _ => None,
+            };
+            found.into_iter().filter_map(of).collect()
+        };
+        let dc = ("dc-motor", String::new());
+        let tacho = |encoder: &str| ("tacho-motor", format!("encoders/{encoder}"));
+        assert_eq!(pairs(&[]), [tacho("E1"), dc.clone(), dc.clone()]);
+        let said = ["M1=none", "M3=E4"];
+        assert_eq!(pairs(&said), [dc.clone(), dc, tacho("E4")]);
+        std::fs::remove_dir_all(root).unwrap();
+        for text in ["M5=E1", "M1", "M1=", "M1=M1", "=E1", "left=E1"] {
+            assert!(encoder_of(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn addresses_are_found_by_any_of_their_names_and_by_one_only() {
+        let all = MOTORS.iter().chain(&SENSORS).chain(&SERVOS);
+        let addresses: Vec<String> = all
+            .clone()
+            .map(|(port, name)| address(name, port))
+            .collect();
+        for (port, name) in all {
+            for wanted in [
+                (*port).to_owned(),
+                (*name).to_owned(),
+                format!("ev3-ports:{name}"),
+            ] {
+                let count = addresses
+                    .iter()
+                    .filter(|address| address.contains(&wanted))
+                    .count();
+                assert_eq!(count, 1, "{wanted}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_tree_has_no_devices() {
+        for root in ["/nowhere", "/"] {
+            assert_eq!(scan(&Tree::new(root.into()), &options(&[])), None);
+        }
+    }
+}
