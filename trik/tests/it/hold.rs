@@ -3,6 +3,7 @@
 use crate::rig::{Home, Robot, robot};
 use harness::eventually;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Both wheels, in deg/s.
 fn order(robot: &Robot, left: i32, right: i32) {
@@ -12,27 +13,66 @@ fn order(robot: &Robot, left: i32, right: i32) {
     }
 }
 
-/// Waits until the left wheel has turned at this speed, by its own file, for a row of looks.
-fn settles(robot: &Robot, speed: f64) {
+/// Orders again if the order was lost because this machine is too busy: a tree that comes to nothing for a second has to
+/// bring the motors to rest. Nothing else may have ended it.
+fn keep(robot: &Robot, left: i32, right: i32) {
+    if !is_at_rest(robot) {
+        return;
+    }
+    let log = robot.log();
+    let ends: Vec<&str> = log
+        .lines()
+        .filter(|line| line.contains("comes to rest"))
+        .collect();
+    if ends.is_empty() {
+        // The first step is made with the first sample.
+        return;
+    }
+    let is_busy = |line: &&str| {
+        line.contains("did not answer within") || line.contains("since the last tuple")
+    };
+    assert!(ends.iter().all(is_busy), "{log}");
+    // The sample after the failure may have to come first.
+    eventually("an order that is taken", || {
+        let orders = [("left", left), ("right", right)];
+        orders.iter().all(|(name, speed)| {
+            let file = format!("motors/{name}/speed");
+            robot.write(&file, &speed.to_string()).is_ok()
+        })
+    });
+}
+
+/// Waits until the wheels have turned against each other at this speed, by the file of the left one, for a row of looks.
+fn settles(robot: &Robot, speed: i32) {
+    let wanted = f64::from(speed);
     let mut row = 0;
     eventually("a held speed", || {
-        let now = robot.number("motors/left/speed");
-        let is_held = (now - speed).abs() < 0.12 * speed.abs();
+        keep(robot, speed, -speed);
+        let now = robot.read("motors/left/speed").unwrap_or_default();
+        let now: f64 = now.parse().unwrap_or(f64::NAN);
+        let is_held = (now - wanted).abs() < 0.12 * wanted.abs();
         row = if is_held { row + 1 } else { 0 };
-        std::thread::sleep(std::time::Duration::from_millis(10));
+        std::thread::sleep(Duration::from_millis(10));
         row > 40
     });
 }
 
-/// Degrees in a simulated second that the robot turns, over more than half of one.
-fn true_rate(robot: &Robot) -> f64 {
-    let before = robot.pose();
-    let mut after = before;
-    eventually("half a second of movement", || {
-        after = robot.pose();
-        after.time_s > before.time_s + 0.5
-    });
-    (after.heading_deg - before.heading_deg) / (after.time_s - before.time_s)
+/// 300 deg/s of the wheels against each other are 108.4 deg/s of the robot, over more than half a simulated second.
+fn turns_as_ordered(robot: &Robot, when: &str) {
+    loop {
+        settles(robot, -300);
+        let before = robot.pose();
+        let mut after = before;
+        eventually("half a second of movement", || {
+            after = robot.pose();
+            after.time_s > before.time_s + 0.5 || is_at_rest(robot)
+        });
+        if !is_at_rest(robot) {
+            let rate = (after.heading_deg - before.heading_deg) / (after.time_s - before.time_s);
+            assert!((rate - 108.4).abs() < 9.0, "{rate} deg/s {when}");
+            return;
+        }
+    }
 }
 
 fn is_at_rest(robot: &Robot) -> bool {
@@ -45,14 +85,10 @@ fn is_at_rest(robot: &Robot) -> bool {
 fn a_speed_is_held_while_the_battery_sags() {
     let Some(robot) = robot(&[]) else { return };
     order(&robot, -300, 300);
-    settles(&robot, -300.0);
-    let rate = true_rate(&robot);
-    assert!((rate - 108.4).abs() < 9.0, "{rate} deg/s");
+    turns_as_ordered(&robot, "in the beginning");
     robot.fault(&["battery", "sag", "3"]);
     eventually("a weak battery", || robot.number("battery/value") < 10.0);
-    settles(&robot, -300.0);
-    let rate = true_rate(&robot);
-    assert!((rate - 108.4).abs() < 9.0, "{rate} deg/s with less voltage");
+    turns_as_ordered(&robot, "with less voltage");
 
     // A reload that leaves the motors as they are leaves them running.
     let reloaded = robot.sh("echo '-- again' >> config; head -n 1 status; tail -n 1 config");
@@ -61,8 +97,7 @@ fn a_speed_is_held_while_the_battery_sags() {
         told.starts_with("config ok") && told.ends_with("again\n"),
         "{told}"
     );
-    let rate = true_rate(&robot);
-    assert!((rate - 108.4).abs() < 9.0, "{rate} deg/s after a reload");
+    turns_as_ordered(&robot, "after a reload");
 
     // What cannot be is refused, and what was ordered before is held on.
     for (wrong, errno) in [
@@ -73,8 +108,7 @@ fn a_speed_is_held_while_the_battery_sags() {
         let error = robot.write("motors/left/speed", wrong).expect_err(wrong);
         assert_eq!(error.raw_os_error(), Some(errno), "{wrong}");
     }
-    let rate = true_rate(&robot);
-    assert!((rate - 108.4).abs() < 9.0, "{rate} deg/s after refusals");
+    turns_as_ordered(&robot, "after refusals");
 
     robot.write("stop", "1").expect("stop");
     assert!(is_at_rest(&robot));
@@ -102,7 +136,7 @@ fn a_dead_encoder_stops_its_motor_and_says_why() {
     robot.fault(&["E3", "--clear"]);
     order(&robot, 100, -100);
     assert_eq!(fault(), "");
-    settles(&robot, 100.0);
+    settles(&robot, 100);
     // Nobody knows how fast it is when the coprocessor does not answer: the order ends.
     robot.fault(&["msp430", "nack"]);
     eventually("an error", || robot.errno("motors/left/speed") != 0);
@@ -160,17 +194,21 @@ fn heading_and_place_follow_the_robot_and_stay_where_it_rests() {
     assert_eq!(robot.read("heading/units").expect("a unit"), "deg");
     order(&robot, -150, 150);
     eventually("most of a turn to the left", || {
+        keep(&robot, -150, 150);
         robot.pose().heading_deg > start.heading_deg + 300.0
     });
     order(&robot, 200, 200);
-    eventually("ahead", || robot.pose().away_from(&start) > 0.15);
+    eventually("ahead", || {
+        keep(&robot, 200, 200);
+        robot.pose().away_from(&start) > 0.15
+    });
     order(&robot, 0, 0);
     let mut last = robot.pose();
     eventually("a standstill", || {
         let now = robot.pose();
         let stands = now.time_s == last.time_s && robot.number("motors/left/speed") == 0.0;
         last = now;
-        std::thread::sleep(std::time::Duration::from_millis(50));
+        std::thread::sleep(Duration::from_millis(50));
         stands
     });
     let turned = last.heading_deg - start.heading_deg;
@@ -190,9 +228,7 @@ fn heading_and_place_follow_the_robot_and_stay_where_it_rests() {
     );
     // At rest nothing drifts: two seconds are half of a calibration more.
     let began = std::time::Instant::now();
-    eventually("three seconds", || {
-        began.elapsed() > std::time::Duration::from_secs(3)
-    });
+    eventually("three seconds", || began.elapsed() > Duration::from_secs(3));
     let later = robot.number("heading/value");
     assert!((later - heading).abs() < 0.5, "{heading}, then {later}");
     assert_eq!(robot.numbers("odometry/value"), place);

@@ -14,6 +14,7 @@ use nix::sys::time::TimeVal;
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::os::fd::AsRawFd;
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
@@ -226,6 +227,20 @@ impl Robot {
         text.split_whitespace()
             .map(|word| word.parse().unwrap_or_else(|_| panic!("{name}: {text}")))
             .collect()
+    }
+
+    /// What `log` has so far.
+    pub fn log(&self) -> String {
+        let path = self.path("log");
+        let mut file = File::options()
+            .read(true)
+            .custom_flags(nix::libc::O_NONBLOCK)
+            .open(path)
+            .expect("log");
+        let mut bytes = Vec::new();
+        // It ends with EAGAIN, and what came before is there.
+        let _ = file.read_to_end(&mut bytes);
+        String::from_utf8_lossy(&bytes).into_owned()
     }
 
     /// The first number of a file of the tree.
