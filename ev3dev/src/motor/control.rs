@@ -7,7 +7,8 @@
 //!   u = kf (v_ref + T a_ref) + kp (v_ref - v) - kd dv/dt + ki * integral of (v_ref - v),
 //! the integral taken as the way itself, which the encoder gives without error; while it moves to a position or holds one,
 //!   u = kf (v_ref + T a_ref) + kp (x_ref - x) + kd (v_ref - v) + ki * integral of (x_ref - x),
-//! with v_ref = 0 when it holds, and the integral only then. Both with the anti-windup of the filter `pid` (Astrom and Hagglund, Advanced PID Control, 2006).
+//! with v_ref = 0 when it holds, and the integral only then. Both with the anti-windup of the filter `pid` (Astrom and
+//! Hagglund, Advanced PID Control, 2006).
 //! A motor without an encoder follows its ramps in percent, and nothing is regulated.
 
 use super::command::{
@@ -216,6 +217,7 @@ impl Control {
         let shift = i64::from(position) - self.encoder.position;
         self.encoder.position += shift;
         self.encoder.speed.shift(shift);
+        self.relative_end = None;
         self.reference += shift as f64;
         if let Goal::Hold(target) = &mut self.goal {
             *target += shift as f64;

@@ -4,8 +4,8 @@
 //! opened by a command and stay open until the motor has been let go, so that the tree brings the motor to rest if this
 //! process dies. While it runs the encoder is sampled as often as the loop asks.
 //!
-//! Locks: `files`, then `control` or `turns`. Whoever holds `files` is the one who drives: the loop, or a program's command, whose
-//! first step is done in its own call so that it hears of a failure.
+//! Locks: `files`, then `control` or `turns`. Whoever holds `files` is the one who drives: the loop, or a program's
+//! command, whose first step is done in its own call so that it hears of a failure.
 
 use super::command::{Command, Output};
 use super::control::Control;

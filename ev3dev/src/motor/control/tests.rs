@@ -181,8 +181,11 @@ fn relative_moves_one_after_the_other_add_no_errors() {
     rig.until_done();
     rig.run(0.5);
     assert!((rig.control.position() - 1100).abs() <= 1);
-    // After another command a relative move begins where the motor is.
+    // After another command, or where the place is called otherwise, a relative move begins where the motor is.
     rig.command(Command::Stop);
+    rig.control.set_position(17);
+    rig.command(Command::RunToRelPos);
+    assert_eq!(rig.control.relative_end, Some(117));
     rig.control.set_position(7);
     rig.command(Command::RunToRelPos);
     assert_eq!(rig.control.relative_end, Some(107));
