@@ -2,6 +2,8 @@
 //!
 //! Owns the numbers only; the code that enforces each one names it from here.
 
+use std::time::Duration;
+
 /// Events that a ring keeps while there is room.
 pub const SLOTS: usize = 16;
 /// Events that a ring keeps of the largest tuples: a reader of the newest one has the time of two more to finish.
@@ -14,5 +16,7 @@ pub const RING_BYTES: usize = 4 << 20;
 pub const TUPLE_BYTES_MAX: usize = 64 << 20;
 /// Attempts of a reader to get one event that is overwritten again and again.
 pub const ATTEMPTS: usize = 8;
-/// Attempts to open a directory that somebody else is just removing.
+/// Attempts to take a directory that somebody else has or is just removing.
 pub const DIRECTORY_ATTEMPTS: usize = 16;
+/// Pause between two of them: who cleans up has a directory for a moment only.
+pub const DIRECTORY_PAUSE: Duration = Duration::from_millis(2);

@@ -84,14 +84,23 @@ impl Directory {
     /// # Errors
     /// There is no shared memory, somebody else's directory is there, or another publisher of this mount point lives.
     pub fn take(path: &Path, mode: u32) -> io::Result<Self> {
+        let mut busy = None;
         for _ in 0..limits::DIRECTORY_ATTEMPTS {
             match std::fs::DirBuilder::new().mode(0o700).create(path) {
                 Err(error) if error.kind() != io::ErrorKind::AlreadyExists => return Err(error),
                 _ => {}
             }
-            let Some(lock) = lock(path)? else {
+            let lock = match lock(path) {
+                Ok(Some(lock)) => lock,
                 // Somebody else has just removed it.
-                continue;
+                Ok(None) => continue,
+                // Perhaps only by somebody who cleans up.
+                Err(error) if error.kind() == io::ErrorKind::ResourceBusy => {
+                    busy = Some(error);
+                    std::thread::sleep(limits::DIRECTORY_PAUSE);
+                    continue;
+                }
+                Err(error) => return Err(error),
             };
             let taken = Self {
                 path: path.to_owned(),
@@ -101,7 +110,7 @@ impl Directory {
             std::fs::set_permissions(path, Permissions::from_mode(mode))?;
             return Ok(taken);
         }
-        Err(io::Error::other("others make and remove it all the time"))
+        Err(busy.unwrap_or_else(|| io::Error::other("others make and remove it all the time")))
     }
 
     /// Where it is.
@@ -128,8 +137,11 @@ impl Drop for Directory {
 pub fn sweep(shared_memory: &Path) {
     let entries = std::fs::read_dir(shared_memory).into_iter().flatten();
     for entry in entries.flatten() {
-        if entry.file_name().as_bytes().starts_with(b"trikfs+") {
-            remove_left(&entry.path());
+        let path = entry.path();
+        // An empty one may be somebody's who just begins.
+        let has_rings = || std::fs::read_dir(&path).is_ok_and(|mut rings| rings.next().is_some());
+        if entry.file_name().as_bytes().starts_with(b"trikfs+") && has_rings() {
+            remove_left(&path);
         }
     }
 }

@@ -339,3 +339,25 @@ fn a_link_in_the_place_of_the_directory_is_not_followed() {
     assert!(!place::remove_left(&folder.path("trikfs+mnt")));
     assert!(precious.join("file").exists());
 }
+
+#[test]
+fn publishers_that_begin_and_sweepers_do_not_disturb_each_other() {
+    let folder = Folder::new();
+    std::thread::scope(|scope| {
+        for number in 0..4 {
+            let path = folder.path(&format!("trikfs+{number}"));
+            let shared_memory = &folder.0;
+            scope.spawn(move || {
+                for _ in 0..50 {
+                    place::sweep(shared_memory);
+                    let taken = Directory::take(&path, 0o700).unwrap();
+                    let ring = Writer::create(&taken.path().join("ring"), 4, READABLE).unwrap();
+                    place::sweep(shared_memory);
+                    assert!(taken.path().join("ring").exists());
+                    std::mem::forget(ring);
+                }
+            });
+        }
+    });
+    assert_eq!(std::fs::read_dir(&folder.0).unwrap().count(), 0);
+}

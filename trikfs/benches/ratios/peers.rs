@@ -26,6 +26,17 @@ pub fn pin_to_one_core() {
     }
 }
 
+/// Puts this process on the first processor, where [`pin_to_one_core`] has put nothing if there are two.
+pub fn pin_to_other_core() {
+    let mut first = CpuSet::new();
+    if let Err(errno) = first
+        .set(0)
+        .and_then(|()| sched_setaffinity(Pid::from_raw(0), &first))
+    {
+        eprintln!("not pinned to another core: {errno}");
+    }
+}
+
 /// Does something with this process, and what it starts meanwhile, on all processors there are.
 pub fn on_all_cores<R>(act: impl FnOnce() -> R) -> R {
     let mut all = CpuSet::new();
@@ -88,7 +99,9 @@ pub fn play(role: &str, words: &[String]) {
         ("i2c", [path, delay_ms]) => {
             super::bus_peer::serve(Path::new(path), delay_ms.parse().unwrap_or(0));
         }
-        ("reader", [_, mountpoint, node]) => super::samples::read_ring(Path::new(mountpoint), node),
+        ("reader", [way, mountpoint, node]) => {
+            super::samples::subscribe(way, Path::new(mountpoint), node);
+        }
         ("reader", [mode, file]) => super::events::read_events(Path::new(file), mode == "epoll"),
         _ => eprintln!("no such role: {role}"),
     }

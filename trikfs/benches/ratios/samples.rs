@@ -4,9 +4,10 @@
 use super::events::{latency, now_ns};
 use super::measure::{Plan, Spread, median, row, spread, table};
 use super::newest::{config, open_when_sampled};
-use super::peers::{Mount, Place, on_all_cores, resident_kib};
-use sample_bus::{Reader, Rights, Step, Writer};
-use std::fs::OpenOptions;
+use super::peers::{Mount, Place, pin_to_other_core, resident_kib};
+use nix::sys::epoll::{Epoll, EpollCreateFlags, EpollEvent, EpollFlags, EpollTimeout};
+use sample_bus::{Reader, Rights, Writer};
+use std::fs::{File, OpenOptions};
 use std::hint::black_box;
 use std::io::Write;
 use std::os::unix::fs::FileExt;
@@ -32,22 +33,50 @@ fn batches(count: usize, mut call: impl FnMut()) -> Spread {
     spread((0..count).map(|_| batch()).collect())
 }
 
-/// The subscriber's process: looks for events without a pause, tells the age of each on standard output.
-pub fn read_ring(mountpoint: &Path, node: &str) {
-    let mut reader = Reader::open(mountpoint, node).expect("a ring");
+/// The subscriber's process: gets each sample in its own way, tells on standard output how long ago it was published.
+pub fn subscribe(way: &str, mountpoint: &Path, node: &str) {
+    // One that never sleeps would keep the daemon waiting on the same core.
+    pin_to_other_core();
+    let ring = Reader::open(mountpoint, node).expect("a ring");
+    let file = File::open(mountpoint.join(node).join("bin_data")).expect("open");
+    let epoll = Epoll::new(EpollCreateFlags::empty()).expect("epoll");
+    if way == "poll" {
+        let event = EpollEvent::new(EpollFlags::EPOLLIN, 0);
+        epoll.add(&file, event).expect("epoll");
+    }
     let mut out = std::io::stdout().lock();
-    out.write_all(&[0; 8]).expect("tell that the ring is open");
-    out.flush().expect("flush");
-    let mut tuple = Vec::new();
+    let (mut tuple, mut last, mut published) = ([0; 8], [0; 8], Vec::new());
+    file.read_exact_at(&mut last, 0).expect("a first sample");
+    let mut sequence = ring.newest_sequence();
+    let mut tell = |age: u64| out.write_all(&age.to_ne_bytes()).and_then(|()| out.flush());
+    tell(0).expect("tell that all is open");
     loop {
-        if !matches!(reader.next_event(&mut tuple), Step::Event(_)) {
-            std::hint::spin_loop();
-            continue;
+        if way == "ring" {
+            while ring.newest_sequence() == sequence {
+                std::hint::spin_loop();
+            }
+        } else {
+            if way == "poll" {
+                while epoll
+                    .wait(&mut [EpollEvent::empty()], EpollTimeout::NONE)
+                    .unwrap_or(0)
+                    == 0
+                {}
+            }
+            if file.read_exact_at(&mut tuple, 0).is_err() {
+                return;
+            }
+            if tuple == last {
+                continue;
+            }
+            last = tuple;
         }
-        let stamp: [u8; 8] = tuple.as_slice().try_into().expect("a time stamp");
-        let age = now_ns() - u64::from_ne_bytes(stamp);
-        let told = out.write_all(&age.to_ne_bytes()).and_then(|()| out.flush());
-        if told.is_err() {
+        let Some(event) = ring.newest_event(&mut published) else {
+            continue;
+        };
+        let now = now_ns();
+        sequence = event.sequence;
+        if tell(now - event.time_ns).is_err() {
             return;
         }
     }
@@ -56,7 +85,7 @@ pub fn read_ring(mountpoint: &Path, node: &str) {
 pub fn run(plan: &Plan) -> Result<(), String> {
     publish(plan)?;
     newest(plan)?;
-    on_all_cores(|| awake(plan))
+    awake(plan)
 }
 
 fn publish(plan: &Plan) -> Result<(), String> {
@@ -173,20 +202,32 @@ fn awake(plan: &Plan) -> Result<(), String> {
         path.display()
     );
     let mount = Mount::start("ring-events", &config)?;
-    let device = mount.file("event/device").display().to_string();
+    (&source)
+        .write_all(&[1; 8])
+        .map_err(|error| error.to_string())?;
+    open_when_sampled(&mount, "event/bin_data")?;
     let mountpoint = mount.place.0.display().to_string();
     let count = plan.samples / 4;
-    let measure = |words: &[&str]| latency(count, &source, words).expect("latency");
+    let measure = |way| latency(count, &source, &[way, &mountpoint, "event"]).expect("latency");
     let rows = vec![
-        row("blocking read of device", 0, None, || {
-            measure(&["block", &device])
+        row(
+            "bin_data of 8 bytes, pread again and again",
+            0,
+            None,
+            || measure("file"),
+        ),
+        row("bin_data of 8 bytes, epoll_wait and pread", 0, None, || {
+            measure("poll")
         }),
-        row("sample bus, subscriber awake", 0, Some(0.5), || {
-            measure(&["ring", &mountpoint, "event"])
-        }),
+        row(
+            "sample bus, newest value again and again",
+            0,
+            Some(0.5),
+            || measure("ring"),
+        ),
     ];
     table(
-        "event to reader on any core, ratio to a blocking read",
+        "from publishing to a subscriber on another core, ratio to one that is awake as well",
         plan.rounds,
         rows,
     );
