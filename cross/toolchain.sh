@@ -46,7 +46,7 @@ install_packages() {
     fi
     say "installing ${want[*]}"
     update_once
-    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${want[@]}" >/dev/null ||
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq -o DPkg::Lock::Timeout=120 --no-install-recommends "${want[@]}" >/dev/null ||
         die "apt-get could not install ${want[*]}" "is the network there, and Debian 12 in /etc/apt/sources.list?"
 }
 
