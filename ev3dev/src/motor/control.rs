@@ -148,8 +148,9 @@ impl Control {
         }
     }
 
-    /// Lets it run out, whatever it did.
+    /// Lets it run out, whatever it did, because it cannot be driven: nobody knows whether it still turns.
     pub fn let_go(&mut self) {
+        self.encoder.lose_sight();
         self.goal = Goal::Coast;
         self.relative_end = None;
         self.settle();

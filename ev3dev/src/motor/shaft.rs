@@ -55,6 +55,12 @@ impl Encoder {
         std::mem::take(&mut self.way)
     }
 
+    /// What it showed last says nothing of now.
+    pub(super) fn lose_sight(&mut self) {
+        self.moved_s = None;
+        self.speed.clear();
+    }
+
     pub(super) fn is_moving(&self, now_s: f64) -> bool {
         self.moved_s.is_some_and(|at| now_s - at < STILL_S)
     }

@@ -359,6 +359,22 @@ fn an_encoder_that_is_set_back_is_no_way() {
 }
 
 #[test]
+fn a_motor_that_cannot_be_driven_is_let_go_and_not_watched() {
+    let mut rig = Rig::new();
+    rig.control.setpoints.speed = 500;
+    rig.command(Command::RunForever);
+    rig.run(1.0);
+    let place = rig.control.position();
+    rig.control.let_go();
+    assert!(!rig.control.is_busy(rig.now_s) && rig.control.is_let_go());
+    assert_eq!((rig.control.speed(), rig.state().as_str()), (0, ""));
+    // Its way meanwhile counts when it is seen again.
+    rig.angle += 100.0;
+    rig.tick();
+    assert!((rig.control.position() - place - 100).abs() < 20);
+}
+
+#[test]
 fn without_an_encoder_power_follows_the_ramps() {
     let mut rig = Rig::of(Control::new(false, 100));
     rig.control.setpoints.duty_cycle = -60;

@@ -99,6 +99,25 @@ fn the_end_of_the_robot_ends_the_view_with_motors_that_run() {
     robot.leaves_nothing();
 }
 
+#[test]
+fn a_kill_of_trik_ends_the_view_and_the_next_robot_removes_what_is_left() {
+    let Some((mut robot, view)) = seen() else {
+        return;
+    };
+    view.run(LEFT, &[("speed_sp", 400)], "run-forever");
+    let (keeper, server) = view_processes(&robot);
+    robot.end(Signal::SIGKILL);
+    eventually("the end of the view", || {
+        !processes::is_alive(keeper) && !processes::is_alive(server)
+    });
+    assert!(board::mounts_below(&view.0).is_empty());
+    eventually("the end of the tree", || {
+        board::mounts_below(&robot.root).is_empty()
+    });
+    drop(Robot::start(Arc::clone(&robot.home), &[]));
+    assert!(!view.0.exists());
+}
+
 /// A view that was started by itself.
 struct Alone {
     process: Child,

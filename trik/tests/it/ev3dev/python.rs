@@ -83,7 +83,7 @@ m = LargeMotor('M3')
 start = m.position
 m.on_for_seconds(SpeedPercent(30), 0.5, brake=False)
 print(m.state)
-m.on_for_degrees(20, 30, block=False)
+m.on_for_degrees(20, 400, block=False)
 m.wait_until('running')
 print(m.wait_until_not_moving(timeout=20000))
 m.off(brake=False)
