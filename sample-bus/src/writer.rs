@@ -59,7 +59,7 @@ impl Writer {
 
     fn fill(file: &File, layout: Layout, rights: Rights) -> io::Result<Map> {
         let bytes = layout.bytes();
-        let length = i64::try_from(bytes).map_err(io::Error::other)?;
+        let length = libc::off_t::try_from(bytes).map_err(io::Error::other)?;
         posix_fallocate(file, 0, length)?;
         let map = Map::new(file, bytes, true)?;
         let set = |at, number: usize| {
