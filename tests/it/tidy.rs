@@ -3,13 +3,14 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-const CRATES: [&str; 7] = [
+const CRATES: [&str; 8] = [
     "config",
     "converter",
     "filters",
     "sim",
     "tests",
     "trik",
+    "trikd",
     "trikfs",
 ];
 /// Files that may hold `unsafe`, as beginnings of paths.

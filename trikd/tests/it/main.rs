@@ -1,0 +1,1 @@
+//! `trikd` as clients and programs use it: raw bytes on real sockets.
