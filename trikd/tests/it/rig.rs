@@ -254,6 +254,7 @@ impl Drop for Robot {
 pub struct Client {
     pub stream: TcpStream,
     buffer: Vec<u8>,
+    sent: Instant,
 }
 
 /// A frame of a payload.
@@ -270,11 +271,13 @@ impl Client {
         Self {
             stream,
             buffer: Vec::new(),
+            sent: Instant::now(),
         }
     }
 
     /// Sends bytes as they are.
     pub fn raw(&mut self, bytes: impl AsRef<[u8]>) {
+        self.sent = Instant::now();
         self.stream.write_all(bytes.as_ref()).expect("to send");
     }
 
@@ -286,6 +289,11 @@ impl Client {
     /// The next frame as it came; keepalives are left out. None: the connection has ended.
     pub fn next(&mut self) -> Option<String> {
         loop {
+            if self.sent.elapsed() > Duration::from_secs(1)
+                && self.stream.write_all(&frame("keepalive")).is_ok()
+            {
+                self.sent = Instant::now();
+            }
             if let Some(colon) = self.buffer.iter().position(|byte| *byte == b':') {
                 let count = std::str::from_utf8(&self.buffer[..colon]).expect("a count");
                 let size: usize = count
@@ -323,8 +331,12 @@ impl Client {
         loop {
             match self.next() {
                 Some(payload) if payload.starts_with(start) => return payload,
-                Some(other) => others.push(other),
-                None => panic!("no '{start}' but {others:?}"),
+                Some(other) => others.push(other.chars().take(200).collect::<String>()),
+                None => panic!(
+                    "no '{start}' but {} others, first {:?}",
+                    others.len(),
+                    &others[..others.len().min(20)]
+                ),
             }
         }
     }
