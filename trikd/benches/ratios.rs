@@ -34,8 +34,8 @@ fn frames() {
             .cycle()
             .take((8 << 20) / frame.len() * frame.len())
             .collect();
+        let mut target = stream.clone();
         let start = Instant::now();
-        let mut target = vec![0; stream.len()];
         for _ in 0..8 {
             target.copy_from_slice(black_box(&stream));
             black_box(&target);

@@ -122,3 +122,9 @@ pub const CRASHES_MS: u64 = 60_000;
 pub const CRASHES: usize = 5;
 /// Bytes that the kernel keeps for one client.
 pub const SEND_BUFFER_BYTES: usize = 64 << 10;
+/// Milliseconds that the serving process has for its end.
+pub const GUARDIAN_END_MS: u64 = 8_000;
+/// Milliseconds between two beats of the serving thread.
+pub const BEAT_MS: u64 = 500;
+/// Beats that may be missing before it counts as hung.
+pub const BEATS_MISSING: u32 = 20;
