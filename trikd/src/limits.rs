@@ -128,3 +128,5 @@ pub const GUARDIAN_END_MS: u64 = 8_000;
 pub const BEAT_MS: u64 = 500;
 /// Beats that may be missing before it counts as hung.
 pub const BEATS_MISSING: u32 = 20;
+/// Rests of which the status tells how long they took.
+pub const RESTS_SHOWN: usize = 256;
