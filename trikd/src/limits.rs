@@ -58,8 +58,10 @@ pub const SNAPSHOT_MS: u64 = 15;
 pub const SNAPSHOT_WAIT_MS: u64 = 250;
 /// Milliseconds between two looks at raw readings, which cost transfers on the bus.
 pub const RAW_MS: u64 = 100;
-/// Milliseconds that anybody waits for the motors to rest.
+/// Milliseconds that a program may live on while the motors are brought to rest.
 pub const REST_WAIT_MS: u64 = 50;
+/// Milliseconds after which a tree that has not brought the motors to rest is told of.
+pub const REST_LAST_MS: u64 = 2_000;
 /// Wishes for rest that may wait.
 pub const REST_ASKS: usize = 16;
 /// Bytes of one line of output; longer ones come in pieces.

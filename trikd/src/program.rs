@@ -329,18 +329,23 @@ impl Supervisor {
         if let Some(current) = self.current.as_ref().filter(|current| current.child.runs()) {
             group(current.child.pid, Signal::SIGSTOP);
         }
-        let rested = self.daemon.rest.now().await;
+        // A tree that is slow is still on its way to rest; the program must not live so long.
+        let rested = self.daemon.rest.now(limits::REST_WAIT_MS).await;
         let rest_us = began.elapsed().as_micros();
         let Some(mut current) = self.current.take() else {
-            self.tell_rest(rested, rest_us);
+            let last = match rested {
+                Ok(()) => Ok(()),
+                Err(_) => self.daemon.rest.now(limits::REST_LAST_MS).await,
+            };
+            self.tell_rest(last, rest_us);
             return;
         };
         if current.child.runs() {
             group(current.child.pid, Signal::SIGKILL);
         }
         self.kill_all(&mut current).await;
-        let last = self.daemon.rest.now().await;
-        self.tell_rest(rested.and(last), rest_us);
+        let last = self.daemon.rest.now(limits::REST_LAST_MS).await;
+        self.tell_rest(last, rest_us);
         self.tell_end(&mut current, &way);
         self.daemon.programs.shown.borrow_mut().text = None;
         self.daemon.mailbox.forget_kept();
