@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-const CRATES: [&str; 9] = [
+const CRATES: [&str; 10] = [
     "config",
     "converter",
     "ev3dev",
@@ -12,6 +12,7 @@ const CRATES: [&str; 9] = [
     "sim",
     "tests",
     "trik",
+    "trikd",
     "trikfs",
 ];
 /// Files that may hold `unsafe`, as beginnings of paths.

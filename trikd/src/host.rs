@@ -1,0 +1,270 @@
+//! The daemon as a program sees it: a channel of frames on standard input, in both directions.
+//!
+//! Owns the words of that channel and its end on the program's side; `program` has the other end. Frames are those of
+//! the network ([`crate::protocol::frame`]). Everything is blocking and on one thread: an engine polls [`Host::fd`]
+//! together with its timers. Python programs speak the same words through `trik.py`.
+//!
+//! | daemon to program | means |
+//! | --- | --- |
+//! | `file:PATH`, `script:TEXT`, `start:` | what to begin with: first frame, exactly once |
+//! | `direct:TEXT` | the next direct text |
+//! | `mail:HULL:TEXT` | a message of the mailbox |
+//! | `answer:TEXT` | the answer to a `mailbox:` question |
+//! | `web:` | asks for the variables that the program shows |
+//!
+//! | program to daemon | means |
+//! | --- | --- |
+//! | `print:TEXT` | output, as it shall be shown, with its newline |
+//! | `error:TEXT` | a failure; the daemon puts nothing before it |
+//! | `info:TEXT` | something a person may want to know |
+//! | `events:` | the program is event-driven from now on: direct texts may come in between |
+//! | `mailbox:WORDS` | a question to the mailbox, see [`crate::server::mailbox`] |
+//! | `web:JSON` | the variables |
+
+use crate::engine::Start;
+use crate::limits;
+use crate::protocol::frame::{Decoder, encode};
+use std::cell::RefCell;
+use std::io::{self, Read, Write};
+use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
+use std::os::unix::net::UnixStream;
+use std::time::{Duration, Instant};
+
+/// What comes from the daemon while a program runs.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum Incoming {
+    /// A direct text to evaluate.
+    Direct(String),
+    /// A message of the mailbox: hull number of the sender, -1 if it is unknown, and the text.
+    Mail(i32, String),
+    /// The variables server asks for the properties of `web`: answer with [`Host::web`].
+    Web,
+    /// The daemon is gone; the program should end.
+    Gone,
+}
+
+/// The program's end of the channel.
+#[derive(Debug)]
+pub struct Host {
+    channel: UnixStream,
+    decoder: RefCell<Decoder>,
+    /// Came while an answer was waited for.
+    early: RefCell<std::collections::VecDeque<Incoming>>,
+}
+
+impl Host {
+    /// Takes standard input, which the daemon has made a socket.
+    ///
+    /// # Errors
+    /// It is none: engines are started by the daemon only.
+    pub fn from_standard_input() -> io::Result<Self> {
+        let descriptor: OwnedFd = io::stdin().as_fd().try_clone_to_owned()?;
+        let channel = UnixStream::from(descriptor);
+        channel.local_addr()?;
+        // Standard input is empty from now on: what the program starts must not take what the daemon says.
+        nix::unistd::dup2_stdin(std::fs::File::open("/dev/null")?)?;
+        Ok(Self::new(channel))
+    }
+
+    /// Over any socket.
+    pub fn new(channel: UnixStream) -> Self {
+        Self {
+            channel,
+            decoder: RefCell::new(Decoder::new(limits::CHANNEL_FRAME_BYTES)),
+            early: RefCell::default(),
+        }
+    }
+
+    /// Readable when [`Host::receive`] may have something.
+    pub fn fd(&self) -> BorrowedFd<'_> {
+        self.channel.as_fd()
+    }
+
+    /// What to begin with. Waits for it.
+    ///
+    /// # Errors
+    /// The daemon is gone, or speaks differently.
+    pub fn start(&self) -> io::Result<Start> {
+        let frame = self.frame(None)?.ok_or(io::ErrorKind::UnexpectedEof)?;
+        let (word, rest) = frame.split_once(':').unwrap_or((&frame, ""));
+        match word {
+            "file" => Ok(Start::File(rest.into())),
+            "script" => Ok(Start::Script(rest.to_owned())),
+            "start" => Ok(Start::Direct),
+            _ => Err(io::Error::other(format!(
+                "'{word}' is no way to start a program"
+            ))),
+        }
+    }
+
+    /// The next message, waiting at most this long, or for ever. None: nothing came in time.
+    ///
+    /// # Errors
+    /// Those of the socket.
+    pub fn receive(&self, wait: Option<Duration>) -> io::Result<Option<Incoming>> {
+        if let Some(early) = self.early.borrow_mut().pop_front() {
+            return Ok(Some(early));
+        }
+        let deadline = wait.map(|wait| Instant::now() + wait);
+        loop {
+            match self.frame(deadline) {
+                Ok(None) => return Ok(Some(Incoming::Gone)),
+                Ok(Some(frame)) => {
+                    if let Some(message) = incoming(&frame) {
+                        return Ok(Some(message));
+                    }
+                }
+                Err(error) if is_late(&error) => return Ok(None),
+                Err(error) => return Err(error),
+            }
+        }
+    }
+
+    /// Asks the mailbox and waits for its answer: `send HULL TEXT`, `connect IP [PORT]`, `join IP PORT HULL`, `hull`,
+    /// `hull N`, `server`, `ip`, `connected`, `enabled`, `renew`.
+    ///
+    /// # Errors
+    /// The daemon is gone.
+    pub fn mailbox(&self, words: &str) -> io::Result<String> {
+        self.send("mailbox:", words)?;
+        loop {
+            let frame = self.frame(None)?.ok_or(io::ErrorKind::UnexpectedEof)?;
+            if let Some(answer) = frame.strip_prefix("answer:") {
+                return Ok(answer.to_owned());
+            }
+            self.early.borrow_mut().extend(incoming(&frame));
+        }
+    }
+
+    /// Shows output as it is; the newline is part of it.
+    ///
+    /// # Errors
+    /// The daemon is gone.
+    pub fn print(&self, text: &str) -> io::Result<()> {
+        self.send("print:", text)
+    }
+
+    /// Shows a failure.
+    ///
+    /// # Errors
+    /// The daemon is gone.
+    pub fn error(&self, text: &str) -> io::Result<()> {
+        self.send("error:", text)
+    }
+
+    /// Shows an information.
+    ///
+    /// # Errors
+    /// The daemon is gone.
+    pub fn info(&self, text: &str) -> io::Result<()> {
+        self.send("info:", text)
+    }
+
+    /// Says that the program is event-driven from now on.
+    ///
+    /// # Errors
+    /// The daemon is gone.
+    pub fn events(&self) -> io::Result<()> {
+        self.send("events:", "")
+    }
+
+    /// Answers [`Incoming::Web`] with a JSON object.
+    ///
+    /// # Errors
+    /// The daemon is gone.
+    pub fn web(&self, json: &str) -> io::Result<()> {
+        self.send("web:", json)
+    }
+
+    fn send(&self, word: &str, text: &str) -> io::Result<()> {
+        let mut payload = Vec::with_capacity(word.len() + text.len());
+        payload.extend_from_slice(word.as_bytes());
+        payload.extend_from_slice(text.as_bytes());
+        (&self.channel).write_all(&encode(&payload))
+    }
+
+    /// The next frame; None at the end of the channel; an error of [`is_late`] after the deadline.
+    fn frame(&self, deadline: Option<Instant>) -> io::Result<Option<String>> {
+        let mut decoder = self.decoder.borrow_mut();
+        let mut buffer = [0; 4096];
+        loop {
+            if let Some(frame) = decoder.next().map_err(io::Error::other)? {
+                return Ok(Some(String::from_utf8_lossy(frame).into_owned()));
+            }
+            let left = deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()));
+            // Zero would mean for ever.
+            let wait = left.map(|left| left.max(Duration::from_micros(1)));
+            self.channel.set_read_timeout(wait)?;
+            match (&self.channel).read(&mut buffer) {
+                Ok(0) => return Ok(None),
+                Ok(size) => decoder.feed(&buffer[..size]),
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) if error.kind() == io::ErrorKind::ConnectionReset => return Ok(None),
+                Err(error) => return Err(error),
+            }
+        }
+    }
+}
+
+fn is_late(error: &io::Error) -> bool {
+    [io::ErrorKind::WouldBlock, io::ErrorKind::TimedOut].contains(&error.kind())
+}
+
+/// None for what this side does not know.
+fn incoming(frame: &str) -> Option<Incoming> {
+    let (word, rest) = frame.split_once(':')?;
+    match word {
+        "direct" => Some(Incoming::Direct(rest.to_owned())),
+        "mail" => {
+            let (hull, text) = rest.split_once(':')?;
+            Some(Incoming::Mail(hull.parse().ok()?, text.to_owned()))
+        }
+        "web" => Some(Incoming::Web),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pair() -> (UnixStream, Host) {
+        let (daemon, program) = UnixStream::pair().unwrap();
+        (daemon, Host::new(program))
+    }
+
+    fn tell(daemon: &mut UnixStream, text: &str) {
+        daemon.write_all(&encode(text.as_bytes())).unwrap();
+    }
+
+    #[test]
+    fn a_program_is_told_its_start_and_what_comes_later() {
+        let (mut daemon, host) = pair();
+        tell(&mut daemon, "file:/a:b.js");
+        tell(&mut daemon, "unknown:x");
+        tell(&mut daemon, "mail:-1:a:b");
+        assert_eq!(host.start().unwrap(), Start::File("/a:b.js".into()));
+        assert_eq!(
+            host.receive(None).unwrap(),
+            Some(Incoming::Mail(-1, "a:b".to_owned()))
+        );
+        assert_eq!(host.receive(Some(Duration::ZERO)).unwrap(), None);
+        drop(daemon);
+        assert_eq!(host.receive(None).unwrap(), Some(Incoming::Gone));
+    }
+
+    #[test]
+    fn what_comes_before_an_answer_is_not_lost() {
+        let (mut daemon, host) = pair();
+        tell(&mut daemon, "direct:x = 1");
+        tell(&mut daemon, "answer:7");
+        assert_eq!(host.mailbox("hull").unwrap(), "7");
+        assert_eq!(
+            host.receive(None).unwrap(),
+            Some(Incoming::Direct("x = 1".to_owned()))
+        );
+        let mut said = [0; 15];
+        daemon.read_exact(&mut said).unwrap();
+        assert_eq!(&said, b"12:mailbox:hull");
+    }
+}

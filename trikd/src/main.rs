@@ -1,0 +1,7 @@
+//! The program `trikd`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    trikd::cli::main()
+}

@@ -1,0 +1,95 @@
+//! Requests of the control port 8888.
+
+/// What a client asks for. Prefixes are case sensitive, and the first that fits counts.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum Request<'a> {
+    /// Nothing.
+    Keepalive,
+    /// The version of the protocol.
+    Version,
+    /// The model of the controller.
+    ConfigVersion,
+    /// Keep these bytes as a program.
+    File {
+        /// Its name.
+        name: &'a [u8],
+        /// Its content.
+        content: &'a [u8],
+    },
+    /// Run a program that is there.
+    Run(&'a [u8]),
+    /// Run this text as a program in JavaScript.
+    DirectScript(&'a [u8]),
+    /// Evaluate this text after the ones before it.
+    Direct(&'a [u8]),
+    /// End the program and bring the robot to rest.
+    Stop,
+    /// Something else.
+    Unknown,
+}
+
+impl<'a> Request<'a> {
+    /// What a frame asks for.
+    pub fn parse(frame: &'a [u8]) -> Self {
+        if frame.starts_with(b"keepalive") {
+            return Self::Keepalive;
+        }
+        match frame {
+            b"version" => return Self::Version,
+            b"configVersion" => return Self::ConfigVersion,
+            b"stop" => return Self::Stop,
+            _ => {}
+        }
+        if let Some(rest) = frame.strip_prefix(b"file:") {
+            return match rest.iter().position(|byte| *byte == b':') {
+                Some(colon) => Self::File {
+                    name: &rest[..colon],
+                    content: &rest[colon + 1..],
+                },
+                None => Self::Unknown,
+            };
+        }
+        if let Some(name) = frame.strip_prefix(b"run:") {
+            return Self::Run(name);
+        }
+        if let Some(text) = frame.strip_prefix(b"directScript:") {
+            return Self::DirectScript(text);
+        }
+        match frame.strip_prefix(b"direct:") {
+            Some(text) => Self::Direct(text),
+            None => Self::Unknown,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn requests_are_told_by_their_beginning() {
+        let file = Request::File {
+            name: b"a.js",
+            content: b"x:\0y",
+        };
+        assert_eq!(Request::parse(b"file:a.js:x:\0y"), file);
+        assert_eq!(Request::parse(b"file:a.js"), Request::Unknown);
+        assert_eq!(Request::parse(b"run:"), Request::Run(b""));
+        assert_eq!(
+            Request::parse(b"directScript:a:b"),
+            Request::DirectScript(b"a:b")
+        );
+        assert_eq!(Request::parse(b"direct:x"), Request::Direct(b"x"));
+        assert_eq!(Request::parse(b"keepalive now"), Request::Keepalive);
+        for unknown in [
+            &b""[..],
+            b"Stop",
+            b"stop ",
+            b"version\n",
+            b"configVersion:",
+            b"\xff\xfe",
+        ] {
+            assert_eq!(Request::parse(unknown), Request::Unknown);
+        }
+    }
+}
