@@ -6,8 +6,11 @@
 use crate::brick::Brick;
 use crate::engine::Engine;
 use crate::host::Host;
-use crate::js;
+use crate::program::{kill, launch::Launch};
+use crate::settings::Settings;
+use crate::{daemon, guardian, js, status};
 use clap::{Parser, Subcommand};
+use std::net::IpAddr;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -21,6 +24,47 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Serve desktop programs, gamepads and other robots until SIGTERM, SIGINT or SIGHUP.
+    ///
+    /// Needs a mounted tree to do something, and waits for it if there is none. Says in one line when all ports are
+    /// served. Two processes: if the serving one crashes, the other brings motors to rest, ends the program and starts
+    /// it again.
+    Serve {
+        #[command(flatten)]
+        settings: Box<Settings>,
+    },
+    /// Show the running trikd: ports, tree, program, robots, and who is connected and in control.
+    Status {
+        /// The directory of the running trikd.
+        #[arg(long, value_name = "DIR", default_value = "/run/trikd")]
+        run: PathBuf,
+    },
+    /// Pair a computer with the robot, as Enter on the robot does.
+    Pair {
+        /// The directory of the running trikd.
+        #[arg(long, value_name = "DIR", default_value = "/run/trikd")]
+        run: PathBuf,
+        /// The address of the computer.
+        address: IpAddr,
+    },
+    /// The serving process.
+    #[command(hide = true)]
+    Daemon {
+        /// Process id of the guardian.
+        #[arg(long)]
+        guardian: i32,
+        /// How often it was started after crashes.
+        #[arg(long)]
+        restarts: u32,
+        #[command(flatten)]
+        settings: Box<Settings>,
+    },
+    /// The process that becomes a program, within its limits.
+    #[command(hide = true)]
+    Launch(Launch),
+    /// Ends all processes of the user that runs it.
+    #[command(hide = true)]
+    KillUser,
     /// The process of one JavaScript program; its standard input is the channel to the daemon.
     #[command(hide = true)]
     Js {
@@ -39,9 +83,39 @@ pub fn main() -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
-    match cli.command {
-        Command::Js { tree } => run_engine(&mut js::engine(), &tree),
+    match perform(cli.command) {
+        Ok(code) => code,
+        Err(reason) => {
+            eprintln!("trikd: {reason}");
+            ExitCode::FAILURE
+        }
     }
+}
+
+fn perform(command: Command) -> Result<ExitCode, String> {
+    match command {
+        Command::Serve { settings } => {
+            // Behind the name of the program and `serve`.
+            let arguments: Vec<_> = std::env::args_os().skip(2).collect();
+            return guardian::run(&settings.tree, &arguments);
+        }
+        Command::Status { run } => print!("{}", status::ask(&run, "status")?),
+        Command::Pair { run, address } => {
+            print!("{}", status::ask(&run, &format!("pair {address}"))?)
+        }
+        Command::Daemon {
+            guardian,
+            restarts,
+            settings,
+        } => {
+            guardian::follow(guardian)?;
+            daemon::run(*settings, restarts)?;
+        }
+        Command::Launch(launch) => return Err(launch.become_program()),
+        Command::KillUser => kill::own_user()?,
+        Command::Js { tree } => return Ok(run_engine(&mut js::engine(), &tree)),
+    }
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Runs one program of an engine in this process.

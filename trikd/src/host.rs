@@ -61,6 +61,8 @@ impl Host {
         let descriptor: OwnedFd = io::stdin().as_fd().try_clone_to_owned()?;
         let channel = UnixStream::from(descriptor);
         channel.local_addr()?;
+        // Standard input is empty from now on: what the program starts must not take what the daemon says.
+        nix::unistd::dup2_stdin(std::fs::File::open("/dev/null")?)?;
         Ok(Self::new(channel))
     }
 

@@ -4,13 +4,27 @@
 //! `protocol` is bytes and values, `server` is sockets, `program` is child processes, `host` and `engine` are the
 //! child's side, `brick` and `tree` are the robot.
 
+pub mod access;
 pub mod brick;
 pub mod cli;
+pub mod clients;
+pub mod connection;
+pub mod daemon;
 pub mod engine;
+pub mod guardian;
 pub mod host;
 pub mod js;
+pub mod keys;
 pub mod limits;
+pub mod log;
+pub mod outbox;
+pub mod program;
 pub mod protocol;
+pub mod sampler;
 #[doc(hidden)]
 pub mod scratch;
+pub mod scripts;
+pub mod server;
+pub mod settings;
+pub mod status;
 pub mod tree;

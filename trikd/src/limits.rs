@@ -16,3 +16,107 @@ pub const SMALL_FRAME_BYTES: usize = 64 << 10;
 pub const CHANNEL_FRAME_BYTES: usize = 16 << 20;
 /// Bytes of a buffer of frames that are kept when it is empty.
 pub const FRAME_BUFFER_KEPT_BYTES: usize = 64 << 10;
+/// Lines of the log in one second.
+pub const LOG_LINES_PER_SECOND: u32 = 50;
+/// Characters of one line of the log.
+pub const LOG_LINE_CHARACTERS: usize = 400;
+/// Milliseconds within which a key pairs the computer that asked last.
+pub const PAIRING_MS: u64 = 30_000;
+/// Paired computers.
+pub const PAIRED: usize = 64;
+/// Bytes of the name of a program.
+pub const NAME_BYTES: usize = 200;
+/// Folders in the name of a program.
+pub const NAME_DEPTH: usize = 8;
+/// Memory of one program in MiB, as its address space: Python alone takes some 30.
+pub const PROGRAM_MEMORY_MIB: u64 = 256;
+/// Processes of one program.
+pub const PROGRAM_PROCESSES: u64 = 64;
+/// Connections at once on all ports together.
+pub const CONNECTIONS: u16 = 256;
+/// Bytes that are read from a connection at once.
+pub const READ_BYTES: usize = 8 << 10;
+/// Milliseconds without a sent byte after which a keepalive is sent.
+pub const KEEPALIVE_MS: u64 = 3_000;
+/// Milliseconds without a received byte after which a connection is closed.
+pub const SILENCE_MS: u64 = 5_000;
+/// Milliseconds within which a frame must be whole.
+pub const FRAME_MS: u64 = 60_000;
+/// Bytes of half frames that all connections may hold together.
+pub const HELD_BYTES: usize = 32 << 20;
+/// Bytes of a half frame that a connection may hold in any case.
+pub const HELD_FREE_BYTES: usize = 16 << 10;
+/// Milliseconds that a connection that ends is kept for its last words.
+pub const FAREWELL_MS: u64 = 500;
+/// Bytes that are read and thrown away in that time.
+pub const FAREWELL_BYTES: usize = 1 << 20;
+/// Bytes that wait for one client.
+pub const OUTBOX_BYTES: usize = 256 << 10;
+/// Milliseconds for which all clients share one snapshot of the sensors.
+pub const SNAPSHOT_MS: u64 = 15;
+/// Milliseconds that an answer waits for the tree.
+pub const SNAPSHOT_WAIT_MS: u64 = 250;
+/// Milliseconds between two looks at raw readings, which cost transfers on the bus.
+pub const RAW_MS: u64 = 100;
+/// Milliseconds that anybody waits for the motors to rest.
+pub const REST_WAIT_MS: u64 = 50;
+/// Wishes for rest that may wait.
+pub const REST_ASKS: usize = 16;
+/// Bytes of one line of output; longer ones come in pieces.
+pub const LINE_BYTES: usize = 4096;
+/// Messages of one program in a second, and how many may come at once.
+pub const OUTPUT_MESSAGES_PER_SECOND: f64 = 1000.0;
+/// Bytes of these.
+pub const OUTPUT_BYTES_PER_SECOND: f64 = 262_144.0;
+/// Commands that wait for the one who runs programs.
+pub const COMMANDS: usize = 32;
+/// Milliseconds between two counts of the processes of a program.
+pub const PROCESSES_MS: u64 = 250;
+/// Milliseconds until the processes of a program must be gone.
+pub const KILL_MS: u64 = 2_000;
+/// Rounds of killing after which the user of programs is ended as a whole.
+pub const KILL_ROUNDS: u32 = 3;
+/// Milliseconds that are waited for output of a program that has ended.
+pub const DRAIN_MS: u64 = 50;
+/// Bytes of one message of a program.
+pub const MESSAGE_BYTES: usize = 64 << 10;
+/// Messages of the mailbox that wait for the next program.
+pub const KEPT_MESSAGES: usize = 256;
+/// Robots that the mailbox knows.
+pub const ROBOTS: usize = 256;
+/// Milliseconds for one attempt to reach another robot.
+pub const CONNECT_MS: u64 = 1_000;
+/// Attempts to reach a robot that somebody wants to talk to.
+pub const JOIN_TRIES: u32 = 3;
+/// Attempts to reach the robot that was joined before the start: it may start later.
+pub const REJOIN_TRIES: u32 = 120;
+/// Bytes of one line of a gamepad.
+pub const GAMEPAD_LINE_BYTES: usize = 256;
+/// Lines of one gamepad in a second.
+pub const GAMEPAD_LINES_PER_SECOND: u32 = 500;
+/// Milliseconds after which a pressed button is released: applications send no release.
+pub const BUTTON_MS: u64 = 500;
+/// Bytes of the head of a request over HTTP.
+pub const HTTP_HEAD_BYTES: usize = 8 << 10;
+/// Milliseconds that a program has to show its variables.
+pub const WEB_MS: u64 = 1_000;
+/// Bytes of one picture.
+pub const PICTURE_BYTES: u64 = 1 << 20;
+/// Milliseconds between two pictures.
+pub const PICTURE_MS: u64 = 66;
+/// Milliseconds after the start at which a program runs by itself.
+pub const AUTORUN_MS: u64 = 1_000;
+/// Milliseconds after which a start with such a program counts as good.
+pub const AUTORUN_PROOF_MS: u64 = 10_000;
+/// Starts that may fail before such a program is no longer run.
+pub const AUTORUN_TRIES: u32 = 3;
+/// Further ports that the mailbox tries.
+pub const MAILBOX_PORTS: u16 = 4;
+/// Threads for files that may be slow.
+pub const BLOCKING_THREADS: usize = 4;
+/// Milliseconds that the guardian waits for the motors to rest.
+pub const GUARDIAN_REST_MS: u64 = 1_000;
+/// Milliseconds within which crashes are counted.
+pub const CRASHES_MS: u64 = 60_000;
+/// Crashes in that time after which the guardian gives up.
+pub const CRASHES: usize = 5;

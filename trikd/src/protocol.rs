@@ -1,6 +1,7 @@
 //! What goes over the wires, as plain functions between bytes and values: no sockets, no clocks, no files.
 
 pub mod control;
+pub mod dns;
 pub mod frame;
 pub mod gamepad;
 pub mod http;

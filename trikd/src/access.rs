@@ -1,0 +1,235 @@
+//! Who may use the robot: an allow-list of addresses, and computers that a person at the robot has paired.
+//!
+//! Owns both lists and the file of paired addresses. Both are off by default: then everybody may do everything, which
+//! is what desktop programs expect. Knows no sockets and no requests.
+
+use crate::limits;
+use crate::protocol::mail::plain;
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeSet;
+use std::io;
+use std::net::IpAddr;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+use std::time::{Duration, Instant};
+
+/// Addresses that begin with the same bits.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct Network {
+    ip: IpAddr,
+    bits: u32,
+}
+
+fn number(ip: IpAddr) -> (u128, u32) {
+    match ip {
+        // Left in 128 bits, so that both kinds are cut in the same way.
+        IpAddr::V4(four) => (u128::from(four.to_bits()) << 96, 32),
+        IpAddr::V6(six) => (six.to_bits(), 128),
+    }
+}
+
+impl Network {
+    /// Whether the address is one of them.
+    pub fn contains(&self, ip: IpAddr) -> bool {
+        let (mine, other) = (number(self.ip), number(plain(ip)));
+        let differs = mine.0 ^ other.0;
+        mine.1 == other.1 && (self.bits == 0 || differs >> (128 - self.bits) == 0)
+    }
+}
+
+impl FromStr for Network {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let why = || {
+            format!(
+                "'{text}' is no network: an address such as 192.168.77.5, or one with bits, 192.168.77.0/24"
+            )
+        };
+        let (ip, bits) = text
+            .split_once('/')
+            .map_or((text, None), |(ip, bits)| (ip, Some(bits)));
+        let ip: IpAddr = ip.parse().map_err(|_| why())?;
+        let most = number(ip).1;
+        let bits = bits.map_or(Ok(most), str::parse).map_err(|_| why())?;
+        if bits > most {
+            return Err(why());
+        }
+        Ok(Self { ip, bits })
+    }
+}
+
+/// The lists in force.
+#[derive(Debug)]
+pub struct Access {
+    allowed: Vec<Network>,
+    /// None: pairing is off.
+    paired: Option<RefCell<BTreeSet<IpAddr>>>,
+    file: PathBuf,
+    /// Who asked last, and when: a key that is pressed soon after that pairs it.
+    asked: Cell<Option<(IpAddr, Instant)>>,
+}
+
+impl Access {
+    /// Everybody in `allowed`, or everybody if that is empty; with `pairs`, programs only from those in `file`.
+    ///
+    /// # Errors
+    /// The file exists and cannot be read.
+    pub fn new(allowed: Vec<Network>, pairs: bool, file: &Path) -> io::Result<Self> {
+        let paired = if pairs {
+            Some(RefCell::new(read(file)?))
+        } else {
+            None
+        };
+        Ok(Self {
+            allowed,
+            paired,
+            file: file.to_owned(),
+            asked: Cell::new(None),
+        })
+    }
+
+    /// Whether a connection from there is served at all.
+    pub fn admits(&self, ip: IpAddr) -> bool {
+        self.allowed.is_empty() || self.allowed.iter().any(|network| network.contains(ip))
+    }
+
+    /// Whether programs from there are run. Who is refused is remembered for [`Access::pair_last`].
+    pub fn may_control(&self, ip: IpAddr) -> bool {
+        let ip = plain(ip);
+        let may = self
+            .paired
+            .as_ref()
+            .is_none_or(|paired| paired.borrow().contains(&ip));
+        if !may {
+            self.asked.set(Some((ip, Instant::now())));
+        }
+        may
+    }
+
+    /// Whether pairing is on.
+    pub fn pairs(&self) -> bool {
+        self.paired.is_some()
+    }
+
+    /// Pairs the computer that asked within the last [`limits::PAIRING_MS`]; returns which.
+    ///
+    /// # Errors
+    /// It is paired, but cannot be remembered for the next start.
+    pub fn pair_last(&self) -> io::Result<Option<IpAddr>> {
+        let limit = Duration::from_millis(limits::PAIRING_MS);
+        match self.asked.take() {
+            Some((ip, when)) if when.elapsed() < limit => self.pair(ip).map(|()| Some(ip)),
+            _ => Ok(None),
+        }
+    }
+
+    /// Pairs a computer.
+    ///
+    /// # Errors
+    /// As [`Access::pair_last`]; `InvalidInput` if there are too many, or pairing is off.
+    pub fn pair(&self, ip: IpAddr) -> io::Result<()> {
+        let refused = |why: &str| Err(io::Error::new(io::ErrorKind::InvalidInput, why));
+        let Some(paired) = &self.paired else {
+            return refused("pairing is off: everybody may run programs");
+        };
+        let mut paired = paired.borrow_mut();
+        if paired.len() >= limits::PAIRED {
+            return refused(
+                "too many computers are paired: remove some from the file 'paired' and start again",
+            );
+        }
+        paired.insert(plain(ip));
+        let lines: Vec<_> = paired.iter().map(|ip| format!("{ip}\n")).collect();
+        crate::scripts::replace(&self.file, lines.concat().as_bytes(), 0o600)
+    }
+
+    /// One line for the status.
+    pub fn describe(&self) -> String {
+        let networks: Vec<_> = self
+            .allowed
+            .iter()
+            .map(|network| format!("{}/{}", network.ip, network.bits))
+            .collect();
+        let allowed = if networks.is_empty() {
+            "everybody".to_owned()
+        } else {
+            networks.join(", ")
+        };
+        match &self.paired {
+            None => format!("{allowed}; pairing is off"),
+            Some(paired) => {
+                let paired: Vec<_> = paired.borrow().iter().map(IpAddr::to_string).collect();
+                format!(
+                    "{allowed}; programs only from paired computers: {}",
+                    paired.join(", ")
+                )
+            }
+        }
+    }
+}
+
+fn read(file: &Path) -> io::Result<BTreeSet<IpAddr>> {
+    match std::fs::read_to_string(file) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(BTreeSet::new()),
+        Err(error) => Err(io::Error::new(
+            error.kind(),
+            format!("{}: {error}", file.display()),
+        )),
+        Ok(text) => Ok(text
+            .lines()
+            .take(limits::PAIRED)
+            .filter_map(|line| line.trim().parse().ok())
+            .collect()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scratch::Scratch;
+
+    #[test]
+    fn networks_are_addresses_with_equal_first_bits() {
+        let network: Network = "192.168.77.0/24".parse().unwrap();
+        let has = |ip: &str| network.contains(ip.parse().unwrap());
+        assert!(has("192.168.77.200") && has("::ffff:192.168.77.1"));
+        assert!(!has("192.168.78.1") && !has("::1"));
+        let one: Network = "fe80::1".parse().unwrap();
+        assert!(
+            one.contains("fe80::1".parse().unwrap()) && !one.contains("fe80::2".parse().unwrap())
+        );
+        let all: Network = "0.0.0.0/0".parse().unwrap();
+        assert!(all.contains("1.2.3.4".parse().unwrap()));
+        for bad in ["", "1.2.3", "1.2.3.4/33", "1.2.3.4/-1", "robot"] {
+            assert!(
+                bad.parse::<Network>()
+                    .unwrap_err()
+                    .contains("is no network"),
+                "{bad}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_paired_computer_is_remembered() {
+        let scratch = Scratch::new("access");
+        let file = scratch.path().join("paired");
+        let ip: IpAddr = "::ffff:10.0.0.7".parse().unwrap();
+        let access = Access::new(Vec::new(), true, &file).unwrap();
+        assert_eq!(access.pair_last().unwrap(), None);
+        assert!(access.admits(ip) && !access.may_control(ip));
+        assert_eq!(
+            access.pair_last().unwrap(),
+            Some("10.0.0.7".parse().unwrap())
+        );
+        assert!(access.may_control(ip));
+        let again = Access::new(Vec::new(), true, &file).unwrap();
+        assert!(again.may_control("10.0.0.7".parse().unwrap()));
+        assert!(
+            Access::new(Vec::new(), false, &file)
+                .unwrap()
+                .may_control("1.1.1.1".parse().unwrap())
+        );
+    }
+}

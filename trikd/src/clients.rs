@@ -1,0 +1,125 @@
+//! Who is connected: the register that messages to all go through and that the status shows.
+//!
+//! Knows no sockets and no frames.
+
+use crate::outbox::Outbox;
+use crate::protocol::frame::encode;
+use std::cell::{Cell, RefCell};
+use std::fmt::Write;
+use std::net::SocketAddr;
+use std::rc::{Rc, Weak};
+use std::time::Instant;
+
+/// One connection.
+#[derive(Debug)]
+pub struct Client {
+    /// Which port it came to.
+    pub port: &'static str,
+    /// Its other end.
+    pub peer: SocketAddr,
+    /// What waits to be sent to it.
+    pub outbox: Rc<Outbox>,
+    since: Instant,
+    requests: Cell<u32>,
+}
+
+impl Client {
+    /// Counts a request.
+    pub fn count(&self) {
+        self.requests.set(self.requests.get().saturating_add(1));
+    }
+}
+
+/// All connections.
+#[derive(Debug, Default)]
+pub struct Clients {
+    all: RefCell<Vec<Weak<Client>>>,
+    /// Who started the program or stopped it last.
+    in_control: Cell<Option<SocketAddr>>,
+}
+
+impl Clients {
+    /// Registers a connection as long as the result lives.
+    pub fn add(&self, port: &'static str, peer: SocketAddr, outbox: Rc<Outbox>) -> Rc<Client> {
+        let client = Rc::new(Client {
+            port,
+            peer,
+            outbox,
+            since: Instant::now(),
+            requests: Cell::new(0),
+        });
+        let mut all = self.all.borrow_mut();
+        all.retain(|other| other.strong_count() > 0);
+        all.push(Rc::downgrade(&client));
+        client
+    }
+
+    /// Remembers who commands.
+    pub fn takes_control(&self, peer: SocketAddr) {
+        self.in_control.set(Some(peer));
+    }
+
+    fn living(&self) -> Vec<Rc<Client>> {
+        self.all.borrow().iter().filter_map(Weak::upgrade).collect()
+    }
+
+    /// Sends a payload to every client of the control port.
+    pub fn broadcast(&self, payload: &[u8]) {
+        let frame: Rc<[u8]> = encode(payload).into();
+        for client in self.living() {
+            if client.port == "control" {
+                client.outbox.push(frame.clone());
+            }
+        }
+    }
+
+    /// Lines for the status.
+    pub fn describe(&self) -> String {
+        let mut text = String::new();
+        for client in self.living() {
+            let controls = self.in_control.get() == Some(client.peer);
+            let _ = writeln!(
+                text,
+                "client {} {} for {} s, {} requests{}",
+                client.peer,
+                client.port,
+                client.since.elapsed().as_secs(),
+                client.requests.get(),
+                if controls { ", in control" } else { "" }
+            );
+        }
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_clients_that_are_there_get_messages_to_all() {
+        let clients = Clients::default();
+        let peer: SocketAddr = "10.0.0.1:5".parse().unwrap();
+        let outbox = || Rc::new(Outbox::new(100));
+        let (one, other) = (outbox(), outbox());
+        let control = clients.add("control", peer, one.clone());
+        let telemetry = clients.add("telemetry", peer, other.clone());
+        drop(clients.add("control", peer, outbox()));
+        control.count();
+        clients.takes_control(peer);
+        clients.broadcast(b"hi");
+        other.close();
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .build()
+            .unwrap();
+        assert_eq!(runtime.block_on(one.next()).as_deref(), Some(&b"2:hi"[..]));
+        assert_eq!(runtime.block_on(other.next()), None);
+        let text = clients.describe();
+        assert!(
+            text.starts_with("client 10.0.0.1:5 control for 0 s, 1 requests, in control\n"),
+            "{text}"
+        );
+        assert_eq!(text.lines().count(), 2);
+        drop(telemetry);
+    }
+}

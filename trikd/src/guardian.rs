@@ -1,0 +1,144 @@
+//! The process around the serving one: whatever ends that, motors rest, no program is left, and it is started again.
+//!
+//! Owns one child and nothing else. It is the subreaper behind the daemon, so programs whose daemon is dead are its
+//! children; if the guardian itself dies, the daemon ends in order.
+
+use crate::limits;
+use crate::program::kill;
+use crate::tree::{Access, Tree};
+use nix::sys::prctl;
+use nix::sys::signal::{SigSet, SigmaskHow, Signal};
+use nix::sys::wait::{WaitPidFlag, WaitStatus, waitpid};
+use nix::unistd::{Pid, getppid};
+use std::collections::VecDeque;
+use std::ffi::OsString;
+use std::path::Path;
+use std::process::{Command, ExitCode};
+use std::time::{Duration, Instant};
+
+/// Signals that end both processes.
+const ENDS: [Signal; 3] = [Signal::SIGTERM, Signal::SIGINT, Signal::SIGHUP];
+
+/// The beginning of the serving process: it ends in order when the guardian dies.
+///
+/// # Errors
+/// In words.
+pub fn follow(guardian: i32) -> Result<(), String> {
+    let reset = SigSet::empty().thread_swap_mask(SigmaskHow::SIG_SETMASK);
+    reset
+        .and_then(|_| prctl::set_pdeathsig(Signal::SIGTERM))
+        .map_err(|error| error.to_string())?;
+    if getppid().as_raw() != guardian {
+        return Err("the process that started this one is gone".to_owned());
+    }
+    Ok(())
+}
+
+fn start(arguments: &[OsString], restarts: u32) -> Result<Pid, String> {
+    let mut command = Command::new(crate::program::child::SELF);
+    command
+        .arg("daemon")
+        .arg("--guardian")
+        .arg(std::process::id().to_string());
+    command
+        .arg("--restarts")
+        .arg(restarts.to_string())
+        .args(arguments);
+    let child = command
+        .spawn()
+        .map_err(|error| format!("the serving process cannot be started: {error}"))?;
+    Ok(Pid::from_raw(
+        i32::try_from(child.id()).map_err(|error| error.to_string())?,
+    ))
+}
+
+/// Motors to rest, programs away, motors to rest again.
+fn clean_up(tree: &Path) {
+    rest(tree);
+    let deadline = Instant::now() + Duration::from_millis(limits::KILL_MS);
+    while kill::sweep(Pid::this(), &[]) > 0 && Instant::now() < deadline {
+        while matches!(waitpid(None, Some(WaitPidFlag::WNOHANG)), Ok(status) if status != WaitStatus::StillAlive)
+        {
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    rest(tree);
+}
+
+/// On a thread, because a tree that hangs must not hang the guardian.
+fn rest(tree: &Path) {
+    let (tell, told) = std::sync::mpsc::channel();
+    let root = tree.to_owned();
+    std::thread::spawn(move || {
+        let done = Tree::new(&root).node("stop", Access::Write).write("1\n");
+        let _ = tell.send(done.map_err(|error| crate::program::rest::explain(&root, &error)));
+    });
+    match told.recv_timeout(Duration::from_millis(limits::GUARDIAN_REST_MS)) {
+        Ok(Ok(())) => {}
+        Ok(Err(why)) => eprintln!("trikd: {why}"),
+        Err(_) => eprintln!("trikd: the tree at {} does not answer", tree.display()),
+    }
+}
+
+/// How the serving process ended, if it has.
+fn ended(daemon: Pid) -> Option<WaitStatus> {
+    loop {
+        match waitpid(None, Some(WaitPidFlag::WNOHANG)) {
+            Ok(WaitStatus::StillAlive) | Err(_) => return None,
+            Ok(status) if status.pid() == Some(daemon) => return Some(status),
+            Ok(_) => {}
+        }
+    }
+}
+
+/// Starts the serving process with the same arguments and looks after it until it ends in order.
+///
+/// # Errors
+/// In words, empty if the serving process has told it.
+pub fn run(tree: &Path, arguments: &[OsString]) -> Result<ExitCode, String> {
+    let fails = |error: nix::Error| format!("guardian: {error}");
+    prctl::set_child_subreaper(true).map_err(fails)?;
+    let mut signals = SigSet::from_iter(ENDS);
+    signals.add(Signal::SIGCHLD);
+    signals.thread_block().map_err(fails)?;
+    let mut crashes: VecDeque<Instant> = VecDeque::new();
+    let mut restarts = 0;
+    let mut is_over = false;
+    let mut daemon = start(arguments, restarts)?;
+    loop {
+        let signal = signals.wait().map_err(fails)?;
+        if signal != Signal::SIGCHLD {
+            is_over = true;
+            let _ = nix::sys::signal::kill(daemon, Signal::SIGTERM);
+            continue;
+        }
+        let Some(status) = ended(daemon) else {
+            continue;
+        };
+        match status {
+            WaitStatus::Exited(_, 0) => return Ok(ExitCode::SUCCESS),
+            WaitStatus::Exited(_, code @ (1 | 2)) => {
+                return Ok(ExitCode::from(u8::try_from(code).unwrap_or(1)));
+            }
+            _ => {}
+        }
+        eprintln!(
+            "trikd: the serving process has crashed ({status:?}): motors are brought to rest, programs are ended"
+        );
+        clean_up(tree);
+        if is_over {
+            return Err("the serving process crashed at its end".to_owned());
+        }
+        crashes.push_back(Instant::now());
+        crashes.retain(|crash| crash.elapsed() < Duration::from_millis(limits::CRASHES_MS));
+        if crashes.len() >= limits::CRASHES {
+            return Err(format!(
+                "{} crashes within {} s: it is not started again",
+                limits::CRASHES,
+                limits::CRASHES_MS / 1000
+            ));
+        }
+        restarts += 1;
+        daemon = start(arguments, restarts)?;
+    }
+}

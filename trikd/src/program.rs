@@ -1,0 +1,586 @@
+//! The program that runs: one at a time, of any language, always in child processes, and one way out of all of them.
+//!
+//! Owns the queue of commands, what the running program may do next, and its end. `child` is one process with its
+//! pipes, `launch` gives it its limits, `kill` ends all that it started, `rest` brings the motors to rest, `reaper`
+//! hears of ends, `output` measures what it says, `boot` runs a program at the start.
+
+pub mod boot;
+pub mod child;
+pub mod kill;
+pub mod launch;
+pub mod output;
+pub mod python;
+pub mod reaper;
+pub mod rest;
+
+use crate::daemon::Daemon;
+use crate::limits;
+use child::{Child, Language, SELF, Said};
+use kill::{group, sweep};
+use nix::sys::signal::Signal;
+use nix::unistd::Pid;
+use output::Meter;
+use reaper::Ended;
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::fmt::Write;
+use std::path::PathBuf;
+use std::process::Stdio;
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+use tokio::sync::{Notify, oneshot};
+
+/// What can be asked for.
+#[derive(Debug)]
+pub enum Command {
+    /// End what runs and run this file.
+    Run(PathBuf),
+    /// End what runs and run this text in JavaScript.
+    Script(String),
+    /// Evaluate this text after the ones before it.
+    Direct(String),
+    /// End what runs and bring everything to rest; says for whom.
+    Stop(&'static str),
+    /// A message of the mailbox for the program: hull number and text.
+    Mail(i32, String),
+    /// The variables that the program shows, as a JSON object.
+    Web(oneshot::Sender<String>),
+    /// End what runs, then tell.
+    Quit(oneshot::Sender<()>),
+}
+
+/// What the status shows of the program.
+#[derive(Clone, Debug, Default)]
+struct Shown {
+    text: Option<(String, Instant)>,
+    started: u32,
+    failed: u32,
+    last_end: String,
+    stop_us_max: u128,
+}
+
+/// The way to the one who runs programs.
+#[derive(Debug, Default)]
+pub struct Programs {
+    queue: RefCell<VecDeque<Command>>,
+    filled: Notify,
+    drained: Notify,
+    shown: RefCell<Shown>,
+}
+
+impl Programs {
+    /// Asks for something; waits while too much is asked for already. A stop makes everything before it pointless.
+    pub async fn tell(&self, command: Command) {
+        if matches!(command, Command::Stop(_) | Command::Quit(_)) {
+            self.queue
+                .borrow_mut()
+                .retain(|other| matches!(other, Command::Quit(_)));
+        } else {
+            while self.queue.borrow().len() >= limits::COMMANDS {
+                self.drained.notified().await;
+            }
+        }
+        self.queue.borrow_mut().push_back(command);
+        self.filled.notify_one();
+    }
+
+    /// As [`Programs::tell`] for what may be lost when too much is asked for.
+    pub fn offer(&self, command: Command) {
+        let mut queue = self.queue.borrow_mut();
+        if queue.len() < limits::COMMANDS {
+            queue.push_back(command);
+            self.filled.notify_one();
+        }
+    }
+
+    async fn next(&self) -> Command {
+        loop {
+            if let Some(command) = self.queue.borrow_mut().pop_front() {
+                self.drained.notify_one();
+                return command;
+            }
+            self.filled.notified().await;
+        }
+    }
+
+    /// Whether a program runs.
+    pub fn runs(&self) -> bool {
+        self.shown.borrow().text.is_some()
+    }
+
+    /// Lines for the status.
+    pub fn describe(&self) -> String {
+        let shown = self.shown.borrow();
+        let mut text = match &shown.text {
+            Some((text, since)) => format!("program {text} for {} s\n", since.elapsed().as_secs()),
+            None => "program none\n".to_owned(),
+        };
+        let _ = writeln!(
+            text,
+            "programs {} started, {} failed",
+            shown.started, shown.failed
+        );
+        if !shown.last_end.is_empty() {
+            let _ = writeln!(text, "last {}", shown.last_end);
+        }
+        let _ = writeln!(
+            text,
+            "rest at most {} us after a program was to end",
+            shown.stop_us_max
+        );
+        text
+    }
+}
+
+/// The running program.
+struct Current {
+    child: Child,
+    name: String,
+    since: Instant,
+    /// It has no text of its own, or has become event-driven: direct texts go to it.
+    takes_direct: bool,
+    /// Nobody wants to hear that it began and ended.
+    is_quiet: bool,
+    told_error: bool,
+    meter: Meter,
+    web: Vec<oneshot::Sender<String>>,
+    ended: Option<(Ended, Instant)>,
+}
+
+/// Why a program is ended.
+enum Way {
+    /// By itself.
+    Own(Ended),
+    /// By somebody, or for another program.
+    Order(&'static str),
+    /// It did what it may not.
+    Greed(String),
+}
+
+/// Runs programs until it is told to quit.
+pub struct Supervisor {
+    daemon: Rc<Daemon>,
+    current: Option<Current>,
+    last: Language,
+}
+
+impl Supervisor {
+    /// Nothing runs yet.
+    pub fn new(daemon: Rc<Daemon>) -> Self {
+        Self {
+            daemon,
+            current: None,
+            last: Language::JavaScript,
+        }
+    }
+
+    /// Serves for ever.
+    pub async fn run(mut self) {
+        let programs = self.daemon.clone();
+        let programs = &programs.programs;
+        let mut look = tokio::time::interval(Duration::from_millis(limits::PROCESSES_MS));
+        look.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
+        loop {
+            let drains = self.current.as_ref().and_then(|current| current.ended);
+            tokio::select! {
+                biased;
+                command = programs.next() => {
+                    if let Command::Quit(done) = command {
+                        self.end(Way::Order("the end of trikd")).await;
+                        let _ = done.send(());
+                        return;
+                    }
+                    self.perform(command).await;
+                }
+                said = said(&mut self.current) => self.hear(said).await,
+                () = drained(drains) => {
+                    if let Some((ended, _)) = drains {
+                        self.end(Way::Own(ended)).await;
+                    }
+                }
+                _ = look.tick(), if self.current.is_some() => self.count_processes().await,
+            }
+        }
+    }
+
+    async fn perform(&mut self, command: Command) {
+        match command {
+            Command::Run(path) => {
+                self.end(Way::Order("another program")).await;
+                let language = Language::of(&path);
+                let folder = &self.daemon.settings.scripts;
+                let name = path
+                    .strip_prefix(folder)
+                    .unwrap_or(&path)
+                    .display()
+                    .to_string();
+                let first = format!("file:{}", path.display());
+                self.start(language, name, Some(path), &first);
+            }
+            Command::Script(code) => {
+                self.end(Way::Order("another program")).await;
+                self.start(
+                    Language::JavaScript,
+                    "script".to_owned(),
+                    None,
+                    &format!("script:{code}"),
+                );
+            }
+            Command::Direct(code) => self.direct(&code).await,
+            Command::Stop(who) => self.end(Way::Order(who)).await,
+            Command::Mail(hull, text) => {
+                let heard = self
+                    .current
+                    .as_ref()
+                    .is_some_and(|current| current.child.has_channel());
+                if heard {
+                    self.tell(format!("mail:{hull}:{text}").as_bytes());
+                } else {
+                    self.daemon.mailbox.keep(hull, text);
+                }
+            }
+            Command::Web(answer) => {
+                if let Some(current) = &mut self.current
+                    && current.web.len() < limits::COMMANDS
+                    && current.child.tell(b"web:")
+                {
+                    current.web.push(answer);
+                }
+            }
+            Command::Quit(_) => {}
+        }
+    }
+
+    async fn direct(&mut self, code: &str) {
+        let takes = self
+            .current
+            .as_ref()
+            .is_some_and(|current| current.takes_direct && current.child.runs());
+        if !takes {
+            self.end(Way::Order("a direct command")).await;
+            let language = if self.last == Language::Python {
+                Language::Python
+            } else {
+                Language::JavaScript
+            };
+            self.start(language, "direct commands".to_owned(), None, "start:");
+            match &mut self.current {
+                Some(current) => current.takes_direct = true,
+                None => return,
+            }
+        }
+        if !self.tell(format!("direct:{code}").as_bytes()) {
+            self.broadcast("error: the direct command is lost: the ones before it are not done yet. Stop, then try again");
+        }
+    }
+
+    fn tell(&mut self, payload: &[u8]) -> bool {
+        self.current
+            .as_mut()
+            .is_some_and(|current| current.child.tell(payload))
+    }
+
+    /// Starts a child with the first frame of its channel; a program in a file has its path.
+    fn start(&mut self, language: Language, name: String, path: Option<PathBuf>, first: &str) {
+        let daemon = self.daemon.clone();
+        let started = child::start(
+            &daemon.settings,
+            daemon.owner.as_ref(),
+            language,
+            path.as_deref(),
+            &daemon.reaper,
+        );
+        let mut child = match started {
+            Ok(child) => child,
+            Err(error) => {
+                self.broadcast(&format!("error: {name} cannot be started: {error}"));
+                return;
+            }
+        };
+        if child.tell(first.as_bytes()) {
+            for (hull, text) in daemon.mailbox.take_kept() {
+                child.tell(format!("mail:{hull}:{text}").as_bytes());
+            }
+        }
+        let is_quiet = path.is_none();
+        self.last = language;
+        let mut shown = daemon.programs.shown.borrow_mut();
+        shown.started = shown.started.saturating_add(1);
+        shown.text = Some((
+            format!("{name} ({}, process {})", language.name(), child.pid),
+            Instant::now(),
+        ));
+        drop(shown);
+        daemon
+            .log
+            .line(format_args!("{name} starts as process {}", child.pid));
+        if !is_quiet {
+            self.broadcast(&format!("info: {name} has started"));
+        }
+        self.current = Some(Current {
+            child,
+            name,
+            since: Instant::now(),
+            takes_direct: false,
+            is_quiet,
+            told_error: false,
+            meter: Meter::default(),
+            web: Vec::new(),
+            ended: None,
+        });
+    }
+
+    fn broadcast(&self, text: &str) {
+        self.daemon.clients.broadcast(text.as_bytes());
+    }
+
+    async fn hear(&mut self, said: Said) {
+        match said {
+            Said::Line(text) => self.show("print", &text),
+            Said::Frame(text) => self.hear_frame(&text),
+            Said::Ended(ended) => {
+                if let Some(current) = &mut self.current {
+                    current.ended = Some((ended, Instant::now()));
+                }
+            }
+        }
+        let Some(current) = &self.current else { return };
+        if let Some((ended, _)) = current.ended
+            && current.child.is_silent()
+        {
+            self.end(Way::Own(ended)).await;
+        }
+    }
+
+    fn hear_frame(&mut self, frame: &str) {
+        let (word, rest) = frame.split_once(':').unwrap_or((frame, ""));
+        match word {
+            "print" | "info" => self.show(word, rest),
+            "error" => {
+                if let Some(current) = &mut self.current {
+                    current.told_error = true;
+                }
+                self.show("error", rest);
+            }
+            "events" => {
+                if let Some(current) = &mut self.current {
+                    current.takes_direct = true;
+                }
+            }
+            "mailbox" => {
+                let answer = self.daemon.mailbox.answer(rest);
+                self.tell(format!("answer:{answer}").as_bytes());
+            }
+            "web" => {
+                let web = self
+                    .current
+                    .as_mut()
+                    .map(|current| std::mem::take(&mut current.web));
+                for answer in web.into_iter().flatten() {
+                    let _ = answer.send(rest.to_owned());
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Shows something that the program said, unless it says too much.
+    fn show(&mut self, kind: &str, text: &str) {
+        let Some(current) = &mut self.current else {
+            return;
+        };
+        let now = Instant::now();
+        let mut end = text.len().min(limits::MESSAGE_BYTES);
+        while !text.is_char_boundary(end) {
+            end -= 1;
+        }
+        let dropped = current.meter.take_dropped(now, false);
+        if current.meter.admits(end, now) {
+            self.tell_dropped(dropped);
+            self.broadcast(&format!("{kind}: {}", &text[..end]));
+        } else {
+            self.tell_dropped(dropped);
+        }
+    }
+
+    fn tell_dropped(&self, dropped: Option<u32>) {
+        if let Some(count) = dropped {
+            self.broadcast(&format!("info: {count} messages of the program were left out: it says more than {} a second", limits::OUTPUT_MESSAGES_PER_SECOND));
+        }
+    }
+
+    /// A program that has too many processes ends: as root it would have no other limit.
+    async fn count_processes(&mut self) {
+        if self.current.is_none() {
+            return;
+        }
+        let count = u64::try_from(kill::below(Pid::this()).len()).unwrap_or(u64::MAX);
+        let limit = self.daemon.settings.processes;
+        if count > limit {
+            self.end(Way::Greed(format!(
+                "it had {count} processes, and {limit} are allowed"
+            )))
+            .await;
+        }
+    }
+
+    /// The one way out. First the motors, then the processes, then the motors once more, because until its last moment
+    /// a program may have set them going; then everybody is told.
+    async fn end(&mut self, way: Way) {
+        let began = Instant::now();
+        // Whatever it is about to write waits until it is dead. The number of one that is dead may be another's already.
+        if let Some(current) = self.current.as_ref().filter(|current| current.child.runs()) {
+            group(current.child.pid, Signal::SIGSTOP);
+        }
+        let rested = self.daemon.rest.now().await;
+        let rest_us = began.elapsed().as_micros();
+        let Some(mut current) = self.current.take() else {
+            self.tell_rest(rested, rest_us);
+            return;
+        };
+        if current.child.runs() {
+            group(current.child.pid, Signal::SIGKILL);
+        }
+        self.kill_all(&mut current).await;
+        let last = self.daemon.rest.now().await;
+        self.tell_rest(rested.and(last), rest_us);
+        self.tell_end(&mut current, &way);
+        self.daemon.programs.shown.borrow_mut().text = None;
+        self.daemon.mailbox.forget_kept();
+    }
+
+    /// Kills until nobody is left, and takes what was said before.
+    async fn kill_all(&mut self, current: &mut Current) {
+        let deadline = Instant::now() + Duration::from_millis(limits::KILL_MS);
+        let mut spared = Vec::new();
+        let mut rounds = 0;
+        let mut pause = Duration::from_millis(1);
+        loop {
+            self.daemon.reaper.reap();
+            let left = sweep(Pid::this(), &spared);
+            if left == 0 || Instant::now() > deadline {
+                if left > 0 {
+                    self.daemon.log.line(format_args!(
+                        "{left} processes of {} cannot be killed",
+                        current.name
+                    ));
+                }
+                break;
+            }
+            rounds += 1;
+            if rounds == limits::KILL_ROUNDS {
+                spared.extend(self.kill_user());
+            }
+            tokio::time::sleep(pause).await;
+            pause = (pause * 2).min(Duration::from_millis(10));
+        }
+        // What stands in the pipes of the dead comes without waiting.
+        let drain = Duration::from_millis(limits::DRAIN_MS);
+        let _ = tokio::time::timeout(drain, async {
+            while !current.child.is_silent() {
+                match current.child.said().await {
+                    Said::Ended(ended) => {
+                        current.ended.get_or_insert((ended, Instant::now()));
+                    }
+                    Said::Line(text) => self.show_last(current, "print", &text),
+                    Said::Frame(text) => {
+                        if let Some((kind @ ("print" | "error" | "info"), text)) =
+                            text.split_once(':')
+                        {
+                            current.told_error |= kind == "error";
+                            self.show_last(current, kind, text);
+                        }
+                    }
+                }
+            }
+        })
+        .await;
+    }
+
+    fn show_last(&self, current: &mut Current, kind: &str, text: &str) {
+        if text.len() <= limits::MESSAGE_BYTES && current.meter.admits(text.len(), Instant::now()) {
+            self.broadcast(&format!("{kind}: {text}"));
+        }
+    }
+
+    /// Starts the process that kills all others of the user of programs.
+    fn kill_user(&self) -> Option<Pid> {
+        let user = &self.daemon.owner.as_ref()?.user;
+        let mut command = std::process::Command::new(SELF);
+        command.arg("kill-user").stdin(Stdio::null());
+        std::os::unix::process::CommandExt::uid(&mut command, user.uid.as_raw());
+        std::os::unix::process::CommandExt::gid(&mut command, user.gid.as_raw());
+        let process = command.spawn().ok()?;
+        Some(Pid::from_raw(i32::try_from(process.id()).ok()?))
+    }
+
+    fn tell_rest(&self, rested: Result<(), String>, rest_us: u128) {
+        let mut shown = self.daemon.programs.shown.borrow_mut();
+        shown.stop_us_max = shown.stop_us_max.max(rest_us);
+        if let Err(why) = rested {
+            self.daemon.log.line(&why);
+            self.broadcast(&format!("error: {why}"));
+        }
+    }
+
+    fn tell_end(&self, current: &mut Current, way: &Way) {
+        self.tell_dropped(current.meter.take_dropped(Instant::now(), true));
+        let name = &current.name;
+        let after = format!("after {:.1} s", current.since.elapsed().as_secs_f64());
+        let mut failed = true;
+        let text = match way {
+            Way::Own(Ended::Code(0)) => {
+                failed = current.told_error;
+                if failed {
+                    format!("{name} has failed {after}")
+                } else {
+                    format!("{name} has ended {after}")
+                }
+            }
+            Way::Own(Ended::Code(code)) => {
+                format!("{name} has failed with exit code {code} {after}")
+            }
+            Way::Own(Ended::Signal(signal)) => {
+                let signal = Signal::try_from(*signal).map_or("a signal", Signal::as_str);
+                let hint = if signal == "SIGKILL" {
+                    ": perhaps the memory was short"
+                } else {
+                    ""
+                };
+                format!("{name} was killed by {signal} {after}{hint}")
+            }
+            Way::Order(who) => {
+                failed = false;
+                format!("{name} was stopped by {who} {after}")
+            }
+            Way::Greed(why) => format!("{name} was stopped {after}: {why}"),
+        };
+        self.daemon.log.line(&text);
+        let is_news = failed && !current.told_error;
+        if is_news {
+            self.broadcast(&format!("error: {text}"));
+        } else if !current.is_quiet {
+            self.broadcast(&format!("info: {text}"));
+        }
+        let mut shown = self.daemon.programs.shown.borrow_mut();
+        shown.failed = shown.failed.saturating_add(u32::from(failed));
+        shown.last_end = text;
+    }
+}
+
+async fn said(current: &mut Option<Current>) -> Said {
+    match current {
+        Some(current) => current.child.said().await,
+        None => std::future::pending().await,
+    }
+}
+
+/// A while after the end of the process: somebody that it started may hold its pipes open for ever.
+async fn drained(ended: Option<(Ended, Instant)>) {
+    match ended {
+        Some((_, at)) => {
+            tokio::time::sleep_until((at + Duration::from_millis(limits::DRAIN_MS)).into()).await
+        }
+        None => std::future::pending().await,
+    }
+}

@@ -1,0 +1,339 @@
+//! One program as a child process: how each language is started, its pipes, its channel, its end.
+//!
+//! Owns the descriptors of one child. What its messages lead to is not known here.
+
+use super::output::Lines;
+use super::reaper::{Ended, Reaper};
+use crate::limits;
+use crate::protocol::frame::{Decoder, encode};
+use crate::settings::Settings;
+use nix::unistd::{Pid, User};
+use std::ffi::OsString;
+use std::io;
+use std::os::fd::OwnedFd;
+use std::os::unix::net::UnixStream as StdStream;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use tokio::io::AsyncReadExt;
+use tokio::net::UnixStream;
+use tokio::net::unix::pipe;
+use tokio::sync::oneshot;
+
+/// What a program is written in.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Language {
+    /// A child of our own with an engine inside.
+    JavaScript,
+    /// CPython with the module `trik`.
+    Python,
+    /// Anything that can be executed.
+    Native,
+}
+
+impl Language {
+    /// The language of a file: by its ending, else by its first bytes, else JavaScript as on the robots of old.
+    pub fn of(path: &Path) -> Self {
+        match path.extension().and_then(|ending| ending.to_str()) {
+            Some("py") => Self::Python,
+            Some("js" | "qts") => Self::JavaScript,
+            _ => {
+                let mut first = [0; 4];
+                let read = std::fs::File::open(path)
+                    .and_then(|mut file| io::Read::read(&mut file, &mut first));
+                match read {
+                    Ok(size) if crate::scripts::is_executable(&first[..size]) => Self::Native,
+                    _ => Self::JavaScript,
+                }
+            }
+        }
+    }
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::JavaScript => "JavaScript",
+            Self::Python => "Python",
+            Self::Native => "native",
+        }
+    }
+}
+
+/// Whose rights programs have.
+#[derive(Clone, Debug)]
+pub struct Owner {
+    /// Its name, uid and gid.
+    pub user: User,
+}
+
+/// This program, whatever has happened to its file since it was started.
+pub const SELF: &str = "/proc/self/exe";
+
+/// Something that a child did.
+#[derive(Debug)]
+pub enum Said {
+    /// A line of output.
+    Line(String),
+    /// A frame on its channel.
+    Frame(String),
+    /// The process has ended; its pipes may still hold something.
+    Ended(Ended),
+}
+
+#[derive(Debug)]
+struct Pipe {
+    end: Option<pipe::Receiver>,
+    lines: Lines,
+}
+
+/// A running program.
+#[derive(Debug)]
+pub struct Child {
+    /// Its process, which leads its session and group.
+    pub pid: Pid,
+    stdout: Pipe,
+    stderr: Pipe,
+    channel: Option<UnixStream>,
+    decoder: Decoder,
+    /// Frames that the child has not taken yet.
+    unsent: Vec<u8>,
+    end: Option<oneshot::Receiver<Ended>>,
+    /// What was heard and not taken yet.
+    heard: std::collections::VecDeque<Said>,
+}
+
+/// Words of the command that becomes the program.
+fn words(settings: &Settings, language: Language, path: Option<&Path>) -> Vec<OsString> {
+    match (language, path) {
+        (Language::Native, Some(path)) => vec![path.into()],
+        (Language::Python, _) => {
+            vec![
+                settings.python.clone().into(),
+                "-u".into(),
+                "-c".into(),
+                "import trik; trik._main()".into(),
+            ]
+        }
+        _ => vec![SELF.into(), "js".into()],
+    }
+}
+
+/// Starts a program within its limits, in the folder of programs. It leads a session of its own.
+///
+/// # Errors
+/// There can be no more processes or descriptors.
+pub fn start(
+    settings: &Settings,
+    owner: Option<&Owner>,
+    language: Language,
+    path: Option<&Path>,
+    reaper: &Reaper,
+) -> io::Result<Child> {
+    let mut command = Command::new(SELF);
+    command
+        .arg("launch")
+        .arg("--parent")
+        .arg(std::process::id().to_string());
+    command
+        .arg("--memory-mib")
+        .arg(settings.memory_mib.to_string());
+    command
+        .arg("--processes")
+        .arg(settings.processes.to_string());
+    if let Some(Owner { user }) = owner {
+        command
+            .arg("--uid")
+            .arg(user.uid.to_string())
+            .arg("--gid")
+            .arg(user.gid.to_string());
+    }
+    command.arg("--").args(words(settings, language, path));
+    let python: PathBuf = settings.run.join("python");
+    command
+        .env_clear()
+        .env(
+            "PATH",
+            std::env::var_os("PATH").unwrap_or_else(|| "/usr/local/bin:/usr/bin:/bin".into()),
+        )
+        .env("HOME", &settings.scripts)
+        .env("LANG", "C.UTF-8")
+        .env("TRIK_TREE", &settings.tree)
+        .env("PYTHONPATH", python)
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .current_dir(&settings.scripts)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    let channel = if language == Language::Native {
+        command.stdin(Stdio::null());
+        None
+    } else {
+        let (ours, theirs) = StdStream::pair()?;
+        ours.set_nonblocking(true)?;
+        command.stdin(Stdio::from(OwnedFd::from(theirs)));
+        Some(UnixStream::from_std(ours)?)
+    };
+    let mut process = command.spawn()?;
+    let pid = Pid::from_raw(i32::try_from(process.id()).map_err(io::Error::other)?);
+    let end = reaper.watch(pid);
+    let pipe = |end: Option<OwnedFd>| -> io::Result<Pipe> {
+        let end = end.map(pipe::Receiver::from_owned_fd).transpose()?;
+        Ok(Pipe {
+            end,
+            lines: Lines::default(),
+        })
+    };
+    Ok(Child {
+        pid,
+        stdout: pipe(process.stdout.take().map(OwnedFd::from))?,
+        stderr: pipe(process.stderr.take().map(OwnedFd::from))?,
+        channel,
+        decoder: Decoder::new(limits::CHANNEL_FRAME_BYTES),
+        unsent: Vec::new(),
+        end: Some(end),
+        heard: std::collections::VecDeque::new(),
+    })
+}
+
+async fn from_pipe(pipe: &mut Pipe) -> (Vec<u8>, bool) {
+    let mut buffer = [0; limits::READ_BYTES];
+    match &mut pipe.end {
+        None => std::future::pending().await,
+        Some(end) => match end.read(&mut buffer).await {
+            Ok(size) if size > 0 => (buffer[..size].to_vec(), false),
+            _ => {
+                pipe.end = None;
+                (Vec::new(), true)
+            }
+        },
+    }
+}
+
+impl Pipe {
+    fn hear(
+        &mut self,
+        (bytes, is_over): (Vec<u8>, bool),
+        heard: &mut std::collections::VecDeque<Said>,
+    ) {
+        let mut take = |line: &str| heard.push_back(Said::Line(line.to_owned()));
+        self.lines.feed(&bytes, &mut take);
+        if is_over {
+            self.lines.finish(&mut take);
+        }
+    }
+}
+
+/// Something to read or room to write; takes nothing, so it can be given up at any point.
+async fn moved(channel: Option<&UnixStream>, writes: bool) {
+    let Some(channel) = channel else {
+        return std::future::pending().await;
+    };
+    let interest = if writes {
+        tokio::io::Interest::READABLE | tokio::io::Interest::WRITABLE
+    } else {
+        tokio::io::Interest::READABLE
+    };
+    // An error is found by the read that follows.
+    let _ = channel.ready(interest).await;
+}
+
+async fn ended(end: &mut Option<oneshot::Receiver<Ended>>) -> Ended {
+    match end {
+        None => std::future::pending().await,
+        Some(receiver) => {
+            let ended = receiver.await.unwrap_or(Ended::Signal(libc::SIGKILL));
+            *end = None;
+            ended
+        }
+    }
+}
+
+impl Child {
+    /// Sends a frame when the child has room for it. False: it has not read for so long that this one is dropped.
+    pub fn tell(&mut self, payload: &[u8]) -> bool {
+        if self.channel.is_none() || self.unsent.len() + payload.len() > limits::CHANNEL_FRAME_BYTES
+        {
+            return false;
+        }
+        self.unsent.extend_from_slice(&encode(payload));
+        self.flush();
+        true
+    }
+
+    /// Whether the process still runs.
+    pub fn runs(&self) -> bool {
+        self.end.is_some()
+    }
+
+    /// Whether it has a channel.
+    pub fn has_channel(&self) -> bool {
+        self.channel.is_some()
+    }
+
+    /// Whether nothing more can be heard.
+    pub fn is_silent(&self) -> bool {
+        self.stdout.end.is_none()
+            && self.stderr.end.is_none()
+            && self.channel.is_none()
+            && self.heard.is_empty()
+    }
+
+    fn flush(&mut self) {
+        while !self.unsent.is_empty() {
+            match self
+                .channel
+                .as_ref()
+                .map(|channel| channel.try_write(&self.unsent))
+            {
+                Some(Ok(size)) => drop(self.unsent.drain(..size)),
+                _ => return,
+            }
+        }
+    }
+
+    /// Takes what has come on the channel.
+    fn hear_channel(&mut self) {
+        self.flush();
+        let mut buffer = [0; limits::READ_BYTES];
+        let Some(channel) = &self.channel else { return };
+        match channel.try_read(&mut buffer) {
+            Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
+            Ok(size) if size > 0 => {
+                self.decoder.feed(&buffer[..size]);
+                loop {
+                    match self.decoder.next() {
+                        Ok(Some(frame)) => self
+                            .heard
+                            .push_back(Said::Frame(String::from_utf8_lossy(frame).into_owned())),
+                        Ok(None) => return,
+                        Err(_) => break,
+                    }
+                }
+                self.channel = None;
+            }
+            _ => self.channel = None,
+        }
+    }
+
+    /// The next thing that the child does. Can be given up at any point without loss.
+    pub async fn said(&mut self) -> Said {
+        loop {
+            if let Some(said) = self.heard.pop_front() {
+                return said;
+            }
+            let Self {
+                stdout,
+                stderr,
+                channel,
+                end,
+                unsent,
+                ..
+            } = self;
+            tokio::select! {
+                biased;
+                got = from_pipe(stdout) => stdout.hear(got, &mut self.heard),
+                got = from_pipe(stderr) => stderr.hear(got, &mut self.heard),
+                () = moved(channel.as_ref(), !unsent.is_empty()) => self.hear_channel(),
+                ended = ended(end) => return Said::Ended(ended),
+            }
+        }
+    }
+}

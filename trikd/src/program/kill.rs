@@ -1,0 +1,136 @@
+//! Ends everything that a program has started, wherever it has put itself.
+//!
+//! This process is the subreaper of all programs: whoever loses its parent becomes our child, so what lives below us is
+//! what has to go. A program with a user of its own cannot even outrun the search: one kill(2) takes all of that user.
+
+use nix::errno::Errno;
+use nix::sys::signal::{Signal, kill, killpg};
+use nix::unistd::{Pid, Uid};
+use std::collections::{HashMap, HashSet};
+use std::fs;
+use std::os::unix::fs::MetadataExt;
+
+/// A process as /proc shows it (proc(5)).
+struct Process {
+    pid: i32,
+    parent: i32,
+}
+
+fn processes() -> Vec<Process> {
+    let Ok(entries) = fs::read_dir("/proc") else {
+        return Vec::new();
+    };
+    let numbers = entries
+        .flatten()
+        .filter_map(|entry| entry.file_name().to_str()?.parse().ok());
+    numbers.filter_map(process).collect()
+}
+
+/// None if it is gone or a zombie, which only waits to be told of.
+fn process(pid: i32) -> Option<Process> {
+    let stat = fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
+    // The name in brackets may hold anything.
+    let mut fields = stat.rsplit(')').next()?.split_ascii_whitespace();
+    let is_dead = matches!(fields.next()?, "Z" | "X");
+    (!is_dead).then(|| {
+        Some(Process {
+            pid,
+            parent: fields.next()?.parse().ok()?,
+        })
+    })?
+}
+
+/// Everybody below a process, without it.
+pub fn below(ancestor: Pid) -> Vec<Pid> {
+    let mut children: HashMap<i32, Vec<i32>> = HashMap::new();
+    for process in processes() {
+        children
+            .entry(process.parent)
+            .or_default()
+            .push(process.pid);
+    }
+    let mut found = Vec::new();
+    let mut seen = HashSet::new();
+    let mut next = vec![ancestor.as_raw()];
+    while let Some(pid) = next.pop() {
+        for child in children.get(&pid).into_iter().flatten() {
+            // Numbers that are used again while /proc is read could make a circle.
+            if seen.insert(*child) {
+                found.push(Pid::from_raw(*child));
+                next.push(*child);
+            }
+        }
+    }
+    found
+}
+
+/// How many processes a user has.
+pub fn of_user(user: Uid) -> u64 {
+    let Ok(entries) = fs::read_dir("/proc") else {
+        return 0;
+    };
+    let own = entries.flatten().filter(|entry| {
+        let is_process = entry
+            .file_name()
+            .to_str()
+            .is_some_and(|name| name.parse::<i32>().is_ok());
+        is_process
+            && entry
+                .metadata()
+                .is_ok_and(|data| data.uid() == user.as_raw())
+    });
+    u64::try_from(own.count()).unwrap_or(u64::MAX)
+}
+
+/// Stops or kills the processes of a program that have not left its group: one system call, nobody can outrun it.
+pub fn group(leader: Pid, signal: Signal) {
+    // A group of which nobody is left is fine.
+    let _ = killpg(leader, signal);
+}
+
+/// Kills everybody below a process once; returns how many there were.
+pub fn sweep(ancestor: Pid, spared: &[Pid]) -> usize {
+    let mut found = below(ancestor);
+    found.retain(|pid| !spared.contains(pid));
+    for pid in &found {
+        let _ = kill(*pid, Signal::SIGKILL);
+    }
+    found.len()
+}
+
+/// Kills everybody with the user of this process but this process: what the hidden command `kill-user` does, under the
+/// user of the program.
+///
+/// # Errors
+/// This process is root: then everything on the machine would go.
+pub fn own_user() -> Result<(), String> {
+    if Uid::effective().is_root() || Uid::current().is_root() {
+        return Err("kill-user is for the user of programs, and never for root".to_owned());
+    }
+    match kill(Pid::from_raw(-1), Signal::SIGKILL) {
+        Ok(()) | Err(Errno::ESRCH) => Ok(()),
+        Err(error) => Err(format!("kill-user: {error}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::process::Command;
+
+    #[test]
+    fn children_of_children_are_found_and_ended() {
+        let mut child = Command::new("sh")
+            .args(["-c", "sleep 100 & sleep 100 & wait"])
+            .spawn()
+            .unwrap();
+        let pid = Pid::from_raw(i32::try_from(child.id()).unwrap());
+        while below(pid).len() < 2 {
+            std::thread::yield_now();
+        }
+        assert!(below(Pid::this()).contains(&pid));
+        assert_eq!(sweep(pid, &[]), 2);
+        child.wait().unwrap();
+        assert!(below(pid).is_empty());
+    }
+}

@@ -1,0 +1,93 @@
+//! The moment between the daemon and a program: a process that gives up rights, takes limits, and becomes the program.
+//!
+//! What the hidden command `launch` does. Owns what a program may have; knows no languages.
+
+use super::kill;
+use clap::Args;
+use nix::sys::prctl;
+use nix::sys::resource::{Resource, setrlimit};
+use nix::sys::signal::{SigSet, SigmaskHow, Signal};
+use nix::unistd::{Gid, Uid, getppid, setgid, setgroups, setsid, setuid};
+use std::ffi::OsString;
+use std::os::unix::process::CommandExt;
+use std::process::Command;
+
+/// Open files of a program.
+const OPEN_FILES: u64 = 512;
+/// A program goes before the daemon when memory is short (proc(5), oom_score_adj).
+const FIRST_TO_GO: &str = "500";
+
+/// Rights and limits of a program.
+#[derive(Args, Clone, Debug)]
+pub struct Launch {
+    /// Process id of the daemon.
+    #[arg(long)]
+    pub parent: i32,
+    /// User to become.
+    #[arg(long)]
+    pub uid: Option<u32>,
+    /// Group to become.
+    #[arg(long)]
+    pub gid: Option<u32>,
+    /// Memory in MiB.
+    #[arg(long)]
+    pub memory_mib: u64,
+    /// Processes.
+    #[arg(long)]
+    pub processes: u64,
+    /// The program and its arguments.
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, required = true)]
+    pub program: Vec<OsString>,
+}
+
+impl Launch {
+    /// Becomes the program; returns only why not.
+    pub fn become_program(&self) -> String {
+        if let Err(error) = self.prepare() {
+            return format!("the program cannot be given its limits: {error}");
+        }
+        if getppid().as_raw() != self.parent {
+            return "the daemon that started this program is gone".to_owned();
+        }
+        let Some((program, arguments)) = self.program.split_first() else {
+            return "no program is named".to_owned();
+        };
+        let error = Command::new(program).args(arguments).exec();
+        let hint = match error.raw_os_error() {
+            Some(libc::ENOEXEC) => ": it is made for another processor, or is no program",
+            Some(libc::ENOENT) => ": it is not there, or what its first line names is not",
+            Some(libc::EACCES) => ": it may not be executed by the user of programs",
+            _ => "",
+        };
+        format!(
+            "{} cannot be started: {error}{hint}",
+            program.to_string_lossy()
+        )
+    }
+
+    fn prepare(&self) -> nix::Result<()> {
+        // Fails only for who leads a group already, which is what is wanted.
+        let _ = setsid();
+        SigSet::empty().thread_swap_mask(SigmaskHow::SIG_SETMASK)?;
+        let _ = std::fs::write("/proc/self/oom_score_adj", FIRST_TO_GO);
+        let memory = self.memory_mib.saturating_mul(1 << 20);
+        setrlimit(Resource::RLIMIT_AS, memory, memory)?;
+        setrlimit(Resource::RLIMIT_NOFILE, OPEN_FILES, OPEN_FILES)?;
+        setrlimit(Resource::RLIMIT_CORE, 0, 0)?;
+        let user = self.uid.map_or_else(Uid::current, Uid::from_raw);
+        // The kernel counts all processes of the user, so those that are there already do not count.
+        let processes = self.processes.saturating_add(kill::of_user(user));
+        setrlimit(Resource::RLIMIT_NPROC, processes, processes)?;
+        if let Some(gid) = self.gid {
+            let gid = Gid::from_raw(gid);
+            setgroups(&[gid])?;
+            setgid(gid)?;
+        }
+        if self.uid.is_some() {
+            setuid(user)?;
+            prctl::set_no_new_privs()?;
+        }
+        // Last, because a change of the user clears it.
+        prctl::set_pdeathsig(Signal::SIGKILL)
+    }
+}

@@ -1,0 +1,102 @@
+//! Brings the motors to rest, on a thread of its own that does nothing else.
+//!
+//! Owns that thread and the open file `stop`. A device that hangs delays the thread, and nobody else waits for it
+//! longer than [`limits::REST_WAIT_MS`].
+
+use crate::limits;
+use crate::tree::{Access, Tree};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::time::Duration;
+use tokio::sync::oneshot;
+
+type Answer = oneshot::Sender<Result<(), String>>;
+
+/// The way to the thread.
+#[derive(Debug)]
+pub struct Rest {
+    ask: SyncSender<Answer>,
+}
+
+impl Rest {
+    /// Starts the thread for the tree at `root`; it ends with this.
+    ///
+    /// # Errors
+    /// There can be no more threads.
+    pub fn start(root: &Path) -> io::Result<Self> {
+        let (ask, asked) = sync_channel(limits::REST_ASKS);
+        let root: PathBuf = root.to_owned();
+        std::thread::Builder::new()
+            .name("rest".to_owned())
+            .spawn(move || serve(&root, &asked))?;
+        Ok(Self { ask })
+    }
+
+    /// Brings everything that moves to rest; returns when it is there, or in any case soon.
+    ///
+    /// # Errors
+    /// In words: there is no tree, it does not answer, an actuator fails.
+    pub async fn now(&self) -> Result<(), String> {
+        let (answer, done) = oneshot::channel();
+        let late = || {
+            Err(format!(
+                "the tree has not brought the motors to rest within {} ms",
+                limits::REST_WAIT_MS
+            ))
+        };
+        if self.ask.try_send(answer).is_err() {
+            return late();
+        }
+        match tokio::time::timeout(Duration::from_millis(limits::REST_WAIT_MS), done).await {
+            Ok(Ok(done)) => done,
+            Ok(Err(_)) | Err(_) => late(),
+        }
+    }
+}
+
+fn serve(root: &Path, asked: &Receiver<Answer>) {
+    let tree = Tree::new(root);
+    let stop = tree.node("stop", Access::Write);
+    while let Ok(first) = asked.recv() {
+        // Whoever asked meanwhile is served by the same write.
+        let others: Vec<_> = asked.try_iter().collect();
+        let done = stop.write("1\n").map_err(|error| explain(root, &error));
+        for answer in std::iter::once(first).chain(others) {
+            let _ = answer.send(done.clone());
+        }
+    }
+}
+
+/// What a failed write of `stop` means.
+pub fn explain(root: &Path, error: &io::Error) -> String {
+    let root = root.display();
+    match error.raw_os_error() {
+        Some(libc::ENOENT) => format!("there is no tree at {root}: start it with `trikfs mount`"),
+        Some(libc::ENOTCONN | libc::ECONNABORTED | libc::ENODEV) => {
+            format!("the tree at {root} is gone: its guardian brings the motors to rest")
+        }
+        _ => format!("not everything is at rest: {root}/stop: {error}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scratch::Scratch;
+
+    #[test]
+    fn everything_is_brought_to_rest_by_one_write() {
+        let scratch = Scratch::new("rest");
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .enable_time()
+            .build()
+            .unwrap();
+        let rest = Rest::start(scratch.path()).unwrap();
+        let why = runtime.block_on(rest.now()).unwrap_err();
+        assert!(why.contains("there is no tree at"), "{why}");
+        let stop = scratch.file("stop", "");
+        runtime.block_on(rest.now()).unwrap();
+        assert_eq!(std::fs::read_to_string(stop).unwrap(), "1\n");
+    }
+}

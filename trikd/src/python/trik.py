@@ -1,0 +1,724 @@
+"""The robot for Python programs: brick, script, mailbox and gamepad, by the names of the TRIK controller.
+
+Everything is a file of the mounted tree; trikd is asked only for the mailbox. What cannot be read is an OSError with
+the reason in the file `fault` beside it, except where programs of old expect a number: a distance without an echo
+is -1, a pad that nobody touches is at -101.
+"""
+
+import builtins
+import heapq
+import itertools
+import json
+import os
+import queue
+import random as _random
+import struct
+import subprocess
+import sys
+import threading
+import time
+import traceback
+
+_ROOT = os.environ.get('TRIK_TREE', '/trikfs')
+_STALE = {107, 19, 116, 103}  # ENOTCONN, ENODEV, ESTALE, ECONNABORTED
+
+
+class _File:
+    """One file of the tree, opened once."""
+
+    def __init__(self, path, flags=os.O_RDONLY):
+        self.path, self.flags, self.fd = os.path.join(_ROOT, path), flags, None
+
+    def _do(self, work):
+        for last in (False, True):
+            try:
+                if self.fd is None:
+                    self.fd = os.open(self.path, self.flags | os.O_CLOEXEC)
+                return work(self.fd)
+            except OSError as error:
+                self.close()
+                if last or error.errno not in _STALE:
+                    raise OSError(error.errno, error.strerror, self.path) from None
+
+    def text(self):
+        return self._do(lambda fd: os.pread(fd, 4096, 0)).decode().rstrip('\0\n')
+
+    def numbers(self):
+        return [float(word) if '.' in word or 'e' in word else int(word) for word in self.text().split()]
+
+    def number(self):
+        return self.numbers()[0]
+
+    def write(self, text):
+        self._do(lambda fd: os.pwrite(fd, text.encode(), 0))
+
+    def close(self):
+        fd, self.fd = self.fd, None
+        if fd is not None:
+            os.close(fd)
+
+
+_files = {}
+
+
+def _file(path, flags=os.O_RDONLY):
+    if (path, flags) not in _files:
+        _files[path, flags] = _File(path, flags)
+    return _files[path, flags]
+
+
+def _has(directory):
+    return os.path.isdir(os.path.join(_ROOT, directory))
+
+
+class _Channel:
+    """Frames to and from trikd."""
+
+    def __init__(self, fd):
+        self.fd, self.buffer, self.lock = fd, b'', threading.Lock()
+
+    def send(self, word, text=''):
+        payload = (word + ':' + text).encode('utf-8', 'replace')
+        frame = b'%d:%s' % (len(payload), payload)
+        with self.lock:
+            while frame:
+                frame = frame[os.write(self.fd, frame):]
+
+    def receive(self):
+        """The next frame; None when trikd is gone."""
+        while True:
+            head, colon, rest = self.buffer.partition(b':')
+            if colon and len(rest) >= int(head):
+                frame, self.buffer = rest[:int(head)], rest[int(head):]
+                if frame:
+                    return frame.decode('utf-8', 'replace')
+                continue
+            piece = os.read(self.fd, 65536)
+            if not piece:
+                return None
+            self.buffer += piece
+
+
+_channel = None
+_events = queue.Queue()
+_answers = queue.Queue()
+_mail = queue.Queue()
+_directs = queue.Queue()
+web = {}
+
+
+def _listen():
+    while True:
+        try:
+            frame = _channel.receive()
+        except OSError:
+            frame = None
+        if frame is None:
+            os._exit(1)
+        word, _, rest = frame.partition(':')
+        if word == 'direct':
+            _directs.put(rest)
+            _events.put(None)
+        elif word == 'answer':
+            _answers.put(rest)
+        elif word == 'mail':
+            hull, _, text = rest.partition(':')
+            _mail.put(text)
+            _events.put((mailbox.newMessage, (int(hull), text)))
+        elif word == 'web':
+            _channel.send('web', json.dumps({str(key): str(value) for key, value in web.items()}))
+
+
+class _Signal:
+    """Something that happens; functions that are connected are called by script.run()."""
+
+    def __init__(self, start=None):
+        self.functions, self.start = [], start
+
+    def connect(self, function):
+        self.functions.append(function)
+        if self.start:
+            start, self.start = self.start, None
+            threading.Thread(target=start, daemon=True).start()
+
+    def disconnect(self, function=None):
+        self.functions = [other for other in self.functions if function is not None and other is not function]
+
+    def _call(self, arguments):
+        for function in list(self.functions):
+            function(*arguments)
+
+
+def _stream(path, size):
+    """Pieces of a stream of the tree for ever."""
+    while True:
+        try:
+            fd = os.open(os.path.join(_ROOT, path), os.O_RDONLY | os.O_CLOEXEC)
+            try:
+                while True:
+                    piece = os.read(fd, size)
+                    if not piece:
+                        break
+                    yield piece
+            finally:
+                os.close(fd)
+        except OSError:
+            pass
+        time.sleep(0.25)
+
+
+class Motor:
+    def __init__(self, directory, servo):
+        self._value, self._servo = directory + '/value', servo
+        self._switch = directory + ('/power' if servo else '/brake')
+        self._most = 100
+        if servo and _file(directory + '/units').text() != '%':
+            self._most = 90
+
+    def setPower(self, power, constrain=True):
+        power = round(max(-self._most, min(self._most, power)))
+        _file(self._value, os.O_WRONLY).write('%d\n' % power)
+
+    def power(self):
+        return _file(self._value).number()
+
+    def powerOff(self):
+        if self._servo:
+            _file(self._switch, os.O_WRONLY).write('0\n')
+        else:
+            self.setPower(0)
+
+    def brake(self, ms=500):
+        if self._servo:
+            return self.powerOff()
+        _file(self._switch, os.O_WRONLY).write('1\n')
+        time.sleep(ms / 1000)
+        self.setPower(0)
+
+
+class Sensor:
+    def __init__(self, directory):
+        self._value, self._raw = _file(directory + '/value'), _file(directory + '/raw')
+        self._distance = os.path.basename(directory)[:1] == 'D'
+
+    def read(self):
+        try:
+            return self._value.number()
+        except OSError:
+            # Without an echo there is no distance, and programs expect -1.
+            if self._distance and self._raw.number() == -1:
+                return -1
+            raise
+
+    def readRawData(self):
+        return self._raw.number()
+
+
+class Encoder(Sensor):
+    def __init__(self, directory):
+        super().__init__(directory)
+        self._zero = _file(directory + '/value', os.O_WRONLY)
+
+    def reset(self):
+        self._zero.write('0\n')
+
+
+class KeysEnum:
+    Left, Up, Down, Enter, Right, Power, Esc = 105, 103, 108, 28, 106, 116, 1
+
+
+_KEY_ORDER = [116, 103, 1, 105, 106, 108, 28]
+
+
+class Keys:
+    def __init__(self):
+        self._state, self._latched, self._codes = dict.fromkeys(_KEY_ORDER, 0), set(), queue.Queue()
+        self._lock, self._started = threading.Lock(), False
+        self.buttonPressed = _Signal(self._start)
+
+    def _start(self):
+        with self._lock:
+            started, self._started = self._started, True
+        if not started:
+            threading.Thread(target=self._watch, daemon=True).start()
+
+    def _watch(self):
+        size = 4 * len(_KEY_ORDER)
+        for piece in _stream('keys/device', size):
+            if len(piece) != size:
+                continue
+            for code, value in zip(_KEY_ORDER, struct.unpack('=7i', piece)):
+                if value != self._state[code]:
+                    self._state[code] = value
+                    if value:
+                        self._latched.add(code)
+                        self._codes.put(code)
+                    _events.put((self.buttonPressed, (code, value)))
+
+    def wasPressed(self, code):
+        self._start()
+        if code in self._latched:
+            self._latched.discard(code)
+            return True
+        return False
+
+    def isPressed(self, code):
+        try:
+            return dict(zip(_KEY_ORDER, _file('keys/value', os.O_RDONLY | os.O_NONBLOCK).numbers())).get(code, 0) != 0
+        except BlockingIOError:
+            return False  # No key was touched since the start.
+
+    def buttonCode(self, wait=True):
+        self._start()
+        try:
+            return self._codes.get(block=wait)
+        except queue.Empty:
+            return -1
+
+    def reset(self):
+        self._latched.clear()
+        while self.buttonCode(False) != -1:
+            pass
+
+
+class Led:
+    def _set(self, green, red):
+        _file('led/green/value', os.O_WRONLY).write('%d\n' % green)
+        _file('led/red/value', os.O_WRONLY).write('%d\n' % red)
+
+    def green(self):
+        self._set(1, 0)
+
+    def red(self):
+        self._set(0, 1)
+
+    def orange(self):
+        self._set(1, 1)
+
+    def off(self):
+        self._set(0, 0)
+
+
+class Battery:
+    def readVoltage(self):
+        return _file('battery/value').number()
+
+    def readRawDataVoltage(self):
+        return _file('battery/raw').number()
+
+
+class Accelerometer:
+    def read(self):
+        return _file('accelerometer/value').numbers()
+
+
+class Gyroscope:
+    def read(self):
+        rates, tilt = _file('gyroscope/value').numbers(), _file('gyroscope/tilt').numbers()
+        return rates + [int(time.time() * 1e6) % (1 << 31)] + tilt + [_file('gyroscope/heading').number()]
+
+    def readRawData(self):
+        return _file('gyroscope/raw').numbers()
+
+
+class Camera:
+    def __init__(self, name):
+        self._name = name
+        self._file = _File('camera/%s/value' % name, os.O_RDONLY | os.O_NONBLOCK)
+        self._colour = _File('camera/%s/hsv' % name, os.O_RDONLY | os.O_NONBLOCK)
+
+    def init(self, show=False):
+        # The sensor runs while its files are open.
+        self.read()
+        _file('camera/%s/video_out' % self._name, os.O_WRONLY).write('%d\n' % bool(show))
+
+    def detect(self):
+        self.getDetectParameters()
+        _file('camera/%s/detect' % self._name, os.O_WRONLY).write('1\n')
+
+    def read(self, row=None, column=None):
+        try:
+            numbers = self._file.numbers()
+        except BlockingIOError:
+            numbers = [0, 0, 0]
+        if self._name != 'color':
+            return numbers
+        side = round(len(numbers) ** 0.5)
+        index = (row - 1) * side + column - 1 if row else 0
+        colour = numbers[index] if 0 <= index < len(numbers) else 0
+        return [colour >> 16 & 255, colour >> 8 & 255, colour & 255]
+
+    def getDetectParameters(self):
+        try:
+            return self._colour.numbers()
+        except BlockingIOError:
+            return []  # Nothing was detected yet.
+
+    def stop(self):
+        self._file.close()
+        self._colour.close()
+
+
+class Brick:
+    def __init__(self):
+        self._made, self._keys = {}, Keys()
+
+    def _port(self, port, kinds):
+        port = str(port)
+        for directory, make in kinds:
+            place = '%s/%s' % (directory, port)
+            if place not in self._made and '/' not in port and port not in ('', '.', '..') and _has(place):
+                self._made[place] = make(place)
+            if place in self._made:
+                return self._made[place]
+        return None
+
+    def motor(self, port):
+        return self._port(port, [('motors', lambda place: Motor(place, False)), ('servos', lambda place: Motor(place, True))])
+
+    def sensor(self, port):
+        return self._port(port, [('sensors', Sensor)])
+
+    def encoder(self, port):
+        return self._port(port, [('encoders', Encoder)])
+
+    def keys(self):
+        return self._keys
+
+    def led(self):
+        return Led()
+
+    def battery(self):
+        return Battery()
+
+    def accelerometer(self):
+        return Accelerometer() if _has('accelerometer') else None
+
+    def gyroscope(self):
+        return Gyroscope() if _has('gyroscope') else None
+
+    def _camera(self, name):
+        return self._made.setdefault('camera/' + name, Camera(name)) if _has('camera/' + name) else None
+
+    def lineSensor(self, port=None):
+        return self._camera('line')
+
+    def objectSensor(self, port=None):
+        return self._camera('object')
+
+    def colorSensor(self, port=None):
+        return self._camera('color')
+
+    def lidar(self):
+        return _file('lidar/value').numbers()
+
+    def gamepad(self):
+        return gamepad
+
+    def marker(self):
+        return None
+
+    def playSound(self, file):
+        _file('sound/play/value', os.O_WRONLY).write(os.path.abspath(file))
+
+    def say(self, text):
+        _file('sound/say/value', os.O_WRONLY).write(text)
+
+    def motorPorts(self, kind=None):
+        return sorted(os.listdir(os.path.join(_ROOT, 'motors')))
+
+    def sensorPorts(self, kind=None):
+        return sorted(os.listdir(os.path.join(_ROOT, 'sensors')))
+
+    def encoderPorts(self):
+        return sorted(os.listdir(os.path.join(_ROOT, 'encoders')))
+
+    def stop(self):
+        _file('stop', os.O_WRONLY).write('1\n')
+
+
+class Timer:
+    def __init__(self, ms):
+        self.timeout, self._period, self._runs = _Signal(), ms / 1000, True
+        self.start()
+
+    def start(self):
+        self._runs = True
+        script._schedule(time.monotonic() + self._period, self)
+
+    def stop(self):
+        self._runs = False
+
+
+class Script:
+    def __init__(self):
+        self._due, self._order, self._quits = [], itertools.count(), False
+
+    def _schedule(self, at, timer):
+        heapq.heappush(self._due, (at, next(self._order), timer))
+
+    def wait(self, ms):
+        time.sleep(max(0, ms) / 1000)
+
+    def time(self):
+        return int(time.time() * 1000)
+
+    def timeInterval(self, first, second):
+        return int(second - first)
+
+    def random(self, least, greatest):
+        return _random.randint(min(least, greatest), max(least, greatest))
+
+    def timer(self, ms):
+        return Timer(ms)
+
+    def system(self, command, synchronously=False):
+        process = subprocess.Popen(['sh', '-c', command], stdin=subprocess.DEVNULL)
+        return process.wait() if synchronously else 0
+
+    def writeToFile(self, file, text):
+        with open(file, 'a', encoding='utf-8') as out:
+            out.write(str(text))
+
+    def writeData(self, file, data):
+        with open(file, 'ab') as out:
+            out.write(bytes(data))
+
+    def readAll(self, file):
+        with open(file, encoding='utf-8', errors='replace') as text:
+            return text.readlines()
+
+    def removeFile(self, file):
+        try:
+            os.remove(file)
+        except FileNotFoundError:
+            pass
+
+    def quit(self):
+        self._quits = True
+        _events.put(None)
+
+    def run(self):
+        """Event-driven from here on: calls what is connected, until quit()."""
+        if _channel:
+            _channel.send('events')
+        self._quits = False
+        while not self._quits:
+            now = time.monotonic()
+            while self._due and self._due[0][0] <= now:
+                at, _, timer = heapq.heappop(self._due)
+                if timer._runs:
+                    self._schedule(max(now, at + timer._period), timer)
+                    timer.timeout._call(())
+            while not _directs.empty():
+                _evaluate(_directs.get())
+            wait = max(0, self._due[0][0] - time.monotonic()) if self._due else None
+            try:
+                event = _events.get(timeout=wait)
+            except queue.Empty:
+                continue
+            if event:
+                event[0]._call(event[1])
+
+
+class Mailbox:
+    def __init__(self):
+        self.newMessage = _Signal()
+
+    def _ask(self, words):
+        if not _channel:
+            raise OSError('there is no mailbox without trikd')
+        _channel.send('mailbox', words)
+        return _answers.get()
+
+    def connect(self, ip, port=None):
+        self._ask('connect %s %s' % (ip, port or ''))
+
+    def joinNetwork(self, ip, port=-1, hull=-1):
+        self._ask('join %s %d %d' % (ip or '-', port, hull))
+
+    def send(self, hull, text=None):
+        if text is None:
+            hull, text = -1, hull
+        self._ask('send %d %s' % (hull, text))
+
+    def receive(self, wait=True):
+        try:
+            return _mail.get(block=wait)
+        except queue.Empty:
+            return ''
+
+    def hasMessages(self):
+        return not _mail.empty()
+
+    def clearQueue(self):
+        while self.receive(False):
+            pass
+
+    def myHullNumber(self):
+        return int(self._ask('hull'))
+
+    def setHullNumber(self, hull):
+        self._ask('hull %d' % hull)
+
+    def serverIp(self):
+        return self._ask('server')
+
+    def myIp(self):
+        return self._ask('ip')
+
+    def isConnected(self):
+        return self._ask('connected') == '1'
+
+    def isEnabled(self):
+        return self._ask('enabled') == '1'
+
+    def hasServer(self):
+        return self._ask('server') != ''
+
+    def renewIp(self):
+        self._ask('renew')
+
+
+class Gamepad:
+    def __init__(self):
+        self._seen = None
+        for name in ('pad', 'padUp', 'button', 'wheelEvent', 'custom'):
+            setattr(self, name, _Signal(self._start))
+        self._started = False
+
+    def _start(self):
+        if not self._started:
+            self._started = True
+            threading.Thread(target=self._watch, daemon=True).start()
+
+    def _watch(self):
+        for piece in _stream('gamepad/text/device', 4096):
+            for line in piece.replace(b'\0', b'\n').decode('utf-8', 'replace').splitlines():
+                words = line.split()
+                try:
+                    self._line(words, line)
+                except (ValueError, IndexError):
+                    pass
+
+    def _line(self, words, line):
+        if not words:
+            return
+        if words[0] == 'pad' and words[2] == 'up':
+            _events.put((self.padUp, (int(words[1]),)))
+        elif words[0] == 'pad':
+            _events.put((self.pad, tuple(int(word) for word in words[1:4])))
+        elif words[0] == 'btn':
+            _events.put((self.button, (int(words[1]), 0 if words[2:] == ['up'] else 1)))
+        elif words[0] == 'wheel':
+            _events.put((self.wheelEvent, (int(words[1]),)))
+        elif words[0] == 'custom':
+            _events.put((self.custom, (line.partition(' ')[2],)))
+
+    def _numbers(self, name, missing):
+        try:
+            return _file('gamepad/' + name, os.O_RDONLY | os.O_NONBLOCK).numbers()
+        except OSError:
+            return missing
+
+    def isPadPressed(self, pad):
+        return self._numbers('pad%d/value' % pad, [0, 0, 0])[2] != 0
+
+    def padX(self, pad):
+        x, _, touched = self._numbers('pad%d/value' % pad, [0, 0, 0])
+        return x if touched else -101
+
+    def padY(self, pad):
+        _, y, touched = self._numbers('pad%d/value' % pad, [0, 0, 0])
+        return y if touched else -101
+
+    def wheel(self):
+        return self._numbers('wheel/value', [-101])[0]
+
+    def buttonIsPressed(self, button):
+        return self._numbers('buttons/value', [0] * 5)[button - 1] != 0
+
+    def buttonWasPressed(self, button):
+        presses = self._numbers('buttons/presses', [0] * 5)
+        if self._seen is None:
+            self._seen = [0] * 5
+        was = presses[button - 1] != self._seen[button - 1]
+        self._seen[button - 1] = presses[button - 1]
+        return was
+
+    def isConnected(self):
+        return self._numbers('buttons/value', None) is not None
+
+    def reset(self):
+        self._seen = self._numbers('buttons/presses', [0] * 5)
+
+    def disconnect(self):
+        pass
+
+
+script = Script()
+mailbox = Mailbox()
+gamepad = Gamepad()
+brick = Brick()
+
+for _letter, _count in (('A', 6), ('D', 3), ('M', 4), ('E', 4), ('S', 6)):
+    for _number in range(1, _count + 1):
+        globals()['%s%d' % (_letter, _number)] = '%s%d' % (_letter, _number)
+
+__all__ = ['brick', 'script', 'mailbox', 'gamepad', 'web', 'KeysEnum'] + [
+    name for name in list(globals()) if name[:1] in 'ADMES' and name[1:].isdigit()
+]
+
+
+def _namespace(name):
+    space = {key: globals()[key] for key in __all__}
+    space.update({'__name__': name, '__builtins__': builtins})
+    return space
+
+
+_direct_space = None
+
+
+def _tell_failure():
+    """The traceback without the lines of this module."""
+    kind, error, trace = sys.exc_info()
+    while trace and trace.tb_frame.f_code.co_filename == __file__:
+        trace = trace.tb_next
+    _channel.send('error', ''.join(traceback.format_exception(kind, error, trace)))
+
+
+def _evaluate(code):
+    try:
+        exec(compile(code, '<direct>', 'exec'), _direct_space)
+    except Exception:
+        _tell_failure()
+
+
+def _main():
+    global _channel, _direct_space
+    # Standard input becomes empty, so that input() and children do not take what trikd says.
+    fd = os.dup(0)
+    null = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(null, 0)
+    os.close(null)
+    _channel = _Channel(fd)
+    first = _channel.receive()
+    word, _, rest = (first or ':').partition(':')
+    threading.Thread(target=_listen, daemon=True).start()
+    _direct_space = _namespace('__main__')
+    if word == 'start':
+        script.run()
+        return
+    sys.path.insert(0, os.path.dirname(rest))
+    sys.argv = [rest]
+    _direct_space['__file__'] = rest
+    try:
+        with open(rest, 'rb') as file:
+            text = file.read()
+        exec(compile(text, rest, 'exec'), _direct_space)
+    except SystemExit:
+        raise
+    except BaseException:
+        _tell_failure()
+        sys.stdout.flush()
+        sys.exit(1)

@@ -1,0 +1,192 @@
+//! Sockets: all listeners or none, who gets in, and which task serves whom.
+//!
+//! `control`, `telemetry`, `mailbox`, `gamepad`, `video` and `variables` are one port each; `datagrams` and `discovery`
+//! are UDP. What is said on a port is in `protocol`.
+
+pub mod control;
+pub mod datagrams;
+pub mod discovery;
+pub mod gamepad;
+pub mod mailbox;
+pub mod telemetry;
+pub mod variables;
+pub mod video;
+
+use crate::daemon::Daemon;
+use crate::protocol::mail::plain;
+use socket2::{Domain, Protocol, SockRef, Socket, Type};
+use std::cell::Cell;
+use std::io;
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
+use std::rc::Rc;
+use std::time::Duration;
+use tokio::net::{TcpListener, TcpStream};
+
+/// What the official controller sets: interactive traffic first.
+const TYPE_OF_SERVICE: u32 = 0x40;
+
+/// The listeners of one port.
+#[derive(Debug)]
+pub struct Port {
+    /// What it is for, in one word.
+    pub name: &'static str,
+    listeners: Vec<TcpListener>,
+}
+
+fn bind_one(address: SocketAddr) -> io::Result<TcpListener> {
+    let socket = Socket::new(
+        Domain::for_address(address),
+        Type::STREAM,
+        Some(Protocol::TCP),
+    )?;
+    socket.set_reuse_address(true)?;
+    socket.set_nonblocking(true)?;
+    if address.is_ipv6() {
+        // With :: also those who come by IPv4.
+        socket.set_only_v6(address.ip() != IpAddr::V6(Ipv6Addr::UNSPECIFIED))?;
+    }
+    socket.bind(&address.into())?;
+    socket.listen(128)?;
+    TcpListener::from_std(socket.into())
+}
+
+fn bind_all(addresses: &[IpAddr], port: u16) -> io::Result<Vec<TcpListener>> {
+    if !addresses.is_empty() {
+        let mut port = port;
+        let mut listeners = Vec::new();
+        for address in addresses {
+            let listener = bind_one((*address, port).into())?;
+            // A port that the system chose is the same at all addresses.
+            port = listener.local_addr()?.port();
+            listeners.push(listener);
+        }
+        return Ok(listeners);
+    }
+    match bind_one((Ipv6Addr::UNSPECIFIED, port).into()) {
+        Err(error) if error.raw_os_error() == Some(libc::EAFNOSUPPORT) => {
+            Ok(vec![bind_one((Ipv4Addr::UNSPECIFIED, port).into())?])
+        }
+        bound => Ok(vec![bound?]),
+    }
+}
+
+impl Port {
+    /// Listens at all addresses, or everywhere if there are none.
+    ///
+    /// # Errors
+    /// In words: which port, why, and what to do.
+    pub fn bind(name: &'static str, addresses: &[IpAddr], port: u16) -> Result<Self, String> {
+        let listeners = bind_all(addresses, port).map_err(|error| {
+            let what = match error.kind() {
+                io::ErrorKind::AddrInUse => format!(
+                    "another program has it: end that program (`ss -ltnp 'sport = :{port}'` shows it), or take another port with --{name}-port"
+                ),
+                io::ErrorKind::AddrNotAvailable => "this machine does not have the address of --address".to_owned(),
+                io::ErrorKind::PermissionDenied => format!("ports below 1024 are for root: take another one with --{name}-port"),
+                _ => error.to_string(),
+            };
+            format!("port {port} ({name}) cannot be served: {what}")
+        })?;
+        Ok(Self { name, listeners })
+    }
+
+    /// The number of the port.
+    pub fn number(&self) -> u16 {
+        let first = self
+            .listeners
+            .first()
+            .and_then(|listener| listener.local_addr().ok());
+        first.map_or(0, |address| address.port())
+    }
+
+    /// Starts a task for each listener, which starts one for each connection.
+    pub fn serve<F>(
+        self,
+        daemon: &Rc<Daemon>,
+        serve: impl Fn(Rc<Daemon>, Guest) -> F + Clone + 'static,
+    ) where
+        F: Future<Output = ()> + 'static,
+    {
+        for listener in self.listeners {
+            let (daemon, serve) = (daemon.clone(), serve.clone());
+            tokio::task::spawn_local(accept(self.name, listener, daemon, serve));
+        }
+    }
+}
+
+/// A connection that was let in.
+#[derive(Debug)]
+pub struct Guest {
+    /// The connection.
+    pub stream: TcpStream,
+    /// Its other end; IPv4 is shown as such.
+    pub peer: SocketAddr,
+    /// Its place among all connections.
+    pub seat: Seat,
+}
+
+/// One of the connections that may be there at once.
+#[derive(Debug)]
+pub struct Seat(Rc<Cell<usize>>);
+
+impl Seat {
+    /// A place, if there is one.
+    pub fn take(taken: &Rc<Cell<usize>>, limit: usize) -> Option<Self> {
+        if taken.get() >= limit {
+            return None;
+        }
+        taken.set(taken.get() + 1);
+        Some(Self(taken.clone()))
+    }
+}
+
+impl Drop for Seat {
+    fn drop(&mut self) {
+        self.0.set(self.0.get() - 1);
+    }
+}
+
+async fn accept<F>(
+    name: &'static str,
+    listener: TcpListener,
+    daemon: Rc<Daemon>,
+    serve: impl Fn(Rc<Daemon>, Guest) -> F,
+) where
+    F: Future<Output = ()> + 'static,
+{
+    loop {
+        let (stream, peer) = match listener.accept().await {
+            Ok(accepted) => accepted,
+            Err(error) => {
+                // Too many open files: those that close make room.
+                daemon.log.line(format_args!("{name}: {error}"));
+                tokio::time::sleep(Duration::from_millis(100)).await;
+                continue;
+            }
+        };
+        let peer = SocketAddr::new(plain(peer.ip()), peer.port());
+        if !daemon.access.admits(peer.ip()) {
+            daemon
+                .log
+                .line(format_args!("{name}: {peer} is not in the list of --allow"));
+            continue;
+        }
+        let Some(seat) = Seat::take(&daemon.seats, usize::from(daemon.settings.connections)) else {
+            daemon.log.line(format_args!(
+                "{name}: {peer} is refused: there are {} connections already",
+                daemon.seats.get()
+            ));
+            continue;
+        };
+        prepare(&stream);
+        tokio::task::spawn_local(serve(daemon.clone(), Guest { stream, peer, seat }));
+    }
+}
+
+/// Options of an accepted socket; without them it works as well.
+fn prepare(stream: &TcpStream) {
+    let socket = SockRef::from(stream);
+    let _ = socket.set_tcp_nodelay(true);
+    let _ = socket.set_keepalive(true);
+    let _ = socket.set_tos_v4(TYPE_OF_SERVICE);
+}

@@ -1,0 +1,123 @@
+//! Port 8888: programs come, are started and stopped; what they say goes to all clients here.
+
+use super::Guest;
+use crate::clients::Client;
+use crate::connection::{self, Handler, VERSION};
+use crate::daemon::Daemon;
+use crate::outbox::Outbox;
+use crate::program::Command;
+use crate::protocol::control::Request;
+use crate::{limits, scripts};
+use std::rc::Rc;
+
+struct Control {
+    daemon: Rc<Daemon>,
+    client: Rc<Client>,
+}
+
+impl Control {
+    fn error(&self, text: &str) {
+        self.client.outbox.send(format!("error: {text}").as_bytes());
+    }
+
+    /// Whether this computer may do more than look; says so if not.
+    fn may_control(&self) -> bool {
+        let may = self.daemon.access.may_control(self.client.peer.ip());
+        if !may {
+            self.error("this computer is not paired with the robot: press Enter on the robot within 30 s, then try again");
+        }
+        may
+    }
+
+    /// Programs in the order in which they came.
+    async fn command(&self, command: Command) {
+        self.daemon.clients.takes_control(self.client.peer);
+        self.daemon.programs.tell(command).await;
+    }
+
+    async fn keep(&self, name: &[u8], content: &[u8]) {
+        let folder = self.daemon.settings.scripts.clone();
+        let (name, content) = (name.to_owned(), content.to_owned());
+        // A disk may be slow; everybody else is served meanwhile.
+        let kept =
+            tokio::task::spawn_blocking(move || scripts::keep(&folder, &name, &content)).await;
+        match kept {
+            Ok(Ok(path)) => self.daemon.log.line(format_args!(
+                "{} is uploaded by {}",
+                path.display(),
+                self.client.peer
+            )),
+            Ok(Err(why)) => self.error(&why),
+            Err(error) => self.error(&format!("the upload failed: {error}")),
+        }
+    }
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+impl Handler for Control {
+    async fn frame(&mut self, frame: &[u8]) {
+        self.client.count();
+        let request = Request::parse(frame);
+        match request {
+            Request::Keepalive | Request::Unknown => return,
+            Request::Version => return self.client.outbox.send(VERSION),
+            Request::ConfigVersion => {
+                let answer = format!("configVersion: {}", self.daemon.settings.config_version);
+                return self.client.outbox.send(answer.as_bytes());
+            }
+            // Whoever sees danger may stop the robot.
+            Request::Stop => return self.command(Command::Stop("a client")).await,
+            _ => {}
+        }
+        if !self.may_control() {
+            return;
+        }
+        match request {
+            Request::File { name, content } => self.keep(name, content).await,
+            Request::Run(name) => match scripts::find(&self.daemon.settings.scripts, name) {
+                Ok(path) => self.command(Command::Run(path)).await,
+                Err(why) => {
+                    // What runs ends all the same: the person wants to see something else.
+                    self.command(Command::Stop("a client")).await;
+                    self.error(&why);
+                }
+            },
+            Request::DirectScript(code) => self.command(Command::Script(text(code))).await,
+            Request::Direct(code) => self.command(Command::Direct(text(code))).await,
+            _ => {}
+        }
+    }
+
+    fn complaint(&self, reason: &str) -> Option<Vec<u8>> {
+        Some(format!("error: {reason}").into_bytes())
+    }
+}
+
+/// Serves one client.
+pub async fn serve(daemon: Rc<Daemon>, guest: Guest) {
+    let outbox = Rc::new(Outbox::new(limits::OUTBOX_BYTES));
+    let client = daemon.clients.add("control", guest.peer, outbox.clone());
+    daemon
+        .log
+        .line(format_args!("control: {} has come", guest.peer));
+    let frame_bytes = usize::from(daemon.settings.upload_mib) << 20;
+    let mut handler = Control {
+        daemon: daemon.clone(),
+        client,
+    };
+    let why = connection::serve(
+        guest.stream,
+        frame_bytes,
+        &daemon.held,
+        &outbox,
+        &mut handler,
+    )
+    .await;
+    daemon
+        .log
+        .line(format_args!("control: {} has left: {why}", guest.peer));
+    drop(guest.seat);
+}

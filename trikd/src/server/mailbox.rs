@@ -1,0 +1,494 @@
+//! Port 8889: messages between robots. Every robot is a server and a client of the others.
+//!
+//! Owns the list of known robots, the open links to them, our hull number, and what is remembered of these. A robot is
+//! known by the address of its server; hull numbers need not be unique.
+
+use super::{Guest, Seat};
+use crate::connection::{self, Handler, VERSION};
+use crate::daemon::Daemon;
+use crate::limits;
+use crate::outbox::Outbox;
+use crate::program::Command;
+use crate::protocol::mail::{Message, NOWHERE, plain};
+use crate::scripts;
+use std::cell::{Cell, RefCell};
+use std::collections::VecDeque;
+use std::fmt::Write;
+use std::net::{IpAddr, SocketAddr, UdpSocket};
+use std::path::{Path, PathBuf};
+use std::rc::{Rc, Weak};
+use std::time::Duration;
+use tokio::net::TcpStream;
+use tokio::time::{sleep, timeout};
+
+/// Hull number of a robot that has not said its own.
+const UNKNOWN_HULL: i32 = -1;
+
+/// An open connection to a robot, or one on its way.
+#[derive(Debug)]
+struct Link {
+    outbox: Rc<Outbox>,
+    /// Our address as the other side sees it.
+    local: Cell<IpAddr>,
+}
+
+#[derive(Debug)]
+struct Robot {
+    /// Address of its server.
+    ip: IpAddr,
+    port: u16,
+    hull: i32,
+    link: Option<Rc<Link>>,
+}
+
+/// The mailbox of this robot.
+#[derive(Debug)]
+pub struct Mailbox {
+    /// Whom tasks belong to; set when the daemon is whole.
+    daemon: RefCell<Weak<Daemon>>,
+    file: PathBuf,
+    port: Cell<Option<u16>>,
+    hull: Cell<i32>,
+    /// The robot that was joined.
+    server: Cell<Option<SocketAddr>>,
+    robots: RefCell<Vec<Robot>>,
+    /// Messages for the next program.
+    kept: RefCell<VecDeque<(i32, String)>>,
+}
+
+/// Our address on the way to another one.
+pub fn local_ip(towards: IpAddr) -> Option<IpAddr> {
+    let any: IpAddr = if towards.is_ipv4() {
+        NOWHERE
+    } else {
+        std::net::Ipv6Addr::UNSPECIFIED.into()
+    };
+    let socket = UdpSocket::bind((any, 0)).ok()?;
+    // Sends nothing.
+    socket.connect((towards, 9)).ok()?;
+    Some(plain(socket.local_addr().ok()?.ip()))
+}
+
+/// Our address where other robots probably are: the network of the robot's own access point, else the way outside.
+fn own_ip() -> IpAddr {
+    let guesses = [[192, 168, 77, 254], [192, 0, 2, 1]];
+    let found = guesses
+        .into_iter()
+        .find_map(|guess| local_ip(IpAddr::from(guess)));
+    found.unwrap_or(IpAddr::from([127, 0, 0, 1]))
+}
+
+/// What stands in the file: hull number and the robot that was joined.
+fn read(file: &Path) -> (i32, Option<SocketAddr>) {
+    let text = std::fs::read_to_string(file).unwrap_or_default();
+    let field = |name: &str| {
+        text.lines()
+            .find_map(|line| line.strip_prefix(name)?.strip_prefix('='))
+    };
+    let server = field("server").and_then(|server| server.parse().ok());
+    (
+        field("hullNumber")
+            .and_then(|hull| hull.parse().ok())
+            .unwrap_or(0),
+        server,
+    )
+}
+
+impl Mailbox {
+    /// Remembers in `file`.
+    pub fn new(file: &Path) -> Self {
+        let (hull, server) = read(file);
+        Self {
+            daemon: RefCell::new(Weak::new()),
+            file: file.to_owned(),
+            port: Cell::new(None),
+            hull: Cell::new(hull),
+            server: Cell::new(server),
+            robots: RefCell::default(),
+            kept: RefCell::default(),
+        }
+    }
+
+    /// Begins to work, and joins again whom it had joined.
+    pub fn open(&self, daemon: &Rc<Daemon>, port: u16) {
+        *self.daemon.borrow_mut() = Rc::downgrade(daemon);
+        self.port.set(Some(port));
+        if let Some(server) = self.server.get() {
+            self.join(server, limits::REJOIN_TRIES);
+        }
+    }
+
+    fn save(&self) {
+        let mut text = format!("hullNumber={}\n", self.hull.get());
+        if let Some(server) = self.server.get() {
+            let _ = writeln!(text, "server={server}");
+        }
+        if let (Err(error), Some(daemon)) = (
+            scripts::replace(&self.file, text.as_bytes(), 0o600),
+            self.daemon.borrow().upgrade(),
+        ) {
+            daemon.log.line(format_args!(
+                "{}: {error}: the mailbox will not be remembered",
+                self.file.display()
+            ));
+        }
+    }
+
+    /// Keeps a message for the next program; the oldest goes when there are too many.
+    pub fn keep(&self, hull: i32, text: String) {
+        let mut kept = self.kept.borrow_mut();
+        if kept.len() >= limits::KEPT_MESSAGES {
+            kept.pop_front();
+        }
+        kept.push_back((hull, text));
+    }
+
+    /// The messages that came while no program ran.
+    pub fn take_kept(&self) -> VecDeque<(i32, String)> {
+        self.kept.take()
+    }
+
+    /// A program has ended, and its messages with it.
+    pub fn forget_kept(&self) {
+        self.kept.borrow_mut().clear();
+    }
+
+    /// The answer to a question of a program; empty if there is nothing to say.
+    pub fn answer(&self, words: &str) -> String {
+        let (word, rest) = words.split_once(' ').unwrap_or((words, ""));
+        let mut fields = rest.split_ascii_whitespace();
+        match word {
+            "send" => {
+                let (hull, text) = rest.split_once(' ').unwrap_or((rest, ""));
+                self.send(hull.parse().unwrap_or(UNKNOWN_HULL), text);
+            }
+            "connect" | "join" => {
+                let ip = fields.next().and_then(|ip| ip.parse().ok());
+                // Without a port, that of our own server, as on the robots of old.
+                let port = fields
+                    .next()
+                    .and_then(|port| port.parse().ok())
+                    .or(self.port.get());
+                if let Some(hull) = fields
+                    .next()
+                    .and_then(|hull| hull.parse().ok())
+                    .filter(|hull| *hull >= 0)
+                {
+                    self.set_hull(hull);
+                }
+                if let (Some(ip), Some(port)) = (ip, port) {
+                    let server = SocketAddr::new(plain(ip), port);
+                    self.server.set(Some(server));
+                    self.save();
+                    self.join(server, limits::JOIN_TRIES);
+                }
+            }
+            "hull" => match fields.next().map(str::parse) {
+                Some(Ok(hull)) => self.set_hull(hull),
+                _ => return self.hull.get().to_string(),
+            },
+            "server" => {
+                return self
+                    .server
+                    .get()
+                    .map_or_else(String::new, |server| server.ip().to_string());
+            }
+            "ip" => return own_ip().to_string(),
+            "connected" => {
+                return u8::from(
+                    self.robots
+                        .borrow()
+                        .iter()
+                        .any(|robot| robot.link.is_some()),
+                )
+                .to_string();
+            }
+            "enabled" => return u8::from(self.port.get().is_some()).to_string(),
+            _ => {}
+        }
+        String::new()
+    }
+
+    fn set_hull(&self, hull: i32) {
+        self.hull.set(hull);
+        self.save();
+        let Some(port) = self.port.get() else { return };
+        for robot in self.robots.borrow().iter() {
+            if let Some(link) = &robot.link {
+                let message = Message::Connection {
+                    ip: link.local.get(),
+                    port,
+                    hull,
+                };
+                link.outbox.send(message.to_string().as_bytes());
+            }
+        }
+    }
+
+    /// Sends to all robots with this hull number, or to all.
+    fn send(&self, hull: i32, text: &str) {
+        let fits = |robot: &Robot| hull == UNKNOWN_HULL || robot.hull == hull;
+        let all: Vec<_> = self
+            .robots
+            .borrow()
+            .iter()
+            .filter(|robot| fits(robot))
+            .map(|robot| SocketAddr::new(robot.ip, robot.port))
+            .collect();
+        for server in all {
+            self.say(server, &Message::Data(text.to_owned()));
+        }
+    }
+
+    /// Says something to one robot, over a new connection if there is none.
+    fn say(&self, server: SocketAddr, message: &Message) {
+        if let Some(outbox) = self.link(server, limits::JOIN_TRIES) {
+            outbox.send(message.to_string().as_bytes());
+        }
+    }
+
+    fn join(&self, server: SocketAddr, tries: u32) {
+        let _ = self.link(server, tries);
+    }
+
+    /// What waits for one robot: of the open link, or of one that is made now and begins with `register`.
+    fn link(&self, server: SocketAddr, tries: u32) -> Option<Rc<Outbox>> {
+        let (daemon, port) = (self.daemon.borrow().upgrade()?, self.port.get()?);
+        let index = self.meet(server, None)?;
+        let mut robots = self.robots.borrow_mut();
+        if let Some(link) = &robots[index].link {
+            return Some(link.outbox.clone());
+        }
+        let outbox = Rc::new(Outbox::new(limits::OUTBOX_BYTES));
+        outbox.send(
+            Message::Register {
+                port,
+                hull: self.hull.get(),
+            }
+            .to_string()
+            .as_bytes(),
+        );
+        let link = Rc::new(Link {
+            outbox: outbox.clone(),
+            local: Cell::new(NOWHERE),
+        });
+        robots[index].link = Some(link.clone());
+        tokio::task::spawn_local(connect(daemon, server, link, tries));
+        Some(outbox)
+    }
+
+    /// The place of a robot in the list; adds it, and corrects its hull number. None: the list is full.
+    fn meet(&self, server: SocketAddr, hull: Option<i32>) -> Option<usize> {
+        let mut robots = self.robots.borrow_mut();
+        let known = robots
+            .iter()
+            .position(|robot| (robot.ip, robot.port) == (server.ip(), server.port()));
+        let index = match known {
+            Some(index) => index,
+            None if robots.len() >= limits::ROBOTS => return None,
+            None => {
+                robots.push(Robot {
+                    ip: server.ip(),
+                    port: server.port(),
+                    hull: UNKNOWN_HULL,
+                    link: None,
+                });
+                robots.len() - 1
+            }
+        };
+        if let Some(hull) = hull {
+            robots[index].hull = hull;
+        }
+        Some(index)
+    }
+
+    /// A robot has come and says who it is.
+    fn register(&self, server: SocketAddr, hull: i32, link: &Rc<Link>) {
+        let before: Vec<(SocketAddr, i32)> = self
+            .robots
+            .borrow()
+            .iter()
+            .map(|robot| (SocketAddr::new(robot.ip, robot.port), robot.hull))
+            .collect();
+        let is_new = !before.contains(&(server, hull));
+        let Some(index) = self.meet(server, Some(hull)) else {
+            return;
+        };
+        let others = before.into_iter().filter(|(other, _)| *other != server);
+        for (other, other_hull) in others {
+            if is_new {
+                self.say(
+                    other,
+                    &Message::Connection {
+                        ip: server.ip(),
+                        port: server.port(),
+                        hull,
+                    },
+                );
+            }
+            let message = Message::Connection {
+                ip: other.ip(),
+                port: other.port(),
+                hull: other_hull,
+            };
+            link.outbox.send(message.to_string().as_bytes());
+        }
+        link.outbox
+            .send(Message::Own(self.hull.get()).to_string().as_bytes());
+        self.robots.borrow_mut()[index].link = Some(link.clone());
+    }
+
+    /// Hull number of whoever is at the other end of a link.
+    fn hull_of(&self, link: &Rc<Link>) -> i32 {
+        let robots = self.robots.borrow();
+        let of_link = |robot: &&Robot| {
+            robot
+                .link
+                .as_ref()
+                .is_some_and(|other| Rc::ptr_eq(other, link))
+        };
+        robots
+            .iter()
+            .find(of_link)
+            .map_or(UNKNOWN_HULL, |robot| robot.hull)
+    }
+
+    fn learn_hull(&self, link: &Rc<Link>, hull: i32) {
+        for robot in self.robots.borrow_mut().iter_mut() {
+            if robot
+                .link
+                .as_ref()
+                .is_some_and(|other| Rc::ptr_eq(other, link))
+            {
+                robot.hull = hull;
+            }
+        }
+    }
+
+    /// A link has ended.
+    fn forget(&self, link: &Rc<Link>) {
+        for robot in self.robots.borrow_mut().iter_mut() {
+            if robot
+                .link
+                .as_ref()
+                .is_some_and(|other| Rc::ptr_eq(other, link))
+            {
+                robot.link = None;
+            }
+        }
+    }
+
+    /// Lines for the status.
+    pub fn describe(&self) -> String {
+        let mut text = format!("mailbox hull {}\n", self.hull.get());
+        for robot in self.robots.borrow().iter() {
+            let state = if robot.link.is_some() {
+                "linked"
+            } else {
+                "known"
+            };
+            let _ = writeln!(
+                text,
+                "robot {}:{} hull {} {state}",
+                robot.ip, robot.port, robot.hull
+            );
+        }
+        text
+    }
+}
+
+struct Mails {
+    daemon: Rc<Daemon>,
+    link: Rc<Link>,
+    /// The other end of the connection.
+    peer: SocketAddr,
+}
+
+impl Handler for Mails {
+    async fn frame(&mut self, frame: &[u8]) {
+        if frame == b"version" {
+            return self.link.outbox.send(VERSION);
+        }
+        let mailbox = &self.daemon.mailbox;
+        let port = mailbox.port.get().unwrap_or_default();
+        let is_self = |ip: IpAddr, other: u16| ip == self.link.local.get() && other == port;
+        match Message::parse(frame) {
+            Message::Register { port, hull } if !is_self(self.peer.ip(), port) => {
+                mailbox.register(SocketAddr::new(self.peer.ip(), port), hull, &self.link);
+            }
+            Message::Connection { ip, port, hull } if !is_self(ip, port) => {
+                mailbox.meet(SocketAddr::new(plain(ip), port), Some(hull));
+            }
+            Message::Own(hull) => mailbox.learn_hull(&self.link, hull),
+            Message::Data(text) => {
+                let hull = mailbox.hull_of(&self.link);
+                self.daemon
+                    .clients
+                    .broadcast(format!("mail: sender: {hull} contents: {text}").as_bytes());
+                self.daemon.programs.offer(Command::Mail(hull, text));
+            }
+            _ => {}
+        }
+    }
+}
+
+async fn converse(daemon: &Rc<Daemon>, stream: TcpStream, peer: SocketAddr, link: &Rc<Link>) {
+    if let Ok(local) = stream.local_addr() {
+        link.local.set(plain(local.ip()));
+    }
+    let client = daemon.clients.add("mailbox", peer, link.outbox.clone());
+    let mut handler = Mails {
+        daemon: daemon.clone(),
+        link: link.clone(),
+        peer,
+    };
+    let why = connection::serve(
+        stream,
+        limits::SMALL_FRAME_BYTES,
+        &daemon.held,
+        &link.outbox,
+        &mut handler,
+    )
+    .await;
+    daemon
+        .log
+        .line(format_args!("mailbox: {peer} has left: {why}"));
+    daemon.mailbox.forget(link);
+    drop(client);
+}
+
+/// Connects to a robot; what waits for it is lost when it does not answer for so many tries.
+async fn connect(daemon: Rc<Daemon>, server: SocketAddr, link: Rc<Link>, tries: u32) {
+    let wait = Duration::from_millis(limits::CONNECT_MS);
+    for _ in 0..tries {
+        match timeout(wait, TcpStream::connect(server)).await {
+            Ok(Ok(stream)) => {
+                let _ = stream.set_nodelay(true);
+                let Some(seat) =
+                    Seat::take(&daemon.seats, usize::from(daemon.settings.connections))
+                else {
+                    break;
+                };
+                converse(&daemon, stream, server, &link).await;
+                return drop(seat);
+            }
+            Ok(Err(_)) => sleep(wait).await,
+            Err(_) => {}
+        }
+    }
+    daemon.log.line(format_args!(
+        "mailbox: {server} does not answer: messages for it are lost"
+    ));
+    daemon.mailbox.forget(&link);
+}
+
+/// Serves a robot that has come.
+pub async fn serve(daemon: Rc<Daemon>, guest: Guest) {
+    let outbox = Rc::new(Outbox::new(limits::OUTBOX_BYTES));
+    let link = Rc::new(Link {
+        outbox,
+        local: Cell::new(NOWHERE),
+    });
+    converse(&daemon, guest.stream, guest.peer, &link).await;
+    drop(guest.seat);
+}

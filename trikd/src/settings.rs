@@ -1,0 +1,132 @@
+//! What the command line of `trikd serve` can say: addresses, ports, folders, limits.
+//!
+//! Owns names and defaults; what they mean is known where they are used.
+
+use crate::access::Network;
+use crate::limits;
+use clap::{Args, ValueEnum};
+use std::net::{IpAddr, SocketAddr};
+use std::path::PathBuf;
+
+/// A server that can be left out.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+pub enum Service {
+    /// Messages between robots.
+    Mailbox,
+    /// Gamepads.
+    Gamepad,
+    /// Pictures of the camera.
+    Video,
+    /// Variables of a program for web pages.
+    Variables,
+    /// The answer to who looks for robots in the network.
+    Discovery,
+}
+
+/// What ends the program when it is pressed.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+pub enum StopKey {
+    /// The key with the sign of power.
+    Power,
+    /// The key Esc.
+    Esc,
+    /// No key.
+    None,
+}
+
+/// All of it.
+#[derive(Args, Clone, Debug)]
+pub struct Settings {
+    /// Where the tree of the robot is mounted.
+    #[arg(long, value_name = "DIR", default_value = "/trikfs")]
+    pub tree: PathBuf,
+    /// Where uploaded programs are.
+    #[arg(long, value_name = "DIR", default_value = "/home/root/trik/scripts")]
+    pub scripts: PathBuf,
+    /// Where trikd keeps what it must remember: the mailbox, paired computers.
+    #[arg(long, value_name = "DIR", default_value = "/var/lib/trikd")]
+    pub state: PathBuf,
+    /// Where trikd has its socket and the Python module while it runs.
+    #[arg(long, value_name = "DIR", default_value = "/run/trikd")]
+    pub run: PathBuf,
+    /// Address to serve at; may be given several times [default: all, IPv4 and IPv6].
+    #[arg(long, value_name = "ADDRESS")]
+    pub address: Vec<IpAddr>,
+    /// Port of programs and output; 0 takes any free one, as for all ports.
+    #[arg(long, value_name = "PORT", default_value_t = 8888)]
+    pub control_port: u16,
+    /// Port of sensor values.
+    #[arg(long, value_name = "PORT", default_value_t = 9000)]
+    pub telemetry_port: u16,
+    /// Port of messages between robots; if it is taken, one of the next four.
+    #[arg(long, value_name = "PORT", default_value_t = 8889)]
+    pub mailbox_port: u16,
+    /// Port of gamepads.
+    #[arg(long, value_name = "PORT", default_value_t = 4444)]
+    pub gamepad_port: u16,
+    /// Port of pictures of the camera.
+    #[arg(long, value_name = "PORT", default_value_t = 8080)]
+    pub video_port: u16,
+    /// Port of variables of the program, only for this machine.
+    #[arg(long, value_name = "PORT", default_value_t = 10000)]
+    pub variables_port: u16,
+    /// Do not serve this; may be given several times.
+    #[arg(long, value_name = "SERVICE", value_enum)]
+    pub without: Vec<Service>,
+    /// Send sensor values there, one JSON object in each datagram.
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub udp_telemetry: Option<SocketAddr>,
+    /// Milliseconds between two datagrams.
+    #[arg(long, value_name = "MS", default_value_t = 50, value_parser = clap::value_parser!(u64).range(5..=60_000))]
+    pub udp_period_ms: u64,
+    /// The pipe that the tree reads gamepads from.
+    #[arg(
+        long,
+        value_name = "PATH",
+        default_value = "/run/gamepad-service.out.fifo"
+    )]
+    pub gamepad_fifo: PathBuf,
+    /// Name of the robot in the network [default: the name of the host].
+    #[arg(long, value_name = "NAME")]
+    pub name: Option<String>,
+    /// The answer to `configVersion`: desktop programs refuse to run programs on another model than theirs.
+    #[arg(long, value_name = "TEXT", default_value = "model-2015")]
+    pub config_version: String,
+    /// Serve only computers of this address or network, such as 192.168.77.0/24; may be given several times.
+    #[arg(long, value_name = "NETWORK")]
+    pub allow: Vec<Network>,
+    /// Programs only from computers that have been paired: press Enter on the robot within 30 s of their first try.
+    #[arg(long)]
+    pub pair: bool,
+    /// User whose rights programs have, when trikd is root.
+    #[arg(long, value_name = "USER")]
+    pub user: Option<String>,
+    /// Memory of one program in MiB.
+    #[arg(long, value_name = "MIB", default_value_t = limits::PROGRAM_MEMORY_MIB, value_parser = clap::value_parser!(u64).range(8..=1 << 20))]
+    pub memory_mib: u64,
+    /// Processes of one program.
+    #[arg(long, value_name = "NUMBER", default_value_t = limits::PROGRAM_PROCESSES, value_parser = clap::value_parser!(u64).range(1..=10_000))]
+    pub processes: u64,
+    /// Greatest upload in MiB.
+    #[arg(long, value_name = "MIB", default_value_t = 16, value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub upload_mib: u16,
+    /// Connections at once, on all ports together.
+    #[arg(long, value_name = "NUMBER", default_value_t = limits::CONNECTIONS, value_parser = clap::value_parser!(u16).range(4..=4096))]
+    pub connections: u16,
+    /// The key that ends the program.
+    #[arg(long, value_name = "KEY", value_enum, default_value = "power")]
+    pub stop_key: StopKey,
+    /// Do not run autorun.py or autorun.js at the start.
+    #[arg(long)]
+    pub no_autorun: bool,
+    /// The Python interpreter.
+    #[arg(long, value_name = "PROGRAM", default_value = "python3")]
+    pub python: PathBuf,
+}
+
+impl Settings {
+    /// Whether a service is wanted.
+    pub fn has(&self, service: Service) -> bool {
+        !self.without.contains(&service)
+    }
+}

@@ -1,0 +1,90 @@
+//! What `trikd status` shows and `trikd pair` asks for, over a socket in the file system.
+//!
+//! Owns that socket: whoever may open it may look and pair.
+
+use crate::daemon::Daemon;
+use crate::limits;
+use std::io::{self, Read, Write};
+use std::net::IpAddr;
+use std::os::unix::fs::PermissionsExt;
+use std::path::Path;
+use std::rc::Rc;
+use std::time::Duration;
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::{UnixListener, UnixStream};
+use tokio::time::timeout;
+
+const NAME: &str = "status.sock";
+
+/// The socket in the directory `run`; what an earlier trikd left is replaced.
+///
+/// # Errors
+/// Those of the file system.
+pub fn listen(run: &Path) -> io::Result<UnixListener> {
+    let path = run.join(NAME);
+    let _ = std::fs::remove_file(&path);
+    let listener = UnixListener::bind(&path)?;
+    std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o600))?;
+    Ok(listener)
+}
+
+/// Answers for ever.
+pub async fn serve(daemon: Rc<Daemon>, listener: UnixListener) {
+    loop {
+        match listener.accept().await {
+            Ok((stream, _)) => {
+                let wait = Duration::from_millis(limits::FAREWELL_MS);
+                let _ = timeout(wait, answer(&daemon, stream)).await;
+            }
+            Err(_) => tokio::time::sleep(Duration::from_millis(100)).await,
+        }
+    }
+}
+
+async fn answer(daemon: &Daemon, mut stream: UnixStream) -> io::Result<()> {
+    let mut words = [0; 256];
+    let size = stream.read(&mut words).await?;
+    let words = String::from_utf8_lossy(&words[..size]).trim().to_owned();
+    let text = match words.strip_prefix("pair ") {
+        Some(ip) => match ip.parse::<IpAddr>() {
+            Ok(ip) => daemon.access.pair(ip).map_or_else(
+                |error| format!("refused: {error}\n"),
+                |()| format!("paired {ip}\n"),
+            ),
+            Err(_) => format!("refused: '{ip}' is no address\n"),
+        },
+        None => daemon.describe(),
+    };
+    stream.write_all(text.as_bytes()).await
+}
+
+/// Asks the trikd whose directory is `run`.
+///
+/// # Errors
+/// In words.
+pub fn ask(run: &Path, words: &str) -> Result<String, String> {
+    let path = run.join(NAME);
+    let fails = |error: io::Error| {
+        let hint = match error.kind() {
+            io::ErrorKind::NotFound | io::ErrorKind::ConnectionRefused => {
+                ": trikd does not run, or its --run is another directory"
+            }
+            io::ErrorKind::PermissionDenied => ": only the user of trikd may ask",
+            _ => "",
+        };
+        format!("{}: {error}{hint}", path.display())
+    };
+    let mut stream = std::os::unix::net::UnixStream::connect(&path).map_err(fails)?;
+    stream
+        .set_read_timeout(Some(Duration::from_secs(5)))
+        .map_err(fails)?;
+    stream
+        .write_all(format!("{words}\n").as_bytes())
+        .map_err(fails)?;
+    let mut text = String::new();
+    stream.read_to_string(&mut text).map_err(fails)?;
+    match text.strip_prefix("refused: ") {
+        Some(why) => Err(why.trim().to_owned()),
+        None => Ok(text),
+    }
+}
