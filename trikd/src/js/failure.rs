@@ -8,6 +8,9 @@ use crate::limits;
 use rquickjs::{Coerced, Ctx, Error, Exception, FromJs, Value};
 use std::fmt::Write;
 
+/// How the engine names a text that is in no file.
+const INPUT: &str = "<input>";
+
 /// One function that was being executed.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub struct Frame {
@@ -24,9 +27,8 @@ pub struct Frame {
 /// What was thrown.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub struct Failure {
-    /// `TypeError`; empty for what is no error.
-    name: String,
-    message: String,
+    /// `ReferenceError: Can't find variable: foo`.
+    exception: String,
     /// The innermost first; without our own.
     frames: Vec<Frame>,
 }
@@ -55,82 +57,101 @@ fn frame(line: &str) -> Option<Frame> {
     })
 }
 
+/// The value of `a.b` in the global scope as a text, unless it is a function or cannot be known.
+fn global_value(ctx: &Ctx<'_>, path: &str) -> Option<String> {
+    let mut is_first = true;
+    let mut value = ctx.globals().into_value();
+    for name in path.split('.') {
+        let object = value.into_object()?;
+        // What is no property may be a variable of a function.
+        if is_first && !object.contains_key(name).ok()? {
+            return None;
+        }
+        is_first = false;
+        value = object.get(name).ok()?;
+    }
+    (!value.is_function()).then(|| text(ctx, value))
+}
+
+fn text<'js>(ctx: &Ctx<'js>, value: Value<'js>) -> String {
+    let text = Coerced::<String>::from_js(ctx, value);
+    text.map(|text| shortened(text.0)).unwrap_or_else(|_| {
+        // Its own toString() throws; that exception is nobody's.
+        ctx.catch();
+        "something that has no text".to_owned()
+    })
+}
+
+/// The line of the program that a frame names, and the place in it.
+fn place<'a>(frame: &Frame, program: &'a str) -> Option<wording::Place<'a>> {
+    let from_zero = |number: u32| usize::try_from(number).ok()?.checked_sub(1);
+    (frame.file == PROGRAM).then_some(())?;
+    Some(wording::Place {
+        line: program.lines().nth(from_zero(frame.line)?)?,
+        column: from_zero(frame.column).unwrap_or(0),
+    })
+}
+
 impl Failure {
-    /// Of what was thrown.
-    pub fn new<'js>(ctx: &Ctx<'js>, thrown: Value<'js>) -> Self {
-        let text = |value: Value<'js>| {
-            Coerced::<String>::from_js(ctx, value)
-                .map(|text| text.0)
-                .unwrap_or_else(|_| {
-                    // Its own toString() throws; that exception is nobody's.
-                    ctx.catch();
-                    "something that has no text".to_owned()
-                })
-        };
+    /// Of what was thrown while this text was evaluated, or functions that it has made.
+    pub fn new<'js>(ctx: &Ctx<'js>, thrown: Value<'js>, program: &str) -> Self {
         let exception = thrown
             .clone()
             .into_object()
             .and_then(Exception::from_object);
         let Some(exception) = exception else {
             return Self {
-                name: String::new(),
-                message: shortened(text(thrown)),
+                exception: text(ctx, thrown),
                 frames: Vec::new(),
             };
         };
         let field = |name: &str| match exception.as_object().get::<_, Value<'js>>(name) {
-            Ok(value) if !value.is_undefined() => text(value),
+            Ok(value) if !value.is_undefined() => text(ctx, value),
             Ok(_) => String::new(),
             Err(_) => {
                 ctx.catch();
                 String::new()
             }
         };
-        let stack = field("stack");
-        let frames = stack.lines().filter_map(frame);
+        let (name, message) = (field("name"), field("message"));
+        let stack = exception.stack().unwrap_or_default();
+        let mut frames: Vec<_> = stack
+            .lines()
+            .filter_map(frame)
+            .filter(|frame| !frame.file.starts_with(OWN))
+            .collect();
+        // The text that JSON.parse() or eval() was given is no file.
+        if frames.len() > 1 && frames[0].file == INPUT {
+            frames.remove(0);
+        }
+        let place = frames.first().and_then(|frame| place(frame, program));
+        let message = wording::message(&name, &message, place, |path| global_value(ctx, path));
         Self {
-            name: shortened(field("name")),
-            message: shortened(field("message")),
-            frames: frames
-                .filter(|frame| !frame.file.starts_with(OWN))
-                .collect(),
+            exception: match (name.as_str(), message.as_str()) {
+                ("", message) => message.to_owned(),
+                (name, "") => name.to_owned(),
+                (name, message) => format!("{name}: {message}"),
+            },
+            frames,
         }
     }
 
     /// Of what a call into the engine gave.
-    pub fn of(ctx: &Ctx<'_>, error: &Error) -> Self {
+    pub fn of(ctx: &Ctx<'_>, error: &Error, program: &str) -> Self {
         if error.is_exception() {
-            return Self::new(ctx, ctx.catch());
+            return Self::new(ctx, ctx.catch(), program);
         }
         Self {
-            name: "Error".to_owned(),
-            message: error.to_string(),
+            exception: format!("Error: {error}"),
             frames: Vec::new(),
         }
     }
 
-    /// `ReferenceError: Can't find variable: foo`.
-    fn exception(&self, text: &str) -> String {
-        let place = self.frames.first().filter(|frame| frame.file == PROGRAM);
-        let line = place.and_then(|place| {
-            let line = text
-                .lines()
-                .nth(usize::try_from(place.line).ok()?.checked_sub(1)?)?;
-            Some((line, usize::try_from(place.column).ok()?.checked_sub(1)?))
-        });
-        let message = wording::message(&self.name, &self.message, line);
-        match (self.name.as_str(), message.as_str()) {
-            ("", message) => message.to_owned(),
-            (name, "") => name.to_owned(),
-            (name, message) => format!("{name}: {message}"),
-        }
-    }
-
     /// As it is shown for a program: the line, the exception, the backtrace.
-    pub fn of_program(&self, text: &str) -> String {
-        let exception = self.exception(text);
+    pub fn of_program(&self) -> String {
+        let exception = &self.exception;
         let Some(innermost) = self.frames.first() else {
-            return exception;
+            return exception.clone();
         };
         let mut shown = match innermost.file.as_str() {
             PROGRAM => format!("Line {}: {exception}", innermost.line),
@@ -153,8 +174,8 @@ impl Failure {
     }
 
     /// As it is shown for a direct text: the exception alone.
-    pub fn of_direct(&self, text: &str) -> String {
-        self.exception(text)
+    pub fn of_direct(&self) -> String {
+        self.exception.clone()
     }
 }
 

@@ -93,10 +93,10 @@ pub fn run(job: &Job, shared: &Arc<Shared>, slot: &Arc<Slot>) -> Outcome {
         slot.clone(),
         &job.text,
     ));
-    let lost = own.clone();
+    let (lost, text) = (own.clone(), job.text.clone());
     runtime.set_host_promise_rejection_tracker(Some(Box::new(
         move |ctx, _promise, reason, is_handled| {
-            let failure = (!is_handled).then(|| Failure::new(&ctx, reason));
+            let failure = (!is_handled).then(|| Failure::new(&ctx, reason, &text));
             *lost.lost.borrow_mut() = failure;
         },
     )));
@@ -105,11 +105,11 @@ pub fn run(job: &Job, shared: &Arc<Shared>, slot: &Arc<Slot>) -> Outcome {
         let done = live(&ctx, job, &own);
         let failure = match done {
             Ok(()) => own.lost.borrow_mut().take(),
-            Err(error) => Some(Failure::of(&ctx, &error)),
+            Err(error) => Some(Failure::of(&ctx, &error, &job.text)),
         };
         // An end that was asked for looks like a failure from inside.
         match failure.filter(|_| !slot.stops() && !shared.quits()) {
-            Some(failure) => Err(failure.of_program(&job.text)),
+            Some(failure) => Err(failure.of_program()),
             None => Ok(()),
         }
     })

@@ -56,10 +56,10 @@ fn texts<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
                 super::run_jobs(&ctx);
                 o.lost.borrow_mut().take()
             }
-            Err(error) => Some(Failure::of(&ctx, &error)),
+            Err(error) => Some(Failure::of(&ctx, &error, &text)),
         };
         if let Some(failure) = failure.filter(|_| !o.slot.stops()) {
-            let text = failure.of_direct(&text);
+            let text = failure.of_direct();
             o.shared.say(|output| output.error(&text));
         }
     })
