@@ -229,7 +229,8 @@ pub fn run(settings: Settings, restarts: u32) -> Result<(), String> {
     runtime.block_on(LocalSet::new().run_until(serve(settings, restarts)))
 }
 
-async fn serve(settings: Settings, restarts: u32) -> Result<(), String> {
+async fn serve(mut settings: Settings, restarts: u32) -> Result<(), String> {
+    settings.make_absolute()?;
     let ports = Ports::bind(&settings)?;
     directory(&settings.scripts, "--scripts")?;
     directory(&settings.state, "--state")?;

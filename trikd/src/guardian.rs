@@ -24,6 +24,8 @@ const ENDS: [Signal; 3] = [Signal::SIGTERM, Signal::SIGINT, Signal::SIGHUP];
 /// # Errors
 /// In words.
 pub fn follow(guardian: i32) -> Result<(), String> {
+    // For those who look at a list of processes.
+    let _ = prctl::set_name(c"trikd");
     let reset = SigSet::empty().thread_swap_mask(SigmaskHow::SIG_SETMASK);
     reset
         .and_then(|_| prctl::set_pdeathsig(Signal::SIGTERM))

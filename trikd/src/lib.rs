@@ -11,6 +11,7 @@ pub mod clients;
 pub mod connection;
 pub mod daemon;
 pub mod engine;
+pub mod fuzz;
 pub mod guardian;
 pub mod host;
 pub mod js;

@@ -120,6 +120,8 @@ pub const GUARDIAN_REST_MS: u64 = 1_000;
 pub const CRASHES_MS: u64 = 60_000;
 /// Crashes in that time after which the guardian gives up.
 pub const CRASHES: usize = 5;
+/// Bytes that the kernel keeps for one client.
+pub const SEND_BUFFER_BYTES: usize = 64 << 10;
 /// Memory of one engine of JavaScript; each thread of a program has one.
 pub const JS_MEMORY_BYTES: usize = 64 << 20;
 /// Depth of calls in JavaScript, as bytes of the stack.

@@ -13,6 +13,7 @@ pub mod variables;
 pub mod video;
 
 use crate::daemon::Daemon;
+use crate::limits;
 use crate::protocol::mail::plain;
 use socket2::{Domain, Protocol, SockRef, Socket, Type};
 use std::cell::Cell;
@@ -189,4 +190,6 @@ fn prepare(stream: &TcpStream) {
     let _ = socket.set_tcp_nodelay(true);
     let _ = socket.set_keepalive(true);
     let _ = socket.set_tos_v4(TYPE_OF_SERVICE);
+    // What waits for a client that does not read stands in its outbox, which is bounded, and not in the kernel.
+    let _ = socket.set_send_buffer_size(limits::SEND_BUFFER_BYTES);
 }

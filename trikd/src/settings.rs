@@ -125,6 +125,25 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// Programs run in another directory than trikd.
+    ///
+    /// # Errors
+    /// The current directory is gone.
+    pub fn make_absolute(&mut self) -> Result<(), String> {
+        let paths = [
+            &mut self.tree,
+            &mut self.scripts,
+            &mut self.state,
+            &mut self.run,
+            &mut self.gamepad_fifo,
+        ];
+        for path in paths {
+            *path = std::path::absolute(&*path)
+                .map_err(|error| format!("{}: {error}", path.display()))?;
+        }
+        Ok(())
+    }
+
     /// Whether a service is wanted.
     pub fn has(&self, service: Service) -> bool {
         !self.without.contains(&service)

@@ -3,6 +3,8 @@
 //! Pure: from the words of the engine and the line of the program to the old words. What is not known here stays as the
 //! engine says it.
 
+use crate::limits;
+
 /// A line of the program and the place in it that the engine names, in characters from 0.
 #[derive(Clone, Copy, Debug)]
 pub struct Place<'a> {
@@ -155,6 +157,10 @@ pub fn message(
         "RangeError" if message.starts_with("Maximum call stack size") => {
             Some("Maximum call stack size exceeded.".to_owned())
         }
+        "InternalError" if message == "out of memory" => Some(format!(
+            "out of memory: a thread of a program has {} MiB",
+            limits::JS_MEMORY_BYTES >> 20
+        )),
         _ => None,
     };
     old.unwrap_or_else(|| message.to_owned())

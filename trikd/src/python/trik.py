@@ -6,7 +6,9 @@ is -1, a pad that nobody touches is at -101.
 """
 
 import builtins
+import errno
 import heapq
+import io
 import itertools
 import json
 import os
@@ -20,7 +22,7 @@ import time
 import traceback
 
 _ROOT = os.environ.get('TRIK_TREE', '/trikfs')
-_STALE = {107, 19, 116, 103}  # ENOTCONN, ENODEV, ESTALE, ECONNABORTED
+_STALE = {errno.ENOTCONN, errno.ENODEV, errno.ESTALE, errno.ECONNABORTED}
 
 
 class _File:
@@ -47,7 +49,10 @@ class _File:
         return [float(word) if '.' in word or 'e' in word else int(word) for word in self.text().split()]
 
     def number(self):
-        return self.numbers()[0]
+        numbers = self.numbers()
+        if not numbers:
+            raise OSError(errno.ENODATA, 'there is no number', self.path)
+        return numbers[0]
 
     def write(self, text):
         self._do(lambda fd: os.pwrite(fd, text.encode(), 0))
@@ -97,6 +102,36 @@ class _Channel:
             if not piece:
                 return None
             self.buffer += piece
+
+
+class _Output(io.TextIOBase):
+    """What is printed, line by line, in one order with failures."""
+
+    encoding, errors = 'utf-8', 'replace'
+
+    def __init__(self):
+        self._rest, self._lock = '', threading.RLock()
+
+    def writable(self):
+        return True
+
+    def fileno(self):
+        return 1
+
+    def write(self, text):
+        with self._lock:
+            *lines, self._rest = (self._rest + text).split('\n')
+            for line in lines:
+                _channel.send('print', line + '\n')
+            if len(self._rest) > 4096:
+                self.flush()
+        return len(text)
+
+    def flush(self):
+        with self._lock:
+            rest, self._rest = self._rest, ''
+            if rest and _channel:
+                _channel.send('print', rest)
 
 
 _channel = None
@@ -681,6 +716,7 @@ _direct_space = None
 
 def _tell_failure():
     """The traceback without the lines of this module."""
+    sys.stdout.flush()
     kind, error, trace = sys.exc_info()
     while trace and trace.tb_frame.f_code.co_filename == __file__:
         trace = trace.tb_next
@@ -702,6 +738,7 @@ def _main():
     os.dup2(null, 0)
     os.close(null)
     _channel = _Channel(fd)
+    sys.stdout = _Output()
     first = _channel.receive()
     word, _, rest = (first or ':').partition(':')
     threading.Thread(target=_listen, daemon=True).start()
@@ -720,5 +757,6 @@ def _main():
         raise
     except BaseException:
         _tell_failure()
-        sys.stdout.flush()
         sys.exit(1)
+    finally:
+        sys.stdout.flush()

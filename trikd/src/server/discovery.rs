@@ -5,7 +5,7 @@
 use super::mailbox::local_ip;
 use crate::daemon::Daemon;
 use crate::protocol::dns::{Robot, label, questions};
-use socket2::{Domain, Protocol, Socket, Type};
+use socket2::{Domain, InterfaceIndexOrAddress, Protocol, SockRef, Socket, Type};
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::rc::Rc;
@@ -28,17 +28,16 @@ fn open() -> io::Result<UdpSocket> {
     UdpSocket::from_std(socket.into())
 }
 
-/// Joins the group on every network that is up; it is no failure to be a member already.
+/// Joins the group on every network that is there; it is no failure to be a member already.
 fn join(socket: &UdpSocket) {
-    let Ok(addresses) = nix::ifaddrs::getifaddrs() else {
+    let Ok(networks) = std::fs::read_dir("/sys/class/net") else {
         return;
     };
-    for address in addresses {
-        let four = address
-            .address
-            .and_then(|address| address.as_sockaddr_in().map(|four| four.ip()));
-        if let Some(ip) = four {
-            let _ = socket.join_multicast_v4(GROUP, ip);
+    for network in networks.flatten() {
+        let index = std::fs::read_to_string(network.path().join("ifindex"));
+        if let Some(index) = index.ok().and_then(|index| index.trim().parse().ok()) {
+            let _ = SockRef::from(socket)
+                .join_multicast_v4_n(&GROUP, &InterfaceIndexOrAddress::Index(index));
         }
     }
 }
@@ -51,9 +50,8 @@ pub async fn answer(daemon: Rc<Daemon>, port: u16) -> io::Result<()> {
     let socket = open()?;
     let name = daemon.settings.name.clone();
     let host = || {
-        nix::unistd::gethostname()
-            .ok()
-            .and_then(|name| name.into_string().ok())
+        let name = std::fs::read_to_string("/proc/sys/kernel/hostname").ok()?;
+        Some(name.trim().to_owned())
     };
     let name = label(&name.or_else(host).unwrap_or_default());
     let about = vec![

@@ -1,1 +1,27 @@
-//! `trikd` as clients and programs use it: raw bytes on real sockets.
+//! `trikd` as clients and programs use it: raw bytes on real sockets, programs in real processes.
+//!
+//! Most tests have a plain directory in the place of the tree; those in `board` have a virtual board. One binary, so
+//! that linking happens once. Below is the table of contents.
+
+/// Who may do what.
+mod access;
+/// With a virtual board and a mounted tree: rest within milliseconds, sensors that change.
+mod board;
+/// What the serving process leaves when it is killed.
+mod crash;
+/// What documents say, byte for byte.
+mod documents;
+/// Frames, good and bad, and the clocks of connections.
+mod frames;
+/// Gamepads.
+mod gamepad;
+/// Several robots.
+mod mailbox;
+/// Programs: how they are run, what they say, how they end.
+mod programs;
+/// A running trikd and its clients.
+mod rig;
+/// Status, variables, pictures, datagrams, discovery, and what is said at the start.
+mod services;
+/// Uploads.
+mod uploads;

@@ -1,0 +1,73 @@
+//! The allow-list and pairing, with clients that know of neither.
+
+use crate::rig::{TRIKD, robot};
+use std::io::Read;
+use std::process::Command;
+
+#[test]
+fn who_is_not_in_the_list_is_not_served() {
+    let robot = robot(&["--allow", "10.0.0.0/8"]);
+    for port in [
+        "control",
+        "telemetry",
+        "mailbox",
+        "gamepad",
+        "video",
+        "variables",
+    ] {
+        let mut client = robot.client(port);
+        let mut bytes = Vec::new();
+        let end = client.stream.read_to_end(&mut bytes);
+        assert!(end.is_err() || bytes.is_empty(), "{port}");
+    }
+    assert!(
+        robot.log().contains("is not in the list of --allow"),
+        "{}",
+        robot.log()
+    );
+    let other = crate::rig::robot(&["--allow", "10.0.0.0/8", "--allow", "127.0.0.1"]);
+    other.client("control").sync();
+}
+
+#[test]
+fn an_unpaired_computer_may_look_and_stop_and_may_run_programs_when_it_is_paired() {
+    let robot = robot(&["--pair"]);
+    let mut client = robot.client("control");
+    client.send("configVersion");
+    client.expect("configVersion: model-2015");
+    for request in [
+        "file:a.py:print(1)",
+        "run:a.py",
+        "direct:1",
+        "directScript:1",
+    ] {
+        client.send(request);
+        let told = client.next().unwrap();
+        assert!(
+            told.starts_with("error: this computer is not paired"),
+            "{told}"
+        );
+    }
+    assert!(!robot.home.path("scripts/a.py").exists());
+    robot.forget_rest();
+    client.send("stop");
+    harness::eventually("rest", || robot.has_rested());
+    let pair = |address: &str| {
+        let output = Command::new(TRIKD)
+            .args(["pair", address, "--run"])
+            .arg(robot.home.path("run"))
+            .output()
+            .unwrap();
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    assert_eq!(pair("127.0.0.1"), "paired 127.0.0.1\n");
+    client.send("file:a.py:print(1)");
+    client.send("run:a.py");
+    client.until("print: 1\n");
+    assert!(
+        robot.status().contains("paired computers: 127.0.0.1"),
+        "{}",
+        robot.status()
+    );
+    assert_eq!(robot.home.content("state/paired"), b"127.0.0.1\n");
+}

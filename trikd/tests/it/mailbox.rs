@@ -1,0 +1,123 @@
+//! Several robots on one machine: joining, rings, equal hull numbers, memory.
+
+use crate::rig::{Client, Robot, robot, small_tree};
+use harness::eventually;
+
+/// A program that asks the mailbox and prints what it hears.
+fn talk(robot: &Robot, words: &str) -> Client {
+    let mut client = robot.client("control");
+    let text = format!("{words}\nprint('ready')\nwhile True: print('got', mailbox.receive())");
+    client.send(&format!("file:talk.py:{text}"));
+    client.send("run:talk.py");
+    client.until("print: ready");
+    client
+}
+
+fn join(other: &Robot, hull: u32) -> String {
+    format!(
+        "mailbox.joinNetwork('127.0.0.1', {}, {hull})",
+        other.port("mailbox")
+    )
+}
+
+#[test]
+fn joining_is_answered_byte_for_byte() {
+    let robot = robot(&[]);
+    let (mut x, mut y) = (robot.client("mailbox"), robot.client("mailbox"));
+    x.send("register:8895:7");
+    x.expect("self:0");
+    y.send("register:8896:9");
+    y.expect("connection:127.0.0.1:8895:7");
+    y.expect("self:0");
+    x.expect("connection:127.0.0.1:8896:9");
+    let mut control = robot.client("control");
+    control.sync();
+    x.send("data:a:b \u{43f}");
+    control.expect("mail: sender: 7 contents: a:b \u{43f}");
+    let mut stranger = robot.client("mailbox");
+    for nonsense in [
+        "register:1",
+        "register:x:y",
+        "connection:1:2",
+        "self:x",
+        "hello",
+        "",
+    ] {
+        stranger.send(nonsense);
+    }
+    stranger.send("data:who am I");
+    control.expect("mail: sender: -1 contents: who am I");
+    stranger.send("version");
+    stranger.expect("version: 3.1.4");
+}
+
+#[test]
+fn three_robots_in_a_ring_hear_all_and_equal_hulls() {
+    let robots = [robot(&[]), robot(&[]), robot(&[])];
+    let mut a = talk(&robots[0], "mailbox.setHullNumber(1)");
+    let mut b = talk(&robots[1], &join(&robots[0], 2));
+    let mut c = talk(&robots[2], &join(&robots[1], 2));
+    // Everybody knows both others, through whomever they have joined.
+    for robot in &robots {
+        eventually("two other robots", || {
+            robot
+                .status()
+                .lines()
+                .filter(|line| line.starts_with("robot "))
+                .count()
+                == 2
+        });
+    }
+    let send = |robot: &Robot, to: &str, text: &str| {
+        let mut x = robot.client("control");
+        // Another program would end the one that listens, so this one goes on in its place.
+        x.send(&format!("file:say.py:mailbox.send({to}'{text}')\nprint('ready')\nwhile True: print('got', mailbox.receive())"));
+        x.send("run:say.py");
+        x.until("print: ready");
+    };
+    send(&robots[0], "", "to all");
+    b.until("print: got to all\n");
+    c.until("print: got to all\n");
+    send(&robots[0], "2, ", "to hull 2");
+    b.until("print: got to hull 2\n");
+    c.until("print: got to hull 2\n");
+    send(&robots[2], "1, ", "back");
+    a.until("print: got back\n");
+}
+
+#[test]
+fn messages_that_come_before_the_program_are_not_lost() {
+    let robot = robot(&[]);
+    let mut other = robot.client("mailbox");
+    other.send("register:8895:4");
+    other.expect("self:0");
+    other.send("data:early");
+    other.sync();
+    let mut client = talk(&robot, "");
+    client.until("print: got early\n");
+}
+
+#[test]
+fn hull_number_and_joined_robot_are_remembered() {
+    let leader = robot(&[]);
+    let first = robot(&[]);
+    drop(talk(&first, &join(&leader, 5)));
+    eventually("joined", || leader.status().contains(" hull 5 linked"));
+    let remembered = first.home.content("state/mailbox");
+    drop(first);
+    let home = small_tree();
+    std::fs::create_dir(home.path("state")).unwrap();
+    home.file("state/mailbox", remembered);
+    let tree = home.path("tree");
+    let again = Robot::start(home, tree, &[]);
+    eventually("joined again", || {
+        leader
+            .status()
+            .contains(&format!(":{} hull 5 linked", again.port("mailbox")))
+    });
+    assert!(
+        again.status().contains("mailbox hull 5"),
+        "{}",
+        again.status()
+    );
+}

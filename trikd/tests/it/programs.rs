@@ -1,0 +1,297 @@
+//! Programs: how they are run, what they say, and that all ways out lead to rest with nothing left behind.
+
+use crate::rig::{Client, Robot, robot};
+use harness::{eventually, processes};
+use std::time::Instant;
+
+/// Uploads and runs a program, and waits for the message that it has started.
+fn run(client: &mut Client, name: &str, text: &str) {
+    client.send(&format!("file:{name}:{text}"));
+    client.send(&format!("run:{name}"));
+    client.expect(&format!("info: {name} has started"));
+}
+
+/// Ends by `stop` whatever runs; insists on rest, on the message, and that no process is left.
+fn stopped(robot: &Robot, client: &mut Client, name: &str) {
+    robot.forget_rest();
+    client.send("stop");
+    let told = client.until("info: ");
+    assert!(
+        told.starts_with(&format!("info: {name} was stopped by a client after ")),
+        "{told}"
+    );
+    assert!(robot.has_rested());
+    assert_eq!(processes::children(robot.daemon()), [0u32; 0]);
+}
+
+#[test]
+fn a_python_program_prints_line_by_line_and_uses_the_robot() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    let text = "print('in', 'main')\n\
+                print(brick.sensor(A1).read(), brick.sensor('D1').read(), brick.encoder(E1).read())\n\
+                print(brick.motor('Z9'), brick.sensor('../A1'))\n\
+                brick.motor(M1).setPower(250)\nprint('\u{43f}\u{440}', end='')";
+    run(&mut client, "a.py", text);
+    client.expect("print: in main\n");
+    client.expect("print: 27 -1 90\n");
+    client.expect("print: None None\n");
+    client.expect("print: \u{43f}\u{440}");
+    let told = client.next().unwrap();
+    assert!(told.starts_with("info: a.py has ended after "), "{told}");
+    assert_eq!(robot.home.content("tree/motors/M1/value"), b"100\n");
+    assert!(robot.has_rested());
+}
+
+#[test]
+fn two_clients_hear_the_same_and_a_failure_is_a_traceback() {
+    let robot = robot(&[]);
+    let (mut one, mut other) = (robot.client("control"), robot.client("control"));
+    other.sync();
+    run(&mut one, "b.py", "x = 1\nprint(x)\ny = undefined\n");
+    other.expect("info: b.py has started");
+    for client in [&mut one, &mut other] {
+        client.expect("print: 1\n");
+        let told = client.next().unwrap();
+        assert!(
+            told.starts_with("error: Traceback (most recent call last):\n"),
+            "{told}"
+        );
+        assert!(
+            told.contains("b.py\", line 3")
+                && told.ends_with("NameError: name 'undefined' is not defined\n"),
+            "{told}"
+        );
+        assert!(!told.contains("trik.py"), "{told}");
+        assert!(
+            client
+                .next()
+                .unwrap()
+                .starts_with("info: b.py has failed with exit code 1 ")
+        );
+    }
+}
+
+#[test]
+fn executables_run_and_their_failures_are_told() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    run(
+        &mut client,
+        "s",
+        "#!/bin/sh\necho out; echo err >&2; cat \"$TRIK_TREE/sensors/A1/value\"; read x || echo empty; exit 3\n",
+    );
+    let mut lines: Vec<String> = (0..4).map(|_| client.next().unwrap()).collect();
+    lines.sort();
+    assert_eq!(
+        lines,
+        [
+            "print: 27\n",
+            "print: empty\n",
+            "print: err\n",
+            "print: out\n"
+        ]
+    );
+    let told = client.next().unwrap();
+    assert!(
+        told.starts_with("error: s has failed with exit code 3 after "),
+        "{told}"
+    );
+    run(&mut client, "k", "#!/bin/sh\nkill -SEGV $$\n");
+    let told = client.next().unwrap();
+    assert!(
+        told.starts_with("error: k was killed by SIGSEGV after "),
+        "{told}"
+    );
+    run(&mut client, "i", "#!/no/such/interpreter\n");
+    assert!(client.next().unwrap().starts_with("print: trikd: "));
+    assert!(
+        client
+            .next()
+            .unwrap()
+            .starts_with("error: i has failed with exit code 1 ")
+    );
+}
+
+#[test]
+fn stop_ends_whatever_a_program_does_and_leaves_nothing() {
+    let robot = robot(&["--memory-mib", "512"]);
+    let mut client = robot.client("control");
+    let ignores = "import signal, time\nfor s in range(1, 65):\n  try: signal.signal(s, signal.SIG_IGN)\n  except (OSError, ValueError): pass\n";
+    for (name, text) in [
+        ("wait.py", "print('go')\nscript.wait(100000)".to_owned()),
+        ("loop.py", "print('go')\nwhile True: pass".to_owned()),
+        ("motors.py", "print('go')\nwhile True: brick.motor(M1).setPower(50)".to_owned()),
+        ("deaf.py", format!("{ignores}print('go')\ntime.sleep(1000)")),
+        ("events.py", "t = script.timer(10)\nt.timeout.connect(lambda: print('go'))\nscript.run()".to_owned()),
+        ("read.py", "import os\nos.mkfifo('f') if not os.path.exists('f') else 0\nprint('go')\nopen('f').read()".to_owned()),
+        ("child", "#!/bin/sh\necho go; sleep 1000 & (setsid sleep 1000 &) ; setsid sh -c 'sleep 1000 & sleep 1000' & wait\n".to_owned()),
+        ("orphan", "#!/bin/sh\n(setsid setsid sh -c 'trap \"\" TERM HUP; sleep 1000; sleep 1000' >/dev/null 2>&1 &); echo go; sleep 1000\n".to_owned()),
+    ] {
+        run(&mut client, name, &text);
+        client.until("print: go");
+        stopped(&robot, &mut client, name);
+    }
+}
+
+#[test]
+fn a_program_that_forks_without_end_is_ended_and_others_are_served_meanwhile() {
+    let robot = robot(&["--processes", "20"]);
+    let mut client = robot.client("control");
+    run(
+        &mut client,
+        "bomb",
+        "#!/bin/sh\nbomb() { bomb 2>/dev/null & bomb 2>/dev/null; }\nbomb 2>/dev/null\n",
+    );
+    // As root the kernel sets no limit, and trikd counts; as another user the fork fails and the program ends by itself.
+    let told = loop {
+        let told = client.next().unwrap();
+        if told.contains("bomb was stopped") || told.contains("bomb has ") {
+            break told;
+        }
+    };
+    eventually("nobody is left", || {
+        processes::children(robot.daemon()).is_empty()
+    });
+    client.sync();
+    assert!(
+        told.starts_with("error: ") || told.starts_with("info: "),
+        "{told}"
+    );
+}
+
+#[test]
+fn a_program_that_eats_memory_fails_alone() {
+    let robot = robot(&["--memory-mib", "200"]);
+    let mut client = robot.client("control");
+    run(
+        &mut client,
+        "greedy.py",
+        "a = []\nwhile True: a.append(bytearray(1 << 20))",
+    );
+    let told = client.until("error: ");
+    assert!(told.contains("MemoryError"), "{told}");
+    client.sync();
+}
+
+#[test]
+fn a_flood_of_output_is_cut_and_the_program_goes_on() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    run(
+        &mut client,
+        "flood.py",
+        "import time\nfor i in range(20000): print(i)\ntime.sleep(1.2)\nprint('end')",
+    );
+    let told = client.until("info: ");
+    assert!(
+        told.contains(" messages of the program were left out"),
+        "{told}"
+    );
+    client.until("print: end\n");
+    client.until("info: flood.py has ended");
+}
+
+#[test]
+fn direct_commands_share_variables_and_survive_errors() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    // The language of the last program counts.
+    run(&mut client, "p.py", "pass");
+    client.until("info: p.py has ended");
+    client.send("direct:x = 20");
+    client.send("direct:y = undefined");
+    client.send("direct:print(x + 1)");
+    let told = client.next().unwrap();
+    assert!(
+        told.starts_with("error: Traceback") && told.contains("NameError"),
+        "{told}"
+    );
+    client.expect("print: 21\n");
+    robot.forget_rest();
+    client.send("stop");
+    eventually("rest", || robot.has_rested());
+    client.send("direct:print(x)");
+    assert!(client.next().unwrap().contains("NameError"));
+}
+
+#[test]
+fn a_new_program_takes_the_place_of_the_old_one() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    run(&mut client, "one.py", "print('one')\nwhile True: pass");
+    client.expect("print: one\n");
+    robot.forget_rest();
+    client.send("file:two.py:print('two')");
+    client.send("run:two.py");
+    assert!(
+        client
+            .next()
+            .unwrap()
+            .starts_with("info: one.py was stopped by another program ")
+    );
+    assert!(robot.has_rested());
+    client.expect("info: two.py has started");
+    client.expect("print: two\n");
+    client.until("info: two.py has ended");
+    client.send("run:none.py");
+    let told = client.next().unwrap();
+    assert!(
+        told.starts_with("error: there is no program 'none.py' in "),
+        "{told}"
+    );
+    // What Studio sends at every stop.
+    client.send("stop");
+    client.send("directScript:script.system(\"killall aplay\");");
+    client.sync();
+}
+
+#[test]
+fn a_program_goes_on_when_its_client_leaves_and_ends_with_trikd() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    run(&mut client, "on.py", "print('go')\nwhile True: pass");
+    client.expect("print: go\n");
+    drop(client);
+    let mut other = robot.client("control");
+    other.sync();
+    let children = processes::children(robot.daemon());
+    assert_eq!(children.len(), 1, "{}", robot.log());
+    robot.forget_rest();
+    let stop = robot.tree.join("stop");
+    let start = Instant::now();
+    let tree_had_rest = {
+        // The folder goes with the robot, so it is looked at in between.
+        harness::processes::signal(robot.guardian(), nix::sys::signal::Signal::SIGTERM);
+        eventually("rest", || {
+            std::fs::read(&stop).is_ok_and(|text| text == b"1\n")
+        });
+        eventually("no program", || !processes::is_alive(children[0]));
+        start.elapsed()
+    };
+    println!("rest and end after {tree_had_rest:?}");
+    assert_eq!(robot.end(), Some(0));
+}
+
+#[test]
+fn without_a_tree_programs_run_and_the_lack_of_rest_is_told() {
+    let home = harness::Board::new();
+    let tree = home.path("nothing");
+    let robot = Robot::start(home, tree, &[]);
+    let mut client = robot.client("control");
+    client.send("stop");
+    let told = client.next().unwrap();
+    assert!(
+        told.starts_with("error: there is no tree at ") && told.contains("trikfs mount"),
+        "{told}"
+    );
+    assert!(robot.status().contains("NOT MOUNTED"));
+    let mut telemetry = robot.client("telemetry");
+    telemetry.send("data");
+    assert!(
+        telemetry
+            .next()
+            .unwrap()
+            .starts_with("allData:AccelerometerPort:;")
+    );
+}
