@@ -15,6 +15,8 @@ mod documents;
 mod frames;
 /// Gamepads.
 mod gamepad;
+/// Programs in JavaScript.
+mod javascript;
 /// Several robots.
 mod mailbox;
 /// Programs: how they are run, what they say, how they end.
