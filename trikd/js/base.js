@@ -189,7 +189,16 @@ kit.onEvent('web', () => {
 });
 kit.onEvent('direct', (text) => native.direct(text));
 
-// For ever; ends when native.next() throws.
-kit.loop = () => { for (;;) step(Infinity); };
+// For ever; ends when native.next() throws because the program ends, or when a function of a program fails.
+kit.loop = (survives) => {
+    for (;;) {
+        try {
+            step(Infinity);
+        } catch (error) {
+            if (!survives || !native.survive(error))
+                throw error;
+        }
+    }
+};
 return kit;
 })

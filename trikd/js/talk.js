@@ -39,7 +39,7 @@ function newest() {
 }
 const DISCONNECT_LOOK_MS = 500;
 const gamepad = {
-    isPadPressed(pad) { return native.pad(Number(pad)) !== null; },
+    isPadPressed(pad) { return native.pad(Number(pad)) !== undefined; },
     padX(pad) { return native.pad(Number(pad))?.[0] ?? RELEASED; },
     padY(pad) { return native.pad(Number(pad))?.[1] ?? RELEASED; },
     wheel() { return native.wheel(); },
@@ -97,10 +97,10 @@ const mailbox = {
         stopsWaiting = false;
         if (!wait)
             return native.takeMail() ?? '';
-        return kit.until(() => stopsWaiting ? '' : native.takeMail() ?? undefined);
+        return kit.until(() => stopsWaiting ? '' : native.takeMail());
     },
     hasMessages() { return native.hasMail(); },
-    clearQueue() { while (native.takeMail() !== null); },
+    clearQueue() { while (native.takeMail() !== undefined); },
     stopWaiting() { stopsWaiting = true; },
     myHullNumber() { return Number(ask('hull')); },
     setHullNumber(number) { ask('hull', hull(number)); },
@@ -152,7 +152,7 @@ kit.hold('Threading', {
     receiveMessage(wait = true) {
         if (!wait)
             return native.takeMessage() ?? '';
-        return kit.until(() => native.takeMessage() ?? undefined);
+        return kit.until(() => native.takeMessage());
     },
     reset() { native.killOthers(); },
 });

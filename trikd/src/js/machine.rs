@@ -128,16 +128,20 @@ fn live<'js>(ctx: &Ctx<'js>, job: &Job, own: &Rc<Own>) -> rquickjs::Result<()> {
             evaluate(ctx, &job.text, PROGRAM)?;
         }
         Kind::Thread { globals, call } => {
+            let take: Function<'js> = kit.get("takeGlobals")?;
+            // Before the text, which may ask for them, and after it, because it sets them to their first values.
+            take.call::<_, ()>((globals.as_str(),))?;
             evaluate(ctx, source::without_call_of_main(&job.text), PROGRAM)?;
-            kit.get::<_, Function<'js>>("takeGlobals")?
-                .call::<_, ()>((globals.as_str(),))?;
+            take.call::<_, ()>((globals.as_str(),))?;
             evaluate(ctx, call, CALL)?;
         }
         Kind::Direct => own.events.set(true),
     }
     run_jobs(ctx);
     if own.events.get() && own.lost.borrow().is_none() {
-        kit.get::<_, Function<'js>>("loop")?.call::<_, ()>(())?;
+        let survives = job.kind == Kind::Direct;
+        let events: Function<'js> = kit.get("loop")?;
+        events.call::<_, ()>((survives,))?;
     }
     Ok(())
 }

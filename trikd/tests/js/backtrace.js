@@ -13,4 +13,4 @@ var main = function() {
 //! depth() at 6
 //! depth() at 6
 //! main() at 9
-//! <global>() at 11
+//! <global>() at 12

@@ -16,6 +16,6 @@ async function work() {
 }
 work();
 script.run();
-//> speed 3 unknownundefined
+//> speed 3 3undefined
 //> [1, 2][[a, 1]][1, 3]1180591620717411303424
 //> slept

@@ -5,4 +5,4 @@ var main = function() {
 }
 //! Line 4: Error: Threading: Attempt to create a thread with an already occupied id t
 //! main() at 4
-//! <global>() at 6
+//! <global>() at 7

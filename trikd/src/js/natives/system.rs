@@ -6,7 +6,7 @@ use super::{Own, failed, put};
 use crate::js::failure::Failure;
 use crate::js::machine::{Job, Kind, evaluate};
 use crate::js::read_text;
-use rquickjs::{Ctx, Error, Object};
+use rquickjs::{Ctx, Error, Object, Value};
 use std::fs::OpenOptions;
 use std::io::{self, Write};
 use std::process::{Command, Stdio};
@@ -58,11 +58,25 @@ fn texts<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
             }
             Err(error) => Some(Failure::of(&ctx, &error, &text)),
         };
-        if let Some(failure) = failure.filter(|_| !o.slot.stops()) {
-            let text = failure.of_direct();
-            o.shared.say(|output| output.error(&text));
+        if let Some(failure) = failure {
+            survive(&o, &failure);
         }
-    })
+    })?;
+    let o = own.clone();
+    put(
+        native,
+        "survive",
+        move |ctx: Ctx<'js>, error: Value<'js>| survive(&o, &Failure::new(&ctx, error, &o.text)),
+    )
+}
+
+/// Tells a failure that ends nothing; false when the program is to end.
+fn survive(own: &Own, failure: &Failure) -> bool {
+    let lives = !own.slot.stops() && !own.shared.quits();
+    if lives {
+        own.shared.say(|output| output.error(&failure.of_direct()));
+    }
+    lives
 }
 
 fn reap(mut child: std::process::Child) {
