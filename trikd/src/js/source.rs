@@ -62,7 +62,7 @@ fn has_main(text: &str) -> bool {
             .trim_start()
             .strip_prefix('=')
             .map(str::trim_start);
-        declared && value.is_some_and(|value| is_function(value))
+        declared && value.is_some_and(is_function)
     })
 }
 
