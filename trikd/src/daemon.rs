@@ -17,7 +17,7 @@ use crate::server::gamepad::Pipe;
 use crate::server::mailbox::Mailbox;
 use crate::server::{self, Port};
 use crate::settings::{Service, Settings, StopKey};
-use crate::{keys, status};
+use crate::{heartbeat, keys, status};
 use nix::sys::prctl;
 use nix::unistd::{User, chown, geteuid};
 use std::cell::Cell;
@@ -263,6 +263,7 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), String> {
         let daemon = daemon.clone();
         async move { daemon.reaper.run().await }
     });
+    heartbeat::start().map_err(|error| format!("a thread cannot be started: {error}"))?;
     let supervisor = spawn_local(Supervisor::new(daemon.clone()).run());
     if let Err(why) = daemon.rest.now().await {
         daemon.log.line(format_args!("at the start: {why}"));

@@ -82,6 +82,16 @@ fn rest(tree: &Path) {
     }
 }
 
+/// Asks the serving process to end, and insists when it does not: it hangs.
+fn end(daemon: Pid) {
+    let _ = nix::sys::signal::kill(daemon, Signal::SIGTERM);
+    std::thread::spawn(move || {
+        std::thread::sleep(Duration::from_millis(limits::GUARDIAN_END_MS));
+        // Its number is its own until this process, which ends then, has taken its end.
+        let _ = nix::sys::signal::kill(daemon, Signal::SIGKILL);
+    });
+}
+
 /// How the serving process ended, if it has.
 fn ended(daemon: Pid) -> Option<WaitStatus> {
     loop {
@@ -111,7 +121,7 @@ pub fn run(tree: &Path, arguments: &[OsString]) -> Result<ExitCode, String> {
         let signal = signals.wait().map_err(fails)?;
         if signal != Signal::SIGCHLD {
             is_over = true;
-            let _ = nix::sys::signal::kill(daemon, Signal::SIGTERM);
+            end(daemon);
             continue;
         }
         let Some(status) = ended(daemon) else {

@@ -13,6 +13,7 @@ pub mod daemon;
 pub mod engine;
 pub mod fuzz;
 pub mod guardian;
+pub mod heartbeat;
 pub mod host;
 pub mod js;
 pub mod keys;

@@ -6,8 +6,10 @@
 use crate::brick::sensors::{Gamepad, KEYS, Keys, NO_ECHO, NOT_PRESSED, Sensor, Vector};
 use crate::brick::{Brick, Group};
 use crate::limits;
+use crate::protocol::frame::encode;
 use crate::protocol::telemetry::{self, Port, Snapshot};
 use crate::tree::{Access, Node};
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -23,6 +25,8 @@ type Newest = Option<(Instant, Arc<Snapshot>)>;
 pub struct Sampler {
     ask: SyncSender<()>,
     newest: watch::Receiver<Newest>,
+    /// The answer to `data` that was made last, and of which snapshot.
+    answer: RefCell<Option<(Arc<Snapshot>, Rc<[u8]>)>>,
 }
 
 impl Sampler {
@@ -37,7 +41,11 @@ impl Sampler {
         std::thread::Builder::new()
             .name("sampler".to_owned())
             .spawn(move || sample(&root, &asked, &publish))?;
-        Ok(Self { ask, newest })
+        Ok(Self {
+            ask,
+            newest,
+            answer: RefCell::default(),
+        })
     }
 
     /// What the robot senses now, or did at most [`limits::SNAPSHOT_MS`] ago. If the tree does not answer in time, a
@@ -60,6 +68,22 @@ impl Sampler {
             return snapshot.clone();
         }
         Arc::new(known.map_or_else(Snapshot::default, |(_, snapshot)| without_values(&snapshot)))
+    }
+}
+
+impl Sampler {
+    /// The frame that answers `data`: made once for all who share a snapshot.
+    pub async fn all_data(&self) -> Rc<[u8]> {
+        let snapshot = self.snapshot().await;
+        let mut answer = self.answer.borrow_mut();
+        match &*answer {
+            Some((of, frame)) if Arc::ptr_eq(of, &snapshot) => frame.clone(),
+            _ => {
+                let frame: Rc<[u8]> = encode(snapshot.all_data().as_bytes()).into();
+                *answer = Some((snapshot, frame.clone()));
+                frame
+            }
+        }
     }
 }
 

@@ -277,14 +277,13 @@ impl Child {
     }
 
     fn flush(&mut self) {
+        let Some(channel) = &self.channel else { return };
         while !self.unsent.is_empty() {
-            match self
-                .channel
-                .as_ref()
-                .map(|channel| channel.try_write(&self.unsent))
-            {
-                Some(Ok(size)) => drop(self.unsent.drain(..size)),
-                _ => return,
+            match channel.try_write(&self.unsent) {
+                Ok(size) => drop(self.unsent.drain(..size)),
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => return,
+                // Nobody will take it any more; what came before its end can still be read.
+                Err(_) => self.unsent = Vec::new(),
             }
         }
     }

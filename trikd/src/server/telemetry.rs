@@ -24,7 +24,7 @@ impl Handler for Telemetry {
             Request::Keepalive => return,
             Request::Version => return out.send(VERSION),
             Request::Unknown => String::new(),
-            Request::Data => self.daemon.sampler.snapshot().await.all_data(),
+            Request::Data => return out.push(self.daemon.sampler.all_data().await),
             Request::Ports => self.daemon.sampler.snapshot().await.port_names(),
             Request::Key(name) => self.daemon.sampler.snapshot().await.key(name),
             Request::Sensor(name) => self.daemon.sampler.snapshot().await.sensor(name),

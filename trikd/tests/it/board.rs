@@ -1,1 +1,236 @@
-//! x
+//! A virtual board, its mounted tree, and `trikd` above: what moves comes to rest, what is sensed arrives.
+//!
+//! `trik` of the same build starts the board; a build of this package alone may not have it.
+
+use crate::rig::{Client, Robot, TRIKD};
+use harness::wait::{SOON, note_skip};
+use harness::{Board, eventually, processes};
+use nix::sys::signal::Signal;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+
+/// A running `trik up`.
+struct Up {
+    process: Child,
+    devices: PathBuf,
+}
+
+impl Drop for Up {
+    fn drop(&mut self) {
+        processes::signal(self.process.id(), Signal::SIGTERM);
+        let _ = self.process.wait();
+    }
+}
+
+/// A robot on a virtual board; the board goes after it.
+struct Virtual {
+    robot: Robot,
+    up: Up,
+}
+
+fn virtual_robot() -> Option<Virtual> {
+    let trik = Path::new(TRIKD).with_file_name("trik");
+    if let Some(why) = harness::mount::obstacle() {
+        harness::skip(why);
+        return None;
+    }
+    if !trik.exists() {
+        note_skip("there is no trik beside trikd: `cargo build -p trik` makes it");
+        return None;
+    }
+    let home = Board::new();
+    let tree = home.path("mnt");
+    let mut command = Command::new(trik);
+    command
+        .args(["up", "--no-view", "--cache"])
+        .arg(home.path("cache"))
+        .arg(&tree);
+    command
+        .env("XDG_RUNTIME_DIR", home.dir())
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped());
+    let mut process = command.spawn().expect("trik");
+    let mut lines = BufReader::new(process.stdout.take().expect("a pipe")).lines();
+    let mut said = Vec::new();
+    while !said
+        .last()
+        .is_some_and(|line: &String| line.contains("Ctrl-C ends it."))
+    {
+        said.push(
+            lines
+                .next()
+                .unwrap_or_else(|| panic!("trik has ended: {said:?}"))
+                .expect("a line"),
+        );
+    }
+    std::thread::spawn(move || for _ in lines {});
+    let mut devices = None;
+    eventually("a board", || {
+        let entries = std::fs::read_dir(home.path("trik"))
+            .into_iter()
+            .flatten()
+            .flatten();
+        devices = entries
+            .map(|entry| entry.path())
+            .find(|path| path.extension().is_some_and(|ending| ending == "board"));
+        devices.is_some()
+    });
+    let up = Up {
+        process,
+        devices: devices.expect("a board"),
+    };
+    Some(Virtual {
+        robot: Robot::start(home, tree, &[]),
+        up,
+    })
+}
+
+fn number(robot: &Robot, name: &str) -> Option<i32> {
+    std::fs::read_to_string(robot.tree.join(name))
+        .ok()?
+        .trim()
+        .parse()
+        .ok()
+}
+
+fn run(client: &mut Client, name: &str, text: &str) {
+    client.send(&format!("file:{name}:{text}"));
+    client.send(&format!("run:{name}"));
+    client.until("print: go");
+}
+
+#[test]
+fn motors_rest_whatever_the_program_is_doing() {
+    let Some(board) = virtual_robot() else { return };
+    let robot = &board.robot;
+    let mut client = robot.client("control");
+    let start = "brick.motor(M3).setPower(60)\nbrick.motor(M4).setPower(60)\n";
+    for (name, text) in [
+        ("wait.py", format!("{start}print('go')\nscript.wait(60000)")),
+        ("loop.py", format!("{start}print('go')\nwhile True: pass")),
+        ("drive.py", format!("{start}print('go')\nwhile True: brick.motor(M3).setPower(60)")),
+        ("read.py", format!("{start}print('go')\nopen(script and '{}').read()", robot.tree.join("log").display())),
+        ("child", "#!/bin/sh\n(setsid sh -c 'while :; do echo 60 > $TRIK_TREE/motors/M3/value; done' &)\nwhile ! grep -qv '^0' $TRIK_TREE/motors/M3/raw; do :; done; echo go\nsleep 1000\n".to_owned()),
+    ] {
+        run(&mut client, name, &text);
+        eventually("a motor that turns", || number(robot, "motors/M3/raw").is_some_and(|duty| duty != 0));
+        client.send("stop");
+        let told = client.until("info: ");
+        assert!(told.starts_with(&format!("info: {name} was stopped")), "{told}");
+        for motor in ["motors/M3/raw", "motors/M4/raw"] {
+            assert_eq!(number(robot, motor), Some(0), "{name}: {motor}");
+        }
+    }
+    let status = robot.status();
+    println!(
+        "{}",
+        status
+            .lines()
+            .find(|line| line.starts_with("rest at most"))
+            .unwrap_or_default()
+    );
+}
+
+#[test]
+fn all_sensors_of_the_board_arrive() {
+    let Some(board) = virtual_robot() else { return };
+    let robot = &board.robot;
+    let mut client = robot.client("telemetry");
+    client.send("ports");
+    let ports = client.next().expect("an answer");
+    assert!(
+        ports.starts_with("ports:analog:A1,A2,A3,A4,A5,A6;digital:D1,D2"),
+        "{ports}"
+    );
+    assert!(ports.ends_with(";special:;encoders:E1,E2,E3,E4"), "{ports}");
+    let mut data = String::new();
+    eventually("the gyroscope is calibrated and everything is read", || {
+        client.send("data");
+        data = client.next().expect("an answer");
+        let gyroscope = data
+            .split("GyroscopePort:")
+            .nth(1)
+            .and_then(|rest| rest.split(';').next());
+        gyroscope.is_some_and(|list| list.split(',').count() == 7)
+            && !data.contains("AccelerometerPort:;")
+    });
+    for entry in data.trim_start_matches("allData:").split(';') {
+        let fields: Vec<&str> = entry.split(':').collect();
+        assert!(fields.len() >= 2 && !fields[0].is_empty(), "{data}");
+        if ["A", "E"].contains(&&fields[0][..1]) && fields[0].len() == 2 {
+            assert!(
+                fields.len() == 3 && fields[1..].iter().all(|field| field.parse::<i32>().is_ok()),
+                "{entry}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_gamepad_reaches_the_tree_and_a_tree_that_leaves_is_told() {
+    let Some(board) = virtual_robot() else { return };
+    let fifo = board.up.devices.join("run/gamepad-service.out.fifo");
+    let home = Board::new();
+    let fifo = fifo.to_str().expect("UTF-8").to_owned();
+    let mut command = crate::rig::command(&home, &board.robot.tree, &[]);
+    // The last word about an option counts for clap only once, so this one is started by hand.
+    let arguments: Vec<_> = command
+        .get_args()
+        .map(|word| word.to_string_lossy().into_owned())
+        .collect();
+    let arguments = arguments.iter().map(|word| {
+        if word.ends_with("gamepad.fifo") {
+            fifo.as_str()
+        } else {
+            word
+        }
+    });
+    command = Command::new(TRIKD);
+    let mut process = command
+        .args(arguments)
+        .stdout(Stdio::piped())
+        .spawn()
+        .expect("trikd");
+    let mut ready = String::new();
+    BufReader::new(process.stdout.take().expect("a pipe"))
+        .read_line(&mut ready)
+        .expect("a line");
+    let port = |name: &str| -> u16 {
+        let words: Vec<&str> = ready.split([' ', ',']).collect();
+        words[words.iter().position(|word| *word == name).expect("a port") + 1]
+            .trim()
+            .parse()
+            .expect("a number")
+    };
+    let (mut gamepad, mut telemetry) =
+        (Client::new(port("gamepad")), Client::new(port("telemetry")));
+    let deadline = std::time::Instant::now() + SOON;
+    loop {
+        gamepad.raw("pad 1 -20 30\n");
+        telemetry.send("sensor:GamepadPad1PosPort");
+        if telemetry.next().as_deref() == Some("sensor:GamepadPad1PosPort:(-20,30)") {
+            break;
+        }
+        assert!(
+            std::time::Instant::now() < deadline,
+            "the pad does not arrive"
+        );
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    let mut control = Client::new(port("control"));
+    control.sync();
+    let Virtual { robot, up } = board;
+    drop(up);
+    control.send("stop");
+    let told = control.until("error: ");
+    assert!(
+        told.contains("there is no tree at") || told.contains("is gone"),
+        "{told}"
+    );
+    telemetry.send("data");
+    assert!(telemetry.next().expect("an answer").starts_with("allData:"));
+    processes::signal(process.id(), Signal::SIGTERM);
+    process.wait().expect("an end");
+    drop(robot);
+}

@@ -1,1 +1,75 @@
-//! x
+//! Transcripts of docs/protocol.md, byte for byte.
+//!
+//! A block `wire PORT` is one fresh robot. `> ` sends bytes as they stand, `< ` expects exactly these bytes next; both
+//! know `\n`, `\0` and `\xNN`. `...` at the end of an expected frame stands for any rest of it.
+
+use crate::rig::{Client, robot};
+use harness::documents::examples;
+
+fn bytes(text: &str) -> Vec<u8> {
+    let mut out = Vec::new();
+    let mut rest = text.bytes();
+    while let Some(byte) = rest.next() {
+        if byte != b'\\' {
+            out.push(byte);
+            continue;
+        }
+        match rest.next() {
+            Some(b'n') => out.push(b'\n'),
+            Some(b'0') => out.push(0),
+            Some(b'x') => {
+                let digits = [rest.next().expect("a digit"), rest.next().expect("a digit")];
+                let digits = std::str::from_utf8(&digits).expect("digits");
+                out.push(u8::from_str_radix(digits, 16).expect("a number"));
+            }
+            other => panic!("unknown escape {other:?} in {text}"),
+        }
+    }
+    out
+}
+
+fn expect(client: &mut Client, text: &str, place: &str) {
+    if text == "(end)" {
+        assert_eq!(client.exactly(1), b"", "{place}");
+        return;
+    }
+    if let Some(start) = text.strip_suffix("...") {
+        let told = client.next().unwrap_or_default();
+        assert!(
+            told.as_bytes().starts_with(&bytes(start)),
+            "{place}: {told}"
+        );
+        return;
+    }
+    let wanted = bytes(text);
+    let got = client.exactly(wanted.len());
+    assert_eq!(
+        got.escape_ascii().to_string(),
+        wanted.escape_ascii().to_string(),
+        "{place}"
+    );
+}
+
+#[test]
+fn every_transcript_happens_as_it_is_written() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/protocol.md");
+    let text = std::fs::read_to_string(path).expect("docs/protocol.md");
+    let mut count = 0;
+    for example in examples(&text) {
+        let Some(port) = example.info.strip_prefix("wire ") else {
+            continue;
+        };
+        count += 1;
+        let robot = robot(&[]);
+        let mut client = robot.client(port);
+        for (index, line) in example.text.lines().enumerate() {
+            let place = format!("docs/protocol.md:{}", example.line + 1 + index);
+            match line.split_at_checked(2) {
+                Some(("> ", sent)) => client.raw(bytes(sent)),
+                Some(("< ", wanted)) => expect(&mut client, wanted, &place),
+                _ => panic!("{place}: neither '> ' nor '< '"),
+            }
+        }
+    }
+    assert!(count >= 8, "only {count} transcripts");
+}

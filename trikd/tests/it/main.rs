@@ -27,5 +27,7 @@ mod programs;
 mod rig;
 /// Status, variables, pictures, datagrams, discovery, and what is said at the start.
 mod services;
+/// Random clients and faults.
+mod soak;
 /// Uploads.
 mod uploads;

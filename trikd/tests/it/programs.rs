@@ -274,6 +274,88 @@ fn a_program_goes_on_when_its_client_leaves_and_ends_with_trikd() {
 }
 
 #[test]
+fn the_stop_key_ends_the_program() {
+    let home = crate::rig::small_tree();
+    let path = home.path("tree/keys/device");
+    nix::unistd::mkfifo(&path, nix::sys::stat::Mode::S_IRWXU).unwrap();
+    let tree = home.path("tree");
+    let robot = Robot::start(home, tree, &[]);
+    let mut client = robot.client("control");
+    run(&mut client, "on.py", "print('go')\nwhile True: pass");
+    client.expect("print: go\n");
+    robot.forget_rest();
+    let event = |power: i32, up: i32| -> Vec<u8> {
+        [power, up, 0, 0, 0, 0, 0]
+            .iter()
+            .flat_map(|key| key.to_ne_bytes())
+            .collect()
+    };
+    let mut keys = std::fs::File::options().write(true).open(path).unwrap();
+    for bytes in [event(0, 1), event(0, 0), event(1, 0)] {
+        std::io::Write::write_all(&mut keys, &bytes).unwrap();
+    }
+    let told = client.next().unwrap();
+    assert!(
+        told.starts_with("info: on.py was stopped by the stop key after "),
+        "{told}"
+    );
+    assert!(robot.has_rested());
+}
+
+#[test]
+fn programs_of_another_user_have_its_rights_and_leave_nobody_behind() {
+    if !nix::unistd::geteuid().is_root() {
+        return harness::skip("only root can start programs as another user");
+    }
+    let home = crate::rig::small_tree();
+    for name in ["scripts", "run"] {
+        std::fs::create_dir_all(home.path(name)).unwrap();
+    }
+    let tree = home.path("tree");
+    let robot = Robot::start(home, tree, &["--user", "games", "--processes", "30"]);
+    let mut client = robot.client("control");
+    run(
+        &mut client,
+        "who",
+        "#!/bin/sh\nid -un; echo x > $TRIK_TREE/motors/M1/value; kill -9 $PPID; cd /tmp; (setsid setsid sleep 1000 &); echo go; sleep 1000\n",
+    );
+    client.until("print: games\n");
+    client.until("print: go\n");
+    assert_eq!(
+        robot.home.content("tree/motors/M1/value"),
+        b"0\n",
+        "the plain tree is root's"
+    );
+    stopped(&robot, &mut client, "who");
+    run(
+        &mut client,
+        "py.py",
+        "import os\nprint(os.getuid() != 0)\nopen('own', 'w').write('x')",
+    );
+    client.expect("print: True\n");
+    client.until("info: py.py has ended");
+    run(
+        &mut client,
+        "bomb",
+        "#!/bin/sh\nbomb() { setsid $0 & setsid $0 & }\nbomb 2>/dev/null\nsleep 1000\n",
+    );
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    client.send("stop");
+    client.until("info: bomb was stopped by a client");
+    eventually("nobody is left", || {
+        processes::children(robot.daemon()).is_empty()
+    });
+    let unknown = crate::rig::command(
+        &crate::rig::small_tree(),
+        &robot.tree,
+        &["--user", "nosuchuser"],
+    )
+    .output()
+    .unwrap();
+    assert!(String::from_utf8_lossy(&unknown.stderr).contains("there is no such user"));
+}
+
+#[test]
 fn without_a_tree_programs_run_and_the_lack_of_rest_is_told() {
     let home = harness::Board::new();
     let tree = home.path("nothing");

@@ -320,6 +320,19 @@ impl Client {
         }
     }
 
+    /// Exactly so many bytes, or those before the end.
+    pub fn exactly(&mut self, count: usize) -> Vec<u8> {
+        let mut piece = [0; 4096];
+        while self.buffer.len() < count {
+            match self.stream.read(&mut piece) {
+                Ok(size) if size > 0 => self.buffer.extend_from_slice(&piece[..size]),
+                _ => break,
+            }
+        }
+        let count = count.min(self.buffer.len());
+        self.buffer.drain(..count).collect()
+    }
+
     /// The next frame must be this one.
     pub fn expect(&mut self, payload: &str) {
         assert_eq!(self.next().as_deref(), Some(payload));
