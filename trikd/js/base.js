@@ -105,6 +105,23 @@ function fire(timer) {
 const sources = new Map();
 kit.onEvent = (source, handler) => { sources.set(source, handler); };
 
+// What a stream has brought is noted at once, also when a program asks; functions that are connected are called only
+// while it waits, one event after the other.
+const pending = [], PENDING_MAX = 1024;
+kit.onRecord = (source, note, tell) => {
+    sources.set(source, (record) => {
+        note(record);
+        tell(record);
+    });
+    return () => {
+        for (const record of native.drain(source)) {
+            note(record);
+            pending.push(() => tell(record));
+        }
+        pending.splice(0, pending.length - PENDING_MAX);
+    };
+};
+
 // Until a time of native.clock(): at most one event and one timer, whatever comes first; also returns when something
 // may have changed that was waited for.
 function step(until) {
@@ -113,8 +130,14 @@ function step(until) {
         if (!timer._busy && (next === null || timer._due < next._due))
             next = timer;
     }
-    const event = native.next(next === null ? until : Math.min(until, next._due));
-    if (event !== null) {
+    const due = next === null ? until : Math.min(until, next._due);
+    const event = native.next(pending.length > 0 ? 0 : due);
+    if (pending.length > 0) {
+        // Those came before the event.
+        if (event !== null)
+            pending.push(() => sources.get(event[0])?.(event[1], event[2]));
+        pending.shift()();
+    } else if (event !== null) {
         const handler = sources.get(event[0]);
         if (handler)
             handler(event[1], event[2]);

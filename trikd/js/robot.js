@@ -97,25 +97,29 @@ gyroscope.newData = watched(() => gyroscope.read());
 const KEY_ORDER = [116, 103, 1, 105, 106, 108, 28];
 const KEYS_DEVICE = 'keys/device';
 const keyState = KEY_ORDER.map(() => 0), latched = new Set(), codes = [], CODES_MAX = 64;
-function keysChanged(values) {
+const toldState = [...keyState];
+function changed(state, values, happened) {
     values.forEach((value, index) => {
-        if (value === keyState[index])
-            return;
-        keyState[index] = value;
-        const code = KEY_ORDER[index];
-        if (value) {
-            latched.add(code);
-            codes.push(code);
-            codes.splice(0, codes.length - CODES_MAX);
+        if (value !== state[index]) {
+            state[index] = value;
+            happened(KEY_ORDER[index], value);
         }
-        emit(keys.buttonPressed, code, value);
     });
 }
-kit.onEvent(KEYS_DEVICE, keysChanged);
+function press(code, value) {
+    if (value) {
+        latched.add(code);
+        codes.push(code);
+        codes.splice(0, codes.length - CODES_MAX);
+    }
+}
+const drainKeys = kit.onRecord(KEYS_DEVICE,
+    (values) => changed(keyState, values, press),
+    (values) => changed(toldState, values, (code, value) => emit(keys.buttonPressed, code, value)));
 const listenToKeys = () => native.listen(KEYS_DEVICE, KEY_ORDER.length);
 function newestKeys() {
     listenToKeys();
-    native.drain(KEYS_DEVICE).forEach(keysChanged);
+    drainKeys();
 }
 const keys = {
     buttonPressed: new Signal(listenToKeys),
@@ -136,7 +140,6 @@ const keys = {
         codes.length = 0;
     },
 };
-kit.listenToKeys = listenToKeys;
 
 const led = {
     red() { native.led(false, true); },
@@ -220,19 +223,15 @@ const lidar = { read() { return native.values('lidar'); } };
 
 class Fifo {
     constructor(path) {
-        this._path = path;
         this._lines = [];
         this.newLine = new Signal();
         this.newData = new Signal();
-        kit.onEvent(path, (line) => this._heard(line));
+        this._newest = kit.onRecord(path, (line) => this._lines.push(line), (line) => {
+            emit(this.newLine, line);
+            emit(this.newData, Array.from(line, (character) => character.charCodeAt(0)));
+        });
         native.listen(path, 0);
     }
-    _heard(line) {
-        this._lines.push(line);
-        emit(this.newLine, line);
-        emit(this.newData, Array.from(line, (character) => character.charCodeAt(0)));
-    }
-    _newest() { native.drain(this._path).forEach((line) => this._heard(line)); }
     read() {
         this._newest();
         return kit.until(() => this._lines.shift());

@@ -11,9 +11,33 @@ const listen = () => native.listen(LINES, 0);
 const signal = () => new Signal(listen);
 let isHeard = false;
 
-function heard(line) {
-    const words = line.split(' ').filter((word) => word !== '');
-    const [word, first, second, third] = words;
+const wordsOf = (line) => line.split(' ').filter((word) => word !== '');
+const isDown = (second) => second === undefined || second === 'down';
+function note(line) {
+    const [word, first, second, third] = wordsOf(line);
+    const number = Number(first);
+    if (word === 'btn') {
+        if (isDown(second))
+            latched.add(number);
+        noted.set(`button ${number}`, isDown(second));
+    } else if (word === 'pad')
+        noted.set(`pad ${number}`, second === 'up' ? undefined : [Number(second), Number(third)]);
+    else if (word === 'wheel')
+        noted.set('wheel', number);
+    notedAt = native.clock();
+}
+// The files of the tree follow the lines after some milliseconds: what has just been heard is newer.
+const NEWER_MS = 500;
+const noted = new Map();
+let notedAt = -Infinity;
+function newer(name, read) {
+    newest();
+    return noted.has(name) && native.clock() - notedAt < NEWER_MS ? noted.get(name) : read();
+}
+const pad = (number) => newer(`pad ${Number(number)}`, () => native.pad(Number(number)));
+
+function tell(line) {
+    const [word, first, second, third] = wordsOf(line);
     if (!isHeard) {
         isHeard = true;
         emit(gamepad.connected);
@@ -22,32 +46,31 @@ function heard(line) {
         emit(gamepad.padUp, Number(first));
     else if (word === 'pad')
         emit(gamepad.pad, Number(first), Number(second), Number(third));
-    else if (word === 'btn') {
-        const isDown = second === undefined || second === 'down';
-        if (isDown)
-            latched.add(Number(first));
-        emit(gamepad.button, Number(first), isDown ? 1 : 0);
-    } else if (word === 'wheel')
+    else if (word === 'btn')
+        emit(gamepad.button, Number(first), isDown(second) ? 1 : 0);
+    else if (word === 'wheel')
         emit(gamepad.wheelEvent, Number(first));
     else if (word === 'custom')
         emit(gamepad.custom, line.slice(line.indexOf('custom') + 'custom'.length).trim());
 }
-kit.onEvent(LINES, heard);
+const drain = kit.onRecord(LINES, note, tell);
 function newest() {
-    listen();
-    native.drain(LINES).forEach(heard);
+    // Without its lines there are still its files.
+    if (native.tryListen(LINES, 0))
+        drain();
 }
 const DISCONNECT_LOOK_MS = 500;
 const gamepad = {
-    isPadPressed(pad) { return native.pad(Number(pad)) !== undefined; },
-    padX(pad) { return native.pad(Number(pad))?.[0] ?? RELEASED; },
-    padY(pad) { return native.pad(Number(pad))?.[1] ?? RELEASED; },
-    wheel() { return native.wheel(); },
+    isPadPressed(number) { return pad(number) !== undefined; },
+    padX(number) { return pad(number)?.[0] ?? RELEASED; },
+    padY(number) { return pad(number)?.[1] ?? RELEASED; },
+    wheel() { return newer('wheel', native.wheel); },
     buttonWasPressed(button) {
+        listen();
         newest();
         return latched.delete(Number(button));
     },
-    buttonIsPressed(button) { return native.button(Number(button)); },
+    buttonIsPressed(button) { return newer(`button ${Number(button)}`, () => native.button(Number(button))); },
     isConnected() { return native.gamepadConnected(); },
     disconnect() { absent('gamepad.disconnect', 'a gamepad ends its connection itself; nothing is changed'); },
     reset() {
@@ -74,8 +97,14 @@ const gamepad = {
     }),
 };
 kit.hold('gamepad', gamepad);
-if (native.mentions('gamepad'))
+// Files of newest values begin to listen when they are opened, so they are opened before they are needed.
+if (native.mentions('gamepad')) {
     native.tryListen(LINES, 0);
+    native.pad(1);
+    native.pad(2);
+    native.wheel();
+    native.button(1);
+}
 if (native.mentions('keys'))
     native.tryListen('keys/device', 7);
 

@@ -196,7 +196,7 @@ fn no_key_is_missed_while_a_program_does_something_else() {
     drop(presser.join().unwrap());
     assert_eq!(
         String::from_utf8_lossy(&output.stdout),
-        "false\ntruefalsefalse\n103 28 -1\n28 0\n116 1\n",
+        "false\ntruefalsefalse\n103 28 -1\n103 1\n103 0\n28 1\n28 0\n116 1\n",
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
