@@ -9,12 +9,16 @@ const kit = { native };
 const hold = (name, value) => Object.defineProperty(globalThis, name, { value, writable: true, configurable: true });
 kit.hold = hold;
 
+// A text as it may leave the engine: halves of characters are replaced.
+const text = (value) => String(value).toWellFormed();
+kit.text = text;
+
 // A thing that the robot does not have: programs go on, and a person is told once.
 const told = new Set();
 kit.absent = (what, why) => {
     if (!told.has(what)) {
         told.add(what);
-        native.info(`${what}: ${why}`);
+        native.info(text(`${what}: ${why}`));
     }
 };
 // The same where going on would need a value that nobody has.
@@ -163,8 +167,8 @@ kit.until = (condition) => {
 function printed(value) {
     return Array.isArray(value) ? `[${value.map(printed).join(', ')}]` : String(value);
 }
-hold('print', (...values) => native.print(values.map(printed).join('') + '\n'));
-hold('include', (file) => native.include(String(file)));
+hold('print', (...values) => native.print(text(values.map(printed).join('') + '\n')));
+hold('include', (file) => native.include(text(file)));
 
 const noPhoto = () => kit.refuse('getPhoto', 'pictures of the camera are not in the tree');
 hold('getPhoto', noPhoto);
@@ -185,11 +189,11 @@ hold('script', {
     },
     run() { native.run(); },
     quit() { native.quit(); },
-    system(command, synchronously) { return native.system(String(command), Boolean(synchronously)); },
-    writeToFile(file, text) { native.append(String(file), String(text)); },
-    writeData(file, bytes) { native.appendBytes(String(file), Array.from(bytes, (byte) => byte & 0xff)); },
-    readAll(file) { return native.readAll(String(file)); },
-    removeFile(file) { native.remove(String(file)); },
+    system(command, synchronously) { return native.system(text(command), Boolean(synchronously)); },
+    writeToFile(file, what) { native.append(text(file), text(what)); },
+    writeData(file, bytes) { native.appendBytes(text(file), Array.from(bytes, (byte) => byte & 0xff)); },
+    readAll(file) { return native.readAll(text(file)); },
+    removeFile(file) { native.remove(text(file)); },
     getPhoto: noPhoto,
     reset() { timers.clear(); },
 });
@@ -208,9 +212,9 @@ kit.onEvent('web', () => {
     const shown = {};
     for (const name in Object(globalThis.web))
         shown[name] = printed(globalThis.web[name]);
-    native.web(JSON.stringify(shown));
+    native.web(text(JSON.stringify(shown)));
 });
-kit.onEvent('direct', (text) => native.direct(text));
+kit.onEvent('direct', native.direct);
 
 // For ever; ends when native.next() throws because the program ends, or when a function of a program fails.
 kit.loop = (survives) => {

@@ -4,7 +4,7 @@
 
 const { native, Signal, emit, absent, refuse, never } = kit;
 const NO_DISPLAY = 'the display is not in the tree; nothing is shown';
-const port = (name) => String(name);
+const port = kit.text;
 
 // An object for each port; null where nothing is plugged in, which is asked again the next time.
 function plugged(find, make) {
@@ -285,12 +285,12 @@ kit.hold('brick', {
         if (!configurable.includes(type))
             absent(`brick.configure of ${name}`, 'the robot file says what is plugged in; nothing is changed');
     },
-    playSound(file) { native.playSound(String(file)); },
+    playSound(file) { native.playSound(kit.text(file)); },
     playTone(hz, ms) {
         if (hz >= 0 && ms >= 0)
             absent('brick.playTone', 'the board has no program that plays tones; nothing is heard');
     },
-    say(text) { native.say(String(text)); },
+    say(text) { native.say(kit.text(text)); },
     stop() {
         native.stop();
         emit(this.stopped);

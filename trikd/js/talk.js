@@ -109,7 +109,7 @@ if (native.mentions('keys'))
     native.tryListen('keys/device', 7);
 
 let stopsWaiting = false;
-const ask = (...words) => native.mailbox(words.join(' '));
+const ask = (...words) => native.mailbox(kit.text(words.join(' ')));
 const flag = (word) => ask(word) === '1';
 const hull = (number) => Math.trunc(Number(number)) || 0;
 const address = (ip) => String(ip).trim() || '-';
@@ -165,19 +165,19 @@ function plainGlobals() {
 }
 kit.takeGlobals = (json) => { Object.assign(globalThis, JSON.parse(json)); };
 
-const text = (id) => String(id);
+const { text } = kit;
 kit.hold('Threading', {
     startThread(id, called) {
         if (typeof called !== 'function') {
-            native.startThread(text(id), plainGlobals(), `${called}();`);
+            native.startThread(text(id), plainGlobals(), text(`${called}();`));
             return;
         }
         const name = Object.keys(globalThis).find((key) => globalThis[key] === called);
-        native.startThread(text(id), plainGlobals(), name ? `${name}();` : `(${called})();`);
+        native.startThread(text(id), plainGlobals(), text(name ? `${name}();` : `(${called})();`));
     },
     joinThread(id) { kit.until(() => native.isRunning(text(id)) ? undefined : null); },
     killThread(id) { native.killThread(text(id)); },
-    sendMessage(id, message) { native.sendMessage(text(id), String(message)); },
+    sendMessage(id, message) { native.sendMessage(text(id), text(message)); },
     receiveMessage(wait = true) {
         if (!wait)
             return native.takeMessage() ?? '';

@@ -27,7 +27,7 @@ pub struct JavaScript;
 
 impl Engine for JavaScript {
     fn run(&mut self, start: Start, brick: &Brick, host: &Host) -> Outcome {
-        let daemon = Daemon::new(host).map_err(|error| format!("no way to the daemon: {error}"))?;
+        let daemon = Daemon::new(host);
         let output = daemon
             .output()
             .map_err(|error| format!("no way to the daemon: {error}"))?;

@@ -4,7 +4,7 @@
 
 use super::failure::Failure;
 use super::natives::{self, Own};
-use super::shared::{MAIN, Shared, Slot};
+use super::shared::{Shared, Slot};
 use super::source;
 use crate::brick::Brick;
 use crate::engine::Outcome;
@@ -144,9 +144,4 @@ fn live<'js>(ctx: &Ctx<'js>, job: &Job, own: &Rc<Own>) -> rquickjs::Result<()> {
         events.call::<_, ()>((survives,))?;
     }
     Ok(())
-}
-
-/// Whether a thread is the one that a program begins in.
-pub fn is_main(slot: &Slot) -> bool {
-    slot.name == MAIN
 }

@@ -65,11 +65,8 @@ pub struct Daemon<'a> {
 
 impl<'a> Daemon<'a> {
     /// Takes over the channel: nobody else may read it or write to it from now on.
-    ///
-    /// # Errors
-    /// None yet; the channel may be refused in future.
-    pub fn new(host: &'a Host) -> io::Result<Self> {
-        Ok(Self { host })
+    pub fn new(host: &'a Host) -> Self {
+        Self { host }
     }
 
     /// The other direction, for other threads.

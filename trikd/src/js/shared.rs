@@ -10,6 +10,7 @@ use nix::sys::eventfd::{EfdFlags, EventFd};
 use std::collections::{HashMap, VecDeque};
 use std::io;
 use std::os::fd::{AsFd, BorrowedFd};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -196,7 +197,11 @@ impl Shared {
             .name("js".to_owned())
             .stack_size(limits::JS_STACK_BYTES + limits::JS_STACK_SPARE_BYTES)
             .spawn(move || {
-                let outcome = machine::run(&job, &shared, &own);
+                // Who waits for the end of this thread must hear of it in any case.
+                let work = AssertUnwindSafe(|| machine::run(&job, &shared, &own));
+                let outcome = catch_unwind(work).unwrap_or_else(|_| {
+                    Err("trikd has a defect: its JavaScript broke off".to_owned())
+                });
                 shared.finish(&own, outcome);
             })
             .map_err(|error| format!("no thread: {error}"))?;
