@@ -265,7 +265,7 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), String> {
     });
     heartbeat::start().map_err(|error| format!("a thread cannot be started: {error}"))?;
     let supervisor = spawn_local(Supervisor::new(daemon.clone()).run());
-    if let Err(why) = daemon.rest.now().await {
+    if let Err(why) = daemon.rest.now(limits::REST_LAST_MS).await {
         daemon.log.line(format_args!("at the start: {why}"));
     }
     open(&daemon, ports);

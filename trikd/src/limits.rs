@@ -80,8 +80,10 @@ pub const SNAPSHOT_MS: u64 = 15;
 pub const SNAPSHOT_WAIT_MS: u64 = 250;
 /// Milliseconds between two looks at raw readings, which cost transfers on the bus.
 pub const RAW_MS: u64 = 100;
-/// Milliseconds that anybody waits for the motors to rest.
+/// Milliseconds that a program may live on while the motors are brought to rest.
 pub const REST_WAIT_MS: u64 = 50;
+/// Milliseconds after which a tree that has not brought the motors to rest is told of.
+pub const REST_LAST_MS: u64 = 2_000;
 /// Wishes for rest that may wait.
 pub const REST_ASKS: usize = 16;
 /// Bytes of one line of output; longer ones come in pieces.
@@ -150,3 +152,5 @@ pub const GUARDIAN_END_MS: u64 = 8_000;
 pub const BEAT_MS: u64 = 500;
 /// Beats that may be missing before it counts as hung.
 pub const BEATS_MISSING: u32 = 20;
+/// Rests of which the status tells how long they took.
+pub const RESTS_SHOWN: usize = 256;

@@ -1,6 +1,6 @@
 //! The program that runs: one at a time, of any language, always in child processes, and one way out of all of them.
 //!
-//! Owns the queue of commands, what the running program may do next, and its end. `child` is one process with its
+//! Owns what the running program may do next, and its end. `queue` is what is asked for, `child` is one process with its
 //! pipes, `launch` gives it its limits, `kill` ends all that it started, `rest` brings the motors to rest, `reaper`
 //! hears of ends, `output` measures what it says, `boot` runs a program at the start.
 
@@ -10,6 +10,7 @@ pub mod kill;
 pub mod launch;
 pub mod output;
 pub mod python;
+pub mod queue;
 pub mod reaper;
 pub mod rest;
 
@@ -20,117 +21,13 @@ use kill::{group, sweep};
 use nix::sys::signal::Signal;
 use nix::unistd::Pid;
 use output::Meter;
+pub use queue::{Command, Programs};
 use reaper::Ended;
-use std::cell::RefCell;
-use std::collections::VecDeque;
-use std::fmt::Write;
 use std::path::PathBuf;
 use std::process::Stdio;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
-use tokio::sync::{Notify, oneshot};
-
-/// What can be asked for.
-#[derive(Debug)]
-pub enum Command {
-    /// End what runs and run this file.
-    Run(PathBuf),
-    /// End what runs and run this text in JavaScript.
-    Script(String),
-    /// Evaluate this text after the ones before it.
-    Direct(String),
-    /// End what runs and bring everything to rest; says for whom.
-    Stop(&'static str),
-    /// A message of the mailbox for the program: hull number and text.
-    Mail(i32, String),
-    /// The variables that the program shows, as a JSON object.
-    Web(oneshot::Sender<String>),
-    /// End what runs, then tell.
-    Quit(oneshot::Sender<()>),
-}
-
-/// What the status shows of the program.
-#[derive(Clone, Debug, Default)]
-struct Shown {
-    text: Option<(String, Instant)>,
-    started: u32,
-    failed: u32,
-    last_end: String,
-    stop_us_max: u128,
-}
-
-/// The way to the one who runs programs.
-#[derive(Debug, Default)]
-pub struct Programs {
-    queue: RefCell<VecDeque<Command>>,
-    filled: Notify,
-    drained: Notify,
-    shown: RefCell<Shown>,
-}
-
-impl Programs {
-    /// Asks for something; waits while too much is asked for already. A stop makes everything before it pointless.
-    pub async fn tell(&self, command: Command) {
-        if matches!(command, Command::Stop(_) | Command::Quit(_)) {
-            self.queue
-                .borrow_mut()
-                .retain(|other| matches!(other, Command::Quit(_)));
-        } else {
-            while self.queue.borrow().len() >= limits::COMMANDS {
-                self.drained.notified().await;
-            }
-        }
-        self.queue.borrow_mut().push_back(command);
-        self.filled.notify_one();
-    }
-
-    /// As [`Programs::tell`] for what may be lost when too much is asked for.
-    pub fn offer(&self, command: Command) {
-        let mut queue = self.queue.borrow_mut();
-        if queue.len() < limits::COMMANDS {
-            queue.push_back(command);
-            self.filled.notify_one();
-        }
-    }
-
-    async fn next(&self) -> Command {
-        loop {
-            if let Some(command) = self.queue.borrow_mut().pop_front() {
-                self.drained.notify_one();
-                return command;
-            }
-            self.filled.notified().await;
-        }
-    }
-
-    /// Whether a program runs.
-    pub fn runs(&self) -> bool {
-        self.shown.borrow().text.is_some()
-    }
-
-    /// Lines for the status.
-    pub fn describe(&self) -> String {
-        let shown = self.shown.borrow();
-        let mut text = match &shown.text {
-            Some((text, since)) => format!("program {text} for {} s\n", since.elapsed().as_secs()),
-            None => "program none\n".to_owned(),
-        };
-        let _ = writeln!(
-            text,
-            "programs {} started, {} failed",
-            shown.started, shown.failed
-        );
-        if !shown.last_end.is_empty() {
-            let _ = writeln!(text, "last {}", shown.last_end);
-        }
-        let _ = writeln!(
-            text,
-            "rest at most {} us after a program was to end",
-            shown.stop_us_max
-        );
-        text
-    }
-}
+use tokio::sync::oneshot;
 
 /// The running program.
 struct Current {
@@ -432,18 +329,23 @@ impl Supervisor {
         if let Some(current) = self.current.as_ref().filter(|current| current.child.runs()) {
             group(current.child.pid, Signal::SIGSTOP);
         }
-        let rested = self.daemon.rest.now().await;
+        // A tree that is slow is still on its way to rest; the program must not live so long.
+        let rested = self.daemon.rest.now(limits::REST_WAIT_MS).await;
         let rest_us = began.elapsed().as_micros();
         let Some(mut current) = self.current.take() else {
-            self.tell_rest(rested, rest_us);
+            let last = match rested {
+                Ok(()) => Ok(()),
+                Err(_) => self.daemon.rest.now(limits::REST_LAST_MS).await,
+            };
+            self.tell_rest(last, rest_us);
             return;
         };
         if current.child.runs() {
             group(current.child.pid, Signal::SIGKILL);
         }
         self.kill_all(&mut current).await;
-        let last = self.daemon.rest.now().await;
-        self.tell_rest(rested.and(last), rest_us);
+        let last = self.daemon.rest.now(limits::REST_LAST_MS).await;
+        self.tell_rest(last, rest_us);
         self.tell_end(&mut current, &way);
         self.daemon.programs.shown.borrow_mut().text = None;
         self.daemon.mailbox.forget_kept();
@@ -516,7 +418,10 @@ impl Supervisor {
 
     fn tell_rest(&self, rested: Result<(), String>, rest_us: u128) {
         let mut shown = self.daemon.programs.shown.borrow_mut();
-        shown.stop_us_max = shown.stop_us_max.max(rest_us);
+        if shown.rests_us.len() >= limits::RESTS_SHOWN {
+            shown.rests_us.pop_front();
+        }
+        shown.rests_us.push_back(rest_us);
         if let Err(why) = rested {
             self.daemon.log.line(&why);
             self.broadcast(&format!("error: {why}"));

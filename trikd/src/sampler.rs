@@ -20,13 +20,16 @@ use tokio::sync::watch;
 /// A snapshot and when it was taken; None before the first.
 type Newest = Option<(Instant, Arc<Snapshot>)>;
 
+/// A snapshot and the frame that was made of it.
+type Answer = (Arc<Snapshot>, Rc<[u8]>);
+
 /// The way to the thread.
 #[derive(Debug)]
 pub struct Sampler {
     ask: SyncSender<()>,
     newest: watch::Receiver<Newest>,
     /// The answer to `data` that was made last, and of which snapshot.
-    answer: RefCell<Option<(Arc<Snapshot>, Rc<[u8]>)>>,
+    answer: RefCell<Option<Answer>>,
 }
 
 impl Sampler {

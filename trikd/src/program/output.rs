@@ -14,10 +14,13 @@ pub struct Lines {
 impl Lines {
     /// Takes the next bytes and hands over the lines that are whole, with their newline; longer ones come in pieces.
     pub fn feed(&mut self, bytes: &[u8], mut take: impl FnMut(&str)) {
-        for piece in bytes.split_inclusive(|byte| *byte == b'\n') {
-            for part in piece.chunks(limits::LINE_BYTES) {
+        for mut piece in bytes.split_inclusive(|byte| *byte == b'\n') {
+            while !piece.is_empty() {
+                let (part, left) =
+                    piece.split_at(piece.len().min(limits::LINE_BYTES - self.rest.len()));
+                piece = left;
                 self.rest.extend_from_slice(part);
-                if part.ends_with(b"\n") || self.rest.len() >= limits::LINE_BYTES {
+                if part.ends_with(b"\n") || self.rest.len() == limits::LINE_BYTES {
                     let end = self.cut();
                     take(&String::from_utf8_lossy(&self.rest[..end]));
                     self.rest.drain(..end);

@@ -1,7 +1,7 @@
 //! Brings the motors to rest, on a thread of its own that does nothing else.
 //!
-//! Owns that thread and the open file `stop`. A device that hangs delays the thread, and nobody else waits for it
-//! longer than [`limits::REST_WAIT_MS`].
+//! Owns that thread and the open file `stop`. A device that hangs delays the thread, and others wait for it as long as
+//! they like.
 
 use crate::limits;
 use crate::tree::{Access, Tree};
@@ -33,22 +33,21 @@ impl Rest {
         Ok(Self { ask })
     }
 
-    /// Brings everything that moves to rest; returns when it is there, or in any case soon.
+    /// Brings everything that moves to rest; returns when it is there, or after `wait_ms`, when it is still on its way.
     ///
     /// # Errors
     /// In words: there is no tree, it does not answer, an actuator fails.
-    pub async fn now(&self) -> Result<(), String> {
+    pub async fn now(&self, wait_ms: u64) -> Result<(), String> {
         let (answer, done) = oneshot::channel();
         let late = || {
             Err(format!(
-                "the tree has not brought the motors to rest within {} ms",
-                limits::REST_WAIT_MS
+                "the tree has not brought the motors to rest within {wait_ms} ms"
             ))
         };
         if self.ask.try_send(answer).is_err() {
             return late();
         }
-        match tokio::time::timeout(Duration::from_millis(limits::REST_WAIT_MS), done).await {
+        match tokio::time::timeout(Duration::from_millis(wait_ms), done).await {
             Ok(Ok(done)) => done,
             Ok(Err(_)) | Err(_) => late(),
         }
@@ -93,10 +92,12 @@ mod tests {
             .build()
             .unwrap();
         let rest = Rest::start(scratch.path()).unwrap();
-        let why = runtime.block_on(rest.now()).unwrap_err();
+        let why = runtime
+            .block_on(rest.now(limits::REST_LAST_MS))
+            .unwrap_err();
         assert!(why.contains("there is no tree at"), "{why}");
         let stop = scratch.file("stop", "");
-        runtime.block_on(rest.now()).unwrap();
+        runtime.block_on(rest.now(limits::REST_LAST_MS)).unwrap();
         assert_eq!(std::fs::read_to_string(stop).unwrap(), "1\n");
     }
 }

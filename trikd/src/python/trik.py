@@ -450,6 +450,9 @@ class Brick:
     def gamepad(self):
         return gamepad
 
+    def __getattr__(self, name):
+        raise AttributeError('brick.%s: the tree of the robot has no file for it' % name)
+
     def marker(self):
         return None
 

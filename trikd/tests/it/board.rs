@@ -127,7 +127,7 @@ fn motors_rest_whatever_the_program_is_doing() {
         "{}",
         status
             .lines()
-            .find(|line| line.starts_with("rest at most"))
+            .find(|line| line.starts_with("rest of the last"))
             .unwrap_or_default()
     );
 }

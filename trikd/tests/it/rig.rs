@@ -129,10 +129,14 @@ impl Robot {
             }
         });
         let (alive, life) = channel::<()>();
+        let soak = std::env::var("TRIKD_SOAK_S")
+            .ok()
+            .and_then(|text| text.parse().ok());
+        let limit = LIFE + Duration::from_secs(soak.unwrap_or(0));
         let pid = guardian.id();
         std::thread::spawn(move || {
-            if life.recv_timeout(LIFE) == Err(RecvTimeoutError::Timeout) {
-                eprintln!("the trikd of process {pid} lives for more than {LIFE:?}: it is ended");
+            if life.recv_timeout(limit) == Err(RecvTimeoutError::Timeout) {
+                eprintln!("the trikd of process {pid} lives for more than {limit:?}: it is ended");
                 processes::signal(pid, Signal::SIGTERM);
             }
         });

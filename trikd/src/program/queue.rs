@@ -1,0 +1,165 @@
+//! What is asked of whoever runs programs, in the order in which it came, and what the status shows of programs.
+//!
+//! Owns the queue and its limit. Knows no processes.
+
+use crate::limits;
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::fmt::Write;
+use std::path::PathBuf;
+use std::time::Instant;
+use tokio::sync::{Notify, oneshot};
+
+/// What can be asked for.
+#[derive(Debug)]
+pub enum Command {
+    /// End what runs and run this file.
+    Run(PathBuf),
+    /// End what runs and run this text in JavaScript.
+    Script(String),
+    /// Evaluate this text after the ones before it.
+    Direct(String),
+    /// End what runs and bring everything to rest; says for whom.
+    Stop(&'static str),
+    /// A message of the mailbox for the program: hull number and text.
+    Mail(i32, String),
+    /// The variables that the program shows, as a JSON object.
+    Web(oneshot::Sender<String>),
+    /// End what runs, then tell.
+    Quit(oneshot::Sender<()>),
+}
+
+/// What the status shows of the program.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Shown {
+    pub(super) text: Option<(String, Instant)>,
+    pub(super) started: u32,
+    pub(super) failed: u32,
+    pub(super) last_end: String,
+    /// Microseconds from each order to the motors' rest, the newest last.
+    pub(super) rests_us: VecDeque<u128>,
+}
+
+impl Shown {
+    /// How long the last rests took.
+    fn rests(&self) -> String {
+        let mut sorted: Vec<_> = self.rests_us.iter().collect();
+        sorted.sort_unstable();
+        let (Some(last), count) = (sorted.len().checked_sub(1), sorted.len()) else {
+            return String::new();
+        };
+        let part = |thousandths: usize| sorted[last * thousandths / 1000];
+        format!(
+            "rest of the last {count} ends: median {} us, p99 {} us, most {} us\n",
+            part(500),
+            part(990),
+            sorted[last]
+        )
+    }
+}
+
+/// The way to the one who runs programs.
+#[derive(Debug, Default)]
+pub struct Programs {
+    queue: RefCell<VecDeque<Command>>,
+    filled: Notify,
+    drained: Notify,
+    pub(super) shown: RefCell<Shown>,
+}
+
+impl Programs {
+    /// Asks for something; waits while too much is asked for already. A stop makes everything before it pointless.
+    pub async fn tell(&self, command: Command) {
+        if matches!(command, Command::Stop(_) | Command::Quit(_)) {
+            self.queue
+                .borrow_mut()
+                .retain(|other| matches!(other, Command::Quit(_)));
+        } else {
+            while self.queue.borrow().len() >= limits::COMMANDS {
+                self.drained.notified().await;
+            }
+        }
+        self.queue.borrow_mut().push_back(command);
+        self.filled.notify_one();
+    }
+
+    /// As [`Programs::tell`] for what may be lost when too much is asked for.
+    pub fn offer(&self, command: Command) {
+        let mut queue = self.queue.borrow_mut();
+        if queue.len() < limits::COMMANDS {
+            queue.push_back(command);
+            self.filled.notify_one();
+        }
+    }
+
+    /// The next command; waits for one.
+    pub(super) async fn next(&self) -> Command {
+        loop {
+            if let Some(command) = self.queue.borrow_mut().pop_front() {
+                self.drained.notify_one();
+                return command;
+            }
+            self.filled.notified().await;
+        }
+    }
+
+    /// Whether a program runs.
+    pub fn runs(&self) -> bool {
+        self.shown.borrow().text.is_some()
+    }
+
+    /// Lines for the status.
+    pub fn describe(&self) -> String {
+        let shown = self.shown.borrow();
+        let mut text = match &shown.text {
+            Some((text, since)) => format!("program {text} for {} s\n", since.elapsed().as_secs()),
+            None => "program none\n".to_owned(),
+        };
+        let _ = writeln!(
+            text,
+            "programs {} started, {} failed",
+            shown.started, shown.failed
+        );
+        if !shown.last_end.is_empty() {
+            let _ = writeln!(text, "last {}", shown.last_end);
+        }
+        text.push_str(&shown.rests());
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn waiting(programs: &Programs) -> Vec<String> {
+        programs
+            .queue
+            .borrow()
+            .iter()
+            .map(|command| format!("{command:?}"))
+            .collect()
+    }
+
+    #[test]
+    fn a_stop_makes_everything_before_it_pointless_and_nothing_behind_it() {
+        let programs = Programs::default();
+        let runtime = tokio::runtime::Builder::new_current_thread()
+            .build()
+            .unwrap();
+        runtime.block_on(async {
+            programs.tell(Command::Run("a".into())).await;
+            programs.tell(Command::Direct("b".to_owned())).await;
+            programs.tell(Command::Stop("somebody")).await;
+            programs.tell(Command::Script("c".to_owned())).await;
+        });
+        assert_eq!(waiting(&programs), ["Stop(\"somebody\")", "Script(\"c\")"]);
+    }
+
+    #[test]
+    fn what_may_be_lost_is_lost_when_too_much_waits() {
+        let programs = Programs::default();
+        (0..2 * limits::COMMANDS).for_each(|_| programs.offer(Command::Mail(1, String::new())));
+        assert_eq!(waiting(&programs).len(), limits::COMMANDS);
+    }
+}
