@@ -65,12 +65,15 @@ enum Command {
     /// Ends all processes of the user that runs it.
     #[command(hide = true)]
     KillUser,
-    /// The process of one JavaScript program; its standard input is the channel to the daemon.
-    #[command(hide = true)]
+    /// Run a JavaScript program in this terminal, without the daemon; the motors rest at its end.
+    ///
+    /// Without a file it is the process of one program, whose standard input is the channel to the daemon.
     Js {
         /// Where the tree is mounted.
-        #[arg(long, env = "TRIK_TREE", value_name = "DIR")]
+        #[arg(long, env = "TRIK_TREE", value_name = "DIR", default_value = "/trikfs")]
         tree: PathBuf,
+        /// The program.
+        file: Option<PathBuf>,
     },
 }
 
@@ -113,7 +116,11 @@ fn perform(command: Command) -> Result<ExitCode, String> {
         }
         Command::Launch(launch) => return Err(launch.become_program()),
         Command::KillUser => kill::own_user()?,
-        Command::Js { tree } => return Ok(run_engine(&mut js::engine(), &tree)),
+        Command::Js { tree, file: None } => return Ok(run_engine(&mut js::engine(), &tree)),
+        Command::Js {
+            tree,
+            file: Some(file),
+        } => js::run_alone(&file, &tree)?,
     }
     Ok(ExitCode::SUCCESS)
 }

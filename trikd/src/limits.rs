@@ -6,6 +6,28 @@
 pub const PORT_NAME_BYTES: usize = 32;
 /// Bytes of one value of the tree: 360 distances of a lidar fit.
 pub const VALUE_BYTES: usize = 4096;
+/// Memory of one engine of JavaScript; each thread of a program has one.
+pub const JS_MEMORY_BYTES: usize = 64 << 20;
+/// Depth of calls in JavaScript, as bytes of the stack.
+pub const JS_STACK_BYTES: usize = 1 << 20;
+/// What an engine's thread has beyond that, for the functions of the host and for the depth between two checks.
+pub const JS_STACK_SPARE_BYTES: usize = 1 << 20;
+/// Threads of one JavaScript program at once.
+pub const JS_THREADS: usize = 16;
+/// Timers of one engine.
+pub const JS_TIMERS: usize = 256;
+/// Messages, of robots or between threads, that wait for a program; the oldest go first.
+pub const JS_MESSAGES: usize = 256;
+/// Events that wait for one engine; further ones are lost.
+pub const JS_EVENTS: usize = 1024;
+/// Bytes of a program, and of a file that it includes or reads.
+pub const JS_FILE_BYTES: u64 = 16 << 20;
+/// Frames of a backtrace that are shown.
+pub const JS_FRAMES: usize = 16;
+/// Characters of the text of an error.
+pub const JS_ERROR_CHARACTERS: usize = 2000;
+/// Milliseconds that threads have to end when the program is over.
+pub const JS_END_MS: u64 = 100;
 /// Bytes of the count in front of a frame, with what stands before its colon.
 pub const FRAME_HEADER_BYTES: usize = 1024;
 /// Bytes of one frame on the control port: the greatest upload.

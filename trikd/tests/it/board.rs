@@ -234,3 +234,30 @@ fn a_gamepad_reaches_the_tree_and_a_tree_that_leaves_is_told() {
     process.wait().expect("an end");
     drop(robot);
 }
+
+#[test]
+fn a_program_in_javascript_drives_and_hears_the_gamepad() {
+    let Some(board) = virtual_robot() else { return };
+    let mut client = board.robot.client("control");
+    client.send(
+        "directScript:var before = brick.encoder(E3).read();\n\
+         brick.motor(M3).setPower(60); brick.motor(M4).setPower(60);\n\
+         while (brick.encoder(E3).read() - before < 90) script.wait(5);\n\
+         print(brick.motor(M3).power(), ' ', brick.sensor(A1).read() >= 0, ' ', brick.keys().wasPressed(KeysEnum.Up));\n\
+         gamepad.pad.connect(function(pad, x, y) { print(pad, ' ', gamepad.padX(pad), ' ', y); });\n\
+         gamepad.button.connect(function(number) { print('button ', number); script.quit(); });\n\
+         print('listens'); script.run()",
+    );
+    assert_eq!(client.until("print: "), "print: 60 true false\n");
+    client.expect("print: listens\n");
+    std::fs::write(
+        board.up.devices.join("control/gamepad"),
+        "pad 1 20 -30\nbtn 3\n",
+    )
+    .unwrap();
+    assert_eq!(client.until("print: "), "print: 1 20 -30\n");
+    client.expect("print: button 3\n");
+    eventually("rest at the end of the program", || {
+        number(&board.robot, "motors/M3/value") == Some(0)
+    });
+}

@@ -15,6 +15,10 @@ mod documents;
 mod frames;
 /// Gamepads.
 mod gamepad;
+/// Programs in JavaScript.
+mod javascript;
+/// JavaScript under the daemon, hostile programs, and what its document says.
+mod javascript_served;
 /// Several robots.
 mod mailbox;
 /// Programs: how they are run, what they say, how they end.

@@ -1,0 +1,231 @@
+// What every engine begins with: signals, timers, the wait in which they happen, print and script.
+//
+// A function of `native`, the functions that the host gives (js/natives.rs). Everything that a program sees is a
+// property of the global object that is not enumerable, so that enumerable ones are the program's own.
+(function (native) {
+'use strict';
+
+const kit = { native };
+const hold = (name, value) => Object.defineProperty(globalThis, name, { value, writable: true, configurable: true });
+kit.hold = hold;
+
+// A text as it may leave the engine: halves of characters are replaced.
+const text = (value) => String(value).toWellFormed();
+kit.text = text;
+
+// A thing that the robot does not have: programs go on, and a person is told once.
+const told = new Set();
+kit.absent = (what, why) => {
+    if (!told.has(what)) {
+        told.add(what);
+        native.info(text(`${what}: ${why}`));
+    }
+};
+// The same where going on would need a value that nobody has.
+kit.refuse = (what, why) => { throw new TypeError(`${what}: ${why}`); };
+
+class Signal {
+    // `started` is called before the first connection.
+    constructor(started) { this._started = started; this._slots = []; }
+    _slot(first, second) {
+        const [self, slot] = second === undefined ? [undefined, first] : [first, second];
+        const called = typeof slot === 'string' && self ? self[slot] : slot;
+        if (typeof called !== 'function')
+            throw new TypeError('Function.prototype.connect: target is not a function');
+        return { self, called };
+    }
+    connect(first, second) {
+        const slot = this._slot(first, second);
+        if (this._started) {
+            this._started();
+            this._started = undefined;
+        }
+        this._slots.push(slot);
+    }
+    disconnect(first, second) {
+        if (first === undefined) {
+            this._slots = [];
+            return;
+        }
+        const slot = this._slot(first, second);
+        const index = this._slots.findIndex((other) => other.self === slot.self && other.called === slot.called);
+        if (index < 0)
+            throw new TypeError('Function.prototype.disconnect: the function is not connected');
+        this._slots.splice(index, 1);
+    }
+}
+kit.Signal = Signal;
+kit.emit = (signal, ...values) => {
+    for (const slot of [...signal._slots])
+        slot.called.apply(slot.self, values);
+};
+// A signal that would never come says so when somebody wants it.
+kit.never = (what, why) => new Signal(() => kit.refuse(what, why));
+
+const timers = new Set();
+class Timer {
+    constructor(ms) {
+        this.timeout = new Signal();
+        this.singleShot = false;
+        this.interval = 0;
+        this._due = Infinity;
+        this._busy = false;
+        this.start(ms);
+    }
+    get active() { return timers.has(this); }
+    isActive() { return this.active; }
+    setInterval(ms) {
+        this.interval = Math.max(0, Number(ms) || 0);
+        if (this.active)
+            this._due = native.clock() + this.interval;
+    }
+    setSingleShot(on) { this.singleShot = Boolean(on); }
+    start(ms) {
+        if (ms !== undefined)
+            this.interval = Math.max(0, Number(ms) || 0);
+        if (!this.active && timers.size >= native.timersMax)
+            throw new RangeError(`more than ${native.timersMax} timers: stop those that are no longer needed`);
+        timers.add(this);
+        this._due = native.clock() + this.interval;
+    }
+    stop() { timers.delete(this); }
+}
+kit.Timer = Timer;
+function fire(timer) {
+    if (timer.singleShot)
+        timer.stop();
+    // A period of 0 is one of 1 ms: others want to run as well.
+    timer._due = Math.max(native.clock(), timer._due + Math.max(1, timer.interval));
+    // Its own function may wait, and is not entered twice.
+    timer._busy = true;
+    try {
+        kit.emit(timer.timeout);
+    } finally {
+        timer._busy = false;
+    }
+}
+
+// Functions by the source of what happened.
+const sources = new Map();
+kit.onEvent = (source, handler) => { sources.set(source, handler); };
+
+// What a stream has brought is noted at once, also when a program asks; functions that are connected are called only
+// while it waits, one event after the other.
+const pending = [], PENDING_MAX = 1024;
+kit.onRecord = (source, note, tell) => {
+    sources.set(source, (record) => {
+        note(record);
+        tell(record);
+    });
+    return () => {
+        for (const record of native.drain(source)) {
+            note(record);
+            pending.push(() => tell(record));
+        }
+        pending.splice(0, pending.length - PENDING_MAX);
+    };
+};
+
+// Until a time of native.clock(): at most one event and one timer, whatever comes first; also returns when something
+// may have changed that was waited for.
+function step(until) {
+    let next = null;
+    for (const timer of timers) {
+        if (!timer._busy && (next === null || timer._due < next._due))
+            next = timer;
+    }
+    const due = next === null ? until : Math.min(until, next._due);
+    const event = native.next(pending.length > 0 ? 0 : due);
+    if (pending.length > 0) {
+        // Those came before the event.
+        if (event !== null)
+            pending.push(() => sources.get(event[0])?.(event[1], event[2]));
+        pending.shift()();
+    } else if (event !== null) {
+        const handler = sources.get(event[0]);
+        if (handler)
+            handler(event[1], event[2]);
+    }
+    if (next !== null && timers.has(next) && !next._busy && next._due <= native.clock())
+        fire(next);
+}
+kit.step = step;
+kit.wait = (ms) => {
+    const end = native.clock() + Math.max(0, Number(ms) || 0);
+    do step(end); while (native.clock() < end);
+};
+// Until the condition gives something.
+kit.until = (condition) => {
+    for (;;) {
+        const value = condition();
+        if (value !== undefined)
+            return value;
+        step(Infinity);
+    }
+};
+
+function printed(value) {
+    return Array.isArray(value) ? `[${value.map(printed).join(', ')}]` : String(value);
+}
+hold('print', (...values) => native.print(text(values.map(printed).join('') + '\n')));
+hold('include', (file) => native.include(text(file)));
+
+const noPhoto = () => kit.refuse('getPhoto', 'pictures of the camera are not in the tree');
+hold('getPhoto', noPhoto);
+
+hold('script', {
+    wait(ms) { kit.wait(ms); },
+    time() { return Date.now(); },
+    timeInterval(first, second) { return (Number(second) - Number(first)) & 0x7fffffff; },
+    random(a, b) {
+        const least = Math.ceil(Math.min(a, b)), most = Math.floor(Math.max(a, b));
+        return least + Math.floor(Math.random() * (most - least + 1));
+    },
+    timer(ms) { return new Timer(ms); },
+    repeat(ms, called) {
+        const timer = new Timer(ms);
+        timer.timeout.connect(called);
+        return timer;
+    },
+    run() { native.run(); },
+    quit() { native.quit(); },
+    system(command, synchronously) { return native.system(text(command), Boolean(synchronously)); },
+    writeToFile(file, what) { native.append(text(file), text(what)); },
+    writeData(file, bytes) { native.appendBytes(text(file), Array.from(bytes, (byte) => byte & 0xff)); },
+    readAll(file) { return native.readAll(text(file)); },
+    removeFile(file) { native.remove(text(file)); },
+    getPhoto: noPhoto,
+    reset() { timers.clear(); },
+});
+
+Object.defineProperty(String.prototype, 'format', {
+    value(...values) {
+        return this.replace(/\{(\d+)\}/g, (match, index) => values[index] === undefined ? match : values[index]);
+    },
+    writable: true,
+    configurable: true,
+});
+
+// Variables for web pages, all as texts.
+hold('web', {});
+kit.onEvent('web', () => {
+    const shown = {};
+    for (const name in Object(globalThis.web))
+        shown[name] = printed(globalThis.web[name]);
+    native.web(text(JSON.stringify(shown)));
+});
+kit.onEvent('direct', native.direct);
+
+// For ever; ends when native.next() throws because the program ends, or when a function of a program fails.
+kit.loop = (survives) => {
+    for (;;) {
+        try {
+            step(Infinity);
+        } catch (error) {
+            if (!survives || !native.survive(error))
+                throw error;
+        }
+    }
+};
+return kit;
+})

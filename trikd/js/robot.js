@@ -1,0 +1,318 @@
+// brick: the robot by the names of its ports.
+(function (kit) {
+'use strict';
+
+const { native, Signal, emit, absent, refuse, never } = kit;
+const NO_DISPLAY = 'the display is not in the tree; nothing is shown';
+const port = kit.text;
+
+// An object for each port; null where nothing is plugged in, which is asked again the next time.
+function plugged(find, make) {
+    const known = new Map();
+    return (name) => {
+        const found = known.get(name);
+        if (found !== undefined)
+            return found;
+        const handle = find(port(name));
+        if (handle < 0)
+            return null;
+        const made = make(handle);
+        known.set(name, made);
+        return made;
+    };
+}
+
+class Motor {
+    constructor(handle) { this._handle = handle; }
+    setPower(power) { native.motorSet(this._handle, Number(power)); }
+    power() { return native.motorGet(this._handle); }
+    powerOff() { native.motorOff(this._handle); }
+    brake(ms = 500) {
+        native.motorBrake(this._handle);
+        kit.wait(ms);
+        native.motorOff(this._handle);
+    }
+    setPeriod() { absent('motor.setPeriod', 'the tree sets the period of pulses by the type of the motor; nothing is changed'); }
+}
+
+class Sensor {
+    constructor(handle) { this._handle = handle; }
+    read() { return native.sensorRead(this._handle); }
+    readRawData() { return native.sensorRaw(this._handle); }
+}
+
+class Encoder {
+    constructor(handle) { this._handle = handle; }
+    read() { return native.encoderRead(this._handle); }
+    readRawData() { return native.encoderRaw(this._handle); }
+    reset() { native.encoderReset(this._handle); }
+}
+
+// Values of a sensor that is looked at 50 times a second while somebody is connected.
+const LOOK_MS = 20;
+function watched(read) {
+    const signal = new Signal(() => {
+        const timer = new kit.Timer(LOOK_MS);
+        timer.timeout.connect(() => emit(signal, read(), Date.now()));
+    });
+    return signal;
+}
+
+const accelerometer = { read() { return native.vector('accelerometer'); } };
+accelerometer.newData = watched(accelerometer.read);
+accelerometer.readRawData = () => native.vectorRaw('accelerometer');
+
+const HALF_TURN = 180000, HEADING = 6;
+const NO_CALIBRATION = 'the gyroscope calibrates itself whenever the robot rests; its bias stands in the robot file';
+let forward = 0, calibratedAt = 0;
+const gyroscope = {
+    read() {
+        const values = native.vector('gyroscope');
+        const turned = values[HEADING] - forward;
+        values[HEADING] = turned - 2 * HALF_TURN * Math.round(turned / (2 * HALF_TURN));
+        return values;
+    },
+    readRawData() { return native.vectorRaw('gyroscope'); },
+    // The tree measures the bias by itself; what is left is where forward is.
+    calibrate(ms) {
+        const timer = new kit.Timer(ms);
+        calibratedAt = native.clock() + timer.interval;
+        timer.singleShot = true;
+        timer.timeout.connect(() => {
+            forward = native.vector('gyroscope')[HEADING];
+            emit(gyroscope.calibrationFinished);
+        });
+    },
+    isCalibrated() {
+        if (native.clock() < calibratedAt)
+            return false;
+        return native.isReady('gyroscope');
+    },
+    getCalibrationValues() { return refuse('gyroscope.getCalibrationValues', NO_CALIBRATION); },
+    setCalibrationValues() { return refuse('gyroscope.setCalibrationValues', NO_CALIBRATION); },
+    calibrationFinished: new Signal(),
+};
+gyroscope.newData = watched(() => gyroscope.read());
+
+const KEY_ORDER = [116, 103, 1, 105, 106, 108, 28];
+const KEYS_DEVICE = 'keys/device';
+const keyState = KEY_ORDER.map(() => 0), latched = new Set(), codes = [], CODES_MAX = 64;
+const toldState = [...keyState];
+function changed(state, values, happened) {
+    values.forEach((value, index) => {
+        if (value !== state[index]) {
+            state[index] = value;
+            happened(KEY_ORDER[index], value);
+        }
+    });
+}
+function press(code, value) {
+    if (value) {
+        latched.add(code);
+        codes.push(code);
+        codes.splice(0, codes.length - CODES_MAX);
+    }
+}
+const drainKeys = kit.onRecord(KEYS_DEVICE,
+    (values) => changed(keyState, values, press),
+    (values) => changed(toldState, values, (code, value) => emit(keys.buttonPressed, code, value)));
+const listenToKeys = () => native.listen(KEYS_DEVICE, KEY_ORDER.length);
+function newestKeys() {
+    listenToKeys();
+    drainKeys();
+}
+const keys = {
+    buttonPressed: new Signal(listenToKeys),
+    wasPressed(code) {
+        newestKeys();
+        return latched.delete(Number(code));
+    },
+    isPressed(code) { return native.keyPressed(Number(code)); },
+    buttonCode(wait = true) {
+        newestKeys();
+        if (wait)
+            kit.until(() => codes.length > 0 || undefined);
+        return codes.length > 0 ? codes.shift() : -1;
+    },
+    reset() {
+        newestKeys();
+        latched.clear();
+        codes.length = 0;
+    },
+};
+
+const led = {
+    red() { native.led(false, true); },
+    green() { native.led(true, false); },
+    orange() { native.led(true, true); },
+    off() { native.led(false, false); },
+};
+const battery = {
+    readVoltage() { return native.voltage(); },
+    readRawDataVoltage() { return native.rawVoltage(); },
+};
+
+const display = {};
+for (const name of ['addLabel', 'removeLabels', 'showImage', 'show', 'drawLine', 'drawPoint', 'drawRect', 'drawEllipse',
+    'drawArc', 'setPainterColor', 'setPainterWidth', 'setBackground', 'redraw', 'clear', 'hide', 'reset'])
+    display[name] = () => absent(`display.${name}`, NO_DISPLAY);
+
+const DETECT_MS = 3000, DETECT_LOOK_MS = 20;
+class Camera {
+    constructor(name) {
+        this._name = name;
+        this.stopped = new Signal();
+    }
+    init(show = false) { native.cameraStart(this._name, Boolean(show)); }
+    stop() {
+        native.cameraStop(this._name);
+        emit(this.stopped);
+    }
+    read() { return native.cameraRead(this._name); }
+}
+class Detector extends Camera {
+    // Measures the colour in the middle of the picture and looks for it from then on.
+    detect() {
+        const before = String(this.getDetectParameters());
+        native.cameraDetect(this._name);
+        const end = native.clock() + DETECT_MS;
+        let measured = [];
+        while (native.clock() < end) {
+            kit.wait(DETECT_LOOK_MS);
+            measured = this.getDetectParameters();
+            if (String(measured) !== before)
+                break;
+        }
+        if (measured.length === 0)
+            throw new Error(`${this._name} sensor: no answer to detect() in ${DETECT_MS} ms: was init() called before?`);
+        native.cameraLookFor(this._name, measured);
+    }
+    getDetectParameters() { return native.cameraDetected(this._name); }
+}
+const cell = (values, row, column, what) => {
+    const side = Math.round(Math.sqrt(values.length));
+    if (!(row >= 1 && row <= side && column >= 1 && column <= side))
+        throw new RangeError(`${what} has cells 1 to ${side}, not ${row}, ${column}`);
+    return values[(Math.trunc(row) - 1) * side + Math.trunc(column) - 1];
+};
+class Colors extends Camera {
+    read(row = 1, column = 1) {
+        const values = native.cameraRead(this._name);
+        const color = values.length < 4 ? 0 : cell(values, row, column, 'colorSensor');
+        return [color >> 16 & 255, color >> 8 & 255, color & 255];
+    }
+}
+const cameras = new Map();
+const camera = (name, Kind) => () => {
+    if (!cameras.has(name) && native.hasCamera(name))
+        cameras.set(name, new Kind(name));
+    return cameras.get(name) ?? null;
+};
+
+const NO_PICTURE = 'pictures are not in the tree';
+const irCamera = {
+    init() { native.values('ir_camera'); },
+    stop() {},
+    readSensor(row, column) { return cell(native.values('ir_camera'), row, column, 'irCamera'); },
+    getImage() { return refuse('irCamera.getImage', NO_PICTURE); },
+    imageUpdated: never('irCamera.imageUpdated', NO_PICTURE),
+    sensorUpdated: never('irCamera.sensorUpdated', 'the tree tells no changes of the infrared camera; use a timer'),
+    stopped: never('irCamera.stopped', 'the infrared camera does not stop'),
+};
+const lidar = { read() { return native.values('lidar'); } };
+
+class Fifo {
+    constructor(path) {
+        this._lines = [];
+        this.newLine = new Signal();
+        this.newData = new Signal();
+        this._newest = kit.onRecord(path, (line) => this._lines.push(line), (line) => {
+            emit(this.newLine, line);
+            emit(this.newData, Array.from(line, (character) => character.charCodeAt(0)));
+        });
+        native.listen(path, 0);
+    }
+    read() {
+        this._newest();
+        return kit.until(() => this._lines.shift());
+    }
+    readRaw() {
+        this._newest();
+        return Array.from(this._lines.splice(0).join('\n'), (character) => character.charCodeAt(0));
+    }
+    hasLine() {
+        this._newest();
+        return this._lines.length > 0;
+    }
+    hasData() { return this.hasLine(); }
+}
+const fifos = new Map();
+
+const configurable = ['lineSensor', 'objectSensor', 'colorSensor'];
+const NO_BUS = 'raw transfers on a bus are not in the tree; describe the device in the robot file and read its node';
+const NO_EVENTS = 'raw input devices are not in the tree; keys and gamepad are brick.keys() and gamepad';
+kit.hold('brick', {
+    motor: plugged(native.motor, (handle) => new Motor(handle)),
+    sensor: plugged(native.sensor, (handle) => new Sensor(handle)),
+    encoder: plugged(native.encoder, (handle) => new Encoder(handle)),
+    keys() { return keys; },
+    display() { return display; },
+    led() { return led; },
+    battery() { return battery; },
+    accelerometer() { return native.has('accelerometer') ? accelerometer : null; },
+    gyroscope() { return native.has('gyroscope') ? gyroscope : null; },
+    lineSensor: camera('line', Detector),
+    objectSensor: camera('object', Detector),
+    colorSensor: camera('color', Colors),
+    soundSensor() { return refuse('brick.soundSensor', 'the microphones are not in the tree'); },
+    lidar() { return native.has('lidar') ? lidar : null; },
+    irCamera() { return native.has('ir_camera') ? irCamera : null; },
+    getStillImage() { return refuse('brick.getStillImage', NO_PICTURE); },
+    pwmCapture() { return refuse('brick.pwmCapture', 'pulses that are measured are not in the tree'); },
+    fifo(name) {
+        const path = `${port(name)}/device`;
+        if (!fifos.has(path) && native.isNode(port(name)))
+            fifos.set(path, new Fifo(path));
+        return fifos.get(path) ?? null;
+    },
+    eventDevice() { return refuse('brick.eventDevice', NO_EVENTS); },
+    stopEventDevice() { return refuse('brick.stopEventDevice', NO_EVENTS); },
+    i2c() { return refuse('brick.i2c', NO_BUS); },
+    smBusI2c() { return refuse('brick.smBusI2c', NO_BUS); },
+    gamepad() { return globalThis.gamepad; },
+    marker() { return null; },
+    configure(name, type) {
+        if (!configurable.includes(type))
+            absent(`brick.configure of ${name}`, 'the robot file says what is plugged in; nothing is changed');
+    },
+    playSound(file) { native.playSound(kit.text(file)); },
+    playTone(hz, ms) {
+        if (hz >= 0 && ms >= 0)
+            absent('brick.playTone', 'the board has no program that plays tones; nothing is heard');
+    },
+    say(text) { native.say(kit.text(text)); },
+    stop() {
+        native.stop();
+        emit(this.stopped);
+    },
+    reset() {
+        native.stop();
+        keys.reset();
+        emit(this.resetCompleted);
+    },
+    motorPorts(type) {
+        const all = { powerMotor: ['motors'], servoMotor: ['servos'] }[type] ?? ['motors', 'servos'];
+        return all.flatMap((group) => native.ports(group));
+    },
+    sensorPorts(type) {
+        const begins = { analogSensor: 'A', digitalSensor: 'D', rangeSensor: 'D' }[type] ?? '';
+        return native.ports('sensors').filter((name) => name.startsWith(begins));
+    },
+    encoderPorts() { return native.ports('encoders'); },
+    pwmCapturePorts() { return []; },
+    smile() { absent('brick.smile', NO_DISPLAY); },
+    sadSmile() { absent('brick.sadSmile', NO_DISPLAY); },
+    stopped: new Signal(),
+    resetCompleted: new Signal(),
+});
+})

@@ -1,0 +1,188 @@
+//! A failure of a program, taken from the engine: what it says and where it was.
+//!
+//! Owns how an exception becomes the text that a person reads. `wording` has the words of the old dialect.
+
+use super::machine::{OWN, PROGRAM};
+use super::wording;
+use crate::limits;
+use rquickjs::{Coerced, Ctx, Error, Exception, FromJs, Value};
+use std::fmt::Write;
+
+/// How the engine names a text that is in no file.
+const INPUT: &str = "<input>";
+
+/// One function that was being executed.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct Frame {
+    /// Its name; empty for the text of the program itself.
+    pub function: String,
+    /// The file, as it was named when it was evaluated.
+    pub file: String,
+    /// Line and column, from 1.
+    pub line: u32,
+    /// See `line`.
+    pub column: u32,
+}
+
+/// What was thrown.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct Failure {
+    /// `ReferenceError: Can't find variable: foo`.
+    exception: String,
+    /// The innermost first; without our own.
+    frames: Vec<Frame>,
+}
+
+/// `    at name (file:3:10)`, `    at file:3:10`.
+fn frame(line: &str) -> Option<Frame> {
+    let line = line.trim().strip_prefix("at ")?;
+    let (function, place) = match line
+        .strip_suffix(')')
+        .and_then(|line| line.rsplit_once(" ("))
+    {
+        Some((function, place)) => (function, place),
+        None => ("", line),
+    };
+    let mut parts = place.rsplitn(3, ':');
+    let column = parts.next()?.parse().ok()?;
+    let line = parts.next()?.parse().ok()?;
+    Some(Frame {
+        function: match function {
+            "<eval>" => String::new(),
+            name => name.to_owned(),
+        },
+        file: parts.next()?.to_owned(),
+        line,
+        column,
+    })
+}
+
+/// The value of `a.b` in the global scope as a text, unless it is a function or cannot be known.
+fn global_value(ctx: &Ctx<'_>, path: &str) -> Option<String> {
+    let mut is_first = true;
+    let mut value = ctx.globals().into_value();
+    for name in path.split('.') {
+        let object = value.into_object()?;
+        // What is no property may be a variable of a function.
+        if is_first && !object.contains_key(name).ok()? {
+            return None;
+        }
+        is_first = false;
+        value = object.get(name).ok()?;
+    }
+    (!value.is_function()).then(|| text(ctx, value))
+}
+
+fn text<'js>(ctx: &Ctx<'js>, value: Value<'js>) -> String {
+    let text = Coerced::<String>::from_js(ctx, value);
+    text.map(|text| shortened(text.0)).unwrap_or_else(|_| {
+        // Its own toString() throws; that exception is nobody's.
+        ctx.catch();
+        "something that has no text".to_owned()
+    })
+}
+
+/// The line of the program that a frame names, and the place in it.
+fn place<'a>(frame: &Frame, program: &'a str) -> Option<wording::Place<'a>> {
+    let from_zero = |number: u32| usize::try_from(number).ok()?.checked_sub(1);
+    (frame.file == PROGRAM).then_some(())?;
+    Some(wording::Place {
+        line: program.lines().nth(from_zero(frame.line)?)?,
+        column: from_zero(frame.column).unwrap_or(0),
+    })
+}
+
+impl Failure {
+    /// Of what was thrown while this text was evaluated, or functions that it has made.
+    pub fn new<'js>(ctx: &Ctx<'js>, thrown: Value<'js>, program: &str) -> Self {
+        let exception = thrown
+            .clone()
+            .into_object()
+            .and_then(Exception::from_object);
+        let Some(exception) = exception else {
+            return Self {
+                exception: text(ctx, thrown),
+                frames: Vec::new(),
+            };
+        };
+        let field = |name: &str| match exception.as_object().get::<_, Value<'js>>(name) {
+            Ok(value) if !value.is_undefined() => text(ctx, value),
+            Ok(_) => String::new(),
+            Err(_) => {
+                ctx.catch();
+                String::new()
+            }
+        };
+        let (name, message) = (field("name"), field("message"));
+        let stack = exception.stack().unwrap_or_default();
+        let mut frames: Vec<_> = stack
+            .lines()
+            .filter_map(frame)
+            .filter(|frame| !frame.file.starts_with(OWN))
+            .collect();
+        // The text that JSON.parse() or eval() was given is no file.
+        if frames.len() > 1 && frames[0].file == INPUT {
+            frames.remove(0);
+        }
+        let place = frames.first().and_then(|frame| place(frame, program));
+        let message = wording::message(&name, &message, place, |path| global_value(ctx, path));
+        Self {
+            exception: match (name.as_str(), message.as_str()) {
+                ("", message) => message.to_owned(),
+                (name, "") => name.to_owned(),
+                (name, message) => format!("{name}: {message}"),
+            },
+            frames,
+        }
+    }
+
+    /// Of what a call into the engine gave.
+    pub fn of(ctx: &Ctx<'_>, error: &Error, program: &str) -> Self {
+        if error.is_exception() {
+            return Self::new(ctx, ctx.catch(), program);
+        }
+        Self {
+            exception: format!("Error: {error}"),
+            frames: Vec::new(),
+        }
+    }
+
+    /// As it is shown for a program: the line, the exception, the backtrace.
+    pub fn of_program(&self) -> String {
+        let exception = &self.exception;
+        let Some(innermost) = self.frames.first() else {
+            return exception.clone();
+        };
+        let mut shown = match innermost.file.as_str() {
+            PROGRAM => format!("Line {}: {exception}", innermost.line),
+            file => format!("Line {} of {file}: {exception}", innermost.line),
+        };
+        for frame in self.frames.iter().take(limits::JS_FRAMES) {
+            let name = match frame.function.as_str() {
+                "" => "<global>",
+                name => name,
+            };
+            let _ = match frame.file.as_str() {
+                PROGRAM => write!(shown, "\n{name}() at {}", frame.line),
+                file => write!(shown, "\n{name}() at {file}:{}", frame.line),
+            };
+        }
+        if self.frames.len() > limits::JS_FRAMES {
+            shown.push_str("\n...");
+        }
+        shown
+    }
+
+    /// As it is shown for a direct text: the exception alone.
+    pub fn of_direct(&self) -> String {
+        self.exception.clone()
+    }
+}
+
+fn shortened(mut text: String) -> String {
+    if let Some((at, _)) = text.char_indices().nth(limits::JS_ERROR_CHARACTERS) {
+        text.truncate(at);
+        text.push_str("...");
+    }
+    text
+}

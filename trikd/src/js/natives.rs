@@ -1,0 +1,185 @@
+//! The functions that our scripts in JavaScript stand on: what cannot be said in the language itself.
+//!
+//! Owns what one engine has beside its values. `robot` has the functions over the tree, `system` those over files,
+//! processes and other threads.
+
+pub mod robot;
+pub mod system;
+
+use super::events::{Record, Streams};
+use super::failure::Failure;
+use super::machine::run_jobs;
+use super::shared::{Event, Shared, Slot};
+use crate::brick::Brick;
+use crate::limits;
+use rquickjs::{Array, Ctx, Exception, Function, IntoJs, Object, Value};
+use std::cell::{Cell, RefCell};
+use std::rc::Rc;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// What an engine has.
+pub struct Own {
+    /// The robot.
+    pub brick: Brick,
+    /// The program.
+    pub shared: Arc<Shared>,
+    /// Its own slot in it.
+    pub slot: Arc<Slot>,
+    /// Whether it lives on after its text.
+    pub events: Cell<bool>,
+    /// A promise that failed and nobody looked.
+    pub lost: RefCell<Option<Failure>>,
+    text: Arc<str>,
+    streams: Streams,
+    began: Instant,
+}
+
+impl Own {
+    /// For one thread of a program with this text.
+    pub fn new(brick: Brick, shared: Arc<Shared>, slot: Arc<Slot>, text: &Arc<str>) -> Self {
+        Self {
+            brick,
+            shared,
+            slot,
+            events: Cell::new(false),
+            lost: RefCell::default(),
+            text: text.clone(),
+            streams: Streams::default(),
+            began: Instant::now(),
+        }
+    }
+
+    fn clock_ms(&self) -> f64 {
+        self.began.elapsed().as_secs_f64() * 1000.0
+    }
+
+    /// None: for ever.
+    fn instant(&self, at_ms: f64) -> Option<Instant> {
+        let seconds = Duration::try_from_secs_f64(at_ms / 1000.0).ok()?;
+        self.began.checked_add(seconds)
+    }
+}
+
+/// An exception with a message.
+pub fn failed(ctx: &Ctx<'_>, message: &str) -> rquickjs::Error {
+    Exception::throw_message(ctx, message)
+}
+
+/// Puts a function into the object.
+pub fn put<'js, P, F>(object: &Object<'js>, name: &str, function: F) -> rquickjs::Result<()>
+where
+    F: rquickjs::function::IntoJsFunc<'js, P> + 'js,
+{
+    let function = Function::new(object.ctx().clone(), function)?;
+    object.set(name, function)
+}
+
+/// The object with all of them.
+///
+/// # Errors
+/// No memory.
+pub fn make<'js>(ctx: &Ctx<'js>, own: &Rc<Own>) -> rquickjs::Result<Object<'js>> {
+    let native = Object::new(ctx.clone())?;
+    native.set("timersMax", limits::JS_TIMERS)?;
+    events(&native, own)?;
+    robot::install(&native, own)?;
+    system::install(&native, own)?;
+    Ok(native)
+}
+
+fn events<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
+    let with = || own.clone();
+    let o = with();
+    put(native, "clock", move || o.clock_ms())?;
+    let o = with();
+    put(native, "next", move |ctx: Ctx<'js>, until_ms: f64| {
+        next(&ctx, &o, until_ms)
+    })?;
+    let o = with();
+    put(
+        native,
+        "listen",
+        move |ctx: Ctx<'js>, path: String, numbers: usize| {
+            o.streams
+                .listen(&o.brick, &path, numbers)
+                .map_err(|error| robot::unreadable(&ctx, &o.brick, &path, &error))
+        },
+    )?;
+    let o = with();
+    put(native, "tryListen", move |path: String, numbers: usize| {
+        o.streams.listen(&o.brick, &path, numbers).is_ok()
+    })?;
+    let o = with();
+    put(native, "drain", move |ctx: Ctx<'js>, path: String| {
+        let all = Array::new(ctx.clone())?;
+        for (index, record) in o.streams.drain(&path).into_iter().enumerate() {
+            all.set(index, value(&ctx, record)?)?;
+        }
+        Ok::<_, rquickjs::Error>(all)
+    })?;
+    let o = with();
+    put(native, "mentions", move |word: String| {
+        o.text.contains(&word)
+    })?;
+    let o = with();
+    put(native, "run", move || {
+        if !o.events.replace(true) {
+            o.shared.say(|output| output.events());
+        }
+    })?;
+    let o = with();
+    put(native, "quit", move || o.shared.quit(Some(&o.slot)))
+}
+
+fn value<'js>(ctx: &Ctx<'js>, record: Record) -> rquickjs::Result<Value<'js>> {
+    match record {
+        Record::Numbers(numbers) => numbers.into_js(ctx),
+        Record::Line(line) => line.into_js(ctx),
+    }
+}
+
+/// A source and what it gives.
+fn event<'js, const N: usize>(
+    ctx: &Ctx<'js>,
+    source: &str,
+    values: [Value<'js>; N],
+) -> rquickjs::Result<Value<'js>> {
+    let event = Array::new(ctx.clone())?;
+    event.set(0, source)?;
+    for (index, value) in values.into_iter().enumerate() {
+        event.set(index + 1, value)?;
+    }
+    Ok(event.into_value())
+}
+
+/// The next event as its source and values, null when the time has come or something has changed. Throws when the
+/// program is to end.
+fn next<'js>(ctx: &Ctx<'js>, own: &Own, until_ms: f64) -> rquickjs::Result<Value<'js>> {
+    let until = own.instant(until_ms);
+    let mut woken = false;
+    loop {
+        run_jobs(ctx);
+        if own.slot.stops() || own.shared.quits() {
+            return Err(failed(ctx, "the program ends"));
+        }
+        if let Some(told) = own.slot.next() {
+            return match told {
+                Event::Mail(hull, text) => {
+                    event(ctx, "mail", [hull.into_js(ctx)?, text.into_js(ctx)?])
+                }
+                Event::Direct(text) => event(ctx, "direct", [text.into_js(ctx)?]),
+                Event::Web => event(ctx, "web", []),
+            };
+        }
+        if let Some((path, record)) = own.streams.next() {
+            return event(ctx, &path, [value(ctx, record)?]);
+        }
+        if woken {
+            return Ok(Value::new_null(ctx.clone()));
+        }
+        let waited = own.streams.wait(&own.slot, until);
+        waited.map_err(|error| failed(ctx, &format!("nothing can be waited for: {error}")))?;
+        woken = true;
+    }
+}

@@ -1,0 +1,208 @@
+//! Output, files, processes, the mailbox and other threads for our scripts.
+//!
+//! Owns what a program may do beside its robot: everything that the user of programs may, and no more.
+
+use super::{Own, failed, put};
+use crate::js::failure::Failure;
+use crate::js::machine::{Job, Kind, evaluate};
+use crate::js::read_text;
+use rquickjs::{Ctx, Error, Object, Value};
+use std::fs::OpenOptions;
+use std::io::{self, Write};
+use std::process::{Command, Stdio};
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// The functions around the robot.
+///
+/// # Errors
+/// No memory.
+pub fn install<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
+    output(native, own)?;
+    texts(native, own)?;
+    files(native, own)?;
+    mailbox(native, own)?;
+    threads(native, own)
+}
+
+fn output<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
+    let o = own.clone();
+    put(native, "print", move |text: String| {
+        o.shared.say(|output| output.print(&text));
+    })?;
+    let o = own.clone();
+    put(native, "info", move |text: String| {
+        o.shared.say(|output| output.info(&text));
+    })?;
+    let o = own.clone();
+    put(native, "web", move |json: String| {
+        o.shared.say(|output| output.web(&json));
+    })
+}
+
+/// Texts of programs that come later.
+fn texts<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
+    let o = own.clone();
+    put(native, "include", move |ctx: Ctx<'js>, file: String| {
+        let path = o.shared.folder.join(&file);
+        let text =
+            read_text(&path).map_err(|reason| failed(&ctx, &format!("include: {reason}")))?;
+        evaluate(&ctx, &text, &file).map(drop)
+    })?;
+    let o = own.clone();
+    put(native, "direct", move |ctx: Ctx<'js>, text: String| {
+        let failure = match evaluate(&ctx, &text, crate::js::machine::PROGRAM) {
+            Ok(_) => {
+                super::run_jobs(&ctx);
+                o.lost.borrow_mut().take()
+            }
+            Err(error) => Some(Failure::of(&ctx, &error, &text)),
+        };
+        if let Some(failure) = failure {
+            survive(&o, &failure);
+        }
+    })?;
+    let o = own.clone();
+    put(
+        native,
+        "survive",
+        move |ctx: Ctx<'js>, error: Value<'js>| survive(&o, &Failure::new(&ctx, error, &o.text)),
+    )
+}
+
+/// Tells a failure that ends nothing; false when the program is to end.
+fn survive(own: &Own, failure: &Failure) -> bool {
+    let lives = !own.slot.stops() && !own.shared.quits();
+    if lives {
+        own.shared.say(|output| output.error(&failure.of_direct()));
+    }
+    lives
+}
+
+fn reap(mut child: std::process::Child) {
+    // Without a thread it stays a zombie until the program ends, which is no harm.
+    let _ = std::thread::Builder::new()
+        .name("system".to_owned())
+        .stack_size(64 << 10)
+        .spawn(move || child.wait());
+}
+
+fn files<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
+    let append = |path: &std::path::Path, bytes: &[u8]| {
+        let mut file = OpenOptions::new().append(true).create(true).open(path)?;
+        file.write_all(bytes)
+    };
+    let told =
+        |ctx: &Ctx<'js>, file: &str, error: &io::Error| failed(ctx, &format!("{file}: {error}"));
+    let o = own.clone();
+    put(
+        native,
+        "append",
+        move |ctx: Ctx<'js>, file: String, text: String| {
+            append(&o.shared.folder.join(&file), text.as_bytes())
+                .map_err(|error| told(&ctx, &file, &error))
+        },
+    )?;
+    let o = own.clone();
+    put(
+        native,
+        "appendBytes",
+        move |ctx: Ctx<'js>, file: String, bytes: Vec<u8>| {
+            append(&o.shared.folder.join(&file), &bytes).map_err(|error| told(&ctx, &file, &error))
+        },
+    )?;
+    let o = own.clone();
+    put(native, "readAll", move |ctx: Ctx<'js>, file: String| {
+        let text =
+            read_text(&o.shared.folder.join(&file)).map_err(|reason| failed(&ctx, &reason))?;
+        let lines = text.split_inclusive('\n').map(str::to_owned);
+        Ok::<_, Error>(lines.collect::<Vec<_>>())
+    })?;
+    let o = own.clone();
+    put(native, "remove", move |ctx: Ctx<'js>, file: String| {
+        match std::fs::remove_file(o.shared.folder.join(&file)) {
+            // That it is not there is what was wanted.
+            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(told(&ctx, &file, &error)),
+            _ => Ok(()),
+        }
+    })?;
+    let o = own.clone();
+    put(
+        native,
+        "system",
+        move |ctx: Ctx<'js>, command: String, waits: bool| {
+            let mut shell = Command::new("sh");
+            shell.arg("-c").arg(&command).stdin(Stdio::null());
+            shell.current_dir(&o.shared.folder);
+            let started = shell.spawn();
+            let mut child =
+                started.map_err(|error| failed(&ctx, &format!("script.system: {error}")))?;
+            if waits {
+                let ended = child.wait();
+                let ended =
+                    ended.map_err(|error| failed(&ctx, &format!("script.system: {error}")))?;
+                return Ok(ended.code().unwrap_or(-1));
+            }
+            reap(child);
+            Ok::<_, Error>(0)
+        },
+    )
+}
+
+fn mailbox<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
+    let o = own.clone();
+    put(native, "mailbox", move |ctx: Ctx<'js>, words: String| {
+        let answer = o.shared.ask(words).recv();
+        let answer = answer.unwrap_or_else(|_| Err(io::Error::other("the program ends")));
+        answer.map_err(|error| failed(&ctx, &format!("mailbox: {error}")))
+    })?;
+    let o = own.clone();
+    put(native, "takeMail", move || o.shared.take_mail())?;
+    let o = own.clone();
+    put(native, "hasMail", move || o.shared.has_mail())
+}
+
+fn threads<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
+    let o = own.clone();
+    put(
+        native,
+        "startThread",
+        move |ctx: Ctx<'js>, name: String, globals: String, call: String| {
+            let job = Job {
+                name,
+                text: Arc::clone(&o.text),
+                kind: Kind::Thread { globals, call },
+            };
+            o.shared
+                .start(job)
+                .map_err(|reason| failed(&ctx, &format!("Threading: {reason}")))
+        },
+    )?;
+    let o = own.clone();
+    put(native, "isRunning", move |ctx: Ctx<'js>, name: String| {
+        if name == o.slot.name {
+            return Err(failed(
+                &ctx,
+                "Threading: a thread cannot wait for its own end",
+            ));
+        }
+        Ok(o.shared.runs(Some(&name)))
+    })?;
+    let o = own.clone();
+    put(native, "killThread", move |name: String| {
+        o.shared.kill(|other| other == name);
+    })?;
+    let o = own.clone();
+    put(native, "killOthers", move || {
+        o.shared
+            .kill(|other| other != o.slot.name && other != crate::js::shared::MAIN);
+    })?;
+    let o = own.clone();
+    put(native, "sendMessage", move |name: String, text: String| {
+        o.shared.leave_note(&name, text);
+    })?;
+    let o = own.clone();
+    put(native, "takeMessage", move || {
+        o.shared.take_note(&o.slot.name)
+    })
+}

@@ -1,0 +1,3 @@
+script.timer(1).timeout.connect(function() { print("never"); });
+print("end");
+//> end

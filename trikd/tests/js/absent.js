@@ -1,0 +1,23 @@
+var calls = {
+    i2c: function() { brick.i2c(1, 0x40); },
+    bus: function() { brick.smBusI2c(1, 0x40); },
+    event: function() { brick.eventDevice("/dev/input/event0"); },
+    pwm: function() { brick.pwmCapture("C1"); },
+    sound: function() { brick.soundSensor(video2); },
+    still: function() { brick.getStillImage(); },
+    photo: getPhoto,
+    image: function() { brick.irCamera().getImage(); },
+    signal: function() { brick.irCamera().imageUpdated.connect(print); },
+};
+for (var name in calls) {
+    try { calls[name](); print(name, " did nothing"); } catch (e) { print(e.name, " ", e.message.split(":")[0]); }
+}
+//> TypeError brick.i2c
+//> TypeError brick.smBusI2c
+//> TypeError brick.eventDevice
+//> TypeError brick.pwmCapture
+//> TypeError brick.soundSensor
+//> TypeError brick.getStillImage
+//> TypeError getPhoto
+//> TypeError irCamera.getImage
+//> TypeError irCamera.imageUpdated

@@ -1,0 +1,3 @@
+var main = function() { print("once"); }
+main();
+//> once

@@ -1,0 +1,3 @@
+function main() { print("never"); }
+print("text");
+//> text

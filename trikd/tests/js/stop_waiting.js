@@ -1,0 +1,4 @@
+var timer = script.timer(5);
+timer.timeout.connect(function() { timer.stop(); mailbox.stopWaiting(); });
+print("[", mailbox.receive(), "]");
+//> []

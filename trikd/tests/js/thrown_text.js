@@ -1,0 +1,2 @@
+throw "just a text";
+//! just a text
