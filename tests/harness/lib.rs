@@ -5,6 +5,7 @@
 
 pub mod board;
 pub mod documents;
+pub mod fuzz;
 pub mod i2c_bus;
 pub mod mount;
 pub mod processes;

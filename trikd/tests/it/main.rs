@@ -13,6 +13,8 @@ mod crash;
 mod documents;
 /// Frames, good and bad, and the clocks of connections.
 mod frames;
+/// Any bytes for everything that decodes.
+mod fuzz;
 /// Gamepads.
 mod gamepad;
 /// Programs in JavaScript.
