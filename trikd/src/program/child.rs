@@ -157,6 +157,8 @@ pub fn start(
         .env("HOME", &settings.scripts)
         .env("LANG", "C.UTF-8")
         .env("TRIK_TREE", &settings.tree)
+        // Each further heap of a thread would take 64 MiB of the address space that a program may have.
+        .env("MALLOC_ARENA_MAX", "1")
         .env("PYTHONPATH", python)
         .env("PYTHONDONTWRITEBYTECODE", "1")
         .current_dir(&settings.scripts)

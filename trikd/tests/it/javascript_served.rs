@@ -132,6 +132,23 @@ fn stop_ends_loops_waits_threads_and_recursion() {
 }
 
 #[test]
+fn all_threads_of_a_program_fit_into_its_memory() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    let text = "var work = function() {\n\
+        var a = []; for (var i = 0; i < 10000; i++) a.push('x' + i);\n\
+        Threading.receiveMessage(); Threading.sendMessage('main', a.length); }\n\
+        var main = function() {\n\
+        for (var i = 0; i < 15; i++) Threading.startThread('t' + i, work);\n\
+        for (var i = 0; i < 15; i++) Threading.sendMessage('t' + i, 'go');\n\
+        var sum = 0; for (var i = 0; i < 15; i++) sum += +Threading.receiveMessage();\n\
+        print(sum); }";
+    start(&mut client, "t.js", text);
+    client.expect("print: 150000\n");
+    assert_eq!(robot.end(), Some(0));
+}
+
+#[test]
 fn messages_between_robots_reach_a_program() {
     let robot = robot(&[]);
     let mut client = robot.client("control");
