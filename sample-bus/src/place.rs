@@ -120,7 +120,13 @@ impl Directory {
 
     fn empty(&self) -> io::Result<()> {
         for entry in std::fs::read_dir(&self.path)? {
-            std::fs::remove_file(entry?.path())?;
+            let entry = entry?;
+            // No publisher makes one, but what is there must not stay in the way for ever.
+            if entry.file_type()?.is_dir() {
+                std::fs::remove_dir_all(entry.path())?;
+            } else {
+                std::fs::remove_file(entry.path())?;
+            }
         }
         Ok(())
     }

@@ -313,8 +313,9 @@ fn a_directory_has_one_publisher_and_is_cleaned_of_what_a_dead_one_left() {
     drop(first);
     assert!(!path.exists());
 
-    std::fs::create_dir(&path).unwrap();
+    std::fs::create_dir_all(path.join("folder/folder")).unwrap();
     std::fs::write(path.join("ring"), b"x").unwrap();
+    symlink(folder.path(""), path.join("link")).unwrap();
     let next = Directory::take(&path, 0o700).unwrap();
     assert_eq!(std::fs::read_dir(&path).unwrap().count(), 0);
     drop(next);

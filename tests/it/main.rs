@@ -46,6 +46,8 @@ mod devices {
     mod program;
     /// Pulses.
     mod pwm;
+    /// A regulator whose motor is on a bus.
+    mod regulated_bus;
     /// Actions that are done once, and the root of a virtual board.
     mod setup;
     /// A slow bus delays nobody who does not use it.

@@ -9,6 +9,7 @@ mod written;
 
 use crate::clock::Stamp;
 use crate::convert::{LogSink, Pipeline, Recipe};
+use crate::crew::lock_patiently;
 use crate::device::lines::answer::Answer;
 use crate::device::{self, Device, Sink, Stream, Surroundings};
 use crate::engine::Engine;
@@ -31,7 +32,7 @@ use fault::Trouble;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use std::sync::{Arc, Mutex, Weak};
+use std::sync::{Arc, Mutex, MutexGuard, Weak};
 use written::Written;
 
 /// One described peripheral.
@@ -66,6 +67,9 @@ pub struct Node {
     writes: AtomicU32,
     /// Only for the source `regulator{...}`.
     regulation: Option<Regulation>,
+    /// A regulator drives this node.
+    is_regulated: AtomicBool,
+    turn: Mutex<()>,
     /// Why a regulator that drove this node gave up.
     lost: Mutex<Option<Error>>,
     /// When each of the operations that are inside now began, in coarse ms.
@@ -144,6 +148,8 @@ impl Node {
             period_ms: AtomicU32::new(period_ms),
             writes: AtomicU32::new(0),
             regulation,
+            is_regulated: AtomicBool::new(false),
+            turn: Mutex::default(),
             lost: Mutex::default(),
             inside: Default::default(),
             description,
@@ -222,15 +228,32 @@ impl Node {
 
     /// How often a tuple went to the device, for an alias to the device of the node that it stands for. Wraps.
     pub fn writes(&self) -> u32 {
-        match &self.description.source {
-            SourceDescription::Node(path) => {
-                match self.around.links.iter().find(|(name, _)| name == path) {
-                    Some((_, other)) => other.writes(),
-                    None => 0,
-                }
+        self.driven().writes.load(Ordering::Relaxed)
+    }
+
+    /// What is driven in the end: the node itself, or the one that it stands for.
+    fn driven(&self) -> &Self {
+        let mut node = self;
+        while let SourceDescription::Node(path) = &node.description.source {
+            match node.around.links.iter().find(|(name, _)| name == path) {
+                Some((_, other)) => node = other,
+                None => break,
             }
-            _ => self.writes.load(Ordering::Relaxed),
         }
+        node
+    }
+
+    /// From now on a regulator drives this node beside those who write to it.
+    pub fn let_regulate(&self) {
+        self.driven().is_regulated.store(true, Ordering::Relaxed);
+    }
+
+    /// The right to write, alone, to a node that a regulator drives; others need none. A regulator that finds the node
+    /// its own and writes must not come behind somebody who writes at that moment and has the last word.
+    pub fn take_turn(&self) -> Option<MutexGuard<'_, ()>> {
+        let driven = self.driven();
+        let is_regulated = driven.is_regulated.load(Ordering::Relaxed);
+        is_regulated.then(|| lock_patiently(&driven.turn))
     }
 
     /// A tuple went to the device.

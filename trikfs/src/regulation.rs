@@ -20,6 +20,15 @@ use std::sync::{Arc, Mutex};
 pub struct Regulation {
     actuator: Arc<Node>,
     order: Mutex<Option<Order>>,
+    owed: Mutex<Option<Owed>>,
+}
+
+/// A rest that the driven node did not take.
+struct Owed {
+    /// Why there is to be a rest.
+    why: Error,
+    /// How often the driven node had been written: who drives it since then owes nothing.
+    writes: u32,
 }
 
 struct Order {
@@ -39,9 +48,11 @@ struct Order {
 impl Regulation {
     /// Nothing is ordered yet.
     pub fn new(actuator: Arc<Node>) -> Self {
+        actuator.let_regulate();
         Self {
             actuator,
             order: Mutex::default(),
+            owed: Mutex::default(),
         }
     }
 
@@ -53,6 +64,7 @@ impl Regulation {
     pub fn order(&self, node: &Arc<Node>, target: &[u8]) -> Result<(), Error> {
         let mut slot = lock(&self.order);
         let measured = Newest::of_all(&[&node.newest]).pop();
+        let turn = self.actuator.take_turn();
         let before = match slot.as_mut() {
             Some(order) if self.is_mine(order, node) => {
                 Some(std::mem::replace(&mut order.target, target.to_vec()))
@@ -71,9 +83,13 @@ impl Regulation {
             Some(Ok(None)) | None => Ok(false),
             Some(Err(error)) => Err(error),
         };
+        if let Ok(wrote) = outcome {
+            order.count(wrote);
+        }
+        drop(turn);
         match (outcome, before) {
-            (Ok(wrote), _) => {
-                order.count(wrote);
+            (Ok(_), _) => {
+                *lock(&self.owed) = None;
                 Ok(())
             }
             (Err(error), Some(before)) if error.blame() == Blame::Caller => {
@@ -124,10 +140,12 @@ impl Regulation {
 
     /// The feedback was measured: one step of the law.
     pub fn step(&self, node: &Node, measured: &[u8]) {
+        self.settle();
         let mut slot = lock(&self.order);
         let Some(order) = slot.as_mut() else {
             return;
         };
+        let turn = self.actuator.take_turn();
         if !self.is_mine(order, node) {
             *slot = None;
             return;
@@ -136,6 +154,7 @@ impl Regulation {
             Ok(wrote) => order.count(wrote),
             Err(error) => {
                 *slot = None;
+                drop(turn);
                 drop(slot);
                 self.stop(node, &error);
             }
@@ -146,6 +165,8 @@ impl Regulation {
     pub fn fail(&self, node: &Node, error: &Error) {
         if lock(&self.order).take().is_some() {
             self.stop(node, error);
+        } else {
+            self.settle();
         }
     }
 
@@ -153,10 +174,33 @@ impl Regulation {
         let path = self.actuator.path();
         let log = &node.engine.log;
         log.line(&format!("{}: {path} comes to rest: {error}", node.path()));
+        *lock(&self.owed) = Some(Owed {
+            why: error.clone(),
+            writes: self.writes(),
+        });
+        self.settle();
+    }
+
+    /// Brings the driven node to rest if that is owed. What did not go, as on a bus that does not answer, is tried again
+    /// with each sample, until it goes or somebody drives the node.
+    fn settle(&self) {
+        let Some(Owed { why, writes }) = lock(&self.owed).take() else {
+            return;
+        };
+        if writes != self.writes() {
+            return;
+        }
         if let Err(error) = self.actuator.rest() {
             self.actuator.report(&error);
+            let mut owed = lock(&self.owed);
+            if owed.is_none() && writes == self.writes() {
+                *owed = Some(Owed {
+                    why: why.clone(),
+                    writes,
+                });
+            }
         }
-        self.actuator.lose(error);
+        self.actuator.lose(&why);
     }
 
     /// Why the driven node came to rest, until it is driven again.

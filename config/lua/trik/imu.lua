@@ -120,7 +120,8 @@ local function integrator(window_ms, bias_given)
     if us <= 0 or us > GAP_US then
       -- The bias is still that of the chip; only the angles are lost.
       q, gx, gy, gz, count = nil, 0, 0, 0, 0
-      error('EIO: no samples for ' .. number.round(us, 1000) .. ' ms: the angles begin anew', 0)
+      local what = us > 0 and 'no samples for ' .. number.round(us, 1000) .. ' ms' or 'the time of the samples went back'
+      error('EIO: ' .. what .. ': the angles begin anew', 0)
     end
     local x, y, z = axes(a)
     local bias = calibrated({ x, y, z }, us)

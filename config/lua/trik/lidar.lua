@@ -4,6 +4,9 @@
 local lidar = { top = true, ports = { lidar = {} } }
 
 local PACKET_BYTES, HEAD_BYTES = 1024, 13
+-- How often packets are looked for, and without a whole turn for how long there is no picture any more: the line itself
+-- does not tell that the lidar is unplugged.
+local PERIOD_MS, TIMEOUT_MS = 50, 3000
 
 -- The mean of the distances of one degree, without the least and the greatest when there are more than two.
 local function mean(sum, count, least, greatest)
@@ -70,7 +73,7 @@ function lidar.make(_, entry, listed)
   for degree = 0, 359 do fields[degree + 1] = 'u16 d' .. degree end
   return {
     lidar = {
-      about = about, units = 'mm', on_event = true, timeout_ms = 3000, budget_us = 100000,
+      about = about, units = 'mm', poll_ms = PERIOD_MS, timeout_ms = TIMEOUT_MS, budget_us = 100000,
       src = packets {
         path = entry:path('path', '/dev/ttyS1'), baud = 230400, start = '\170',
         length = { at = 1, bytes = 2, add = 2 }, order = 'big', checksum = 'sum16',

@@ -63,7 +63,7 @@ pub struct Control {
     active: Setpoints,
     goal: Goal,
     /// Where the relative move that was the last command is to end.
-    relative_end: Option<i32>,
+    relative_end: Option<i64>,
     encoder: Encoder,
     time_s: Option<f64>,
     reference: f64,
@@ -131,13 +131,16 @@ impl Control {
                 self.begin(before, Goal::Speed(speed, Ends::At(end)));
             }
             Command::RunToAbsPos => {
-                self.begin(before, Goal::Position(f64::from(self.active.position)));
+                // On the round of 32 bits on which it is now.
+                let round = self.encoder.position - i64::from(self.position());
+                let end = round + i64::from(self.active.position);
+                self.begin(before, Goal::Position(end as f64));
             }
             Command::RunToRelPos => {
-                let from = relative_end.unwrap_or_else(|| self.position());
-                let end = from.wrapping_add(self.active.position);
+                let from = relative_end.unwrap_or(self.encoder.position);
+                let end = from + i64::from(self.active.position);
                 self.relative_end = Some(end);
-                self.begin(before, Goal::Position(f64::from(end)));
+                self.begin(before, Goal::Position(end as f64));
             }
             Command::RunDirect => self.begin(before, Goal::Direct),
             Command::Stop => self.begin_to_stop(),
@@ -294,16 +297,16 @@ impl Control {
             let before = self.goal;
             self.begin(before, Goal::Speed(0.0, Ends::AtZero));
         } else {
-            self.stop(self.position());
+            self.stop(self.encoder.position);
         }
     }
 
-    /// The stop action.
-    fn stop(&mut self, at: i32) {
+    /// The stop action; `at` is beyond 32 bits where the shaft is.
+    fn stop(&mut self, at: i64) {
         self.goal = match self.active.stop_action {
             StopAction::Coast => Goal::Coast,
             StopAction::Brake => Goal::Brake,
-            StopAction::Hold if self.has_encoder => Goal::Hold(f64::from(at)),
+            StopAction::Hold if self.has_encoder => Goal::Hold(at as f64),
             StopAction::Hold => Goal::Brake,
         };
         self.settle();
@@ -321,14 +324,14 @@ impl Control {
         match self.goal {
             Goal::Speed(_, Ends::At(end)) if now_s >= end => self.begin_to_stop(),
             Goal::Speed(_, Ends::AtZero) if self.reference_speed == 0.0 => {
-                self.stop(self.position());
+                self.stop(self.encoder.position);
             }
             Goal::Position(target) => {
                 let is_there = self.reference == target
                     && (self.encoder.position as f64 - target).abs() <= TOLERANCE;
                 if is_there {
                     let sum = self.integral.sum;
-                    self.stop(target as i32);
+                    self.stop(target as i64);
                     // What holds it against a load is known already.
                     self.integral.sum = sum;
                 }

@@ -192,8 +192,9 @@ impl Driver {
     fn prepare(&self, files: &mut Files, now_s: f64) -> Result<(), Error> {
         if files.power.is_none() {
             files.power = Some(self.tree.open_to_write(&self.paths.power)?);
-            files.sent = None;
         }
+        // Somebody else may have driven the motor since, or have the lease now: a command is written in any case.
+        files.sent = None;
         files.wrote_s = now_s;
         if files.usual_ms.is_none() {
             files.usual_ms = self.hasten_encoder();
@@ -428,4 +429,35 @@ fn read_encoder(files: &mut Files) -> Result<Option<i32>, Error> {
 
 fn complain(text: &str) {
     let _ = writeln!(io::stderr(), "trikfs-ev3dev: {text}");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::device::KernelSlot;
+
+    #[test]
+    fn a_command_is_written_also_where_somebody_else_has_written_since() {
+        let root = std::env::temp_dir().join(format!("ev3dev-driver-{}", std::process::id()));
+        let value = root.join("value");
+        std::fs::create_dir_all(&root).unwrap();
+        std::fs::write(&value, "").unwrap();
+        let paths = Paths {
+            power: "value".to_owned(),
+            encoder: None,
+        };
+        let tree = Tree::new(root.clone());
+        let changes = Changes::new(KernelSlot::default());
+        let driver = Driver::new(tree, paths, Control::new(false, 100), changes);
+        driver.control().setpoints.duty_cycle = 30;
+        for (command, power) in [(Command::RunDirect, "30"), (Command::Stop, "0")] {
+            for _ in 0..2 {
+                std::fs::write(&value, "").unwrap();
+                driver.command(command).unwrap();
+                assert_eq!(std::fs::read_to_string(&value).unwrap(), power);
+            }
+        }
+        driver.retire();
+        std::fs::remove_dir_all(root).unwrap();
+    }
 }

@@ -218,6 +218,14 @@ fn converters_can_be_tried_without_a_mount() {
         torn.stderr,
         "trikfs: node n: the input ends 1 bytes into a tuple of 2\n"
     );
+    let words = ["convert", "--keep-going", "robot.lua", "n"];
+    let both = crate::trikfs(&board, &words, b"\xfe\x00\x20\x21\x20");
+    assert_eq!((both.code(), both.stdout.as_str()), (1, "A"));
+    let told = both.stderr;
+    assert!(
+        told.contains("1 of 2 tuples were refused") && told.contains("the input ends 1 bytes"),
+        "{told}"
+    );
     let fault = convert(b"\x20\x21\xfe\x00");
     assert_eq!((fault.code(), fault.stdout.as_str()), (1, "A"));
     assert!(

@@ -17,6 +17,17 @@ fn an_unplugged_sensor_gives_an_error_and_comes_back() {
 }
 
 #[test]
+fn a_lidar_that_is_silent_has_no_picture() {
+    let Some(robot) = robot(&[]) else { return };
+    let value = "lidar/value";
+    eventually("a picture", || robot.errno(value) == 0);
+    robot.fault(&["lidar", "unplug"]);
+    eventually("an error", || robot.errno(value) == libc::ETIMEDOUT);
+    robot.fault(&["lidar", "--clear"]);
+    eventually("a picture again", || robot.errno(value) == 0);
+}
+
+#[test]
 fn a_coprocessor_that_does_not_answer_fails_what_is_behind_it_and_nothing_else() {
     let Some(robot) = robot(&[]) else { return };
     let others = ["sensors/D1/value", "accelerometer/value"];

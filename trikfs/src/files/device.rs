@@ -167,7 +167,9 @@ impl OpenFile for DeviceFile {
         };
         let _inside = self.node.enter()?;
         let _admitted = self.ownership.admit(&self.node, request.caller)?;
+        let turn = self.node.take_turn();
         let taken = lock_patiently(writer).write(data, !request.nonblocking)?;
+        drop(turn);
         self.node.stats.writes.add(1);
         Ok(Outcome::Done(taken))
     }

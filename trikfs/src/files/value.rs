@@ -209,7 +209,9 @@ impl OpenFile for ValueFile {
         let tuple = tuple.inspect_err(|error| self.node.report(error))?;
         let _inside = self.node.enter()?;
         let _admitted = self.ownership.admit(&self.node, request.caller)?;
+        let turn = self.node.take_turn();
         lock_patiently(writer).write_whole(&tuple, !request.nonblocking)?;
+        drop(turn);
         self.node.wrote(tuple);
         self.node.stats.writes.add(1);
         Ok(Outcome::Done(data.len()))

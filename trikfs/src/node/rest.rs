@@ -41,9 +41,10 @@ impl Node {
         }
         let deadline = Instant::now() + Duration::from_millis(self.description.timeout_ms.into());
         loop {
-            let outcome = self
-                .open_writer(None)
-                .and_then(|mut writer| writer.write_whole(&tuple, true));
+            let outcome = self.open_writer(None).and_then(|mut writer| {
+                let _turn = self.take_turn();
+                writer.write_whole(&tuple, true)
+            });
             match outcome {
                 Err(Error::Device(libc::EBUSY, _)) if Instant::now() < deadline => {
                     std::thread::sleep(PAUSE);

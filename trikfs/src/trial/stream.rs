@@ -136,7 +136,11 @@ pub fn run(
     let result = match ended {
         Ok(()) => run.faults.render(run.tuples).map_or(Ok(()), Err),
         Err(Stop::Enough) => Ok(()),
-        Err(Stop::Reason(reason)) => Err(reason),
+        // What was refused before is told as well.
+        Err(Stop::Reason(reason)) => Err(match run.faults.render(run.tuples) {
+            Some(faults) => format!("{faults}\n  {reason}"),
+            None => reason,
+        }),
     };
     (
         line,

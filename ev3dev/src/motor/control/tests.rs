@@ -174,7 +174,7 @@ fn relative_moves_one_after_the_other_add_no_errors() {
     for turn in 1..=10 {
         rig.command(Command::RunToRelPos);
         rig.until_done();
-        assert_eq!(rig.control.relative_end, Some(turn * 100));
+        assert_eq!(rig.control.relative_end, Some(i64::from(turn) * 100));
     }
     rig.control.setpoints.stop_action = StopAction::Hold;
     rig.command(Command::RunToRelPos);
@@ -393,4 +393,30 @@ fn without_an_encoder_power_follows_the_ramps() {
     rig.until_done();
     assert_eq!(rig.output, Output::Brake);
     assert!(!rig.control.is_busy(rig.now_s));
+}
+
+#[test]
+fn beyond_32_bits_moves_go_as_far_as_they_should_and_a_place_is_held() {
+    for (start, way) in [(i32::MAX - 50, 360), (i32::MIN + 50, -360)] {
+        let mut rig = Rig::new();
+        rig.control.setpoints.speed = 500;
+        rig.control.setpoints.stop_action = StopAction::Hold;
+        rig.control.set_position(start);
+        rig.control.setpoints.position = way;
+        let from = rig.angle;
+        rig.command(Command::RunToRelPos);
+        rig.until_done();
+        let end = start.wrapping_add(way);
+        assert!((rig.angle - from - f64::from(way)).abs() < 5.0);
+        assert!(rig.control.position().wrapping_sub(end).abs() <= 1);
+        // Held on the other side, and told to go where it is, and stopped on the way: it stays.
+        rig.run(1.0);
+        rig.control.setpoints.position = end;
+        rig.command(Command::RunToAbsPos);
+        rig.until_done();
+        rig.command(Command::Stop);
+        rig.run(1.0);
+        assert_eq!(rig.state(), "holding");
+        assert!(rig.control.position().wrapping_sub(end).abs() <= 2);
+    }
 }
