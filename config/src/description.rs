@@ -61,6 +61,8 @@ pub struct NodeDescription {
     pub units: String,
     /// When samples are taken.
     pub pace: Pace,
+    /// The age in ms from which a sample that was taken in the background is an error; absent: as the pace has it.
+    pub max_age_ms: Option<u32>,
     /// Permission bits (0o777 at most).
     pub mode: u16,
     /// Owner of the files; the mounting user when absent.

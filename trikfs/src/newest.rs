@@ -20,7 +20,7 @@ use crate::state_reader::StateReader;
 use crate::transport::RequestId;
 use config::description::Pace;
 use config::format::FieldKind;
-use pace::{Ageing, Listening, Sampling};
+use pace::{Ageing, Listening, Sampling, check_age, too_old};
 use page::Page;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, Weak};
@@ -122,6 +122,7 @@ impl Newest {
                 });
                 node.engine.schedule.at(Instant::now(), Arc::downgrade(&me));
                 lock(&self.jobs).push(me);
+                self.schedule_ageing(&node);
             }
         }
     }
@@ -135,10 +136,10 @@ impl Newest {
     }
 
     fn tell_bus_of_period(&self, node: &Node) {
-        if let Pace::Every { .. } = node.description.pace
+        if let Some(age) = too_old(node)
             && let Some(ring) = &mut lock(&self.latch).ring
         {
-            ring.set_too_old(too_old(node));
+            ring.set_too_old(age);
         }
     }
 
@@ -152,16 +153,23 @@ impl Newest {
         let sampler: Arc<dyn Due> = Arc::new(Sampling {
             node: self.node.clone(),
         });
+        node.sampling_schedule()
+            .at(Instant::now(), Arc::downgrade(&sampler));
+        // Entries of earlier jobs die with them.
+        *lock(&self.jobs) = vec![sampler];
+        self.schedule_ageing(node);
+    }
+
+    fn schedule_ageing(&self, node: &Node) {
+        let Some(age) = too_old(node) else {
+            return;
+        };
         let ageing: Arc<dyn Due> = Arc::new(Ageing {
             node: self.node.clone(),
         });
-        node.sampling_schedule()
-            .at(Instant::now(), Arc::downgrade(&sampler));
-        node.engine
-            .schedule
-            .at(Instant::now() + too_old(node), Arc::downgrade(&ageing));
-        // Entries of earlier jobs die with them.
-        *lock(&self.jobs) = vec![sampler, ageing];
+        let at = Instant::now() + age;
+        node.engine.schedule.at(at, Arc::downgrade(&ageing));
+        lock(&self.jobs).push(ageing);
     }
 
     /// The sampling period was changed.
@@ -534,25 +542,6 @@ impl Newest {
                 .at(Instant::now(), Arc::downgrade(&due));
         }
     }
-}
-
-/// The age from which a sample taken by the clock is no longer shown.
-fn too_old(node: &Node) -> Duration {
-    let ms = u64::from(node.period_ms()) * 2;
-    Duration::from_millis(ms.max(node.description.timeout_ms.into()))
-}
-
-/// Refuses a sample taken by the clock that is too old to be shown.
-fn check_age(node: &Node, age_ns: u64) -> Result<(), Error> {
-    if matches!(node.description.pace, Pace::Every { .. })
-        && u128::from(age_ns) > too_old(node).as_nanos()
-    {
-        let age_ms = age_ns / 1_000_000;
-        return Err(Error::TimedOut(format!(
-            "the newest sample is {age_ms} ms old"
-        )));
-    }
-    Ok(())
 }
 
 impl Work {

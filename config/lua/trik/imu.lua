@@ -13,6 +13,8 @@ local COUNTS_OF_G = 4096
 -- show at rest (10 dps, the zero-rate level of the data sheet); after the first calibration the mean stays within so many
 -- counts of the bias (0.5 dps). So no steady turn is taken for a bias, but one that is slower than that.
 local STILL_COUNTS, ZERO_RATE_COUNTS, DRIFT_COUNTS = 400, 1143, 57
+-- The chips give a hundred samples in a second and more; one that gives none for so long is broken.
+local MAX_AGE_MS = 1000
 -- After a longer pause between two samples nobody knows how far the robot has turned.
 local GAP_US = 500000
 
@@ -148,7 +150,7 @@ local function gyroscope(entry)
   return {
     about = 'angular rates around x, y and z without the bias; the robot stands still for the first '
       .. window_ms .. ' ms',
-    src = 'trikfs:gyroscope/raw', format = 'i32 x, i32 y, i32 z', units = 'mdeg/s', on_event = true,
+    src = 'trikfs:gyroscope/raw', format = 'i32 x, i32 y, i32 z', units = 'mdeg/s', on_event = true, max_age_ms = MAX_AGE_MS,
     timeout_ms = timeout_ms,
     converter = function(a_s, a, b_s, b)
       local us = since(a, 16)
@@ -170,7 +172,7 @@ local function gyroscope(entry)
       },
       heading = {
         about = 'angle around the vertical axis since the calibration, -180000 to 180000',
-        src = both, format = 'i32 heading', units = 'mdeg', on_event = true, timeout_ms = timeout_ms,
+        src = both, format = 'i32 heading', units = 'mdeg', on_event = true, max_age_ms = MAX_AGE_MS, timeout_ms = timeout_ms,
         converter = function(a_s, a, b_s, b)
           local q = heading(a)
           if not q then return false end
@@ -180,7 +182,7 @@ local function gyroscope(entry)
       },
       tilt = {
         about = 'angles around x and y against the vertical',
-        src = both, format = 'i32 x, i32 y', units = 'mdeg', on_event = true, timeout_ms = timeout_ms,
+        src = both, format = 'i32 x, i32 y', units = 'mdeg', on_event = true, max_age_ms = MAX_AGE_MS, timeout_ms = timeout_ms,
         converter = function(a_s, a, b_s, b)
           local q = tilt(a)
           if not q then return false end
@@ -196,7 +198,7 @@ end
 local function accelerometer()
   return {
     about = 'acceleration along x, y and z; at rest 1000 upwards',
-    src = 'trikfs:accelerometer/raw', format = 'i32 x, i32 y, i32 z', units = 'mg', on_event = true,
+    src = 'trikfs:accelerometer/raw', format = 'i32 x, i32 y, i32 z', units = 'mg', on_event = true, max_age_ms = MAX_AGE_MS,
     converter = function(a_s, a, b_s, b)
       for at = 0, 8, 4 do ba.i32(b, at, number.round(ba.i32(a, at) * 1000, COUNTS_OF_G)) end
     end,

@@ -17,7 +17,7 @@ use crate::vm::fingerprint::hash;
 use nix::unistd::{Group, User};
 
 /// All fields of a description.
-pub(super) const FIELDS: [&str; 24] = [
+pub(super) const FIELDS: [&str; 25] = [
     "about",
     "ages",
     "attributes",
@@ -27,6 +27,7 @@ pub(super) const FIELDS: [&str; 24] = [
     "group",
     "input_tuple_size",
     "interval",
+    "max_age_ms",
     "memory_kb",
     "mode",
     "on_event",
@@ -105,6 +106,7 @@ impl Fields<'_, '_> {
             about: self.words("about", ABOUT_BYTES_MAX)?,
             units: self.words("units", UNITS_BYTES_MAX)?,
             pace: self.pace()?,
+            max_age_ms: self.max_age_ms()?,
             mode: self.mode()?.unwrap_or(usual_mode),
             owner: self.owner()?,
             group: self.owning_group()?,
@@ -234,6 +236,15 @@ impl Fields<'_, '_> {
             (None, true) => Ok(Pace::OnEvent),
             (None, false) => Ok(Pace::OnRead),
         }
+    }
+
+    fn max_age_ms(&self) -> Result<Option<u32>, Problem> {
+        let age = self.whole("max_age_ms", 1, PERIOD_MS_MAX)?;
+        if age.is_some() && self.pace()? == Pace::OnRead {
+            let reason = "max_age_ms goes with poll_ms or on_event: without them each read takes a new sample";
+            return Err(self.problem("max_age_ms", reason));
+        }
+        Ok(age)
     }
 
     /// Permission bits: `'0644'`, or a number whose decimal digits are the octal ones, because `0644` is 644 in Lua.
@@ -394,7 +405,7 @@ fn fingerprint(node: &NodeDescription, digests: &[u128]) -> u128 {
         &node.units,
     );
     let access = (
-        node.pace,
+        (node.pace, node.max_age_ms),
         node.mode,
         node.owner,
         node.group,

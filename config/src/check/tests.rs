@@ -541,6 +541,14 @@ fn pace_and_limits_are_checked() {
         "robot.lua:3: x: poll_ms and on_event exclude each other"
     );
     assert_eq!(
+        field("max_age_ms = 5"),
+        "robot.lua:3: x: max_age_ms goes with poll_ms or on_event: without them each read takes a new sample"
+    );
+    assert_eq!(
+        field("on_event = true, max_age_ms = 0"),
+        "robot.lua:3: x: max_age_ms must be a whole number from 1 to 3600000, not 0"
+    );
+    assert_eq!(
         field("on_event = 1"),
         "robot.lua:3: x: on_event must be true or false, not a number"
     );

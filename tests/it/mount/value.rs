@@ -87,11 +87,23 @@ assert ended(child) == 0
 
 #[test]
 fn a_value_that_is_too_old_is_an_error_until_there_is_a_new_one() {
+    for pace in [
+        "poll_ms = 10, timeout_ms = 150",
+        "poll_ms = 10, max_age_ms = 150",
+        "on_event = true, max_age_ms = 150",
+    ] {
+        grows_old(pace);
+    }
+}
+
+fn grows_old(pace: &str) {
     let board = Board::new();
     let mut pipe = board.pipe("in");
     let Some(m) = mount_on(
         board,
-        "trikfs = { n = { src = '$DIR/in', input_tuple_size = 4, format = 'u32 x', poll_ms = 10, timeout_ms = 150 } }",
+        &format!(
+            "trikfs = {{ n = {{ src = '$DIR/in', input_tuple_size = 4, format = 'u32 x', {pace} }} }}"
+        ),
     ) else {
         return;
     };

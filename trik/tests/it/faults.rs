@@ -28,6 +28,30 @@ fn a_lidar_that_is_silent_has_no_picture() {
 }
 
 #[test]
+fn inertial_sensors_that_fall_silent_do_not_show_their_last_samples() {
+    let Some(robot) = robot(&[]) else { return };
+    let names = [
+        "gyroscope/value",
+        "gyroscope/heading",
+        "accelerometer/value",
+        "heading/value",
+    ];
+    for name in names {
+        eventually(name, || robot.errno(name) == 0);
+    }
+    robot.fault(&["gyroscope", "drop", "1"]);
+    robot.fault(&["accelerometer", "drop", "1"]);
+    for name in names {
+        eventually(name, || robot.errno(name) == libc::ETIMEDOUT);
+    }
+    robot.fault(&["gyroscope", "--clear"]);
+    robot.fault(&["accelerometer", "--clear"]);
+    for name in names {
+        eventually(name, || robot.errno(name) == 0);
+    }
+}
+
+#[test]
 fn a_coprocessor_that_does_not_answer_fails_what_is_behind_it_and_nothing_else() {
     let Some(robot) = robot(&[]) else { return };
     let others = ["sensors/D1/value", "accelerometer/value"];

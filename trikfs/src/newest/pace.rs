@@ -2,12 +2,38 @@
 //!
 //! Owns the due times. What a sample is and who hears of it is `newest`'s business.
 
-use super::{Source, too_old};
+use super::Source;
+use crate::errno::Error;
 use crate::events::{Due, lock};
 use crate::limits;
 use crate::node::Node;
+use config::description::Pace;
 use std::sync::Weak;
 use std::time::{Duration, Instant};
+
+/// The age from which a sample taken in the background is no longer shown. None: it is never too old.
+pub(super) fn too_old(node: &Node) -> Option<Duration> {
+    let description = &node.description;
+    let ms = match (description.max_age_ms, description.pace) {
+        (Some(ms), _) => u64::from(ms),
+        (None, Pace::Every { .. }) => {
+            (u64::from(node.period_ms()) * 2).max(description.timeout_ms.into())
+        }
+        (None, Pace::OnEvent | Pace::OnRead) => return None,
+    };
+    Some(Duration::from_millis(ms))
+}
+
+/// Refuses a sample that is too old to be shown.
+pub(super) fn check_age(node: &Node, age_ns: u64) -> Result<(), Error> {
+    if too_old(node).is_some_and(|limit| u128::from(age_ns) > limit.as_nanos()) {
+        let age_ms = age_ns / 1_000_000;
+        return Err(Error::TimedOut(format!(
+            "the newest sample is {age_ms} ms old"
+        )));
+    }
+    Ok(())
+}
 
 /// Background sampling by the clock.
 pub(super) struct Sampling {
@@ -45,7 +71,7 @@ pub(super) struct Ageing {
 impl Due for Ageing {
     fn due(&self) -> Option<Instant> {
         let node = self.node.upgrade()?;
-        let limit = too_old(&node);
+        let limit = too_old(&node)?;
         let age = node
             .newest
             .stamp()
