@@ -410,19 +410,21 @@ mod tests {
     #[test]
     fn the_view_is_beside_the_tree_and_goes_with_it_if_it_was_made() {
         let base = Base::new("view");
+        // The last robot takes this one with it.
+        let run = base.0.join("run");
         let tree = base.0.join("my.tree");
         let view = base.0.join("my.tree.ev3dev");
-        let mut place = Place::claim(&base.0, Some(&tree.join(""))).expect("a place");
+        let mut place = Place::claim(&run, Some(&tree.join(""))).expect("a place");
         assert_eq!(place.make_view(None).as_deref(), Ok(view.as_path()));
         drop(place);
         assert!(!view.exists());
         fs::create_dir(&view).expect("a directory of the user's own");
-        let mut place = Place::claim(&base.0, Some(&tree)).expect("a place");
+        let mut place = Place::claim(&run, Some(&tree)).expect("a place");
         assert_eq!(place.make_view(None).as_deref(), Ok(view.as_path()));
         drop(place);
         assert!(view.exists());
-        let mut place = Place::claim(&base.0, None).expect("a place");
-        let default = base.0.join("robot.ev3dev");
+        let mut place = Place::claim(&run, None).expect("a place");
+        let default = run.join("robot.ev3dev");
         assert_eq!(place.make_view(None).as_deref(), Ok(default.as_path()));
         drop(place);
         assert!(!default.exists());
