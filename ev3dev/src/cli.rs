@@ -4,7 +4,11 @@
 
 use crate::keeper::{self, Handover, Plan};
 use crate::scan::{Options, encoder_of};
+use crate::tree::Tree;
 use clap::Parser;
+#[cfg(feature = "manual")]
+use clap::Subcommand;
+use clap::builder::{OsStringValueParser, TypedValueParser};
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -15,10 +19,14 @@ use std::process::ExitCode;
 /// Programs that are written for ev3dev then find motors, sensors, lights and the battery of the tree in MOUNTPOINT as they
 /// would in /sys/class. Stays in the foreground until it is unmounted or gets SIGTERM or SIGINT, and says in one line
 /// when the view can be used. Motors that it drives come to rest when it ends, by whatever cause. The tree may go and come
-/// back meanwhile.
+/// back meanwhile, and need not be there at the start.
 #[derive(Parser)]
 #[command(name = "trikfs-ev3dev", version, max_term_width = 100, after_long_help = EXAMPLES)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 struct Cli {
+    #[cfg(feature = "manual")]
+    #[command(subcommand)]
+    command: Option<Command>,
     /// Where the tree is mounted.
     #[arg(long, value_name = "DIR", default_value = "/trikfs")]
     tree: PathBuf,
@@ -33,18 +41,38 @@ struct Cli {
     /// Let other users in, with the permissions that the files show.
     #[arg(long)]
     allow_other: bool,
-    /// Print a completion script for a shell and end.
-    #[cfg(feature = "manual")]
-    #[arg(long, value_name = "SHELL", exclusive = true)]
-    completions: Option<clap_complete::Shell>,
-    /// Print the manual page and end, for example: trikfs-ev3dev --man | man -l -
-    #[cfg(feature = "manual")]
-    #[arg(long, exclusive = true)]
-    man: bool,
-    /// A directory; made if nothing is there.
-    #[cfg_attr(feature = "manual", arg(required_unless_present_any = ["completions", "man"]))]
-    #[cfg_attr(not(feature = "manual"), arg(required = true))]
+    /// A directory; made if nothing is there, and then removed again. One with the name of a command is ./NAME.
+    #[arg(required = true, value_parser = OsStringValueParser::new().try_map(mountpoint))]
     mountpoint: Option<PathBuf>,
+}
+
+/// What can be asked for instead of a view.
+#[cfg(feature = "manual")]
+#[derive(Subcommand)]
+enum Command {
+    /// Print a completion script for a shell.
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page, for example: trikfs-ev3dev man | man -l -
+    Man,
+}
+
+/// Commands of this program and of its siblings. They are no mount points in any build, with or without a manual.
+const COMMANDS: [&str; 3] = ["completions", "help", "man"];
+
+/// A mount point that is not a mistyped command.
+fn mountpoint(word: OsString) -> Result<PathBuf, String> {
+    match word.to_str().filter(|word| COMMANDS.contains(word)) {
+        Some(word) if cfg!(feature = "manual") => Err(format!(
+            "{word} is a command, which stands alone before all options; a directory of that name is ./{word}"
+        )),
+        Some(word) => Err(format!(
+            "this build has no command {word}; a directory of that name is ./{word}"
+        )),
+        None => Ok(word.into()),
+    }
 }
 
 const EXAMPLES: &str = "\
@@ -88,8 +116,8 @@ pub fn main() -> ExitCode {
 
 fn perform(cli: Cli, handover: Option<Handover>) -> Result<(), String> {
     #[cfg(feature = "manual")]
-    if let Some(text) = manual(&cli)? {
-        return match io::stdout().write_all(&text) {
+    if let Some(command) = &cli.command {
+        return match io::stdout().write_all(&manual(command)?) {
             Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
                 Err(format!("standard output: {error}"))
             }
@@ -117,6 +145,9 @@ fn perform(cli: Cli, handover: Option<Handover>) -> Result<(), String> {
         mountpoint,
         allow_other: cli.allow_other,
     };
+    if !Tree::new(plan.tree.clone()).is_there() {
+        let _ = writeln!(io::stderr(), "trikfs-ev3dev: {}", missing_line(&plan.tree));
+    }
     keeper::keep(&plan, &mut |devices| {
         let _ = writeln!(io::stdout(), "{}", ready_line(&plan, devices))
             .and_then(|()| io::stdout().flush());
@@ -136,11 +167,19 @@ fn arguments(tree: &Path, cli: &Cli) -> Vec<OsString> {
     list
 }
 
+/// What is said before the view is mounted.
+fn missing_line(tree: &Path) -> String {
+    format!(
+        "{}: no tree is mounted there; the view is empty until there is one (--tree=DIR says another place)",
+        tree.display()
+    )
+}
+
 fn ready_line(plan: &Plan, devices: usize) -> String {
     let shown = plan.mountpoint.display();
     match devices {
         0 => format!(
-            "trikfs-ev3dev: ready on {shown}; there is no tree at {} yet",
+            "trikfs-ev3dev: ready on {shown}, without devices until the tree {} has some",
             plan.tree.display()
         ),
         _ => format!(
@@ -166,20 +205,18 @@ fn handover(word: &str) -> Option<Handover> {
 
 /// The text that was asked for instead of a view.
 #[cfg(feature = "manual")]
-fn manual(cli: &Cli) -> Result<Option<Vec<u8>>, String> {
+fn manual(command: &Command) -> Result<Vec<u8>, String> {
     use clap::CommandFactory;
     let mut text = Vec::new();
-    if let Some(shell) = cli.completions {
-        clap_complete::generate(shell, &mut Cli::command(), "trikfs-ev3dev", &mut text);
-        return Ok(Some(text));
-    }
-    if cli.man {
-        clap_mangen::Man::new(Cli::command())
+    match command {
+        Command::Completions { shell } => {
+            clap_complete::generate(*shell, &mut Cli::command(), "trikfs-ev3dev", &mut text);
+        }
+        Command::Man => clap_mangen::Man::new(Cli::command())
             .render(&mut text)
-            .map_err(|error| error.to_string())?;
-        return Ok(Some(text));
+            .map_err(|error| error.to_string())?,
     }
-    Ok(None)
+    Ok(text)
 }
 
 #[cfg(test)]
@@ -218,6 +255,8 @@ mod tests {
             (&[] as &[&str], "MOUNTPOINT"),
             (&["--encoder=E1=E1", "m"], "there are M1, M2, M3, M4"),
             (&["--max-speed=0", "m"], "10..=100000"),
+            (&["--tree=/t", "man"], "is ./man"),
+            (&["--", "completions"], "is ./completions"),
         ] {
             let Err(error) = parse(line) else {
                 panic!("{line:?} was understood")
@@ -232,13 +271,17 @@ mod tests {
     #[cfg(feature = "manual")]
     #[test]
     fn the_manual_page_and_the_completions_know_the_options() {
-        for words in [["--man"], ["--completions=bash"]] {
-            let text = manual(&parse(&words).unwrap()).unwrap().unwrap();
+        for words in [&["man"] as &[&str], &["completions", "bash"]] {
+            let command = parse(words).unwrap().command.unwrap();
+            let text = manual(&command).unwrap();
             let text = String::from_utf8(text).unwrap().replace('\\', "");
             assert!(
                 text.contains("--encoder") && !text.contains("--serve"),
                 "{text}"
             );
         }
+        let cli = parse(&["./man"]).unwrap();
+        assert!(cli.command.is_none() && cli.mountpoint == Some("./man".into()));
+        assert!(parse(&["/m", "man"]).is_err());
     }
 }

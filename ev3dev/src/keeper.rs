@@ -42,7 +42,7 @@ const LINE_BYTES_MAX: usize = 64;
 pub struct Plan {
     /// The mount point of the tree.
     pub tree: PathBuf,
-    /// Of the view; made if nothing is there.
+    /// Of the view; made if nothing is there, and then removed at the end.
     pub mountpoint: PathBuf,
     /// Let other users in.
     pub allow_other: bool,
@@ -74,10 +74,9 @@ pub fn keep(plan: &Plan, ready: &mut dyn FnMut(usize)) -> Result<(), String> {
     let signals =
         SignalFd::with_flags(&mask, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC).map_err(own)?;
     let path = &plan.mountpoint;
-    if matches!(path.symlink_metadata(), Err(error) if error.kind() == io::ErrorKind::NotFound) {
-        std::fs::create_dir_all(path)
-            .map_err(|error| format!("the mount point {}: {error}", path.display()))?;
-    }
+    // Dropped last, when nothing is mounted there any more.
+    let _made = MadeDirectory::at(path)
+        .map_err(|error| format!("the mount point {}: {error}", path.display()))?;
     let options = MountOptions {
         allow_other: plan.allow_other,
         source: SOURCE.to_owned(),
@@ -98,6 +97,27 @@ pub fn keep(plan: &Plan, ready: &mut dyn FnMut(usize)) -> Result<(), String> {
     drop(device);
     unmount(&mounted);
     end.map_err(|error| format!("serving: {error}"))?
+}
+
+/// A directory that was not there before. Dropping it removes it, if nobody has put anything there.
+struct MadeDirectory<'a>(&'a Path);
+
+impl<'a> MadeDirectory<'a> {
+    /// None if something is there already.
+    fn at(path: &'a Path) -> io::Result<Option<Self>> {
+        match path.symlink_metadata() {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                std::fs::create_dir_all(path).map(|()| Some(Self(path)))
+            }
+            _ => Ok(None),
+        }
+    }
+}
+
+impl Drop for MadeDirectory<'_> {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir(self.0);
+    }
 }
 
 /// Takes our mount away, if it is still there.

@@ -115,6 +115,11 @@ impl Board {
         self.root.path()
     }
 
+    /// What was said since the last call, in order; of a great many only the newest.
+    pub fn take_said(&self) -> Vec<String> {
+        self.shared.machine().sayings.drain(..).collect()
+    }
+
     /// How everything stands now.
     pub fn view(&self) -> View {
         let mut machine = self.shared.machine();

@@ -56,8 +56,8 @@ impl Part for Control {
         for line in self.gamepad.lines() {
             self.gamepad_out.send(format!("{line}\n").as_bytes());
         }
-        if let Some(words) = self.say.lines().pop() {
-            shared.machine().said = words;
+        for words in self.say.lines() {
+            shared.machine().say(words);
         }
         f64::INFINITY
     }

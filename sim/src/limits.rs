@@ -28,3 +28,5 @@ pub const MAX_LINE_BYTES: usize = 256;
 pub const GPIO_COUNT: u32 = 144;
 /// What a FIFO holds before samples are dropped, in bytes: one page, the least that Linux gives.
 pub const FIFO_BYTES: i32 = 4096;
+/// Sayings of the loudspeaker that wait for somebody who asks for them.
+pub const SAYINGS_MAX: usize = 64;

@@ -5,10 +5,11 @@
 
 use crate::body::{Body, Drive, Power, Senses};
 use crate::faults::{self, Faults};
-use crate::limits::{MAX_CATCH_UP_S, STEP_S};
+use crate::limits::{MAX_CATCH_UP_S, SAYINGS_MAX, STEP_S};
 use crate::mlx90640::{self, Mlx90640};
 use crate::msp430::{self, Msp430};
 use crate::random::Random;
+use std::collections::VecDeque;
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 /// Ticks of an encoder for one degree, as of TRIK's encoder95.
@@ -72,6 +73,8 @@ pub(crate) struct Machine {
     pub has_motor_power: bool,
     /// The last words that were said.
     pub said: String,
+    /// What was said since somebody asked, the newest of it.
+    pub sayings: VecDeque<String>,
     /// I2C buses 1 and 2.
     pub buses: [BusCount; 2],
     drive: Drive,
@@ -103,6 +106,7 @@ impl Machine {
             led: (false, false),
             has_motor_power: true,
             said: String::new(),
+            sayings: VecDeque::new(),
             buses: [BusCount::default(); 2],
             drive: Drive::default(),
             encoders_deg: [0.0; 4],
@@ -114,6 +118,15 @@ impl Machine {
         };
         machine.measure();
         machine
+    }
+
+    /// The loudspeaker gives these words.
+    pub fn say(&mut self, words: String) {
+        if self.sayings.len() == SAYINGS_MAX {
+            self.sayings.pop_front();
+        }
+        self.sayings.push_back(words.clone());
+        self.said = words;
     }
 
     /// Makes the steps that are due by now.

@@ -23,6 +23,7 @@ Examples:
   trik up --speed 2 /tmp/robot       twice as fast, its tree in /tmp/robot
   trik fault D1 unplug               pull the plug of the distance sensor D1
   trik fault D1 --clear              and put it back
+  trik fault --at /tmp/robot D1 unplug   the same, if several robots run
 
 Exit status: 0 done; 1 refused, or something failed; 2 the command line was not understood.";
 
@@ -89,7 +90,7 @@ pub(crate) struct UpArgs {
     #[arg(long, value_name = "DIR")]
     pub cache: Option<PathBuf>,
     /// Mount the devices of the robot a second time as the classes of ev3dev, for programs that know those [default: the
-    /// mount point of the robot with .ev3dev behind, in the directory of the robots].
+    /// mount point of the robot with .ev3dev behind its name].
     #[arg(long, value_name = "DIR", num_args = 0..=1, require_equals = true)]
     pub ev3dev: Option<Option<PathBuf>>,
     /// An empty directory; made if nothing is there, and removed again [default: robot, or else robot-2 and so on, in

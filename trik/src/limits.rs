@@ -6,8 +6,10 @@ pub const ROBOTS_MAX: usize = 32;
 pub const SPEED_MIN: f64 = 0.1;
 /// See [`SPEED_MIN`].
 pub const SPEED_MAX: f64 = 20.0;
-/// How often the view is drawn anew.
+/// How often the view is drawn anew, or what was said is told.
 pub const VIEW_MS: u16 = 100;
+/// Characters of what the loudspeaker gave that a line tells: they fit into a pipe that has any room.
+pub const SOUND_CHARS_MAX: usize = 500;
 /// Time for the tree to be there.
 pub const START_MS: u32 = 60_000;
 /// Time for the tree to end after it was asked to, before it is forced.

@@ -1,8 +1,9 @@
 //! Where the virtual robots of a user are: names, locks, records, and what dead ones left behind.
 //!
 //! Owns one private directory, `$XDG_RUNTIME_DIR/trik` or `/tmp/trik-UID`. For a robot NAME it has `NAME` (the default
-//! mount point), `NAME.board` (devices), `NAME.ev3dev` (the view of ev3dev) and `NAME.lock`: who holds the lock is alive, whatever its process number, and
-//! the file tells where the robot is. Knows nothing of what a board or a tree is.
+//! mount point), `NAME.board` (devices), `NAME.ev3dev` (the view of ev3dev of a robot at its default mount point) and
+//! `NAME.lock`: who holds the lock is alive, whatever its process number, and the file tells where the robot is. Knows
+//! nothing of what a board or a tree is.
 
 use crate::limits;
 use nix::sys::statfs::statfs;
@@ -112,17 +113,25 @@ impl Place {
         ))
     }
 
-    /// A directory for the view of ev3dev: this one, or the one of the robot.
+    /// A directory for the view of ev3dev: this one, or the one beside the tree.
     ///
     /// # Errors
-    /// It is not empty, or cannot be made.
+    /// It is not empty, cannot be made, or the tree has no name to which one could be added.
     pub fn make_view(&mut self, wanted: Option<&Path>) -> Result<PathBuf, String> {
-        let default = self.lock.with_extension(VIEW);
-        let path = wanted.unwrap_or(&default);
-        if make_mountpoint(path)? || wanted.is_none() {
-            self.made_view = Some(path.to_owned());
+        let path = match wanted {
+            Some(path) => path.to_owned(),
+            None => view_of(&self.mountpoint).ok_or_else(|| {
+                let shown = self.mountpoint.display();
+                format!(
+                    "nothing can be beside {shown}: say where the view is to be with --ev3dev=DIR"
+                )
+            })?,
+        };
+        // The one in our own directory is ours, whoever of us made it.
+        if make_mountpoint(&path)? || path == self.lock.with_extension(VIEW) {
+            self.made_view = Some(path.clone());
         }
-        Ok(path.to_owned())
+        Ok(path)
     }
 
     /// Tells others where this robot is.
@@ -185,6 +194,14 @@ pub fn running(base: &Path) -> io::Result<Vec<Running>> {
     Ok(found)
 }
 
+/// Where the view of a tree is if nobody says another place: beside it, with an ending behind its whole name.
+fn view_of(mountpoint: &Path) -> Option<PathBuf> {
+    let mut name = mountpoint.file_name()?.to_owned();
+    name.push(".");
+    name.push(VIEW);
+    Some(mountpoint.with_file_name(name))
+}
+
 fn name(number: usize) -> String {
     match number {
         1 => "robot".to_owned(),
@@ -234,8 +251,10 @@ fn sweep(base: &Path) {
             continue;
         }
         if let Ok(Some(mountpoint)) = read_record(&mut file) {
-            if is_dead(&mountpoint) {
-                let _ = trikfs::mount::unmount(&mountpoint);
+            for path in view_of(&mountpoint).iter().chain([&mountpoint]) {
+                if is_dead(path) {
+                    let _ = trikfs::mount::unmount(path);
+                }
             }
             // Its own mount point only, and only if it is empty.
             if mountpoint == base.join(&name) {
@@ -386,6 +405,30 @@ mod tests {
         let fresh = base.0.join("fresh");
         drop(Place::claim(&base.0, Some(&fresh)).expect("a place"));
         assert!(!fresh.exists());
+    }
+
+    #[test]
+    fn the_view_is_beside_the_tree_and_goes_with_it_if_it_was_made() {
+        let base = Base::new("view");
+        // The last robot takes this one with it.
+        let run = base.0.join("run");
+        let tree = base.0.join("my.tree");
+        let view = base.0.join("my.tree.ev3dev");
+        let mut place = Place::claim(&run, Some(&tree.join(""))).expect("a place");
+        assert_eq!(place.make_view(None).as_deref(), Ok(view.as_path()));
+        drop(place);
+        assert!(!view.exists());
+        fs::create_dir(&view).expect("a directory of the user's own");
+        let mut place = Place::claim(&run, Some(&tree)).expect("a place");
+        assert_eq!(place.make_view(None).as_deref(), Ok(view.as_path()));
+        drop(place);
+        assert!(view.exists());
+        let mut place = Place::claim(&run, None).expect("a place");
+        let default = run.join("robot.ev3dev");
+        assert_eq!(place.make_view(None).as_deref(), Ok(default.as_path()));
+        drop(place);
+        assert!(!default.exists());
+        assert_eq!(view_of(Path::new("/")), None);
     }
 
     #[test]

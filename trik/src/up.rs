@@ -199,6 +199,7 @@ impl Session<'_> {
             self.hear_signals();
             self.hear_tree();
             self.hear_view();
+            self.hear_loudspeaker();
             if self.tree.said.is_over() && status.is_none() {
                 status = Some(
                     self.tree
@@ -232,10 +233,9 @@ impl Session<'_> {
         }
     }
 
-    /// Waits for a signal, a word of the tree, the next picture or the end of patience.
+    /// Waits for a signal, a word of the tree, the next picture or look at the board, or the end of patience.
     fn wait(&self) -> io::Result<()> {
-        let picture = (self.stage == Stage::Ready && self.screen.is_some())
-            .then_some(PollTimeout::from(limits::VIEW_MS));
+        let picture = (self.stage == Stage::Ready).then_some(PollTimeout::from(limits::VIEW_MS));
         let patience = self.deadline().map(|at| {
             // One more, so that the deadline has passed when the time is up.
             let left = at.saturating_duration_since(Instant::now()) + Duration::from_millis(1);
@@ -332,6 +332,21 @@ impl Session<'_> {
         }
     }
 
+    /// Tells in lines what the robot gives to the ear, where no view shows it.
+    fn hear_loudspeaker(&self) {
+        if self.screen.is_some() || !self.was_ready {
+            return;
+        }
+        for words in self.board.take_said() {
+            let mut out = io::stdout();
+            // Who has stopped reading must not hold up the end; a line fits where there is room at all.
+            let mut room = [PollFd::new(out.as_fd(), PollFlags::POLLOUT)];
+            if poll(&mut room, PollTimeout::ZERO).is_ok_and(|ready| ready > 0) {
+                let _ = writeln!(out, "{}", view::sound(&words)).and_then(|()| out.flush());
+            }
+        }
+    }
+
     /// A message for the person.
     fn note(&mut self, line: &str) {
         match &mut self.screen {
@@ -388,6 +403,10 @@ impl Session<'_> {
         for (command, meaning) in hints::of(self.robot) {
             text.push_str(&format!("  {command:<54} # {meaning}\n"));
         }
+        let board = self.place.board.display();
+        text.push_str(&format!(
+            "\nIts virtual board, with pose, control/keys and faults, is {board}\n"
+        ));
         if let Some(view) = &self.ev3dev {
             let at = view.mountpoint.display();
             text.push_str(&format!(

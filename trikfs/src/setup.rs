@@ -180,7 +180,7 @@ impl SetupRunner {
             && !is_inside(program, root)
         {
             return Outcome::Skipped(format!(
-                "{shown} is not there, and a virtual board never runs the host's programs"
+                "left out, which is no problem: a virtual board runs only programs of its own, and has no {shown}"
             ));
         }
         let mut command = Command::new(program);

@@ -12,11 +12,14 @@ local distance = { group = 'sensors', ports = ports, types = { ultrasonic = {} }
 -- The description of one sensor.
 function distance.make(port, _, entry)
   local median = entry:boolean('median3', true)
+  -- The driver cannot tell a port without a sensor; a robot file that names the port says that there is one.
+  local silence = 'ETIMEDOUT: no echo: nothing in reach'
+    .. (entry.number == 0 and ', or nothing is plugged into ' .. port or '')
   local echo = {
     output_tuple_size = 4,
     converter = function(a_s, a, b_s, b)
       local cm = ba.i32(a, 0)
-      if cm < 0 then error('ETIMEDOUT: no echo: nothing in reach', 0) end
+      if cm < 0 then error(silence, 0) end
       -- What the kernel has before the first measurement; the least that the sensor can measure is 2.
       if cm == 0 then error('ETIMEDOUT: not measured yet', 0) end
       ba.i32(b, 0, cm)

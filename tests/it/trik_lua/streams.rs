@@ -12,12 +12,21 @@ fn numbers(values: &[i32]) -> Vec<u8> {
 #[test]
 fn an_ultrasonic_sensor_without_an_echo_gives_no_number() {
     let mut robot = robot("{ port = 'D2', median3 = false }");
-    let none = Err("ETIMEDOUT: no echo: nothing in reach".to_owned());
+    let none = "ETIMEDOUT: no echo: nothing in reach";
+    let or = "nothing is plugged into D1";
     assert_eq!(
         robot.read("sensors/D1", &numbers(&[25, 1455])),
         Ok("25".into())
     );
-    assert_eq!(robot.read("sensors/D1", &numbers(&[-1, 0])), none);
+    assert_eq!(
+        robot.read("sensors/D2", &numbers(&[-1, 0])),
+        Err(none.to_owned()),
+        "named in the robot file"
+    );
+    assert_eq!(
+        robot.read("sensors/D1", &numbers(&[-1, 0])),
+        Err(format!("{none}, or {or}"))
+    );
     assert_eq!(
         robot.read("sensors/D1", &numbers(&[300, 17000])),
         Ok("25".into()),

@@ -2,6 +2,7 @@
 //!
 //! Owns the words and their places; pure. These are facts of the simulator: what programs read has noise and faults.
 
+use crate::limits;
 use sim::board::View;
 
 /// The robot in a few lines of at most 79 characters.
@@ -53,14 +54,23 @@ pub(super) fn lines(view: &View, robot: &str, speed: f64) -> Vec<String> {
         row("servos, us", "S", &servos),
     ];
     if !view.said.is_empty() {
-        // Words come from outside: they may be long, and a terminal would obey some.
-        let said = view.said.chars().filter(|c| !c.is_control());
-        lines.push(format!(
-            "said            {}",
-            said.take(63).collect::<String>()
-        ));
+        lines.push(format!("said            {}", harmless(&view.said, 63)));
     }
     lines
+}
+
+/// What the loudspeaker gave, as a line for where nothing is drawn.
+pub(super) fn sound(words: &str) -> String {
+    format!("said: {}", harmless(words, limits::SOUND_CHARS_MAX))
+}
+
+/// Words come from outside: they may be long, and a terminal would obey some.
+fn harmless(words: &str, most: usize) -> String {
+    words
+        .chars()
+        .filter(|c| !c.is_control())
+        .take(most)
+        .collect()
 }
 
 fn whole(value: f64) -> String {
@@ -131,6 +141,9 @@ mod tests {
         let lines = lines(&view, "two-wheels", 1.0);
         let said = lines.last().expect("a line");
         assert!(said.len() < 80 && !said.contains('\x1b'), "{said:?}");
+        assert_eq!(sound("\x1b[2Jhello\n"), "said: [2Jhello");
+        let long = sound(&"x".repeat(10_000));
+        assert_eq!(long.len(), "said: ".len() + limits::SOUND_CHARS_MAX);
     }
 
     #[test]

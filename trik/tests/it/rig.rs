@@ -17,7 +17,7 @@ use std::os::fd::AsRawFd;
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
-use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -71,6 +71,8 @@ pub struct Robot {
     pub devices: PathBuf,
     said: String,
     complaints: Arc<Mutex<String>>,
+    /// Lines after that.
+    lines: Receiver<String>,
     /// Dropping it tells the one who kills late robots that all is well.
     _alive: Sender<()>,
 }
@@ -146,10 +148,11 @@ impl Robot {
             devices: PathBuf::new(),
             said: String::new(),
             complaints,
+            lines,
             _alive: alive,
         };
         while !robot.said.contains(LAST_LINE) {
-            match lines.recv_timeout(SOON) {
+            match robot.lines.recv_timeout(SOON) {
                 Ok(line) => robot.said.push_str(&format!("{line}\n")),
                 Err(_) => panic!("not ready:\n{}{}", robot.said, robot.complaints()),
             }
@@ -174,6 +177,12 @@ impl Robot {
     /// What it said to the person in front of it.
     pub fn said(&self) -> &str {
         &self.said
+    }
+
+    /// The next line that it says, after those of [`Robot::said`].
+    pub fn next_line(&self) -> String {
+        let line = self.lines.recv_timeout(SOON);
+        line.unwrap_or_else(|_| panic!("nothing more was said:\n{}", self.complaints()))
     }
 
     /// What it has written to standard error so far.

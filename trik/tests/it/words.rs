@@ -23,6 +23,15 @@ fn its_text_is_right(robot: &Robot, name: &str) {
         "{}",
         robot.said()
     );
+    let board = robot.devices.display();
+    assert!(robot.devices.join("pose").exists());
+    assert!(
+        robot.said().contains(&format!(
+            "\nIts virtual board, with pose, control/keys and faults, is {board}\n"
+        )),
+        "{}",
+        robot.said()
+    );
     let commands: Vec<&str> = robot
         .said()
         .lines()
@@ -117,6 +126,42 @@ fn without_a_terminal_there_are_no_control_characters() {
     assert!(
         said.chars().all(|c| c == '\n' || !c.is_control()),
         "{said:?}"
+    );
+}
+
+#[test]
+fn without_a_terminal_every_sound_is_told_in_a_line() {
+    let Some(robot) = robot(&[]) else { return };
+    for (file, text, line) in [
+        ("sound/say/value", "hello", "said: hello"),
+        ("sound/say/value", "hello", "said: hello"),
+        (
+            "sound/tone/value",
+            "440 100",
+            "said: (a tone of 440 Hz for 100 ms)",
+        ),
+        (
+            "sound/play/value",
+            "/dev/null",
+            "said: (/dev/null is played)",
+        ),
+    ] {
+        robot.write(file, text).expect(file);
+        let heard = std::iter::from_fn(|| Some(robot.next_line())).find(|line| !line.is_empty());
+        assert_eq!(heard.as_deref(), Some(line));
+    }
+}
+
+#[test]
+fn the_log_of_a_healthy_robot_tells_of_no_problem() {
+    let Some(robot) = robot(&[]) else { return };
+    let log = robot.log();
+    let left_out = log.lines().find(|line| line.contains("setup["));
+    assert!(
+        left_out.is_some_and(|line| line.contains(
+            "left out, which is no problem: a virtual board runs only programs of its own, and has no "
+        ) && line.ends_with("/sbin/modprobe")),
+        "{log}"
     );
 }
 

@@ -2,6 +2,7 @@
 
 use super::{board, read, wait, write};
 use crate::board::Board;
+use crate::limits::SAYINGS_MAX;
 use crate::scratch::Scratch;
 use std::fs::File;
 use std::io::Read;
@@ -355,6 +356,19 @@ fn the_gamepad_and_speech_go_through() {
         assert!(status.unwrap().success(), "{program}");
         wait(heard, || (board.view().said == heard).then_some(()));
     }
+    let all = [
+        "hello world",
+        "(a tone of 440 Hz for 500 ms)",
+        "(/dev/null is played)",
+    ];
+    assert_eq!(board.take_said(), all);
+    assert!(board.take_said().is_empty());
+    let lines: Vec<String> = (0..=SAYINGS_MAX).map(|number| number.to_string()).collect();
+    for line in &lines {
+        write(&board, "control/say", &format!("{line}\n"));
+        wait(line, || (board.view().said == *line).then_some(()));
+    }
+    assert_eq!(board.take_said(), lines[1..]);
 }
 
 #[test]

@@ -135,6 +135,7 @@ impl Alone {
             .args(words)
             .arg(&at)
             .stdout(Stdio::null())
+            .stderr(Stdio::piped())
             .spawn()
             .expect("a view");
         eventually("the view", || at.join("tacho-motor").is_dir());
@@ -154,6 +155,7 @@ impl Drop for Alone {
         if !std::thread::panicking() {
             assert!(status.is_ok_and(|status| status.success()));
             assert!(board::mounts_below(&self.view.0).is_empty());
+            assert!(!self.view.0.exists(), "it has made the directory");
         }
     }
 }
@@ -163,7 +165,15 @@ fn a_tree_that_goes_and_comes_back_is_seen_through_the_same_open_files() {
     let Some(home) = Home::new() else { return };
     let home = Arc::new(home);
     let tree = home.0.path("tree");
-    let alone = Alone::start(&home, &tree, &[]);
+    let mut alone = Alone::start(&home, &tree, &[]);
+    let mut warning = String::new();
+    let stderr = alone.process.stderr.take().expect("a pipe");
+    BufReader::new(stderr).read_line(&mut warning).unwrap();
+    let expected = format!(
+        "trikfs-ev3dev: {}: no tree is mounted there; the view is empty until there is one (--tree=DIR says another place)\n",
+        tree.display()
+    );
+    assert_eq!(warning, expected);
     let view = &alone.view;
     assert_eq!(fs::read_dir(view.0.join("tacho-motor")).unwrap().count(), 0);
     let words = ["tree"];
@@ -252,6 +262,34 @@ fn a_motor_without_encoder_is_a_dc_motor_and_a_leased_one_is_busy() {
     });
     view.write(&format!("{motor}/stop_action"), "coast");
     view.write(&format!("{motor}/command"), "stop");
+}
+
+#[test]
+fn a_command_is_no_mount_point() {
+    let Some(home) = Home::new() else { return };
+    let run = |words: &[&str]| {
+        let mut command = Command::new(TRIK);
+        command.arg0("trikfs-ev3dev").current_dir(home.0.dir());
+        harness::tools::run(command.args(words), b"")
+    };
+    assert!(run(&["man"]).good().contains("trikfs\\-ev3dev"));
+    assert!(run(&["completions", "bash"]).good().contains("--encoder"));
+    let refusal = run(&["--tree=tree", "man"]);
+    assert_eq!(refusal.code(), 2);
+    assert!(refusal.stderr.contains("is ./man"), "{}", refusal.stderr);
+    assert!(!home.0.path("man").exists());
+}
+
+#[test]
+fn the_view_of_a_tree_elsewhere_is_beside_that_tree() {
+    let Some(home) = Home::new() else { return };
+    let home = Arc::new(home);
+    let robot = Robot::start(Arc::clone(&home), &["--ev3dev", "mine"]);
+    let view = home.0.path("mine.ev3dev");
+    assert!(view.join("tacho-motor/motor0").exists());
+    assert!(robot.said().contains(&format!("ls {}/", view.display())));
+    drop(robot);
+    assert!(!view.exists());
 }
 
 #[test]
