@@ -138,6 +138,10 @@ impl Missing {
         };
         let what = match self.paths.len() {
             1 => format!("{path} does not exist"),
+            2 => format!(
+                "{path} does not exist, nor does another one in {}",
+                self.place.display()
+            ),
             count => format!(
                 "{path} does not exist, nor do {} more in {}",
                 count - 1,
