@@ -44,6 +44,7 @@ fn a_good_file_is_said_to_be_good_and_missing_devices_are_warnings() {
 #[test]
 fn missing_devices_of_one_place_are_one_warning() {
     let board = Board::new();
+    std::fs::create_dir(board.path("there")).unwrap();
     board.file("there/here", "");
     let node = |name: &str, path: &str| {
         format!("  {name} = {{ src = '{path}', input_tuple_size = 1 }},\n")

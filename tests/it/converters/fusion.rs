@@ -180,9 +180,9 @@ assert os.pread(half, 64, 0) == b'40\\n'
     // What a caller did wrong is in the log, with what would be right, and no fault.
     let log = m.log();
     for line in [
-        "lua: caller: params/gain is a number from 0 to 5, not 5.5\n",
-        "lua: caller: params/gain is a number from 0 to 5, not 'much'\n",
-        "lua: caller: params/gain is a number from 0 to 5, not nan\n",
+        "lua: caller: params/gain is a number from -5 to 5, not 5.5\n",
+        "lua: caller: params/gain is a number from -5 to 5, not 'much'\n",
+        "lua: caller: params/gain is a number from -5 to 5, not nan\n",
     ] {
         assert!(log.contains(line), "{line}{log}");
     }
