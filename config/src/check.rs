@@ -4,6 +4,7 @@
 //! The fields of one description are the submodules' business. Runs no Lua.
 
 mod bus;
+mod delivery;
 mod fields;
 mod node;
 mod params;
@@ -22,6 +23,7 @@ use crate::problem::Problem;
 use crate::search::Search;
 use crate::texts::Texts;
 use crate::value::{Key, Table, Value, Values};
+use delivery::Delivery;
 use fields::Fields;
 use std::collections::HashMap;
 
@@ -73,6 +75,8 @@ struct Draft<'a> {
     /// The node that an attribute belongs to.
     parent: Option<usize>,
     built: Built,
+    /// Known when it is built.
+    delivery: Delivery,
 }
 
 /// How far a draft is.
@@ -213,6 +217,7 @@ impl<'a> Checker<'a> {
             table,
             parent,
             built: Built::Not,
+            delivery: Delivery::Unknown,
         });
         let Some(value) = table.get("attributes") else {
             return Ok(());
@@ -329,7 +334,9 @@ impl<'a> Checker<'a> {
         };
         let description = fields.description()?;
         self.trail.pop();
+        let delivery = self.delivery(&description.source);
         if let Some(draft) = self.drafts.get_mut(number) {
+            draft.delivery = delivery;
             draft.built = Built::Done(Box::new(description));
         }
         Ok(())

@@ -88,8 +88,8 @@ class Samples:
         return self._number(28) == 0 and (found.st_dev, found.st_ino) == self.file
 
 
-def main():
-    samples, left, idle_ms = Samples(sys.argv[1], sys.argv[2]), int((sys.argv + ['-1'])[3]), 0
+def follow(mountpoint, node, left):
+    samples, idle_ms = Samples(mountpoint, node), 0
     while left != 0:
         try:
             missed, event = samples.next()
@@ -105,8 +105,17 @@ def main():
             continue
         idle_ms += 1
         if idle_ms % 100 == 0 and not samples.is_current():
-            sys.exit(f'{sys.argv[2]}: gone')
+            sys.exit(f'{node}: gone')
         time.sleep(0.001)
+
+
+def main():
+    if len(sys.argv) < 3:
+        sys.exit('usage: follow.py MOUNTPOINT NODE [COUNT]')
+    try:
+        follow(sys.argv[1], sys.argv[2], int((sys.argv + ['-1'])[3]))
+    except (OSError, ValueError) as error:
+        sys.exit(f'{sys.argv[2]}: {error}')
 
 
 if __name__ == '__main__':

@@ -1,4 +1,5 @@
 /* Samples of a mounted tree out of shared memory: one header, no library, C99 and C++ with GCC or clang.
+ * With -std=c99 or -std=c11 include it before all other headers.
  *
  *     struct trikfs_samples samples;
  *     if (trikfs_samples_open(&samples, "/trikfs", "sensors/A1") != 0) perror("sensors/A1");
@@ -9,6 +10,12 @@
  * docs/user/sample-bus.md explains the layout and the errors. */
 #ifndef TRIKFS_SAMPLES_H
 #define TRIKFS_SAMPLES_H
+
+/* Compilers that were told to know nothing but the standard (-std=c99) hide POSIX, unless it is asked for before the
+ * first header of the system. */
+#if defined(__STRICT_ANSI__) && !defined(_GNU_SOURCE) && !defined(_DEFAULT_SOURCE)
+#define _DEFAULT_SOURCE 1
+#endif
 
 #include <errno.h>
 #include <fcntl.h>
@@ -21,6 +28,10 @@
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
+
+#if !defined(PATH_MAX) || !defined(O_CLOEXEC) || !defined(CLOCK_MONOTONIC)
+#error "include trikfs_samples.h before all other headers, or compile with -D_DEFAULT_SOURCE"
+#endif
 
 /* The first bytes of a ring. All numbers have the byte order of the machine. */
 struct trikfs_ring {

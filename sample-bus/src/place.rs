@@ -5,10 +5,11 @@
 
 use crate::limits;
 use nix::unistd::geteuid;
+use std::collections::{HashMap, HashSet};
 use std::fs::{File, Permissions, TryLockError};
 use std::io;
 use std::os::unix::ffi::OsStrExt;
-use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt, PermissionsExt};
+use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt, PermissionsExt, symlink};
 use std::path::{Path, PathBuf};
 
 /// Where shared memory is.
@@ -116,6 +117,38 @@ impl Directory {
     /// Where it is.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// Makes second names of rings: exactly these links, from their names to names of rings, which need not be there
+    /// yet. Those that lead where they should are left alone.
+    ///
+    /// # Errors
+    /// The name of the first link that could not be made or removed; the others are as they should be.
+    pub fn set_links(&self, links: &HashMap<String, String>) -> Result<(), (String, io::Error)> {
+        let entries = std::fs::read_dir(&self.path);
+        let entries = entries.map_err(|error| (String::new(), error))?;
+        let mut failed = None;
+        let mut kept = HashSet::new();
+        for entry in entries.flatten() {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            let Ok(target) = std::fs::read_link(entry.path()) else {
+                continue;
+            };
+            if links
+                .get(&name)
+                .is_some_and(|ring| target == Path::new(ring))
+            {
+                kept.insert(name);
+            } else if let Err(error) = std::fs::remove_file(entry.path()) {
+                failed.get_or_insert((name, error));
+            }
+        }
+        for (name, ring) in links.iter().filter(|(name, _)| !kept.contains(*name)) {
+            if let Err(error) = symlink(ring, self.path.join(name)) {
+                failed.get_or_insert((name.clone(), error));
+            }
+        }
+        failed.map_or(Ok(()), Err)
     }
 
     fn empty(&self) -> io::Result<()> {

@@ -98,6 +98,7 @@ fn assert_no_node(stage: &Stage, mut command: Command) {
     assert!(!output.status.success());
     let complaint = String::from_utf8_lossy(&output.stderr);
     assert!(complaint.contains("No such file"), "{complaint}");
+    assert_eq!(complaint.lines().count(), 1, "{complaint}");
 }
 
 #[test]
@@ -115,33 +116,33 @@ fn rust() {
     check("rust", Command::new(path));
 }
 
+/// The compiler for C or C++, strict, with the folder of the header.
+fn compiler(variable: &str, usual: &str) -> Command {
+    let mut compiler = Command::new(std::env::var(variable).unwrap_or_else(|_| usual.to_owned()));
+    compiler.args(["-Wall", "-Wextra", "-Werror", "-I"]);
+    compiler.arg(folder().join("include"));
+    compiler
+}
+
+fn compiles(compiler: &mut Command) {
+    let output = compiler.output();
+    let output = output.unwrap_or_else(|error| panic!("{compiler:?}: {error}"));
+    let complaint = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{compiler:?}\n{complaint}");
+}
+
+/// Of the standards too that hide POSIX from who does not ask for it.
+const STANDARDS: [&str; 4] = ["-std=c99", "-std=c11", "-std=gnu99", "-std=gnu17"];
+
 #[test]
 fn c() {
-    let cc = std::env::var("CC").unwrap_or_else(|_| "cc".to_owned());
     let program = std::env::temp_dir().join(format!("follow-{}", std::process::id()));
-    let mut compiler = Command::new(cc);
-    compiler.args([
-        "-std=c99",
-        "-D_GNU_SOURCE",
-        "-O2",
-        "-Wall",
-        "-Wextra",
-        "-Werror",
-        "-o",
-    ]);
-    compiler
-        .arg(&program)
-        .arg("-I")
-        .arg(folder().join("include"));
-    let compiled = compiler
-        .arg(folder().join("examples/follow.c"))
-        .output()
-        .unwrap();
-    assert!(
-        compiled.status.success(),
-        "{}",
-        String::from_utf8_lossy(&compiled.stderr)
-    );
+    let source = folder().join("examples/follow.c");
+    for standard in STANDARDS {
+        let mut compiler = compiler("CC", "cc");
+        compiler.args([standard, "-pedantic", "-O2", "-o"]);
+        compiles(compiler.arg(&program).arg(&source));
+    }
     check("c", Command::new(&program));
     std::fs::remove_file(program).unwrap();
 }
@@ -211,18 +212,8 @@ fn the_manual() {
     program.push_str(&comparisons());
     let source = std::env::temp_dir().join(format!("manual-{}.c", std::process::id()));
     std::fs::write(&source, &program).unwrap();
-    let mut compiler = Command::new(std::env::var("CC").unwrap_or_else(|_| "cc".to_owned()));
-    compiler.args([
-        "-std=c11",
-        "-D_GNU_SOURCE",
-        "-Wall",
-        "-Wextra",
-        "-Werror",
-        "-fsyntax-only",
-        "-I",
-    ]);
-    let compiled = compiler
-        .arg(folder().join("include"))
+    let compiled = compiler("CC", "cc")
+        .args(["-std=c11", "-fsyntax-only"])
         .arg(&source)
         .output()
         .unwrap();
@@ -234,28 +225,43 @@ fn the_manual() {
     );
 }
 
+/// After a header that has hidden POSIX already, the compiler says what to do.
+#[test]
+fn the_header_behind_others_says_what_to_do() {
+    let program =
+        "#include <stdio.h>\n#include \"trikfs_samples.h\"\nint main(void) { return 0; }\n";
+    let source = std::env::temp_dir().join(format!("behind-{}.c", std::process::id()));
+    std::fs::write(&source, program).unwrap();
+    let check = |option: &str| {
+        let mut compiler = compiler("CC", "cc");
+        compiler.args(["-std=c99", "-fsyntax-only", option]);
+        compiler.arg(&source).output().unwrap()
+    };
+    let (refused, asked) = (check("-O0"), check("-D_DEFAULT_SOURCE"));
+    std::fs::remove_file(&source).unwrap();
+    let complaint = String::from_utf8_lossy(&refused.stderr);
+    assert!(!refused.status.success());
+    assert!(
+        complaint.contains("before all other headers"),
+        "{complaint}"
+    );
+    assert!(asked.status.success());
+}
+
 #[test]
 fn the_header_is_good_for_cpp() {
-    let mut compiler = Command::new(std::env::var("CXX").unwrap_or_else(|_| "c++".to_owned()));
-    compiler.args([
-        "-x",
-        "c++",
-        "-Wall",
-        "-Wextra",
-        "-Werror",
-        "-fsyntax-only",
-        "-I",
-    ]);
-    compiler
-        .arg(folder().join("include"))
-        .arg(folder().join("examples/follow.c"));
-    match compiler.stderr(Stdio::piped()).output() {
-        Err(error) => println!("skipped: the_header_is_good_for_cpp: no C++ compiler: {error}"),
-        Ok(output) => assert!(
-            output.status.success(),
-            "{}",
-            String::from_utf8_lossy(&output.stderr)
-        ),
+    for standard in ["-std=c++11", "-std=gnu++17"] {
+        let mut compiler = compiler("CXX", "c++");
+        compiler.args([standard, "-x", "c++", "-fsyntax-only"]);
+        compiler.arg(folder().join("examples/follow.c"));
+        match compiler.stderr(Stdio::piped()).output() {
+            Err(error) => println!("skipped: the_header_is_good_for_cpp: no C++ compiler: {error}"),
+            Ok(output) => assert!(
+                output.status.success(),
+                "{}",
+                String::from_utf8_lossy(&output.stderr)
+            ),
+        }
     }
 }
 

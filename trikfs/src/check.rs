@@ -4,10 +4,13 @@
 
 use crate::convert::shared::Cache;
 use crate::convert::{Recipe, Workshop};
+use crate::device;
 use crate::reload;
+use config::description::{Config, Place};
 use config::limits::CONFIG_BYTES_MAX;
 use config::load::{Loaded, Loader};
 use config::problem::Problem;
+use std::collections::{BTreeSet, HashMap};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -68,6 +71,84 @@ pub fn check(
         Recipe::prepare(description, &workshop, None)?;
     }
     let mut warnings = loaded.warnings;
-    warnings.extend(reload::missing_devices(&loaded.config));
+    warnings.extend(missing_devices(&loaded.config));
     Ok(warnings)
+}
+
+/// Device paths of a configuration that do not exist, as warnings: one for each bus and each directory, with the first
+/// node that needs it. On a PC a description of a robot misses everything at once.
+fn missing_devices(config: &Config) -> Vec<Problem> {
+    let mut found: Vec<Missing> = Vec::new();
+    let mut position: HashMap<PathBuf, usize> = HashMap::new();
+    for description in reload::all(config) {
+        let paths = device::paths(&description.source);
+        for path in paths.into_iter().filter(|path| !path.exists()) {
+            let place = missing_place(path);
+            let at = *position.entry(place.clone()).or_insert_with(|| {
+                found.push(Missing {
+                    at: description.place.clone(),
+                    first_path: path.to_owned(),
+                    first_node: description.path.clone(),
+                    place,
+                    nodes: BTreeSet::new(),
+                    paths: BTreeSet::new(),
+                });
+                found.len() - 1
+            });
+            if let Some(missing) = found.get_mut(at) {
+                missing.nodes.insert(description.path.clone());
+                missing.paths.insert(path.to_owned());
+            }
+        }
+    }
+    found.iter().map(Missing::warning).collect()
+}
+
+/// What missing devices have in common: the highest directory that is missing; else the directory that they should be
+/// in. Those of /dev have little to do with each other, so each stands for itself.
+fn missing_place(path: &Path) -> PathBuf {
+    let highest = path.ancestors().take_while(|one| !one.exists()).last();
+    let highest = highest.unwrap_or(path);
+    match path.parent() {
+        Some(parent) if highest == path && !parent.ends_with("dev") => parent.to_owned(),
+        _ => highest.to_owned(),
+    }
+}
+
+/// Missing devices that have a place in common.
+struct Missing {
+    /// Of the first node that needs one.
+    at: Place,
+    first_path: PathBuf,
+    first_node: String,
+    place: PathBuf,
+    nodes: BTreeSet<String>,
+    paths: BTreeSet<PathBuf>,
+}
+
+impl Missing {
+    fn warning(&self) -> Problem {
+        let (node, path) = (&self.first_node, self.first_path.display());
+        let (who, opening) = match self.nodes.len() {
+            1 => (format!("node {node}"), "opening it will give ENODEV"),
+            count => (
+                format!("{count} nodes, such as {node}"),
+                "opening them will give ENODEV",
+            ),
+        };
+        let what = match self.paths.len() {
+            1 => format!("{path} does not exist"),
+            2 => format!(
+                "{path} does not exist, nor does another one in {}",
+                self.place.display()
+            ),
+            count => format!(
+                "{path} does not exist, nor do {} more in {}",
+                count - 1,
+                self.place.display()
+            ),
+        };
+        let reason = format!("{who}: {what}; {opening}");
+        Problem::new(self.at.file.clone(), self.at.line, reason)
+    }
 }

@@ -7,7 +7,6 @@
 use crate::convert::lua::StateMaker;
 use crate::convert::shared::Cache;
 use crate::convert::{Recipe, Workshop};
-use crate::device;
 use crate::engine::Engine;
 use crate::events::lock;
 use crate::files::control::rest_all;
@@ -309,6 +308,10 @@ impl Reloader {
         for file in setup.files.all() {
             file.retire();
         }
+        // A new node's ring may need the place of a second name that is gone.
+        if let Err(line) = setup.engine.samples.set_aliases(aliases) {
+            setup.engine.log.line(&line);
+        }
         for node in &new {
             node.newest.start();
         }
@@ -525,23 +528,4 @@ fn linked(source: &SourceDescription) -> Vec<&str> {
         SourceDescription::Faulty(faulty) => linked(&faulty.source),
         _ => Vec::new(),
     }
-}
-
-/// Device paths of a configuration that do not exist, as warnings.
-pub fn missing_devices(config: &Config) -> Vec<Problem> {
-    let mut warnings = Vec::new();
-    for description in all(config) {
-        for path in device::paths(&description.source) {
-            if !path.exists() {
-                let place = &description.place;
-                let reason = format!(
-                    "node {}: {} does not exist; opening it will give ENODEV",
-                    description.path,
-                    path.display()
-                );
-                warnings.push(Problem::new(place.file.clone(), place.line, reason));
-            }
-        }
-    }
-    warnings
 }

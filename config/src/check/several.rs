@@ -2,6 +2,7 @@
 //!
 //! Owns the layout of the input of the one converter behind them; each single source is read by `source`.
 
+use super::delivery::Delivery;
 use super::fields::Fields;
 use crate::description::{PartDescription, SeveralDescription, SourceDescription};
 use crate::format::Format;
@@ -144,15 +145,36 @@ impl<'a> Fields<'_, 'a> {
                     format!("trigger: there is no source '{shown}'{hint}"),
                 ));
             };
-            if let SourceDescription::Newest(other) = &part.source {
-                let reason = format!(
-                    "trigger: 'newest:{other}' has no events of its own; 'trikfs:{other}' delivers each tuple"
-                );
-                return Err(self.problem("trigger", reason));
+            if let Some(reason) = self.cannot_trigger(part) {
+                return Err(self.problem("trigger", format!("trigger: {reason}")));
             }
             part.is_trigger = true;
         }
         Ok(())
+    }
+
+    /// Why the tuples of a source make none of the node, and what to do, as far as it can be known here.
+    fn cannot_trigger(&self, part: &PartDescription) -> Option<String> {
+        const INSTEAD: &str =
+            "name a stream, or leave out trigger and let poll_ms say when to sample";
+        if let SourceDescription::Newest(other) = &part.source {
+            let node = SourceDescription::Node(other.clone());
+            return Some(match self.checker.delivery(&node) {
+                Delivery::Stream => format!(
+                    "'newest:{other}' has no events of its own; 'trikfs:{other}' delivers each tuple"
+                ),
+                Delivery::State => format!(
+                    "'newest:{other}' has no events of its own, and '{other}' is a state, which has none either; {INSTEAD}"
+                ),
+                Delivery::Unknown => format!(
+                    "'newest:{other}' has no events of its own; 'trikfs:{other}' has if the source of '{other}' is a stream"
+                ),
+            });
+        }
+        (self.checker.delivery(&part.source) == Delivery::State).then(|| {
+            let name = &part.name;
+            format!("source '{name}' is a state, which has no events of its own; {INSTEAD}")
+        })
     }
 
     /// The format of nodes side by side without a converter: each number named after its source and itself.

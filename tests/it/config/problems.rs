@@ -40,6 +40,42 @@ fn a_good_file_is_said_to_be_good_and_missing_devices_are_warnings() {
     );
 }
 
+/// A description of a robot misses everything at once on a PC.
+#[test]
+fn missing_devices_of_one_place_are_one_warning() {
+    let board = Board::new();
+    std::fs::create_dir(board.path("there")).unwrap();
+    board.file("there/here", "");
+    let node = |name: &str, path: &str| {
+        format!("  {name} = {{ src = '{path}', input_tuple_size = 1 }},\n")
+    };
+    let there = |name: &str| board.path("there").join(name).display().to_string();
+    let nodes = [
+        ("a", "/dev/absent-2".to_owned()),
+        ("b", "/dev/absent-2".to_owned()),
+        ("c", "/dev/absent-3".to_owned()),
+        ("d", "/absent/one/x".to_owned()),
+        ("e", "/absent/two/y".to_owned()),
+        ("f", there("here")),
+        ("g", there("x")),
+        ("h", there("y")),
+        ("i", there("z")),
+    ];
+    let lines: String = nodes.iter().map(|(name, path)| node(name, path)).collect();
+    board.file("robot.lua", format!("trikfs = {{\n{lines}}}"));
+    let output = trikfs(&board, &["check", "robot.lua"], b"");
+    assert_eq!(output.stdout, "robot.lua: good\n");
+    let expected = format!(
+        "robot.lua:2: warning: 2 nodes, such as a: /dev/absent-2 does not exist; opening them will give ENODEV\n\
+         robot.lua:4: warning: node c: /dev/absent-3 does not exist; opening it will give ENODEV\n\
+         robot.lua:5: warning: 2 nodes, such as d: /absent/one/x does not exist, nor does another one in /absent; opening them will give ENODEV\n\
+         robot.lua:8: warning: 3 nodes, such as g: {} does not exist, nor do 2 more in {}; opening them will give ENODEV\n",
+        there("x"),
+        board.path("there").display()
+    );
+    assert_eq!(output.stderr, expected);
+}
+
 #[test]
 fn the_shipped_configurations_are_good() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../config/lua");

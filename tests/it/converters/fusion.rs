@@ -177,6 +177,17 @@ put('4', 'filtered/params/half.gain')
 assert os.pread(half, 64, 0) == b'40\\n'
 ",
     );
+    // What a caller did wrong is in the log, with what would be right, and no fault.
+    let log = m.log();
+    for line in [
+        "lua: caller: params/gain is a number from -5 to 5, not 5.5\n",
+        "lua: caller: params/gain is a number from -5 to 5, not 'much'\n",
+        "lua: caller: params/gain is a number from -5 to 5, not nan\n",
+    ] {
+        assert!(log.contains(line), "{line}{log}");
+    }
+    assert_eq!(m.text("lua/fault"), "");
+    assert_eq!(m.stat("lua", "faults"), 0.0);
     // A reload that changes nothing keeps what was set; one that changes the node begins with the description.
     let config = m.text("config");
     m.apply(&format!("{config}\n-- again")).unwrap();

@@ -47,6 +47,11 @@ fn results_are_bytes_hexadecimal_or_the_text_of_value() {
         convert(&board, "--text robot.lua bytes", &[1, 2]).good(),
         "1 2\n"
     );
+    // A converter that collects before it gives anything is not silent.
+    let taken = convert(&board, "robot.lua n", &[1, 1, 1]);
+    assert_eq!((taken.code(), taken.stdout.as_str()), (0, ""));
+    assert_eq!(taken.stderr, "node n: 3 tuples taken, no output yet\n");
+    assert_eq!(convert(&board, "robot.lua n", &[1, 2]).stderr, "");
     let both = convert(&board, "--text --hex robot.lua n", b"");
     assert_eq!(both.code(), 2);
     let absent = convert(&board, "robot.lua n absent", b"");

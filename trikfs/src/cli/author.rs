@@ -143,8 +143,8 @@ fn stream(args: &ConvertArgs, subject: &Subject) -> Result<(), Failure> {
     } else {
         Input::Bytes(&mut bytes, name.display().to_string())
     };
-    let (line, result) = stream::run(subject, wishes, &mut input, &mut io::stdout().lock());
-    if let Some(line) = line {
+    let (lines, result) = stream::run(subject, wishes, &mut input, &mut io::stdout().lock());
+    for line in lines {
         let _ = writeln!(io::stderr(), "{line}");
     }
     Ok(result?)

@@ -29,7 +29,7 @@ pub fn open(several: &SeveralDescription, around: &Surroundings) -> Result<Devic
     let has_trigger = |input: &Input| input.is_trigger && matches!(input.origin, From::Stream(_));
     let is_chosen = several.parts.iter().any(|part| !part.is_trigger);
     if is_chosen && !inputs.iter().any(has_trigger) {
-        let what = "trigger: none of the sources that it names delivers tuples by itself";
+        let what = "trigger: the sources that it names are states, which have no events of their own; name a stream, or leave out trigger and let poll_ms say when to sample";
         return Err(Error::NoDevice(what.to_owned()));
     }
     let joint = Joint {

@@ -34,6 +34,41 @@ impl ParamFile {
     }
 }
 
+impl ParamFile {
+    /// What was written, as a number in the range of the param.
+    fn number(&self, data: &[u8]) -> Result<f64, Error> {
+        let name = &self.name;
+        let range = self.node.description.param_ranges.get(name.as_ref());
+        let wanted = match range {
+            Some((min, max)) if *min == f64::MIN => format!("a number up to {max}"),
+            Some((min, max)) if *max == f64::MAX => format!("a number from {min} on"),
+            Some((min, max)) => format!("a number from {min} to {max}"),
+            None => "a finite number".to_owned(),
+        };
+        let refused = |what: &str| format!("params/{name} is {wanted}, not {what}");
+        let text = match text::from_bytes(data) {
+            Ok(text) => text,
+            Err(Error::Invalid(what)) => {
+                return Err(Error::Invalid(format!("params/{name} is {wanted}: {what}")));
+            }
+            Err(other) => return Err(other),
+        };
+        let value: f64 = text
+            .parse()
+            .map_err(|_| Error::Invalid(refused(&format!("'{}'", shown(text)))))?;
+        let is_inside = range.is_none_or(|(min, max)| (*min..=*max).contains(&value));
+        if !value.is_finite() || !is_inside {
+            return Err(Error::OutOfRange(refused(&shown(text))));
+        }
+        Ok(value)
+    }
+}
+
+/// The beginning of a text, for a line of the log.
+fn shown(text: &str) -> String {
+    text.chars().take(32).flat_map(char::escape_debug).collect()
+}
+
 impl OpenFile for ParamFile {
     fn read(&self, request: &Transfer, out: &mut [u8]) -> Result<Outcome, Error> {
         self.text.read(request, out)
@@ -44,19 +79,8 @@ impl OpenFile for ParamFile {
             return Err(Error::Stale);
         }
         let name = &self.name;
-        let text = text::from_bytes(data)?;
-        let value: f64 = text
-            .parse()
-            .map_err(|_| Error::Invalid(format!("{name} is a number")))?;
-        if !value.is_finite() {
-            return Err(Error::OutOfRange(format!("{name} is a finite number")));
-        }
-        let range = self.node.description.param_ranges.get(name.as_ref());
-        if let Some((min, max)) = range
-            && !(*min..=*max).contains(&value)
-        {
-            return Err(Error::OutOfRange(format!("{name} is {min} to {max}")));
-        }
+        let value = self.number(data);
+        let value = value.inspect_err(|error| self.node.report(error))?;
         let _inside = self.node.enter()?;
         // It changes what writes mean.
         let _admitted = Ownership::default().admit(&self.node, request.caller)?;

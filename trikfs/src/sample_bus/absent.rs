@@ -3,7 +3,7 @@
 use super::Readers;
 use crate::clock::Stamp;
 use crate::errno::Error;
-use config::description::NodeDescription;
+use config::description::{Alias, NodeDescription};
 use std::path::Path;
 use std::time::Duration;
 
@@ -29,6 +29,14 @@ impl SampleBus {
     /// Nothing.
     pub fn status_line(&self) -> String {
         String::new()
+    }
+
+    /// Does nothing.
+    ///
+    /// # Errors
+    /// None.
+    pub fn set_aliases(&self, _aliases: &[Alias]) -> Result<(), String> {
+        Ok(())
     }
 
     /// None.

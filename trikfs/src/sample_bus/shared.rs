@@ -8,9 +8,10 @@ use crate::clock::Stamp;
 use crate::errno::Error;
 use crate::events::lock;
 use crate::limits;
-use config::description::NodeDescription;
+use config::description::{Alias, NodeDescription};
 use sample_bus::place::{self, Directory, SHARED_MEMORY};
 use sample_bus::{Rights, Writer};
+use std::collections::HashMap;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
@@ -78,6 +79,36 @@ impl SampleBus {
         problem
             .as_ref()
             .map_or_else(String::new, |line| format!("{line}\n"))
+    }
+
+    /// Second names lead to the rings of their nodes, and to nothing while those have none. Links are the names of the
+    /// configuration in force and no others; call it when the rings of nodes that are gone have ended.
+    ///
+    /// # Errors
+    /// A line for the first name that could not be made.
+    pub fn set_aliases(&self, aliases: &[Alias]) -> Result<(), String> {
+        let place = lock(&self.place);
+        let Some(place) = place.as_ref() else {
+            return Ok(());
+        };
+        let mut links = HashMap::new();
+        let mut failed = None;
+        for alias in aliases {
+            match (place::file_name(&alias.path), place::file_name(&alias.node)) {
+                (Ok(link), Ok(ring)) => drop(links.insert(link, ring)),
+                (Err(error), _) | (_, Err(error)) => {
+                    failed.get_or_insert((alias.path.clone(), error));
+                }
+            }
+        }
+        if let Err((name, error)) = place.directory.set_links(&links) {
+            failed.get_or_insert((name, error));
+        }
+        failed.map_or(Ok(()), |(name, error)| {
+            Err(format!(
+                "sample bus: the second name {name} is not there: {error}; files are not affected"
+            ))
+        })
     }
 
     /// A ring for a node, with the rights of its files. None: the mount has no sample bus.

@@ -113,26 +113,35 @@ impl From<io::Error> for Stop {
     }
 }
 
-/// Runs the input through a fresh opening of the converter. Returns the line about the time, if it was asked for.
+/// Runs the input through a fresh opening of the converter. Returns lines for standard error: that nothing came out of
+/// a converter that took everything, and the time, if it was asked for.
 ///
 /// # Errors
-/// The refused tuples with their places, or what could not be read or written. The line about the time comes with it.
+/// The refused tuples with their places, or what could not be read or written. The lines come with it.
 pub fn run(
     subject: &Subject,
     wishes: Wishes,
     input: &mut Input<'_>,
     output: &mut dyn Write,
-) -> (Option<String>, Result<(), String>) {
+) -> (Vec<String>, Result<(), String>) {
     let node = subject.description().path.clone();
     let mut run = match Run::new(subject, wishes) {
         Ok(run) => run,
-        Err(reason) => return (None, Err(reason)),
+        Err(reason) => return (Vec::new(), Err(reason)),
     };
     let ended = run.all(input, output);
-    let line = run
-        .timing
-        .as_ref()
-        .map(|timing| format!("node {node}: {}", timing.render()));
+    let mut lines = Vec::new();
+    if run.tuples > 0 && run.consumed == run.tuples {
+        // Silence would look like a failure.
+        let tuples = if run.tuples == 1 { "tuple" } else { "tuples" };
+        lines.push(format!(
+            "node {node}: {} {tuples} taken, no output yet",
+            run.tuples
+        ));
+    }
+    if let Some(timing) = &run.timing {
+        lines.push(format!("node {node}: {}", timing.render()));
+    }
     let result = match ended {
         Ok(()) => run.faults.render(run.tuples).map_or(Ok(()), Err),
         Err(Stop::Enough) => Ok(()),
@@ -143,7 +152,7 @@ pub fn run(
         }),
     };
     (
-        line,
+        lines,
         result.map_err(|reason| format!("node {node}: {reason}")),
     )
 }
@@ -157,6 +166,8 @@ struct Run<'a> {
     converted: Vec<u8>,
     line: String,
     tuples: u64,
+    /// Those of them that gave no result.
+    consumed: u64,
     faults: Faults,
     timing: Option<Timing>,
 }
@@ -173,6 +184,7 @@ impl<'a> Run<'a> {
             converted: vec![0; output_size],
             line: String::new(),
             tuples: 0,
+            consumed: 0,
             faults: Faults::default(),
             timing: wishes.timing.then(Timing::default),
         })
@@ -240,6 +252,7 @@ impl<'a> Run<'a> {
     /// Puts the line of a result together; false if there is no result.
     fn render(&mut self, conversion: Conversion, time_us: Option<u32>) -> Result<bool, Error> {
         if conversion == Conversion::Consumed {
+            self.consumed += 1;
             return Ok(false);
         }
         self.line.clear();

@@ -94,7 +94,7 @@ fn what_makes_no_sense_is_refused_with_its_reason() {
         ),
         (
             "src = { a = 'newest:gyro' }, trigger = 'a'",
-            "robot.lua:1: x: trigger: 'newest:gyro' has no events of its own; 'trikfs:gyro' delivers each tuple",
+            "robot.lua:1: x: trigger: 'newest:gyro' has no events of its own; 'trikfs:gyro' has if the source of 'gyro' is a stream",
         ),
         (
             "src = { 'trikfs:gyro' }, trigger = {}",
@@ -123,6 +123,49 @@ fn what_makes_no_sense_is_refused_with_its_reason() {
     ];
     for (fields, expected) in cases {
         assert_eq!(load(fields).unwrap_err(), expected, "{fields}");
+    }
+}
+
+#[test]
+fn the_advice_about_a_trigger_depends_on_what_the_node_is() {
+    let state = "i2c{ path = '/dev/i2c-2', address = 72, register = 1, transfer = 'word' }";
+    let stream = "fifo{ path = '/run/f' }, input_tuple_size = 2";
+    let refusal = |other: &str, fields: &str| {
+        let source = format!(
+            "trikfs = {{ g = {{ near = {{ src = {other} }}, far = {{ src = 'trikfs:g/near' }},\n\
+             pair = {{ src = {{ 'newest:g/far', 'trikfs:g/far' }} }} }}, x = {{ {fields} }} }}"
+        );
+        let loaded = Loader::default().load("robot.lua", None, source.as_bytes());
+        loaded.err().map(|problem| problem.to_string())
+    };
+    let instead = "name a stream, or leave out trigger and let poll_ms say when to sample";
+    for node in ["g/near", "g/far", "g/pair"] {
+        let newest = format!("src = {{ a = 'newest:{node}' }}, trigger = 'a'");
+        let own = format!("src = {{ a = 'trikfs:{node}' }}, trigger = 'a'");
+        assert_eq!(
+            refusal(stream, &newest).unwrap(),
+            format!(
+                "robot.lua:2: x: trigger: 'newest:{node}' has no events of its own; 'trikfs:{node}' delivers each tuple"
+            )
+        );
+        assert_eq!(refusal(stream, &own), None);
+        assert_eq!(
+            refusal(state, &newest).unwrap(),
+            format!(
+                "robot.lua:2: x: trigger: 'newest:{node}' has no events of its own, and '{node}' is a state, which has none either; {instead}"
+            )
+        );
+        assert_eq!(
+            refusal(state, &own).unwrap(),
+            format!(
+                "robot.lua:2: x: trigger: source 'a' is a state, which has no events of its own; {instead}"
+            )
+        );
+        // What a plain path is, only its opening tells.
+        let path = "'/dev/x', input_tuple_size = 2";
+        assert_eq!(refusal(path, &own), None);
+        let advice = format!("'trikfs:{node}' has if the source of '{node}' is a stream");
+        assert!(refusal(path, &newest).unwrap().ends_with(&advice));
     }
 }
 
