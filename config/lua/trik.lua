@@ -9,6 +9,8 @@
 -- Owns the tree and the messages about robot files. What each kind of port means stands in the folder trik.
 local Entry = include 'trik/entry.lua'
 local speed = include 'trik/speed.lua'
+local encoders = include 'trik/encoders.lua'
+local imu = include 'trik/imu.lua'
 local families = {
   include 'trik/motors.lua', include 'trik/encoders.lua', include 'trik/analog.lua', include 'trik/distance.lua',
   include 'trik/servos.lua', include 'trik/imu.lua', include 'trik/onboard.lua', include 'trik/camera.lua',
@@ -130,6 +132,7 @@ local function build(list)
     end
   end
   speed.add(tree.motors, entries, function(port, entry) return fitting_type(entry, port, family_of[port]) end)
+  imu.hold(tree, entries.gyroscope or Entry.new({ port = 'gyroscope' }, 0), encoders.named(entries))
   for _, port in ipairs(port_names) do
     if entries[port] then entries[port]:close() end
   end

@@ -39,6 +39,22 @@ function encoders.way(before, now, turn)
   return way
 end
 
+-- The encoders that the robot file names in any way, in order: nobody else knows whether one is plugged in.
+function encoders.named(entries)
+  local named, list = {}, {}
+  for port, entry in pairs(entries) do
+    local given = entry.given
+    for _, encoder in pairs { port, given.encoder or port, given.left or port, given.right or port } do
+      named[encoder] = true
+    end
+  end
+  for index = 1, 4 do
+    local port = 'E' .. index
+    if named[port] then list[#list + 1] = port end
+  end
+  return list
+end
+
 -- The description of one encoder.
 function encoders.make(port, kind, entry)
   local scale, sign = encoders.scale(port, kind, entry)

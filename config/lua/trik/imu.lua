@@ -1,7 +1,8 @@
 -- Gyroscope and accelerometer: samples of the IIO buffers to rates, tilt and heading.
 --
 -- Owns the calibration, which happens in every open file by itself: the files of newest values share one, made after the
--- start. The bias of the gyroscope is the mean while the robot stands still, measured anew whenever it does again.
+-- start. The bias of the gyroscope is the mean while the robot stands still, and follows slowly whenever it seems to stand
+-- still again; `heading` corrects the rest by the encoders, which tell a robot that creeps from one that stands.
 -- Angles are integrated with a quaternion, one step for each sample, as trikRuntime does.
 local number = include 'trik/number.lua'
 local sin, cos, sqrt, pi = math.sin, math.cos, math.sqrt, math.pi
@@ -11,10 +12,15 @@ local MDPS_NUMERATOR, MDPS_DIVISOR = 35, 4
 local COUNTS_OF_G = 4096
 -- Standing still: the readings of each axis stay within so many counts (3.5 dps), and their mean is what a chip may
 -- show at rest (10 dps, the zero-rate level of the data sheet); after the first calibration the mean stays within so many
--- counts of the bias (0.5 dps). So no steady turn is taken for a bias, but one that is slower than that.
+-- counts of the bias (0.5 dps).
 local STILL_COUNTS, ZERO_RATE_COUNTS, DRIFT_COUNTS = 400, 1143, 57
 -- The chips give a hundred samples in a second and more; one that gives none for so long is broken.
 local MAX_AGE_MS = 1000
+-- A robot that creeps looks the same, so the bias follows by no more than this in a second (0.5 dps in a minute): no chip
+-- warms up faster (0.04 dps in a degree, by the data sheet), and a creep of some seconds does no harm.
+local FOLLOW_COUNTS_PER_S = 1
+-- What the angle of a robot whose encoders stand still may turn by in a microsecond, in mdeg: as much as DRIFT_COUNTS.
+local DRIFT_MDEG_PER_US = 0.0005
 -- After a longer pause between two samples nobody knows how far the robot has turned.
 local GAP_US = 500000
 
@@ -53,8 +59,16 @@ local function watch(window_ms, bias)
       local distance = math.abs(mean[axis] - (bias and bias[axis] or 0))
       still = still and distance <= (bias and DRIFT_COUNTS or ZERO_RATE_COUNTS)
     end
+    if still and bias then
+      local most, followed = FOLLOW_COUNTS_PER_S * lasted_us / 1e6, {}
+      for axis = 1, 3 do
+        followed[axis] = bias[axis] + math.max(-most, math.min(most, mean[axis] - bias[axis]))
+      end
+      bias = followed
+    elseif still then
+      bias = mean
+    end
     count, lasted_us = 0, 0
-    if still then bias = mean end
     if not bias then error('EIO: not calibrated yet: let the robot stand still for ' .. window_ms .. ' ms', 0) end
     return bias
   end
@@ -140,8 +154,10 @@ local function integrator(window_ms, bias_given)
   end
 end
 
+local function calibration_ms(entry) return entry:whole('calibration_ms', 2000, 100, 60000) end
+
 local function gyroscope(entry)
-  local window_ms = entry:whole('calibration_ms', 2000, 100, 60000)
+  local window_ms = calibration_ms(entry)
   local bias = entry:numbers('bias', 3, -32768, 32767)
   local timeout_ms = window_ms + 3000
   local since, calibrated = clock(), watch(window_ms, bias)
@@ -212,14 +228,51 @@ local function accelerometer()
   }
 end
 
+local HEADING_ABOUT = 'direction of the robot since the start, -180 to 180: grows to the left, seen from above'
+
 -- The direction of the robot: the newest angle of the gyroscope, in degrees and counted as in geometry.
 local function heading(timeout_ms)
   return {
-    about = 'direction of the robot since the start, -180 to 180: grows to the left, seen from above',
-    src = { 'newest:gyroscope/heading' }, format = 'f32 heading', units = 'deg', poll_ms = 10, timeout_ms = timeout_ms,
-    mode = 0444,
+    about = HEADING_ABOUT, src = { 'newest:gyroscope/heading' }, format = 'f32 heading', units = 'deg', poll_ms = 10,
+    timeout_ms = timeout_ms, mode = 0444,
     converter = function(a_s, a, b_s, b) ba.f32(b, 0, 0 - ba.i32(a, 0) / 1000) end,
   }
+end
+
+-- A converter from the angle of the gyroscope, the degrees of `count` encoders and the time since the tuple before, in us.
+-- What the angle turns by while no encoder moves for `window_us` is drift: it is taken back, and taken off from then on.
+local function held_heading(count, window_us)
+  local before, wheels, angle, drift = nil, {}, 0, 0
+  local turned, lasted_us, begun = 0, 0, 0
+  local function wrapped(mdeg_now) return (mdeg_now + 180000) % 360000 - 180000 end
+  return function(a_s, a, b_s, b)
+    local now, us = ba.i32(a, 0), ba.u32(a, 4 * count + 4)
+    local way = before and wrapped(now - before) or 0
+    angle = before and wrapped(angle + way - drift * us) or now
+    turned, lasted_us = turned + way, lasted_us + us
+    local moved = not before
+    for index = 1, count do
+      local degrees = ba.i32(a, 4 * index)
+      moved = moved or degrees ~= wheels[index]
+      wheels[index] = degrees
+    end
+    before = now
+    if not moved and lasted_us >= window_us and math.abs(turned) <= DRIFT_MDEG_PER_US * lasted_us then
+      angle, drift = begun, turned / lasted_us
+    end
+    if moved or lasted_us >= window_us then turned, lasted_us, begun = 0, 0, angle end
+    ba.f32(b, 0, 0 - number.round(angle, 1) / 1000)
+  end
+end
+
+-- Makes `heading` of a tree know these encoders, a list of ports. None: the gyroscope has to do alone.
+function imu.hold(tree, entry, ports)
+  if #ports == 0 then return end
+  local src = { 'newest:gyroscope/heading' }
+  for _, port in ipairs(ports) do src[#src + 1] = 'newest:encoders/' .. port end
+  local node = tree.heading
+  node.src, node.interval = src, true
+  node.converter = held_heading(#ports, calibration_ms(entry) * 1000)
 end
 
 -- The nodes of both sensors, by their paths.

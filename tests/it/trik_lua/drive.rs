@@ -123,3 +123,51 @@ fn the_heading_counts_to_the_left_in_degrees() {
         assert_eq!(robot.read("heading", &numbers(&[mdeg])), Ok(shown.into()));
     }
 }
+
+/// The angle of the gyroscope in mdeg, both encoders, and 10 ms since the tuple before.
+fn looks(robot: &mut Robot, mdeg: i32, left: i32, right: i32) -> f64 {
+    let shown = robot.read("heading", &numbers(&[mdeg, left, right, 10_000]));
+    shown.unwrap().parse().unwrap()
+}
+
+/// A window of 100 ms are ten tuples. 2 mdeg in a tuple are 200 mdeg/s: drift while no wheel moves, a turn if one does.
+#[test]
+fn what_the_heading_turns_by_while_the_wheels_stand_still_is_drift() {
+    let gyroscope = "{ port = 'gyroscope', calibration_ms = 100 }";
+    let mut robot = robot(&format!("{CAR}, {gyroscope}"));
+    let first = looks(&mut robot, 90_000, 5, 5);
+    assert_eq!(first, -90.0, "that of the gyroscope");
+    for step in 1..=9 {
+        assert_eq!(
+            looks(&mut robot, 90_000 + 2 * step, 5, 5),
+            -90.0 - 0.002 * f64::from(step)
+        );
+    }
+    // The first window is over: it is taken back, and the same drift is taken off from now on.
+    for step in 10..=30 {
+        assert_eq!(looks(&mut robot, 90_000 + 2 * step, 5, 5), -90.0, "{step}");
+    }
+    // A creep: each fifth tuple a wheel has turned by a degree. 4 mdeg in a tuple are 2 of drift and 2 of the robot.
+    let mut last = 0.0;
+    for step in 1..=1000 {
+        last = looks(&mut robot, 90_060 + 4 * step, 5 + step / 5, 5);
+    }
+    assert_eq!(last, -92.0);
+    // Somebody turns it by hand, faster than any drift: 60 mdeg in 100 ms.
+    for step in 1..=1000 {
+        last = looks(&mut robot, 94_060 + 6 * step, 205, 5);
+    }
+    assert_eq!(last, -96.0);
+    // Through the end of the circle: from 100.06 to 190 degrees are 89.94, without 2 mdeg of drift; 96 more are 185.938.
+    assert_eq!(looks(&mut robot, -170_000, 206, 5), 174.062);
+}
+
+#[test]
+fn the_heading_looks_at_the_encoders_that_the_robot_file_names() {
+    let size = |entries: &str| robot(entries).node("heading").input_tuple_size;
+    assert_eq!(size(""), 4);
+    assert_eq!(size("{ port = 'M3' }, { port = 'A1', name = 'front' }"), 4);
+    assert_eq!(size("{ port = 'E2' }"), 12);
+    assert_eq!(size("{ port = 'M3', encoder = 'E3' }, { port = 'E3' }"), 12);
+    assert_eq!(size(CAR), 16);
+}

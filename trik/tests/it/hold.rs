@@ -233,3 +233,24 @@ fn heading_and_place_follow_the_robot_and_stay_where_it_rests() {
     assert!((later - heading).abs() < 0.5, "{heading}, then {later}");
     assert_eq!(robot.numbers("odometry/value"), place);
 }
+
+/// Wheels that turn by 1 deg/s against each other turn the robot by 0.36 deg/s: as slow as a gyroscope drifts.
+#[test]
+fn a_creep_is_no_drift() {
+    let Some(robot) = robot(&[]) else { return };
+    let start = robot.pose();
+    assert!(robot.number("heading/value").abs() < 0.5);
+    order(&robot, -1, 1);
+    eventually("a creep by five degrees", || {
+        keep(&robot, -1, 1);
+        robot.pose().heading_deg > start.heading_deg + 5.0
+    });
+    order(&robot, 0, 0);
+    let began = std::time::Instant::now();
+    eventually("two windows of rest", || {
+        began.elapsed() > Duration::from_secs(5)
+    });
+    let turned = robot.pose().heading_deg - start.heading_deg;
+    let heading = robot.number("heading/value");
+    assert!((heading - turned).abs() < 1.5, "{heading}, truly {turned}");
+}
