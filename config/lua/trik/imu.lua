@@ -19,8 +19,12 @@ local MAX_AGE_MS = 1000
 -- A robot that creeps looks the same, so the bias follows by no more than this in a second (0.5 dps in a minute): no chip
 -- warms up faster (0.04 dps in a degree, by the data sheet), and a creep of some seconds does no harm.
 local FOLLOW_COUNTS_PER_S = 1
+-- A robot that sticks and slips turns unevenly, and less than an encoder sees: the means of the four quarters of 2 s differ
+-- by no more than this (0.1 dps, four times the noise of the chip). Of shorter windows by more, as noise does.
+local QUARTERS, STEADY_COUNTS, STEADY_WINDOW_MS = 4, 12, 2000
 -- What the angle of a robot whose encoders stand still may turn by in a microsecond, in mdeg: as much as DRIFT_COUNTS.
 local DRIFT_MDEG_PER_US = 0.0005
+local MDEG_PER_US_OF_COUNT = MDPS_NUMERATOR / MDPS_DIVISOR / 1e6
 -- After a longer pause between two samples nobody knows how far the robot has turned.
 local GAP_US = 500000
 
@@ -38,20 +42,50 @@ local function elapsed_us(high, low, high_before, low_before)
   return ((high - high_before) * 4294967296 + (low - low_before)) / 1000
 end
 
+-- Watches whether something turns evenly through a window. Returns a function that takes how far it has come since the
+-- window began, of which `weight` is the measure, and the time of the window; it gives the greatest difference between the
+-- means of the quarters that are over. The first quarter begins with a weight of 0.
+local function quarters(window_us)
+  local done, from, weight_from, least, greatest = 0, 0, 0, nil, nil
+  return function(way, weight, lasted_us)
+    if lasted_us < (done + 1) * window_us / QUARTERS then return greatest and greatest - least or 0 end
+    local mean = (way - from) / (weight - weight_from)
+    least, greatest = math.min(least or mean, mean), math.max(greatest or mean, mean)
+    done, from, weight_from = done + 1, way, weight
+    return greatest - least
+  end
+end
+
+local function steady_counts(window_us) return STEADY_COUNTS * sqrt(STEADY_WINDOW_MS * 1000 / window_us) end
+
 -- Watches for the robot to stand still. Returns a function that takes one sample and gives the bias once there is one,
 -- or nil; it fails each time that `window_ms` pass in movement before the first bias.
 local function watch(window_ms, bias)
-  local sum, low, high, count, lasted_us = {}, {}, {}, 0, 0
+  local window_us = window_ms * 1000
+  local uneven_most = steady_counts(window_us)
+  local sum, low, high, parts, uneven, count, lasted_us = {}, {}, {}, {}, {}, 0, 0
+  -- The bias after a window in which the robot stood still.
+  local function follow(mean)
+    if not bias then return mean end
+    local most, followed = FOLLOW_COUNTS_PER_S * lasted_us / 1e6, {}
+    for axis = 1, 3 do
+      if uneven[axis] > uneven_most then return bias end
+      followed[axis] = bias[axis] + math.max(-most, math.min(most, mean[axis] - bias[axis]))
+    end
+    return followed
+  end
   return function(sample, us)
+    lasted_us = lasted_us + us
     for axis = 1, 3 do
       local value = sample[axis]
-      if count == 0 then sum[axis], low[axis], high[axis] = 0, value, value end
+      if count == 0 then sum[axis], low[axis], high[axis], parts[axis] = 0, value, value, quarters(window_us) end
       sum[axis] = sum[axis] + value
       if value < low[axis] then low[axis] = value end
       if value > high[axis] then high[axis] = value end
+      uneven[axis] = parts[axis](sum[axis], count + 1, lasted_us)
     end
-    count, lasted_us = count + 1, lasted_us + us
-    if lasted_us < window_ms * 1000 then return bias end
+    count = count + 1
+    if lasted_us < window_us then return bias end
     local still, mean = true, {}
     for axis = 1, 3 do
       mean[axis] = sum[axis] / count
@@ -59,15 +93,7 @@ local function watch(window_ms, bias)
       local distance = math.abs(mean[axis] - (bias and bias[axis] or 0))
       still = still and distance <= (bias and DRIFT_COUNTS or ZERO_RATE_COUNTS)
     end
-    if still and bias then
-      local most, followed = FOLLOW_COUNTS_PER_S * lasted_us / 1e6, {}
-      for axis = 1, 3 do
-        followed[axis] = bias[axis] + math.max(-most, math.min(most, mean[axis] - bias[axis]))
-      end
-      bias = followed
-    elseif still then
-      bias = mean
-    end
+    if still then bias = follow(mean) end
     count, lasted_us = 0, 0
     if not bias then error('EIO: not calibrated yet: let the robot stand still for ' .. window_ms .. ' ms', 0) end
     return bias
@@ -240,10 +266,12 @@ local function heading(timeout_ms)
 end
 
 -- A converter from the angle of the gyroscope, the degrees of `count` encoders and the time since the tuple before, in us.
--- What the angle turns by while no encoder moves for `window_us` is drift: it is taken back, and taken off from then on.
+-- What the angle turns by, evenly, while no encoder moves for `window_us` is drift: it is taken back, and taken off from
+-- then on.
 local function held_heading(count, window_us)
   local before, wheels, angle, drift = nil, {}, 0, 0
-  local turned, lasted_us, begun = 0, 0, 0
+  local turned, lasted_us, begun, parts = 0, 0, 0, quarters(window_us)
+  local uneven_most = steady_counts(window_us) * MDEG_PER_US_OF_COUNT
   local function wrapped(mdeg_now) return (mdeg_now + 180000) % 360000 - 180000 end
   return function(a_s, a, b_s, b)
     local now, us = ba.i32(a, 0), ba.u32(a, 4 * count + 4)
@@ -257,10 +285,12 @@ local function held_heading(count, window_us)
       wheels[index] = degrees
     end
     before = now
-    if not moved and lasted_us >= window_us and math.abs(turned) <= DRIFT_MDEG_PER_US * lasted_us then
+    local is_over = lasted_us >= window_us
+    local uneven = moved and 0 or parts(turned, lasted_us, lasted_us)
+    if is_over and not moved and uneven <= uneven_most and math.abs(turned) <= DRIFT_MDEG_PER_US * lasted_us then
       angle, drift = begun, turned / lasted_us
     end
-    if moved or lasted_us >= window_us then turned, lasted_us, begun = 0, 0, angle end
+    if moved or is_over then turned, lasted_us, begun, parts = 0, 0, angle, quarters(window_us) end
     ba.f32(b, 0, 0 - number.round(angle, 1) / 1000)
   end
 end
