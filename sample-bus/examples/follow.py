@@ -25,7 +25,7 @@ class Samples:
         folder = b'/dev/shm/trikfs' + name(mountpoint)
         if os.lstat(folder).st_uid != os.stat(mountpoint).st_uid:
             raise PermissionError(errno.EACCES, 'not of the owner of the tree', os.fsdecode(folder))
-        self.path = folder + b'/' + name(node)
+        self.path = os.fsdecode(folder + b'/' + name(node))
         with open(self.path, 'rb') as file:
             found = os.fstat(file.fileno())
             self.file = (found.st_dev, found.st_ino)

@@ -362,3 +362,32 @@ fn publishers_that_begin_and_sweepers_do_not_disturb_each_other() {
     });
     assert_eq!(std::fs::read_dir(&folder.0).unwrap().count(), 0);
 }
+
+#[test]
+fn second_names_are_those_that_are_wanted_and_never_replace_a_ring() {
+    let folder = Folder::new();
+    let directory = Directory::take(&folder.path("bus"), 0o700).unwrap();
+    let at = |name: &str| directory.path().join(name);
+    let links = |pairs: &[(&str, &str)]| {
+        let owned = pairs
+            .iter()
+            .map(|(a, b)| ((*a).to_owned(), (*b).to_owned()));
+        directory.set_links(&owned.collect())
+    };
+    std::fs::write(at("ring"), "of a node").unwrap();
+    links(&[("one", "ring"), ("two", "absent")]).unwrap();
+    assert_eq!(std::fs::read_to_string(at("one")).unwrap(), "of a node");
+    assert!(!at("two").exists());
+    links(&[("two", "ring")]).unwrap();
+    assert!(at("one").symlink_metadata().is_err());
+    assert_eq!(std::fs::read_to_string(at("two")).unwrap(), "of a node");
+    let (name, error) = links(&[("ring", "two")]).unwrap_err();
+    assert_eq!(
+        (name.as_str(), error.kind()),
+        ("ring", io::ErrorKind::AlreadyExists)
+    );
+    assert_eq!(std::fs::read_to_string(at("ring")).unwrap(), "of a node");
+    let path = directory.path().to_owned();
+    drop(directory);
+    assert!(!path.exists());
+}
