@@ -79,11 +79,7 @@ impl Fields<'_, '_> {
                 "write_converter makes no sense: the source cannot be written",
             ));
         }
-        let usual_mode = match (&source, read_only) {
-            (SourceDescription::Program(_), _) => 0o222,
-            (_, true) => 0o444,
-            (_, false) => 0o644,
-        };
+        let usual_mode = usual_mode(&source, read_only);
         let digests: Vec<u128> = read
             .iter()
             .chain(write.iter().flatten())
@@ -421,4 +417,13 @@ fn fingerprint(node: &NodeDescription, digests: &[u128]) -> u128 {
         &node.param_ranges,
     );
     hash(format!("{:?}", (&node.path, source, stages, sizes, access, limits)).as_bytes())
+}
+
+/// The permission bits of a node that asks for none.
+fn usual_mode(source: &SourceDescription, read_only: bool) -> u16 {
+    match (source, read_only) {
+        (SourceDescription::Program(_), _) => 0o222,
+        (_, true) => 0o444,
+        (_, false) => 0o644,
+    }
 }
