@@ -77,12 +77,13 @@ fn sampling(duration: Duration) -> Result<(), String> {
     };
     let mount = Mount::start("attribute-sampling", &sampled_nodes(attribute))?;
     std::thread::sleep(Duration::from_millis(300));
-    let (rate, share) = sampling_cost(&mount, duration)?;
-    println!("\nsampling {SAMPLED} attributes at 100 Hz ({rate:.0} samples per second)");
-    tell_share(share);
+    let cost = sampling_cost(&mount, duration);
     for path in &paths {
         let _ = std::fs::remove_file(path);
     }
+    let (rate, share) = cost?;
+    println!("\nsampling {SAMPLED} attributes at 100 Hz ({rate:.0} samples per second)");
+    tell_share(share);
     Ok(())
 }
 
