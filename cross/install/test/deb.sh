@@ -13,8 +13,10 @@ test_deb() {
     check "gives the same bytes" test "$(sha256sum <"$deb")" = "$sum"
     check "deb.sh: unknown argument" gives 2 "$install/deb.sh" --frob
     check "deb.sh: help" says "usage: cross/install/deb.sh" "$install/deb.sh" --help
-    # It warns of root on standard error.
-    check "lintian has nothing to say" test "$(lintian --fail-on error,warning --pedantic -I "$deb" 2>/dev/null || echo failed)" = ""
+    # It warns of root on standard error. Texts in a Rust program stand side by side without an end, so that the last word of
+    # one and the first of the next look like a mistyped word; which ones meet is up to the linker.
+    check "lintian has nothing to say" test \
+        "$(lintian --fail-on error,warning --pedantic -I --suppress-tags spelling-error-in-binary "$deb" 2>/dev/null || echo failed)" = ""
     check "every override is needed" not sh -c "lintian --pedantic -I --show-overrides '$deb' 2>/dev/null | grep unused-override"
 
     make_layer
