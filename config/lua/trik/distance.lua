@@ -34,7 +34,8 @@ function distance.make(port, _, entry)
       raw = {
         about = 'as the driver tells it: distance in cm, -1 without an echo, and the time of the echo in us',
         src = evdev { path = ports[port].path, axes = { 'ABS_DISTANCE', 'ABS_MISC' } },
-        format = 'i32 distance, i32 echo_us',
+        -- Telling of changes only, the driver may have said long ago what there is to read now.
+        format = 'i32 distance, i32 echo_us', on_event = true,
       },
     },
   }
