@@ -3,11 +3,12 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-const CRATES: [&str; 10] = [
+const CRATES: [&str; 11] = [
     "config",
     "converter",
     "ev3dev",
     "filters",
+    "lang",
     "sample-bus",
     "sim",
     "tests",

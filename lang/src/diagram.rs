@@ -1,0 +1,3 @@
+//! Diagrams: a save as a graph of blocks, and what can be done with it.
+
+pub mod project;

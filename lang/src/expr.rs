@@ -1,0 +1,1 @@
+//! The language of expressions: text in the properties of blocks.

@@ -1,0 +1,1 @@
+//! Every limit of the language: what may grow, and how far.

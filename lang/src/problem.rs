@@ -1,0 +1,139 @@
+//! What is wrong, where, and in words that a pupil understands: the one kind of diagnostics of this crate.
+//!
+//! Owns the shape of a problem and how it is shown. Knows no language: each part words its own problems, in English and
+//! in Russian.
+
+use std::fmt;
+
+/// A language of messages.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum Tongue {
+    /// English.
+    #[default]
+    English,
+    /// Russian.
+    Russian,
+}
+
+/// One message in both languages.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct Words {
+    /// In English.
+    pub english: String,
+    /// In Russian.
+    pub russian: String,
+}
+
+impl Words {
+    /// Both texts of one message.
+    pub fn new(english: impl Into<String>, russian: impl Into<String>) -> Self {
+        Self {
+            english: english.into(),
+            russian: russian.into(),
+        }
+    }
+
+    /// The message in a language.
+    pub fn in_tongue(&self, tongue: Tongue) -> &str {
+        match tongue {
+            Tongue::English => &self.english,
+            Tongue::Russian => &self.russian,
+        }
+    }
+}
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
+pub enum Severity {
+    /// Worth knowing.
+    Note,
+    /// It works, but perhaps not as meant.
+    Warning,
+    /// It does not work.
+    Error,
+}
+
+/// A place in a text, both from 1.
+#[derive(Clone, Copy, Debug, Eq, Ord, PartialEq, PartialOrd)]
+pub struct Position {
+    /// The line.
+    pub line: u32,
+    /// The column, in characters.
+    pub column: u32,
+}
+
+/// Where something is wrong; each part may be unknown.
+#[derive(Clone, Debug, Default, Eq, PartialEq)]
+pub struct Place {
+    /// The file inside a save, as `metaInfo.xml`.
+    pub file: Option<String>,
+    /// The diagram by its name.
+    pub diagram: Option<String>,
+    /// The object: a block or link, by its id in the save.
+    pub object: Option<String>,
+    /// The block in words: its type as a person knows it.
+    pub block: Option<String>,
+    /// The property of the block, by the name that the editor shows.
+    pub property: Option<String>,
+    /// The place in the text of the property or the file.
+    pub position: Option<Position>,
+}
+
+/// Something that is wrong.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct Problem {
+    /// How bad.
+    pub severity: Severity,
+    /// Where.
+    pub place: Place,
+    /// What, why, and what to do.
+    pub words: Words,
+}
+
+impl Problem {
+    /// An error whose place is not known yet.
+    pub fn error(words: Words) -> Self {
+        Self {
+            severity: Severity::Error,
+            place: Place::default(),
+            words,
+        }
+    }
+
+    /// A warning whose place is not known yet.
+    pub fn warning(words: Words) -> Self {
+        Self {
+            severity: Severity::Warning,
+            ..Self::error(words)
+        }
+    }
+
+    /// The problem in one line: place, severity, words.
+    pub fn in_tongue(&self, tongue: Tongue) -> String {
+        let place = &self.place;
+        let mut line = String::new();
+        for part in [&place.file, &place.diagram, &place.block]
+            .into_iter()
+            .flatten()
+        {
+            line.push_str(part);
+            line.push_str(": ");
+        }
+        match (&place.property, place.position) {
+            (Some(property), Some(at)) => {
+                line.push_str(&format!("'{property}', {}:{} ", at.line, at.column));
+            }
+            (Some(property), None) => line.push_str(&format!("'{property}': ")),
+            (None, Some(at)) => line.push_str(&format!("{}:{} ", at.line, at.column)),
+            (None, None) => {}
+        }
+        line.push_str(self.words.in_tongue(tongue));
+        line
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.in_tongue(Tongue::English))
+    }
+}
