@@ -1,3 +1,6 @@
 //! Diagrams: a save as a graph of blocks, and what can be done with it.
 
+pub mod archive;
+pub mod objects;
 pub mod project;
+pub mod read;
