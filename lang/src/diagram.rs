@@ -4,3 +4,4 @@ pub mod archive;
 pub mod objects;
 pub mod project;
 pub mod read;
+pub mod sketch;

@@ -10,12 +10,17 @@ use super::project::Project;
 use crate::limits;
 use crate::problem::{Problem, Severity};
 
-mod graph;
+pub(super) mod graph;
 mod meta;
 mod parameters;
 mod words;
 
 pub use meta::Meta;
+
+/// Key of a save's version.
+pub const VERSION_KEY: &str = "RobotsMetamodelVersion";
+/// The version of what is read here and written.
+pub const VERSION: &str = "2024.1.0";
 
 /// A save that was read.
 #[derive(Clone, Debug)]

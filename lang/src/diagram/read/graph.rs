@@ -4,14 +4,18 @@ use super::meta::Meta;
 use super::{parameters, words};
 use crate::diagram::objects::{self, Kind, Object, Objects};
 use crate::diagram::project::{Block, Diagram, DiagramKind, Link, Project};
-use crate::problem::{Problem, Words};
+use crate::problem::{Problem, Severity, Words};
 use std::collections::{HashMap, HashSet};
 
 /// Type of the one kind of links.
 const LINK: &str = "ControlFlow";
 
 /// The project that objects describe.
-pub(super) fn project(objects: &Objects, meta: &Meta, problems: &mut Vec<Problem>) -> Project {
+pub(in crate::diagram) fn project(
+    objects: &Objects,
+    meta: &Meta,
+    problems: &mut Vec<Problem>,
+) -> Project {
     let mut graph = Graph {
         objects,
         problems,
@@ -99,7 +103,8 @@ impl<'a> Graph<'a> {
             let mut block = self.block(object, &diagram.name);
             for id in object.list("links") {
                 let Some(&place) = link_places.get(id.as_str()) else {
-                    self.warn(object, Some(&diagram.name), words::lost_link());
+                    // The editor leaves such names behind; the interpreter does not see them either.
+                    self.note(object, &diagram.name, words::lost_link());
                     continue;
                 };
                 let link = &diagram.links[place];
@@ -248,6 +253,13 @@ impl<'a> Graph<'a> {
         if let Some(last) = self.problems.last_mut() {
             last.place.property = Some(property.to_owned());
             last.place.position = problem.place.position;
+        }
+    }
+
+    fn note(&mut self, object: &Object, diagram: &str, words: Words) {
+        self.warn(object, Some(diagram), words);
+        if let Some(last) = self.problems.last_mut() {
+            last.severity = Severity::Note;
         }
     }
 

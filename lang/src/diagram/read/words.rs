@@ -71,8 +71,8 @@ pub(super) fn lost_child(element: &str) -> Words {
 
 pub(super) fn lost_link() -> Words {
     Words::new(
-        "it names a link that is not in the diagram; the link is left out",
-        "он называет связь, которой нет в диаграмме; связь пропущена",
+        "it names a link that is no longer in the diagram; that changes nothing",
+        "он называет связь, которой уже нет в диаграмме; это ничего не меняет",
     )
 }
 
