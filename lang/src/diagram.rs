@@ -2,8 +2,15 @@
 
 pub mod archive;
 pub mod blocks;
+pub mod brick;
+pub mod check;
+pub mod lower;
+pub mod machine;
 pub mod objects;
 pub mod ports;
+pub mod program;
 pub mod project;
 pub mod read;
 pub mod sketch;
+pub mod stand_in;
+mod words;
