@@ -6,6 +6,7 @@ use crate::{fault, limits, manual, up};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::io::{self, Write};
+use std::net::IpAddr;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -93,6 +94,20 @@ pub(crate) struct UpArgs {
     /// mount point of the robot with .ev3dev behind its name].
     #[arg(long, value_name = "DIR", num_args = 0..=1, require_equals = true)]
     pub ev3dev: Option<Option<PathBuf>>,
+    /// Do not start trikd: no TRIK Studio, no gamepad and no `trik run` reaches the robot.
+    #[arg(long, conflicts_with_all = ["trikd_address", "trikd_ports", "scripts"])]
+    pub no_trikd: bool,
+    /// Address at which trikd serves; may be given several times. With one that others reach, 0.0.0.0 for all, they run
+    /// programs with your rights [default: 127.0.0.1; for robot-2 127.0.0.2 and so on].
+    #[arg(long, value_name = "ADDRESS")]
+    pub trikd_address: Vec<IpAddr>,
+    /// First of the ports of trikd: programs, sensors, gamepads, pictures, variables, mailbox are in a row from there; 0
+    /// takes any free ones [default: 8888, 9000, 4444, 8080, 10000, 8889, which TRIK Studio knows].
+    #[arg(long, value_name = "PORT")]
+    pub trikd_ports: Option<u16>,
+    /// Where uploaded programs are kept [default: a directory that goes with the robot].
+    #[arg(long, value_name = "DIR")]
+    pub scripts: Option<PathBuf>,
     /// An empty directory; made if nothing is there, and removed again [default: robot, or else robot-2 and so on, in
     /// $XDG_RUNTIME_DIR/trik or /tmp/trik-UID].
     pub mountpoint: Option<PathBuf>,

@@ -6,6 +6,7 @@
 use crate::brick::Brick;
 use crate::engine::Engine;
 use crate::host::Host;
+use crate::log::tell;
 use crate::program::{kill, launch::Launch};
 use crate::settings::Settings;
 use crate::{daemon, guardian, js, status};
@@ -89,7 +90,7 @@ pub fn main() -> ExitCode {
     match perform(cli.command) {
         Ok(code) => code,
         Err(reason) => {
-            eprintln!("trikd: {reason}");
+            tell(reason);
             ExitCode::FAILURE
         }
     }
@@ -130,9 +131,9 @@ fn run_engine(engine: &mut impl Engine, tree: &std::path::Path) -> ExitCode {
     let host = match Host::from_standard_input() {
         Ok(host) => host,
         Err(error) => {
-            eprintln!(
-                "trikd: standard input is no channel to the daemon ({error}): this command is for trikd itself"
-            );
+            tell(format_args!(
+                "standard input is no channel to the daemon ({error}): this command is for trikd itself"
+            ));
             return ExitCode::FAILURE;
         }
     };

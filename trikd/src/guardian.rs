@@ -4,6 +4,7 @@
 //! children; if the guardian itself dies, the daemon ends in order.
 
 use crate::limits;
+use crate::log;
 use crate::program::kill;
 use crate::tree::{Access, Tree};
 use nix::sys::prctl;
@@ -13,7 +14,7 @@ use nix::unistd::{Pid, getppid};
 use std::collections::VecDeque;
 use std::ffi::OsString;
 use std::path::Path;
-use std::process::{Command, ExitCode};
+use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 /// Signals that end both processes.
@@ -37,7 +38,7 @@ pub fn follow(guardian: i32) -> Result<(), String> {
 }
 
 fn start(arguments: &[OsString], restarts: u32) -> Result<Pid, String> {
-    let mut command = Command::new(crate::program::child::SELF);
+    let mut command = crate::program::child::this_program();
     command
         .arg("daemon")
         .arg("--guardian")
@@ -77,8 +78,11 @@ fn rest(tree: &Path) {
     });
     match told.recv_timeout(Duration::from_millis(limits::GUARDIAN_REST_MS)) {
         Ok(Ok(())) => {}
-        Ok(Err(why)) => eprintln!("trikd: {why}"),
-        Err(_) => eprintln!("trikd: the tree at {} does not answer", tree.display()),
+        Ok(Err(why)) => log::tell(why),
+        Err(_) => log::tell(format_args!(
+            "the tree at {} does not answer",
+            tree.display()
+        )),
     }
 }
 
@@ -134,9 +138,9 @@ pub fn run(tree: &Path, arguments: &[OsString]) -> Result<ExitCode, String> {
             }
             _ => {}
         }
-        eprintln!(
-            "trikd: the serving process has crashed ({status:?}): motors are brought to rest, programs are ended"
-        );
+        log::tell(format_args!(
+            "the serving process has crashed ({status:?}): motors are brought to rest, programs are ended"
+        ));
         clean_up(tree);
         if is_over {
             return Err("the serving process crashed at its end".to_owned());

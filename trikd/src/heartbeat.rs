@@ -20,7 +20,7 @@ pub fn start() -> io::Result<()> {
         loop {
             std::thread::sleep(Duration::from_millis(limits::BEAT_MS));
             if missing.look(seen.load(Ordering::Relaxed)) >= limits::BEATS_MISSING {
-                eprintln!("trikd: the serving thread hangs: it is ended");
+                crate::log::tell("the serving thread hangs: it is ended");
                 std::process::abort();
             }
         }

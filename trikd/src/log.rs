@@ -51,6 +51,11 @@ impl Log {
     }
 }
 
+/// One line outside of any log. Nobody may be listening.
+pub fn tell(text: impl std::fmt::Display) {
+    let _ = writeln!(std::io::stderr(), "trikd: {text}");
+}
+
 /// Text of strangers on one line and of a bearable length.
 pub fn printable(text: &str) -> String {
     let mut short: String = text.chars().take(limits::LOG_LINE_CHARACTERS).collect();

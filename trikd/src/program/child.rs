@@ -12,6 +12,7 @@ use std::ffi::OsString;
 use std::io;
 use std::os::fd::OwnedFd;
 use std::os::unix::net::UnixStream as StdStream;
+use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use tokio::io::AsyncReadExt;
@@ -67,6 +68,15 @@ pub struct Owner {
 
 /// This program, whatever has happened to its file since it was started.
 pub const SELF: &str = "/proc/self/exe";
+/// The name that it is started under: it may be part of a program that has several.
+pub const NAME: &str = "trikd";
+
+/// The command that starts this program once more.
+pub fn this_program() -> Command {
+    let mut command = Command::new(SELF);
+    command.arg0(NAME);
+    command
+}
 
 /// Something that a child did.
 #[derive(Debug)]
@@ -128,7 +138,7 @@ pub fn start(
     path: Option<&Path>,
     reaper: &Reaper,
 ) -> io::Result<Child> {
-    let mut command = Command::new(SELF);
+    let mut command = this_program();
     command
         .arg("launch")
         .arg("--parent")

@@ -9,6 +9,7 @@ use crate::program::Command;
 use crate::protocol::control::Request;
 use crate::{limits, scripts};
 use std::rc::Rc;
+use tokio::sync::oneshot;
 
 struct Control {
     daemon: Rc<Daemon>,
@@ -33,6 +34,17 @@ impl Control {
     async fn command(&self, command: Command) {
         self.daemon.clients.takes_control(self.client.peer);
         self.daemon.programs.tell(command).await;
+    }
+
+    /// What runs, when everything is done that was asked for before.
+    async fn status(&self) {
+        let (answer, told) = oneshot::channel();
+        self.daemon.programs.tell(Command::Ask(answer)).await;
+        if let Ok(text) = told.await {
+            self.client
+                .outbox
+                .send(format!("status: {text}").as_bytes());
+        }
     }
 
     async fn keep(&self, name: &[u8], content: &[u8]) {
@@ -68,6 +80,7 @@ impl Handler for Control {
                 let answer = format!("configVersion: {}", self.daemon.settings.config_version);
                 return self.client.outbox.send(answer.as_bytes());
             }
+            Request::Status => return self.status().await,
             // Whoever sees danger may stop the robot.
             Request::Stop => return self.command(Command::Stop("a client")).await,
             _ => {}

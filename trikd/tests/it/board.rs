@@ -43,7 +43,7 @@ fn virtual_robot() -> Option<Virtual> {
     let tree = home.path("mnt");
     let mut command = Command::new(trik);
     command
-        .args(["up", "--no-view", "--cache"])
+        .args(["up", "--no-view", "--no-trikd", "--cache"])
         .arg(home.path("cache"))
         .arg(&tree);
     command
