@@ -15,7 +15,7 @@ pub mod reaper;
 pub mod rest;
 
 use crate::daemon::Daemon;
-use crate::limits;
+use crate::{limits, log};
 use child::{Child, Language, SELF, Said};
 use kill::{group, sweep};
 use nix::sys::signal::Signal;
@@ -190,6 +190,7 @@ impl Supervisor {
         let mut child = match started {
             Ok(child) => child,
             Err(error) => {
+                tracing::error!(target: log::PROGRAMS, "{name} cannot be started: {error}");
                 self.broadcast(&format!("error: {name} cannot be started: {error}"));
                 return;
             }
@@ -208,9 +209,7 @@ impl Supervisor {
             Instant::now(),
         ));
         drop(shown);
-        daemon
-            .log
-            .line(format_args!("{name} starts as process {}", child.pid));
+        tracing::info!(target: log::PROGRAMS, "{name} starts as process {}", child.pid);
         if !is_quiet {
             self.broadcast(&format!("info: {name} has started"));
         }
@@ -362,10 +361,11 @@ impl Supervisor {
             let left = sweep(Pid::this(), &spared);
             if left == 0 || Instant::now() > deadline {
                 if left > 0 {
-                    self.daemon.log.line(format_args!(
+                    tracing::error!(
+                        target: log::PROGRAMS,
                         "{left} processes of {} cannot be killed",
                         current.name
-                    ));
+                    );
                 }
                 break;
             }
@@ -422,8 +422,9 @@ impl Supervisor {
             shown.rests_us.pop_front();
         }
         shown.rests_us.push_back(rest_us);
+        tracing::debug!(target: log::TREE, "at rest after {rest_us} us");
         if let Err(why) = rested {
-            self.daemon.log.line(&why);
+            tracing::error!(target: log::TREE, "{why}");
             self.broadcast(&format!("error: {why}"));
         }
     }
@@ -460,7 +461,10 @@ impl Supervisor {
             }
             Way::Greed(why) => format!("{name} was stopped {after}: {why}"),
         };
-        self.daemon.log.line(&text);
+        match failed {
+            true => tracing::warn!(target: log::PROGRAMS, "{text}"),
+            false => tracing::info!(target: log::PROGRAMS, "{text}"),
+        }
         let is_news = failed && !current.told_error;
         if is_news {
             self.broadcast(&format!("error: {text}"));
