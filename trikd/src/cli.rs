@@ -9,7 +9,7 @@ use crate::host::Host;
 use crate::log::tell;
 use crate::program::{kill, launch::Launch};
 use crate::settings::Settings;
-use crate::{daemon, guardian, js, status};
+use crate::{daemon, guardian, js, log, status};
 use clap::{Parser, Subcommand};
 use std::net::IpAddr;
 use std::path::PathBuf;
@@ -101,6 +101,7 @@ fn perform(command: Command) -> Result<ExitCode, String> {
         Command::Serve { settings } => {
             // Behind the name of the program and `serve`.
             let arguments: Vec<_> = std::env::args_os().skip(2).collect();
+            log::start(&settings.log);
             return guardian::run(&settings.tree, &arguments);
         }
         Command::Status { run } => print!("{}", status::ask(&run, "status")?),
@@ -113,6 +114,7 @@ fn perform(command: Command) -> Result<ExitCode, String> {
             settings,
         } => {
             guardian::follow(guardian)?;
+            log::start(&settings.log);
             daemon::run(*settings, restarts)?;
         }
         Command::Launch(launch) => return Err(launch.become_program()),

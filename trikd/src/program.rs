@@ -15,8 +15,8 @@ pub mod reaper;
 pub mod rest;
 
 use crate::daemon::Daemon;
-use crate::limits;
 use crate::protocol::news::{self, End};
+use crate::{limits, log};
 use child::{Child, Language, Said};
 use kill::{group, sweep};
 use nix::sys::signal::Signal;
@@ -195,6 +195,7 @@ impl Supervisor {
         let mut child = match started {
             Ok(child) => child,
             Err(error) => {
+                tracing::error!(target: log::PROGRAMS, "{name} cannot be started: {error}");
                 self.broadcast(&format!("error: {name} cannot be started: {error}"));
                 return;
             }
@@ -213,9 +214,7 @@ impl Supervisor {
             Instant::now(),
         ));
         drop(shown);
-        daemon
-            .log
-            .line(format_args!("{name} starts as process {}", child.pid));
+        tracing::info!(target: log::PROGRAMS, "{name} starts as process {}", child.pid);
         if !is_quiet {
             self.broadcast(&format!("info: {}", news::started(&name)));
         }
@@ -367,10 +366,11 @@ impl Supervisor {
             let left = sweep(Pid::this(), &spared);
             if left == 0 || Instant::now() > deadline {
                 if left > 0 {
-                    self.daemon.log.line(format_args!(
+                    tracing::error!(
+                        target: log::PROGRAMS,
                         "{left} processes of {} cannot be killed",
                         current.name
-                    ));
+                    );
                 }
                 break;
             }
@@ -427,8 +427,9 @@ impl Supervisor {
             shown.rests_us.pop_front();
         }
         shown.rests_us.push_back(rest_us);
+        tracing::debug!(target: log::TREE, "at rest after {rest_us} us");
         if let Err(why) = rested {
-            self.daemon.log.line(&why);
+            tracing::error!(target: log::TREE, "{why}");
             self.broadcast(&format!("error: {why}"));
         }
     }
@@ -448,7 +449,10 @@ impl Supervisor {
             Way::Greed(why) => End::Greedy(why),
         };
         let (text, failed) = (end.tell(name, seconds), end.is_failure());
-        self.daemon.log.line(&text);
+        match failed {
+            true => tracing::warn!(target: log::PROGRAMS, "{text}"),
+            false => tracing::info!(target: log::PROGRAMS, "{text}"),
+        }
         let is_news = failed && !current.told_error;
         if is_news {
             self.broadcast(&format!("error: {text}"));
