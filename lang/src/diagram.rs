@@ -7,3 +7,5 @@ pub mod ports;
 pub mod project;
 pub mod read;
 pub mod sketch;
+pub mod structure;
+pub mod tree;
