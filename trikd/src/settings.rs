@@ -4,6 +4,7 @@
 
 use crate::access::Network;
 use crate::limits;
+use crate::log::Filter;
 use clap::{Args, ValueEnum};
 use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;
@@ -119,6 +120,10 @@ pub struct Settings {
     /// Do not run autorun.py or autorun.js at the start.
     #[arg(long)]
     pub no_autorun: bool,
+    /// What to tell on standard error: off, error, warn, info, debug or trace, and other levels for some matters, such
+    /// as warn,programs=debug; matters are clients, programs, tree and daemon.
+    #[arg(long, value_name = "LEVEL", env = "TRIKD_LOG", default_value = "info")]
+    pub log: Filter,
     /// The Python interpreter.
     #[arg(long, value_name = "PROGRAM", default_value = "python3")]
     pub python: PathBuf,

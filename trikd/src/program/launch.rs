@@ -2,7 +2,7 @@
 //!
 //! What the hidden command `launch` does. Owns what a program may have; knows no languages.
 
-use super::kill;
+use super::{child, kill};
 use clap::Args;
 use nix::sys::prctl;
 use nix::sys::resource::{Resource, setrlimit};
@@ -52,7 +52,11 @@ impl Launch {
         let Some((program, arguments)) = self.program.split_first() else {
             return "no program is named".to_owned();
         };
-        let error = Command::new(program).args(arguments).exec();
+        let mut command = Command::new(program);
+        if program == child::SELF {
+            command.arg0(child::NAME);
+        }
+        let error = command.args(arguments).exec();
         let hint = match error.raw_os_error() {
             Some(libc::ENOEXEC) => ": it is made for another processor, or is no program",
             Some(libc::ENOENT) => ": it is not there, or what its first line names is not",
