@@ -11,6 +11,7 @@ pub mod clients;
 pub mod connection;
 pub mod daemon;
 pub mod engine;
+pub mod feedback;
 pub mod fuzz;
 pub mod guardian;
 pub mod heartbeat;

@@ -48,6 +48,8 @@ pub const LOG_VERBOSE_LINES_PER_SECOND: f32 = 50.0;
 pub const LOG_LINE_CHARACTERS: usize = 400;
 /// Bytes of a request that the log shows to who asks for `debug`.
 pub const LOG_REQUEST_BYTES: usize = 80;
+/// Beeps and lights that may wait.
+pub const FEEDBACK_WAITS: usize = 8;
 /// Milliseconds within which a key pairs the computer that asked last.
 pub const PAIRING_MS: u64 = 30_000;
 /// Paired computers.
