@@ -4,8 +4,8 @@
 //! label replaces the one at the same place; colour and width of the pen hold for what is drawn after them.
 
 use crate::colour::{BLACK, Colour, WHITE};
-use crate::frame::Frame;
 use crate::limits;
+use crate::pixels::Pixels;
 use std::collections::BTreeMap;
 
 /// What a shape is. Angles are in degrees, counter-clockwise from the right.
@@ -51,9 +51,9 @@ pub struct Label {
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub struct Drawing {
     background: Colour,
-    picture: Option<Frame>,
+    picture: Option<Pixels>,
     /// What the oldest shapes have become.
-    old: Option<Frame>,
+    old: Option<Pixels>,
     shapes: Vec<Shape>,
     labels: BTreeMap<(i32, i32), Label>,
     pen: Colour,
@@ -112,17 +112,17 @@ impl Drawing {
     }
 
     /// The picture at the bottom.
-    pub fn picture(&self) -> Option<&Frame> {
+    pub fn picture(&self) -> Option<&Pixels> {
         self.picture.as_ref()
     }
 
     /// A picture at the bottom in place of the one before, as large as the display lets it be.
-    pub fn show(&mut self, picture: &Frame) {
+    pub fn show(&mut self, picture: &Pixels) {
         self.picture = Some(picture.fitted(self.size.0, self.size.1));
     }
 
     /// What the oldest shapes have become when there were too many.
-    pub fn old(&self) -> Option<&Frame> {
+    pub fn old(&self) -> Option<&Pixels> {
         self.old.as_ref()
     }
 
@@ -173,7 +173,7 @@ impl Drawing {
             let (width, height) = self.size;
             let old = self
                 .old
-                .get_or_insert_with(|| Frame::new(width, height, None));
+                .get_or_insert_with(|| Pixels::new(width, height, None));
             for shape in self.shapes.drain(..limits::SHAPES_MAX / 2) {
                 crate::paint::shape(old, &shape);
             }

@@ -4,7 +4,7 @@
 //! character that no font has is a question mark.
 
 use crate::drawing::Label;
-use crate::frame::Frame;
+use crate::pixels::Pixels;
 use embedded_graphics::Drawable;
 use embedded_graphics::geometry::Point;
 use embedded_graphics::mono_font::iso_8859_5::{
@@ -38,12 +38,12 @@ fn font(height: u16) -> (&'static MonoFont<'static>, i32) {
 }
 
 /// Paints a text with its upper left corner at (x, y).
-pub fn paint(frame: &mut Frame, label: &Label, x: i32, y: i32) {
+pub fn paint(pixels: &mut Pixels, label: &Label, x: i32, y: i32) {
     let (font, times) = font(label.height);
     let style = MonoTextStyle::new(font, label.colour.into());
     let at = |x, y| Text::with_baseline(&label.text, Point::new(x, y), style, Baseline::Top);
     if times == 1 {
-        let Ok(_) = at(x, y).draw(frame);
+        let Ok(_) = at(x, y).draw(pixels);
         return;
     }
     let lines = label.text.split('\n').count();
@@ -56,14 +56,14 @@ pub fn paint(frame: &mut Frame, label: &Label, x: i32, y: i32) {
         u16::try_from(count.saturating_mul(size as usize)).unwrap_or(u16::MAX)
     };
     // What would be beyond the display is not worth its memory.
-    let width = side(columns.unwrap_or(0), font.character_size.width).min(frame.width());
-    let height = side(lines, font.character_size.height).min(frame.height());
-    let mut small = Frame::new(width, height, None);
+    let width = side(columns.unwrap_or(0), font.character_size.width).min(pixels.width());
+    let height = side(lines, font.character_size.height).min(pixels.height());
+    let mut small = Pixels::new(width, height, None);
     let Ok(_) = at(0, 0).draw(&mut small);
     for row in 0..i32::from(height) * times {
         for column in 0..i32::from(width) * times {
             if let Some(colour) = small.at(column / times, row / times) {
-                frame.set(x + column, y + row, colour);
+                pixels.set(x + column, y + row, colour);
             }
         }
     }

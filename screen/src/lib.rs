@@ -5,15 +5,15 @@
 
 pub mod colour;
 pub mod drawing;
-pub mod frame;
 pub mod letters;
 pub mod limits;
 pub mod order;
 pub mod paint;
 pub mod picture;
+pub mod pixels;
 
 pub use drawing::Drawing;
-pub use frame::Frame;
+pub use pixels::Pixels;
 
 #[cfg(test)]
 mod tests;

@@ -6,7 +6,7 @@
 pub const WIDTH: u16 = 320;
 /// Its height.
 pub const HEIGHT: u16 = 240;
-/// Pixels of a frame or a picture in each direction.
+/// Pixels of a picture in each direction.
 pub const SIDE_MAX: u16 = 4096;
 /// Shapes that are kept one by one; when there are more, the older half becomes one picture.
 pub const SHAPES_MAX: usize = 2048;

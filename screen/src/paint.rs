@@ -1,47 +1,47 @@
 //! From the list to pixels.
 //!
 //! Owns how wide lines and round things look: a line is as wide as the pen, and an outline lies half inside and half
-//! outside of its place. Time is bounded: coordinates, pens and lists have limits, and only rows of the frame are
+//! outside of its place. Time is bounded: coordinates, pens and lists have limits, and only rows that are seen are
 //! looked at.
 
 use crate::colour::Colour;
 use crate::drawing::{Drawing, Outline, Shape};
-use crate::frame::Frame;
 use crate::letters;
+use crate::pixels::Pixels;
 
 /// Degrees between two corners of the chain of lines that an arc becomes.
 const ARC_STEP: i32 = 3;
 
 impl Drawing {
     /// What is seen.
-    pub fn paint(&self) -> Frame {
+    pub fn paint(&self) -> Pixels {
         let (width, height) = self.size();
-        let mut frame = Frame::new(width, height, Some(self.background()));
+        let mut pixels = Pixels::new(width, height, Some(self.background()));
         if let Some(picture) = self.picture() {
             let middle = |all: u16, own: u16| i32::from(all.saturating_sub(own)) / 2;
             let (x, y) = (
                 middle(width, picture.width()),
                 middle(height, picture.height()),
             );
-            frame.put(picture, x, y);
+            pixels.put(picture, x, y);
         }
         if let Some(old) = self.old() {
-            frame.put(old, 0, 0);
+            pixels.put(old, 0, 0);
         }
         for one in self.shapes() {
-            shape(&mut frame, one);
+            shape(&mut pixels, one);
         }
         for ((x, y), label) in self.labels() {
-            letters::paint(&mut frame, label, x, y);
+            letters::paint(&mut pixels, label, x, y);
         }
-        frame
+        pixels
     }
 }
 
 /// Paints one shape.
-pub fn shape(frame: &mut Frame, shape: &Shape) {
+pub fn shape(pixels: &mut Pixels, shape: &Shape) {
     let mut brush = Brush {
-        frame,
+        pixels,
         colour: shape.colour,
         width: shape.width.into(),
     };
@@ -72,21 +72,21 @@ fn ellipse_row(row: i32, [x, y, width, height]: [i32; 4]) -> Option<(i32, i32)> 
     (first <= last).then_some((first as i32, last as i32))
 }
 
-/// A pen over a frame.
+/// A pen over pixels.
 struct Brush<'a> {
-    frame: &'a mut Frame,
+    pixels: &'a mut Pixels,
     colour: Colour,
     width: i32,
 }
 
 impl Brush<'_> {
     fn row(&mut self, y: i32, from: i32, to: i32) {
-        self.frame.fill_row(y, from, to, self.colour);
+        self.pixels.fill_row(y, from, to, self.colour);
     }
 
-    /// Rows of the frame between two others, both among them.
+    /// Rows that are seen between two others, both among them.
     fn rows(&self, from: i32, to: i32) -> std::ops::RangeInclusive<i32> {
-        from.max(0)..=to.min(i32::from(self.frame.height()) - 1)
+        from.max(0)..=to.min(i32::from(self.pixels.height()) - 1)
     }
 
     /// A closed outline, or all of its inside. `columns` says where a row of such a figure begins and ends.
@@ -130,7 +130,7 @@ impl Brush<'_> {
         for step in 0..=steps {
             // Rounded to the nearest; the greatest product is within 32 bits, as coordinates are cut.
             let part = |way: i32| (2 * way * step + steps).div_euclid(2 * steps);
-            self.frame
+            self.pixels
                 .set(from[0] + part(along), from[1] + part(down), self.colour);
         }
     }

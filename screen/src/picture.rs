@@ -3,8 +3,8 @@
 //! Owns the limits of a picture; the formats themselves are known to the crates that read them.
 
 use crate::colour::Colour;
-use crate::frame::Frame;
 use crate::limits;
+use crate::pixels::Pixels;
 use zune_jpeg::JpegDecoder;
 use zune_jpeg::zune_core::bytestream::ZCursor;
 use zune_jpeg::zune_core::colorspace::ColorSpace;
@@ -14,7 +14,7 @@ use zune_jpeg::zune_core::options::DecoderOptions;
 ///
 /// # Errors
 /// It is neither, is damaged, or has more than [`limits::PICTURE_PIXELS`].
-pub fn decode(file: &[u8]) -> Result<Frame, String> {
+pub fn decode(file: &[u8]) -> Result<Pixels, String> {
     if file.starts_with(&[0xff, 0xd8]) {
         jpeg(file)
     } else if file.starts_with(b"\x89PNG") {
@@ -41,7 +41,7 @@ fn sides(width: usize, height: usize) -> Result<(u16, u16), String> {
     }
 }
 
-fn jpeg(file: &[u8]) -> Result<Frame, String> {
+fn jpeg(file: &[u8]) -> Result<Pixels, String> {
     let options = DecoderOptions::default()
         .jpeg_set_out_colorspace(ColorSpace::RGB)
         .set_max_width(limits::SIDE_MAX.into())
@@ -52,10 +52,10 @@ fn jpeg(file: &[u8]) -> Result<Frame, String> {
     let (width, height) = decoder.dimensions().unwrap_or_default();
     let (width, height) = sides(width, height)?;
     let bytes = decoder.decode().map_err(damaged)?;
-    Ok(Frame::from_rgb(width, height, &bytes))
+    Ok(Pixels::from_rgb(width, height, &bytes))
 }
 
-fn png(file: &[u8]) -> Result<Frame, String> {
+fn png(file: &[u8]) -> Result<Pixels, String> {
     let damaged = |error: png::DecodingError| format!("the PNG picture cannot be read: {error}");
     let bounds = png::Limits {
         bytes: 4 * limits::PICTURE_PIXELS,
@@ -70,7 +70,7 @@ fn png(file: &[u8]) -> Result<Frame, String> {
         .ok_or("the PNG picture is too large")?;
     let mut bytes = vec![0; size];
     let info = reader.next_frame(&mut bytes).map_err(damaged)?;
-    let mut frame = Frame::new(width, height, None);
+    let mut pixels = Pixels::new(width, height, None);
     let samples = info.color_type.samples();
     for (index, pixel) in bytes[..info.buffer_size()]
         .chunks_exact(samples)
@@ -88,10 +88,10 @@ fn png(file: &[u8]) -> Result<Frame, String> {
         if opacity >= 128 {
             let [red, green, blue] = seen;
             let place = |at: usize| i32::try_from(at).unwrap_or(i32::MAX);
-            frame.set(place(x), place(y), Colour { red, green, blue });
+            pixels.set(place(x), place(y), Colour { red, green, blue });
         }
     }
-    Ok(frame)
+    Ok(pixels)
 }
 
 /// How the numbers of a program are to be understood.
@@ -134,7 +134,7 @@ impl RawFormat {
 ///
 /// # Errors
 /// There are fewer numbers than pixels need, or too many pixels.
-pub fn raw(numbers: &[i32], width: i32, height: i32, format: RawFormat) -> Result<Frame, String> {
+pub fn raw(numbers: &[i32], width: i32, height: i32, format: RawFormat) -> Result<Pixels, String> {
     let side =
         |size: i32| usize::try_from(size).map_err(|_| format!("{size} is no width or height"));
     let (columns, rows) = (side(width)?, side(height)?);
@@ -165,5 +165,5 @@ pub fn raw(numbers: &[i32], width: i32, height: i32, format: RawFormat) -> Resul
             })
             .collect(),
     };
-    Ok(Frame::from_rgb(width, height, &bytes))
+    Ok(Pixels::from_rgb(width, height, &bytes))
 }

@@ -1,9 +1,11 @@
+//! Drawings, painted and looked at pixel by pixel.
+
 use crate::colour::{BLACK, Colour, WHITE, colour};
 use crate::drawing::{Drawing, Outline};
-use crate::frame::Frame;
 use crate::limits;
 use crate::order::Effect;
 use crate::picture::{self, RawFormat};
+use crate::pixels::Pixels;
 
 const RED: Colour = colour(255, 0, 0);
 
@@ -16,12 +18,12 @@ fn drawn(orders: &[&str]) -> Drawing {
 }
 
 /// Pixels of a colour, and the rectangle that they fill: left, top, right, bottom.
-fn extent(frame: &Frame, colour: Colour) -> (usize, [i32; 4]) {
+fn extent(pixels: &Pixels, colour: Colour) -> (usize, [i32; 4]) {
     let mut count = 0;
     let mut place = [i32::MAX, i32::MAX, i32::MIN, i32::MIN];
-    for y in 0..i32::from(frame.height()) {
-        for x in 0..i32::from(frame.width()) {
-            if frame.at(x, y) == Some(colour) {
+    for y in 0..i32::from(pixels.height()) {
+        for x in 0..i32::from(pixels.width()) {
+            if pixels.at(x, y) == Some(colour) {
                 count += 1;
                 place = [
                     place[0].min(x),
@@ -62,8 +64,8 @@ fn each_shape_is_where_it_was_drawn() {
         ("rect 10 20 30 40 0", 2 * 30 + 2 * 38, [10, 20, 39, 59]),
         ("rect 40 60 -30 -40 1", 1200, [10, 20, 39, 59]),
     ] {
-        let frame = drawn(&["color red", order]).paint();
-        assert_eq!(extent(&frame, RED), (count, place), "{order}");
+        let pixels = drawn(&["color red", order]).paint();
+        assert_eq!(extent(&pixels, RED), (count, place), "{order}");
     }
     let (count, place) = extent(
         &drawn(&["color red", "ellipse 100 100 40 20 1"]).paint(),
@@ -272,31 +274,34 @@ fn faces_differ_in_their_mouths() {
     let yellow = colour(255, 210, 40);
     assert!(extent(&happy, yellow).0 > 20_000 && extent(&sad, yellow).0 > 20_000);
     // The corners of the mouth are above its middle, or below.
-    let mouth =
-        |frame: &Frame, x: i32| (130..230).find(|&y| frame.at(x, y) == Some(BLACK)).unwrap();
+    let mouth = |pixels: &Pixels, x: i32| {
+        (130..230)
+            .find(|&y| pixels.at(x, y) == Some(BLACK))
+            .unwrap()
+    };
     assert!(mouth(&happy, 115) < mouth(&happy, 160));
     assert!(mouth(&sad, 115) > mouth(&sad, 160));
 }
 
 #[test]
 fn frames_go_to_the_display_and_back() {
-    let mut frame = Frame::new(4, 2, Some(WHITE));
-    frame.set(1, 0, RED);
-    frame.set(-1, 0, RED);
-    frame.set(4, 0, RED);
-    let bytes = frame.to_rgb565();
+    let mut pixels = Pixels::new(4, 2, Some(WHITE));
+    pixels.set(1, 0, RED);
+    pixels.set(-1, 0, RED);
+    pixels.set(4, 0, RED);
+    let bytes = pixels.to_rgb565();
     assert_eq!(bytes.len(), 16);
     assert_eq!(bytes[..4], [0xff, 0xff, 0x00, 0xf8]);
-    assert_eq!(Frame::from_rgb565(4, 2, &bytes), frame);
+    assert_eq!(Pixels::from_rgb565(4, 2, &bytes), pixels);
     assert!(
-        frame
+        pixels
             .to_ppm()
             .starts_with(b"P6\n4 2\n255\n\xff\xff\xff\xff\x00\x00")
     );
-    assert_eq!(Frame::from_rgb(4, 2, &frame.to_rgb()), frame);
-    assert_eq!(frame.scaled(8, 4).at(3, 1), Some(RED));
-    assert_eq!(frame.fitted(320, 240).height(), 160);
-    assert_eq!(Frame::new(0, 0, None).fitted(320, 240).width(), 0);
+    assert_eq!(Pixels::from_rgb(4, 2, &pixels.to_rgb()), pixels);
+    assert_eq!(pixels.scaled(8, 4).at(3, 1), Some(RED));
+    assert_eq!(pixels.fitted(320, 240).height(), 160);
+    assert_eq!(Pixels::new(0, 0, None).fitted(320, 240).width(), 0);
 }
 
 #[test]
@@ -320,9 +325,9 @@ fn pictures_of_files_lie_at_the_bottom_and_in_the_middle() {
     let picture = picture::decode(&file).unwrap();
     let mut drawing = Drawing::default();
     drawing.show(&picture);
-    let frame = drawing.paint();
-    assert_eq!(extent(&frame, RED), (240 * 120, [40, 0, 279, 119]));
-    assert_eq!(frame.at(160, 200), Some(WHITE));
+    let pixels = drawing.paint();
+    assert_eq!(extent(&pixels, RED), (240 * 120, [40, 0, 279, 119]));
+    assert_eq!(pixels.at(160, 200), Some(WHITE));
 
     let mut file = Vec::new();
     let encoder = jpeg_encoder::Encoder::new(&mut file, 90);

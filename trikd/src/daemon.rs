@@ -6,6 +6,7 @@
 use crate::access::Access;
 use crate::clients::Clients;
 use crate::connection::Held;
+use crate::feedback::Feedback;
 use crate::program::child::Owner;
 use crate::program::reaper::Reaper;
 use crate::program::rest::Rest;
@@ -46,6 +47,8 @@ pub struct Daemon {
     pub sampler: Sampler,
     /// The way to bring motors to rest.
     pub rest: Rest,
+    /// What a person beside the robot hears and sees.
+    pub feedback: Feedback,
     /// Who hears of ends of processes.
     pub reaper: Reaper,
     /// Whose rights programs have; None: those of trikd.
@@ -177,6 +180,10 @@ impl Daemon {
             held: Held::default(),
             sampler: Sampler::start(&settings.tree).map_err(threads)?,
             rest: Rest::start(&settings.tree).map_err(threads)?,
+            feedback: match settings.has(Service::Feedback) {
+                true => Feedback::start(&settings.tree).map_err(threads)?,
+                false => Feedback::default(),
+            },
             reaper: Reaper::default(),
             owner,
             programs: Programs::default(),

@@ -48,6 +48,8 @@ pub const LOG_VERBOSE_LINES_PER_SECOND: f32 = 50.0;
 pub const LOG_LINE_CHARACTERS: usize = 400;
 /// Bytes of a request that the log shows to who asks for `debug`.
 pub const LOG_REQUEST_BYTES: usize = 80;
+/// Beeps and lights that may wait.
+pub const FEEDBACK_WAITS: usize = 8;
 /// Milliseconds within which a key pairs the computer that asked last.
 pub const PAIRING_MS: u64 = 30_000;
 /// Paired computers.
@@ -160,3 +162,5 @@ pub const BEAT_MS: u64 = 500;
 pub const BEATS_MISSING: u32 = 20;
 /// Rests of which the status tells how long they took.
 pub const RESTS_SHOWN: usize = 256;
+/// Numbers of one picture that a program shows, three for each pixel at most.
+pub const SHOWN_NUMBERS: usize = 3 << 20;

@@ -15,6 +15,7 @@ pub mod reaper;
 pub mod rest;
 
 use crate::daemon::Daemon;
+use crate::feedback::Moment;
 use crate::protocol::news::{self, End};
 use crate::{limits, log};
 use child::{Child, Language, Said};
@@ -125,7 +126,11 @@ impl Supervisor {
                 );
             }
             Command::Direct(code) => self.direct(&code).await,
-            Command::Stop(who) => self.end(Way::Order(who)).await,
+            Command::Stop(who) => {
+                self.end(Way::Order(who)).await;
+                // Also what came while nothing ran: after a stop everything begins anew.
+                self.daemon.mailbox.forget_kept();
+            }
             Command::Mail(hull, text) => {
                 let heard = self
                     .current
@@ -350,6 +355,7 @@ impl Supervisor {
         self.kill_all(&mut current).await;
         let last = self.daemon.rest.now(limits::REST_LAST_MS).await;
         self.tell_rest(last, rest_us);
+        self.daemon.feedback.show(Moment::Ended);
         self.tell_end(&mut current, &way);
         self.daemon.programs.shown.borrow_mut().text = None;
         self.daemon.mailbox.forget_kept();

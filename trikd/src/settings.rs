@@ -9,7 +9,7 @@ use clap::{Args, ValueEnum};
 use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;
 
-/// A server that can be left out.
+/// Something that can be left out.
 #[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
 pub enum Service {
     /// Messages between robots.
@@ -22,6 +22,8 @@ pub enum Service {
     Variables,
     /// The answer to who looks for robots in the network.
     Discovery,
+    /// The beep after an upload and the green light after a program.
+    Feedback,
 }
 
 /// What ends the program when it is pressed.
@@ -71,7 +73,7 @@ pub struct Settings {
     /// Port of variables of the program, only for this machine.
     #[arg(long, value_name = "PORT", default_value_t = 10000)]
     pub variables_port: u16,
-    /// Do not serve this; may be given several times.
+    /// Do without this; may be given several times.
     #[arg(long, value_name = "SERVICE", value_enum)]
     pub without: Vec<Service>,
     /// Send sensor values there, one JSON object in each datagram.

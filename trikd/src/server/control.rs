@@ -4,6 +4,7 @@ use super::Guest;
 use crate::clients::Client;
 use crate::connection::{self, Handler, VERSION};
 use crate::daemon::Daemon;
+use crate::feedback::Moment;
 use crate::outbox::Outbox;
 use crate::program::Command;
 use crate::protocol::control::Request;
@@ -55,12 +56,15 @@ impl Control {
         let kept =
             tokio::task::spawn_blocking(move || scripts::keep(&folder, &name, &content)).await;
         match kept {
-            Ok(Ok(path)) => tracing::info!(
-                target: log::PROGRAMS,
-                "{} is uploaded by {}",
-                path.display(),
-                self.client.peer
-            ),
+            Ok(Ok(path)) => {
+                self.daemon.feedback.show(Moment::Uploaded);
+                tracing::info!(
+                    target: log::PROGRAMS,
+                    "{} is uploaded by {}",
+                    path.display(),
+                    self.client.peer
+                );
+            }
             Ok(Err(why)) => {
                 tracing::warn!(target: log::PROGRAMS, "an upload by {} is refused: {why}", self.client.peer);
                 self.error(&why);

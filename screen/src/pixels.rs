@@ -12,13 +12,13 @@ use std::convert::Infallible;
 
 /// Pixels, row by row from the upper left corner. A pixel may be absent: what is behind it is seen.
 #[derive(Clone, Debug, Eq, PartialEq)]
-pub struct Frame {
+pub struct Pixels {
     width: u16,
     height: u16,
     pixels: Vec<Option<Colour>>,
 }
 
-impl Frame {
+impl Pixels {
     /// All pixels alike; absent with None. Sides are cut to [`limits::SIDE_MAX`].
     pub fn new(width: u16, height: u16, all: Option<Colour>) -> Self {
         let (width, height) = (width.min(limits::SIDE_MAX), height.min(limits::SIDE_MAX));
@@ -32,11 +32,11 @@ impl Frame {
 
     /// From three bytes for each pixel; missing ones are absent pixels.
     pub fn from_rgb(width: u16, height: u16, bytes: &[u8]) -> Self {
-        let mut frame = Self::new(width, height, None);
-        for (pixel, rgb) in frame.pixels.iter_mut().zip(bytes.chunks_exact(3)) {
+        let mut pixels = Self::new(width, height, None);
+        for (pixel, rgb) in pixels.pixels.iter_mut().zip(bytes.chunks_exact(3)) {
             *pixel = Some(crate::colour::colour(rgb[0], rgb[1], rgb[2]));
         }
-        frame
+        pixels
     }
 
     /// Pixels from left to right.
@@ -77,7 +77,7 @@ impl Frame {
         }
     }
 
-    /// Puts the pixels of another frame over these, its corner at (x, y).
+    /// Puts others over these, its corner at (x, y).
     pub fn put(&mut self, over: &Self, x: i32, y: i32) {
         for row in 0..i32::from(over.height) {
             for column in 0..i32::from(over.width) {
@@ -132,8 +132,8 @@ impl Frame {
 
     /// From what a display has.
     pub fn from_rgb565(width: u16, height: u16, bytes: &[u8]) -> Self {
-        let mut frame = Self::new(width, height, None);
-        for (pixel, two) in frame.pixels.iter_mut().zip(bytes.chunks_exact(2)) {
+        let mut pixels = Self::new(width, height, None);
+        for (pixel, two) in pixels.pixels.iter_mut().zip(bytes.chunks_exact(2)) {
             let packed = u16::from_le_bytes([two[0], two[1]]);
             // The highest bits again as the lowest, so that white is white.
             let wide = |bits: u16, count: u16| {
@@ -146,7 +146,7 @@ impl Frame {
                 wide(blue, 5),
             ));
         }
-        frame
+        pixels
     }
 
     /// Three bytes for each pixel. Absent pixels are black.
@@ -164,13 +164,13 @@ impl Frame {
     }
 }
 
-impl OriginDimensions for Frame {
+impl OriginDimensions for Pixels {
     fn size(&self) -> Size {
         Size::new(self.width.into(), self.height.into())
     }
 }
 
-impl DrawTarget for Frame {
+impl DrawTarget for Pixels {
     type Color = Rgb888;
     type Error = Infallible;
 
