@@ -2,10 +2,13 @@
 
 pub mod archive;
 pub mod blocks;
+pub mod convert;
 pub mod objects;
 pub mod ports;
 pub mod project;
 pub mod read;
+pub mod save;
 pub mod sketch;
 pub mod structure;
 pub mod tree;
+pub mod version;
