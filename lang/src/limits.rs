@@ -55,3 +55,35 @@ pub const STACK_MAX: usize = 4000;
 pub const MESSAGES_MAX: usize = 10_000;
 /// Names of threads that one fork remembers.
 pub const FORK_NAMES_MAX: usize = 10_000;
+/// How many diamonds one condition of a generated program may stand for.
+pub const CONDITION_TESTS_MAX: usize = 8;
+/// How many statements a structured program may have for each block, because of copies.
+pub const COPIES_PER_BLOCK: usize = 2;
+/// And beside that.
+pub const COPIES_FREE: usize = 64;
+/// How deep branches and loops of a structured program may nest.
+pub const NESTING_MAX: usize = 40;
+/// How deep its loops may nest; Python allows 20.
+pub const LOOPS_NESTING_MAX: usize = 12;
+/// How deep branches of one state nest in a program over states.
+pub const STATES_NESTING_MAX: usize = 6;
+/// Bytes of a save as it comes, in any container.
+pub const SAVE_BYTES: usize = 32 << 20;
+/// Bytes of all entries of a save, unpacked.
+pub const SAVE_UNPACKED_BYTES: usize = 48 << 20;
+/// Bytes of one unpacked entry: the largest real ones are embedded images.
+pub const ENTRY_BYTES: usize = 24 << 20;
+/// Entries of a save; the largest real one has 1500. What a zip without extensions can count.
+pub const ENTRIES: usize = 65_535;
+/// Bytes of an entry's name.
+pub const ENTRY_NAME_BYTES: usize = 1024;
+/// How deep tags may nest in a document.
+pub const XML_DEPTH: usize = 64;
+/// Tags of one document.
+pub const XML_TAGS: usize = 200_000;
+/// Attributes of one tag.
+pub const XML_ATTRIBUTES: usize = 64;
+/// Objects that one list of a save may name, summed over all lists.
+pub const REFERENCES: usize = 1_000_000;
+/// Problems that one reading tells; what is more is counted.
+pub const PROBLEMS: usize = 200;
