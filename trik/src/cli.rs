@@ -6,6 +6,7 @@ use crate::{fault, limits, manual, up};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::io::{self, Write};
+use std::net::IpAddr;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -89,10 +90,28 @@ pub(crate) struct UpArgs {
     /// Private directory for compiled C and copies of libraries [default: as for trikfs].
     #[arg(long, value_name = "DIR")]
     pub cache: Option<PathBuf>,
+    /// Let other users in, and let members of this group write what you may write of each node, as `trikfs mount
+    /// --allow-other --group GROUP` does.
+    #[arg(long, value_name = "GROUP")]
+    pub group: Option<String>,
     /// Mount the devices of the robot a second time as the classes of ev3dev, for programs that know those [default: the
     /// mount point of the robot with .ev3dev behind its name].
     #[arg(long, value_name = "DIR", num_args = 0..=1, require_equals = true)]
     pub ev3dev: Option<Option<PathBuf>>,
+    /// Do not start trikd: no TRIK Studio, no gamepad and no `trik run` reaches the robot.
+    #[arg(long, conflicts_with_all = ["trikd_address", "trikd_ports", "scripts"])]
+    pub no_trikd: bool,
+    /// Address at which trikd serves; may be given several times. With one that others reach, 0.0.0.0 for all, they run
+    /// programs with your rights [default: 127.0.0.1; for robot-2 127.0.0.2 and so on].
+    #[arg(long, value_name = "ADDRESS")]
+    pub trikd_address: Vec<IpAddr>,
+    /// First of the ports of trikd: programs, sensors, gamepads, pictures, variables, mailbox are in a row from there; 0
+    /// takes any free ones [default: 8888, 9000, 4444, 8080, 10000, 8889, which TRIK Studio knows].
+    #[arg(long, value_name = "PORT")]
+    pub trikd_ports: Option<u16>,
+    /// Where uploaded programs are kept [default: a directory that goes with the robot].
+    #[arg(long, value_name = "DIR")]
+    pub scripts: Option<PathBuf>,
     /// An empty directory; made if nothing is there, and removed again [default: robot, or else robot-2 and so on, in
     /// $XDG_RUNTIME_DIR/trik or /tmp/trik-UID].
     pub mountpoint: Option<PathBuf>,
@@ -202,14 +221,14 @@ mod tests {
             (plain.robot.as_str(), plain.speed, plain.mountpoint),
             ("two-wheels", 1.0, None)
         );
-        let line =
-            "up --robot two-wheels --speed 2 --seed 7 --config c.lua --no-view --include i /m";
+        let line = "up --robot two-wheels --speed 2 --seed 7 --config c.lua --no-view --include i --group g /m";
         let words: Vec<&str> = line.split(' ').collect();
         let Ok(Command::Up(args)) = parse(&words) else {
             panic!("not understood")
         };
         assert_eq!((args.speed, args.seed, args.no_view), (2.0, 7, true));
         assert_eq!((args.mountpoint, args.ev3dev), (Some("/m".into()), None));
+        assert_eq!(args.group.as_deref(), Some("g"));
         for (words, dir) in [
             (&["up", "--ev3dev", "m"] as &[&str], None),
             (&["up", "--ev3dev=e", "m"], Some("e".into())),

@@ -106,6 +106,10 @@ impl Robot {
         let cache = home.0.path("cache");
         let mut command = home.command(&["up", "--cache"]);
         command.arg(cache).args(words);
+        if !words.iter().any(|word| word.starts_with("--trikd")) {
+            // Tests run side by side, and there is one set of ports that clients know.
+            command.arg("--no-trikd");
+        }
         command
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
@@ -166,7 +170,9 @@ impl Robot {
         for entry in fs::read_dir(robot.home.base()).expect("robots").flatten() {
             let lock = entry.path();
             if lock.extension().is_some_and(|ending| ending == "lock")
-                && fs::read_to_string(&lock).is_ok_and(|text| Path::new(text.trim()) == robot.root)
+                && fs::read_to_string(&lock).is_ok_and(|text| {
+                    text.lines().next().map(Path::new) == Some(robot.root.as_path())
+                })
             {
                 robot.devices = lock.with_extension("board");
             }
@@ -365,6 +371,7 @@ impl Robot {
             &self.root,
             &self.devices,
             &self.devices.with_extension("lock"),
+            &self.devices.with_extension("trikd"),
             &self.devices.with_extension("ev3dev"),
         ] {
             assert!(!path.exists(), "{} is left", path.display());
