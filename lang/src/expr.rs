@@ -10,7 +10,7 @@ mod escape;
 mod lexer;
 mod literal;
 pub mod names;
-mod parser;
+pub(crate) mod parser;
 pub mod reserved;
 mod run;
 pub mod store;
