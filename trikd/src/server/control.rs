@@ -7,6 +7,7 @@ use crate::daemon::Daemon;
 use crate::outbox::Outbox;
 use crate::program::Command;
 use crate::protocol::control::Request;
+use crate::protocol::news;
 use crate::{limits, scripts};
 use std::rc::Rc;
 use tokio::sync::oneshot;
@@ -25,7 +26,7 @@ impl Control {
     fn may_control(&self) -> bool {
         let may = self.daemon.access.may_control(self.client.peer.ip());
         if !may {
-            self.error("this computer is not paired with the robot: press Enter on the robot within 30 s, then try again");
+            self.error(news::NOT_PAIRED);
         }
         may
     }
@@ -60,7 +61,7 @@ impl Control {
                 self.client.peer
             )),
             Ok(Err(why)) => self.error(&why),
-            Err(error) => self.error(&format!("the upload failed: {error}")),
+            Err(error) => self.error(&format!("{}{error}", news::UPLOAD_FAILED)),
         }
     }
 }
