@@ -55,8 +55,8 @@ enum Command {
     Run(RunArgs),
     /// End the program of a robot, and bring everything to rest.
     ///
-    /// Several robots are stopped at once. Exit status: 0 all rest; 1 a robot tells that something may still move; 2 one
-    /// could not be reached.
+    /// Several robots are stopped at once. Exit status: 0 all rest; 1 a robot does not say so; 2 one could not be
+    /// reached.
     Stop(FleetArgs),
     /// Send files to robots, to all at once, and perhaps run one of them there.
     ///

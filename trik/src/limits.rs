@@ -14,6 +14,8 @@ pub const SOUND_CHARS_MAX: usize = 500;
 pub const START_MS: u32 = 60_000;
 /// Time for the tree to end after it was asked to, before it is forced.
 pub const STOP_MS: u32 = 8_000;
+/// Time for a process that stands on the tree to end before it is forced: its guardian forces the serving one after 8 s.
+pub const COMPANION_STOP_MS: u32 = 10_000;
 /// Time for a daemon that has lost its guardian to clean up, before the board goes.
 pub const ORPHAN_MS: u32 = 8_000;
 /// Longest line that is passed on from the processes of the tree.

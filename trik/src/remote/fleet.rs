@@ -86,7 +86,7 @@ fn ask(target: &Target, request: Option<&[u8]>) -> Result<Answer, String> {
     Ok(answer)
 }
 
-/// Ends the programs of robots and brings all that moves to rest. The exit code: 0 all rest, 1 one tells of a failure,
+/// Ends the programs of robots and brings all that moves to rest. The exit code: 0 all rest, 1 one does not say so,
 /// 2 one could not be told.
 pub(crate) fn stop(args: &FleetArgs) -> ExitCode {
     ask_all(args, |target| {
@@ -100,12 +100,12 @@ pub(crate) fn stop(args: &FleetArgs) -> ExitCode {
             .iter()
             .rev()
             .find(|text| text.contains(" was stopped by "));
-        let text = match (ended, answer.status) {
-            (Some(text), _) => text,
-            (None, Some(_)) => "no program was running; everything rests",
-            (None, None) => "was told to stop, and does not say whether it has",
+        let (code, text) = match (ended, answer.status) {
+            (Some(text), _) => (0, text.as_str()),
+            (None, Some(_)) => (0, "no program was running; everything rests"),
+            (None, None) => (1, "was told to stop, and does not say whether it has"),
         };
-        Ok((0, format!("{target}: {text}\n")))
+        Ok((code, format!("{target}: {text}\n")))
     })
 }
 

@@ -2,8 +2,11 @@
 //!
 //! Every robot has an address of its own, so that all have the ports that clients know.
 
+mod fleet;
+mod pretended;
+
 use crate::rig::{Home, Robot, loopback};
-use harness::{Output, eventually, processes, tools};
+use harness::{Output, eventually, processes};
 use nix::sys::signal::Signal;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -340,31 +343,6 @@ fn a_port_that_is_taken_is_one_line_and_the_robot_runs() {
 }
 
 #[test]
-fn robots_side_by_side_are_told_apart() {
-    let Some(home) = Home::new() else { return };
-    let home = Arc::new(home);
-    let (one, other) = (Reachable::beside(&home, &[]), Reachable::beside(&home, &[]));
-    let refusal = home.run(&["stop"]);
-    assert_eq!(refusal.code(), 2);
-    assert!(
-        refusal
-            .stderr
-            .starts_with("trik: several robots run: say which with --robot: "),
-        "{}",
-        refusal.stderr
-    );
-    let mut running = one.start("loop.js");
-    assert!(other.rests());
-    let both = format!("{},{}", one.ip, other.ip);
-    let said = home.run(&["stop", "--robot", &both]).good();
-    assert!(
-        said.contains("loop.js was stopped") && said.contains("no program was running"),
-        "{said}"
-    );
-    assert_eq!(running.code(), Some(1));
-}
-
-#[test]
 fn after_a_kill_of_trikd_motors_rest_it_comes_back_and_who_waits_is_told() {
     let Some(one) = Reachable::new() else { return };
     let mut running = one.start("loop.js");
@@ -428,6 +406,28 @@ fn the_end_of_the_robot_ends_its_program_and_keeps_uploads_only_where_it_was_tol
 }
 
 #[test]
+fn a_trikd_that_hangs_does_not_hold_up_the_end_for_ever() {
+    for signals in [1, 2] {
+        let Some(mut one) = Reachable::new() else {
+            return;
+        };
+        let (guardian, serving) = one.trikd();
+        processes::signal(serving, Signal::SIGSTOP);
+        eventually("a standstill", || processes::is_stopped(serving));
+        if signals > 1 {
+            processes::signal(one.robot.pid(), Signal::SIGTERM);
+        }
+        let status = one.robot.end(Signal::SIGINT);
+        assert_eq!(status.code(), Some(0), "{}", one.robot.complaints());
+        one.robot.leaves_nothing();
+        assert!(!processes::is_alive(guardian));
+        // Who has no patience leaves it to itself: it ends as soon as it goes on.
+        processes::signal(serving, Signal::SIGCONT);
+        eventually("its end", || !processes::is_alive(serving));
+    }
+}
+
+#[test]
 fn a_gamepad_on_its_port_is_a_gamepad_in_the_tree() {
     let Some(one) = Reachable::new() else { return };
     let mut pad = TcpStream::connect((one.ip.as_str(), 4444)).expect("the port of gamepads");
@@ -437,152 +437,4 @@ fn a_gamepad_on_its_port_is_a_gamepad_in_the_tree() {
             .read("gamepad/pad1/value")
             .is_ok_and(|text| text == "40 -30 1")
     });
-}
-
-#[test]
-fn files_are_sent_to_several_robots_at_once_and_the_table_tells_who_has_got_them() {
-    let Some(home) = Home::new() else { return };
-    let home = Arc::new(home);
-    let (one, other) = (Reachable::beside(&home, &[]), Reachable::beside(&home, &[]));
-    let dead = loopback();
-    home.0
-        .file("part.js", "function word() { return 'together'; }");
-    home.0.file(
-        "main.js",
-        "include('part.js'); print(word()); script.wait(60000);",
-    );
-    home.0.file("big.bin", vec![0xff; 3 << 20]);
-    let all = format!("{},{dead},{}", one.ip, other.ip);
-    let words = [
-        "send", "part.js", "main.js", "big.bin", "--robot", &all, "--run", "main.js",
-    ];
-    let output = home.run(&words);
-    assert_eq!(output.code(), 1, "{}", output.stderr);
-    let rows: Vec<Vec<&str>> = output
-        .stdout
-        .lines()
-        .map(|line| line.split_whitespace().collect())
-        .collect();
-    assert_eq!(rows.len(), 4, "{}", output.stdout);
-    assert_eq!(
-        rows[1],
-        [one.ip.as_str(), "3", "of", "3", "main.js", "runs"]
-    );
-    assert_eq!(rows[2][..5], [dead.as_str(), "0", "of", "3", "FAILED:"]);
-    assert_eq!(
-        rows[3],
-        [other.ip.as_str(), "3", "of", "3", "main.js", "runs"]
-    );
-    assert!(
-        output
-            .stderr
-            .contains(&format!("{}: big.bin is sent, 3 of 3\n", other.ip)),
-        "{}",
-        output.stderr
-    );
-    assert!(
-        output
-            .stderr
-            .ends_with("trik: 1 of 3 robots have not got everything\n"),
-        "{}",
-        output.stderr
-    );
-    for ip in [&one.ip, &other.ip] {
-        let status = home.run(&["status", "--robot", ip]).good();
-        assert!(status.contains(": program main.js ("), "{status}");
-    }
-    let scripts = one.robot.devices.with_extension("trikd").join("scripts");
-    assert_eq!(
-        std::fs::read(scripts.join("big.bin")).expect("kept").len(),
-        3 << 20
-    );
-}
-
-#[test]
-fn a_file_that_does_not_get_there_is_a_failure_in_the_table() {
-    let Some(one) = Reachable::new() else { return };
-    let home = one.robot.home.clone();
-    home.0.file("part.js", "");
-    let output = home.run(&["send", "part.js", "--robot", &one.ip, "--run", "none.js"]);
-    assert_eq!(output.code(), 1);
-    assert!(
-        output
-            .stdout
-            .contains("does not run none.js: there is no program 'none.js'"),
-        "{}",
-        output.stdout
-    );
-    home.0.file("huge.bin", vec![0; 17 << 20]);
-    let output = home.run(&["send", "huge.bin", "--robot", &one.ip]);
-    assert_eq!(output.code(), 1);
-    assert!(
-        output.stdout.contains(" bytes: at most 16777216 are taken"),
-        "{}",
-        output.stdout
-    );
-}
-
-/// A robot that answers everything with these bytes.
-fn answers_all_with(ip: &str, message: &'static str) {
-    let listener = TcpListener::bind((ip, 8888)).expect("a port");
-    std::thread::spawn(move || {
-        for stream in listener.incoming() {
-            let Ok(mut stream) = stream else { continue };
-            let mut piece = [0; 4096];
-            while stream.read(&mut piece).is_ok_and(|size| size > 0) {
-                let _ = stream.write_all(message.as_bytes());
-            }
-        }
-    });
-}
-
-#[test]
-fn a_robot_that_cannot_or_will_not_is_a_sentence_with_what_to_do() {
-    let Some(home) = Home::new() else { return };
-    home.0.file("x.js", "");
-    let wary = loopback();
-    answers_all_with(
-        &wary,
-        "103:error: this computer is not paired with the robot: press Enter on the robot within 30 s, then try again",
-    );
-    let strange = loopback();
-    answers_all_with(&strange, "999999999:");
-    for (words, reason) in [
-        (vec!["run", "none.js"], "none.js: No such file"),
-        (
-            vec!["run", "x.js", "--robot", &wary],
-            "press Enter on the robot within 30 s",
-        ),
-        (
-            vec!["run", "x.js", "--robot", &strange],
-            "is lost: it does not speak as robots do",
-        ),
-        (
-            vec!["run", "x.js", "--robot", "127.0.0.1:1"],
-            "nothing takes programs at 127.0.0.1, port 1: start a virtual robot with trik up",
-        ),
-        (
-            vec!["run", "x.js", "--robot", "robot.invalid"],
-            "there is no robot 'robot.invalid' in this network",
-        ),
-        (
-            vec!["stop", "--robot", "127.0.0.1:1"],
-            "nothing takes programs",
-        ),
-        (
-            vec!["run", "x.js", "--robot", "a b"],
-            "the name or the IP of a robot",
-        ),
-        (vec!["run"], "<FILE>"),
-    ] {
-        let output = tools::run(&mut home.command(&words), b"");
-        assert_eq!(output.code(), 2, "{words:?}: {}", output.stderr);
-        assert!(
-            output.stderr.contains(reason),
-            "{words:?}: {}",
-            output.stderr
-        );
-        assert_eq!(output.stdout, "");
-    }
-    assert!(!home.base().exists());
 }
