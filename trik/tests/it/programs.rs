@@ -43,12 +43,16 @@ impl Reachable {
         self.robot.home.run(&["run", file, "--robot", &self.ip])
     }
 
+    /// Writes a program and starts it.
+    fn spawn(&self, name: &str, text: &str) -> Running {
+        let file = self.robot.home.0.file(name, text);
+        let file = file.to_str().expect("UTF-8");
+        Running::new(&mut self.robot.home.command(&["run", file, "--robot", &self.ip]))
+    }
+
     /// Starts a program that drives, and waits until it does.
     fn start(&self, name: &str) -> Running {
-        let file = self.robot.home.0.file(name, LOOP);
-        let file = file.to_str().expect("UTF-8");
-        let words = ["run", file, "--robot", &self.ip];
-        let running = Running::new(&mut self.robot.home.command(&words));
+        let running = self.spawn(name, LOOP);
         eventually("a robot that drives", || {
             running.said().contains("drives") && self.robot.duty(3).is_ok_and(|duty| duty != 0)
         });

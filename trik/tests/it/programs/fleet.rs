@@ -111,3 +111,22 @@ fn a_file_that_does_not_get_there_is_a_failure_in_the_table() {
         output.stdout
     );
 }
+
+#[test]
+fn robots_side_by_side_send_each_other_messages() {
+    let Some(home) = Home::new() else { return };
+    let home = Arc::new(home);
+    let (one, other) = (Reachable::beside(&home, &[]), Reachable::beside(&home, &[]));
+    // Says what it has heard to whoever sends something.
+    let echo = "mailbox.setHullNumber(1); print('listens'); var text = mailbox.receive(); mailbox.send(2, 'you said ' + text); script.wait(60000);";
+    let mut listener = one.spawn("echo.js", echo);
+    listener.says("listens");
+    let talk = format!(
+        "mailbox.joinNetwork('{}', 8889, 2); while (!mailbox.isConnected()) script.wait(10); mailbox.send(1, 'hello'); print(mailbox.receive()); script.quit();",
+        one.ip
+    );
+    let output = other.run("talk.js", &talk);
+    assert_eq!(output.stdout, "you said hello\n", "{}", output.stderr);
+    home.run(&["stop", "--robot", &one.ip]).good();
+    assert_eq!(listener.code(), Some(1));
+}
