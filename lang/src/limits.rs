@@ -67,23 +67,3 @@ pub const NESTING_MAX: usize = 40;
 pub const LOOPS_NESTING_MAX: usize = 12;
 /// How deep branches of one state nest in a program over states.
 pub const STATES_NESTING_MAX: usize = 6;
-/// Bytes of a save as it comes, in any container.
-pub const SAVE_BYTES: usize = 32 << 20;
-/// Bytes of all entries of a save, unpacked.
-pub const SAVE_UNPACKED_BYTES: usize = 48 << 20;
-/// Bytes of one unpacked entry: the largest real ones are embedded images.
-pub const ENTRY_BYTES: usize = 24 << 20;
-/// Entries of a save; the largest real one has 1500. What a zip without extensions can count.
-pub const ENTRIES: usize = 65_535;
-/// Bytes of an entry's name.
-pub const ENTRY_NAME_BYTES: usize = 1024;
-/// How deep tags may nest in a document.
-pub const XML_DEPTH: usize = 64;
-/// Tags of one document.
-pub const XML_TAGS: usize = 200_000;
-/// Attributes of one tag.
-pub const XML_ATTRIBUTES: usize = 64;
-/// Objects that one list of a save may name, summed over all lists.
-pub const REFERENCES: usize = 1_000_000;
-/// Problems that one reading tells; what is more is counted.
-pub const PROBLEMS: usize = 200;
