@@ -9,7 +9,7 @@ use crate::host::Host;
 use crate::log::tell;
 use crate::program::{kill, launch::Launch};
 use crate::settings::Settings;
-use crate::{daemon, display, guardian, js, log, status};
+use crate::{daemon, diagram, display, guardian, js, log, status};
 use clap::{Parser, Subcommand};
 use std::net::IpAddr;
 use std::path::PathBuf;
@@ -86,8 +86,18 @@ enum Command {
         /// Where the tree is mounted.
         #[arg(long, env = "TRIK_TREE", value_name = "DIR", default_value = "/trikfs")]
         tree: PathBuf,
+        /// One line of a program in place of a file; nothing rests at its end.
+        #[arg(long, value_name = "TEXT", hide = true, conflicts_with = "file")]
+        line: Option<String>,
         /// The program.
         file: Option<PathBuf>,
+    },
+    /// The process of one diagram, whose standard input is the channel to the daemon.
+    #[command(hide = true)]
+    Diagram {
+        /// Where the tree is mounted.
+        #[arg(long, env = "TRIK_TREE", value_name = "DIR", default_value = "/trikfs")]
+        tree: PathBuf,
     },
 }
 
@@ -135,11 +145,18 @@ fn perform(command: Command) -> Result<ExitCode, String> {
         Command::Draw { tree, answers } => {
             display::serve(&tree, &mut std::io::stdin().lock(), answers)?;
         }
-        Command::Js { tree, file: None } => return Ok(run_engine(&mut js::engine(), &tree)),
+        Command::Js {
+            tree,
+            line: Some(line),
+            ..
+        } => js::run_line(line, &tree)?,
         Command::Js {
             tree,
             file: Some(file),
+            ..
         } => js::run_alone(&file, &tree)?,
+        Command::Js { tree, .. } => return Ok(run_engine(&mut js::engine(), &tree)),
+        Command::Diagram { tree } => return Ok(run_engine(&mut diagram::engine(), &tree)),
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -164,7 +181,9 @@ fn run_engine(engine: &mut impl Engine, tree: &std::path::Path) -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(text) => {
             // The daemon that would show it may be gone.
-            let _ = host.error(&text);
+            if !text.is_empty() {
+                let _ = host.error(&text);
+            }
             ExitCode::FAILURE
         }
     }

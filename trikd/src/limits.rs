@@ -164,3 +164,18 @@ pub const BEATS_MISSING: u32 = 20;
 pub const RESTS_SHOWN: usize = 256;
 /// Numbers of one picture that a program shows, three for each pixel at most.
 pub const SHOWN_NUMBERS: usize = 3 << 20;
+
+/// How often a diagram tells where it is, in milliseconds.
+pub const WATCH_MS: u32 = 50;
+/// Bytes of the line that tells it to people.
+pub const WATCH_LINE_BYTES: usize = 1024;
+/// Bytes after which no more variables are told.
+pub const WATCH_JSON_BYTES: usize = 32 << 10;
+/// Characters of a text that is told.
+pub const WATCH_TEXT_CHARACTERS: usize = 1024;
+/// Warnings about a diagram that are told.
+pub const DIAGRAM_WARNINGS: usize = 20;
+/// Commands of the system that a diagram has at once.
+pub const DIAGRAM_COMMANDS: usize = 16;
+/// Messages of other robots that a diagram has not fetched.
+pub const DIAGRAM_MAIL: usize = 256;

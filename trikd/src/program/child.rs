@@ -28,6 +28,8 @@ pub enum Language {
     JavaScript,
     /// CPython with the module `trik`.
     Python,
+    /// A child of our own with the machine of diagrams inside.
+    Diagram,
     /// Anything that can be executed.
     Native,
 }
@@ -38,6 +40,7 @@ impl Language {
         match path.extension().and_then(|ending| ending.to_str()) {
             Some("py") => Self::Python,
             Some("js" | "qts") => Self::JavaScript,
+            Some("qrs") => Self::Diagram,
             _ => {
                 let mut first = [0; 4];
                 let read = std::fs::File::open(path)
@@ -55,6 +58,7 @@ impl Language {
         match self {
             Self::JavaScript => "JavaScript",
             Self::Python => "Python",
+            Self::Diagram => "diagram",
             Self::Native => "native",
         }
     }
@@ -147,6 +151,7 @@ fn words(settings: &Settings, language: Language, path: Option<&Path>) -> Vec<Os
                 "import trik; trik._main()".into(),
             ]
         }
+        (Language::Diagram, _) => vec![SELF.into(), "diagram".into()],
         _ => vec![SELF.into(), "js".into()],
     }
 }
@@ -191,6 +196,7 @@ pub fn start(
         .env("HOME", &settings.scripts)
         .env("LANG", "C.UTF-8")
         .env("TRIK_TREE", &settings.tree)
+        .env("TRIK_LANGUAGE", &settings.language)
         // With it programs in all languages draw.
         .env(
             "TRIKD",
