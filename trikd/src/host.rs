@@ -26,10 +26,10 @@
 use crate::engine::Start;
 use crate::limits;
 use crate::protocol::frame::{Decoder, encode};
-use std::cell::RefCell;
-use std::io::{self, Read, Write};
 use nix::errno::Errno;
 use nix::sys::socket::MsgFlags;
+use std::cell::RefCell;
+use std::io::{self, Read, Write};
 use std::os::fd::{AsFd, AsRawFd, BorrowedFd, OwnedFd};
 use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};

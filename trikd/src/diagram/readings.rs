@@ -82,7 +82,7 @@ impl<'a> Readings<'a> {
         let from = match (port.sort(), gamepad) {
             (Sort::Encoder, _) => self.brick.encoder(name).map(From::Encoder),
             (Sort::Button(code), _) => {
-                let key = KEYS.iter().position(|key| key.1 == code);
+                let key = KEYS.iter().position(|key| i32::from(key.1) == code);
                 key.map(From::Key)
             }
             (_, Some(part)) if part.starts_with("Pad") && part.ends_with("PosPort") => {
@@ -250,7 +250,17 @@ mod tests {
 
     #[test]
     fn the_colour_is_that_of_the_cell_in_the_middle() {
-        let cells = [0.0, 0.0, 0.0, 0.0, f64::from(0x10_20_30), 0.0, 0.0, 0.0, 0.0];
+        let cells = [
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            f64::from(0x10_20_30),
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+        ];
         assert_eq!(middle_colour(&cells), [16.0, 32.0, 48.0]);
         assert_eq!(middle_colour(&[]), [0.0, 0.0, 0.0]);
     }

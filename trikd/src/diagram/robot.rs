@@ -119,8 +119,23 @@ impl<'a> Robot<'a> {
         self.note(port.name(), result);
     }
 
-    fn draw(&mut self, order: &str) {
-        let result = self.display.order(order);
+    /// What changes the display.
+    fn show(&mut self, command: Command<'_>) {
+        let order = match command {
+            Command::Draw(figure) => order(figure),
+            Command::Label { x, y, size, text } => {
+                let text = text.replace('\n', "\\n");
+                format!("label {x} {y} {size} {text}")
+            }
+            Command::PenColor { color } => format!("color {color}"),
+            Command::PenWidth { width } => format!("width {width}"),
+            Command::Background { color } => format!("background {color}"),
+            Command::Smile { sad } => if sad { "sadsmile" } else { "smile" }.to_owned(),
+            Command::ClearScreen => "clear".to_owned(),
+            Command::Redraw => "redraw".to_owned(),
+            _ => return,
+        };
+        let result = self.display.order(&order);
         self.note("display", result);
     }
 
@@ -131,7 +146,10 @@ impl<'a> Robot<'a> {
         }
         let mut process = if is_code {
             let mut process = child::this_program();
-            process.arg("js").arg("--tree").arg(self.brick.tree().root());
+            process
+                .arg("js")
+                .arg("--tree")
+                .arg(self.brick.tree().root());
             process.args(["--line", command]);
             process
         } else {
@@ -161,7 +179,9 @@ fn order(figure: Figure) -> String {
     match figure {
         Figure::Pixel(at) => words("point", &at),
         Figure::Line(ends) => words("line", &ends),
-        Figure::Rectangle(sides, filled) => format!("{} {}", words("rect", &sides), u8::from(filled)),
+        Figure::Rectangle(sides, filled) => {
+            format!("{} {}", words("rect", &sides), u8::from(filled))
+        }
         Figure::Ellipse(sides, filled) => {
             format!("{} {}", words("ellipse", &sides), u8::from(filled))
         }
@@ -232,17 +252,14 @@ impl brick::Brick for Robot<'_> {
                 // As above.
                 let _ = self.host.print(&format!("{text}\n"));
             }
-            Command::Draw(figure) => self.draw(&order(figure)),
-            Command::Label { x, y, size, text } => {
-                let text = text.replace('\n', "\\n");
-                self.draw(&format!("label {x} {y} {size} {text}"));
-            }
-            Command::PenColor { color } => self.draw(&format!("color {color}")),
-            Command::PenWidth { width } => self.draw(&format!("width {width}")),
-            Command::Background { color } => self.draw(&format!("background {color}")),
-            Command::Smile { sad } => self.draw(if sad { "sadsmile" } else { "smile" }),
-            Command::ClearScreen => self.draw("clear"),
-            Command::Redraw => self.draw("redraw"),
+            Command::Draw(_)
+            | Command::Label { .. }
+            | Command::PenColor { .. }
+            | Command::PenWidth { .. }
+            | Command::Background { .. }
+            | Command::Smile { .. }
+            | Command::ClearScreen
+            | Command::Redraw => self.show(command),
             // Pictures are made when somebody looks; a real robot has no marker; the daemon brings all to rest.
             Command::StartVideo { .. }
             | Command::StopVideo

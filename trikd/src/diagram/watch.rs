@@ -64,7 +64,10 @@ impl Watch {
             .variables()
             .filter(|(name, _)| self.is_new || self.changed.contains(*name))
             .collect();
-        host.watch(&line(machine, &variables), &json(machine, now, &variables, &errors))?;
+        host.watch(
+            &line(machine, &variables),
+            &json(machine, now, &variables, &errors),
+        )?;
         self.told_at = Some(now);
         self.is_new = false;
         self.has_moved = false;
@@ -101,7 +104,10 @@ impl Trace for Watch {
 
 /// Type of the block where a thread is, as the save has it.
 fn block(machine: &Machine, node: Node) -> &'static str {
-    machine.program().row(node).map_or("unknown", |row| row.name)
+    machine
+        .program()
+        .row(node)
+        .map_or("unknown", |row| row.kind)
 }
 
 /// One line for people: `main: Timer; x = 3`.
@@ -136,7 +142,11 @@ fn json(machine: &Machine, now: u32, variables: &[(&str, &Value)], errors: &[Str
             quoted(block(machine, node))
         );
     }
-    let _ = write!(json, "],\"variables\":{}", object(variables.iter().copied()));
+    let _ = write!(
+        json,
+        "],\"variables\":{}",
+        object(variables.iter().copied())
+    );
     if !errors.is_empty() {
         let errors: Vec<_> = errors.iter().map(|error| quoted(error)).collect();
         let _ = write!(json, ",\"errors\":[{}]", errors.join(","));
@@ -230,6 +240,9 @@ mod tests {
             object(values.into_iter()),
             "{\"f\":0.5,\"n\":null,\"l\":[1,2],\"t\":\"a\\\"b\\\\\\n\\u0001\",\"b\":true,\"z\":null}"
         );
-        assert_eq!(quoted(&"x".repeat(100_000)).len(), limits::WATCH_TEXT_CHARACTERS + 2);
+        assert_eq!(
+            quoted(&"x".repeat(100_000)).len(),
+            limits::WATCH_TEXT_CHARACTERS + 2
+        );
     }
 }

@@ -99,7 +99,11 @@ impl Handler for Control {
             }
             Request::Status => return self.status().await,
             Request::Watch(is_wanted) => {
-                let watching = if is_wanted { Watching::Lines } else { Watching::No };
+                let watching = if is_wanted {
+                    Watching::Lines
+                } else {
+                    Watching::No
+                };
                 return self.client.watch(watching);
             }
             // Whoever sees danger may stop the robot.

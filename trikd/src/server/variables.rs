@@ -41,7 +41,9 @@ pub async fn head(stream: &mut TcpStream) -> Head {
 /// Tells where the running diagram is, one JSON object on each line, until the client leaves.
 async fn diagram(daemon: &Daemon, stream: &mut TcpStream, peer: SocketAddr) -> io::Result<()> {
     stream
-        .write_all(b"HTTP/1.0 200 OK\r\nContent-Type: application/x-ndjson\r\nConnection: close\r\n\r\n")
+        .write_all(
+            b"HTTP/1.0 200 OK\r\nContent-Type: application/x-ndjson\r\nConnection: close\r\n\r\n",
+        )
         .await?;
     let outbox = Rc::new(Outbox::new(limits::OUTBOX_BYTES));
     let client = daemon.clients.add("diagram", peer, outbox.clone());
