@@ -128,7 +128,8 @@ fn run(
         robot.reap();
         // Steps that are missed are not made up: waits look at the time, not at steps.
         due = (due + step).max(Instant::now());
-        while wait(host, due)? {
+        // What came together with the beginning lies in the channel's buffer, where poll(2) does not see it.
+        loop {
             while let Some(message) = host.waiting()? {
                 match message {
                     Incoming::Mail(_, text) => robot.post(text),
@@ -137,6 +138,9 @@ fn run(
                     Incoming::Direct(_) => {}
                     Incoming::Gone => return Ok(()),
                 }
+            }
+            if !wait(host, due)? {
+                break;
             }
         }
     }

@@ -60,10 +60,10 @@ fn who_asks_sees_the_block_and_the_variables_and_who_does_not_is_left_alone() {
         .set_read_timeout(Some(std::time::Duration::from_secs(30)))
         .unwrap();
     stream.write_all(b"GET /diagram HTTP/1.0\r\n\r\n").unwrap();
-    let (mut quiet, mut curious) = (robot.client("control"), robot.client("control"));
+    let mut curious = robot.client("control");
     curious.send("watch");
-    upload(&mut quiet, "count.qrs", &counting());
-    quiet.send("run:count.qrs");
+    upload(&mut curious, "count.qrs", &counting());
+    curious.send("run:count.qrs");
     curious.until("info: main: ");
     let line = curious.until("info: main: Timer; n = ");
     assert!(line.len() < 60, "{line}");
@@ -84,7 +84,8 @@ fn who_asks_sees_the_block_and_the_variables_and_who_does_not_is_left_alone() {
     let answer = web.exactly(4096);
     let answer = String::from_utf8_lossy(&answer);
     assert!(answer.contains("\r\n\r\n{\"n\":"), "{answer}");
-    curious.send("unwatch");
+    let mut quiet = robot.client("control");
+    quiet.until("print: ");
     quiet.send("stop");
     loop {
         let told = quiet.next().expect("a message");
@@ -102,7 +103,8 @@ fn errors_name_the_block_and_stay_with_the_diagram() {
     let mut sketch = Sketch::new();
     let start = sketch.block("InitialNode", &[]);
     let wrong = sketch.block("Function", &[("Body", "x = 1 / 0")]);
-    sketch.chain(&[start, wrong]);
+    let end = sketch.block("FinalNode", &[]);
+    sketch.chain(&[start, wrong, end]);
     upload(&mut client, "wrong.qrs", &sketch.qrs().unwrap());
     client.send("run:wrong.qrs");
     let told = client.until("error: ");
