@@ -86,7 +86,13 @@ fn mailbox_port(settings: &Settings) -> Result<Port, String> {
 impl Ports {
     fn bind(settings: &Settings) -> Result<Self, String> {
         let all = &settings.address;
-        let own: &[IpAddr] = &[Ipv4Addr::LOCALHOST.into()];
+        // A robot that is for this machine alone has them where it has the rest, so that several can be side by side.
+        let is_local = !all.is_empty() && all.iter().all(IpAddr::is_loopback);
+        let own: &[IpAddr] = if is_local {
+            all
+        } else {
+            &[IpAddr::V4(Ipv4Addr::LOCALHOST)]
+        };
         let wanted = |service, name, addresses: &[IpAddr], port| {
             settings
                 .has(service)
@@ -261,7 +267,8 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), String> {
         .map_err(|error| format!("a thread cannot be started: {error}"))?;
     let words = ports.describe();
     let daemon = Rc::new(Daemon::new(settings, owner, words.clone())?);
-    if daemon.owner.is_none() && geteuid().is_root() {
+    // Who has named root knows it.
+    if daemon.settings.user.is_none() && geteuid().is_root() {
         tracing::warn!(
             target: log::PROGRAMS,
             "programs run as root: name a user for them with --user"

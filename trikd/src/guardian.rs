@@ -13,7 +13,7 @@ use nix::unistd::{Pid, getppid};
 use std::collections::VecDeque;
 use std::ffi::OsString;
 use std::path::Path;
-use std::process::{Command, ExitCode};
+use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 /// Signals that end both processes.
@@ -37,7 +37,7 @@ pub fn follow(guardian: i32) -> Result<(), String> {
 }
 
 fn start(arguments: &[OsString], restarts: u32) -> Result<Pid, String> {
-    let mut command = Command::new(crate::program::child::SELF);
+    let mut command = crate::program::child::this_program();
     command
         .arg("daemon")
         .arg("--guardian")

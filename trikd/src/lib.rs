@@ -10,6 +10,7 @@ pub mod cli;
 pub mod clients;
 pub mod connection;
 pub mod daemon;
+pub mod display;
 pub mod engine;
 pub mod feedback;
 pub mod fuzz;

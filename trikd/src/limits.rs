@@ -176,3 +176,5 @@ pub const BEAT_MS: u64 = 500;
 pub const BEATS_MISSING: u32 = 20;
 /// Rests of which the status tells how long they took.
 pub const RESTS_SHOWN: usize = 256;
+/// Numbers of one picture that a program shows, three for each pixel at most.
+pub const SHOWN_NUMBERS: usize = 3 << 20;

@@ -261,6 +261,11 @@ fn deceives(c: char) -> bool {
         || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
+/// One line outside of any log. Nobody may be listening.
+pub fn tell(text: impl std::fmt::Display) {
+    let _ = writeln!(std::io::stderr(), "trikd: {text}");
+}
+
 /// Text of strangers on one line and of a bearable length.
 pub fn printable(text: &str) -> String {
     let limit = limits::LOG_LINE_CHARACTERS;

@@ -16,8 +16,9 @@ pub mod rest;
 
 use crate::daemon::Daemon;
 use crate::feedback::Moment;
+use crate::protocol::news::{self, End};
 use crate::{limits, log};
-use child::{Child, Language, SELF, Said};
+use child::{Child, Language, Said};
 use kill::{group, sweep};
 use nix::sys::signal::Signal;
 use nix::unistd::Pid;
@@ -149,6 +150,10 @@ impl Supervisor {
                     current.web.push(answer);
                 }
             }
+            Command::Ask(answer) => {
+                // Who asked may have left.
+                let _ = answer.send(self.daemon.programs.describe());
+            }
             Command::Quit(_) => {}
         }
     }
@@ -216,7 +221,7 @@ impl Supervisor {
         drop(shown);
         tracing::info!(target: log::PROGRAMS, "{name} starts as process {}", child.pid);
         if !is_quiet {
-            self.broadcast(&format!("info: {name} has started"));
+            self.broadcast(&format!("info: {}", news::started(&name)));
         }
         self.current = Some(Current {
             child,
@@ -414,7 +419,7 @@ impl Supervisor {
     /// Starts the process that kills all others of the user of programs.
     fn kill_user(&self) -> Option<Pid> {
         let user = &self.daemon.owner.as_ref()?.user;
-        let mut command = std::process::Command::new(SELF);
+        let mut command = child::this_program();
         command.arg("kill-user").stdin(Stdio::null());
         std::os::unix::process::CommandExt::uid(&mut command, user.uid.as_raw());
         std::os::unix::process::CommandExt::gid(&mut command, user.gid.as_raw());
@@ -438,35 +443,18 @@ impl Supervisor {
     fn tell_end(&self, current: &mut Current, way: &Way) {
         self.tell_dropped(current.meter.take_dropped(Instant::now(), true));
         let name = &current.name;
-        let after = format!("after {:.1} s", current.since.elapsed().as_secs_f64());
-        let mut failed = true;
-        let text = match way {
-            Way::Own(Ended::Code(0)) => {
-                failed = current.told_error;
-                if failed {
-                    format!("{name} has failed {after}")
-                } else {
-                    format!("{name} has ended {after}")
-                }
-            }
-            Way::Own(Ended::Code(code)) => {
-                format!("{name} has failed with exit code {code} {after}")
-            }
+        let seconds = current.since.elapsed().as_secs_f64();
+        let end = match way {
+            Way::Own(Ended::Code(0)) if current.told_error => End::Failed,
+            Way::Own(Ended::Code(0)) => End::Well,
+            Way::Own(Ended::Code(code)) => End::Code(*code),
             Way::Own(Ended::Signal(signal)) => {
-                let signal = Signal::try_from(*signal).map_or("a signal", Signal::as_str);
-                let hint = if signal == "SIGKILL" {
-                    ": perhaps the memory was short"
-                } else {
-                    ""
-                };
-                format!("{name} was killed by {signal} {after}{hint}")
+                End::Killed(Signal::try_from(*signal).map_or("a signal", Signal::as_str))
             }
-            Way::Order(who) => {
-                failed = false;
-                format!("{name} was stopped by {who} {after}")
-            }
-            Way::Greed(why) => format!("{name} was stopped {after}: {why}"),
+            Way::Order(who) => End::Stopped(who),
+            Way::Greed(why) => End::Greedy(why),
         };
+        let (text, failed) = (end.tell(name, seconds), end.is_failure());
         match failed {
             true => tracing::warn!(target: log::PROGRAMS, "{text}"),
             false => tracing::info!(target: log::PROGRAMS, "{text}"),

@@ -8,8 +8,10 @@ use crate::feedback::Moment;
 use crate::outbox::Outbox;
 use crate::program::Command;
 use crate::protocol::control::Request;
+use crate::protocol::news;
 use crate::{limits, log, scripts};
 use std::rc::Rc;
+use tokio::sync::oneshot;
 
 struct Control {
     daemon: Rc<Daemon>,
@@ -26,7 +28,7 @@ impl Control {
         let may = self.daemon.access.may_control(self.client.peer.ip());
         if !may {
             tracing::warn!(target: log::CLIENTS, "control: {} is not paired", self.client.peer);
-            self.error("this computer is not paired with the robot: press Enter on the robot within 30 s, then try again");
+            self.error(news::NOT_PAIRED);
         }
         may
     }
@@ -35,6 +37,17 @@ impl Control {
     async fn command(&self, command: Command) {
         self.daemon.clients.takes_control(self.client.peer);
         self.daemon.programs.tell(command).await;
+    }
+
+    /// What runs, when everything is done that was asked for before.
+    async fn status(&self) {
+        let (answer, told) = oneshot::channel();
+        self.daemon.programs.tell(Command::Ask(answer)).await;
+        if let Ok(text) = told.await {
+            self.client
+                .outbox
+                .send(format!("status: {text}").as_bytes());
+        }
     }
 
     async fn keep(&self, name: &[u8], content: &[u8]) {
@@ -57,7 +70,7 @@ impl Control {
                 tracing::warn!(target: log::PROGRAMS, "an upload by {} is refused: {why}", self.client.peer);
                 self.error(&why);
             }
-            Err(error) => self.error(&format!("the upload failed: {error}")),
+            Err(error) => self.error(&format!("{}{error}", news::UPLOAD_FAILED)),
         }
     }
 }
@@ -84,6 +97,7 @@ impl Handler for Control {
                 let answer = format!("configVersion: {}", self.daemon.settings.config_version);
                 return self.client.outbox.send(answer.as_bytes());
             }
+            Request::Status => return self.status().await,
             // Whoever sees danger may stop the robot.
             Request::Stop => return self.command(Command::Stop("a client")).await,
             _ => {}

@@ -2,7 +2,7 @@
 //!
 //! `trik` of the same build starts the board; a build of this package alone may not have it.
 
-use crate::rig::{Client, Robot, TRIKD};
+use crate::rig::{BUILT, Client, Robot, trikd};
 use harness::wait::{SOON, note_skip};
 use harness::{Board, eventually, processes};
 use nix::sys::signal::Signal;
@@ -35,7 +35,7 @@ fn virtual_robot() -> Option<Virtual> {
 
 /// With further words for `trik up` and for `trikd serve`.
 fn virtual_robot_with(up_words: &[&str], words: &[&str]) -> Option<Virtual> {
-    let trik = Path::new(TRIKD).with_file_name("trik");
+    let trik = Path::new(BUILT).with_file_name("trik");
     if let Some(why) = harness::mount::obstacle() {
         harness::skip(why);
         return None;
@@ -48,7 +48,7 @@ fn virtual_robot_with(up_words: &[&str], words: &[&str]) -> Option<Virtual> {
     let tree = home.path("mnt");
     let mut command = Command::new(trik);
     command
-        .args(["up", "--no-view", "--cache"])
+        .args(["up", "--no-view", "--no-trikd", "--cache"])
         .arg(home.path("cache"))
         .args(up_words)
         .arg(&tree);
@@ -272,7 +272,7 @@ fn a_gamepad_reaches_the_tree_and_a_tree_that_leaves_is_told() {
             word
         }
     });
-    command = Command::new(TRIKD);
+    command = Command::new(trikd());
     let mut process = command
         .args(arguments)
         .stdout(Stdio::piped())
