@@ -238,7 +238,9 @@ const camera = (name, Kind) => () => {
 };
 
 const values = (node) => native.numbers(`${node}/value`);
-const NO_PICTURE = 'pictures are not in the tree';
+const NO_PICTURE = 'the tree has no picture of the infrared camera; readSensor() gives its cells';
+// Three numbers for each point.
+const STILL = [320, 240];
 const irCamera = {
     init() { values('ir_camera'); },
     stop() {},
@@ -305,7 +307,7 @@ kit.hold('brick', {
     soundSensor() { return refuse('brick.soundSensor', 'the microphones are not in the tree'); },
     lidar() { return native.has('lidar') ? lidar : null; },
     irCamera() { return native.has('ir_camera') ? irCamera : null; },
-    getStillImage() { return refuse('brick.getStillImage', NO_PICTURE); },
+    getStillImage() { return native.photo(...STILL); },
     pwmCapture(name) { return measures(text(name)) ? new PwmCapture(text(name)) : null; },
     fifo(name) {
         const path = `${port(name)}/device`;

@@ -21,6 +21,7 @@ pub mod keys;
 pub mod limits;
 pub mod log;
 pub mod outbox;
+pub mod pictures;
 pub mod program;
 pub mod protocol;
 pub mod sampler;
