@@ -185,6 +185,12 @@ const display = {
     reset() { order('reset', 'clear'); },
 };
 
+// Part of a stop, where there is a display.
+const darken = () => {
+    if (native.isFile('display/device'))
+        order('hide', 'hide');
+};
+
 const DETECT_MS = 3000, DETECT_LOOK_MS = 20;
 class Camera {
     constructor(name) {
@@ -333,10 +339,12 @@ kit.hold('brick', {
     say(text) { native.say(kit.text(text)); },
     stop() {
         native.stop();
+        darken();
         emit(this.stopped);
     },
     reset() {
         native.stop();
+        darken();
         keys.reset();
         emit(this.resetCompleted);
     },

@@ -6,9 +6,10 @@
 use crate::brick::Brick;
 use crate::engine::Engine;
 use crate::host::Host;
+use crate::log::tell;
 use crate::program::{kill, launch::Launch};
 use crate::settings::Settings;
-use crate::{daemon, display, guardian, js, status};
+use crate::{daemon, display, guardian, js, log, status};
 use clap::{Parser, Subcommand};
 use std::net::IpAddr;
 use std::path::PathBuf;
@@ -102,7 +103,7 @@ pub fn main() -> ExitCode {
     match perform(cli.command) {
         Ok(code) => code,
         Err(reason) => {
-            eprintln!("trikd: {reason}");
+            tell(reason);
             ExitCode::FAILURE
         }
     }
@@ -113,6 +114,7 @@ fn perform(command: Command) -> Result<ExitCode, String> {
         Command::Serve { settings } => {
             // Behind the name of the program and `serve`.
             let arguments: Vec<_> = std::env::args_os().skip(2).collect();
+            log::start(&settings.log);
             return guardian::run(&settings.tree, &arguments);
         }
         Command::Status { run } => print!("{}", status::ask(&run, "status")?),
@@ -125,6 +127,7 @@ fn perform(command: Command) -> Result<ExitCode, String> {
             settings,
         } => {
             guardian::follow(guardian)?;
+            log::start(&settings.log);
             daemon::run(*settings, restarts)?;
         }
         Command::Launch(launch) => return Err(launch.become_program()),
@@ -146,9 +149,9 @@ fn run_engine(engine: &mut impl Engine, tree: &std::path::Path) -> ExitCode {
     let host = match Host::from_standard_input() {
         Ok(host) => host,
         Err(error) => {
-            eprintln!(
-                "trikd: standard input is no channel to the daemon ({error}): this command is for trikd itself"
-            );
+            tell(format_args!(
+                "standard input is no channel to the daemon ({error}): this command is for trikd itself"
+            ));
             return ExitCode::FAILURE;
         }
     };

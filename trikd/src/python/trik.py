@@ -629,6 +629,8 @@ class Brick:
 
     def stop(self):
         _file('stop', os.O_WRONLY).write('1\n')
+        if os.path.exists(os.path.join(_ROOT, 'display/device')):
+            self._display.hide()
 
 
 class Timer:

@@ -80,7 +80,7 @@ fn marked<'a>(text: &'a str, mark: &'a str) -> impl Iterator<Item = &'a str> {
 
 /// A program in a process of its own.
 pub fn run(tree: &Path, program: &Path) -> Output {
-    let mut child = Command::new(env!("CARGO_BIN_EXE_trikd"))
+    let mut child = Command::new(crate::rig::trikd())
         .arg("js")
         .arg("--tree")
         .arg(tree)

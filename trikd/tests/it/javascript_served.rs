@@ -224,7 +224,7 @@ fn no_key_is_missed_while_a_program_does_something_else() {
 fn crashes(text: &[u8]) -> Option<String> {
     let scratch = Scratch::new("js-hostile");
     let program = scratch.file("hostile.js", text);
-    let mut child = Command::new(crate::rig::TRIKD)
+    let mut child = Command::new(crate::rig::trikd())
         .args(["js", "--tree"])
         .arg(scratch.path())
         .arg(program)
