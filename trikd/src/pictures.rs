@@ -159,7 +159,7 @@ mod tests {
         for watcher in &mut watchers {
             assert_eq!(wait(watcher).unwrap()[..], *ONE);
         }
-        // One for the channel's own, one for the thread, one for each file of the thread's: the thread is one.
+        // One owner is here, the other is the thread.
         assert_eq!(Arc::strong_count(&pictures.newest), 2);
         watchers.clear();
         let deadline = Instant::now() + Duration::from_secs(20);
