@@ -75,7 +75,7 @@ enum Command {
         /// Where the tree is mounted.
         #[arg(long, env = "TRIK_TREE", value_name = "DIR", default_value = "/trikfs")]
         tree: PathBuf,
-        /// Answer each order with a line "ok" or "error: REASON".
+        /// Answer each order with a line "ok COUNT" and COUNT bytes, or "error: REASON".
         #[arg(long)]
         answers: bool,
     },

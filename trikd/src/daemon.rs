@@ -8,6 +8,7 @@ use crate::clients::Clients;
 use crate::connection::Held;
 use crate::feedback::Feedback;
 use crate::pace::Pace;
+use crate::pictures::Pictures;
 use crate::priority::{self, Rank};
 use crate::program::child::Owner;
 use crate::program::reaper::Reaper;
@@ -57,6 +58,8 @@ pub struct Daemon {
     pub owner: Option<Owner>,
     /// The way to whoever runs programs.
     pub programs: Programs,
+    /// What the camera sees.
+    pub pictures: Pictures,
     /// Messages between robots.
     pub mailbox: Mailbox,
     /// Where lines of gamepads go.
@@ -189,6 +192,7 @@ impl Daemon {
             reaper: Reaper::default(),
             owner,
             programs: Programs::default(),
+            pictures: Pictures::new(&settings.tree),
             mailbox: Mailbox::new(&settings.state.join("mailbox")),
             gamepad_pipe: Pipe::new(&settings.gamepad_fifo),
             started: Instant::now(),

@@ -23,6 +23,7 @@ pub mod limits;
 pub mod log;
 pub mod outbox;
 pub mod pace;
+pub mod pictures;
 pub mod priority;
 pub mod program;
 pub mod protocol;

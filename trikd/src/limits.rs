@@ -147,7 +147,11 @@ pub const HTTP_HEAD_BYTES: usize = 8 << 10;
 /// Milliseconds that a program has to show its variables.
 pub const WEB_MS: u64 = 1_000;
 /// Bytes of one picture.
-pub const PICTURE_BYTES: u64 = 1 << 20;
+pub const PICTURE_BYTES: usize = 1 << 20;
+/// Milliseconds after which a picture that is still the same is sent again: somebody may think that nobody sends.
+pub const PICTURE_AGAIN_MS: u64 = 1_000;
+/// Milliseconds that a viewer waits for the first picture: the camera may have to be started.
+pub const PICTURE_WAIT_MS: u64 = 30_000;
 /// Milliseconds between two pictures.
 pub const PICTURE_MS: u64 = 66;
 /// Milliseconds after the start at which a program runs by itself.

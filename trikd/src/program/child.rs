@@ -192,10 +192,7 @@ pub fn start(
         .env("LANG", "C.UTF-8")
         .env("TRIK_TREE", &settings.tree)
         // With it programs in all languages draw.
-        .env(
-            "TRIKD",
-            std::env::current_exe().unwrap_or_else(|_| "trikd".into()),
-        )
+        .env("TRIKD", python.join(super::python::HELPER))
         // Each further heap of a thread would take 64 MiB of the address space that a program may have.
         .env("MALLOC_ARENA_MAX", "1")
         .env("PYTHONPATH", python)
