@@ -49,7 +49,7 @@ fn deep_nesting_is_refused_where_it_begins() {
     let depth = 100_000 / 2;
     for text in [
         "(".repeat(depth),
-        "-".repeat(1) + &"~".repeat(depth),
+        "-".to_owned() + &"~".repeat(depth),
         "{".repeat(depth),
         "f(".repeat(depth / 2),
         "a[".repeat(depth / 2),
@@ -321,6 +321,39 @@ proptest! {
     #[test]
     fn escapes_come_back(text in "\\PC{0,40}") {
         prop_assert_eq!(unescape(&escape(&text)), text);
+    }
+}
+
+#[test]
+fn what_the_fuzzer_feeds_does_no_harm() {
+    let seeds: [&[u8]; 4] = [
+        b"\x00a = {1, 2.5}\0a[0] = a[1] .. 'x'\0#a[0]",
+        b"\x01x = x + 1; y = -2 ^ 3 // 2 % 5",
+        b"\x8cM3, M4\0sensor('A1') < 5 and not nil or gyroscope[1] << 3",
+        b"\xff\xffprint \"\\n\" random(6) max(1, 2) f{[1]=2}:g() ...",
+    ];
+    let mut state = 1u32;
+    let mut random = |below: usize| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as usize % below
+    };
+    for seed in seeds {
+        crate::fuzz::expression(seed);
+        for _ in 0..2_000 {
+            let mut bytes = seed.to_vec();
+            for _ in 0..=random(4) {
+                let at = random(bytes.len());
+                match random(3) {
+                    0 => bytes[at] = random(256) as u8,
+                    1 => bytes.insert(at, b"()[]{}+-*/.'\"=~^#,;"[random(19)]),
+                    _ if bytes.len() > 1 => {
+                        bytes.remove(at);
+                    }
+                    _ => {}
+                }
+            }
+            crate::fuzz::expression(&bytes);
+        }
     }
 }
 
