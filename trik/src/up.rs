@@ -312,11 +312,13 @@ impl Session<'_> {
     }
 
     fn stop_companions(&mut self) {
+        let signals = &self.signals;
+        let hurries = || matches!(signals.read_signal(), Ok(Some(_)));
         if let Some(trikd) = &mut self.trikd {
-            trikd.process.stop();
+            trikd.process.stop(hurries);
         }
         if let Some((view, _)) = &mut self.ev3dev {
-            view.stop();
+            view.stop(hurries);
         }
     }
 

@@ -2,7 +2,26 @@
 //!
 //! From the real program's kits TRIK V6 and V62. Knows no values of sensors.
 
-pub use crate::diagram::ports::Kit;
+/// A kit that a diagram is drawn for.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum Kit {
+    /// The controller of 2014: encoders B1 to B4, servos C1 to C3 and E1 to E3.
+    V6,
+    /// The controller since 2015: encoders E1 to E4, servos S1 to S6.
+    #[default]
+    V62,
+}
+
+impl Kit {
+    /// The kit of `lastKitId` in metaInfo.xml, if it is one of TRIK.
+    pub fn of_id(id: &str) -> Option<Self> {
+        match id {
+            "trikV6Kit" => Some(Self::V6),
+            "trikV62Kit" => Some(Self::V62),
+            _ => None,
+        }
+    }
+}
 
 /// What a sensor variable holds.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]

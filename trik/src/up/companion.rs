@@ -121,23 +121,31 @@ impl Companion {
         lines
     }
 
-    /// Ends it. To be done before the tree goes, so that no file of that is open.
-    pub(super) fn stop(&mut self) {
+    /// Ends it. To be done before the tree goes, so that no file of that is open. It has [`limits::COMPANION_STOP_MS`],
+    /// or until somebody has no patience, and then a moment after its end is forced.
+    pub(super) fn stop(&mut self, mut hurries: impl FnMut() -> bool) {
         let Some(mut process) = self.process.take() else {
             return;
         };
         process.terminate();
-        let deadline = after(limits::STOP_MS);
+        let mut deadline = after(limits::COMPANION_STOP_MS);
+        let mut is_forced = false;
         while !process.said.is_over() {
-            wait(process.said.fd(), deadline);
+            wait(process.said.fd(), deadline.min(after(limits::TURN_MS)));
             process.said.hear();
             // Who waits for room in this pipe would not end.
             process.complaints.hear();
-            if Instant::now() >= deadline {
+            if hurries() || Instant::now() >= deadline {
+                if is_forced {
+                    break;
+                }
+                is_forced = true;
                 process.kill();
+                deadline = after(limits::ORPHAN_MS);
             }
         }
-        wait_for_end(&mut process);
+        // Killed if it is still there.
+        drop(process);
     }
 }
 

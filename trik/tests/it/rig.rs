@@ -17,6 +17,7 @@ use std::os::fd::AsRawFd;
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -95,6 +96,15 @@ impl Pose {
     }
 }
 
+/// An address of this machine that no other test has, so that every robot can have the ports that clients know.
+pub fn loopback() -> String {
+    static COUNT: AtomicU32 = AtomicU32::new(0);
+    let count = COUNT.fetch_add(1, Ordering::Relaxed);
+    let number = std::process::id().wrapping_mul(64).wrapping_add(count);
+    let [_, b, c, d] = number.to_be_bytes();
+    format!("127.{}.{c}.{d}", 64 + b % 64)
+}
+
 /// A robot in a home of its own; None if nothing can be mounted here.
 pub fn robot(words: &[&str]) -> Option<Robot> {
     Some(Robot::start(Arc::new(Home::new()?), words))
@@ -117,17 +127,7 @@ impl Robot {
         let mut process = command.spawn().expect("trik");
         let complaints = Arc::new(Mutex::new(String::new()));
         let (stdout, stderr) = (process.stdout.take(), process.stderr.take());
-        let heard = complaints.clone();
-        std::thread::spawn(move || {
-            for line in stderr
-                .into_iter()
-                .flat_map(|pipe| BufReader::new(pipe).lines())
-            {
-                let mut all = heard.lock().unwrap_or_else(PoisonError::into_inner);
-                all.push_str(&line.unwrap_or_default());
-                all.push('\n');
-            }
-        });
+        collect(stderr, &complaints);
         let (say, lines) = channel();
         std::thread::spawn(move || {
             for line in stdout
@@ -396,6 +396,21 @@ impl Drop for Robot {
         assert_eq!(status.code(), Some(0), "{}", self.complaints());
         self.leaves_nothing();
     }
+}
+
+/// Gathers the lines of a pipe in the background.
+fn collect(pipe: Option<impl Read + Send + 'static>, into: &Arc<Mutex<String>>) {
+    let heard = into.clone();
+    std::thread::spawn(move || {
+        for line in pipe
+            .into_iter()
+            .flat_map(|pipe| BufReader::new(pipe).lines())
+        {
+            let mut all = heard.lock().unwrap_or_else(PoisonError::into_inner);
+            all.push_str(&line.unwrap_or_default());
+            all.push('\n');
+        }
+    });
 }
 
 fn only_child(pid: u32) -> u32 {

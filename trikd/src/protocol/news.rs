@@ -9,6 +9,13 @@ pub fn started(name: &str) -> String {
     format!("{name} has started")
 }
 
+/// Why a request of a computer that is not paired is refused, behind `error: `.
+pub const NOT_PAIRED: &str = "this computer is not paired with the robot: press Enter on the robot within 30 s, then try again";
+/// How it begins when an upload was not kept; other reasons begin with its name in quotes.
+pub const UPLOAD_FAILED: &str = "the upload failed: ";
+/// How it ends when a client is told how many messages it has lost.
+pub const SLOW_READER: &str = "this computer reads more slowly than the robot writes";
+
 /// How a program ended.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum End<'a> {
@@ -104,6 +111,14 @@ pub struct Status<'a> {
     pub last: Option<&'a str>,
 }
 
+impl Status<'_> {
+    /// Whether the program of this name runs.
+    pub fn is_of(&self, name: &str) -> bool {
+        let rest = self.runs.and_then(|runs| runs.strip_prefix(name));
+        rest.is_some_and(|rest| rest.starts_with(" ("))
+    }
+}
+
 /// The lines of [`running`] and [`last`] among those of a status.
 pub fn status(text: &str) -> Status<'_> {
     let line = |word: &str| text.lines().find_map(|line| line.strip_prefix(word));
@@ -147,6 +162,8 @@ mod tests {
             Some("x.js (Python)")
         );
         assert_eq!(status("nonsense"), Status::default());
+        let text = running("x.js (Python)");
+        assert!(status(&text).is_of("x.js") && !status(&text).is_of("x"));
         for other in [
             "x.js has started",
             "x.js",

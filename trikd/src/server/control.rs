@@ -8,6 +8,7 @@ use crate::feedback::Moment;
 use crate::outbox::Outbox;
 use crate::program::Command;
 use crate::protocol::control::Request;
+use crate::protocol::news;
 use crate::{limits, log, scripts};
 use std::rc::Rc;
 use tokio::sync::oneshot;
@@ -27,7 +28,7 @@ impl Control {
         let may = self.daemon.access.may_control(self.client.peer.ip());
         if !may {
             tracing::warn!(target: log::CLIENTS, "control: {} is not paired", self.client.peer);
-            self.error("this computer is not paired with the robot: press Enter on the robot within 30 s, then try again");
+            self.error(news::NOT_PAIRED);
         }
         may
     }
@@ -69,7 +70,7 @@ impl Control {
                 tracing::warn!(target: log::PROGRAMS, "an upload by {} is refused: {why}", self.client.peer);
                 self.error(&why);
             }
-            Err(error) => self.error(&format!("the upload failed: {error}")),
+            Err(error) => self.error(&format!("{}{error}", news::UPLOAD_FAILED)),
         }
     }
 }

@@ -18,7 +18,7 @@ use std::net::{IpAddr, SocketAddr, UdpSocket};
 use std::path::{Path, PathBuf};
 use std::rc::{Rc, Weak};
 use std::time::Duration;
-use tokio::net::TcpStream;
+use tokio::net::{TcpSocket, TcpStream};
 use tokio::time::{sleep, timeout};
 
 /// Hull number of a robot that has not said its own.
@@ -191,7 +191,12 @@ impl Mailbox {
                     .get()
                     .map_or_else(String::new, |server| server.ip().to_string());
             }
-            "ip" => return own_ip().to_string(),
+            "ip" => {
+                let daemon = self.daemon.borrow().upgrade();
+                let named = daemon.and_then(|daemon| daemon.settings.address.first().copied());
+                let named = named.filter(|ip| !ip.is_unspecified());
+                return named.unwrap_or_else(own_ip).to_string();
+            }
             "connected" => {
                 return u8::from(
                     self.robots
@@ -454,11 +459,28 @@ async fn converse(daemon: &Rc<Daemon>, stream: TcpStream, peer: SocketAddr, link
     drop(client);
 }
 
+/// A connection from the address at which this robot serves, if it has one: others know it by where it comes from.
+async fn reach(own: &[IpAddr], server: SocketAddr) -> std::io::Result<TcpStream> {
+    let fits = |ip: &&IpAddr| {
+        ip.is_ipv4() == server.is_ipv4()
+            && ip.is_loopback() == server.ip().is_loopback()
+            && !ip.is_unspecified()
+    };
+    let socket = match server {
+        SocketAddr::V4(_) => TcpSocket::new_v4(),
+        SocketAddr::V6(_) => TcpSocket::new_v6(),
+    }?;
+    if let Some(ip) = own.iter().find(fits) {
+        socket.bind((*ip, 0).into())?;
+    }
+    socket.connect(server).await
+}
+
 /// Connects to a robot; what waits for it is lost when it does not answer for so many tries.
 async fn connect(daemon: Rc<Daemon>, server: SocketAddr, link: Rc<Link>, tries: u32) {
     let wait = Duration::from_millis(limits::CONNECT_MS);
     for _ in 0..tries {
-        match timeout(wait, TcpStream::connect(server)).await {
+        match timeout(wait, reach(&daemon.settings.address, server)).await {
             Ok(Ok(stream)) => {
                 let _ = stream.set_nodelay(true);
                 let Some(seat) =
