@@ -5,6 +5,7 @@
 //! Knows no blocks, no diagrams and no robot: the robot is the trait [`Outside`].
 
 mod analyse;
+mod call;
 mod code;
 mod escape;
 mod lexer;
