@@ -9,7 +9,7 @@ mod call;
 mod code;
 mod escape;
 mod lexer;
-mod literal;
+pub mod literal;
 pub mod names;
 mod parser;
 pub mod reserved;

@@ -291,9 +291,8 @@ impl<'a> Run<'a> {
 
     fn equal(&mut self, id: Id, left: Id, right: Id) -> bool {
         let (left, right) = (self.value(left), self.value(right));
-        if let (Value::List(one), Value::List(two)) = (&left, &right)
-            && !self.pay(one.cells().min(two.cells()), id)
-        {
+        let is_long = |value: &Value| matches!(value, Value::List(_) | Value::Text(_));
+        if is_long(&left) && is_long(&right) && !self.pay(left.cells().min(right.cells()), id) {
             return false;
         }
         left.equals(&right)
@@ -318,11 +317,14 @@ impl<'a> Run<'a> {
             Op::Minus(_) | Op::MinusNarrow(_) => Value::Float(self.number(id)),
             Op::Not(_) => Value::Bool(self.truth(id)),
             Op::BitNot(_) => Value::Int(self.whole(id)),
-            Op::TextLength(operand) => Value::Int(length(&self.value(operand).to_text())),
-            Op::Length(operand) => Value::Int(match self.value(operand) {
-                Value::List(list) => i32::try_from(list.items().len()).unwrap_or(i32::MAX),
-                value => length(&value.to_text()),
-            }),
+            Op::TextLength(operand) | Op::Length(operand) => {
+                let value = self.value(operand);
+                Value::Int(match &value {
+                    Value::List(list) => i32::try_from(list.items().len()).unwrap_or(i32::MAX),
+                    _ if !self.pay(value.cells(), id) => 0,
+                    _ => length(&value.to_text()),
+                })
+            }
             Op::Binary(operator, left, right) => self.binary(id, operator, left, right),
             Op::Element(base, index) => self.element(id, base, index),
             Op::Elements(base, span) => self.elements(id, base, span),
@@ -473,8 +475,9 @@ impl<'a> Run<'a> {
             Some(Value::List(list)) => list,
             _ => Rc::default(),
         };
-        // A list that somebody else has, too, is copied.
-        if Rc::strong_count(&list) > 1 && !self.pay(list.cells(), id) {
+        // A list that somebody else has, too, is copied, and so may be a list in it.
+        let may_copy = Rc::strong_count(&list) > 1 || count > 1;
+        if may_copy && !self.pay(list.cells(), id) {
             let _ = self.store.set(slot, Value::List(list));
             return;
         }
