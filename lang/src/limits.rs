@@ -43,6 +43,8 @@ pub const VALUE_CELLS_MAX: u32 = 500_000;
 pub const STORE_CELLS_MAX: u32 = 1_000_000;
 /// Bytes of one text value.
 pub const TEXT_MAX: usize = 1 << 20;
+/// Bytes of a text value that can be a number.
+pub const NUMBER_TEXT_MAX: usize = 1000;
 /// Cells that one evaluation may compare, copy or make.
 pub const EVALUATION_CELLS_MAX: u32 = 4_000_000;
 /// Blocks of a project that is run.
