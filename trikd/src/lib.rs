@@ -19,6 +19,8 @@ pub mod js;
 pub mod keys;
 pub mod limits;
 pub mod log;
+#[cfg(feature = "manual")]
+mod manual;
 pub mod outbox;
 pub mod program;
 pub mod protocol;
