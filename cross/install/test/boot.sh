@@ -199,7 +199,7 @@ boot_gui() {
     check "other services run on" runs sleep
     check "the tree is there" served 2
     check "trikd serves" within 60 board "$serving" status
-    check "on the port of desktop programs" says "version: " board sh -c "printf 7:version | nc -w 2 127.0.0.1 8888"
+    check "on the port of desktop programs" says "version: " board sh -c "{ printf 7:version; sleep 2; } | nc -w 2 127.0.0.1 8888"
     check "start of what runs" says "control 8888" board "$serving" start
     check "trikd: stop" board "$serving" stop
     check "has ended" not runs trikd

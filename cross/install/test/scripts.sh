@@ -99,6 +99,7 @@ test_inittab() {
         check "$shell: nothing to reload" gives 7 $control reload
 
         control="$1 $ROOT/etc/init.d/trikd"
+        rm "$ROOT/etc/trikfs/gui-off"
         check "$shell: trikd waits while trikGui is on" says "trikGui is on" $control status
         check "$shell: which is no failure" gives 3 $control status
         check "$shell: start of trikd beside trikGui" gives 7 $control start
