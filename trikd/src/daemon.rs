@@ -21,7 +21,6 @@ use crate::server::{self, Port};
 use crate::settings::{Service, Settings, StopKey};
 use crate::{heartbeat, keys, status};
 use crate::{limits, log};
-use nix::sys::prctl;
 use nix::unistd::{User, chown, geteuid};
 use std::cell::Cell;
 use std::io::Write;
@@ -258,7 +257,7 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), String> {
         .map_err(|error| format!("{}: {error}", settings.run.display()))?;
     let owner = owner(&settings)?;
     // Whoever loses its parent becomes a child of this process, and cannot outlive its program.
-    prctl::set_child_subreaper(true).map_err(|error| format!("no subreaper: {error}"))?;
+    program::kill::adopt_orphans()?;
     let mut ends = Vec::new();
     for kind in [
         SignalKind::terminate(),

@@ -21,6 +21,8 @@ pub mod js;
 pub mod keys;
 pub mod limits;
 pub mod log;
+#[cfg(feature = "manual")]
+mod manual;
 pub mod outbox;
 pub mod pace;
 pub mod pictures;
