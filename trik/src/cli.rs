@@ -119,6 +119,10 @@ pub(crate) struct UpArgs {
     /// Private directory for compiled C and copies of libraries [default: as for trikfs].
     #[arg(long, value_name = "DIR")]
     pub cache: Option<PathBuf>,
+    /// Let other users in, and let members of this group write what you may write of each node, as `trikfs mount
+    /// --allow-other --group GROUP` does.
+    #[arg(long, value_name = "GROUP")]
+    pub group: Option<String>,
     /// Mount the devices of the robot a second time as the classes of ev3dev, for programs that know those [default: the
     /// mount point of the robot with .ev3dev behind its name].
     #[arg(long, value_name = "DIR", num_args = 0..=1, require_equals = true)]
@@ -284,14 +288,14 @@ mod tests {
             (plain.robot.as_str(), plain.speed, plain.mountpoint),
             ("two-wheels", 1.0, None)
         );
-        let line =
-            "up --robot two-wheels --speed 2 --seed 7 --config c.lua --no-view --include i /m";
+        let line = "up --robot two-wheels --speed 2 --seed 7 --config c.lua --no-view --include i --group g /m";
         let words: Vec<&str> = line.split(' ').collect();
         let Ok(Command::Up(args)) = parse(&words) else {
             panic!("not understood")
         };
         assert_eq!((args.speed, args.seed, args.no_view), (2.0, 7, true));
         assert_eq!((args.mountpoint, args.ev3dev), (Some("/m".into()), None));
+        assert_eq!(args.group.as_deref(), Some("g"));
         for (words, dir) in [
             (&["up", "--ev3dev", "m"] as &[&str], None),
             (&["up", "--ev3dev=e", "m"], Some("e".into())),

@@ -149,6 +149,10 @@ fn arguments(args: &UpArgs, config: &Path, place: &Place) -> Vec<OsString> {
     if let Some(cache) = &args.cache {
         option("--cache", cache);
     }
+    if let Some(group) = &args.group {
+        option("--group", Path::new(group));
+        list.push("--allow-other".into());
+    }
     list.push("--".into());
     list.push(place.mountpoint.clone().into());
     list

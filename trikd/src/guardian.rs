@@ -3,10 +3,9 @@
 //! Owns one child and nothing else. It is the subreaper behind the daemon, so programs whose daemon is dead are its
 //! children; if the guardian itself dies, the daemon ends in order.
 
-use crate::limits;
-use crate::log;
 use crate::program::kill;
 use crate::tree::{Access, Tree};
+use crate::{limits, log};
 use nix::sys::prctl;
 use nix::sys::signal::{SigSet, SigmaskHow, Signal};
 use nix::sys::wait::{WaitPidFlag, WaitStatus, waitpid};
@@ -78,11 +77,12 @@ fn rest(tree: &Path) {
     });
     match told.recv_timeout(Duration::from_millis(limits::GUARDIAN_REST_MS)) {
         Ok(Ok(())) => {}
-        Ok(Err(why)) => log::tell(why),
-        Err(_) => log::tell(format_args!(
+        Ok(Err(why)) => tracing::error!(target: log::TREE, "{why}"),
+        Err(_) => tracing::error!(
+            target: log::TREE,
             "the tree at {} does not answer",
             tree.display()
-        )),
+        ),
     }
 }
 
@@ -138,9 +138,10 @@ pub fn run(tree: &Path, arguments: &[OsString]) -> Result<ExitCode, String> {
             }
             _ => {}
         }
-        log::tell(format_args!(
+        tracing::error!(
+            target: log::DAEMON,
             "the serving process has crashed ({status:?}): motors are brought to rest, programs are ended"
-        ));
+        );
         clean_up(tree);
         if is_over {
             return Err("the serving process crashed at its end".to_owned());

@@ -15,8 +15,9 @@ pub mod reaper;
 pub mod rest;
 
 use crate::daemon::Daemon;
-use crate::limits;
+use crate::feedback::Moment;
 use crate::protocol::news::{self, End};
+use crate::{limits, log};
 use child::{Child, Language, Said};
 use kill::{group, sweep};
 use nix::sys::signal::Signal;
@@ -125,7 +126,11 @@ impl Supervisor {
                 );
             }
             Command::Direct(code) => self.direct(&code).await,
-            Command::Stop(who) => self.end(Way::Order(who)).await,
+            Command::Stop(who) => {
+                self.end(Way::Order(who)).await;
+                // Also what came while nothing ran: after a stop everything begins anew.
+                self.daemon.mailbox.forget_kept();
+            }
             Command::Mail(hull, text) => {
                 let heard = self
                     .current
@@ -195,6 +200,7 @@ impl Supervisor {
         let mut child = match started {
             Ok(child) => child,
             Err(error) => {
+                tracing::error!(target: log::PROGRAMS, "{name} cannot be started: {error}");
                 self.broadcast(&format!("error: {name} cannot be started: {error}"));
                 return;
             }
@@ -213,9 +219,7 @@ impl Supervisor {
             Instant::now(),
         ));
         drop(shown);
-        daemon
-            .log
-            .line(format_args!("{name} starts as process {}", child.pid));
+        tracing::info!(target: log::PROGRAMS, "{name} starts as process {}", child.pid);
         if !is_quiet {
             self.broadcast(&format!("info: {}", news::started(&name)));
         }
@@ -351,6 +355,7 @@ impl Supervisor {
         self.kill_all(&mut current).await;
         let last = self.daemon.rest.now(limits::REST_LAST_MS).await;
         self.tell_rest(last, rest_us);
+        self.daemon.feedback.show(Moment::Ended);
         self.tell_end(&mut current, &way);
         self.daemon.programs.shown.borrow_mut().text = None;
         self.daemon.mailbox.forget_kept();
@@ -367,10 +372,11 @@ impl Supervisor {
             let left = sweep(Pid::this(), &spared);
             if left == 0 || Instant::now() > deadline {
                 if left > 0 {
-                    self.daemon.log.line(format_args!(
+                    tracing::error!(
+                        target: log::PROGRAMS,
                         "{left} processes of {} cannot be killed",
                         current.name
-                    ));
+                    );
                 }
                 break;
             }
@@ -427,8 +433,9 @@ impl Supervisor {
             shown.rests_us.pop_front();
         }
         shown.rests_us.push_back(rest_us);
+        tracing::debug!(target: log::TREE, "at rest after {rest_us} us");
         if let Err(why) = rested {
-            self.daemon.log.line(&why);
+            tracing::error!(target: log::TREE, "{why}");
             self.broadcast(&format!("error: {why}"));
         }
     }
@@ -448,7 +455,10 @@ impl Supervisor {
             Way::Greed(why) => End::Greedy(why),
         };
         let (text, failed) = (end.tell(name, seconds), end.is_failure());
-        self.daemon.log.line(&text);
+        match failed {
+            true => tracing::warn!(target: log::PROGRAMS, "{text}"),
+            false => tracing::info!(target: log::PROGRAMS, "{text}"),
+        }
         let is_news = failed && !current.told_error;
         if is_news {
             self.broadcast(&format!("error: {text}"));

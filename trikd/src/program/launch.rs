@@ -5,7 +5,7 @@
 use super::{child, kill};
 use clap::Args;
 use nix::sys::prctl;
-use nix::sys::resource::{Resource, setrlimit};
+use nix::sys::resource::{Resource, rlim_t, setrlimit};
 use nix::sys::signal::{SigSet, SigmaskHow, Signal};
 use nix::unistd::{Gid, Uid, getppid, setgid, setgroups, setsid, setuid};
 use std::ffi::OsString;
@@ -75,13 +75,13 @@ impl Launch {
         SigSet::empty().thread_swap_mask(SigmaskHow::SIG_SETMASK)?;
         let _ = std::fs::write("/proc/self/oom_score_adj", FIRST_TO_GO);
         let memory = self.memory_mib.saturating_mul(1 << 20);
-        setrlimit(Resource::RLIMIT_AS, memory, memory)?;
-        setrlimit(Resource::RLIMIT_NOFILE, OPEN_FILES, OPEN_FILES)?;
-        setrlimit(Resource::RLIMIT_CORE, 0, 0)?;
+        limit(Resource::RLIMIT_AS, memory)?;
+        limit(Resource::RLIMIT_NOFILE, OPEN_FILES)?;
+        limit(Resource::RLIMIT_CORE, 0)?;
         let user = self.uid.map_or_else(Uid::current, Uid::from_raw);
         // The kernel counts all processes of the user, so those that are there already do not count.
         let processes = self.processes.saturating_add(kill::of_user(user));
-        setrlimit(Resource::RLIMIT_NPROC, processes, processes)?;
+        limit(Resource::RLIMIT_NPROC, processes)?;
         if let Some(gid) = self.gid {
             let gid = Gid::from_raw(gid);
             setgroups(&[gid])?;
@@ -94,4 +94,10 @@ impl Launch {
         // Last, because a change of the user clears it.
         prctl::set_pdeathsig(Signal::SIGKILL)
     }
+}
+
+/// At most so much of it. What a word of a 32-bit processor cannot hold is more than such a process could ever have.
+fn limit(resource: Resource, most: u64) -> nix::Result<()> {
+    let most = rlim_t::try_from(most).unwrap_or(rlim_t::MAX);
+    setrlimit(resource, most, most)
 }

@@ -6,11 +6,11 @@
 use super::{Guest, Seat};
 use crate::connection::{self, Handler, VERSION};
 use crate::daemon::Daemon;
-use crate::limits;
 use crate::outbox::Outbox;
 use crate::program::Command;
 use crate::protocol::mail::{Message, NOWHERE, plain};
 use crate::scripts;
+use crate::{limits, log};
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
 use std::fmt::Write;
@@ -123,14 +123,12 @@ impl Mailbox {
         if let Some(server) = self.server.get() {
             let _ = writeln!(text, "server={server}");
         }
-        if let (Err(error), Some(daemon)) = (
-            scripts::replace(&self.file, text.as_bytes(), 0o600),
-            self.daemon.borrow().upgrade(),
-        ) {
-            daemon.log.line(format_args!(
+        if let Err(error) = scripts::replace(&self.file, text.as_bytes(), 0o600) {
+            tracing::warn!(
+                target: log::DAEMON,
                 "{}: {error}: the mailbox will not be remembered",
                 self.file.display()
-            ));
+            );
         }
     }
 
@@ -442,6 +440,7 @@ async fn converse(daemon: &Rc<Daemon>, stream: TcpStream, peer: SocketAddr, link
         link.local.set(plain(local.ip()));
     }
     let client = daemon.clients.add("mailbox", peer, link.outbox.clone());
+    tracing::info!(target: log::CLIENTS, "mailbox: {peer} is connected");
     let mut handler = Mails {
         daemon: daemon.clone(),
         link: link.clone(),
@@ -455,9 +454,7 @@ async fn converse(daemon: &Rc<Daemon>, stream: TcpStream, peer: SocketAddr, link
         &mut handler,
     )
     .await;
-    daemon
-        .log
-        .line(format_args!("mailbox: {peer} has left: {why}"));
+    tracing::info!(target: log::CLIENTS, "mailbox: {peer} has left: {why}");
     daemon.mailbox.forget(link);
     drop(client);
 }
@@ -498,9 +495,10 @@ async fn connect(daemon: Rc<Daemon>, server: SocketAddr, link: Rc<Link>, tries: 
             Err(_) => {}
         }
     }
-    daemon.log.line(format_args!(
+    tracing::warn!(
+        target: log::CLIENTS,
         "mailbox: {server} does not answer: messages for it are lost"
-    ));
+    );
     daemon.mailbox.forget(&link);
 }
 

@@ -44,6 +44,41 @@ fn a_python_program_prints_line_by_line_and_uses_the_robot() {
 }
 
 #[test]
+fn a_python_program_draws_on_the_display() {
+    let robot = robot(&[]);
+    std::fs::create_dir_all(robot.home.path("tree/display")).unwrap();
+    robot.home.file("tree/display/device", "");
+    let mut client = robot.client("control");
+    let text = "d = brick.display()\nd.setPainterColor('red')\nd.drawRect(10, 10, 20, 20, True)\n\
+                d.addLabel('\u{43f}\u{440}\\n2', 100, 100, 20)\nd.redraw()\n\
+                d.setPainterColor('reddish')\nd.setPainterColor('reddish')\n\
+                print(brick.pwmCapture('S1'))\n\
+                try:\n  brick.i2c(1, 2)\nexcept TypeError as e:\n  print(e)\n";
+    run(&mut client, "d.py", text);
+    let told = client.next().unwrap();
+    assert!(
+        told.starts_with("info: display.setPainterColor: 'reddish' is no colour;"),
+        "{told}"
+    );
+    client.expect("print: None\n");
+    let told = client.next().unwrap();
+    assert!(
+        told.starts_with("print: brick.i2c: raw transfers"),
+        "{told}"
+    );
+    let told = client.next().unwrap();
+    assert!(told.starts_with("info: d.py has ended after "), "{told}");
+    let bytes = robot.home.content("tree/display/device");
+    let pixel = |x: usize, y: usize| [bytes[2 * (320 * y + x)], bytes[2 * (320 * y + x) + 1]];
+    assert_eq!((pixel(15, 15), pixel(5, 5)), ([0x00, 0xf8], [0xff, 0xff]));
+    assert!((100..140).any(|x| pixel(x, 110) == [0x00, 0xf8]), "no text");
+    assert!(
+        (100..140).any(|x| pixel(x, 130) == [0x00, 0xf8]),
+        "no second line"
+    );
+}
+
+#[test]
 fn two_clients_hear_the_same_and_a_failure_is_a_traceback() {
     let robot = robot(&[]);
     let (mut one, mut other) = (robot.client("control"), robot.client("control"));
