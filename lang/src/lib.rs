@@ -8,6 +8,7 @@
 
 pub mod diagram;
 pub mod expr;
+pub mod fuzz;
 pub mod limits;
 pub mod problem;
 pub mod xml;

@@ -1,17 +1,5 @@
 //! Every limit of the language: what may grow, and how far.
 
-/// How many diamonds one condition of a generated program may stand for.
-pub const CONDITION_TESTS_MAX: usize = 8;
-/// How many statements a structured program may have for each block, because of copies.
-pub const COPIES_PER_BLOCK: usize = 2;
-/// And beside that.
-pub const COPIES_FREE: usize = 64;
-/// How deep branches and loops of a structured program may nest.
-pub const NESTING_MAX: usize = 40;
-/// How deep its loops may nest; Python allows 20.
-pub const LOOPS_NESTING_MAX: usize = 12;
-/// How deep branches of one state nest in a program over states.
-pub const STATES_NESTING_MAX: usize = 6;
 /// Bytes of a save as it comes, in any container.
 pub const SAVE_BYTES: usize = 32 << 20;
 /// Bytes of all entries of a save, unpacked.
@@ -32,6 +20,7 @@ pub const XML_ATTRIBUTES: usize = 64;
 pub const REFERENCES: usize = 1_000_000;
 /// Problems that one reading tells; what is more is counted.
 pub const PROBLEMS: usize = 200;
+
 /// Bytes of one expression's text.
 pub const EXPRESSION_TEXT_MAX: usize = 64 << 10;
 /// How deep an expression may nest, and how many operators of one precedence may stand in a row.
@@ -56,3 +45,25 @@ pub const STORE_CELLS_MAX: u32 = 1_000_000;
 pub const TEXT_MAX: usize = 1 << 20;
 /// Cells that one evaluation may compare, copy or make.
 pub const EVALUATION_CELLS_MAX: u32 = 4_000_000;
+/// Blocks of a project that is run.
+pub const NODES_MAX: usize = 2_000_000;
+/// Threads that live at the same time, as in the original.
+pub const THREADS_MAX: usize = 100;
+/// Calls of subprograms that have not returned, as in the original.
+pub const STACK_MAX: usize = 4000;
+/// Messages that wait for one thread.
+pub const MESSAGES_MAX: usize = 10_000;
+/// Names of threads that one fork remembers.
+pub const FORK_NAMES_MAX: usize = 10_000;
+/// How many diamonds one condition of a generated program may stand for.
+pub const CONDITION_TESTS_MAX: usize = 8;
+/// How many statements a structured program may have for each block, because of copies.
+pub const COPIES_PER_BLOCK: usize = 2;
+/// And beside that.
+pub const COPIES_FREE: usize = 64;
+/// How deep branches and loops of a structured program may nest.
+pub const NESTING_MAX: usize = 40;
+/// How deep its loops may nest; Python allows 20.
+pub const LOOPS_NESTING_MAX: usize = 12;
+/// How deep branches of one state nest in a program over states.
+pub const STATES_NESTING_MAX: usize = 6;

@@ -7,6 +7,7 @@ use crate::access::Access;
 use crate::clients::Clients;
 use crate::connection::Held;
 use crate::feedback::Feedback;
+use crate::priority::{self, Rank};
 use crate::program::child::Owner;
 use crate::program::reaper::Reaper;
 use crate::program::rest::Rest;
@@ -277,6 +278,8 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), String> {
         async move { daemon.reaper.run().await }
     });
     heartbeat::start().map_err(|error| format!("a thread cannot be started: {error}"))?;
+    // Behind the start of the threads that shall not have it.
+    priority::take(Rank::Serving);
     let supervisor = spawn_local(Supervisor::new(daemon.clone()).run());
     match daemon.rest.now(limits::REST_LAST_MS).await {
         Err(why) => tracing::warn!(target: log::TREE, "at the start: {why}"),

@@ -50,6 +50,12 @@ pub const LOG_LINE_CHARACTERS: usize = 400;
 pub const LOG_REQUEST_BYTES: usize = 80;
 /// Beeps and lights that may wait.
 pub const FEEDBACK_WAITS: usize = 8;
+/// Priority of the threads that stop motors (nice(2): -20 goes first, 19 last).
+pub const NICE_REST: i32 = -20;
+/// Priority of the thread that serves. Not much before the tree: who floods it would starve that.
+pub const NICE_SERVING: i32 = -5;
+/// Priority of programs.
+pub const NICE_PROGRAM: i32 = 5;
 /// Milliseconds within which a key pairs the computer that asked last.
 pub const PAIRING_MS: u64 = 30_000;
 /// Paired computers.

@@ -185,3 +185,6 @@ fn in_file(name: &str, words: Words) -> Problem {
 fn number<const N: usize>(bytes: &[u8], at: usize) -> Option<[u8; N]> {
     bytes.get(at..at.checked_add(N)?)?.try_into().ok()
 }
+
+#[cfg(test)]
+mod tests;

@@ -124,8 +124,12 @@ pub enum Type {
     Truth,
     /// A whole number.
     Whole,
+    /// A number.
+    Number,
     /// A text.
     Text,
+    /// A text for the screen, where numbers have at most six decimals.
+    Printed,
     /// A list of texts.
     List,
 }

@@ -13,6 +13,8 @@ mod words;
 
 /// Id of the object in which all others are.
 pub const ROOT: &str = "qrm:/ROOT_ID/ROOT_ID/ROOT_ID/ROOT_ID";
+/// Type of a property that is a list of ids.
+pub const ID_LIST: &str = "qReal::IdList";
 /// Id of nothing.
 pub const NOTHING: &str = "qrm:/";
 
@@ -97,12 +99,29 @@ pub struct Object {
     pub properties: Vec<Property>,
     /// Properties that are lists of ids.
     pub lists: Vec<(String, Vec<String>)>,
+    /// Which entry of the save it came from.
+    pub entry: Option<usize>,
 }
 
 /// The third part of an id: what it is an object of, as `ControlFlow`.
 pub fn element(id: &str) -> &str {
     let parts = id.strip_prefix(NOTHING).unwrap_or_default();
     parts.split('/').nth(2).unwrap_or_default()
+}
+
+/// Whether a text can be the id of an object: it is a path in the save too, so it must not lead out of it.
+fn is_id(text: &str) -> bool {
+    let is_part = |part: &str| !part.is_empty() && !part.starts_with('.');
+    let parts = text.strip_prefix(NOTHING).filter(|parts| {
+        parts.len() <= limits::ENTRY_NAME_BYTES / 2
+            && !parts.contains(|c: char| c.is_control() || c == '\\')
+    });
+    parts.is_some_and(|parts| parts.split('/').all(is_part))
+}
+
+/// Whether the tag of a property is one that [`Kind`] knows.
+pub fn is_known(tag: &str) -> bool {
+    Kind::of(tag).is_some()
 }
 
 /// Whether an id names an object: neither nothing nor the root, which unconnected ends name.
@@ -212,6 +231,30 @@ impl Objects {
         true
     }
 
+    /// Gives ids new values wherever they stand: as an object's own, as another's end, parent or child, in lists.
+    pub fn replace_ids<'a>(&mut self, new: impl Fn(&str) -> Option<&'a str>) {
+        let replace = |id: &mut String| {
+            if let Some(new) = new(id) {
+                new.clone_into(id);
+            }
+        };
+        for object in &mut self.list {
+            replace(&mut object.id);
+            replace(&mut object.parent);
+            object.logical.iter_mut().for_each(replace);
+            object.children.iter_mut().for_each(replace);
+            for property in &mut object.properties {
+                if property.kind == Kind::Id {
+                    replace(&mut property.value);
+                }
+            }
+            for (_, ids) in &mut object.lists {
+                ids.iter_mut().for_each(replace);
+            }
+        }
+        self.retain(|_| true);
+    }
+
     /// Keeps the objects that a condition holds for.
     pub fn retain(&mut self, keep: impl Fn(&Object) -> bool) {
         self.list.retain(keep);
@@ -236,33 +279,46 @@ pub fn parse(
     problems: &mut Vec<Problem>,
 ) -> Result<Object, Problem> {
     let text = std::str::from_utf8(&entry.bytes).map_err(|_| Problem::error(words::no_text()))?;
-    let document = xml::parse(text)?;
-    if document.name != "object" {
-        return Err(Problem::error(words::no_object(&document.name)));
-    }
-    let id = document.attribute("id").unwrap_or_default();
-    if !id.starts_with(NOTHING) || id.len() > limits::ENTRY_NAME_BYTES {
-        return Err(Problem::error(words::no_id()));
-    }
-    let logical = document.attribute("logicalId");
-    let mut object = Object {
-        id: id.to_owned(),
-        parent: document.attribute("parent").unwrap_or_default().to_owned(),
-        logical: logical
-            .filter(|id| !id.is_empty() && *id != NOTHING)
-            .map(str::to_owned),
-        ..Object::default()
-    };
-    for part in document.elements() {
-        match part.name.as_ref() {
-            "children" => object.children.extend(ids(part, references)?),
-            "properties" => properties(part, &mut object, references, problems)?,
-            // Where labels were dragged.
-            "graphicalParts" => {}
-            other => problems.push(unknown(&object, other)),
+    Object::from_document(&xml::parse(text)?, references, problems)
+}
+
+impl Object {
+    /// The object that a document describes; the number of ids in its lists is added to `references`.
+    ///
+    /// # Errors
+    /// A document that is no `object`, has no id, or names too many others.
+    pub fn from_document(
+        document: &Element<'_>,
+        references: &mut usize,
+        problems: &mut Vec<Problem>,
+    ) -> Result<Self, Problem> {
+        if document.name != "object" {
+            return Err(Problem::error(words::no_object(&document.name)));
         }
+        let id = document.attribute("id").unwrap_or_default();
+        if !is_id(id) {
+            return Err(Problem::error(words::no_id()));
+        }
+        let logical = document.attribute("logicalId");
+        let mut object = Self {
+            id: id.to_owned(),
+            parent: document.attribute("parent").unwrap_or_default().to_owned(),
+            logical: logical
+                .filter(|id| !id.is_empty() && *id != NOTHING)
+                .map(str::to_owned),
+            ..Self::default()
+        };
+        for part in document.elements() {
+            match part.name.as_ref() {
+                "children" => object.children.extend(ids(part, references)?),
+                "properties" => properties(part, &mut object, references, problems)?,
+                // Where labels were dragged.
+                "graphicalParts" => {}
+                other => problems.push(unknown(&object, other)),
+            }
+        }
+        Ok(object)
     }
-    Ok(object)
 }
 
 fn properties(
@@ -274,7 +330,7 @@ fn properties(
     let tags = part.elements().count();
     object.properties.reserve_exact(tags);
     for tag in part.elements() {
-        if tag.attribute("type") == Some("qReal::IdList") {
+        if tag.attribute("type") == Some(ID_LIST) {
             let list = (tag.name.clone().into_owned(), ids(tag, references)?);
             object.lists.push(list);
             continue;

@@ -5,26 +5,7 @@
 //! Names of V62 are the canonical ones: encoder `B1` of V6 is `E1` here, its servo `E1` is `S1`.
 //! Cyrillic letters that look like Latin ones count as those.
 
-/// A kit of TRIK.
-#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
-pub enum Kit {
-    /// The first cases.
-    V6,
-    /// The present ones.
-    #[default]
-    V62,
-}
-
-impl Kit {
-    /// The kit by the value of `lastKitId` in metaInfo.xml; V62 unless it is the old one.
-    pub fn named(id: &str) -> Self {
-        if id.contains("V6Kit") {
-            Self::V6
-        } else {
-            Self::V62
-        }
-    }
-}
+pub use crate::expr::Kit;
 
 /// Which way a port works.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -292,12 +273,5 @@ mod tests {
         }
         assert_eq!(Port::shown_by("sensorA1").map(Port::name), Some("A1"));
         assert_eq!(Port::shown_by(""), None);
-    }
-
-    #[test]
-    fn the_kit_is_known_by_its_id() {
-        assert_eq!(Kit::named("trikV6Kit"), Kit::V6);
-        assert_eq!(Kit::named("trikV62Kit"), Kit::V62);
-        assert_eq!(Kit::named(""), Kit::V62);
     }
 }

@@ -5,6 +5,7 @@
 //! order of each block's own list.
 
 use super::archive::{self, Archive};
+use super::convert;
 use super::objects::{self, Objects};
 use super::project::Project;
 use crate::limits;
@@ -15,7 +16,8 @@ mod meta;
 mod parameters;
 mod words;
 
-pub use meta::Meta;
+pub use super::save::Save;
+pub use meta::{BLOBS_FILE, META_FILE, Meta, TEMPLATES, WORLD_FILE};
 
 /// Key of a save's version.
 pub const VERSION_KEY: &str = "RobotsMetamodelVersion";
@@ -33,17 +35,6 @@ pub struct Opened {
     pub save: Save,
 }
 
-/// All of a save, also what nobody here understands.
-#[derive(Clone, Debug)]
-pub struct Save {
-    /// Its pieces.
-    pub archive: Archive,
-    /// Its objects.
-    pub objects: Objects,
-    /// What it says of itself, with world model, images and templates.
-    pub meta: Meta,
-}
-
 /// Reads a save in any container and of any version that the editor still opens.
 ///
 /// # Errors
@@ -51,8 +42,11 @@ pub struct Save {
 pub fn read(bytes: &[u8]) -> Result<Opened, Vec<Problem>> {
     let mut problems = Vec::new();
     let archive = archive::open(bytes, &mut problems).map_err(|problem| vec![problem])?;
-    let objects = read_objects(&archive, &mut problems);
-    let meta = Meta::read(&archive, &mut problems);
+    let mut objects = read_objects(&archive, &mut problems);
+    let mut meta = Meta::read(&archive, &mut problems);
+    if let Err(problem) = convert::convert(&mut objects, &mut meta, &mut problems) {
+        problems.push(problem);
+    }
     if objects.get(objects::ROOT).is_none() && !has_errors(&problems) {
         problems.push(Problem::error(words::no_root()));
     }
@@ -67,6 +61,7 @@ pub fn read(bytes: &[u8]) -> Result<Opened, Vec<Problem>> {
             archive,
             objects,
             meta,
+            is_edited: false,
         },
     })
 }
@@ -76,7 +71,7 @@ fn has_errors(problems: &[Problem]) -> bool {
 }
 
 /// The worst problems first, and a last one that counts those that are left out.
-fn limited(mut problems: Vec<Problem>) -> Vec<Problem> {
+pub(super) fn limited(mut problems: Vec<Problem>) -> Vec<Problem> {
     problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
     if problems.len() > limits::PROBLEMS {
         let rest = problems.len() - limits::PROBLEMS;
@@ -89,13 +84,14 @@ fn limited(mut problems: Vec<Problem>) -> Vec<Problem> {
 fn read_objects(archive: &Archive, problems: &mut Vec<Problem>) -> Objects {
     let mut objects = Objects::default();
     let mut references = 0;
-    for entry in &archive.entries {
+    for (at, entry) in archive.entries.iter().enumerate() {
         if !objects::is_object_file(&entry.name) {
             continue;
         }
         match objects::parse(entry, &mut references, problems) {
-            Ok(object) => {
+            Ok(mut object) => {
                 let id = object.id.clone();
+                object.entry = Some(at);
                 if !objects.add(object) {
                     let mut problem = Problem::warning(words::same_id());
                     problem.place.file = Some(entry.name.clone());
@@ -114,3 +110,6 @@ fn read_objects(archive: &Archive, problems: &mut Vec<Problem>) -> Objects {
     }
     objects
 }
+
+#[cfg(test)]
+mod tests;

@@ -6,6 +6,8 @@
 use super::objects::{Kind, Object, Objects, ROOT};
 use super::project::Project;
 use super::read::{self, Meta};
+use super::save::Save;
+use crate::problem::Problem;
 
 /// A place in a sketch: a block of it.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -195,6 +197,12 @@ impl Sketch {
         }
     }
 
+    /// Gives the current diagram a property.
+    pub fn diagram_property(&mut self, key: &str, value: &str) {
+        let logical = self.sheets[self.current].logical.clone();
+        self.set(&logical, Kind::Text, key, value);
+    }
+
     /// Gives the save a key of its own.
     pub fn meta(&mut self, key: &str, value: &str) {
         self.meta.keys.insert(key.to_owned(), value.to_owned());
@@ -208,6 +216,14 @@ impl Sketch {
     /// The project as the reader would give it.
     pub fn project(&self) -> Project {
         read::graph::project(&self.objects, &self.meta, &mut Vec::new())
+    }
+
+    /// The project as a save that TRIK Studio opens.
+    ///
+    /// # Errors
+    /// More blocks than a save can have.
+    pub fn qrs(&self) -> Result<Vec<u8>, Problem> {
+        Save::made(self.objects.clone(), self.meta.clone()).write()
     }
 
     fn sheet(&mut self, kind: &str, name: &str) -> Sheet {

@@ -293,6 +293,11 @@ impl Tree {
             Node::Text(text) => write!(f, "\"{}\"", escape::escape(text)),
             Node::Unary(operator, operand) => {
                 f.write_str(operator.sign())?;
+                // Two minus signs in a row begin a comment.
+                let is_minus = |id| matches!(self.node(id), Node::Unary(Unary::Minus, _));
+                if *operator == Unary::Minus && is_minus(*operand) {
+                    return self.show_bracketed(*operand, true, f);
+                }
                 self.show_operand(*operand, UNARY_PRECEDENCE, f)
             }
             Node::Binary(operator, left, right) => {

@@ -3,6 +3,7 @@
 //! What the hidden command `launch` does. Owns what a program may have; knows no languages.
 
 use super::{child, kill};
+use crate::priority::{self, Rank};
 use clap::Args;
 use nix::sys::prctl;
 use nix::sys::resource::{Resource, rlim_t, setrlimit};
@@ -73,6 +74,7 @@ impl Launch {
         // Fails only for who leads a group already, which is what is wanted.
         let _ = setsid();
         SigSet::empty().thread_swap_mask(SigmaskHow::SIG_SETMASK)?;
+        priority::take(Rank::Program);
         let _ = std::fs::write("/proc/self/oom_score_adj", FIRST_TO_GO);
         let memory = self.memory_mib.saturating_mul(1 << 20);
         limit(Resource::RLIMIT_AS, memory)?;

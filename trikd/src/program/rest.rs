@@ -4,6 +4,7 @@
 //! they like.
 
 use crate::limits;
+use crate::priority::{self, Rank};
 use crate::tree::{Access, Tree};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -55,6 +56,7 @@ impl Rest {
 }
 
 fn serve(root: &Path, asked: &Receiver<Answer>) {
+    priority::take(Rank::Rest);
     let tree = Tree::new(root);
     let stop = tree.node("stop", Access::Write);
     while let Ok(first) = asked.recv() {

@@ -416,3 +416,38 @@ fn without_a_tree_programs_run_and_the_lack_of_rest_is_told() {
             .starts_with("allData:AccelerometerPort:;")
     );
 }
+
+#[test]
+fn what_stops_motors_goes_before_programs() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    run(
+        &mut client,
+        "nice.py",
+        "import os\nprint(os.getpriority(os.PRIO_PROCESS, 0))",
+    );
+    client.expect("print: 5\n");
+    if !nix::unistd::geteuid().is_root() {
+        return harness::skip("only root can go before others");
+    }
+    let nice_of = |name: &str| {
+        let tasks = std::fs::read_dir(format!("/proc/{}/task", robot.daemon())).unwrap();
+        let stats = tasks
+            .filter_map(|task| std::fs::read_to_string(task.unwrap().path().join("stat")).ok());
+        // proc(5): the name in brackets is field 2, nice is field 19.
+        let of_name = stats
+            .filter(|stat| stat.contains(&format!("({name})")))
+            .filter_map(|stat| {
+                stat.rsplit(')')
+                    .next()?
+                    .split_whitespace()
+                    .nth(16)?
+                    .parse()
+                    .ok()
+            });
+        of_name.collect::<Vec<i32>>()
+    };
+    eventually("priorities", || {
+        nice_of("rest") == [-20] && nice_of("keys") == [-20] && nice_of("trikd") == [-5]
+    });
+}

@@ -19,8 +19,8 @@ pub(super) fn no_object(tag: &str) -> Words {
 
 pub(super) fn no_id() -> Words {
     Words::new(
-        "the object has no id that begins with qrm:/",
-        "у объекта нет идентификатора, который начинается с qrm:/",
+        "the object has no id of the form qrm:/RobotsMetamodel/RobotsDiagram/...",
+        "у объекта нет идентификатора вида qrm:/RobotsMetamodel/RobotsDiagram/...",
     )
 }
 

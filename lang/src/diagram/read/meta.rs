@@ -32,7 +32,7 @@ pub struct Meta {
 
 impl Meta {
     /// Collects what the entries have.
-    pub(super) fn read(archive: &Archive, problems: &mut Vec<Problem>) -> Self {
+    pub(in crate::diagram) fn read(archive: &Archive, problems: &mut Vec<Problem>) -> Self {
         let mut meta = Self::default();
         let mut is_there = false;
         for entry in &archive.entries {
@@ -63,6 +63,11 @@ impl Meta {
             problems.push(in_file(META_FILE, Problem::warning(words::no_meta())));
         }
         meta
+    }
+
+    /// Whether the value of a key has a field of its own.
+    pub(in crate::diagram) fn has_place(key: &str) -> bool {
+        key == "worldModel" || key == "blobs" || key.starts_with("templates.")
     }
 
     fn read_keys(&mut self, text: &str) -> Result<(), Problem> {
