@@ -251,6 +251,8 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), String> {
     directory(&settings.scripts, "--scripts")?;
     directory(&settings.state, "--state")?;
     directory(&settings.run, "--run")?;
+    program::child::install(&settings.run)
+        .map_err(|error| format!("{}: {error}", settings.run.display()))?;
     let python = settings.run.join("python");
     program::python::install(&python).map_err(|error| format!("{}: {error}", python.display()))?;
     let listener = status::listen(&settings.run)

@@ -95,6 +95,19 @@ pub const SELF: &str = "/proc/self/exe";
 /// The name that it is started under: it may be part of a program that has several.
 pub const NAME: &str = "trikd";
 
+/// Makes a file in `run` that starts this program under its name, for programs that draw.
+///
+/// # Errors
+/// Those of the file system.
+pub fn install(run: &Path) -> io::Result<()> {
+    let path = run.join(NAME);
+    match std::fs::remove_file(&path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+        _ => {}
+    }
+    std::os::unix::fs::symlink(std::env::current_exe()?, path)
+}
+
 /// The command that starts this program once more.
 pub fn this_program() -> Command {
     let mut command = Command::new(SELF);
@@ -192,7 +205,7 @@ pub fn start(
         .env("LANG", "C.UTF-8")
         .env("TRIK_TREE", &settings.tree)
         // With it programs in all languages draw.
-        .env("TRIKD", python.join(super::python::HELPER))
+        .env("TRIKD", settings.run.join(NAME))
         // Each further heap of a thread would take 64 MiB of the address space that a program may have.
         .env("MALLOC_ARENA_MAX", "1")
         .env("PYTHONPATH", python)
