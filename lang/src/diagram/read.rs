@@ -90,12 +90,11 @@ fn read_objects(archive: &Archive, problems: &mut Vec<Problem>) -> Objects {
         }
         match objects::parse(entry, &mut references, problems) {
             Ok(mut object) => {
-                let id = object.id.clone();
                 object.entry = Some(at);
-                if !objects.add(object) {
+                if let Err(object) = objects.add(object) {
                     let mut problem = Problem::warning(words::same_id());
                     problem.place.file = Some(entry.name.clone());
-                    problem.place.object = Some(id);
+                    problem.place.object = Some(object.id);
                     problems.push(problem);
                 }
             }
