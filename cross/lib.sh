@@ -17,7 +17,10 @@ arm_gcc=arm-linux-gnueabi-gcc
 qemu="qemu-arm-static"
 cpu=arm926
 # The crates whose products run on the robot, for cargo; `filters` is a shared library.
-robot_crates=(-p trikfs -p filters -p trikfs-ev3dev)
+robot_crates=(-p trikfs -p filters -p trikfs-ev3dev -p trikd)
+
+# shellcheck source=cross/quickjs.sh
+. "$root/cross/quickjs.sh"
 
 say() { printf '\n== %s\n' "$*"; }
 note() { printf '%s\n' "$*"; }
@@ -122,11 +125,12 @@ packages_hash() {
 cross_cargo() {
     local command=$1
     shift
+    bind_quickjs
     # The standard library is made from source, which a released compiler does only when it is told so.
     # What is meant for the PC does not reach the controller: cargo.toml and .cargo/config.toml have all flags.
     (cd "$root" && unset CC CXX AR RUSTFLAGS CARGO_ENCODED_RUSTFLAGS RUSTC_WRAPPER TARGET_CC TARGET_CFLAGS &&
         RUSTC="$toolchain/rustc" RUSTC_BOOTSTRAP=1 CARGO_TARGET_DIR="$out/build" \
-        cargo "$command" --config cross/cargo.toml --locked "$@")
+        cargo "$command" --config cross/cargo.toml --config "paths=['$quickjs']" --locked "$@")
 }
 
 # need_emulation: programs of the controller start like any others, through binfmt_misc.

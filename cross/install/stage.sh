@@ -6,8 +6,10 @@
 stage() {
     local built=$1 prefix=$2 compiler=$3
     rm -rf "$prefix"
-    install -D -m 755 "$built/trikfs" "$prefix/bin/trikfs"
-    install -D -m 755 "$built/trikfs-ev3dev" "$prefix/bin/trikfs-ev3dev"
+    local program
+    for program in trikfs trikfs-ev3dev trikd; do
+        install -D -m 755 "$built/$program" "$prefix/bin/$program"
+    done
     install -D -m 644 "$built/libtrikfs_filters.so" "$prefix/lib/trikfs/libtrikfs_filters.so"
     "$compiler" -shared -fPIC -O2 -std=gnu99 -s -o "$prefix/lib/trikfs/libhello.so" "$root/config/lua/hello/hello.c"
     chmod 644 "$prefix/lib/trikfs/libhello.so"

@@ -3,13 +3,14 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-const CRATES: [&str; 11] = [
+const CRATES: [&str; 12] = [
     "config",
     "converter",
     "ev3dev",
     "filters",
     "lang",
     "sample-bus",
+    "screen",
     "sim",
     "tests",
     "trik",

@@ -2,10 +2,11 @@
 //!
 //! What the hidden command `launch` does. Owns what a program may have; knows no languages.
 
-use super::kill;
+use super::{child, kill};
+use crate::priority::{self, Rank};
 use clap::Args;
 use nix::sys::prctl;
-use nix::sys::resource::{Resource, setrlimit};
+use nix::sys::resource::{Resource, rlim_t, setrlimit};
 use nix::sys::signal::{SigSet, SigmaskHow, Signal};
 use nix::unistd::{Gid, Uid, getppid, setgid, setgroups, setsid, setuid};
 use std::ffi::OsString;
@@ -52,7 +53,11 @@ impl Launch {
         let Some((program, arguments)) = self.program.split_first() else {
             return "no program is named".to_owned();
         };
-        let error = Command::new(program).args(arguments).exec();
+        let mut command = Command::new(program);
+        if program == child::SELF {
+            command.arg0(child::NAME);
+        }
+        let error = command.args(arguments).exec();
         let hint = match error.raw_os_error() {
             Some(libc::ENOEXEC) => ": it is made for another processor, or is no program",
             Some(libc::ENOENT) => ": it is not there, or what its first line names is not",
@@ -69,15 +74,16 @@ impl Launch {
         // Fails only for who leads a group already, which is what is wanted.
         let _ = setsid();
         SigSet::empty().thread_swap_mask(SigmaskHow::SIG_SETMASK)?;
+        priority::take(Rank::Program);
         let _ = std::fs::write("/proc/self/oom_score_adj", FIRST_TO_GO);
         let memory = self.memory_mib.saturating_mul(1 << 20);
-        setrlimit(Resource::RLIMIT_AS, memory, memory)?;
-        setrlimit(Resource::RLIMIT_NOFILE, OPEN_FILES, OPEN_FILES)?;
-        setrlimit(Resource::RLIMIT_CORE, 0, 0)?;
+        limit(Resource::RLIMIT_AS, memory)?;
+        limit(Resource::RLIMIT_NOFILE, OPEN_FILES)?;
+        limit(Resource::RLIMIT_CORE, 0)?;
         let user = self.uid.map_or_else(Uid::current, Uid::from_raw);
         // The kernel counts all processes of the user, so those that are there already do not count.
         let processes = self.processes.saturating_add(kill::of_user(user));
-        setrlimit(Resource::RLIMIT_NPROC, processes, processes)?;
+        limit(Resource::RLIMIT_NPROC, processes)?;
         if let Some(gid) = self.gid {
             let gid = Gid::from_raw(gid);
             setgroups(&[gid])?;
@@ -90,4 +96,10 @@ impl Launch {
         // Last, because a change of the user clears it.
         prctl::set_pdeathsig(Signal::SIGKILL)
     }
+}
+
+/// At most so much of it. What a word of a 32-bit processor cannot hold is more than such a process could ever have.
+fn limit(resource: Resource, most: u64) -> nix::Result<()> {
+    let most = rlim_t::try_from(most).unwrap_or(rlim_t::MAX);
+    setrlimit(resource, most, most)
 }

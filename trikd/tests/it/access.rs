@@ -1,6 +1,6 @@
 //! The allow-list and pairing, with clients that know of neither.
 
-use crate::rig::{TRIKD, robot};
+use crate::rig::{robot, trikd};
 use std::io::Read;
 use std::process::Command;
 
@@ -53,7 +53,7 @@ fn an_unpaired_computer_may_look_and_stop_and_may_run_programs_when_it_is_paired
     client.send("stop");
     harness::eventually("rest", || robot.has_rested());
     let pair = |address: &str| {
-        let output = Command::new(TRIKD)
+        let output = Command::new(trikd())
             .args(["pair", address, "--run"])
             .arg(robot.home.path("run"))
             .output()

@@ -224,7 +224,7 @@ fn no_key_is_missed_while_a_program_does_something_else() {
 fn crashes(text: &[u8]) -> Option<String> {
     let scratch = Scratch::new("js-hostile");
     let program = scratch.file("hostile.js", text);
-    let mut child = Command::new(crate::rig::TRIKD)
+    let mut child = Command::new(crate::rig::trikd())
         .args(["js", "--tree"])
         .arg(scratch.path())
         .arg(program)
@@ -364,6 +364,7 @@ fn every_name_of_the_document_is_there() {
             ("led.", "brick.led()."),
             ("battery.", "brick.battery()."),
             ("display.", "brick.display()."),
+            ("pwmCapture.", "brick.pwmCapture(S3)."),
             ("accelerometer.", "brick.accelerometer()."),
             ("gyroscope.", "brick.gyroscope()."),
             ("lineSensor.", "brick.lineSensor(video1)."),

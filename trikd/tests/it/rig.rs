@@ -12,11 +12,17 @@ use std::net::TcpStream;
 use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
-/// The program under test.
-pub const TRIKD: &str = env!("CARGO_BIN_EXE_trikd");
+/// The program under test: the one built with the tests, or an installed one that `TRIKD_UNDER_TEST` names.
+pub fn trikd() -> &'static str {
+    static PROGRAM: OnceLock<String> = OnceLock::new();
+    PROGRAM.get_or_init(|| std::env::var("TRIKD_UNDER_TEST").unwrap_or_else(|_| BUILT.to_owned()))
+}
+
+/// The one built with the tests.
+pub const BUILT: &str = env!("CARGO_BIN_EXE_trikd");
 
 /// A running trikd.
 pub struct Robot {
@@ -58,7 +64,7 @@ pub fn small_tree() -> Board {
 
 /// The command that serves in this folder with free ports.
 pub fn command(home: &Board, tree: &std::path::Path, words: &[&str]) -> Command {
-    let mut command = Command::new(TRIKD);
+    let mut command = Command::new(trikd());
     command.arg("serve").arg("--tree").arg(tree);
     for (option, name) in [
         ("--scripts", "scripts"),
@@ -198,7 +204,7 @@ impl Robot {
 
     /// What `trikd status` says.
     pub fn status(&self) -> String {
-        let output = Command::new(TRIKD)
+        let output = Command::new(trikd())
             .arg("status")
             .arg("--run")
             .arg(self.home.path("run"))

@@ -1,6 +1,6 @@
 //! Status, variables, pictures, datagrams, discovery, autorun, and what is said at the start.
 
-use crate::rig::{Robot, TRIKD, command, robot, small_tree};
+use crate::rig::{Robot, command, robot, small_tree, trikd};
 use harness::wait::SOON;
 use std::io::{Read, Write};
 use std::net::{TcpListener, UdpSocket};
@@ -169,7 +169,7 @@ fn the_status_shows_ports_tree_program_and_who_is_in_control() {
     ] {
         assert!(status.contains(part), "no {part:?} in\n{status}");
     }
-    let nobody = Command::new(TRIKD)
+    let nobody = Command::new(trikd())
         .args(["status", "--run", "/nonexistent"])
         .output()
         .unwrap();
