@@ -284,7 +284,8 @@ fn entity(name: &str) -> Option<char> {
         Some(digits) => u32::from_str_radix(digits, 16).ok()?,
         None => number.parse().ok()?,
     };
-    char::from_u32(code).filter(|&found| found != '\0')
+    let is_legal = |found: &char| *found >= ' ' || ['\t', '\n', '\r'].contains(found);
+    char::from_u32(code).filter(is_legal)
 }
 
 /// A problem at a byte of the text.

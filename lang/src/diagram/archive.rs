@@ -4,7 +4,7 @@
 //! A zip begins with `PK`; a legacy stream begins with the length of a name, which is a small number.
 
 use crate::limits;
-use crate::problem::{Problem, Words};
+use crate::problem::{Problem, Severity, Words, keep};
 use std::collections::{HashMap, HashSet};
 
 mod deflate;
@@ -169,8 +169,8 @@ impl Pieces<'_> {
 
     fn report(&mut self, name: &str, words: Words) {
         let mut problem = in_file(name, words);
-        problem.severity = crate::problem::Severity::Warning;
-        self.problems.push(problem);
+        problem.severity = Severity::Warning;
+        keep(self.problems, problem);
     }
 }
 

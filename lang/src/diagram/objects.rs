@@ -5,7 +5,7 @@
 
 use super::archive::Entry;
 use crate::limits;
-use crate::problem::Problem;
+use crate::problem::{Problem, keep};
 use crate::xml::{self, Element};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry as Slot;
@@ -320,7 +320,7 @@ impl Object {
                 "properties" => properties(part, &mut object, references, problems)?,
                 // Where labels were dragged.
                 "graphicalParts" => {}
-                other => problems.push(unknown(&object, other)),
+                other => keep(problems, unknown(&object, other)),
             }
         }
         Ok(object)
@@ -342,7 +342,7 @@ fn properties(
             continue;
         }
         let (Some(kind), Some(key)) = (Kind::of(&tag.name), tag.attribute("key")) else {
-            problems.push(unknown(object, &tag.name));
+            keep(problems, unknown(object, &tag.name));
             continue;
         };
         object.properties.push(Property {
