@@ -7,6 +7,7 @@ use crate::access::Access;
 use crate::clients::Clients;
 use crate::connection::Held;
 use crate::feedback::Feedback;
+use crate::pace::Pace;
 use crate::priority::{self, Rank};
 use crate::program::child::Owner;
 use crate::program::reaper::Reaper;
@@ -231,8 +232,10 @@ impl Daemon {
 /// # Errors
 /// In words, before anything was served.
 pub fn run(settings: Settings, restarts: u32) -> Result<(), String> {
+    let pace = Pace::default();
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
+        .on_thread_park(move || pace.rest())
         .max_blocking_threads(limits::BLOCKING_THREADS)
         .build()
         .map_err(|error| format!("no event loop: {error}"))?;

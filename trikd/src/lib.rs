@@ -22,6 +22,7 @@ pub mod keys;
 pub mod limits;
 pub mod log;
 pub mod outbox;
+pub mod pace;
 pub mod priority;
 pub mod program;
 pub mod protocol;
