@@ -11,7 +11,7 @@ mod escape;
 mod lexer;
 pub mod literal;
 pub mod names;
-mod parser;
+pub(crate) mod parser;
 pub mod reserved;
 mod run;
 pub mod store;

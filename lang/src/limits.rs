@@ -71,3 +71,9 @@ pub const NESTING_MAX: usize = 40;
 pub const LOOPS_NESTING_MAX: usize = 12;
 /// How deep branches of one state nest in a program over states.
 pub const STATES_NESTING_MAX: usize = 6;
+/// Blocks of a project that is written as text.
+pub const GENERATED_BLOCKS_MAX: usize = 20_000;
+/// Functions of a program that is written as text.
+pub const GENERATED_FUNCTIONS_MAX: usize = 1000;
+/// How deep an expression may nest that is written as text.
+pub const GENERATED_DEPTH_MAX: usize = 100;
