@@ -62,7 +62,7 @@ impl Flow {
 }
 
 /// Where the flow may go from a node, the inside of a call first.
-fn successors(program: &Program, node: Node, tell: &mut dyn FnMut(Node)) {
+pub(super) fn successors(program: &Program, node: Node, tell: &mut dyn FnMut(Node)) {
     let Some(op) = program.ops.get(node as usize) else {
         return;
     };
