@@ -2,6 +2,10 @@
 //!
 //! Run by tests with mutated saves, and by anybody's fuzzer.
 
+mod diagrams;
+
+pub use diagrams::{lowering, project};
+
 use crate::diagram::archive::{self, Entry};
 use crate::diagram::read::read;
 use crate::expr::reserved::SensorIndex;
