@@ -22,7 +22,11 @@ pub mod js;
 pub mod keys;
 pub mod limits;
 pub mod log;
+#[cfg(feature = "manual")]
+mod manual;
 pub mod outbox;
+pub mod pace;
+pub mod pictures;
 pub mod priority;
 pub mod program;
 pub mod protocol;

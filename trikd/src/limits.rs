@@ -56,6 +56,14 @@ pub const NICE_REST: i32 = -20;
 pub const NICE_SERVING: i32 = -5;
 /// Priority of programs.
 pub const NICE_PROGRAM: i32 = 5;
+/// Milliseconds over which turns of the serving thread are counted.
+pub const PACE_WINDOW_MS: u64 = 100;
+/// Turns in a second from which it pauses between them.
+pub const PACE_MANY: u32 = 2000;
+/// Turns in a second, with pauses, below which it no longer does.
+pub const PACE_FEW: u32 = 500;
+/// Microseconds of a pause: so much later a stop is heard while thousands of requests come in a second.
+pub const PACE_PAUSE_US: u64 = 1000;
 /// Milliseconds within which a key pairs the computer that asked last.
 pub const PAIRING_MS: u64 = 30_000;
 /// Paired computers.
@@ -139,7 +147,11 @@ pub const HTTP_HEAD_BYTES: usize = 8 << 10;
 /// Milliseconds that a program has to show its variables.
 pub const WEB_MS: u64 = 1_000;
 /// Bytes of one picture.
-pub const PICTURE_BYTES: u64 = 1 << 20;
+pub const PICTURE_BYTES: usize = 1 << 20;
+/// Milliseconds after which a picture that is still the same is sent again: somebody may think that nobody sends.
+pub const PICTURE_AGAIN_MS: u64 = 1_000;
+/// Milliseconds that a viewer waits for the first picture: the camera may have to be started.
+pub const PICTURE_WAIT_MS: u64 = 30_000;
 /// Milliseconds between two pictures.
 pub const PICTURE_MS: u64 = 66;
 /// Milliseconds after the start at which a program runs by itself.

@@ -209,7 +209,7 @@ pub(crate) struct Action {
     pub numbers: Box<[i32]>,
     /// Flags in the order of the row, without `Evaluate`.
     pub flags: Box<[bool]>,
-    /// Ports that stand as they are.
+    /// Ports that are known beforehand; for motors none if the list has to be evaluated.
     pub ports: Box<[Port]>,
 }
 

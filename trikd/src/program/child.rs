@@ -99,6 +99,19 @@ pub const SELF: &str = "/proc/self/exe";
 /// The name that it is started under: it may be part of a program that has several.
 pub const NAME: &str = "trikd";
 
+/// Makes a file in `run` that starts this program under its name, for programs that draw.
+///
+/// # Errors
+/// Those of the file system.
+pub fn install(run: &Path) -> io::Result<()> {
+    let path = run.join(NAME);
+    match std::fs::remove_file(&path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+        _ => {}
+    }
+    std::os::unix::fs::symlink(std::env::current_exe()?, path)
+}
+
 /// The command that starts this program once more.
 pub fn this_program() -> Command {
     let mut command = Command::new(SELF);
@@ -198,10 +211,7 @@ pub fn start(
         .env("TRIK_TREE", &settings.tree)
         .env("TRIK_LANGUAGE", &settings.language)
         // With it programs in all languages draw.
-        .env(
-            "TRIKD",
-            std::env::current_exe().unwrap_or_else(|_| "trikd".into()),
-        )
+        .env("TRIKD", settings.run.join(NAME))
         // Each further heap of a thread would take 64 MiB of the address space that a program may have.
         .env("MALLOC_ARENA_MAX", "1")
         .env("PYTHONPATH", python)

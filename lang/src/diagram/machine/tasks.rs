@@ -18,11 +18,16 @@ impl Machine {
         handle: Handle,
         env: &mut Env<'_>,
     ) -> Flow {
-        let frame = self.threads.get_mut(handle).and_then(|one| one.stack.pop());
-        let Some(Frame { node, saved }) = frame else {
+        let Some(thread) = self.threads.get_mut(handle) else {
+            return Flow::Leave;
+        };
+        let depth = thread.stack.len();
+        let Some(Frame { node, saved }) = thread.stack.pop() else {
             self.end_thread(handle, env);
             return Flow::Leave;
         };
+        thread.node = node;
+        self.loops.forget(handle.life, depth);
         for (slot, value) in saved {
             let value = match (value, self.options.compat) {
                 // As the original has it: what was nothing is an empty text now.
