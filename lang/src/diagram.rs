@@ -1,3 +1,21 @@
 //! Diagrams: a save as a graph of blocks, and what can be done with it.
 
+pub mod archive;
+pub mod blocks;
+pub mod brick;
+pub mod check;
+pub mod convert;
+pub mod lower;
+pub mod machine;
+pub mod objects;
+pub mod ports;
+pub mod program;
 pub mod project;
+pub mod read;
+pub mod save;
+pub mod sketch;
+pub mod stand_in;
+pub mod structure;
+pub mod tree;
+pub mod version;
+mod words;

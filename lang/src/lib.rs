@@ -3,7 +3,12 @@
 //! Pure: bytes and values in, values and [`problem::Problem`]s out. Knows no files, network, threads, clock or device:
 //! time is a number that the caller gives, and a robot is a trait that the caller implements.
 
+// Problems are rare, and their size costs nothing where none is.
+#![allow(clippy::result_large_err)]
+
 pub mod diagram;
 pub mod expr;
+pub mod fuzz;
 pub mod limits;
 pub mod problem;
+pub mod xml;

@@ -1,1 +1,69 @@
 //! Every limit of the language: what may grow, and how far.
+
+/// Bytes of a save as it comes, in any container.
+pub const SAVE_BYTES: usize = 32 << 20;
+/// Bytes of all entries of a save, unpacked.
+pub const SAVE_UNPACKED_BYTES: usize = 48 << 20;
+/// Bytes of one unpacked entry: the largest real ones are embedded images.
+pub const ENTRY_BYTES: usize = 24 << 20;
+/// Entries of a save; the largest real one has 1500. What a zip without extensions can count.
+pub const ENTRIES: usize = 65_535;
+/// Bytes of an entry's name.
+pub const ENTRY_NAME_BYTES: usize = 1024;
+/// How deep tags may nest in a document.
+pub const XML_DEPTH: usize = 64;
+/// Tags of one document.
+pub const XML_TAGS: usize = 200_000;
+/// Attributes of one tag.
+pub const XML_ATTRIBUTES: usize = 64;
+/// Objects that one list of a save may name, summed over all lists.
+pub const REFERENCES: usize = 1_000_000;
+/// Problems that one reading tells; what is more is counted.
+pub const PROBLEMS: usize = 200;
+
+/// Bytes of one expression's text.
+pub const EXPRESSION_TEXT_MAX: usize = 64 << 10;
+/// How deep an expression may nest, and how many operators of one precedence may stand in a row.
+pub const EXPRESSION_DEPTH_MAX: u16 = 200;
+/// Problems that are told of one text; more of them help nobody.
+pub const EXPRESSION_PROBLEMS_MAX: usize = 50;
+/// How often types are inferred anew because a variable was widened.
+pub const EXPRESSION_PASSES_MAX: usize = 64;
+/// Names of one project: variables, ports, functions.
+pub const NAMES_MAX: usize = 4096;
+/// Types of table elements that are still open, in one project.
+pub const OPEN_TYPES_MAX: usize = 16 << 10;
+/// Elements of one table.
+pub const LIST_MAX: usize = 100_000;
+/// Tables in tables.
+pub const LIST_DEPTH_MAX: u16 = 32;
+/// Cells of one value: an element of a table, or 16 bytes of text.
+pub const VALUE_CELLS_MAX: u32 = 500_000;
+/// Cells of all variables of a project.
+pub const STORE_CELLS_MAX: u32 = 1_000_000;
+/// Bytes of one text value.
+pub const TEXT_MAX: usize = 1 << 20;
+/// Cells that one evaluation may compare, copy or make.
+pub const EVALUATION_CELLS_MAX: u32 = 4_000_000;
+/// Blocks of a project that is run.
+pub const NODES_MAX: usize = 2_000_000;
+/// Threads that live at the same time, as in the original.
+pub const THREADS_MAX: usize = 100;
+/// Calls of subprograms that have not returned, as in the original.
+pub const STACK_MAX: usize = 4000;
+/// Messages that wait for one thread.
+pub const MESSAGES_MAX: usize = 10_000;
+/// Names of threads that one fork remembers.
+pub const FORK_NAMES_MAX: usize = 10_000;
+/// How many diamonds one condition of a generated program may stand for.
+pub const CONDITION_TESTS_MAX: usize = 8;
+/// How many statements a structured program may have for each block, because of copies.
+pub const COPIES_PER_BLOCK: usize = 2;
+/// And beside that.
+pub const COPIES_FREE: usize = 64;
+/// How deep branches and loops of a structured program may nest.
+pub const NESTING_MAX: usize = 40;
+/// How deep its loops may nest; Python allows 20.
+pub const LOOPS_NESTING_MAX: usize = 12;
+/// How deep branches of one state nest in a program over states.
+pub const STATES_NESTING_MAX: usize = 6;

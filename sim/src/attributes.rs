@@ -18,6 +18,8 @@ pub struct Attributes {
     root: PathBuf,
     inotify: Inotify,
     folders: HashMap<WatchDescriptor, String>,
+    /// Files that are watched by themselves.
+    files: HashMap<WatchDescriptor, String>,
 }
 
 impl Attributes {
@@ -28,6 +30,7 @@ impl Attributes {
             root: root.to_owned(),
             inotify: Inotify::init(flags)?,
             folders: HashMap::new(),
+            files: HashMap::new(),
         })
     }
 
@@ -58,6 +61,14 @@ impl Attributes {
         std::fs::create_dir_all(&path)?;
         let watch = self.inotify.add_watch(&path, flags)?;
         self.folders.insert(watch, name.to_owned());
+        Ok(())
+    }
+
+    /// Watches one file that is there, and not its neighbours.
+    pub fn file(&mut self, name: &str) -> io::Result<()> {
+        let path = self.root.join(name);
+        let watch = self.inotify.add_watch(&path, AddWatchFlags::IN_MODIFY)?;
+        self.files.insert(watch, name.to_owned());
         Ok(())
     }
 
@@ -137,8 +148,10 @@ impl Attributes {
                 }
                 continue;
             }
+            names.extend(self.files.get(&event.wd).cloned());
             if event.mask.contains(AddWatchFlags::IN_Q_OVERFLOW) {
                 // Something was lost: everything may have changed.
+                names.extend(self.files.values().cloned());
                 names.extend(self.folders.values().flat_map(|folder| self.names(folder)));
             }
             if let (Some(folder), Some(name)) = (self.folders.get(&event.wd), event.name)

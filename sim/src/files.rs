@@ -5,6 +5,7 @@
 use crate::attributes::Attributes;
 use crate::bus::Bus;
 use crate::control::Control;
+use crate::display::Display;
 use crate::faults;
 use crate::input::{Keys, Ultrasonic};
 use crate::lidar::Lidar;
@@ -100,6 +101,7 @@ fn parts(attributes: &mut Attributes, seed: u64) -> io::Result<Vec<Box<dyn Part>
     parts.push(Box::new(Camera::make(attributes)?));
     parts.push(Box::new(Control::make(attributes)?));
     parts.push(Box::new(PoseFile::make(attributes)?));
+    parts.push(Box::new(Display::make(attributes)?));
     Ok(parts)
 }
 

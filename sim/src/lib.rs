@@ -10,6 +10,7 @@ pub mod body;
 mod bus;
 mod camera;
 mod control;
+mod display;
 pub mod faults;
 mod fifo;
 mod files;

@@ -30,3 +30,5 @@ pub const GPIO_COUNT: u32 = 144;
 pub const FIFO_BYTES: i32 = 4096;
 /// Sayings of the loudspeaker that wait for somebody who asks for them.
 pub const SAYINGS_MAX: usize = 64;
+/// Real milliseconds between two pictures of the display.
+pub const DISPLAY_MS: u64 = 100;

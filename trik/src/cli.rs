@@ -1,11 +1,14 @@
 //! The command line of `trik`: what can be said, and which part of the crate does it.
 //!
-//! Owns the words, the help and the exit codes: 0 done, 1 refused or failed, 2 not understood.
+//! Owns the words, the help and the exit codes: 0 done, 1 refused or failed, 2 not understood, or a robot that could not
+//! be reached.
 
+use crate::remote::{self, Target};
 use crate::{fault, limits, manual, up};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::io::{self, Write};
+use std::net::IpAddr;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -21,11 +24,16 @@ const EXAMPLES: &str = "\
 Examples:
   trik up                            a robot with two wheels, until Ctrl-C
   trik up --speed 2 /tmp/robot       twice as fast, its tree in /tmp/robot
+  trik run square.js                 run a program on it, with its output here
+  trik run square.js --robot 192.168.77.1   the same on a robot in the network
+  trik send a.js b.py --robot 192.168.77.1,192.168.77.2 --run a.js
+  trik stop                          end the program, all motors rest
   trik fault D1 unplug               pull the plug of the distance sensor D1
   trik fault D1 --clear              and put it back
   trik fault --at /tmp/robot D1 unplug   the same, if several robots run
 
-Exit status: 0 done; 1 refused, or something failed; 2 the command line was not understood.";
+Exit status: 0 done; 1 refused, or something failed; 2 the command line was not understood, or a robot could not be
+reached.";
 
 #[derive(Subcommand)]
 enum Command {
@@ -36,6 +44,28 @@ enum Command {
     /// and what to try, then shows the robot until Ctrl-C, SIGTERM, SIGHUP or an unmount. Then it brings all actuators
     /// to rest, unmounts and leaves nothing behind. Several may run side by side.
     Up(UpArgs),
+    /// Run a program on a robot and show what it says.
+    ///
+    /// Sends the file, runs it, and ends when it has ended. What it prints goes to standard output, errors to standard
+    /// error. NAME.py is Python, NAME.js JavaScript, what begins with #! or is an ELF file is executed on the robot.
+    /// Another program that runs there ends first. Ctrl-C stops the program on the robot; a second one does not wait.
+    ///
+    /// Exit status: 0 the program has ended; 1 it has failed, or was stopped; 2 it could not be run, or the connection
+    /// was lost.
+    Run(RunArgs),
+    /// End the program of a robot, and bring everything to rest.
+    ///
+    /// Several robots are stopped at once. Exit status: 0 all rest; 1 a robot does not say so; 2 one could not be
+    /// reached.
+    Stop(FleetArgs),
+    /// Send files to robots, to all at once, and perhaps run one of them there.
+    ///
+    /// Tells the progress of each, and at the end in a table who has got everything. A program that is started goes on.
+    ///
+    /// Exit status: 0 all robots have got everything; 1 one has not.
+    Send(SendArgs),
+    /// Show what runs on a robot, and how the last program ended.
+    Status(FleetArgs),
     /// Break a device of a running virtual robot, or mend it.
     ///
     /// Programs see what they would see with a real device that fails so. Without a MOUNTPOINT it is the only robot
@@ -89,13 +119,64 @@ pub(crate) struct UpArgs {
     /// Private directory for compiled C and copies of libraries [default: as for trikfs].
     #[arg(long, value_name = "DIR")]
     pub cache: Option<PathBuf>,
+    /// Let other users in, and let members of this group write what you may write of each node, as `trikfs mount
+    /// --allow-other --group GROUP` does.
+    #[arg(long, value_name = "GROUP")]
+    pub group: Option<String>,
     /// Mount the devices of the robot a second time as the classes of ev3dev, for programs that know those [default: the
     /// mount point of the robot with .ev3dev behind its name].
     #[arg(long, value_name = "DIR", num_args = 0..=1, require_equals = true)]
     pub ev3dev: Option<Option<PathBuf>>,
+    /// Do not start trikd: no TRIK Studio, no gamepad and no `trik run` reaches the robot.
+    #[arg(long, conflicts_with_all = ["trikd_address", "trikd_ports", "scripts"])]
+    pub no_trikd: bool,
+    /// Address at which trikd serves; may be given several times. With one that others reach, 0.0.0.0 for all, they run
+    /// programs with your rights [default: 127.0.0.1; for robot-2 127.0.0.2 and so on].
+    #[arg(long, value_name = "ADDRESS")]
+    pub trikd_address: Vec<IpAddr>,
+    /// First of the ports of trikd: programs, sensors, gamepads, pictures, variables, mailbox are in a row from there; 0
+    /// takes any free ones [default: 8888, 9000, 4444, 8080, 10000, 8889, which TRIK Studio knows].
+    #[arg(long, value_name = "PORT")]
+    pub trikd_ports: Option<u16>,
+    /// Where uploaded programs are kept [default: a directory that goes with the robot].
+    #[arg(long, value_name = "DIR")]
+    pub scripts: Option<PathBuf>,
     /// An empty directory; made if nothing is there, and removed again [default: robot, or else robot-2 and so on, in
     /// $XDG_RUNTIME_DIR/trik or /tmp/trik-UID].
     pub mountpoint: Option<PathBuf>,
+}
+
+/// What `trik run` can be told.
+#[derive(Args, Clone, Debug, PartialEq, Eq)]
+pub(crate) struct RunArgs {
+    /// The program.
+    pub file: PathBuf,
+    /// Name or address of the robot, and its port if that is not 8888 [default: the virtual robot that runs on this
+    /// computer, or else 127.0.0.1].
+    #[arg(long, value_name = "HOST[:PORT]", value_parser = remote::target)]
+    pub robot: Option<Target>,
+}
+
+/// What `trik stop` and `trik status` can be told.
+#[derive(Args, Clone, Debug, PartialEq, Eq)]
+pub(crate) struct FleetArgs {
+    /// Names or addresses of robots [default: the virtual robot that runs on this computer, or else 127.0.0.1].
+    #[arg(long, value_name = "HOST[:PORT]", value_parser = remote::target, value_delimiter = ',')]
+    pub robot: Vec<Target>,
+}
+
+/// What `trik send` can be told.
+#[derive(Args, Clone, Debug, PartialEq, Eq)]
+pub(crate) struct SendArgs {
+    /// Programs, and files that they need.
+    #[arg(required = true)]
+    pub files: Vec<PathBuf>,
+    /// Names or addresses of robots [default: the virtual robot that runs on this computer, or else 127.0.0.1].
+    #[arg(long, value_name = "HOST[:PORT]", value_parser = remote::target, value_delimiter = ',')]
+    pub robot: Vec<Target>,
+    /// Run this program when all files are there.
+    #[arg(long, value_name = "NAME")]
+    pub run: Option<String>,
 }
 
 /// What `trik fault` can be told.
@@ -128,7 +209,7 @@ pub fn main() -> ExitCode {
         }
     };
     match perform(cli.command) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(code) => code,
         Err(reason) => {
             // Empty if another process has told it.
             if !reason.is_empty() {
@@ -139,8 +220,12 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn perform(command: Command) -> Result<(), String> {
-    match command {
+fn perform(command: Command) -> Result<ExitCode, String> {
+    let done = match command {
+        Command::Run(args) => return Ok(remote::run(&args)),
+        Command::Stop(args) => return Ok(remote::stop(&args)),
+        Command::Status(args) => return Ok(remote::status(&args)),
+        Command::Send(args) => remote::send(&args),
         Command::Up(args) => up::up(args),
         Command::Fault(args) => print(fault::fault(&args)?.as_bytes()),
         Command::Completions { shell } => print(&manual::completions(shell, Cli::command())),
@@ -150,7 +235,8 @@ fn perform(command: Command) -> Result<(), String> {
             name,
             arguments,
         } => Err(up::tree::become_program(parent, &name, &arguments)),
-    }
+    };
+    done.map(|()| ExitCode::SUCCESS)
 }
 
 /// Standard output; a reader that has seen enough is no failure.
@@ -202,14 +288,14 @@ mod tests {
             (plain.robot.as_str(), plain.speed, plain.mountpoint),
             ("two-wheels", 1.0, None)
         );
-        let line =
-            "up --robot two-wheels --speed 2 --seed 7 --config c.lua --no-view --include i /m";
+        let line = "up --robot two-wheels --speed 2 --seed 7 --config c.lua --no-view --include i --group g /m";
         let words: Vec<&str> = line.split(' ').collect();
         let Ok(Command::Up(args)) = parse(&words) else {
             panic!("not understood")
         };
         assert_eq!((args.speed, args.seed, args.no_view), (2.0, 7, true));
         assert_eq!((args.mountpoint, args.ev3dev), (Some("/m".into()), None));
+        assert_eq!(args.group.as_deref(), Some("g"));
         for (words, dir) in [
             (&["up", "--ev3dev", "m"] as &[&str], None),
             (&["up", "--ev3dev=e", "m"], Some("e".into())),
@@ -256,7 +342,16 @@ mod tests {
 
     #[test]
     fn every_command_but_the_hidden_one_has_a_manual_page() {
-        for name in ["up", "fault", "man", "completions"] {
+        for name in [
+            "up",
+            "run",
+            "stop",
+            "send",
+            "status",
+            "fault",
+            "man",
+            "completions",
+        ] {
             let page = manual::page(Some(name), Cli::command()).expect(name);
             assert!(String::from_utf8_lossy(&page).contains(name));
         }

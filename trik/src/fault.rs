@@ -111,6 +111,7 @@ mod tests {
         Running {
             mountpoint: mountpoint.into(),
             board: "/none".into(),
+            trikd: None,
         }
     }
 

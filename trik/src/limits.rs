@@ -14,6 +14,8 @@ pub const SOUND_CHARS_MAX: usize = 500;
 pub const START_MS: u32 = 60_000;
 /// Time for the tree to end after it was asked to, before it is forced.
 pub const STOP_MS: u32 = 8_000;
+/// Time for a process that stands on the tree to end before it is forced: its guardian forces the serving one after 8 s.
+pub const COMPANION_STOP_MS: u32 = 10_000;
 /// Time for a daemon that has lost its guardian to clean up, before the board goes.
 pub const ORPHAN_MS: u32 = 8_000;
 /// Longest line that is passed on from the processes of the tree.
@@ -24,3 +26,29 @@ pub const RECORD_BYTES_MAX: u64 = 16 << 10;
 pub const BASE_BYTES_MAX: usize = 64;
 /// How often a tree is started again whose guardian was killed.
 pub const RESTARTS_MAX: usize = 5;
+/// Bytes of the name of a robot (RFC 1035: names in the network have at most 253).
+pub const HOST_BYTES_MAX: usize = 253;
+/// Addresses of one name that are tried.
+pub const ADDRESSES_MAX: usize = 8;
+/// Robots that are talked to at once.
+pub const FLEET_MAX: usize = 64;
+/// Time for a connection to a robot.
+pub const CONNECT_MS: u32 = 5_000;
+/// Time for the answer to a request; a stop waits for processes that die slowly.
+pub const ANSWER_MS: u32 = 20_000;
+/// Greatest program that is sent; a robot takes at most 256 MiB, and usually 16.
+pub const UPLOAD_BYTES_MAX: u64 = 256 << 20;
+/// Programs from here on show how far they are on their way.
+pub const PROGRESS_BYTES: usize = 256 << 10;
+/// Greatest message of a robot.
+pub const MESSAGE_BYTES_MAX: usize = 1 << 20;
+/// Time without a sent byte after which a robot is told that somebody is there; it gives up after 5 s.
+pub const KEEPALIVE_MS: u32 = 2_000;
+/// Silence after which a robot counts as lost; it says something every 3 s.
+pub const SILENCE_MS: u32 = 10_000;
+/// Longest wait before clocks are looked at again.
+pub const TURN_MS: u32 = 250;
+/// Wait while the reader of the output has no room.
+pub const ROOM_MS: u32 = 20;
+/// Pieces of output that wait for whoever reads it.
+pub const OUTPUT_PIECES: usize = 64;

@@ -1,5 +1,5 @@
-//! The program `trik`; started under the name `trikfs` or `trikfs-ev3dev` it is that program, so that one file serves a
-//! whole robot.
+//! The program `trik`; started under the name `trikfs`, `trikfs-ev3dev` or `trikd` it is that program, so that one file
+//! serves a whole robot.
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -8,6 +8,7 @@ fn main() -> ExitCode {
     let name = std::env::args_os().next().unwrap_or_default();
     match Path::new(&name).file_name().and_then(|name| name.to_str()) {
         Some("trikfs") => trikfs::cli::main(),
+        Some("trikd") => trikd::cli::main(),
         Some("trikfs-ev3dev") => trikfs_ev3dev::cli::main(),
         _ => trik::cli::main(),
     }

@@ -1,9 +1,10 @@
 //! Where the virtual robots of a user are: names, locks, records, and what dead ones left behind.
 //!
 //! Owns one private directory, `$XDG_RUNTIME_DIR/trik` or `/tmp/trik-UID`. For a robot NAME it has `NAME` (the default
-//! mount point), `NAME.board` (devices), `NAME.ev3dev` (the view of ev3dev of a robot at its default mount point) and
-//! `NAME.lock`: who holds the lock is alive, whatever its process number, and the file tells where the robot is. Knows
-//! nothing of what a board or a tree is.
+//! mount point), `NAME.board` (devices), `NAME.trikd` (folders of trikd), `NAME.ev3dev` (the view of ev3dev of a robot
+//! at its default mount point) and `NAME.lock`: who holds the lock is alive, whatever its process number, and the file
+//! tells where the robot is: a line with the path of its tree, and one with the address where trikd takes programs, if it
+//! runs. Knows nothing of what a board or a tree is.
 
 use crate::limits;
 use nix::sys::statfs::statfs;
@@ -11,12 +12,15 @@ use nix::unistd::geteuid;
 use std::ffi::OsStr;
 use std::fs::{self, DirBuilder, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::net::SocketAddr;
 use std::os::unix::ffi::OsStrExt;
-use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt};
+use std::os::unix::fs::{DirBuilderExt, FileExt, MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 
 /// Ending of the directory for the view of ev3dev.
 const VIEW: &str = "ev3dev";
+/// Ending of the directory for the folders of trikd.
+const TRIKD: &str = "trikd";
 
 /// The directory for the robots of this user.
 ///
@@ -56,6 +60,10 @@ pub struct Place {
     pub mountpoint: PathBuf,
     /// For its devices; nothing is there yet.
     pub board: PathBuf,
+    /// For the folders of trikd; nothing is there yet.
+    pub trikd: PathBuf,
+    /// From 1: which of the robots of this user it is.
+    pub number: usize,
     made_mountpoint: bool,
     /// Made for the view of ev3dev.
     made_view: Option<PathBuf>,
@@ -95,6 +103,8 @@ impl Place {
             let mut place = Self {
                 mountpoint: mountpoint.unwrap_or(&default).to_owned(),
                 board: base.join(format!("{name}.board")),
+                trikd: lock.with_extension(TRIKD),
+                number,
                 made_mountpoint: false,
                 made_view: None,
                 lock,
@@ -143,6 +153,22 @@ impl Place {
         text.push(b'\n');
         self.held.write_all(&text)
     }
+
+    /// Tells others where its trikd takes programs.
+    ///
+    /// # Errors
+    /// Those of the file system.
+    pub fn announce(&self, address: Option<SocketAddr>) -> io::Result<()> {
+        let first = self.mountpoint.as_os_str().len() + 1;
+        let first = u64::try_from(first).map_err(io::Error::other)?;
+        self.held.set_len(first)?;
+        match address {
+            Some(address) => self
+                .held
+                .write_all_at(format!("{address}\n").as_bytes(), first),
+            None => Ok(()),
+        }
+    }
 }
 
 impl Drop for Place {
@@ -153,6 +179,7 @@ impl Drop for Place {
         }
         let _ = self.made_view.as_ref().map(fs::remove_dir);
         let _ = fs::remove_dir_all(&self.board);
+        let _ = fs::remove_dir_all(&self.trikd);
         let _ = fs::remove_file(&self.lock);
         // Only the last robot succeeds.
         let _ = self.lock.parent().map(fs::remove_dir);
@@ -166,6 +193,8 @@ pub struct Running {
     pub mountpoint: PathBuf,
     /// Its devices.
     pub board: PathBuf,
+    /// Where its trikd takes programs; None: it has no trikd.
+    pub trikd: Option<SocketAddr>,
 }
 
 /// All robots of this user that run.
@@ -186,9 +215,12 @@ pub fn running(base: &Path) -> io::Result<Vec<Running>> {
             Err(TryLockError::Error(error)) => return Err(error),
             Ok(()) => continue,
         }
-        if let Some(mountpoint) = read_record(&mut file)? {
-            let board = base.join(format!("{name}.board"));
-            found.push(Running { mountpoint, board });
+        if let Some((mountpoint, trikd)) = read_record(&mut file)? {
+            found.push(Running {
+                mountpoint,
+                board: base.join(format!("{name}.board")),
+                trikd,
+            });
         }
     }
     Ok(found)
@@ -250,7 +282,7 @@ fn sweep(base: &Path) {
         if !is_ours {
             continue;
         }
-        if let Ok(Some(mountpoint)) = read_record(&mut file) {
+        if let Ok(Some((mountpoint, _))) = read_record(&mut file) {
             for path in view_of(&mountpoint).iter().chain([&mountpoint]) {
                 if is_dead(path) {
                     let _ = trikfs::mount::unmount(path);
@@ -267,18 +299,22 @@ fn sweep(base: &Path) {
         }
         let _ = fs::remove_dir(view);
         let _ = fs::remove_dir_all(base.join(format!("{name}.board")));
+        let _ = fs::remove_dir_all(lock.with_extension(TRIKD));
         let _ = fs::remove_file(&lock);
     }
 }
 
-fn read_record(file: &mut File) -> io::Result<Option<PathBuf>> {
+/// Where a robot is, and where its trikd takes programs.
+fn read_record(file: &mut File) -> io::Result<Option<(PathBuf, Option<SocketAddr>)>> {
     let mut text = Vec::new();
     file.seek(SeekFrom::Start(0))?;
     file.take(limits::RECORD_BYTES_MAX).read_to_end(&mut text)?;
-    let line = text.split(|&byte| byte == b'\n').next();
-    Ok(line
-        .filter(|line| line.starts_with(b"/"))
-        .map(|line| PathBuf::from(OsStr::from_bytes(line))))
+    let mut lines = text.split(|&byte| byte == b'\n');
+    let mountpoint = lines.next().filter(|line| line.starts_with(b"/"));
+    let trikd = lines
+        .next()
+        .and_then(|line| std::str::from_utf8(line).ok()?.parse().ok());
+    Ok(mountpoint.map(|line| (PathBuf::from(OsStr::from_bytes(line)), trikd)))
 }
 
 /// A tree that has lost all its processes.
@@ -354,6 +390,11 @@ mod tests {
             points,
             [first.mountpoint.clone(), second.mountpoint.clone()]
         );
+        let at = "127.0.0.1:8888".parse().ok();
+        first.announce(at).expect("a record");
+        assert_eq!(running(&base.0).expect("a list")[0].trikd, at);
+        first.announce(None).expect("a record");
+        assert_eq!(running(&base.0).expect("a list")[0].trikd, None);
         drop(first);
         let third = Place::claim(&base.0, None).expect("the first place again");
         assert_eq!(third.mountpoint, base.0.join("robot"));
@@ -371,10 +412,11 @@ mod tests {
         )
         .expect("a record");
         fs::create_dir_all(base.0.join("robot-3.board/dev")).expect("a board");
+        fs::create_dir_all(base.0.join("robot-3.trikd/scripts")).expect("folders");
         fs::create_dir(base.0.join("robot-3")).expect("a mount point");
         assert_eq!(running(&base.0).expect("a list"), []);
         let place = Place::claim(&base.0, None).expect("a place");
-        for name in ["robot-3", "robot-3.board", "robot-3.lock"] {
+        for name in ["robot-3", "robot-3.board", "robot-3.trikd", "robot-3.lock"] {
             assert!(!base.0.join(name).exists(), "{name}");
         }
         drop(place);

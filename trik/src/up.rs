@@ -1,19 +1,21 @@
 //! `trik up`: a virtual board in this process, the tree over it in child processes, and the person in front of them.
 //!
 //! Owns the order of things: place, board, tree, and all three backwards, whatever ends them. Everything that happens
-//! is waited for in one poll(2) in the main thread. `tree` is the child, `ev3dev` another one beside it, `view` says how
-//! the robot is, `screen` draws it, `hints` says what to try.
+//! is waited for in one poll(2) in the main thread. `tree` is the child, `companion` others beside it, of which there are
+//! `trikd` and `ev3dev`, `view` says how the robot is, `screen` draws it, `hints` says what to try.
 
+mod companion;
 mod ev3dev;
 mod hints;
 mod screen;
 pub(crate) mod tree;
+mod trikd;
 mod view;
 
 use crate::cli::UpArgs;
 use crate::limits;
 use crate::place::{self, Place};
-use ev3dev::Ev3dev;
+use companion::Companion;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::signal::{SigSet, Signal, kill};
 use nix::sys::signalfd::{SfdFlags, SignalFd};
@@ -22,11 +24,13 @@ use screen::Screen;
 use sim::board::{Board, Options};
 use std::ffi::OsString;
 use std::io::{self, Write};
+use std::net::SocketAddr;
 use std::os::fd::AsFd;
 use std::path::{Path, PathBuf};
 use std::process::ExitStatus;
 use std::time::{Duration, Instant};
 use tree::Tree;
+use trikd::Trikd;
 
 /// The robot of whoever names none.
 pub(crate) const DEFAULT_ROBOT: &str = "two-wheels";
@@ -71,9 +75,13 @@ pub(crate) fn up(args: UpArgs) -> Result<(), String> {
         Some(wanted) => {
             let wanted = wanted.as_deref().map(absolute).transpose()?;
             let at = place.make_view(wanted.as_deref())?;
-            Some(Ev3dev::new(&place.mountpoint, at))
+            Some((ev3dev::of(&place.mountpoint, &at), at))
         }
         None => None,
+    };
+    let trikd = match args.no_trikd {
+        true => None,
+        false => Some(Trikd::of(&args, &place)?),
     };
     let options = Options {
         speed: args.speed,
@@ -93,7 +101,9 @@ pub(crate) fn up(args: UpArgs) -> Result<(), String> {
         screen: if args.no_view { None } else { Screen::new() },
         signals,
         ev3dev,
+        trikd,
         tree,
+        address: None,
         failure: None,
         stage: Stage::Starting(after(limits::START_MS)),
         was_asked: false,
@@ -139,6 +149,10 @@ fn arguments(args: &UpArgs, config: &Path, place: &Place) -> Vec<OsString> {
     if let Some(cache) = &args.cache {
         option("--cache", cache);
     }
+    if let Some(group) = &args.group {
+        option("--group", Path::new(group));
+        list.push("--allow-other".into());
+    }
     list.push("--".into());
     list.push(place.mountpoint.clone().into());
     list
@@ -179,8 +193,11 @@ struct Session<'a> {
     screen: Option<Screen>,
     signals: SignalFd,
     /// Before the tree, so that it ends before that.
-    ev3dev: Option<Ev3dev>,
+    ev3dev: Option<(Companion, PathBuf)>,
+    trikd: Option<Trikd>,
     tree: Tree,
+    /// Where trikd takes programs, as other commands were told.
+    address: Option<SocketAddr>,
     /// What went wrong beside the tree.
     failure: Option<String>,
     stage: Stage,
@@ -198,7 +215,7 @@ impl Session<'_> {
             self.wait().map_err(|error| format!("waiting: {error}"))?;
             self.hear_signals();
             self.hear_tree();
-            self.hear_view();
+            self.hear_companions();
             self.hear_loudspeaker();
             if self.tree.said.is_over() && status.is_none() {
                 status = Some(
@@ -215,9 +232,7 @@ impl Session<'_> {
                     if let Some(screen) = &mut self.screen {
                         screen.leave();
                     }
-                    if let Some(view) = &mut self.ev3dev {
-                        view.stop();
-                    }
+                    self.stop_companions();
                     return match self.failure.take() {
                         Some(failure) => Err(failure),
                         None => self.judge(ended),
@@ -247,7 +262,7 @@ impl Session<'_> {
             pipes
                 .into_iter()
                 .flatten()
-                .chain(self.ev3dev.iter().flat_map(Ev3dev::fds))
+                .chain(self.companions().flat_map(Companion::fds))
                 .map(|fd| PollFd::new(fd, PollFlags::POLLIN)),
         );
         match poll(
@@ -290,23 +305,53 @@ impl Session<'_> {
         }
     }
 
+    /// What stands on the tree, in the order in which it ends: programs of trikd may use the view of ev3dev.
+    fn companions(&self) -> impl Iterator<Item = &Companion> {
+        let trikd = self.trikd.iter().map(|trikd| &trikd.process);
+        trikd.chain(self.ev3dev.iter().map(|(view, _)| view))
+    }
+
+    fn stop_companions(&mut self) {
+        let signals = &self.signals;
+        let hurries = || matches!(signals.read_signal(), Ok(Some(_)));
+        if let Some(trikd) = &mut self.trikd {
+            trikd.process.stop(hurries);
+        }
+        if let Some((view, _)) = &mut self.ev3dev {
+            view.stop(hurries);
+        }
+    }
+
     /// Asks for the end, first of what stands on the tree.
     fn stop(&mut self) {
-        if let Some(view) = &mut self.ev3dev {
-            view.stop();
-        }
+        self.stop_companions();
         self.tree.terminate();
         self.stage = Stage::Stopping(after(limits::STOP_MS));
     }
 
-    fn hear_view(&mut self) {
-        // At the end its files of the tree fail, which is no news.
+    fn hear_companions(&mut self) {
+        // At the end their files of the tree fail, which is no news.
         if self.stage != Stage::Ready {
             return;
         }
-        let lines = self.ev3dev.as_mut().map(Ev3dev::hear);
-        for line in lines.into_iter().flatten() {
+        let view = self.ev3dev.as_mut().map(|(view, _)| view.hear());
+        let trikd = self.trikd.as_mut().map(|trikd| trikd.process.hear());
+        for line in view.into_iter().chain(trikd).flatten() {
             self.note(&line);
+        }
+        self.announce();
+    }
+
+    /// Tells other commands where trikd is, when that has changed.
+    fn announce(&mut self) {
+        let Some(trikd) = &mut self.trikd else { return };
+        let address = trikd.take_address();
+        if address == self.address || address.is_none() && trikd.process.runs() {
+            return;
+        }
+        self.address = address;
+        if let Err(error) = self.place.announce(address) {
+            self.note(&format!("trik: other commands do not find trikd: {error}"));
         }
     }
 
@@ -320,10 +365,16 @@ impl Session<'_> {
             }
             if !self.was_ready {
                 self.was_ready = true;
-                if let Some(Err(reason)) = self.ev3dev.as_mut().map(Ev3dev::start) {
+                let view = self.ev3dev.as_mut().map(|(view, _)| view.start());
+                if let Some(Err(reason)) = view {
                     self.failure = Some(reason);
                     return self.stop();
                 }
+                // Without it the robot is of use as well.
+                if let Some(Err(reason)) = self.trikd.as_mut().map(Trikd::start) {
+                    self.note(&format!("trik: {reason}"));
+                }
+                self.announce();
                 self.welcome(rest);
             }
         }
@@ -407,8 +458,11 @@ impl Session<'_> {
         text.push_str(&format!(
             "\nIts virtual board, with pose, control/keys and faults, is {board}\n"
         ));
-        if let Some(view) = &self.ev3dev {
-            let at = view.mountpoint.display();
+        if let (Some(trikd), Some(at)) = (&self.trikd, self.address) {
+            text.push_str(&trikd::welcome(at, &trikd.scripts));
+        }
+        if let Some((_, at)) = &self.ev3dev {
+            let at = at.display();
             text.push_str(&format!(
                 "\nAs the classes of ev3dev:\n\n  ls {at}/tacho-motor\n"
             ));

@@ -3,8 +3,8 @@
 'use strict';
 
 const { native, Signal, emit, absent, refuse, never } = kit;
-const NO_DISPLAY = 'the display is not in the tree; nothing is shown';
-const port = kit.text;
+const { text } = kit;
+const port = text;
 
 // An object for each port; null where nothing is plugged in, which is asked again the next time.
 function plugged(find, make) {
@@ -152,10 +152,38 @@ const battery = {
     readRawDataVoltage() { return native.rawVoltage(); },
 };
 
-const display = {};
-for (const name of ['addLabel', 'removeLabels', 'showImage', 'show', 'drawLine', 'drawPoint', 'drawRect', 'drawEllipse',
-    'drawArc', 'setPainterColor', 'setPainterWidth', 'setBackground', 'redraw', 'clear', 'hide', 'reset'])
-    display[name] = () => absent(`display.${name}`, NO_DISPLAY);
+// What goes wrong on the display is told once and never ends a program.
+const draw = (name, reason) => {
+    if (reason)
+        absent(`display.${name}`, reason);
+};
+const order = (name, verb, ...words) => draw(name, native.draw(text([verb, ...words].join(' '))));
+const display = {
+    addLabel(label, x, y, height = -1) {
+        order('addLabel', 'label', Number(x), Number(y), Number(height), String(label).replaceAll('\n', '\\n'));
+    },
+    removeLabels() { order('removeLabels', 'removelabels'); },
+    showImage(file) { draw('showImage', native.showFile(text(file))); },
+    show(pixels, width, height, format = 'rgb32') {
+        draw('show', native.showNumbers(Array.from(pixels, (part) => part | 0), Number(width) | 0, Number(height) | 0, text(format)));
+    },
+    drawLine(...ends) { order('drawLine', 'line', ...ends.map(Number)); },
+    drawPoint(...place) { order('drawPoint', 'point', ...place.map(Number)); },
+    drawRect(x, y, width, height, filled = false) {
+        order('drawRect', 'rect', Number(x), Number(y), Number(width), Number(height), Number(Boolean(filled)));
+    },
+    drawEllipse(x, y, width, height, filled = false) {
+        order('drawEllipse', 'ellipse', Number(x), Number(y), Number(width), Number(height), Number(Boolean(filled)));
+    },
+    drawArc(...numbers) { order('drawArc', 'arc', ...numbers.map(Number)); },
+    setPainterColor(name) { order('setPainterColor', 'color', name); },
+    setPainterWidth(pixels) { order('setPainterWidth', 'width', Number(pixels)); },
+    setBackground(color) { order('setBackground', 'background', color); },
+    redraw() { order('redraw', 'redraw'); },
+    clear() { order('clear', 'clear'); },
+    hide() { order('hide', 'hide'); },
+    reset() { order('reset', 'clear'); },
+};
 
 const DETECT_MS = 3000, DETECT_LOOK_MS = 20;
 class Camera {
@@ -209,17 +237,18 @@ const camera = (name, Kind) => () => {
     return cameras.get(name) ?? null;
 };
 
+const values = (node) => native.numbers(`${node}/value`);
 const NO_PICTURE = 'pictures are not in the tree';
 const irCamera = {
-    init() { native.values('ir_camera'); },
+    init() { values('ir_camera'); },
     stop() {},
-    readSensor(row, column) { return cell(native.values('ir_camera'), row, column, 'irCamera'); },
+    readSensor(row, column) { return cell(values('ir_camera'), row, column, 'irCamera'); },
     getImage() { return refuse('irCamera.getImage', NO_PICTURE); },
     imageUpdated: never('irCamera.imageUpdated', NO_PICTURE),
     sensorUpdated: never('irCamera.sensorUpdated', 'the tree tells no changes of the infrared camera; use a timer'),
     stopped: never('irCamera.stopped', 'the infrared camera does not stop'),
 };
-const lidar = { read() { return native.values('lidar'); } };
+const lidar = { read() { return values('lidar'); } };
 
 class Fifo {
     constructor(path) {
@@ -248,6 +277,15 @@ class Fifo {
 }
 const fifos = new Map();
 
+// A servo port that the robot file makes a measuring one.
+const measures = (name) => native.isFile(`servos/${name}/duty_cycle`);
+class PwmCapture {
+    constructor(name) { this._node = `servos/${name}`; }
+    frequency() { return native.numbers(`${this._node}/raw`); }
+    duty() { return native.numbers(`${this._node}/duty_cycle`)[0]; }
+    dutyRaw() { return refuse('pwmCapture.dutyRaw', 'the driver tells no raw width of pulses; duty() gives percent'); }
+}
+
 const configurable = ['lineSensor', 'objectSensor', 'colorSensor'];
 const NO_BUS = 'raw transfers on a bus are not in the tree; describe the device in the robot file and read its node';
 const NO_EVENTS = 'raw input devices are not in the tree; keys and gamepad are brick.keys() and gamepad';
@@ -268,7 +306,7 @@ kit.hold('brick', {
     lidar() { return native.has('lidar') ? lidar : null; },
     irCamera() { return native.has('ir_camera') ? irCamera : null; },
     getStillImage() { return refuse('brick.getStillImage', NO_PICTURE); },
-    pwmCapture() { return refuse('brick.pwmCapture', 'pulses that are measured are not in the tree'); },
+    pwmCapture(name) { return measures(text(name)) ? new PwmCapture(text(name)) : null; },
     fifo(name) {
         const path = `${port(name)}/device`;
         if (!fifos.has(path) && native.isNode(port(name)))
@@ -288,7 +326,7 @@ kit.hold('brick', {
     playSound(file) { native.playSound(kit.text(file)); },
     playTone(hz, ms) {
         if (hz >= 0 && ms >= 0)
-            absent('brick.playTone', 'the board has no program that plays tones; nothing is heard');
+            native.tone(Math.round(hz), Math.round(ms));
     },
     say(text) { native.say(kit.text(text)); },
     stop() {
@@ -309,9 +347,9 @@ kit.hold('brick', {
         return native.ports('sensors').filter((name) => name.startsWith(begins));
     },
     encoderPorts() { return native.ports('encoders'); },
-    pwmCapturePorts() { return []; },
-    smile() { absent('brick.smile', NO_DISPLAY); },
-    sadSmile() { absent('brick.sadSmile', NO_DISPLAY); },
+    pwmCapturePorts() { return native.ports('servos').filter(measures); },
+    smile() { order('smile', 'smile'); },
+    sadSmile() { order('sadSmile', 'sadsmile'); },
     stopped: new Signal(),
     resetCompleted: new Signal(),
 });

@@ -6,11 +6,12 @@
 use crate::brick::Brick;
 use crate::engine::Engine;
 use crate::host::Host;
+use crate::log::tell;
 #[cfg(feature = "manual")]
 use crate::manual;
 use crate::program::{kill, launch::Launch};
 use crate::settings::Settings;
-use crate::{daemon, guardian, js, status};
+use crate::{daemon, display, guardian, js, log, status};
 #[cfg(feature = "manual")]
 use clap::CommandFactory;
 use clap::{Parser, Subcommand};
@@ -71,6 +72,19 @@ enum Command {
     /// Ends all processes of the user that runs it.
     #[command(hide = true)]
     KillUser,
+    /// Draw on the display of the robot: one order on each line of standard input.
+    ///
+    /// The orders are line X1 Y1 X2 Y2, point X Y, rect and ellipse X Y WIDTH HEIGHT FILLED, arc X Y WIDTH HEIGHT FROM
+    /// SPAN, label X Y HEIGHT TEXT, image FILE, color NAME, width PIXELS, background NAME, removelabels, smile, sadsmile,
+    /// redraw, clear and hide. What was drawn is seen after redraw.
+    Draw {
+        /// Where the tree is mounted.
+        #[arg(long, env = "TRIK_TREE", value_name = "DIR", default_value = "/trikfs")]
+        tree: PathBuf,
+        /// Answer each order with a line "ok" or "error: REASON".
+        #[arg(long)]
+        answers: bool,
+    },
     /// Run a JavaScript program in this terminal, without the daemon; the motors rest at its end.
     ///
     /// Without a file it is the process of one program, whose standard input is the channel to the daemon.
@@ -107,7 +121,7 @@ pub fn main() -> ExitCode {
     match perform(cli.command) {
         Ok(code) => code,
         Err(reason) => {
-            eprintln!("trikd: {reason}");
+            tell(reason);
             ExitCode::FAILURE
         }
     }
@@ -118,6 +132,7 @@ fn perform(command: Command) -> Result<ExitCode, String> {
         Command::Serve { settings } => {
             // Behind the name of the program and `serve`.
             let arguments: Vec<_> = std::env::args_os().skip(2).collect();
+            log::start(&settings.log);
             return guardian::run(&settings.tree, &arguments);
         }
         Command::Status { run } => print!("{}", status::ask(&run, "status")?),
@@ -130,10 +145,14 @@ fn perform(command: Command) -> Result<ExitCode, String> {
             settings,
         } => {
             guardian::follow(guardian)?;
+            log::start(&settings.log);
             daemon::run(*settings, restarts)?;
         }
         Command::Launch(launch) => return Err(launch.become_program()),
         Command::KillUser => kill::own_user()?,
+        Command::Draw { tree, answers } => {
+            display::serve(&tree, &mut std::io::stdin().lock(), answers)?;
+        }
         Command::Js { tree, file: None } => return Ok(run_engine(&mut js::engine(), &tree)),
         Command::Js {
             tree,
@@ -161,9 +180,9 @@ fn run_engine(engine: &mut impl Engine, tree: &std::path::Path) -> ExitCode {
     let host = match Host::from_standard_input() {
         Ok(host) => host,
         Err(error) => {
-            eprintln!(
-                "trikd: standard input is no channel to the daemon ({error}): this command is for trikd itself"
-            );
+            tell(format_args!(
+                "standard input is no channel to the daemon ({error}): this command is for trikd itself"
+            ));
             return ExitCode::FAILURE;
         }
     };

@@ -5,6 +5,7 @@
 use crate::limits;
 use crate::outbox::Outbox;
 use crate::protocol::frame::{Decoder, encode};
+use crate::protocol::news::SLOW_READER;
 use std::cell::Cell;
 use std::io;
 use std::rc::Rc;
@@ -97,7 +98,7 @@ enum Reason {
 
 /// The text about frames that a slow client lost.
 fn note(count: u32) -> Vec<u8> {
-    format!("info: {count} messages were left out: this computer reads more slowly than the robot writes").into_bytes()
+    format!("info: {count} messages were left out: {SLOW_READER}").into_bytes()
 }
 
 async fn read(

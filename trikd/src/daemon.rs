@@ -6,8 +6,8 @@
 use crate::access::Access;
 use crate::clients::Clients;
 use crate::connection::Held;
-use crate::limits;
-use crate::log::Log;
+use crate::feedback::Feedback;
+use crate::priority::{self, Rank};
 use crate::program::child::Owner;
 use crate::program::reaper::Reaper;
 use crate::program::rest::Rest;
@@ -18,6 +18,7 @@ use crate::server::mailbox::Mailbox;
 use crate::server::{self, Port};
 use crate::settings::{Service, Settings, StopKey};
 use crate::{heartbeat, keys, status};
+use crate::{limits, log};
 use nix::unistd::{User, chown, geteuid};
 use std::cell::Cell;
 use std::io::Write;
@@ -34,8 +35,6 @@ use tokio::task::{LocalSet, spawn_local};
 pub struct Daemon {
     /// The command line.
     pub settings: Settings,
-    /// Lines for whoever looks after the robot.
-    pub log: Log,
     /// Who may do what.
     pub access: Access,
     /// Who is connected.
@@ -48,6 +47,8 @@ pub struct Daemon {
     pub sampler: Sampler,
     /// The way to bring motors to rest.
     pub rest: Rest,
+    /// What a person beside the robot hears and sees.
+    pub feedback: Feedback,
     /// Who hears of ends of processes.
     pub reaper: Reaper,
     /// Whose rights programs have; None: those of trikd.
@@ -83,7 +84,13 @@ fn mailbox_port(settings: &Settings) -> Result<Port, String> {
 impl Ports {
     fn bind(settings: &Settings) -> Result<Self, String> {
         let all = &settings.address;
-        let own: &[IpAddr] = &[Ipv4Addr::LOCALHOST.into()];
+        // A robot that is for this machine alone has them where it has the rest, so that several can be side by side.
+        let is_local = !all.is_empty() && all.iter().all(IpAddr::is_loopback);
+        let own: &[IpAddr] = if is_local {
+            all
+        } else {
+            &[IpAddr::V4(Ipv4Addr::LOCALHOST)]
+        };
         let wanted = |service, name, addresses: &[IpAddr], port| {
             settings
                 .has(service)
@@ -167,13 +174,16 @@ impl Daemon {
             &settings.state.join("paired"),
         );
         Ok(Self {
-            log: Log::default(),
             access: access.map_err(|error| error.to_string())?,
             clients: Clients::default(),
             seats: Rc::default(),
             held: Held::default(),
             sampler: Sampler::start(&settings.tree).map_err(threads)?,
             rest: Rest::start(&settings.tree).map_err(threads)?,
+            feedback: match settings.has(Service::Feedback) {
+                true => Feedback::start(&settings.tree).map_err(threads)?,
+                false => Feedback::default(),
+            },
             reaper: Reaper::default(),
             owner,
             programs: Programs::default(),
@@ -253,19 +263,25 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), String> {
         .map_err(|error| format!("a thread cannot be started: {error}"))?;
     let words = ports.describe();
     let daemon = Rc::new(Daemon::new(settings, owner, words.clone())?);
-    if daemon.owner.is_none() && geteuid().is_root() {
-        daemon
-            .log
-            .line("programs run as root: name a user for them with --user");
+    // Who has named root knows it.
+    if daemon.settings.user.is_none() && geteuid().is_root() {
+        tracing::warn!(
+            target: log::PROGRAMS,
+            "programs run as root: name a user for them with --user"
+        );
     }
     let reaper = spawn_local({
         let daemon = daemon.clone();
         async move { daemon.reaper.run().await }
     });
     heartbeat::start().map_err(|error| format!("a thread cannot be started: {error}"))?;
+    // Behind the start of the threads that shall not have it.
+    priority::take(Rank::Serving);
     let supervisor = spawn_local(Supervisor::new(daemon.clone()).run());
-    if let Err(why) = daemon.rest.now(limits::REST_LAST_MS).await {
-        daemon.log.line(format_args!("at the start: {why}"));
+    match daemon.rest.now(limits::REST_LAST_MS).await {
+        Err(why) => tracing::warn!(target: log::TREE, "at the start: {why}"),
+        // The tree answers, so it does not hang.
+        Ok(()) => tell_of_rights(&daemon),
     }
     open(&daemon, ports);
     spawn_local(status::serve(daemon.clone(), listener));
@@ -273,6 +289,7 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), String> {
     if !daemon.settings.no_autorun {
         spawn_local(boot::autorun(daemon.clone(), restarts));
     }
+    tracing::info!(target: log::DAEMON, "serves {words}");
     // Whoever started this may not listen.
     let _ = writeln!(std::io::stdout(), "trikd: ready: {words}");
     let [first, second, third] = &mut ends[..] else {
@@ -286,10 +303,25 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), String> {
         _ = supervisor => std::process::abort(),
         _ = reaper => std::process::abort(),
     }
+    tracing::info!(target: log::DAEMON, "ends");
     let (done, ended) = oneshot::channel();
     daemon.programs.tell(Command::Quit(done)).await;
     let _ = ended.await;
     Ok(())
+}
+
+/// Says so if the user of programs cannot drive.
+fn tell_of_rights(daemon: &Daemon) {
+    if let Some(owner) = &daemon.owner
+        && let Some(file) = owner.lacks(&daemon.settings.tree)
+    {
+        let name = &owner.user.name;
+        tracing::warn!(
+            target: log::PROGRAMS,
+            "programs run as {name}, who may not write {}: mount with --allow-other --group and the group of {name}",
+            file.display()
+        );
+    }
 }
 
 /// Begins to accept on all ports.
@@ -311,16 +343,15 @@ fn open(daemon: &Rc<Daemon>, ports: Ports) {
     if let Some(port) = ports.variables {
         port.serve(daemon, server::variables::serve);
     }
-    let told = |daemon: Rc<Daemon>, what: &'static str, task: std::io::Result<()>| {
+    let told = |what: &'static str, task: std::io::Result<()>| {
         if let Err(error) = task {
-            daemon.log.line(format_args!("{what} is off: {error}"));
+            tracing::warn!(target: log::DAEMON, "{what} is off: {error}");
         }
     };
     if daemon.settings.has(Service::Discovery) {
         let daemon = daemon.clone();
         spawn_local(async move {
             told(
-                daemon.clone(),
                 "discovery",
                 server::discovery::answer(daemon, control).await,
             )
@@ -330,7 +361,6 @@ fn open(daemon: &Rc<Daemon>, ports: Ports) {
         let daemon = daemon.clone();
         spawn_local(async move {
             told(
-                daemon.clone(),
                 "telemetry by datagrams",
                 server::datagrams::send(daemon, to).await,
             )
@@ -350,9 +380,9 @@ async fn hear_keys(daemon: Rc<Daemon>, mut pressed: mpsc::Receiver<&'static str>
             daemon.programs.tell(Command::Stop("the stop key")).await;
         } else if key == "Enter" && daemon.access.pairs() {
             match daemon.access.pair_last() {
-                Ok(Some(ip)) => daemon.log.line(format_args!("{ip} is paired")),
+                Ok(Some(ip)) => tracing::info!(target: log::CLIENTS, "{ip} is paired"),
                 Ok(None) => {}
-                Err(error) => daemon.log.line(format_args!("pairing: {error}")),
+                Err(error) => tracing::warn!(target: log::CLIENTS, "pairing: {error}"),
             }
         }
     }

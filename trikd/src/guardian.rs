@@ -3,9 +3,9 @@
 //! Owns one child and nothing else. It is the subreaper behind the daemon, so programs whose daemon is dead are its
 //! children; if the guardian itself dies, the daemon ends in order.
 
-use crate::limits;
 use crate::program::kill;
 use crate::tree::{Access, Tree};
+use crate::{limits, log};
 use nix::sys::prctl;
 use nix::sys::signal::{SigSet, SigmaskHow, Signal};
 use nix::sys::wait::{WaitPidFlag, WaitStatus, waitpid};
@@ -13,7 +13,7 @@ use nix::unistd::{Pid, getppid};
 use std::collections::VecDeque;
 use std::ffi::OsString;
 use std::path::Path;
-use std::process::{Command, ExitCode};
+use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 /// Signals that end both processes.
@@ -37,7 +37,7 @@ pub fn follow(guardian: i32) -> Result<(), String> {
 }
 
 fn start(arguments: &[OsString], restarts: u32) -> Result<Pid, String> {
-    let mut command = Command::new(crate::program::child::SELF);
+    let mut command = crate::program::child::this_program();
     command
         .arg("daemon")
         .arg("--guardian")
@@ -77,8 +77,12 @@ fn rest(tree: &Path) {
     });
     match told.recv_timeout(Duration::from_millis(limits::GUARDIAN_REST_MS)) {
         Ok(Ok(())) => {}
-        Ok(Err(why)) => eprintln!("trikd: {why}"),
-        Err(_) => eprintln!("trikd: the tree at {} does not answer", tree.display()),
+        Ok(Err(why)) => tracing::error!(target: log::TREE, "{why}"),
+        Err(_) => tracing::error!(
+            target: log::TREE,
+            "the tree at {} does not answer",
+            tree.display()
+        ),
     }
 }
 
@@ -134,8 +138,9 @@ pub fn run(tree: &Path, arguments: &[OsString]) -> Result<ExitCode, String> {
             }
             _ => {}
         }
-        eprintln!(
-            "trikd: the serving process has crashed ({status:?}): motors are brought to rest, programs are ended"
+        tracing::error!(
+            target: log::DAEMON,
+            "the serving process has crashed ({status:?}): motors are brought to rest, programs are ended"
         );
         clean_up(tree);
         if is_over {

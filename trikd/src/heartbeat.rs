@@ -2,7 +2,7 @@
 //!
 //! Owns one thread and one counter. It counts its own rounds and not the clock, so a machine that slept is no hang.
 
-use crate::limits;
+use crate::{limits, log};
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -20,7 +20,7 @@ pub fn start() -> io::Result<()> {
         loop {
             std::thread::sleep(Duration::from_millis(limits::BEAT_MS));
             if missing.look(seen.load(Ordering::Relaxed)) >= limits::BEATS_MISSING {
-                eprintln!("trikd: the serving thread hangs: it is ended");
+                tracing::error!(target: log::DAEMON, "the serving thread hangs: it is ended");
                 std::process::abort();
             }
         }

@@ -3,6 +3,7 @@
 //! Owns that thread. What a key does is decided elsewhere.
 
 use crate::brick::sensors::KEYS;
+use crate::priority::{self, Rank};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
@@ -22,6 +23,7 @@ pub fn watch(tree: &Path) -> io::Result<Receiver<&'static str>> {
     let (tell, told) = channel(16);
     let path = tree.join("keys/device");
     let work = move || {
+        priority::take(Rank::Rest);
         while !tell.is_closed() {
             // Errors and ends alike: the tree may come, or come back.
             let _ = File::open(&path)

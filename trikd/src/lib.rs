@@ -10,7 +10,9 @@ pub mod cli;
 pub mod clients;
 pub mod connection;
 pub mod daemon;
+pub mod display;
 pub mod engine;
+pub mod feedback;
 pub mod fuzz;
 pub mod guardian;
 pub mod heartbeat;
@@ -22,6 +24,7 @@ pub mod log;
 #[cfg(feature = "manual")]
 mod manual;
 pub mod outbox;
+pub mod priority;
 pub mod program;
 pub mod protocol;
 pub mod sampler;

@@ -38,10 +38,24 @@ pub const SMALL_FRAME_BYTES: usize = 64 << 10;
 pub const CHANNEL_FRAME_BYTES: usize = 16 << 20;
 /// Bytes of a buffer of frames that are kept when it is empty.
 pub const FRAME_BUFFER_KEPT_BYTES: usize = 64 << 10;
-/// Lines of the log in one second.
-pub const LOG_LINES_PER_SECOND: u32 = 50;
+/// Lines of the log about one matter that may come at once.
+pub const LOG_BURST: f32 = 100.0;
+/// Lines about one matter in a minute in the long run: some 3 MB a day, whatever a client does.
+pub const LOG_LINES_PER_MINUTE: f32 = 20.0;
+/// Lines in a second of what is told only to who asks for `debug` or `trace`.
+pub const LOG_VERBOSE_LINES_PER_SECOND: f32 = 50.0;
 /// Characters of one line of the log.
 pub const LOG_LINE_CHARACTERS: usize = 400;
+/// Bytes of a request that the log shows to who asks for `debug`.
+pub const LOG_REQUEST_BYTES: usize = 80;
+/// Beeps and lights that may wait.
+pub const FEEDBACK_WAITS: usize = 8;
+/// Priority of the threads that stop motors (nice(2): -20 goes first, 19 last).
+pub const NICE_REST: i32 = -20;
+/// Priority of the thread that serves. Not much before the tree: who floods it would starve that.
+pub const NICE_SERVING: i32 = -5;
+/// Priority of programs.
+pub const NICE_PROGRAM: i32 = 5;
 /// Milliseconds within which a key pairs the computer that asked last.
 pub const PAIRING_MS: u64 = 30_000;
 /// Paired computers.
@@ -154,3 +168,5 @@ pub const BEAT_MS: u64 = 500;
 pub const BEATS_MISSING: u32 = 20;
 /// Rests of which the status tells how long they took.
 pub const RESTS_SHOWN: usize = 256;
+/// Numbers of one picture that a program shows, three for each pixel at most.
+pub const SHOWN_NUMBERS: usize = 3 << 20;

@@ -15,8 +15,10 @@ pub mod reaper;
 pub mod rest;
 
 use crate::daemon::Daemon;
-use crate::limits;
-use child::{Child, Language, SELF, Said};
+use crate::feedback::Moment;
+use crate::protocol::news::{self, End};
+use crate::{limits, log};
+use child::{Child, Language, Said};
 use kill::{group, sweep};
 use nix::sys::signal::Signal;
 use nix::unistd::Pid;
@@ -124,7 +126,11 @@ impl Supervisor {
                 );
             }
             Command::Direct(code) => self.direct(&code).await,
-            Command::Stop(who) => self.end(Way::Order(who)).await,
+            Command::Stop(who) => {
+                self.end(Way::Order(who)).await;
+                // Also what came while nothing ran: after a stop everything begins anew.
+                self.daemon.mailbox.forget_kept();
+            }
             Command::Mail(hull, text) => {
                 let heard = self
                     .current
@@ -143,6 +149,10 @@ impl Supervisor {
                 {
                     current.web.push(answer);
                 }
+            }
+            Command::Ask(answer) => {
+                // Who asked may have left.
+                let _ = answer.send(self.daemon.programs.describe());
             }
             Command::Quit(_) => {}
         }
@@ -190,6 +200,7 @@ impl Supervisor {
         let mut child = match started {
             Ok(child) => child,
             Err(error) => {
+                tracing::error!(target: log::PROGRAMS, "{name} cannot be started: {error}");
                 self.broadcast(&format!("error: {name} cannot be started: {error}"));
                 return;
             }
@@ -208,11 +219,9 @@ impl Supervisor {
             Instant::now(),
         ));
         drop(shown);
-        daemon
-            .log
-            .line(format_args!("{name} starts as process {}", child.pid));
+        tracing::info!(target: log::PROGRAMS, "{name} starts as process {}", child.pid);
         if !is_quiet {
-            self.broadcast(&format!("info: {name} has started"));
+            self.broadcast(&format!("info: {}", news::started(&name)));
         }
         self.current = Some(Current {
             child,
@@ -346,6 +355,7 @@ impl Supervisor {
         self.kill_all(&mut current).await;
         let last = self.daemon.rest.now(limits::REST_LAST_MS).await;
         self.tell_rest(last, rest_us);
+        self.daemon.feedback.show(Moment::Ended);
         self.tell_end(&mut current, &way);
         self.daemon.programs.shown.borrow_mut().text = None;
         self.daemon.mailbox.forget_kept();
@@ -362,10 +372,11 @@ impl Supervisor {
             let left = sweep(Pid::this(), &spared);
             if left == 0 || Instant::now() > deadline {
                 if left > 0 {
-                    self.daemon.log.line(format_args!(
+                    tracing::error!(
+                        target: log::PROGRAMS,
                         "{left} processes of {} cannot be killed",
                         current.name
-                    ));
+                    );
                 }
                 break;
             }
@@ -408,7 +419,7 @@ impl Supervisor {
     /// Starts the process that kills all others of the user of programs.
     fn kill_user(&self) -> Option<Pid> {
         let user = &self.daemon.owner.as_ref()?.user;
-        let mut command = std::process::Command::new(SELF);
+        let mut command = child::this_program();
         command.arg("kill-user").stdin(Stdio::null());
         std::os::unix::process::CommandExt::uid(&mut command, user.uid.as_raw());
         std::os::unix::process::CommandExt::gid(&mut command, user.gid.as_raw());
@@ -422,8 +433,9 @@ impl Supervisor {
             shown.rests_us.pop_front();
         }
         shown.rests_us.push_back(rest_us);
+        tracing::debug!(target: log::TREE, "at rest after {rest_us} us");
         if let Err(why) = rested {
-            self.daemon.log.line(&why);
+            tracing::error!(target: log::TREE, "{why}");
             self.broadcast(&format!("error: {why}"));
         }
     }
@@ -431,36 +443,22 @@ impl Supervisor {
     fn tell_end(&self, current: &mut Current, way: &Way) {
         self.tell_dropped(current.meter.take_dropped(Instant::now(), true));
         let name = &current.name;
-        let after = format!("after {:.1} s", current.since.elapsed().as_secs_f64());
-        let mut failed = true;
-        let text = match way {
-            Way::Own(Ended::Code(0)) => {
-                failed = current.told_error;
-                if failed {
-                    format!("{name} has failed {after}")
-                } else {
-                    format!("{name} has ended {after}")
-                }
-            }
-            Way::Own(Ended::Code(code)) => {
-                format!("{name} has failed with exit code {code} {after}")
-            }
+        let seconds = current.since.elapsed().as_secs_f64();
+        let end = match way {
+            Way::Own(Ended::Code(0)) if current.told_error => End::Failed,
+            Way::Own(Ended::Code(0)) => End::Well,
+            Way::Own(Ended::Code(code)) => End::Code(*code),
             Way::Own(Ended::Signal(signal)) => {
-                let signal = Signal::try_from(*signal).map_or("a signal", Signal::as_str);
-                let hint = if signal == "SIGKILL" {
-                    ": perhaps the memory was short"
-                } else {
-                    ""
-                };
-                format!("{name} was killed by {signal} {after}{hint}")
+                End::Killed(Signal::try_from(*signal).map_or("a signal", Signal::as_str))
             }
-            Way::Order(who) => {
-                failed = false;
-                format!("{name} was stopped by {who} {after}")
-            }
-            Way::Greed(why) => format!("{name} was stopped {after}: {why}"),
+            Way::Order(who) => End::Stopped(who),
+            Way::Greed(why) => End::Greedy(why),
         };
-        self.daemon.log.line(&text);
+        let (text, failed) = (end.tell(name, seconds), end.is_failure());
+        match failed {
+            true => tracing::warn!(target: log::PROGRAMS, "{text}"),
+            false => tracing::info!(target: log::PROGRAMS, "{text}"),
+        }
         let is_news = failed && !current.told_error;
         if is_news {
             self.broadcast(&format!("error: {text}"));

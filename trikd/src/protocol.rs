@@ -6,4 +6,5 @@ pub mod frame;
 pub mod gamepad;
 pub mod http;
 pub mod mail;
+pub mod news;
 pub mod telemetry;

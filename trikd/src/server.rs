@@ -13,8 +13,8 @@ pub mod variables;
 pub mod video;
 
 use crate::daemon::Daemon;
-use crate::limits;
 use crate::protocol::mail::plain;
+use crate::{limits, log};
 use socket2::{Domain, Protocol, SockRef, Socket, Type};
 use std::cell::Cell;
 use std::io;
@@ -160,23 +160,22 @@ async fn accept<F>(
             Ok(accepted) => accepted,
             Err(error) => {
                 // Too many open files: those that close make room.
-                daemon.log.line(format_args!("{name}: {error}"));
+                tracing::warn!(target: log::CLIENTS, "{name}: {error}");
                 tokio::time::sleep(Duration::from_millis(100)).await;
                 continue;
             }
         };
         let peer = SocketAddr::new(plain(peer.ip()), peer.port());
         if !daemon.access.admits(peer.ip()) {
-            daemon
-                .log
-                .line(format_args!("{name}: {peer} is not in the list of --allow"));
+            tracing::warn!(target: log::CLIENTS, "{name}: {peer} is not in the list of --allow");
             continue;
         }
         let Some(seat) = Seat::take(&daemon.seats, usize::from(daemon.settings.connections)) else {
-            daemon.log.line(format_args!(
+            tracing::warn!(
+                target: log::CLIENTS,
                 "{name}: {peer} is refused: there are {} connections already",
                 daemon.seats.get()
-            ));
+            );
             continue;
         };
         prepare(&stream);

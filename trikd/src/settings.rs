@@ -4,11 +4,12 @@
 
 use crate::access::Network;
 use crate::limits;
+use crate::log::Filter;
 use clap::{Args, ValueEnum};
 use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;
 
-/// A server that can be left out.
+/// Something that can be left out.
 #[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
 pub enum Service {
     /// Messages between robots.
@@ -21,6 +22,8 @@ pub enum Service {
     Variables,
     /// The answer to who looks for robots in the network.
     Discovery,
+    /// The beep after an upload and the green light after a program.
+    Feedback,
 }
 
 /// What ends the program when it is pressed.
@@ -70,7 +73,7 @@ pub struct Settings {
     /// Port of variables of the program, only for this machine.
     #[arg(long, value_name = "PORT", default_value_t = 10000)]
     pub variables_port: u16,
-    /// Do not serve this; may be given several times.
+    /// Do without this; may be given several times.
     #[arg(long, value_name = "SERVICE", value_enum)]
     pub without: Vec<Service>,
     /// Send sensor values there, one JSON object in each datagram.
@@ -119,6 +122,10 @@ pub struct Settings {
     /// Do not run autorun.py or autorun.js at the start.
     #[arg(long)]
     pub no_autorun: bool,
+    /// What to tell on standard error: off, error, warn, info, debug or trace, and other levels for some matters, such
+    /// as warn,programs=debug; matters are clients, programs, tree and daemon.
+    #[arg(long, value_name = "LEVEL", env = "TRIKD_LOG", default_value = "info")]
+    pub log: Filter,
     /// The Python interpreter.
     #[arg(long, value_name = "PROGRAM", default_value = "python3")]
     pub python: PathBuf,

@@ -111,6 +111,11 @@ struct TreeArgs {
     /// the rights of trikfs.
     #[arg(long, value_name = "GROUP", value_parser = group_id)]
     config_group: Option<u32>,
+    /// Group whose members may write what the mounting user may write of each node, such as motors, but not
+    /// MOUNTPOINT/config: for programs without rights. Nodes whose description names a group keep that one. Needs
+    /// --allow-other.
+    #[arg(long, value_name = "GROUP", value_parser = group_id)]
+    group: Option<u32>,
     /// How to speak to the kernel.
     #[arg(long, value_name = "NAME", value_enum, default_value_t = TransportName::Native)]
     transport: TransportName,
@@ -356,6 +361,9 @@ impl TreeArgs {
         }
         if let Some(group) = self.config_group {
             option("--config-group", Path::new(&group.to_string()));
+        }
+        if let Some(group) = self.group {
+            option("--group", Path::new(&group.to_string()));
         }
         if let Some(name) = self.transport.to_possible_value() {
             option("--transport", Path::new(name.get_name()));

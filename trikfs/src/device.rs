@@ -376,7 +376,7 @@ pub fn add_buses(source: &SourceDescription, around: &Surroundings, buses: &mut 
 enum PathKind {
     /// A file of sysfs, procfs or the like, whose content is made when it is read.
     Attribute,
-    /// A regular file or block device.
+    /// A regular file, a block device or a display: tuples at their places.
     Regular,
     /// A character device that each handle may open for itself.
     CharDevice,
@@ -392,6 +392,9 @@ const SHARED_MAJORS: [u32; 14] = [
     4, 5, 13, 136, 137, 138, 139, 140, 141, 142, 143, 166, 188, 204,
 ];
 
+/// Major number of frame buffers: a picture is written from the beginning each time (the same source).
+const DISPLAY_MAJOR: u32 = 29;
+
 fn kind_of(path: &Path) -> Result<PathKind, Error> {
     let meta = std::fs::metadata(path).map_err(|error| device_error(path, &error))?;
     let kind = meta.file_type();
@@ -400,6 +403,9 @@ fn kind_of(path: &Path) -> Result<PathKind, Error> {
     }
     if kind.is_char_device() {
         let major = u32::try_from((meta.rdev() >> 8) & 0xfff).unwrap_or(0);
+        if major == DISPLAY_MAJOR {
+            return Ok(PathKind::Regular);
+        }
         let shared = SHARED_MAJORS.contains(&major);
         return Ok(if shared {
             PathKind::SharedDevice

@@ -76,6 +76,8 @@ pub struct Owner {
     pub gid: u32,
     /// A group that may write `config` as well.
     pub config_group: Option<u32>,
+    /// A group that may write the files of nodes as their owner may.
+    pub group: Option<u32>,
 }
 
 /// All names of one configuration.
@@ -228,6 +230,7 @@ impl Tree {
             uid,
             gid,
             config_group,
+            group,
         } = self.owner;
         let mut attr = Attr {
             ino,
@@ -279,7 +282,10 @@ impl Tree {
         }
         if let Some(node) = entry.kind.node() {
             attr.uid = node.description.owner.unwrap_or(attr.uid);
-            attr.gid = node.description.group.unwrap_or(attr.gid);
+            attr.gid = node.description.group.or(group).unwrap_or(attr.gid);
+            if group.is_some() && node.description.group.is_none() {
+                attr.mode |= group_rights(attr.mode);
+            }
         }
         Ok(attr)
     }
@@ -310,6 +316,14 @@ impl Tree {
             ino,
         })
         .collect()
+    }
+}
+
+/// What the group of the mount gets of a mode: to write what its owner writes, unless it may not even read.
+fn group_rights(mode: u16) -> u16 {
+    match mode & 0o040 {
+        0 => 0,
+        _ => (mode & 0o200) >> 3,
     }
 }
 

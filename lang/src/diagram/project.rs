@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 /// A whole project.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Project {
     /// All diagrams, in the order of the save.
     pub diagrams: Vec<Diagram>,
@@ -32,7 +32,7 @@ pub enum DiagramKind {
 }
 
 /// One diagram: a graph of blocks.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Diagram {
     /// Id of the graphical object.
     pub id: String,
@@ -62,7 +62,7 @@ pub struct Parameter {
 }
 
 /// One block.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Block {
     /// Id of the graphical object.
     pub id: String,
@@ -100,7 +100,7 @@ pub struct Argument {
 }
 
 /// One link between blocks.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Link {
     /// Id of the graphical object.
     pub id: String,

@@ -86,6 +86,35 @@ fn a_group_may_be_given_the_configuration() {
 }
 
 #[test]
+fn a_group_may_be_given_what_moves_and_not_the_configuration() {
+    let config = "trikfs = {
+      m = { src = '$DIR/m', input_tuple_size = 1, rest = 0, poll_ms = 50, format = 'u8 duty' },
+      sensor = { src = '/dev/zero', input_tuple_size = 1, mode = 0444 },
+      own = { src = '/dev/null', input_tuple_size = 1, group = 77 },
+      private = { src = '/dev/null', input_tuple_size = 1, mode = '0600' },
+    }";
+    let board = Board::new();
+    board.file("m", "x");
+    let Some(m) = mount_with(board, config, &["--allow-other", "--group", "4321"]) else {
+        return;
+    };
+    let rights = |name: &str| {
+        let found = std::fs::metadata(m.path(name)).unwrap();
+        (found.permissions().mode() & 0o777, found.gid())
+    };
+    for name in ["value", "device", "bin_data", "value0", "poll_ms", "owner"] {
+        assert_eq!(rights(&format!("m/{name}")), (0o664, 4321), "{name}");
+    }
+    assert_eq!(rights("m/fault"), (0o444, 4321));
+    assert_eq!(rights("sensor/value"), (0o444, 4321));
+    assert_eq!(rights("own/value"), (0o644, 77));
+    assert_eq!(rights("private/value"), (0o600, 4321));
+    let mounting = nix::unistd::getgid().as_raw();
+    assert_eq!(rights("config"), (0o644, mounting));
+    assert_eq!(rights("stop"), (0o222, mounting));
+}
+
+#[test]
 fn the_time_of_a_value_is_the_time_of_its_sample() {
     let Some(m) =
         mount("trikfs = { n = { src = '$DIR/in', input_tuple_size = 4, on_event = true } }")

@@ -52,6 +52,7 @@ fn every_shipped_robot_has_every_port_and_says_what_everything_is() {
             "gyroscope/heading",
             "heading",
             "odometry",
+            "display",
         ] {
             robot.node(path);
         }

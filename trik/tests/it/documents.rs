@@ -1,8 +1,9 @@
 //! What documents show of a robot: transcripts in fences `sh robot` are run on a fresh one.
 //!
-//! Lines with `$ ` are run in order in the tree, the others are what they print. The view of ev3dev is beside the tree.
+//! Lines with `$ ` are run in order in the tree, the others are what they print. The view of ev3dev is beside the tree,
+//! and trikd takes programs.
 
-use crate::rig::robot;
+use crate::rig::{loopback, robot};
 use harness::documents::examples;
 use std::path::Path;
 
@@ -16,6 +17,7 @@ fn every_transcript_of_a_robot_is_what_really_happens() {
         "docs/user/simulator.md",
         "docs/user/trik.md",
         "docs/user/ev3dev.md",
+        "docs/user/run.md",
     ] {
         let Ok(text) = std::fs::read_to_string(root.join(document)) else {
             continue;
@@ -24,7 +26,7 @@ fn every_transcript_of_a_robot_is_what_really_happens() {
             if example.info != "sh robot" {
                 continue;
             }
-            let Some(robot) = robot(&["--ev3dev"]) else {
+            let Some(robot) = robot(&["--ev3dev", "--trikd-address", &loopback()]) else {
                 return;
             };
             count += 1;

@@ -16,6 +16,8 @@ mod examples;
 mod faults;
 /// Speed that is held, heading and place.
 mod hold;
+/// Programs that come over the network.
+mod programs;
 /// A running `trik up`.
 mod rig;
 /// What is said to a person, and what is refused.

@@ -17,6 +17,7 @@ use std::os::fd::AsRawFd;
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -95,6 +96,15 @@ impl Pose {
     }
 }
 
+/// An address of this machine that no other test has, so that every robot can have the ports that clients know.
+pub fn loopback() -> String {
+    static COUNT: AtomicU32 = AtomicU32::new(0);
+    let count = COUNT.fetch_add(1, Ordering::Relaxed);
+    let number = std::process::id().wrapping_mul(64).wrapping_add(count);
+    let [_, b, c, d] = number.to_be_bytes();
+    format!("127.{}.{c}.{d}", 64 + b % 64)
+}
+
 /// A robot in a home of its own; None if nothing can be mounted here.
 pub fn robot(words: &[&str]) -> Option<Robot> {
     Some(Robot::start(Arc::new(Home::new()?), words))
@@ -106,6 +116,10 @@ impl Robot {
         let cache = home.0.path("cache");
         let mut command = home.command(&["up", "--cache"]);
         command.arg(cache).args(words);
+        if !words.iter().any(|word| word.starts_with("--trikd")) {
+            // Tests run side by side, and there is one set of ports that clients know.
+            command.arg("--no-trikd");
+        }
         command
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
@@ -113,17 +127,7 @@ impl Robot {
         let mut process = command.spawn().expect("trik");
         let complaints = Arc::new(Mutex::new(String::new()));
         let (stdout, stderr) = (process.stdout.take(), process.stderr.take());
-        let heard = complaints.clone();
-        std::thread::spawn(move || {
-            for line in stderr
-                .into_iter()
-                .flat_map(|pipe| BufReader::new(pipe).lines())
-            {
-                let mut all = heard.lock().unwrap_or_else(PoisonError::into_inner);
-                all.push_str(&line.unwrap_or_default());
-                all.push('\n');
-            }
-        });
+        collect(stderr, &complaints);
         let (say, lines) = channel();
         std::thread::spawn(move || {
             for line in stdout
@@ -166,7 +170,9 @@ impl Robot {
         for entry in fs::read_dir(robot.home.base()).expect("robots").flatten() {
             let lock = entry.path();
             if lock.extension().is_some_and(|ending| ending == "lock")
-                && fs::read_to_string(&lock).is_ok_and(|text| Path::new(text.trim()) == robot.root)
+                && fs::read_to_string(&lock).is_ok_and(|text| {
+                    text.lines().next().map(Path::new) == Some(robot.root.as_path())
+                })
             {
                 robot.devices = lock.with_extension("board");
             }
@@ -365,6 +371,7 @@ impl Robot {
             &self.root,
             &self.devices,
             &self.devices.with_extension("lock"),
+            &self.devices.with_extension("trikd"),
             &self.devices.with_extension("ev3dev"),
         ] {
             assert!(!path.exists(), "{} is left", path.display());
@@ -389,6 +396,21 @@ impl Drop for Robot {
         assert_eq!(status.code(), Some(0), "{}", self.complaints());
         self.leaves_nothing();
     }
+}
+
+/// Gathers the lines of a pipe in the background.
+fn collect(pipe: Option<impl Read + Send + 'static>, into: &Arc<Mutex<String>>) {
+    let heard = into.clone();
+    std::thread::spawn(move || {
+        for line in pipe
+            .into_iter()
+            .flat_map(|pipe| BufReader::new(pipe).lines())
+        {
+            let mut all = heard.lock().unwrap_or_else(PoisonError::into_inner);
+            all.push_str(&line.unwrap_or_default());
+            all.push('\n');
+        }
+    });
 }
 
 fn only_child(pid: u32) -> u32 {

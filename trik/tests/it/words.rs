@@ -200,7 +200,15 @@ fn on_a_terminal_the_robot_is_shown_in_place_and_the_terminal_is_given_back() {
     let Some(home) = Home::new() else { return };
     let mut command = std::process::Command::new(harness::tools::python_program());
     command
-        .args(["-c", ON_A_TERMINAL, "motors, %", TRIK, "up", "--cache"])
+        .args([
+            "-c",
+            ON_A_TERMINAL,
+            "motors, %",
+            TRIK,
+            "up",
+            "--no-trikd",
+            "--cache",
+        ])
         .arg(home.0.path("cache"))
         .env("XDG_RUNTIME_DIR", home.0.dir())
         .env("TERM", "xterm");

@@ -131,6 +131,7 @@ impl Led {
 pub struct Sound {
     play: Rc<Node>,
     say: Rc<Node>,
+    tone: Rc<Node>,
 }
 
 impl Sound {
@@ -138,6 +139,7 @@ impl Sound {
         Self {
             play: tree.node("sound/play/value", Access::Write),
             say: tree.node("sound/say/value", Access::Write),
+            tone: tree.node("sound/tone/value", Access::Write),
         }
     }
 
@@ -155,5 +157,13 @@ impl Sound {
     /// Those of the tree.
     pub fn say(&self, text: &str) -> io::Result<()> {
         self.say.write(text)
+    }
+
+    /// A tone in the background: Hz and milliseconds.
+    ///
+    /// # Errors
+    /// Those of the tree.
+    pub fn tone(&self, hz: i32, ms: i32) -> io::Result<()> {
+        self.tone.write(&format!("{hz} {ms}\n"))
     }
 }

@@ -1,8 +1,9 @@
 //! The functions that our scripts in JavaScript stand on: what cannot be said in the language itself.
 //!
-//! Owns what one engine has beside its values. `robot` has the functions over the tree, `system` those over files,
-//! processes and other threads.
+//! Owns what one engine has beside its values. `robot` has the functions over the tree, `media` those of display and
+//! pictures, `system` those over files, processes and other threads.
 
+pub mod media;
 pub mod robot;
 pub mod system;
 
@@ -84,6 +85,7 @@ pub fn make<'js>(ctx: &Ctx<'js>, own: &Rc<Own>) -> rquickjs::Result<Object<'js>>
     native.set("timersMax", limits::JS_TIMERS)?;
     events(&native, own)?;
     robot::install(&native, own)?;
+    media::install(&native, own)?;
     system::install(&native, own)?;
     Ok(native)
 }

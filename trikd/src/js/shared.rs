@@ -5,6 +5,7 @@
 
 use super::machine::{self, Job};
 use super::outside::Output;
+use crate::display::Display;
 use crate::limits;
 use nix::sys::eventfd::{EfdFlags, EventFd};
 use std::collections::{HashMap, VecDeque};
@@ -121,6 +122,7 @@ pub struct Shared {
     /// Rung when the process has something to do: a question, an end.
     pub bell: Bell,
     output: Mutex<Box<dyn Output>>,
+    display: Mutex<Display>,
     mail: Mutex<VecDeque<(i32, String)>>,
     questions: Mutex<VecDeque<Question>>,
     running: Mutex<HashMap<String, Arc<Slot>>>,
@@ -136,6 +138,7 @@ impl Shared {
     /// No more descriptors.
     pub fn new(root: PathBuf, folder: PathBuf, output: Box<dyn Output>) -> io::Result<Self> {
         Ok(Self {
+            display: Mutex::new(Display::new(&root)),
             root,
             folder,
             bell: Bell::new()?,
@@ -147,6 +150,11 @@ impl Shared {
             failure: Mutex::default(),
             quits: AtomicBool::new(false),
         })
+    }
+
+    /// The display, which all threads draw on.
+    pub fn display(&self) -> MutexGuard<'_, Display> {
+        lock(&self.display)
     }
 
     /// The way out, for one message; when nobody reads it, the program ends.

@@ -5,7 +5,7 @@
 
 use super::Command;
 use crate::daemon::Daemon;
-use crate::{limits, scripts};
+use crate::{limits, log, scripts};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::time::Duration;
@@ -51,23 +51,25 @@ pub async fn autorun(daemon: Rc<Daemon>, restarts: u32) {
     let path = match choose(&settings.scripts, count, restarts) {
         None => return,
         Some(Ok(path)) => path,
-        Some(Err(why)) => return daemon.log.line(why),
+        Some(Err(why)) => return tracing::warn!(target: log::PROGRAMS, "{why}"),
     };
     if daemon.sampler.snapshot().await.keys.contains(&true) {
-        return daemon.log.line(format_args!(
+        return tracing::warn!(
+            target: log::PROGRAMS,
             "{} is not run: a key is held down",
             path.display()
-        ));
+        );
     }
     if daemon.programs.runs() {
-        return daemon.log.line(format_args!(
+        return tracing::warn!(
+            target: log::PROGRAMS,
             "{} is not run: another program runs already",
             path.display()
-        ));
+        );
     }
     let note = |count: u32| {
         if let Err(error) = scripts::replace(&file, format!("{count}\n").as_bytes(), 0o600) {
-            daemon.log.line(format_args!("{}: {error}", file.display()));
+            tracing::warn!(target: log::DAEMON, "{}: {error}", file.display());
         }
     };
     note(count + 1);

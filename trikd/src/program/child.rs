@@ -11,7 +11,9 @@ use nix::unistd::{Pid, User};
 use std::ffi::OsString;
 use std::io;
 use std::os::fd::OwnedFd;
+use std::os::unix::fs::MetadataExt;
 use std::os::unix::net::UnixStream as StdStream;
+use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use tokio::io::AsyncReadExt;
@@ -65,8 +67,40 @@ pub struct Owner {
     pub user: User,
 }
 
+impl Owner {
+    /// A motor of the tree that programs may not drive, if there is one: as the modes of its files say (path_resolution(7)).
+    pub fn lacks(&self, tree: &Path) -> Option<PathBuf> {
+        let motors = std::fs::read_dir(tree.join("motors")).ok()?.flatten();
+        let mut files = motors.map(|motor| motor.path().join("value"));
+        files.find(|file| {
+            std::fs::metadata(file)
+                .is_ok_and(|found| !self.may_write(found.mode(), found.uid(), found.gid()))
+        })
+    }
+
+    fn may_write(&self, mode: u32, uid: u32, gid: u32) -> bool {
+        let bit = if uid == self.user.uid.as_raw() {
+            0o200
+        } else if gid == self.user.gid.as_raw() {
+            0o020
+        } else {
+            0o002
+        };
+        mode & bit != 0
+    }
+}
+
 /// This program, whatever has happened to its file since it was started.
 pub const SELF: &str = "/proc/self/exe";
+/// The name that it is started under: it may be part of a program that has several.
+pub const NAME: &str = "trikd";
+
+/// The command that starts this program once more.
+pub fn this_program() -> Command {
+    let mut command = Command::new(SELF);
+    command.arg0(NAME);
+    command
+}
 
 /// Something that a child did.
 #[derive(Debug)]
@@ -128,7 +162,7 @@ pub fn start(
     path: Option<&Path>,
     reaper: &Reaper,
 ) -> io::Result<Child> {
-    let mut command = Command::new(SELF);
+    let mut command = this_program();
     command
         .arg("launch")
         .arg("--parent")
@@ -157,6 +191,11 @@ pub fn start(
         .env("HOME", &settings.scripts)
         .env("LANG", "C.UTF-8")
         .env("TRIK_TREE", &settings.tree)
+        // With it programs in all languages draw.
+        .env(
+            "TRIKD",
+            std::env::current_exe().unwrap_or_else(|_| "trikd".into()),
+        )
         // Each further heap of a thread would take 64 MiB of the address space that a program may have.
         .env("MALLOC_ARENA_MAX", "1")
         .env("PYTHONPATH", python)

@@ -2,7 +2,8 @@
 //!
 //! What the hidden command `launch` does. Owns what a program may have; knows no languages.
 
-use super::kill;
+use super::{child, kill};
+use crate::priority::{self, Rank};
 use clap::Args;
 use nix::sys::prctl;
 use nix::sys::resource::{Resource, rlim_t, setrlimit};
@@ -52,7 +53,11 @@ impl Launch {
         let Some((program, arguments)) = self.program.split_first() else {
             return "no program is named".to_owned();
         };
-        let error = Command::new(program).args(arguments).exec();
+        let mut command = Command::new(program);
+        if program == child::SELF {
+            command.arg0(child::NAME);
+        }
+        let error = command.args(arguments).exec();
         let hint = match error.raw_os_error() {
             Some(libc::ENOEXEC) => ": it is made for another processor, or is no program",
             Some(libc::ENOENT) => ": it is not there, or what its first line names is not",
@@ -69,6 +74,7 @@ impl Launch {
         // Fails only for who leads a group already, which is what is wanted.
         let _ = setsid();
         SigSet::empty().thread_swap_mask(SigmaskHow::SIG_SETMASK)?;
+        priority::take(Rank::Program);
         let _ = std::fs::write("/proc/self/oom_score_adj", FIRST_TO_GO);
         let memory = self.memory_mib.saturating_mul(1 << 20);
         limit(Resource::RLIMIT_AS, memory)?;

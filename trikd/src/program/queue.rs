@@ -3,6 +3,7 @@
 //! Owns the queue and its limit. Knows no processes.
 
 use crate::limits;
+use crate::protocol::news;
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::fmt::Write;
@@ -25,6 +26,8 @@ pub enum Command {
     Mail(i32, String),
     /// The variables that the program shows, as a JSON object.
     Web(oneshot::Sender<String>),
+    /// Tell what runs and how the last one ended, when everything before this is done.
+    Ask(oneshot::Sender<String>),
     /// End what runs, then tell.
     Quit(oneshot::Sender<()>),
 }
@@ -73,7 +76,7 @@ impl Programs {
         if matches!(command, Command::Stop(_) | Command::Quit(_)) {
             self.queue
                 .borrow_mut()
-                .retain(|other| matches!(other, Command::Quit(_)));
+                .retain(|other| matches!(other, Command::Quit(_) | Command::Ask(_)));
         } else {
             while self.queue.borrow().len() >= limits::COMMANDS {
                 self.drained.notified().await;
@@ -112,8 +115,10 @@ impl Programs {
     pub fn describe(&self) -> String {
         let shown = self.shown.borrow();
         let mut text = match &shown.text {
-            Some((text, since)) => format!("program {text} for {} s\n", since.elapsed().as_secs()),
-            None => "program none\n".to_owned(),
+            Some((text, since)) => {
+                news::running(&format!("{text} for {} s", since.elapsed().as_secs()))
+            }
+            None => news::running(news::NONE),
         };
         let _ = writeln!(
             text,
@@ -121,7 +126,7 @@ impl Programs {
             shown.started, shown.failed
         );
         if !shown.last_end.is_empty() {
-            let _ = writeln!(text, "last {}", shown.last_end);
+            text.push_str(&news::last(&shown.last_end));
         }
         text.push_str(&shown.rests());
         text

@@ -4,6 +4,7 @@
 //! they like.
 
 use crate::limits;
+use crate::priority::{self, Rank};
 use crate::tree::{Access, Tree};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -55,6 +56,7 @@ impl Rest {
 }
 
 fn serve(root: &Path, asked: &Receiver<Answer>) {
+    priority::take(Rank::Rest);
     let tree = Tree::new(root);
     let stop = tree.node("stop", Access::Write);
     while let Ok(first) = asked.recv() {
@@ -79,10 +81,29 @@ pub fn explain(root: &Path, error: &io::Error) -> String {
     }
 }
 
+/// Whether a text is one of [`explain`]: after a stop something may still move.
+pub fn is_explained(text: &str) -> bool {
+    let beginnings = [
+        "there is no tree at ",
+        "the tree at ",
+        "not everything is at rest: ",
+    ];
+    beginnings.iter().any(|start| text.starts_with(start))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::scratch::Scratch;
+
+    #[test]
+    fn every_failure_is_told_so_that_it_is_known_as_one() {
+        for code in [libc::ENOENT, libc::ENOTCONN, libc::EIO] {
+            let text = explain(Path::new("/t"), &io::Error::from_raw_os_error(code));
+            assert!(is_explained(&text), "{text}");
+        }
+        assert!(!is_explained("x.js was stopped by a client after 0.1 s"));
+    }
 
     #[test]
     fn everything_is_brought_to_rest_by_one_write() {

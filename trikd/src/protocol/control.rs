@@ -24,6 +24,8 @@ pub enum Request<'a> {
     Direct(&'a [u8]),
     /// End the program and bring the robot to rest.
     Stop,
+    /// What runs now, and how the last program ended, when everything asked for before is done.
+    Status,
     /// Something else.
     Unknown,
 }
@@ -38,6 +40,7 @@ impl<'a> Request<'a> {
             b"version" => return Self::Version,
             b"configVersion" => return Self::ConfigVersion,
             b"stop" => return Self::Stop,
+            b"status" => return Self::Status,
             _ => {}
         }
         if let Some(rest) = frame.strip_prefix(b"file:") {
@@ -81,6 +84,7 @@ mod tests {
         );
         assert_eq!(Request::parse(b"direct:x"), Request::Direct(b"x"));
         assert_eq!(Request::parse(b"keepalive now"), Request::Keepalive);
+        assert_eq!(Request::parse(b"status"), Request::Status);
         for unknown in [
             &b""[..],
             b"Stop",

@@ -64,6 +64,21 @@ fn count(text: &[u8]) -> Option<i32> {
         .flatten()
 }
 
+/// The usual head, a few digits and a colon, and how long it is. None: it is another one, or not whole yet.
+fn plain_head(rest: &[u8]) -> Option<(usize, usize)> {
+    // So many digits fit into 32 bits in any case.
+    const DIGITS: usize = 9;
+    let mut size = 0;
+    for (index, byte) in rest.iter().take(DIGITS + 1).enumerate() {
+        match byte {
+            b'0'..=b'9' if index < DIGITS => size = size * 10 + usize::from(byte - b'0'),
+            b':' if index > 0 => return Some((size, index + 1)),
+            _ => return None,
+        }
+    }
+    None
+}
+
 impl Decoder {
     /// For frames of at most `limit` bytes.
     pub fn new(limit: usize) -> Self {
@@ -100,6 +115,16 @@ impl Decoder {
     pub fn next(&mut self) -> Result<Option<&[u8]>, Violation> {
         loop {
             let rest = &self.buffer[self.done..];
+            if let Some((size, head)) = plain_head(rest)
+                && (1..=self.limit).contains(&size)
+            {
+                let from = self.done + head;
+                if self.buffer.len() - from < size {
+                    return Ok(None);
+                }
+                self.done = from + size;
+                return Ok(Some(&self.buffer[from..from + size]));
+            }
             let head = &rest[..rest.len().min(limits::FRAME_HEADER_BYTES)];
             let Some(colon) = head.iter().position(|byte| *byte == b':') else {
                 return if head.len() == limits::FRAME_HEADER_BYTES {

@@ -14,6 +14,7 @@ import json
 import os
 import queue
 import random as _random
+import shutil
 import struct
 import subprocess
 import sys
@@ -394,18 +395,136 @@ class Camera:
         self._colour.close()
 
 
+def _once(told, what, why):
+    """A failure that ends no program is told once."""
+    if what not in told:
+        told.add(what)
+        if _channel:
+            _channel.send('info', '%s: %s' % (what, why))
+        else:
+            print('info: %s: %s' % (what, why), file=sys.stderr)
+
+
+class Display:
+    """What is drawn goes to `trikd draw`, a process beside this one. What goes wrong is told once."""
+
+    def __init__(self):
+        self._process, self._lock, self._told = None, threading.Lock(), set()
+
+    def _start(self):
+        # Standard input and output of this process are not the helper's.
+        program = os.environ.get('TRIKD') or shutil.which('trikd') or 'trikd'
+        self._process = subprocess.Popen([program, 'draw', '--answers', '--tree', _ROOT],
+                                         stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+
+    def _order(self, name, line, data=b''):
+        line = line.replace('\n', '\\n').encode('utf-8', 'replace') + b'\n' + data
+        with self._lock:
+            try:
+                if self._process is None:
+                    self._start()
+                self._process.stdin.write(line)
+                self._process.stdin.flush()
+                answer = self._process.stdout.readline().decode('utf-8', 'replace').strip()
+            except OSError as error:
+                answer = 'error: %s' % error
+            if not answer:
+                answer = 'error: trikd draw has ended'
+            if answer.startswith('error: trikd draw'):
+                self._process = None
+        if answer != 'ok':
+            _once(self._told, 'display.' + name, answer.partition(' ')[2])
+
+    def addLabel(self, text, x, y, fontSize=-1):
+        self._order('addLabel', 'label %s %s %s %s' % (x, y, fontSize, text))
+
+    def removeLabels(self):
+        self._order('removeLabels', 'removelabels')
+
+    def showImage(self, file):
+        self._order('showImage', 'image ' + os.path.abspath(file))
+
+    def show(self, pixels, width, height, format='rgb32'):
+        numbers = struct.pack('<%di' % len(pixels), *((int(part) + 2**31) % 2**32 - 2**31 for part in pixels))
+        self._order('show', 'show %d %d %s %d' % (width, height, format, len(pixels)), numbers)
+
+    def drawLine(self, x1, y1, x2, y2):
+        self._order('drawLine', 'line %s %s %s %s' % (x1, y1, x2, y2))
+
+    def drawPoint(self, x, y):
+        self._order('drawPoint', 'point %s %s' % (x, y))
+
+    def drawRect(self, x, y, width, height, filled=False):
+        self._order('drawRect', 'rect %s %s %s %s %d' % (x, y, width, height, bool(filled)))
+
+    def drawEllipse(self, x, y, width, height, filled=False):
+        self._order('drawEllipse', 'ellipse %s %s %s %s %d' % (x, y, width, height, bool(filled)))
+
+    def drawArc(self, x, y, width, height, start, span):
+        self._order('drawArc', 'arc %s %s %s %s %s %s' % (x, y, width, height, start, span))
+
+    def setPainterColor(self, name):
+        self._order('setPainterColor', 'color %s' % name)
+
+    def setPainterWidth(self, pixels):
+        self._order('setPainterWidth', 'width %s' % pixels)
+
+    def setBackground(self, name):
+        self._order('setBackground', 'background %s' % name)
+
+    def redraw(self):
+        self._order('redraw', 'redraw')
+
+    def clear(self):
+        self._order('clear', 'clear')
+
+    def hide(self):
+        self._order('hide', 'hide')
+
+    def reset(self):
+        self._order('reset', 'clear')
+
+
+class PwmCapture:
+    def __init__(self, directory):
+        self._directory = directory
+
+    def frequency(self):
+        return _file(self._directory + '/raw').numbers()
+
+    def duty(self):
+        return _file(self._directory + '/duty_cycle').number()
+
+
+# What the tree cannot do, and why.
+_ABSENT = {
+    'i2c': 'raw transfers on a bus are not in the tree; describe the device in the robot file and read its node',
+    'smBusI2c': 'raw transfers on a bus are not in the tree; describe the device in the robot file and read its node',
+    'eventDevice': 'raw input devices are not in the tree; keys and gamepad are brick.keys() and gamepad',
+    'stopEventDevice': 'raw input devices are not in the tree; keys and gamepad are brick.keys() and gamepad',
+    'soundSensor': 'the microphones are not in the tree',
+}
+
+
+def _refusing(name):
+    def refuse(*_, **__):
+        raise TypeError('brick.%s: %s' % (name, _ABSENT[name]))
+    return refuse
+
+
 class Brick:
     def __init__(self):
-        self._made, self._keys = {}, Keys()
+        self._made, self._keys, self._display = {}, Keys(), Display()
 
-    def _port(self, port, kinds):
+    def _port(self, port, kinds, file=''):
         port = str(port)
         for directory, make in kinds:
             place = '%s/%s' % (directory, port)
-            if place not in self._made and '/' not in port and port not in ('', '.', '..') and _has(place):
-                self._made[place] = make(place)
-            if place in self._made:
-                return self._made[place]
+            plain = '/' not in port and port not in ('', '.', '..')
+            if (place, file) not in self._made and plain and os.path.exists(os.path.join(_ROOT, place, file)):
+                self._made[place, file] = make(place)
+            if (place, file) in self._made:
+                return self._made[place, file]
         return None
 
     def motor(self, port):
@@ -422,6 +541,21 @@ class Brick:
 
     def led(self):
         return Led()
+
+    def display(self):
+        return self._display
+
+    def smile(self):
+        self._display._order('smile', 'smile')
+
+    def sadSmile(self):
+        self._display._order('sadSmile', 'sadsmile')
+
+    def pwmCapture(self, port):
+        return self._port(port, [('servos', PwmCapture)], 'duty_cycle')
+
+    def pwmCapturePorts(self):
+        return [port for port in sorted(os.listdir(os.path.join(_ROOT, 'servos'))) if self.pwmCapture(port)]
 
     def battery(self):
         return Battery()
@@ -451,6 +585,8 @@ class Brick:
         return gamepad
 
     def __getattr__(self, name):
+        if name in _ABSENT:
+            return _refusing(name)
         raise AttributeError('brick.%s: the tree of the robot has no file for it' % name)
 
     def marker(self):
@@ -458,6 +594,10 @@ class Brick:
 
     def playSound(self, file):
         _file('sound/play/value', os.O_WRONLY).write(os.path.abspath(file))
+
+    def playTone(self, hz, ms):
+        if hz >= 0 and ms >= 0:
+            _file('sound/tone/value', os.O_WRONLY).write('%d %d\n' % (round(hz), round(ms)))
 
     def say(self, text):
         _file('sound/say/value', os.O_WRONLY).write(text)

@@ -4,11 +4,14 @@ use super::Guest;
 use crate::clients::Client;
 use crate::connection::{self, Handler, VERSION};
 use crate::daemon::Daemon;
+use crate::feedback::Moment;
 use crate::outbox::Outbox;
 use crate::program::Command;
 use crate::protocol::control::Request;
-use crate::{limits, scripts};
+use crate::protocol::news;
+use crate::{limits, log, scripts};
 use std::rc::Rc;
+use tokio::sync::oneshot;
 
 struct Control {
     daemon: Rc<Daemon>,
@@ -24,7 +27,8 @@ impl Control {
     fn may_control(&self) -> bool {
         let may = self.daemon.access.may_control(self.client.peer.ip());
         if !may {
-            self.error("this computer is not paired with the robot: press Enter on the robot within 30 s, then try again");
+            tracing::warn!(target: log::CLIENTS, "control: {} is not paired", self.client.peer);
+            self.error(news::NOT_PAIRED);
         }
         may
     }
@@ -35,6 +39,17 @@ impl Control {
         self.daemon.programs.tell(command).await;
     }
 
+    /// What runs, when everything is done that was asked for before.
+    async fn status(&self) {
+        let (answer, told) = oneshot::channel();
+        self.daemon.programs.tell(Command::Ask(answer)).await;
+        if let Ok(text) = told.await {
+            self.client
+                .outbox
+                .send(format!("status: {text}").as_bytes());
+        }
+    }
+
     async fn keep(&self, name: &[u8], content: &[u8]) {
         let folder = self.daemon.settings.scripts.clone();
         let (name, content) = (name.to_owned(), content.to_owned());
@@ -42,13 +57,20 @@ impl Control {
         let kept =
             tokio::task::spawn_blocking(move || scripts::keep(&folder, &name, &content)).await;
         match kept {
-            Ok(Ok(path)) => self.daemon.log.line(format_args!(
-                "{} is uploaded by {}",
-                path.display(),
-                self.client.peer
-            )),
-            Ok(Err(why)) => self.error(&why),
-            Err(error) => self.error(&format!("the upload failed: {error}")),
+            Ok(Ok(path)) => {
+                self.daemon.feedback.show(Moment::Uploaded);
+                tracing::info!(
+                    target: log::PROGRAMS,
+                    "{} is uploaded by {}",
+                    path.display(),
+                    self.client.peer
+                );
+            }
+            Ok(Err(why)) => {
+                tracing::warn!(target: log::PROGRAMS, "an upload by {} is refused: {why}", self.client.peer);
+                self.error(&why);
+            }
+            Err(error) => self.error(&format!("{}{error}", news::UPLOAD_FAILED)),
         }
     }
 }
@@ -61,6 +83,13 @@ impl Handler for Control {
     async fn frame(&mut self, frame: &[u8]) {
         self.client.count();
         let request = Request::parse(frame);
+        let begin = &frame[..frame.len().min(limits::LOG_REQUEST_BYTES)];
+        tracing::debug!(
+            target: log::CLIENTS,
+            "control: {} asks: {}",
+            self.client.peer,
+            String::from_utf8_lossy(begin)
+        );
         match request {
             Request::Keepalive | Request::Unknown => return,
             Request::Version => return self.client.outbox.send(VERSION),
@@ -68,6 +97,7 @@ impl Handler for Control {
                 let answer = format!("configVersion: {}", self.daemon.settings.config_version);
                 return self.client.outbox.send(answer.as_bytes());
             }
+            Request::Status => return self.status().await,
             // Whoever sees danger may stop the robot.
             Request::Stop => return self.command(Command::Stop("a client")).await,
             _ => {}
@@ -100,9 +130,7 @@ impl Handler for Control {
 pub async fn serve(daemon: Rc<Daemon>, guest: Guest) {
     let outbox = Rc::new(Outbox::new(limits::OUTBOX_BYTES));
     let client = daemon.clients.add("control", guest.peer, outbox.clone());
-    daemon
-        .log
-        .line(format_args!("control: {} has come", guest.peer));
+    tracing::info!(target: log::CLIENTS, "control: {} has come", guest.peer);
     let frame_bytes = usize::from(daemon.settings.upload_mib) << 20;
     let mut handler = Control {
         daemon: daemon.clone(),
@@ -116,8 +144,6 @@ pub async fn serve(daemon: Rc<Daemon>, guest: Guest) {
         &mut handler,
     )
     .await;
-    daemon
-        .log
-        .line(format_args!("control: {} has left: {why}", guest.peer));
+    tracing::info!(target: log::CLIENTS, "control: {} has left: {why}", guest.peer);
     drop(guest.seat);
 }

@@ -6,9 +6,9 @@
 use super::Guest;
 use crate::clients::Client;
 use crate::daemon::Daemon;
-use crate::limits;
 use crate::outbox::Outbox;
 use crate::protocol::gamepad::{Line, Lines};
+use crate::{limits, log};
 use std::cell::RefCell;
 use std::fs::{File, OpenOptions};
 use std::io::{self, Write};
@@ -92,9 +92,7 @@ impl Gamepad {
             } else {
                 ""
             };
-            self.daemon
-                .log
-                .line(format_args!("gamepad: {path}: {error}{hint}"));
+            tracing::warn!(target: log::CLIENTS, "gamepad: {path}: {error}{hint}");
         }
     }
 
@@ -127,9 +125,7 @@ impl Gamepad {
             }
             Line::Nonsense(why) => {
                 if !std::mem::replace(&mut self.complained, true) {
-                    self.daemon
-                        .log
-                        .line(format_args!("gamepad: {}: {why}", self.client.peer));
+                    tracing::warn!(target: log::CLIENTS, "gamepad: {}: {why}", self.client.peer);
                 }
             }
         }
@@ -172,9 +168,7 @@ impl Gamepad {
             .is_some_and(|patience| self.heard + patience <= now)
         {
             self.patience = None;
-            self.daemon
-                .log
-                .line(format_args!("gamepad: {} is silent", self.client.peer));
+            tracing::warn!(target: log::CLIENTS, "gamepad: {} is silent: it lets go of everything", self.client.peer);
             self.let_go();
         }
     }
@@ -202,12 +196,14 @@ pub async fn serve(daemon: Rc<Daemon>, guest: Guest) {
     } = guest;
     // Driving is control.
     if !daemon.access.may_control(peer.ip()) {
-        daemon.log.line(format_args!(
+        tracing::warn!(
+            target: log::CLIENTS,
             "gamepad: {peer} is not paired: press Enter on the robot, then connect again"
-        ));
+        );
         return;
     }
     let client = daemon.clients.add("gamepad", peer, Rc::new(Outbox::new(0)));
+    tracing::info!(target: log::CLIENTS, "gamepad: {peer} has come");
     let now = Instant::now();
     let mut gamepad = Gamepad {
         daemon: daemon.clone(),
@@ -236,6 +232,6 @@ pub async fn serve(daemon: Rc<Daemon>, guest: Guest) {
         }
     }
     gamepad.let_go();
-    daemon.log.line(format_args!("gamepad: {peer} has left"));
+    tracing::info!(target: log::CLIENTS, "gamepad: {peer} has left");
     drop(seat);
 }

@@ -6,11 +6,11 @@
 use super::{Guest, Seat};
 use crate::connection::{self, Handler, VERSION};
 use crate::daemon::Daemon;
-use crate::limits;
 use crate::outbox::Outbox;
 use crate::program::Command;
 use crate::protocol::mail::{Message, NOWHERE, plain};
 use crate::scripts;
+use crate::{limits, log};
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
 use std::fmt::Write;
@@ -18,7 +18,7 @@ use std::net::{IpAddr, SocketAddr, UdpSocket};
 use std::path::{Path, PathBuf};
 use std::rc::{Rc, Weak};
 use std::time::Duration;
-use tokio::net::TcpStream;
+use tokio::net::{TcpSocket, TcpStream};
 use tokio::time::{sleep, timeout};
 
 /// Hull number of a robot that has not said its own.
@@ -123,14 +123,12 @@ impl Mailbox {
         if let Some(server) = self.server.get() {
             let _ = writeln!(text, "server={server}");
         }
-        if let (Err(error), Some(daemon)) = (
-            scripts::replace(&self.file, text.as_bytes(), 0o600),
-            self.daemon.borrow().upgrade(),
-        ) {
-            daemon.log.line(format_args!(
+        if let Err(error) = scripts::replace(&self.file, text.as_bytes(), 0o600) {
+            tracing::warn!(
+                target: log::DAEMON,
                 "{}: {error}: the mailbox will not be remembered",
                 self.file.display()
-            ));
+            );
         }
     }
 
@@ -193,7 +191,12 @@ impl Mailbox {
                     .get()
                     .map_or_else(String::new, |server| server.ip().to_string());
             }
-            "ip" => return own_ip().to_string(),
+            "ip" => {
+                let daemon = self.daemon.borrow().upgrade();
+                let named = daemon.and_then(|daemon| daemon.settings.address.first().copied());
+                let named = named.filter(|ip| !ip.is_unspecified());
+                return named.unwrap_or_else(own_ip).to_string();
+            }
             "connected" => {
                 return u8::from(
                     self.robots
@@ -437,6 +440,7 @@ async fn converse(daemon: &Rc<Daemon>, stream: TcpStream, peer: SocketAddr, link
         link.local.set(plain(local.ip()));
     }
     let client = daemon.clients.add("mailbox", peer, link.outbox.clone());
+    tracing::info!(target: log::CLIENTS, "mailbox: {peer} is connected");
     let mut handler = Mails {
         daemon: daemon.clone(),
         link: link.clone(),
@@ -450,18 +454,33 @@ async fn converse(daemon: &Rc<Daemon>, stream: TcpStream, peer: SocketAddr, link
         &mut handler,
     )
     .await;
-    daemon
-        .log
-        .line(format_args!("mailbox: {peer} has left: {why}"));
+    tracing::info!(target: log::CLIENTS, "mailbox: {peer} has left: {why}");
     daemon.mailbox.forget(link);
     drop(client);
+}
+
+/// A connection from the address at which this robot serves, if it has one: others know it by where it comes from.
+async fn reach(own: &[IpAddr], server: SocketAddr) -> std::io::Result<TcpStream> {
+    let fits = |ip: &&IpAddr| {
+        ip.is_ipv4() == server.is_ipv4()
+            && ip.is_loopback() == server.ip().is_loopback()
+            && !ip.is_unspecified()
+    };
+    let socket = match server {
+        SocketAddr::V4(_) => TcpSocket::new_v4(),
+        SocketAddr::V6(_) => TcpSocket::new_v6(),
+    }?;
+    if let Some(ip) = own.iter().find(fits) {
+        socket.bind((*ip, 0).into())?;
+    }
+    socket.connect(server).await
 }
 
 /// Connects to a robot; what waits for it is lost when it does not answer for so many tries.
 async fn connect(daemon: Rc<Daemon>, server: SocketAddr, link: Rc<Link>, tries: u32) {
     let wait = Duration::from_millis(limits::CONNECT_MS);
     for _ in 0..tries {
-        match timeout(wait, TcpStream::connect(server)).await {
+        match timeout(wait, reach(&daemon.settings.address, server)).await {
             Ok(Ok(stream)) => {
                 let _ = stream.set_nodelay(true);
                 let Some(seat) =
@@ -476,9 +495,10 @@ async fn connect(daemon: Rc<Daemon>, server: SocketAddr, link: Rc<Link>, tries: 
             Err(_) => {}
         }
     }
-    daemon.log.line(format_args!(
+    tracing::warn!(
+        target: log::CLIENTS,
         "mailbox: {server} does not answer: messages for it are lost"
-    ));
+    );
     daemon.mailbox.forget(&link);
 }
 

@@ -4,9 +4,9 @@ use super::Guest;
 use crate::clients::Client;
 use crate::connection::{self, Handler, VERSION};
 use crate::daemon::Daemon;
-use crate::limits;
 use crate::outbox::Outbox;
 use crate::protocol::telemetry::Request;
+use crate::{limits, log};
 use std::rc::Rc;
 
 struct Telemetry {
@@ -37,6 +37,7 @@ impl Handler for Telemetry {
 pub async fn serve(daemon: Rc<Daemon>, guest: Guest) {
     let outbox = Rc::new(Outbox::new(limits::OUTBOX_BYTES));
     let client = daemon.clients.add("telemetry", guest.peer, outbox.clone());
+    tracing::info!(target: log::CLIENTS, "telemetry: {} has come", guest.peer);
     let mut handler = Telemetry {
         daemon: daemon.clone(),
         client,
@@ -49,8 +50,6 @@ pub async fn serve(daemon: Rc<Daemon>, guest: Guest) {
         &mut handler,
     )
     .await;
-    daemon
-        .log
-        .line(format_args!("telemetry: {} has left: {why}", guest.peer));
+    tracing::info!(target: log::CLIENTS, "telemetry: {} has left: {why}", guest.peer);
     drop(guest.seat);
 }

@@ -30,6 +30,11 @@ struct Virtual {
 }
 
 fn virtual_robot() -> Option<Virtual> {
+    virtual_robot_with(&[], &[])
+}
+
+/// With further words for `trik up` and for `trikd serve`.
+fn virtual_robot_with(up_words: &[&str], words: &[&str]) -> Option<Virtual> {
     let trik = Path::new(BUILT).with_file_name("trik");
     if let Some(why) = harness::mount::obstacle() {
         harness::skip(why);
@@ -43,8 +48,9 @@ fn virtual_robot() -> Option<Virtual> {
     let tree = home.path("mnt");
     let mut command = Command::new(trik);
     command
-        .args(["up", "--no-view", "--cache"])
+        .args(["up", "--no-view", "--no-trikd", "--cache"])
         .arg(home.path("cache"))
+        .args(up_words)
         .arg(&tree);
     command
         .env("XDG_RUNTIME_DIR", home.dir())
@@ -81,7 +87,7 @@ fn virtual_robot() -> Option<Virtual> {
         devices: devices.expect("a board"),
     };
     Some(Virtual {
-        robot: Robot::start(home, tree, &[]),
+        robot: Robot::start(home, tree, words),
         up,
     })
 }
@@ -129,6 +135,84 @@ fn motors_rest_whatever_the_program_is_doing() {
             .lines()
             .find(|line| line.starts_with("rest of the last"))
             .unwrap_or_default()
+    );
+}
+
+/// What somebody without rights tries: each line that it prints is a thing that must not succeed.
+const BREAKS_OUT: &str = "#!/bin/sh
+for file in config; do (echo 'trikfs = {}' > $TRIK_TREE/$file) 2>/dev/null && echo \"writes $file\"; done
+kill -9 $PPID 2>/dev/null && echo 'kills trikd'
+for pid in $(cat /proc/[0-9]*/stat 2>/dev/null | grep -E '[(]trik(d|fs)?[)]' | cut -d' ' -f1); do
+  kill -0 $pid 2>/dev/null && [ $(stat -c %u /proc/$pid) = 0 ] && echo \"kills $pid\"
+done
+(echo x > ../state/paired) 2>/dev/null && echo 'writes the state'
+echo 40 > $TRIK_TREE/motors/M3/value && echo drives
+echo go
+sleep 1000
+";
+
+#[test]
+fn a_user_without_rights_drives_and_does_nothing_else() {
+    if !nix::unistd::geteuid().is_root() {
+        return harness::skip("only root can start programs as another user");
+    }
+    let nobody = nix::unistd::User::from_name("nobody").ok().flatten();
+    let Some(nobody) = nobody else {
+        return note_skip("there is no user nobody");
+    };
+    let group = nobody.gid.to_string();
+    let words = ["--user", "nobody", "--processes", "40"];
+    let Some(board) = virtual_robot_with(&["--group", &group], &words) else {
+        return;
+    };
+    let robot = &board.robot;
+    assert!(!robot.log().contains("may not write"), "{}", robot.log());
+    let mut client = robot.client("control");
+    client.send(
+        "directScript:brick.motor(M3).setPower(60); print(script.system('id -un', true)); print('go'); while (true) {}",
+    );
+    client.until("print: go");
+    eventually("a motor that turns", || {
+        number(robot, "motors/M3/raw").is_some_and(|duty| duty != 0)
+    });
+    let program = processes::children(robot.daemon());
+    assert!(!program.is_empty());
+    for pid in &program {
+        let status = std::fs::read_to_string(format!("/proc/{pid}/status")).unwrap_or_default();
+        let uid = format!("Uid:\t{0}\t{0}\t{0}\t{0}\n", nobody.uid);
+        assert!(status.contains(&uid), "{status}");
+    }
+    client.send("stop");
+    eventually("the end of the program and rest", || {
+        number(robot, "motors/M3/raw") == Some(0)
+            && program.iter().all(|pid| !processes::is_alive(*pid))
+    });
+    client.send(&format!("file:out:{BREAKS_OUT}"));
+    client.send("run:out");
+    client.until("info: out has started");
+    client.expect("print: drives\n");
+    client.expect("print: go\n");
+    client.send("stop");
+    client.until("info: out was stopped");
+    assert_eq!(number(robot, "motors/M3/raw"), Some(0));
+    assert!(robot.status().contains("programs run as nobody"));
+}
+
+#[test]
+fn a_tree_in_which_programs_cannot_drive_is_told_with_what_to_do() {
+    if !nix::unistd::geteuid().is_root() {
+        return harness::skip("only root can start programs as another user");
+    }
+    let Some(board) = virtual_robot_with(&[], &["--user", "nobody"]) else {
+        return;
+    };
+    let told = "programs run as nobody, who may not write";
+    eventually("a warning", || board.robot.log().contains(told));
+    assert!(
+        board
+            .robot
+            .log()
+            .contains("mount with --allow-other --group")
     );
 }
 

@@ -1,7 +1,8 @@
 //! JavaScript programs, one file each in `trikd/tests/js`, with what they must say behind them.
 //!
 //! Lines at the end of a program: `//<` is a file of the tree and its text, `//>` a line of output, `//!` a line of
-//! standard error, `//=` a file of the tree and what it must have at the end. FOLDER stands for the program's directory.
+//! standard error, `//=` a file of the tree and what it must have at the end. FOLDER stands for the program's directory, TREE for
+//! that of the tree.
 
 use std::fs;
 use std::io::Read;
@@ -28,6 +29,9 @@ pub fn tree(scratch: &Scratch) {
         ("servos/S1/value", ""),
         ("servos/S1/units", "deg\n"),
         ("servos/S1/power", ""),
+        ("servos/S3/duty_cycle", "7\n"),
+        ("servos/S3/raw", "50 50 51\n"),
+        ("display/device", ""),
         ("battery/value", "7.4\n"),
         ("battery/raw", "500\n"),
         ("accelerometer/value", "1 2 1000\n"),
@@ -40,6 +44,7 @@ pub fn tree(scratch: &Scratch) {
         ("led/red/value", ""),
         ("sound/play/value", ""),
         ("sound/say/value", ""),
+        ("sound/tone/value", ""),
         ("camera/line/value", "5 10 20\n"),
         ("camera/line/hsv", "1 2 3 4 5 6\n"),
         ("camera/line/detect", ""),
@@ -129,7 +134,11 @@ fn complaints(path: &Path) -> Vec<String> {
     let program = scratch.file(&format!("scripts/{name}.js"), own.join("\n") + "\n");
     let folder = program.parent().unwrap().to_str().unwrap().to_owned();
     let output = run(scratch.path(), &program);
-    let said = |bytes: &[u8]| String::from_utf8_lossy(bytes).replace(&folder, "FOLDER");
+    let tree = scratch.path().to_str().unwrap().to_owned();
+    let said = |bytes: &[u8]| {
+        let text = String::from_utf8_lossy(bytes).replace(&folder, "FOLDER");
+        text.replace(&tree, "TREE")
+    };
     let wanted = |mark| {
         marked(&text, mark)
             .map(|line| format!("{line}\n"))

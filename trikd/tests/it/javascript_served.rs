@@ -364,6 +364,7 @@ fn every_name_of_the_document_is_there() {
             ("led.", "brick.led()."),
             ("battery.", "brick.battery()."),
             ("display.", "brick.display()."),
+            ("pwmCapture.", "brick.pwmCapture(S3)."),
             ("accelerometer.", "brick.accelerometer()."),
             ("gyroscope.", "brick.gyroscope()."),
             ("lineSensor.", "brick.lineSensor(video1)."),

@@ -121,3 +121,26 @@ fn hull_number_and_joined_robot_are_remembered() {
         again.status()
     );
 }
+
+#[test]
+fn a_message_waits_for_the_next_program_until_a_stop() {
+    let robot = robot(&[]);
+    let mut mail = robot.client("mailbox");
+    let mut client = robot.client("control");
+    client.send("file:first.py:print('got', mailbox.receive())");
+    client.send("file:second.py:script.wait(300)\nprint('got', mailbox.receive(False))");
+    // Only those who are there hear of mail.
+    client.sync();
+    mail.send("register:8895:7");
+    mail.send("data:one");
+    client.until("mail: ");
+    client.send("run:first.py");
+    client.until("print: got one\n");
+    client.until("info: first.py has ended");
+    mail.send("data:two");
+    client.until("mail: ");
+    client.send("stop");
+    client.send("run:second.py");
+    let told = client.until("print: got");
+    assert!(!told.contains("two"), "{told}");
+}

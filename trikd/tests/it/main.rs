@@ -21,6 +21,8 @@ mod gamepad;
 mod javascript;
 /// JavaScript under the daemon, hostile programs, and what its document says.
 mod javascript_served;
+/// What stands in the log, and what cannot get there.
+mod log;
 /// Several robots.
 mod mailbox;
 /// Programs: how they are run, what they say, how they end.

@@ -44,6 +44,41 @@ fn a_python_program_prints_line_by_line_and_uses_the_robot() {
 }
 
 #[test]
+fn a_python_program_draws_on_the_display() {
+    let robot = robot(&[]);
+    std::fs::create_dir_all(robot.home.path("tree/display")).unwrap();
+    robot.home.file("tree/display/device", "");
+    let mut client = robot.client("control");
+    let text = "d = brick.display()\nd.setPainterColor('red')\nd.drawRect(10, 10, 20, 20, True)\n\
+                d.addLabel('\u{43f}\u{440}\\n2', 100, 100, 20)\nd.redraw()\n\
+                d.setPainterColor('reddish')\nd.setPainterColor('reddish')\n\
+                print(brick.pwmCapture('S1'))\n\
+                try:\n  brick.i2c(1, 2)\nexcept TypeError as e:\n  print(e)\n";
+    run(&mut client, "d.py", text);
+    let told = client.next().unwrap();
+    assert!(
+        told.starts_with("info: display.setPainterColor: 'reddish' is no colour;"),
+        "{told}"
+    );
+    client.expect("print: None\n");
+    let told = client.next().unwrap();
+    assert!(
+        told.starts_with("print: brick.i2c: raw transfers"),
+        "{told}"
+    );
+    let told = client.next().unwrap();
+    assert!(told.starts_with("info: d.py has ended after "), "{told}");
+    let bytes = robot.home.content("tree/display/device");
+    let pixel = |x: usize, y: usize| [bytes[2 * (320 * y + x)], bytes[2 * (320 * y + x) + 1]];
+    assert_eq!((pixel(15, 15), pixel(5, 5)), ([0x00, 0xf8], [0xff, 0xff]));
+    assert!((100..140).any(|x| pixel(x, 110) == [0x00, 0xf8]), "no text");
+    assert!(
+        (100..140).any(|x| pixel(x, 130) == [0x00, 0xf8]),
+        "no second line"
+    );
+}
+
+#[test]
 fn two_clients_hear_the_same_and_a_failure_is_a_traceback() {
     let robot = robot(&[]);
     let (mut one, mut other) = (robot.client("control"), robot.client("control"));
@@ -380,4 +415,39 @@ fn without_a_tree_programs_run_and_the_lack_of_rest_is_told() {
             .unwrap()
             .starts_with("allData:AccelerometerPort:;")
     );
+}
+
+#[test]
+fn what_stops_motors_goes_before_programs() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    run(
+        &mut client,
+        "nice.py",
+        "import os\nprint(os.getpriority(os.PRIO_PROCESS, 0))",
+    );
+    client.expect("print: 5\n");
+    if !nix::unistd::geteuid().is_root() {
+        return harness::skip("only root can go before others");
+    }
+    let nice_of = |name: &str| {
+        let tasks = std::fs::read_dir(format!("/proc/{}/task", robot.daemon())).unwrap();
+        let stats = tasks
+            .filter_map(|task| std::fs::read_to_string(task.unwrap().path().join("stat")).ok());
+        // proc(5): the name in brackets is field 2, nice is field 19.
+        let of_name = stats
+            .filter(|stat| stat.contains(&format!("({name})")))
+            .filter_map(|stat| {
+                stat.rsplit(')')
+                    .next()?
+                    .split_whitespace()
+                    .nth(16)?
+                    .parse()
+                    .ok()
+            });
+        of_name.collect::<Vec<i32>>()
+    };
+    eventually("priorities", || {
+        nice_of("rest") == [-20] && nice_of("keys") == [-20] && nice_of("trikd") == [-5]
+    });
 }

@@ -1,6 +1,7 @@
 //! Uploads: names, sizes, binary content, a disk that is full.
 
-use crate::rig::{frame, robot};
+use crate::rig::{Robot, frame, robot};
+use harness::eventually;
 use std::process::Command;
 
 #[test]
@@ -100,4 +101,40 @@ fn a_full_disk_is_told_and_the_old_program_stays() {
         "{told}"
     );
     assert_eq!(content, b"good");
+}
+
+#[test]
+fn an_upload_is_heard_and_the_end_of_a_program_is_seen() {
+    let prepared = |words: &[&str]| {
+        let home = crate::rig::small_tree();
+        for (file, content) in [
+            ("sound/tone/value", ""),
+            ("led/green/value", "0\n"),
+            ("led/red/value", "1\n"),
+        ] {
+            let path = home.path(&format!("tree/{file}"));
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, content).unwrap();
+        }
+        let tree = home.path("tree");
+        Robot::start(home, tree, words)
+    };
+    let run = |robot: &Robot| {
+        let mut client = robot.client("control");
+        client.send("file:a.py:print(1)");
+        client.send("run:a.py");
+        client.until("info: a.py has ended");
+    };
+    let robot = prepared(&[]);
+    run(&robot);
+    let content = |robot: &Robot, name: &str| robot.home.content(&format!("tree/{name}/value"));
+    eventually("a beep and a green light", || {
+        content(&robot, "sound/tone") == b"2500 150\n"
+            && content(&robot, "led/green") == b"1\n"
+            && content(&robot, "led/red") == b"0\n"
+    });
+    let robot = prepared(&["--without", "feedback"]);
+    run(&robot);
+    assert_eq!(content(&robot, "sound/tone"), b"");
+    assert_eq!(content(&robot, "led/green"), b"0\n");
 }

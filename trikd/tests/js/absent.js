@@ -2,7 +2,6 @@ var calls = {
     i2c: function() { brick.i2c(1, 0x40); },
     bus: function() { brick.smBusI2c(1, 0x40); },
     event: function() { brick.eventDevice("/dev/input/event0"); },
-    pwm: function() { brick.pwmCapture("C1"); },
     sound: function() { brick.soundSensor(video2); },
     still: function() { brick.getStillImage(); },
     photo: getPhoto,
@@ -15,7 +14,6 @@ for (var name in calls) {
 //> TypeError brick.i2c
 //> TypeError brick.smBusI2c
 //> TypeError brick.eventDevice
-//> TypeError brick.pwmCapture
 //> TypeError brick.soundSensor
 //> TypeError brick.getStillImage
 //> TypeError getPhoto

@@ -1,10 +1,20 @@
-for (var i = 0; i < 3; i++) {
-    brick.display().addLabel("text", 1, 1);
-    brick.display().redraw();
-}
+var display = brick.display();
+display.setBackground("white");
+display.setPainterColor("red");
+display.setPainterWidth(3);
+display.drawLine(0, 0, 319, 239);
+display.drawRect(10, 10, 20, 20, true);
+display.drawEllipse(50, 50, 20, 20);
+display.drawArc(50, 50, 20, 20, 0, 90);
+display.drawPoint(1, 1);
+display.addLabel("\u0422\u0420\u0418\u041A\n2", 1, 1, 20);
+display.redraw();
+display.show([255, 255, 255], 1, 1, "rgb888");
+display.removeLabels();
 brick.smile();
+brick.sadSmile();
+display.clear();
+display.hide();
+display.reset();
 print("goes on");
 //> goes on
-//! info: display.addLabel: the display is not in the tree; nothing is shown
-//! info: display.redraw: the display is not in the tree; nothing is shown
-//! info: brick.smile: the display is not in the tree; nothing is shown

@@ -23,5 +23,4 @@ var main = function()
 }
 //< keys/device
 //> ten 0
-//! info: display.addLabel: the display is not in the tree; nothing is shown
 //= motors/M3/value 20

@@ -4,8 +4,7 @@ brick.say("hello");
 brick.playSound("beep.wav");
 brick.playTone(-1, 5);
 brick.playTone(440, 5);
-brick.playTone(440, 5);
 //= led/red/value 1
 //= led/green/value 0
 //= sound/say/value hello
-//! info: brick.playTone: the board has no program that plays tones; nothing is heard
+//= sound/tone/value 440 5

@@ -16,5 +16,5 @@ print(brick.marker(), brick.lidar().read().length, brick.irCamera().readSensor(2
 //> 7.4 500
 //> [1, 2, 1000]
 //> [A1, A2, D1][A1, A2][E1, E3]
-//> [M1, M3, M4][S1][]
+//> [M1, M3, M4][S1, S3][S3]
 //> null3606

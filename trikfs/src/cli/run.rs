@@ -30,6 +30,11 @@ pub(super) fn mount(args: MountArgs) -> Result<(), Failure> {
         mountpoint: absolute(&args.mountpoint)?,
         ..args
     };
+    if args.tree.group.is_some() && !args.allow_other {
+        let reason =
+            "--group is for other users, who are only let in with --allow-other: give both";
+        return Err(Failure::Reason(reason.to_owned()));
+    }
     make_mountpoint(&args.mountpoint)?;
     if args.background && !args.detached {
         start_in_background(&args)
@@ -192,6 +197,7 @@ pub(super) fn serve(args: ServeArgs) -> Result<(), Failure> {
             uid: getuid().as_raw(),
             gid: getgid().as_raw(),
             config_group: args.tree.config_group,
+            group: args.tree.group,
         },
         transport: args.tree.transport.transport(),
         sample_bus: (!args.tree.no_sample_bus).then_some(match args.allow_other {

@@ -36,6 +36,8 @@ fn mount_takes_all_its_options() {
         "--background",
         "--config-group",
         "12",
+        "--group",
+        "13",
         "--cache",
         "c",
         "--transport",
@@ -46,6 +48,7 @@ fn mount_takes_all_its_options() {
     assert_eq!(args.tree.search.include, ["a", "b"].map(PathBuf::from));
     assert_eq!(args.tree.search.cache, Some("c".into()));
     assert_eq!(args.tree.config_group, Some(12));
+    assert_eq!(args.tree.group, Some(13));
     assert!(args.allow_other && args.background && !args.detached);
     assert!(args.tree.no_sample_bus);
     assert_eq!(args.mountpoint, PathBuf::from("/trikfs"));
@@ -58,6 +61,7 @@ fn what_the_guardian_passes_on_means_the_same() {
         "--config=-odd name.lua",
         "--include=--x",
         "--config-group=7",
+        "--group=8",
         "--no-sample-bus",
         "--cache=c",
         "m",

@@ -392,3 +392,23 @@ fn a_reader_that_never_reads_stops_nobody() {
         (board.view().said == "still here").then_some(())
     });
 }
+
+#[test]
+fn what_is_written_to_the_frame_buffer_can_be_seen_as_a_picture() {
+    let scratch = Scratch::new();
+    let board = board(&scratch, "bare");
+    let picture = board.root().join("display.ppm");
+    let head = b"P6\n320 240\n255\n";
+    let dark = std::fs::read(&picture).unwrap();
+    assert!(dark.starts_with(head) && dark[head.len()..].iter().all(|&byte| byte == 0));
+    assert_eq!(dark.len(), head.len() + 3 * 320 * 240);
+    let display = File::options()
+        .write(true)
+        .open(board.root().join("dev/fb0"));
+    // The second pixel is red.
+    std::os::unix::fs::FileExt::write_all_at(&display.unwrap(), &[0x00, 0xf8], 2).unwrap();
+    wait("a picture", || {
+        let seen = std::fs::read(&picture).unwrap();
+        (seen[head.len()..][..9] == [0, 0, 0, 255, 0, 0, 0, 0, 0]).then_some(())
+    });
+}

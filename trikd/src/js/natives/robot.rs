@@ -229,6 +229,12 @@ fn onboard<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
             .map_err(|error| unreadable(&ctx, &o.brick, "sound/play", &error))
     })?;
     let (o, sound) = (own.clone(), own.brick.sound());
+    put(native, "tone", move |ctx: Ctx<'js>, hz: i32, ms: i32| {
+        sound
+            .tone(hz, ms)
+            .map_err(|error| unreadable(&ctx, &o.brick, "sound/tone", &error))
+    })?;
+    let (o, sound) = (own.clone(), own.brick.sound());
     put(native, "say", move |ctx: Ctx<'js>, text: String| {
         sound
             .say(&text)
@@ -352,12 +358,16 @@ fn tree<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
         plain && o.brick.tree().has(&path)
     })?;
     let o = own.clone();
-    put(native, "values", move |ctx: Ctx<'js>, name: String| {
+    put(native, "isFile", move |path: String| {
+        path.split('/').all(is_name) && o.brick.tree().root().join(&path).is_file()
+    })?;
+    let o = own.clone();
+    put(native, "numbers", move |ctx: Ctx<'js>, path: String| {
         let mut numbers = vec![0.0; limits::VALUE_BYTES / 2];
-        let value = o.brick.tree().node(&format!("{name}/value"), Access::Read);
-        let count = value
+        let file = o.brick.tree().node(&path, Access::Read);
+        let count = file
             .numbers(&mut numbers)
-            .map_err(|error| unreadable(&ctx, &o.brick, &name, &error))?;
+            .map_err(|error| unreadable(&ctx, &o.brick, &path, &error))?;
         numbers.truncate(count);
         Ok::<_, Error>(numbers)
     })?;

@@ -1,0 +1,31 @@
+//! One program for all fuzz targets: libFuzzer in front of the function that `TRIK_FUZZ_TARGET` names.
+//!
+//! Owns the list of targets. What they do is in the `fuzz` module of each crate; `run.sh` builds and starts this.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use std::sync::LazyLock;
+
+type Target = fn(&[u8]);
+
+const TARGETS: [(&str, Target); 4] = [
+    ("frames", trikd::fuzz::fuzz_frames),
+    ("messages", trikd::fuzz::fuzz_messages),
+    ("lines", trikd::fuzz::fuzz_lines),
+    ("strangers", trikd::fuzz::fuzz_strangers),
+];
+
+static TARGET: LazyLock<Target> = LazyLock::new(|| {
+    let wanted = std::env::var("TRIK_FUZZ_TARGET").unwrap_or_default();
+    let found = TARGETS.iter().find(|(name, _)| *name == wanted);
+    found.map(|(_, target)| *target).unwrap_or_else(|| {
+        let names: Vec<_> = TARGETS.iter().map(|(name, _)| *name).collect();
+        eprintln!(
+            "TRIK_FUZZ_TARGET is '{wanted}', not one of {}",
+            names.join(" ")
+        );
+        std::process::exit(2)
+    })
+});
+
+fuzz_target!(|bytes: &[u8]| TARGET(bytes));

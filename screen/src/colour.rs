@@ -1,0 +1,124 @@
+//! Colours and their names.
+//!
+//! Owns the names that programs of TRIK robots use. Their values are those of the web's colours, because the robot's own
+//! runtime asks Qt for them by name; `darkYellow`, which the web does not have, is that of Qt.
+
+use embedded_graphics::pixelcolor::{Rgb888, RgbColor};
+
+/// Red, green and blue, 0 to 255 each.
+#[derive(Clone, Copy, Debug, Default, Eq, Hash, PartialEq)]
+pub struct Colour {
+    /// Red.
+    pub red: u8,
+    /// Green.
+    pub green: u8,
+    /// Blue.
+    pub blue: u8,
+}
+
+/// What a drawing begins with.
+pub const BLACK: Colour = colour(0, 0, 0);
+/// The background of a drawing whose program names none.
+pub const WHITE: Colour = colour(255, 255, 255);
+
+/// Names in lower case.
+const NAMES: [(&str, u32); 27] = [
+    ("white", 0xff_ff_ff),
+    ("black", 0),
+    ("red", 0xff_00_00),
+    ("darkred", 0x8b_00_00),
+    ("green", 0x00_80_00),
+    ("darkgreen", 0x00_64_00),
+    ("blue", 0x00_00_ff),
+    ("darkblue", 0x00_00_8b),
+    ("cyan", 0x00_ff_ff),
+    ("darkcyan", 0x00_8b_8b),
+    ("magenta", 0xff_00_ff),
+    ("darkmagenta", 0x8b_00_8b),
+    ("yellow", 0xff_ff_00),
+    ("darkyellow", 0x80_80_00),
+    ("gray", 0x80_80_80),
+    ("darkgray", 0xa9_a9_a9),
+    ("lightgray", 0xd3_d3_d3),
+    ("grey", 0x80_80_80),
+    ("orange", 0xff_a5_00),
+    ("brown", 0xa5_2a_2a),
+    ("pink", 0xff_c0_cb),
+    ("purple", 0x80_00_80),
+    ("violet", 0xee_82_ee),
+    ("navy", 0x00_00_80),
+    ("lime", 0x00_ff_00),
+    ("olive", 0x80_80_00),
+    ("silver", 0xc0_c0_c0),
+];
+
+/// A colour from its parts.
+pub const fn colour(red: u8, green: u8, blue: u8) -> Colour {
+    Colour { red, green, blue }
+}
+
+impl Colour {
+    /// From `0xRRGGBB`; what is above is left out.
+    pub const fn from_number(number: u32) -> Self {
+        let [_, red, green, blue] = number.to_be_bytes();
+        colour(red, green, blue)
+    }
+
+    /// `0xRRGGBB`.
+    pub fn number(self) -> u32 {
+        u32::from_be_bytes([0, self.red, self.green, self.blue])
+    }
+
+    /// From a name in any case, `#rgb` or `#rrggbb`.
+    ///
+    /// # Errors
+    /// No such colour; the text names those that there are.
+    pub fn named(name: &str) -> Result<Self, String> {
+        let wanted = name.trim().to_ascii_lowercase();
+        if let Some(number) = wanted.strip_prefix('#').and_then(hexadecimal) {
+            return Ok(Self::from_number(number));
+        }
+        let known = NAMES.iter().find(|(name, _)| *name == wanted);
+        known.map_or_else(
+            || {
+                let names: Vec<_> = NAMES.iter().map(|(name, _)| *name).collect();
+                Err(format!(
+                    "'{name}' is no colour; there are {} and #rrggbb",
+                    names.join(", ")
+                ))
+            },
+            |(_, number)| Ok(Self::from_number(*number)),
+        )
+    }
+
+    /// As the display has it: 5 bits red, 6 green, 5 blue.
+    pub fn rgb565(self) -> u16 {
+        u16::from(self.red >> 3) << 11 | u16::from(self.green >> 2) << 5 | u16::from(self.blue >> 3)
+    }
+}
+
+fn hexadecimal(digits: &str) -> Option<u32> {
+    if !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {
+        return None;
+    }
+    match digits.len() {
+        3 => {
+            let short = u32::from_str_radix(digits, 16).ok()?;
+            Some((short & 0xf00) * 0x1100 + (short & 0xf0) * 0x110 + (short & 0xf) * 0x11)
+        }
+        6 => u32::from_str_radix(digits, 16).ok(),
+        _ => None,
+    }
+}
+
+impl From<Colour> for Rgb888 {
+    fn from(from: Colour) -> Self {
+        Self::new(from.red, from.green, from.blue)
+    }
+}
+
+impl From<Rgb888> for Colour {
+    fn from(from: Rgb888) -> Self {
+        colour(from.r(), from.g(), from.b())
+    }
+}

@@ -1,0 +1,290 @@
+//! One thing done with several robots at once: `trik send`, `stop` and `status`.
+//!
+//! Owns a thread for each robot, the lines about their progress and the table at the end.
+
+use super::link::Message;
+use super::run::percent;
+use super::{Target, Upload, harmless, ms, start, tell};
+use crate::cli::{FleetArgs, SendArgs};
+use crate::limits;
+use std::fmt::Write as _;
+use std::io::{self, Write as _};
+use std::process::ExitCode;
+use std::time::Instant;
+use trikd::program::rest::is_explained;
+
+/// Those that were named, each once; else the one that is meant without a name.
+fn fleet(named: &[Target]) -> Result<Vec<Target>, String> {
+    if named.is_empty() {
+        return Ok(vec![super::the_one()?]);
+    }
+    let mut all: Vec<Target> = Vec::new();
+    for target in named {
+        if !all.contains(target) {
+            all.push(target.clone());
+        }
+    }
+    let most = limits::FLEET_MAX;
+    match all.len() {
+        count if count > most => Err(format!("{count} robots: at most {most} at once")),
+        _ => Ok(all),
+    }
+}
+
+/// Does it with all at once; the results are in their order.
+fn each<T: Send>(all: &[Target], work: impl Fn(&Target) -> T + Sync) -> Vec<T> {
+    let work = &work;
+    std::thread::scope(|scope| {
+        let threads: Vec<_> = all
+            .iter()
+            .map(|target| scope.spawn(move || work(target)))
+            .collect();
+        threads
+            .into_iter()
+            .map(|thread| {
+                thread
+                    .join()
+                    .unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+            })
+            .collect()
+    })
+}
+
+/// What a robot answered to a request and a `status` behind it.
+struct Answer {
+    infos: Vec<String>,
+    errors: Vec<String>,
+    /// None: it does not know the question.
+    status: Option<String>,
+}
+
+fn ask(target: &Target, request: Option<&[u8]>) -> Result<Answer, String> {
+    let mut link = target.connect()?;
+    if let Some(request) = request {
+        link.ask(&[request]);
+    }
+    link.ask(&[b"status"]);
+    let deadline = Instant::now() + ms(limits::ANSWER_MS);
+    let mut answer = Answer {
+        infos: Vec::new(),
+        errors: Vec::new(),
+        status: None,
+    };
+    while answer.status.is_none() && Instant::now() < deadline {
+        match link.next() {
+            Some(Message::Info(text)) => answer.infos.push(text),
+            Some(Message::Error(text)) => answer.errors.push(text),
+            Some(Message::Status(text)) => answer.status = Some(text),
+            Some(_) => {}
+            None => link.turn(ms(limits::TURN_MS), None, true)?,
+        }
+        // A program that runs may have much to say.
+        for texts in [&mut answer.infos, &mut answer.errors] {
+            texts.drain(..texts.len().saturating_sub(8));
+        }
+    }
+    Ok(answer)
+}
+
+/// Ends the programs of robots and brings all that moves to rest. The exit code: 0 all rest, 1 one does not say so,
+/// 2 one could not be told.
+pub(crate) fn stop(args: &FleetArgs) -> ExitCode {
+    ask_all(args, |target| {
+        let answer = ask(target, Some(b"stop"))?;
+        let failure = answer.errors.iter().find(|text| is_explained(text));
+        if let Some(text) = failure {
+            return Ok((1, format!("{target}: {text}\n")));
+        }
+        let ended = answer
+            .infos
+            .iter()
+            .rev()
+            .find(|text| text.contains(" was stopped by "));
+        let (code, text) = match (ended, answer.status) {
+            (Some(text), _) => (0, text.as_str()),
+            (None, Some(_)) => (0, "no program was running; everything rests"),
+            (None, None) => (1, "was told to stop, and does not say whether it has"),
+        };
+        Ok((code, format!("{target}: {text}\n")))
+    })
+}
+
+/// Shows what runs on robots. The exit code: 0 all have told, 2 one could not be asked.
+pub(crate) fn status(args: &FleetArgs) -> ExitCode {
+    ask_all(args, |target| match ask(target, None)?.status {
+        Some(text) => Ok((
+            0,
+            text.lines()
+                .map(|line| format!("{target}: {line}\n"))
+                .collect(),
+        )),
+        None => Err(format!(
+            "{target} does not know the question: its software is older than trikd"
+        )),
+    })
+}
+
+/// Prints what each says, and gives the greatest of the codes.
+fn ask_all(
+    args: &FleetArgs,
+    work: impl Fn(&Target) -> Result<(u8, String), String> + Sync,
+) -> ExitCode {
+    let all = match fleet(&args.robot) {
+        Ok(all) => all,
+        Err(reason) => {
+            tell(&reason);
+            return ExitCode::from(2);
+        }
+    };
+    let mut worst = 0;
+    for told in each(&all, work) {
+        let code = match told {
+            Ok((code, text)) => {
+                // Who has stopped reading knows enough.
+                let _ = io::stdout().write_all(harmless(&text).as_bytes());
+                code
+            }
+            Err(reason) => {
+                tell(&reason);
+                2
+            }
+        };
+        worst = worst.max(code);
+    }
+    ExitCode::from(worst)
+}
+
+/// How it went with one robot.
+struct Sent {
+    count: usize,
+    result: Result<String, String>,
+}
+
+/// Sends files to robots and perhaps runs one of them. The exit code: 0 all have got everything, 1 one has not.
+pub(crate) fn send(args: &SendArgs) -> Result<(), String> {
+    let files = read(args)?;
+    let all = fleet(&args.robot)?;
+    let results = each(&all, |target| send_to(target, &files, args.run.as_deref()));
+    let _ = io::stdout().write_all(table(&all, &results, files.len()).as_bytes());
+    let failed = results.iter().filter(|sent| sent.result.is_err()).count();
+    match failed {
+        0 => Ok(()),
+        _ => Err(format!(
+            "{failed} of {} robots have not got everything",
+            all.len()
+        )),
+    }
+}
+
+fn read(args: &SendArgs) -> Result<Vec<Upload>, String> {
+    let files: Vec<_> = args
+        .files
+        .iter()
+        .map(|path| Upload::read(path))
+        .collect::<Result<_, _>>()?;
+    for (index, file) in files.iter().enumerate() {
+        if files[..index].iter().any(|other| other.name == file.name) {
+            return Err(format!(
+                "two files are called {}: on a robot all are in one folder",
+                file.name
+            ));
+        }
+    }
+    Ok(files)
+}
+
+fn send_to(target: &Target, files: &[Upload], run: Option<&str>) -> Sent {
+    let mut count = 0;
+    let mut work = || {
+        let mut link = target.connect()?;
+        for file in files {
+            let mut shown = 0;
+            file.send(&mut link, |done, all| {
+                let part = percent(done, all) / 25 * 25;
+                if all >= limits::PROGRESS_BYTES && part > shown && part < 100 {
+                    shown = part;
+                    let _ = writeln!(io::stderr(), "{target}: {} {part} %", file.name);
+                }
+            })?;
+            count += 1;
+            let name = &file.name;
+            let _ = writeln!(
+                io::stderr(),
+                "{target}: {name} is sent, {count} of {}",
+                files.len()
+            );
+        }
+        match run {
+            Some(name) => start(&mut link, name, None).map(|()| format!("{name} runs")),
+            None => Ok("sent".to_owned()),
+        }
+    };
+    let result = work();
+    Sent { count, result }
+}
+
+/// A line for each robot, in columns.
+fn table(all: &[Target], results: &[Sent], files: usize) -> String {
+    let names: Vec<_> = all.iter().map(Target::to_string).collect();
+    let width = names.iter().map(String::len).max().unwrap_or(0).max(5);
+    let mut text = format!("{:<width$}  {:<8}  RESULT\n", "ROBOT", "FILES");
+    for (name, sent) in names.iter().zip(results) {
+        let files = format!("{} of {files}", sent.count);
+        let result = match &sent.result {
+            Ok(done) => harmless(done),
+            Err(why) => format!("FAILED: {}", harmless(why).replace('\n', " ")),
+        };
+        // Writing to a text cannot fail.
+        let _ = writeln!(text, "{name:<width$}  {files:<8}  {result}");
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::remote::target;
+
+    #[test]
+    fn a_robot_that_is_named_twice_is_one() {
+        let named: Vec<_> = ["a", "b", "a:8888", "a:1"]
+            .iter()
+            .flat_map(|name| target(name))
+            .collect();
+        let shown: Vec<_> = fleet(&named)
+            .expect("robots")
+            .iter()
+            .map(Target::to_string)
+            .collect();
+        assert_eq!(shown, ["a", "b", "a:1"]);
+        let many: Vec<_> = (1..=65)
+            .flat_map(|number| target(&format!("r{number}")))
+            .collect();
+        assert_eq!(
+            fleet(&many),
+            Err("65 robots: at most 64 at once".to_owned())
+        );
+    }
+
+    #[test]
+    fn the_table_has_a_line_for_each_robot() {
+        let all: Vec<_> = ["a", "192.168.77.10"]
+            .iter()
+            .flat_map(|name| target(name))
+            .collect();
+        let results = [
+            Sent {
+                count: 2,
+                result: Ok("x.js runs".to_owned()),
+            },
+            Sent {
+                count: 0,
+                result: Err("it\nburns".to_owned()),
+            },
+        ];
+        assert_eq!(
+            table(&all, &results, 2),
+            "ROBOT          FILES     RESULT\na              2 of 2    x.js runs\n192.168.77.10  0 of 2    FAILED: it burns\n"
+        );
+    }
+}

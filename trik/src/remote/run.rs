@@ -1,0 +1,231 @@
+//! `trik run`: a program to a robot, what it says to this terminal, and how it ended as the exit code.
+//!
+//! Owns the person in front of it: progress, Ctrl-C, standard output and standard error.
+
+use super::link::{Link, Message};
+use super::output::Output;
+use super::{Upload, harmless, ms, start, tell};
+use crate::cli::RunArgs;
+use crate::limits;
+use nix::sys::signal::{SigSet, Signal};
+use nix::sys::signalfd::{SfdFlags, SignalFd};
+use std::io::{self, IsTerminal, Write};
+use std::os::fd::AsFd;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+use trikd::protocol::news::{self, End};
+
+/// The program has failed, or was stopped.
+const FAILED: u8 = 1;
+/// It could not be run, or its end is not known.
+const COULD_NOT: u8 = 2;
+
+/// Runs a program on a robot until it ends. The exit code: 0 it has ended, 1 it has failed or was stopped, 2 it could not
+/// be run, or nobody knows how it ended.
+pub(crate) fn run(args: &RunArgs) -> ExitCode {
+    let code = follow(args).unwrap_or_else(|reason| {
+        tell(&reason);
+        COULD_NOT
+    });
+    ExitCode::from(code)
+}
+
+fn follow(args: &RunArgs) -> Result<u8, String> {
+    let upload = Upload::read(&args.file)?;
+    let target = match &args.robot {
+        Some(target) => target.clone(),
+        None => super::the_one()?,
+    };
+    let mut link = target.connect()?;
+    let mut progress = Progress::new(&upload.name);
+    let sent = upload.send(&mut link, |done, all| progress.show(done, all));
+    progress.end();
+    sent?;
+    // Until here nothing runs, so Ctrl-C may end this process at once.
+    let mask: SigSet = [Signal::SIGINT, Signal::SIGTERM, Signal::SIGHUP]
+        .into_iter()
+        .collect();
+    let own = |error: nix::Error| format!("signals: {error}");
+    mask.thread_block().map_err(own)?;
+    let flags = SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC;
+    let signals = SignalFd::with_flags(&mask, flags).map_err(own)?;
+    start(&mut link, &upload.name, Some(signals.as_fd()))?;
+    let mut session = Session {
+        link,
+        name: upload.name,
+        output: Output::to(io::stdout()),
+        signals,
+        stopping: None,
+    };
+    let code = session.run();
+    let Session {
+        output, signals, ..
+    } = session;
+    output.finish(|| {
+        std::thread::sleep(ms(limits::ROOM_MS));
+        matches!(signals.read_signal(), Ok(Some(_)))
+    });
+    code
+}
+
+/// A program that runs.
+struct Session {
+    link: Link,
+    name: String,
+    output: Output,
+    signals: SignalFd,
+    /// It was told to stop, and has that long.
+    stopping: Option<Instant>,
+}
+
+impl Session {
+    fn run(&mut self) -> Result<u8, String> {
+        loop {
+            while self.output.has_room()
+                && let Some(message) = self.link.next()
+            {
+                if let Some(code) = self.hear(message) {
+                    return Ok(code);
+                }
+            }
+            while let Ok(Some(_)) = self.signals.read_signal() {
+                if self.stopping.is_some() {
+                    tell(&format!(
+                        "left; {} may still run on {}: trik stop ends it",
+                        self.name,
+                        self.link.name()
+                    ));
+                    return Ok(FAILED);
+                }
+                tell(&format!(
+                    "stopping {} on {}; a second Ctrl-C does not wait",
+                    self.name,
+                    self.link.name()
+                ));
+                self.stop();
+            }
+            // As a program on this computer ends whose output nobody takes.
+            if self.output.is_closed() && self.stopping.is_none() {
+                self.stop();
+            }
+            if self.stopping.is_some_and(|until| Instant::now() >= until) {
+                return Err(format!(
+                    "{} does not say that {} has stopped: look at the robot",
+                    self.link.name(),
+                    self.name
+                ));
+            }
+            self.turn()?;
+        }
+    }
+
+    fn turn(&mut self) -> Result<(), String> {
+        let listens = self.output.has_room();
+        let pause = ms(if listens {
+            limits::TURN_MS
+        } else {
+            limits::ROOM_MS
+        });
+        let turned = self.link.turn(pause, Some(self.signals.as_fd()), listens);
+        turned.map_err(|why| {
+            format!(
+                "{why}; {} may still run: trik stop ends it, once the robot can be reached",
+                self.name
+            )
+        })
+    }
+
+    fn stop(&mut self) {
+        self.link.ask(&[b"stop"]);
+        self.link.ask(&[b"status"]);
+        self.stopping = Some(Instant::now() + ms(limits::ANSWER_MS));
+    }
+
+    /// The exit code if that was the end.
+    fn hear(&mut self, message: Message) -> Option<u8> {
+        match message {
+            Message::Print(bytes) => self.output.put(bytes),
+            Message::Error(text) | Message::Info(text) => {
+                if let Some(end) = news::ended(&text, &self.name) {
+                    return Some(self.judge(end, &text));
+                }
+                if text.ends_with(news::SLOW_READER) {
+                    // The end may have been among what was left out.
+                    self.link.ask(&[b"status"]);
+                }
+                if text != news::started(&self.name) {
+                    let text = harmless(&text);
+                    let _ = writeln!(io::stderr(), "{}", text.trim_end());
+                }
+            }
+            Message::Status(text) => return self.look(&text),
+            Message::Version => {}
+        }
+        None
+    }
+
+    /// What runs now. None if that is still this program.
+    fn look(&self, text: &str) -> Option<u8> {
+        let status = news::status(text);
+        if status.is_of(&self.name) {
+            return None;
+        }
+        let last = status.last.unwrap_or_default();
+        Some(match news::ended(last, &self.name) {
+            Some(end) => self.judge(end, last),
+            None => {
+                tell(&format!("{} does not run any more", self.name));
+                FAILED
+            }
+        })
+    }
+
+    fn judge(&self, end: End, text: &str) -> u8 {
+        if end == End::Well {
+            return 0;
+        }
+        // Who has closed the output knows that.
+        if !self.output.is_closed() {
+            tell(text);
+        }
+        FAILED
+    }
+}
+
+/// How far a large program is, in one line of a terminal.
+struct Progress<'a> {
+    name: &'a str,
+    shows: bool,
+    shown: Option<Instant>,
+}
+
+impl<'a> Progress<'a> {
+    fn new(name: &'a str) -> Self {
+        Self {
+            name,
+            shows: io::stderr().is_terminal(),
+            shown: None,
+        }
+    }
+
+    fn show(&mut self, done: usize, all: usize) {
+        let is_time = self
+            .shown
+            .is_none_or(|shown| shown.elapsed() >= Duration::from_millis(limits::VIEW_MS.into()));
+        if self.shows && all >= limits::PROGRESS_BYTES && (is_time || done == all) {
+            self.shown = Some(Instant::now());
+            let _ = write!(io::stderr(), "\r{}: {} %", self.name, percent(done, all));
+        }
+    }
+
+    fn end(&self) {
+        if self.shown.is_some() {
+            let _ = writeln!(io::stderr());
+        }
+    }
+}
+
+/// How much of it, rounded down.
+pub(super) fn percent(done: usize, all: usize) -> usize {
+    done.saturating_mul(100) / all.max(1)
+}

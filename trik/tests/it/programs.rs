@@ -1,0 +1,444 @@
+//! Programs that come over the network to virtual robots: `trik run`, `stop`, `status`, `send`, and trikd behind them.
+//!
+//! Every robot has an address of its own, so that all have the ports that clients know.
+
+mod fleet;
+mod pretended;
+
+use crate::rig::{Home, Robot, loopback};
+use harness::{Output, eventually, processes};
+use nix::sys::signal::Signal;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::process::{Child, Command, Stdio};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Drives until it is stopped.
+const LOOP: &str = "brick.motor(M3).setPower(40); brick.motor(M4).setPower(40);\n\
+                    print('drives');\nwhile (true) script.wait(50);\n";
+
+/// A robot that takes programs, and where.
+struct Reachable {
+    robot: Robot,
+    ip: String,
+}
+
+impl Reachable {
+    fn new() -> Option<Self> {
+        Some(Self::beside(&Arc::new(Home::new()?), &[]))
+    }
+
+    fn beside(home: &Arc<Home>, words: &[&str]) -> Self {
+        let ip = loopback();
+        let mut all = vec!["--trikd-address", &ip];
+        all.extend(words);
+        let robot = Robot::start(home.clone(), &all);
+        Self { robot, ip }
+    }
+
+    /// Writes a program and runs it here.
+    fn run(&self, name: &str, text: &str) -> Output {
+        let file = self.robot.home.0.file(name, text);
+        let file = file.to_str().expect("UTF-8");
+        self.robot.home.run(&["run", file, "--robot", &self.ip])
+    }
+
+    /// Writes a program and starts it.
+    fn spawn(&self, name: &str, text: &str) -> Running {
+        let file = self.robot.home.0.file(name, text);
+        let file = file.to_str().expect("UTF-8");
+        Running::new(&mut self.robot.home.command(&["run", file, "--robot", &self.ip]))
+    }
+
+    /// Starts a program that drives, and waits until it does.
+    fn start(&self, name: &str) -> Running {
+        let running = self.spawn(name, LOOP);
+        eventually("a robot that drives", || {
+            running.said().contains("drives") && self.robot.duty(3).is_ok_and(|duty| duty != 0)
+        });
+        running
+    }
+
+    fn rests(&self) -> bool {
+        [3, 4]
+            .iter()
+            .all(|&motor| self.robot.duty(motor).is_ok_and(|duty| duty == 0))
+    }
+
+    /// The guardian of its trikd, and the process that serves.
+    fn trikd(&self) -> (u32, u32) {
+        let mut found = None;
+        eventually("the processes of trikd", || {
+            let is_trikd = |pid: &u32| {
+                std::fs::read(format!("/proc/{pid}/cmdline"))
+                    .is_ok_and(|words| words.starts_with(b"trikd\0"))
+            };
+            let guardian = processes::children(self.robot.pid())
+                .into_iter()
+                .find(is_trikd);
+            let serving =
+                guardian.and_then(|pid| processes::children(pid).into_iter().find(is_trikd));
+            found = guardian.zip(serving);
+            found.is_some()
+        });
+        found.unwrap_or_default()
+    }
+}
+
+/// A `trik run` that is still there.
+struct Running {
+    child: Child,
+    said: Arc<Mutex<String>>,
+}
+
+impl Running {
+    fn new(command: &mut Command) -> Self {
+        let mut child = command
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("trik");
+        let said = Arc::new(Mutex::new(String::new()));
+        let pipes: [Box<dyn Read + Send>; 2] = [
+            Box::new(child.stdout.take().expect("a pipe")),
+            Box::new(child.stderr.take().expect("a pipe")),
+        ];
+        for pipe in pipes {
+            let said = said.clone();
+            std::thread::spawn(move || {
+                for line in BufReader::new(pipe).lines().map_while(Result::ok) {
+                    let mut all = said.lock().unwrap_or_else(PoisonError::into_inner);
+                    all.push_str(&format!("{line}\n"));
+                }
+            });
+        }
+        Self { child, said }
+    }
+
+    /// Both outputs so far.
+    fn said(&self) -> String {
+        self.said
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone()
+    }
+
+    fn says(&self, text: &str) {
+        eventually(text, || self.said().contains(text));
+    }
+
+    fn code(&mut self) -> Option<i32> {
+        let mut code = None;
+        eventually("the end of trik run", || {
+            code = self.child.try_wait().expect("a child");
+            code.is_some()
+        });
+        code.and_then(|status| status.code())
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+#[test]
+fn programs_in_three_languages_drive_the_robot_and_talk_here() {
+    let Some(one) = Reachable::new() else { return };
+    let drive = |percent: i32, last: &str| {
+        format!(
+            "brick.motor(M3).setPower({percent})\nbrick.motor(M4).setPower({percent})\nscript.wait(1000)\n{last}"
+        )
+    };
+    let shell = "#!/bin/sh\ncd $TRIK_TREE\necho 40 > motors/M3/value; echo 40 > motors/M4/value\n\
+                 sleep 1; echo driven $(cat sensors/D1/units)\n";
+    // To and fro: there is a wall.
+    for (name, text, said) in [
+        (
+            "go.js",
+            drive(40, "print('driven'); script.quit();\n"),
+            "driven\n",
+        ),
+        (
+            "go.py",
+            drive(-40, "print('driven', 'in', 'Python')\n"),
+            "driven in Python\n",
+        ),
+        ("go", shell.to_owned(), "driven cm\n"),
+    ] {
+        let before = one.robot.pose();
+        let output = one.run(name, &text);
+        assert_eq!(
+            (output.stdout.as_str(), output.stderr.as_str()),
+            (said, ""),
+            "{name}"
+        );
+        assert_eq!(output.code(), 0, "{name}");
+        let away = one.robot.pose().away_from(&before);
+        assert!(away > 0.05, "{name}: {away} m");
+        assert!(one.rests(), "{name}");
+    }
+    let status = one.robot.home.run(&["status"]).good();
+    assert!(
+        status.contains(": program none\n") && status.contains("last go has ended after "),
+        "{status}"
+    );
+}
+
+#[test]
+fn a_program_that_fails_gives_its_reason_and_the_exit_code_1() {
+    let Some(one) = Reachable::new() else { return };
+    for (name, text, reasons) in [
+        (
+            "bad.py",
+            "print('first')\n1 / 0\n",
+            [
+                "ZeroDivisionError",
+                "trik: bad.py has failed with exit code 1 after ",
+            ],
+        ),
+        (
+            "bad.js",
+            "print('first');\nmotor.turn();\n",
+            ["motor", "trik: bad.js has failed"],
+        ),
+        (
+            "exit",
+            "#!/bin/sh\necho first; exit 7\n",
+            ["", "trik: exit has failed with exit code 7 after "],
+        ),
+        (
+            "kill",
+            "#!/bin/sh\necho first; kill -SEGV $$\n",
+            ["", "trik: kill was killed by SIGSEGV after "],
+        ),
+    ] {
+        let output = one.run(name, text);
+        assert_eq!(output.code(), 1, "{name}: {}", output.stderr);
+        assert_eq!(output.stdout.trim_end(), "first", "{name}");
+        for reason in reasons {
+            assert!(output.stderr.contains(reason), "{name}: {}", output.stderr);
+        }
+    }
+}
+
+#[test]
+fn ctrl_c_stops_the_program_on_the_robot_and_a_second_one_does_not_wait() {
+    let Some(one) = Reachable::new() else { return };
+    let mut running = one.start("loop.js");
+    processes::signal(running.child.id(), Signal::SIGINT);
+    running.says(&format!(
+        "trik: stopping loop.js on {}; a second Ctrl-C does not wait\n",
+        one.ip
+    ));
+    running.says("trik: loop.js was stopped by a client after ");
+    assert_eq!(running.code(), Some(1));
+    assert!(one.rests());
+    // A trikd that hangs cannot stop anything.
+    let mut running = one.start("again.js");
+    let (_, serving) = one.trikd();
+    processes::signal(serving, Signal::SIGSTOP);
+    processes::signal(running.child.id(), Signal::SIGINT);
+    running.says("trik: stopping again.js");
+    processes::signal(running.child.id(), Signal::SIGINT);
+    assert_eq!(running.code(), Some(1));
+    running.says("trik: left; again.js may still run on ");
+    processes::signal(serving, Signal::SIGCONT);
+    eventually("the stop that was asked for", || one.rests());
+}
+
+#[test]
+fn a_stop_ends_the_program_of_somebody_else_and_says_which() {
+    let Some(one) = Reachable::new() else { return };
+    let mut running = one.start("loop.js");
+    let status = one.robot.home.run(&["status"]).good();
+    assert!(
+        status.contains(": program loop.js (JavaScript, process "),
+        "{status}"
+    );
+    let said = one.robot.home.run(&["stop"]).good();
+    assert!(
+        said.starts_with(&format!(
+            "{}: loop.js was stopped by a client after ",
+            one.ip
+        )),
+        "{said}"
+    );
+    assert!(one.rests());
+    assert_eq!(running.code(), Some(1));
+    let said = one.robot.home.run(&["stop", "--robot", &one.ip]).good();
+    assert_eq!(
+        said,
+        format!("{}: no program was running; everything rests\n", one.ip)
+    );
+}
+
+#[test]
+fn a_reader_that_has_seen_enough_stops_the_program() {
+    let Some(one) = Reachable::new() else { return };
+    let file = one
+        .robot
+        .home
+        .0
+        .file("talk.js", "while (true) { print('x'); script.wait(20); }");
+    let output = one.robot.sh(&format!(
+        "trik run {} --robot {} | head -n 2",
+        file.display(),
+        one.ip
+    ));
+    assert_eq!(
+        (output.stdout.as_str(), output.stderr.as_str()),
+        ("x\nx\n", "")
+    );
+    let status = one.robot.home.run(&["status"]).good();
+    assert!(
+        status.contains(": program none\n") && status.contains("talk.js was stopped by a client"),
+        "{status}"
+    );
+}
+
+#[test]
+fn a_port_that_is_taken_is_one_line_and_the_robot_runs() {
+    let Some(home) = Home::new() else { return };
+    let home = Arc::new(home);
+    let ip = loopback();
+    let taken = TcpListener::bind((ip.as_str(), 9000)).expect("a port");
+    let robot = Robot::start(home.clone(), &["--trikd-address", &ip]);
+    assert_eq!(robot.errno("motors/M3/value"), 0);
+    assert!(!robot.said().contains("TRIK Studio"), "{}", robot.said());
+    eventually("a line", || robot.complaints().ends_with('\n'));
+    let line = robot.complaints();
+    assert_eq!(line.lines().count(), 1, "{line}");
+    for part in [
+        "trik: trikd does not run: port 9000 (telemetry) cannot be served: another program has it",
+        "ss -ltnp 'sport = :9000'",
+        "--trikd-ports=18888",
+        "--no-trikd",
+    ] {
+        assert!(line.contains(part), "{line}");
+    }
+    // No half of it: the port of programs is free.
+    TcpListener::bind((ip.as_str(), 8888)).expect("a free port");
+    let refusal = home.run(&["status"]);
+    assert_eq!(refusal.code(), 2);
+    assert!(
+        refusal
+            .stderr
+            .contains(" has no trikd, which takes programs: "),
+        "{}",
+        refusal.stderr
+    );
+    drop(taken);
+    // Ports of the system's choice are found as well.
+    let other = Robot::start(
+        home.clone(),
+        &["--trikd-address", &ip, "--trikd-ports", "0"],
+    );
+    assert!(
+        other.said().contains("TRIK Studio needs port 8888"),
+        "{}",
+        other.said()
+    );
+    let status = home.run(&["status"]).good();
+    assert!(status.contains(": program none\n"), "{status}");
+}
+
+#[test]
+fn after_a_kill_of_trikd_motors_rest_it_comes_back_and_who_waits_is_told() {
+    let Some(one) = Reachable::new() else { return };
+    let mut running = one.start("loop.js");
+    let (guardian, serving) = one.trikd();
+    processes::signal(serving, Signal::SIGKILL);
+    running.says(&format!("trik: the connection to {} is lost: ", one.ip));
+    running.says("loop.js may still run: trik stop ends it");
+    assert_eq!(running.code(), Some(2));
+    eventually("rest", || one.rests());
+    eventually("a line", || {
+        one.robot
+            .complaints()
+            .contains("the serving process has crashed")
+    });
+    eventually("trikd again", || {
+        one.trikd().1 != serving && one.robot.home.run(&["status"]).code() == 0
+    });
+    assert_eq!(one.run("hi.js", "print('hi');").stdout, "hi\n");
+    // Now the guardian: trik starts both again.
+    let mut running = one.start("loop.js");
+    processes::signal(guardian, Signal::SIGKILL);
+    running.says("trik: loop.js was stopped by the end of trikd after ");
+    assert_eq!(running.code(), Some(1));
+    eventually("a line", || {
+        one.robot
+            .complaints()
+            .contains("trik: trikd has ended; started again")
+    });
+    eventually("rest", || one.rests());
+    assert_eq!(one.run("hi.js", "print('hi');").stdout, "hi\n");
+}
+
+#[test]
+fn the_end_of_the_robot_ends_its_program_and_keeps_uploads_only_where_it_was_told() {
+    let Some(home) = Home::new() else { return };
+    let home = Arc::new(home);
+    let scripts = home.0.path("kept");
+    let option = format!("--scripts={}", scripts.display());
+    let mut one = Reachable::beside(&home, &[&option]);
+    let mut running = one.start("loop.js");
+    let (guardian, serving) = one.trikd();
+    let devices = one.robot.devices.clone();
+    assert!(devices.with_extension("trikd").exists());
+    assert_eq!(
+        one.robot.end(Signal::SIGINT).code(),
+        Some(0),
+        "{}",
+        one.robot.complaints()
+    );
+    running.says("trik: loop.js was stopped by the end of trikd after ");
+    assert_eq!(running.code(), Some(1));
+    for pid in [guardian, serving] {
+        assert!(!processes::is_alive(pid));
+    }
+    one.robot.leaves_nothing();
+    assert!(!home.base().exists());
+    assert_eq!(
+        std::fs::read_to_string(scripts.join("loop.js")).expect("kept"),
+        LOOP
+    );
+}
+
+#[test]
+fn a_trikd_that_hangs_does_not_hold_up_the_end_for_ever() {
+    for signals in [1, 2] {
+        let Some(mut one) = Reachable::new() else {
+            return;
+        };
+        let (guardian, serving) = one.trikd();
+        processes::signal(serving, Signal::SIGSTOP);
+        eventually("a standstill", || processes::is_stopped(serving));
+        if signals > 1 {
+            processes::signal(one.robot.pid(), Signal::SIGTERM);
+        }
+        let status = one.robot.end(Signal::SIGINT);
+        assert_eq!(status.code(), Some(0), "{}", one.robot.complaints());
+        one.robot.leaves_nothing();
+        assert!(!processes::is_alive(guardian));
+        // Who has no patience leaves it to itself: it ends as soon as it goes on.
+        processes::signal(serving, Signal::SIGCONT);
+        eventually("its end", || !processes::is_alive(serving));
+    }
+}
+
+#[test]
+fn a_gamepad_on_its_port_is_a_gamepad_in_the_tree() {
+    let Some(one) = Reachable::new() else { return };
+    let mut pad = TcpStream::connect((one.ip.as_str(), 4444)).expect("the port of gamepads");
+    eventually("a gamepad in the tree", || {
+        pad.write_all(b"pad 1 40 -30\n").expect("sent");
+        one.robot
+            .read("gamepad/pad1/value")
+            .is_ok_and(|text| text == "40 -30 1")
+    });
+}

@@ -1,0 +1,132 @@
+//! Several robots at once: which one is meant, and who has got the files.
+
+use super::Reachable;
+use crate::rig::{Home, loopback};
+use std::sync::Arc;
+
+#[test]
+fn robots_side_by_side_are_told_apart() {
+    let Some(home) = Home::new() else { return };
+    let home = Arc::new(home);
+    let (one, other) = (Reachable::beside(&home, &[]), Reachable::beside(&home, &[]));
+    let refusal = home.run(&["stop"]);
+    assert_eq!(refusal.code(), 2);
+    assert!(
+        refusal
+            .stderr
+            .starts_with("trik: several robots run: say which with --robot: "),
+        "{}",
+        refusal.stderr
+    );
+    let mut running = one.start("loop.js");
+    assert!(other.rests());
+    let both = format!("{},{}", one.ip, other.ip);
+    let said = home.run(&["stop", "--robot", &both]).good();
+    assert!(
+        said.contains("loop.js was stopped") && said.contains("no program was running"),
+        "{said}"
+    );
+    assert_eq!(running.code(), Some(1));
+}
+
+#[test]
+fn files_are_sent_to_several_robots_at_once_and_the_table_tells_who_has_got_them() {
+    let Some(home) = Home::new() else { return };
+    let home = Arc::new(home);
+    let (one, other) = (Reachable::beside(&home, &[]), Reachable::beside(&home, &[]));
+    let dead = loopback();
+    home.0
+        .file("part.js", "function word() { return 'together'; }");
+    home.0.file(
+        "main.js",
+        "include('part.js'); print(word()); script.wait(60000);",
+    );
+    home.0.file("big.bin", vec![0xff; 3 << 20]);
+    let all = format!("{},{dead},{}", one.ip, other.ip);
+    let words = [
+        "send", "part.js", "main.js", "big.bin", "--robot", &all, "--run", "main.js",
+    ];
+    let output = home.run(&words);
+    assert_eq!(output.code(), 1, "{}", output.stderr);
+    let rows: Vec<Vec<&str>> = output
+        .stdout
+        .lines()
+        .map(|line| line.split_whitespace().collect())
+        .collect();
+    assert_eq!(rows.len(), 4, "{}", output.stdout);
+    assert_eq!(
+        rows[1],
+        [one.ip.as_str(), "3", "of", "3", "main.js", "runs"]
+    );
+    assert_eq!(rows[2][..5], [dead.as_str(), "0", "of", "3", "FAILED:"]);
+    assert_eq!(
+        rows[3],
+        [other.ip.as_str(), "3", "of", "3", "main.js", "runs"]
+    );
+    assert!(
+        output
+            .stderr
+            .contains(&format!("{}: big.bin is sent, 3 of 3\n", other.ip)),
+        "{}",
+        output.stderr
+    );
+    assert!(
+        output
+            .stderr
+            .ends_with("trik: 1 of 3 robots have not got everything\n"),
+        "{}",
+        output.stderr
+    );
+    for ip in [&one.ip, &other.ip] {
+        let status = home.run(&["status", "--robot", ip]).good();
+        assert!(status.contains(": program main.js ("), "{status}");
+    }
+    let scripts = one.robot.devices.with_extension("trikd").join("scripts");
+    assert_eq!(
+        std::fs::read(scripts.join("big.bin")).expect("kept").len(),
+        3 << 20
+    );
+}
+
+#[test]
+fn a_file_that_does_not_get_there_is_a_failure_in_the_table() {
+    let Some(one) = Reachable::new() else { return };
+    let home = one.robot.home.clone();
+    home.0.file("part.js", "");
+    let output = home.run(&["send", "part.js", "--robot", &one.ip, "--run", "none.js"]);
+    assert_eq!(output.code(), 1);
+    assert!(
+        output
+            .stdout
+            .contains("does not run none.js: there is no program 'none.js'"),
+        "{}",
+        output.stdout
+    );
+    home.0.file("huge.bin", vec![0; 17 << 20]);
+    let output = home.run(&["send", "huge.bin", "--robot", &one.ip]);
+    assert_eq!(output.code(), 1);
+    assert!(
+        output.stdout.contains(" bytes: at most 16777216 are taken"),
+        "{}",
+        output.stdout
+    );
+}
+
+#[test]
+fn robots_side_by_side_send_each_other_messages() {
+    let Some(home) = Home::new() else { return };
+    let home = Arc::new(home);
+    let (one, other) = (Reachable::beside(&home, &[]), Reachable::beside(&home, &[]));
+    // Says what it has heard to whoever sends something.
+    let echo = "mailbox.setHullNumber(1); print('listens'); var text = mailbox.receive(); mailbox.send(2, 'you said ' + text); script.wait(60000);";
+    let mut listener = one.spawn("echo.js", echo);
+    listener.says("listens");
+    let talk = format!(
+        "mailbox.joinNetwork('{}', 8889, 2); while (!mailbox.isConnected()) script.wait(10); mailbox.send(1, 'hello'); print(mailbox.receive()); script.quit();",
+        one.ip
+    );
+    let output = other.run("talk.js", &talk);
+    assert_eq!(output.stdout, "you said hello\n", "{}", output.stderr);
+    home.run(&["stop", "--robot", &one.ip]).good();
+    assert_eq!(listener.code(), Some(1));
+}

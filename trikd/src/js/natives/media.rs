@@ -1,0 +1,34 @@
+//! Display and pictures for our scripts.
+//!
+//! Owns how values of JavaScript become orders and how pictures become values. A failure of the display is given back
+//! as a text, because a program goes on without it.
+
+use super::{Own, put};
+use rquickjs::Object;
+use std::rc::Rc;
+
+/// The functions.
+///
+/// # Errors
+/// No memory.
+pub fn install<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
+    let told = |done: Result<(), String>| done.err().unwrap_or_default();
+    let o = own.clone();
+    put(native, "draw", move |line: String| {
+        told(o.shared.display().order(&line))
+    })?;
+    let o = own.clone();
+    put(native, "showFile", move |file: String| {
+        let path = o.shared.folder.join(&file);
+        told(o.shared.display().show_file(&path))
+    })?;
+    let o = own.clone();
+    put(
+        native,
+        "showNumbers",
+        move |numbers: Vec<i32>, width: i32, height: i32, format: String| {
+            let mut display = o.shared.display();
+            told(display.show_numbers(&numbers, width, height, &format))
+        },
+    )
+}

@@ -1,0 +1,179 @@
+//! What a robot tells of its programs: that one has started, and how it has ended.
+//!
+//! Owns the words, for the one who says them and for clients that understand them. Pure.
+
+use std::fmt;
+
+/// What a robot says when a program has started, behind `info: `.
+pub fn started(name: &str) -> String {
+    format!("{name} has started")
+}
+
+/// Why a request of a computer that is not paired is refused, behind `error: `.
+pub const NOT_PAIRED: &str = "this computer is not paired with the robot: press Enter on the robot within 30 s, then try again";
+/// How it begins when an upload was not kept; other reasons begin with its name in quotes.
+pub const UPLOAD_FAILED: &str = "the upload failed: ";
+/// How it ends when a client is told how many messages it has lost.
+pub const SLOW_READER: &str = "this computer reads more slowly than the robot writes";
+
+/// How a program ended.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum End<'a> {
+    /// By itself, and it told of no error.
+    Well,
+    /// It told of an error.
+    Failed,
+    /// By itself, with this exit code, which is not 0.
+    Code(i32),
+    /// By a signal of this name.
+    Killed(&'a str),
+    /// By order of somebody.
+    Stopped(&'a str),
+    /// It did what it may not.
+    Greedy(&'a str),
+}
+
+impl End<'_> {
+    /// Whether the program is to blame.
+    pub fn is_failure(self) -> bool {
+        !matches!(self, Self::Well | Self::Stopped(_))
+    }
+
+    /// The sentence about a program of this name that has run for so long.
+    pub fn tell(self, name: &str, seconds: f64) -> String {
+        let after = Seconds(seconds);
+        match self {
+            Self::Well => format!("{name} has ended {after}"),
+            Self::Failed => format!("{name} has failed {after}"),
+            Self::Code(code) => format!("{name} has failed with exit code {code} {after}"),
+            Self::Killed("SIGKILL") => {
+                format!("{name} was killed by SIGKILL {after}: perhaps the memory was short")
+            }
+            Self::Killed(signal) => format!("{name} was killed by {signal} {after}"),
+            Self::Stopped(who) => format!("{name} was stopped by {who} {after}"),
+            Self::Greedy(why) => format!("{name} was stopped {after}: {why}"),
+        }
+    }
+}
+
+struct Seconds(f64);
+
+impl fmt::Display for Seconds {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "after {:.1} s", self.0)
+    }
+}
+
+/// What [`End::tell`] said about the program of this name; None: it is about something else.
+pub fn ended<'a>(text: &'a str, name: &str) -> Option<End<'a>> {
+    let rest = text.strip_prefix(name)?.strip_prefix(' ')?;
+    if let Some(why) = rest.strip_prefix("was stopped after ") {
+        return Some(End::Greedy(why.split_once(": ")?.1));
+    }
+    // The last one: who stopped it may be called so.
+    let (what, time) = rest.rsplit_once(" after ")?;
+    if !time.starts_with(|c: char| c.is_ascii_digit()) {
+        return None;
+    }
+    match what {
+        "has ended" => return Some(End::Well),
+        "has failed" => return Some(End::Failed),
+        _ => {}
+    }
+    if let Some(code) = what.strip_prefix("has failed with exit code ") {
+        return code.parse().ok().map(End::Code);
+    }
+    if let Some(signal) = what.strip_prefix("was killed by ") {
+        return Some(End::Killed(signal));
+    }
+    what.strip_prefix("was stopped by ").map(End::Stopped)
+}
+
+/// In the place of the program in [`running`] when there is none.
+pub const NONE: &str = "none";
+
+/// The line of a status about the program that runs.
+pub fn running(program: &str) -> String {
+    format!("program {program}\n")
+}
+
+/// The line of a status about the end of the last program.
+pub fn last(end: &str) -> String {
+    format!("last {end}\n")
+}
+
+/// What a status says of programs.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct Status<'a> {
+    /// The program that runs: its name, and more about it.
+    pub runs: Option<&'a str>,
+    /// How the last one ended, as [`End::tell`] said it.
+    pub last: Option<&'a str>,
+}
+
+impl Status<'_> {
+    /// Whether the program of this name runs.
+    pub fn is_of(&self, name: &str) -> bool {
+        let rest = self.runs.and_then(|runs| runs.strip_prefix(name));
+        rest.is_some_and(|rest| rest.starts_with(" ("))
+    }
+}
+
+/// The lines of [`running`] and [`last`] among those of a status.
+pub fn status(text: &str) -> Status<'_> {
+    let line = |word: &str| text.lines().find_map(|line| line.strip_prefix(word));
+    Status {
+        runs: line("program ").filter(|program| *program != NONE),
+        last: line("last "),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_end_that_is_told_is_understood() {
+        for end in [
+            End::Well,
+            End::Failed,
+            End::Code(3),
+            End::Code(-1),
+            End::Killed("SIGKILL"),
+            End::Killed("SIGSEGV"),
+            End::Stopped("a client"),
+            End::Stopped("the day after 3 s"),
+            End::Greedy("it had 70 processes, and 64 are allowed"),
+        ] {
+            let text = end.tell("a b.js", 1.25);
+            assert_eq!(ended(&text, "a b.js"), Some(end), "{text}");
+            assert_eq!(ended(&text, "b.js"), None, "{text}");
+            assert_eq!(ended(&text, "a"), None, "{text}");
+        }
+        assert_eq!(End::Well.tell("x.js", 1.26), "x.js has ended after 1.3 s");
+        let text = format!("{}{}", running(NONE), last("x.js has ended after 1.0 s"));
+        let idle = Status {
+            runs: None,
+            last: Some("x.js has ended after 1.0 s"),
+        };
+        assert_eq!(status(&text), idle);
+        assert_eq!(
+            status(&running("x.js (Python)")).runs,
+            Some("x.js (Python)")
+        );
+        assert_eq!(status("nonsense"), Status::default());
+        let text = running("x.js (Python)");
+        assert!(status(&text).is_of("x.js") && !status(&text).is_of("x"));
+        for other in [
+            "x.js has started",
+            "x.js",
+            "x.js has ended",
+            "x.js has ended after all",
+            "x.js has failed with exit code x after 1.0 s",
+            "x.js was stopped after 1.0 s",
+            "",
+        ] {
+            assert_eq!(ended(other, "x.js"), None, "{other}");
+        }
+    }
+}
