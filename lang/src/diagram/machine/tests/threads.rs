@@ -213,6 +213,10 @@ fn no_more_than_a_hundred_threads() {
 }
 
 fn message(text: &'static str) -> Ran {
+    message_with(text, Options::simulated())
+}
+
+fn message_with(text: &'static str, options: Options) -> Ran {
     let mut forked = Forked::new();
     let send = forked.sketch.block(
         "SendMessageThreads",
