@@ -6,6 +6,7 @@ pub mod brick;
 pub mod check;
 pub mod convert;
 pub mod devices;
+pub mod generate;
 pub mod lower;
 pub mod machine;
 pub mod objects;

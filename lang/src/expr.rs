@@ -5,12 +5,13 @@
 //! Knows no blocks, no diagrams and no robot: the robot is the trait [`Outside`].
 
 mod analyse;
+mod call;
 mod code;
 mod escape;
 mod lexer;
-mod literal;
+pub mod literal;
 pub mod names;
-mod parser;
+pub(crate) mod parser;
 pub mod reserved;
 mod run;
 pub mod store;

@@ -61,7 +61,7 @@ struct Same;
 
 impl Outside for Same {
     fn sensor(&mut self, sensor: SensorIndex) -> Value {
-        if sensor % 2 == 0 {
+        if sensor.is_multiple_of(2) {
             Value::Int(i32::from(sensor))
         } else {
             Value::ints(&[1, -2, 3])

@@ -116,3 +116,13 @@ fn analyse(work: &mut work::Work, jumps: Jumps) -> Option<(Vec<Tree>, usize)> {
     let flow = flow::Flow::new(work)?;
     emit::emit(work, &flow, jumps)
 }
+
+/// The program as a loop over a variable that says where it is, whatever the graph: for languages that cannot leave
+/// a loop or end a function in the middle. Ends stand last in their branches.
+pub fn by_states(graph: &Graph) -> Structured {
+    Structured {
+        body: work::Work::new(graph).map_or_else(Vec::new, |work| states::states(&work)),
+        manner: Manner::States,
+        variables: 1,
+    }
+}

@@ -57,27 +57,28 @@ fn looped(label: usize, mut body: Vec<Tree>) -> Tree {
         Tree::If { yes, no, .. } => yes[..] == [Tree::Break(label)] && no.is_empty(),
         _ => false,
     };
-    if body.first().is_some_and(leaves_loop) {
-        if let Tree::If { when, .. } = body.remove(0) {
-            return Tree::While {
-                label,
-                when: when.negated(),
-                body,
-            };
-        }
+    if body.first().is_some_and(leaves_loop)
+        && let Tree::If { when, .. } = body.remove(0)
+    {
+        return Tree::While {
+            label,
+            when: when.negated(),
+            body,
+        };
     }
     let again = Tree::Continue(label);
     let is_free = !body
         .iter()
         .any(|tree| *tree == again || tree.has(&mut |part| *part == again));
-    if is_free && body.last().is_some_and(leaves_loop) {
-        if let Some(Tree::If { when, .. }) = body.pop() {
-            return Tree::DoWhile {
-                label,
-                body,
-                when: when.negated(),
-            };
-        }
+    if is_free
+        && body.last().is_some_and(leaves_loop)
+        && let Some(Tree::If { when, .. }) = body.pop()
+    {
+        return Tree::DoWhile {
+            label,
+            body,
+            when: when.negated(),
+        };
     }
     Tree::Loop { label, body }
 }

@@ -102,6 +102,18 @@ impl Machine<'_> {
         Ok(Left::Through)
     }
 
+    fn switch(&mut self, on: usize, branches: &[(Vec<usize>, Vec<Tree>)]) -> Result<Left, Enough> {
+        self.walk.visit(on)?;
+        let Way::Switch(all) = &self.graph.ways[on] else {
+            panic!("{on} is no switch");
+        };
+        let way = self.walk.decide(on, all.len());
+        let mut fitting = branches.iter().filter(|(ways, _)| ways.contains(&way));
+        let (_, body) = fitting.next().expect("a branch for each way");
+        assert!(fitting.next().is_none());
+        self.list(body)
+    }
+
     fn one(&mut self, tree: &Tree) -> Result<Left, Enough> {
         self.idle += 1;
         assert!(self.idle < 100_000, "nothing is visited");
@@ -119,17 +131,7 @@ impl Machine<'_> {
                 let body = if self.holds(when)? { yes } else { no };
                 self.list(body)?
             }
-            Tree::Switch { on, branches } => {
-                self.walk.visit(*on)?;
-                let Way::Switch(all) = &self.graph.ways[*on] else {
-                    panic!("{on} is no switch");
-                };
-                let way = self.walk.decide(*on, all.len());
-                let mut fitting = branches.iter().filter(|(ways, _)| ways.contains(&way));
-                let (_, body) = fitting.next().expect("a branch for each way");
-                assert!(fitting.next().is_none());
-                self.list(body)?
-            }
+            Tree::Switch { on, branches } => self.switch(*on, branches)?,
             Tree::Loop { label, body } => loop {
                 match self.list(body)? {
                     Left::Through => {}

@@ -160,6 +160,50 @@ fn values_cannot_grow_without_end() {
 }
 
 #[test]
+fn one_text_cannot_make_much_work() {
+    for (setup, text) in [
+        ("a = {} a[90000] = 1 b = {} b[90000] = 1", "x = a == b "),
+        ("a = {} a[90000] = 1", "b = a a[0] = 1 "),
+        (
+            "a = {} b = {} b[90000] = 1 a[0] = b",
+            "c = a[0] a[0][0] = 1 ",
+        ),
+        (
+            "t = 'abcdefghijklmnop' t = t..t..t..t t = t..t..t..t t = t..t..t..t t = t..t..t..t \
+             t = t..t..t..t t = t..t..t..t t = t..t u = t .. ''",
+            "x = t == u ",
+        ),
+        (
+            "t = 'abcdefghijklmnop' t = t..t..t..t t = t..t..t..t t = t..t..t..t t = t..t..t..t \
+             t = t..t..t..t t = t..t..t..t t = t..t",
+            "x = #t ",
+        ),
+    ] {
+        let mut names = Names::new(Kit::V62, Compat::Studio);
+        let mut store = Store::default();
+        let mut setup = Source::new(setup, Wanted::Any);
+        analyse(&mut setup, &mut names).unwrap();
+        evaluate(&setup, &names, &mut store, &mut Nobody).unwrap();
+        let mut source = Source::new(&text.repeat(2_000), Wanted::Any);
+        analyse(&mut source, &mut names).unwrap();
+        let told = evaluate(&source, &names, &mut store, &mut Nobody).unwrap_err();
+        assert!(
+            told[0].to_string().contains("makes too much work"),
+            "{text}: {}",
+            told[0]
+        );
+    }
+}
+
+#[test]
+fn a_long_text_is_no_number() {
+    let digits = "1".repeat(limits::NUMBER_TEXT_MAX + 1);
+    assert_eq!(Value::text(digits.as_str()).to_float(), 0.0);
+    assert_eq!(Value::text(digits.as_str()).to_int(), 0);
+    assert!(Value::text(&digits[1..]).to_float() > 1e300);
+}
+
+#[test]
 fn names_cannot_grow_without_end() {
     let mut names = Names::new(Kit::V62, Compat::Studio);
     let mut told = None;

@@ -1,0 +1,108 @@
+//! Names in a language: what the user called something, as far as the language allows.
+//!
+//! Owns letters, reserved words and clashes. Knows no meaning of a name.
+
+use std::collections::HashSet;
+
+/// Latin letters for the Cyrillic ones from U+0430 on.
+const LATIN: [&str; 32] = [
+    "a", "b", "v", "g", "d", "e", "zh", "z", "i", "y", "k", "l", "m", "n", "o", "p", "r", "s", "t",
+    "u", "f", "h", "ts", "ch", "sh", "sch", "", "y", "", "e", "yu", "ya",
+];
+/// How long a name may be.
+const LENGTH_MAX: usize = 60;
+
+/// What a language allows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rules {
+    /// Whether Cyrillic letters may stand in names.
+    pub(super) cyrillic: bool,
+    /// Whether case makes no difference.
+    pub(super) caseless: bool,
+    /// Words that are taken.
+    pub(super) reserved: &'static [&'static str],
+}
+
+/// Names that are in use.
+#[derive(Clone, Debug)]
+pub(super) struct Names {
+    rules: Rules,
+    used: HashSet<String>,
+}
+
+impl Names {
+    pub(super) fn new(rules: Rules) -> Self {
+        Self {
+            rules,
+            used: rules
+                .reserved
+                .iter()
+                .map(|word| folded(word, rules))
+                .collect(),
+        }
+    }
+
+    /// A free name like the one that is wanted.
+    pub(super) fn take(&mut self, wanted: &str) -> String {
+        let plain = plain(wanted, self.rules);
+        let mut name = plain.clone();
+        let mut count = 1;
+        while !self.used.insert(folded(&name, self.rules)) {
+            count += 1;
+            name = format!("{plain}_{count}");
+        }
+        name
+    }
+}
+
+fn folded(name: &str, rules: Rules) -> String {
+    if rules.caseless {
+        name.to_lowercase()
+    } else {
+        name.to_owned()
+    }
+}
+
+/// The name with letters, digits and underscores only.
+pub(super) fn plain(name: &str, rules: Rules) -> String {
+    let mut out = String::new();
+    for letter in name.chars() {
+        if out.len() >= LENGTH_MAX {
+            break;
+        }
+        match letter {
+            'a'..='z' | 'A'..='Z' | '0'..='9' | '_' => out.push(letter),
+            '\u{410}'..='\u{44f}' | '\u{401}' | '\u{451}' if rules.cyrillic => out.push(letter),
+            '\u{410}'..='\u{44f}' | '\u{401}' | '\u{451}' => out.push_str(&latin(letter)),
+            ' ' | '-' | '.' | ',' => out.push('_'),
+            other if other.is_alphanumeric() => out.push_str(&format!("u{:x}", other as u32)),
+            _ => out.push('_'),
+        }
+    }
+    if out
+        .chars()
+        .next()
+        .is_none_or(|first| first.is_ascii_digit())
+    {
+        out.insert(0, '_');
+    }
+    out
+}
+
+fn latin(letter: char) -> String {
+    let small = letter.to_lowercase().next().unwrap_or(letter);
+    let text = match small {
+        '\u{451}' => "yo",
+        _ => LATIN
+            .get((small as usize).wrapping_sub(0x430))
+            .copied()
+            .unwrap_or("_"),
+    };
+    let mut text = text.to_owned();
+    if letter != small
+        && let Some(first) = text.get_mut(..1)
+    {
+        first.make_ascii_uppercase();
+    }
+    text
+}
