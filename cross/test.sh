@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Tries the build for the controller on this PC, with the controller's processor emulated.
 #
-# usage: cross/test.sh [unit|mount] [NAME...]
+# usage: cross/test.sh [unit|mount|serve] [NAME...]
 #
 #   unit    each crate's own tests, built for the controller
 #   mount   the programs of cross/build.sh on real mounts: the integration tests of this PC start them through
 #           binfmt_misc and speak to them over the PC's /dev/fuse; C converters are compiled for the controller
+#   serve   trikd above a mounted tree: a client runs a program in JavaScript, which moves something, and stops it
 #
-# Without arguments both. Further names choose tests, as with cargo test. It may register qemu for ARM programs, as
+# Without arguments all. Further names choose tests, as with cargo test. It may register qemu for ARM programs, as
 # root, and says so.
 set -euo pipefail
 . "$(dirname "$0")/lib.sh"
@@ -16,7 +17,7 @@ help_if_asked "$@"
 main() {
     local what=${1:-all}
     case $what in
-    unit | mount) shift ;;
+    unit | mount | serve) shift ;;
     all) ;;
     *)
         printf 'test.sh: there are no tests %s; see --help\n' "$what" >&2
@@ -26,8 +27,9 @@ main() {
     need_toolchain
     need_emulation
     export QEMU_CPU=$cpu QEMU_LD_PREFIX=$sysroot
-    [ "$what" = mount ] || unit "$@"
-    [ "$what" = unit ] || mount_tests "$@"
+    case $what in all | unit) unit "$@" ;; esac
+    case $what in all | serve) serve ;; esac
+    case $what in all | mount) mount_tests "$@" ;; esac
 }
 
 # Interpreted instructions take some ten times as long, so the random trials are fewer.
@@ -38,6 +40,29 @@ unit() {
     PROPTEST_CASES=${PROPTEST_CASES:-32} cross_cargo test --lib -p config -p converter -p filters -p trikfs -p trikd -- \
         --skip the_rust_template --skip a_device_that_is_no_bus_says_so \
         --skip a_program_that_is_missing_is_named "$@"
+}
+
+# The programs that ship, one above the other, and a client of a few lines.
+serve() {
+    "$root/cross/build.sh"
+    say "trikd above a tree"
+    in_sysroot bash "$root/cross/serve.sh" "$out/robot/bin"
+}
+
+# in_sysroot COMMAND...: with the controller's C library where programs look for it by themselves: trikd gives the programs
+# that it starts no environment of others, and so no QEMU_LD_PREFIX.
+in_sysroot() {
+    local libraries=$out/libraries file
+    mkdir -p "$libraries/arm-linux-gnueabi"
+    cp -L "$sysroot/lib/ld-linux.so.3" "$libraries"
+    for file in libc.so.6 libm.so.6 libgcc_s.so.1; do
+        cp -L "$sysroot/lib/$file" "$libraries/arm-linux-gnueabi"
+    done
+    # shellcheck disable=SC2016
+    as_root env QEMU_CPU="$cpu" unshare --mount --propagation private sh -euc '
+        mount -t overlay -o "lowerdir=$1:/usr/lib" none /usr/lib
+        shift
+        exec "$@"' sh "$libraries" "$@"
 }
 
 mount_tests() {

@@ -167,7 +167,7 @@ pub enum SourceDescription {
     Pwm(PwmDescription),
     /// `gpio{ ... }`: one line, state.
     Gpio(GpioDescription),
-    /// `lines{ ... }`: lines of text of a sensor program.
+    /// `lines{ ... }`, `pictures{ ... }`: lines of text of a sensor program, or its pictures.
     Lines(LinesDescription),
     /// `packets{ ... }`: packets of a serial line.
     Packets(PacketsDescription),

@@ -33,10 +33,10 @@ main() {
     need_packages dpkg-dev binutils
     if [ -n "$build" ]; then
         say "building for this PC"
-        (cd "$root" && cargo build --release -p trikfs -p filters -p trikfs-ev3dev --locked)
+        (cd "$root" && cargo build --release "${robot_crates[@]}" --locked)
     fi
     local program
-    for program in trikfs trikfs-ev3dev; do
+    for program in trikfs trikfs-ev3dev trikd; do
         [ -x "$built/$program" ] || die "$built/$program is missing" "run this without --no-build"
     done
     mkdir -p "$packages"
@@ -60,19 +60,22 @@ make_tree() {
         --remove-section=.comment --remove-section=.note {} +
     install -D -m 644 "$root/cross/install/robot.lua" "$tree/etc/trikfs/robot.lua"
     install -D -m 644 "$from/trikfs.service" "$tree/lib/systemd/system/trikfs.service"
+    install -D -m 644 "$from/trikd.service" "$tree/lib/systemd/system/trikd.service"
     install -D -m 644 "$from/overrides" "$tree/usr/share/lintian/overrides/trikfs"
 }
 
 make_docs() {
-    local share=$1 trikfs=$built/trikfs doc=$1/doc/trikfs command
+    local share=$1 doc=$1/doc/trikfs program command
     mkdir -p "$share/man/man1" "$doc"
-    "$trikfs" man | gzip -9n >"$share/man/man1/trikfs.1.gz"
-    for command in $(commands); do
-        "$trikfs" man "$command" | gzip -9n >"$share/man/man1/trikfs-$command.1.gz"
+    for program in trikfs trikd; do
+        "$built/$program" man | gzip -9n >"$share/man/man1/$program.1.gz"
+        for command in $(commands "$program"); do
+            "$built/$program" man "$command" | gzip -9n >"$share/man/man1/$program-$command.1.gz"
+        done
+        completion "$program" bash "$share/bash-completion/completions/$program"
+        completion "$program" zsh "$share/zsh/vendor-completions/_$program"
+        completion "$program" fish "$share/fish/vendor_completions.d/$program.fish"
     done
-    completion bash "$share/bash-completion/completions/trikfs"
-    completion zsh "$share/zsh/vendor-completions/_trikfs"
-    completion fish "$share/fish/vendor_completions.d/trikfs.fish"
     local view=$built/trikfs-ev3dev
     "$view" man | gzip -9n >"$share/man/man1/trikfs-ev3dev.1.gz"
     "$view" completions bash >"$share/bash-completion/completions/trikfs-ev3dev"
@@ -83,14 +86,14 @@ make_docs() {
     install -m 644 "$root"/docs/user/*.md "$doc"
 }
 
-# The commands that the help names.
+# commands PROGRAM: those that its help names.
 commands() {
-    "$built/trikfs" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]\{1,\}\) .*/\1/p' | grep -vx help
+    "$built/$1" --help | sed -n '/^Commands:/,/^$/s/^  \([a-z-]\{1,\}\) .*/\1/p' | grep -vx help
 }
 
 completion() {
-    mkdir -p "$(dirname "$2")"
-    "$built/trikfs" completions "$1" >"$2"
+    mkdir -p "$(dirname "$3")"
+    "$built/$1" completions "$2" >"$3"
 }
 
 # The newest section of CHANGELOG.md that says something, as Debian wants it.
@@ -110,7 +113,7 @@ make_control() {
         install -m 755 "$from/$script" "$tree/DEBIAN/$script"
     done
     echo /etc/trikfs/robot.lua >"$tree/DEBIAN/conffiles"
-    (cd "$work" && dpkg-shlibdeps -O debian/trikfs/usr/bin/trikfs* debian/trikfs/usr/lib/trikfs/*.so) >"$work/substvars"
+    (cd "$work" && dpkg-shlibdeps -O debian/trikfs/usr/bin/* debian/trikfs/usr/lib/trikfs/*.so) >"$work/substvars"
     arch=$(dpkg --print-architecture)
     (cd "$work" && dpkg-gencontrol -ptrikfs -T"$work/substvars" -Pdebian/trikfs -v"$version" \
         -DArchitecture="$arch")

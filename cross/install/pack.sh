@@ -31,7 +31,7 @@ main() {
 
 need_build() {
     local file header
-    for file in bin/trikfs bin/trikfs-ev3dev lib/trikfs/libtrikfs_filters.so lib/trikfs/libhello.so; do
+    for file in bin/trikfs bin/trikfs-ev3dev bin/trikd lib/trikfs/libtrikfs_filters.so lib/trikfs/libhello.so; do
         [ -e "$robot/$file" ] || die "$robot/$file is missing" "build it: cross/build.sh"
         header=$(readelf -h "$robot/$file" 2>/dev/null) || die "$robot/$file is no program" "build it: cross/build.sh"
         grep -q 'Machine: *ARM$' <<<"$header" ||
@@ -44,10 +44,10 @@ make_tree() {
     local tree=$1 name
     mkdir -p "$tree/usr" "$tree/etc/rc5.d"
     cp -r "$robot/." "$tree/usr"
-    for name in etc/default/trikfs usr/lib/trikfs/common.sh; do
+    for name in etc/default/trikfs etc/default/trikd usr/lib/trikfs/common.sh; do
         install -D -m 644 "$controller/$name" "$tree/$name"
     done
-    for name in etc/init.d/trikfs usr/lib/trikfs/respawn usr/lib/trikfs/tone; do
+    for name in etc/init.d/trikfs etc/init.d/trikd usr/lib/trikfs/respawn usr/lib/trikfs/respawn-trikd usr/lib/trikfs/tone; do
         install -D -m 755 "$controller/$name" "$tree/$name"
     done
     install -D -m 644 "$root/cross/install/robot.lua" "$tree/etc/trikfs/robot.lua"

@@ -5,6 +5,7 @@ pub mod blocks;
 pub mod brick;
 pub mod check;
 pub mod convert;
+pub mod devices;
 pub mod generate;
 pub mod lower;
 pub mod machine;

@@ -5,10 +5,11 @@
 //! Knows no blocks, no diagrams and no robot: the robot is the trait [`Outside`].
 
 mod analyse;
+mod call;
 mod code;
 mod escape;
 mod lexer;
-mod literal;
+pub mod literal;
 pub mod names;
 pub(crate) mod parser;
 pub mod reserved;

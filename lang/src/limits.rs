@@ -13,13 +13,15 @@ pub const ENTRY_NAME_BYTES: usize = 1024;
 /// How deep tags may nest in a document.
 pub const XML_DEPTH: usize = 64;
 /// Tags of one document.
-pub const XML_TAGS: usize = 200_000;
+pub const XML_TAGS: usize = 100_000;
 /// Attributes of one tag.
 pub const XML_ATTRIBUTES: usize = 64;
-/// Objects that one list of a save may name, summed over all lists.
-pub const REFERENCES: usize = 1_000_000;
+/// Objects that all lists of a save may name together; an object is named about four times.
+pub const REFERENCES: usize = 300_000;
 /// Problems that one reading tells; what is more is counted.
 pub const PROBLEMS: usize = 200;
+/// Problems that are counted.
+pub const PROBLEMS_KEPT: usize = 2_000;
 
 /// Bytes of one expression's text.
 pub const EXPRESSION_TEXT_MAX: usize = 64 << 10;
@@ -43,6 +45,8 @@ pub const VALUE_CELLS_MAX: u32 = 500_000;
 pub const STORE_CELLS_MAX: u32 = 1_000_000;
 /// Bytes of one text value.
 pub const TEXT_MAX: usize = 1 << 20;
+/// Bytes of a text value that can be a number.
+pub const NUMBER_TEXT_MAX: usize = 1000;
 /// Cells that one evaluation may compare, copy or make.
 pub const EVALUATION_CELLS_MAX: u32 = 4_000_000;
 /// Blocks of a project that is run.

@@ -3,6 +3,7 @@
 //! Owns the shape of a problem and how it is shown. Knows no language: each part words its own problems, in English and
 //! in Russian.
 
+use crate::limits;
 use std::fmt;
 
 /// A language of messages.
@@ -129,6 +130,13 @@ impl Problem {
         }
         line.push_str(self.words.in_tongue(tongue));
         line
+    }
+}
+
+/// Adds a problem to others, unless there are so many already that one more helps nobody.
+pub fn keep(problems: &mut Vec<Problem>, problem: Problem) {
+    if problems.len() < limits::PROBLEMS_KEPT {
+        problems.push(problem);
     }
 }
 

@@ -6,11 +6,10 @@
 
 use crate::limits;
 use crate::problem::{Position, Problem, Words};
-use quick_xml::Reader;
-use quick_xml::events::attributes::Attributes;
-use quick_xml::events::{BytesStart, Event};
+use scan::{Part, Scanner, Token};
 use std::borrow::Cow;
 
+mod scan;
 mod words;
 
 /// A tag with what is in it.
@@ -122,44 +121,27 @@ impl<'a> Element<'a> {
 pub fn parse(text: &str) -> Result<Element<'_>, Problem> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut builder = Builder::default();
-    let mut reader = Reader::from_str(text);
+    let mut scanner = Scanner::new(text);
     loop {
-        let at = usize::try_from(reader.buffer_position()).unwrap_or(usize::MAX);
+        let at = scanner.at();
         let located = |words: Words| located(words, text, at);
-        match reader.read_event() {
-            Ok(Event::Start(tag)) => builder.start(raw(text, at, &tag)).map_err(located)?,
-            Ok(Event::Empty(tag)) => {
-                builder.start(raw(text, at, &tag)).map_err(located)?;
-                builder.end();
+        match scanner.next().map_err(located)? {
+            Token::Start(name) => builder.start(name, &mut scanner).map_err(located)?,
+            Token::End(name) => builder.end_of(name).map_err(located)?,
+            Token::Text(found) => {
+                let found = plain(found).map_err(located)?;
+                builder.text(found).map_err(located)?;
             }
-            Ok(Event::End(_)) => builder.end(),
-            Ok(Event::Text(found)) => builder.text(found.into_inner()).map_err(located)?,
-            Ok(Event::CData(found)) => builder.text(found.into_inner()).map_err(located)?,
-            Ok(Event::Comment(found)) => builder.push(Node::Comment(found.into_inner())),
-            Ok(Event::GeneralRef(found)) => {
-                let value = entity(&found).ok_or_else(|| located(words::entity(&found)))?;
-                builder.text(value.to_string().into()).map_err(located)?;
-            }
-            Ok(Event::DocType(_)) => return Err(located(words::document_type())),
-            Ok(Event::Decl(_) | Event::PI(_)) => {}
-            Ok(Event::Eof) => break,
-            Err(error) => return Err(located(words::syntax(&error.to_string()))),
+            Token::Characters(found) => builder.text(found.into()).map_err(located)?,
+            Token::Comment(found) => builder.push(Node::Comment(found.into())),
+            Token::Instruction => {}
+            Token::Finish => break,
         }
     }
-    let root = match builder.root {
-        Some(root) if builder.open.is_empty() => root,
-        _ => return Err(located(words::unfinished(), text, text.len())),
-    };
-    Ok(root)
-}
-
-/// What stands between the angles of a tag, borrowed from the text and not from the event.
-fn raw<'a>(text: &'a str, at: usize, tag: &BytesStart<'_>) -> (&'a str, usize) {
-    let content = text.get(at..).unwrap_or_default();
-    let content = content.strip_prefix('<').unwrap_or(content);
-    let content = content.get(..tag.len()).unwrap_or_default();
-    debug_assert_eq!(content, &**tag, "the tag stands where the reader was");
-    (content, tag.name().0.len())
+    match builder.root {
+        Some(root) if builder.open.is_empty() => Ok(root),
+        _ => Err(located(words::unfinished(), text, text.len())),
+    }
 }
 
 /// The open tags, outermost first, and what is finished.
@@ -171,7 +153,8 @@ struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    fn start(&mut self, (content, name): (&'a str, usize)) -> Result<(), Words> {
+    /// Opens a tag and takes its attributes.
+    fn start(&mut self, name: &'a str, scanner: &mut Scanner<'a>) -> Result<(), Words> {
         self.tags += 1;
         if self.tags > limits::XML_TAGS {
             return Err(words::too_many_tags());
@@ -182,19 +165,28 @@ impl<'a> Builder<'a> {
         if self.root.is_some() {
             return Err(words::two_roots());
         }
-        let mut element = Element::new(content.get(..name).unwrap_or_default());
-        for found in Attributes::new(content, name) {
-            let found = found.map_err(|error| words::syntax(&error.to_string()))?;
-            if element.attributes.len() == limits::XML_ATTRIBUTES {
-                return Err(words::too_many_attributes());
+        let mut element = Element::new(name);
+        let is_empty = loop {
+            match scanner.part()? {
+                Part::Attribute(name, value) => add(&mut element, name, value)?,
+                Part::Open => break false,
+                Part::Empty => break true,
             }
-            let value = match found.value {
-                Cow::Borrowed(value) => plain(value)?,
-                Cow::Owned(value) => Cow::Owned(plain(&value)?.into_owned()),
-            };
-            element.attributes.push((Cow::Borrowed(found.key.0), value));
-        }
+        };
         self.open.push(element);
+        if is_empty {
+            self.end();
+        }
+        Ok(())
+    }
+
+    fn end_of(&mut self, name: &str) -> Result<(), Words> {
+        match self.open.last() {
+            Some(element) if element.name == name => {}
+            Some(element) => return Err(words::wrong_end(name, &element.name)),
+            None => return Err(words::end_of_nothing(name)),
+        }
+        self.end();
         Ok(())
     }
 
@@ -221,16 +213,35 @@ impl<'a> Builder<'a> {
         };
         match parent.nodes.last_mut() {
             Some(Node::Text(text)) => text.to_mut().push_str(&found),
-            _ if found.trim().is_empty() => {}
+            _ if found.bytes().all(|byte| byte.is_ascii_whitespace()) => {}
             _ => parent.nodes.push(Node::Text(found)),
         }
         Ok(())
     }
 }
 
-/// A value with its references replaced.
+/// Adds an attribute to a tag.
+fn add<'a>(element: &mut Element<'a>, name: &'a str, value: &'a str) -> Result<(), Words> {
+    let attributes = &mut element.attributes;
+    if attributes.is_empty() {
+        // Most tags of a save have two.
+        attributes.reserve_exact(2);
+    }
+    if attributes.len() == limits::XML_ATTRIBUTES {
+        return Err(words::too_many_attributes());
+    }
+    if attributes.iter().any(|(known, _)| known == name) {
+        return Err(words::attribute_twice(name));
+    }
+    attributes.push((Cow::Borrowed(name), plain(value)?));
+    Ok(())
+}
+
+/// A text with its references replaced.
 fn plain(value: &str) -> Result<Cow<'_, str>, Words> {
-    if !value.contains(['&', '\r']) {
+    // Without a branch for each byte, so that many are looked at together.
+    let is_special = |found: bool, &byte: &u8| found | (byte == b'&') | (byte == b'\r');
+    if !value.as_bytes().iter().fold(false, is_special) {
         return Ok(Cow::Borrowed(value));
     }
     let mut plain = String::with_capacity(value.len());
@@ -273,7 +284,8 @@ fn entity(name: &str) -> Option<char> {
         Some(digits) => u32::from_str_radix(digits, 16).ok()?,
         None => number.parse().ok()?,
     };
-    char::from_u32(code).filter(|&found| found != '\0')
+    let is_legal = |found: &char| *found >= ' ' || ['\t', '\n', '\r'].contains(found);
+    char::from_u32(code).filter(is_legal)
 }
 
 /// A problem at a byte of the text.

@@ -2,7 +2,7 @@
 //!
 //! Nothing here waits: without a reader nothing is sent, and a full FIFO drops the whole piece.
 
-use crate::limits::{FIFO_BYTES, MAX_LINE_BYTES};
+use crate::limits::{FIFO_BYTES, MAX_LINE_BYTES, PHOTO_FIFO_BYTES};
 use nix::errno::Errno;
 use nix::fcntl::{FcntlArg, fcntl};
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
@@ -42,6 +42,10 @@ pub struct Out {
     file: Option<File>,
     is_there: bool,
     has_reader_left: bool,
+    /// What it holds, in bytes.
+    size: i32,
+    /// Of a large piece, what did not fit yet.
+    rest: Vec<u8>,
 }
 
 impl Out {
@@ -53,7 +57,16 @@ impl Out {
             file: None,
             is_there: true,
             has_reader_left: false,
+            size: FIFO_BYTES,
+            rest: Vec::new(),
         })
+    }
+
+    /// One for pieces that are larger than a page.
+    pub fn make_large(path: PathBuf) -> io::Result<Self> {
+        let mut out = Self::make(path)?;
+        out.size = PHOTO_FIFO_BYTES;
+        Ok(out)
     }
 
     /// Makes the FIFO or takes it away, like a device that is plugged in or out.
@@ -79,6 +92,7 @@ impl Out {
             return if has_left { Reader::New } else { Reader::Same };
         }
         self.file = None;
+        self.rest.clear();
         if !self.is_there {
             return Reader::None;
         }
@@ -90,20 +104,41 @@ impl Out {
             return Reader::None;
         };
         // A small buffer: who reads late wants new samples, not a long tail of old ones.
-        let _ = fcntl(&file, FcntlArg::F_SETPIPE_SZ(FIFO_BYTES));
+        let _ = fcntl(&file, FcntlArg::F_SETPIPE_SZ(self.size));
         self.file = Some(file);
         Reader::New
     }
 
-    /// Sends the piece whole or not at all; at most 4096 bytes, which the kernel never splits.
+    /// Sends the piece whole or not at all. The kernel never splits up to 4096 bytes; what did not fit of a larger one
+    /// goes before the next.
     pub fn send(&mut self, piece: &[u8]) {
-        let Some(file) = &mut self.file else {
+        let rest = std::mem::take(&mut self.rest);
+        let left = self.write(&rest);
+        if left > 0 {
+            self.rest = rest[rest.len() - left..].to_vec();
             return;
+        }
+        let left = self.write(piece);
+        if left < piece.len() {
+            self.rest = piece[piece.len() - left..].to_vec();
+        }
+    }
+
+    /// Writes what fits; how many bytes are left.
+    fn write(&mut self, bytes: &[u8]) -> usize {
+        let Some(file) = &mut self.file else {
+            return 0;
         };
-        match file.write(piece) {
-            Ok(_) => {}
-            Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
-            Err(_) => self.file = None,
+        if bytes.is_empty() {
+            return 0;
+        }
+        match file.write(bytes) {
+            Ok(count) => bytes.len() - count,
+            Err(error) if error.kind() == io::ErrorKind::WouldBlock => bytes.len(),
+            Err(_) => {
+                self.file = None;
+                0
+            }
         }
     }
 }
@@ -231,6 +266,28 @@ mod tests {
         let _ = reader.read_to_end(&mut bytes);
         assert_eq!(bytes.len(), 4096);
         assert!(bytes.chunks(16).all(|piece| piece[..4] == piece[12..]));
+    }
+
+    #[test]
+    fn a_large_piece_comes_whole_and_another_does_not_come_between() {
+        let scratch = Scratch::new();
+        let mut out = Out::make_large(scratch.path("device")).unwrap();
+        let mut reader = File::options()
+            .read(true)
+            .custom_flags(libc::O_NONBLOCK)
+            .open(scratch.path("device"))
+            .unwrap();
+        out.reader();
+        let piece = |number: u8| vec![number; 40_000];
+        // 64 KiB take one and a part of the second; the third is dropped.
+        for number in 1..=3 {
+            out.send(&piece(number));
+        }
+        let mut bytes = Vec::new();
+        let _ = reader.read_to_end(&mut bytes);
+        out.send(&piece(4));
+        let _ = reader.read_to_end(&mut bytes);
+        assert_eq!(bytes, [piece(1), piece(2), piece(4)].concat());
     }
 
     #[test]

@@ -22,6 +22,7 @@ pub mod machine;
 mod mems;
 mod mlx90640;
 mod msp430;
+mod photo;
 mod pose;
 mod random;
 pub mod robots;

@@ -32,3 +32,11 @@ pub const FIFO_BYTES: i32 = 4096;
 pub const SAYINGS_MAX: usize = 64;
 /// Real milliseconds between two pictures of the display.
 pub const DISPLAY_MS: u64 = 100;
+/// Points of a picture of the camera, as the real one has.
+pub const PHOTO_WIDTH: u16 = 320;
+/// See [`PHOTO_WIDTH`].
+pub const PHOTO_HEIGHT: u16 = 240;
+/// Of its JPEG files, 1 to 100.
+pub const PHOTO_QUALITY: u8 = 70;
+/// What the FIFO of pictures holds, in bytes: one picture at any time.
+pub const PHOTO_FIFO_BYTES: i32 = 64 << 10;

@@ -2,13 +2,14 @@
 //!
 //! Owns the scripts, the FIFOs, which sensor runs (one at a time, as on the one signal processor) and the lines:
 //! out `loc: X C M`, `loc: X Y S`, `color: C...`, `hsv: A B C D E F`; in `detect`, `hsv A B C D E F`, `mxn M N`,
-//! `video_out 0|1`.
+//! `video_out 0|1`. The encoder of pictures is one of them; its lines are JPEG files.
 
 use crate::attributes::Attributes;
 use crate::camera::{HEIGHT, Hsv, Picture, WIDTH};
 use crate::faults;
 use crate::fifo::{In, Out, Reader};
 use crate::files::{Part, script};
+use crate::photo;
 use crate::shared::Shared;
 use crate::world::colour;
 use std::io;
@@ -16,7 +17,11 @@ use std::os::fd::BorrowedFd;
 use std::path::PathBuf;
 
 const PERIOD_S: f64 = 0.04;
-const NAMES: [&str; 3] = ["line", "object", "mxn"];
+/// Pictures cost more than lines.
+const PICTURE_PERIOD_S: f64 = 0.1;
+/// Pictures themselves, from the encoder.
+const PICTURES: &str = "mjpg";
+const NAMES: [&str; 4] = ["line", "object", "mxn", PICTURES];
 const BLACK: Hsv = [0, 359, 0, 100, 0, 20];
 const RED: Hsv = [340, 20, 50, 100, 20, 100];
 /// Objects that are smaller are not told.
@@ -39,7 +44,7 @@ struct Running {
     due_s: f64,
     ranges: Hsv,
     grid: [i32; 2],
-    last: String,
+    last: Vec<u8>,
 }
 
 impl Camera {
@@ -49,7 +54,7 @@ impl Camera {
         for name in NAMES {
             script(
                 root,
-                &format!("etc/init.d/{name}-sensor-ov7670"),
+                &format!("etc/init.d/{}-ov7670", full(name)),
                 &start_script(name),
             )?;
         }
@@ -70,12 +75,17 @@ impl Camera {
             return;
         }
         self.stop();
-        let fifo = |way: &str| self.root.join(format!("run/{name}-sensor.{way}.fifo"));
+        let fifo = |way: &str| self.root.join(format!("run/{}.{way}.fifo", full(name)));
         // Without FIFOs there is no sensor; the script that waits for them says so.
         let Ok(input) = In::make(fifo("in")) else {
             return;
         };
-        let Ok(out) = Out::make(fifo("out")) else {
+        let made = if name == PICTURES {
+            Out::make_large(fifo("out"))
+        } else {
+            Out::make(fifo("out"))
+        };
+        let Ok(out) = made else {
             return;
         };
         self.running = Some(Running {
@@ -85,7 +95,7 @@ impl Camera {
             due_s: 0.0,
             ranges: if name == "object" { RED } else { BLACK },
             grid: [MAX_GRID; 2],
-            last: String::new(),
+            last: Vec::new(),
         });
     }
 
@@ -137,7 +147,7 @@ impl Running {
     fn run(&mut self, shared: &Shared, now_s: f64) -> f64 {
         let is_read = self.out.reader() != Reader::None;
         for line in self.input.lines() {
-            if self.order(&line) && is_read {
+            if self.order(&line) && is_read && self.name != PICTURES {
                 let ranges = picture(shared).detect().map(|part| part.to_string());
                 self.out
                     .send(format!("hsv: {}\n", ranges.join(" ")).as_bytes());
@@ -148,7 +158,12 @@ impl Running {
         }
         if self.due_s <= now_s {
             let slower_s = self.frame(shared);
-            self.due_s = (self.due_s + PERIOD_S).max(now_s) + slower_s;
+            let period_s = if self.name == PICTURES {
+                PICTURE_PERIOD_S
+            } else {
+                PERIOD_S
+            };
+            self.due_s = (self.due_s + period_s).max(now_s) + slower_s;
         }
         self.due_s
     }
@@ -174,7 +189,13 @@ impl Running {
 
     /// Looks and tells what is there.
     fn frame(&mut self, shared: &Shared) -> f64 {
-        let picture = picture(shared);
+        let is_encoder = self.name == PICTURES;
+        // A picture for people is larger, and made by itself.
+        let picture = if is_encoder {
+            Picture(Vec::new())
+        } else {
+            picture(shared)
+        };
         let mut machine = shared.machine();
         let fault = machine.faults[faults::CAMERA];
         let noise = machine.random.within(fault.noise).round() as i32;
@@ -184,36 +205,44 @@ impl Running {
             machine.random.fill(&mut garbage);
         }
         drop(machine);
-        let line = match self.name {
-            "line" => {
-                let line = picture.line(&self.ranges);
-                let x = (line.x + noise).clamp(-100, 100);
-                Some(format!("loc: {x} {} {}\n", line.crossing, line.mass))
-            }
-            "object" => {
-                let (x, y, size) = picture.object(&self.ranges);
-                let x = (x + noise).clamp(-100, 100);
-                let size = if size < SMALLEST { 0 } else { size };
-                Some(format!("loc: {x} {y} {size}\n"))
-            }
-            _ => {
-                let [rows, columns] = self.grid.map(|size| size as usize);
-                let colours = picture.colours(rows, columns);
-                let words: Vec<String> = colours.iter().map(u32::to_string).collect();
-                Some(format!("color: {}\n", words.join(" ")))
-            }
-        };
-        if let Some(line) = line.filter(|_| !fault.stuck || self.last.is_empty()) {
-            self.last = line;
+        if fault.stuck && !self.last.is_empty() {
+            // Nothing changes any more.
+        } else if is_encoder {
+            self.last = photo::jpeg(shared, fault.noise);
+        } else {
+            self.last = self.line(&picture, noise).into_bytes();
         }
         if fault.garbage {
             let mut bytes = garbage.to_vec();
             bytes.push(b'\n');
             self.out.send(&bytes);
         } else if !is_lost {
-            self.out.send(self.last.as_bytes());
+            self.out.send(&self.last);
         }
         f64::from(fault.slow_ms) / 1000.0
+    }
+
+    /// What a sensor tells of what it sees.
+    fn line(&self, picture: &Picture, noise: i32) -> String {
+        match self.name {
+            "line" => {
+                let line = picture.line(&self.ranges);
+                let x = (line.x + noise).clamp(-100, 100);
+                format!("loc: {x} {} {}\n", line.crossing, line.mass)
+            }
+            "object" => {
+                let (x, y, size) = picture.object(&self.ranges);
+                let x = (x + noise).clamp(-100, 100);
+                let size = if size < SMALLEST { 0 } else { size };
+                format!("loc: {x} {y} {size}\n")
+            }
+            _ => {
+                let [rows, columns] = self.grid.map(|size| size as usize);
+                let colours = picture.colours(rows, columns);
+                let words: Vec<String> = colours.iter().map(u32::to_string).collect();
+                format!("color: {}\n", words.join(" "))
+            }
+        }
     }
 }
 
@@ -232,12 +261,22 @@ fn picture(shared: &Shared) -> Picture {
     Picture((0..HEIGHT).map(row).collect())
 }
 
+/// How scripts and FIFOs of a sensor are called.
+fn full(name: &str) -> String {
+    if name == PICTURES {
+        "mjpg-encoder".to_owned()
+    } else {
+        format!("{name}-sensor")
+    }
+}
+
 /// What stands for the controller's own script: it tells the board and waits for the FIFO.
 fn start_script(name: &str) -> String {
+    let full = full(name);
     format!(
         r#"
 control=$root/control/camera
-out=$root/run/{name}-sensor.out.fifo
+out=$root/run/{full}.out.fifo
 [ -p "$control" ] || {{ echo "the virtual board is not running" >&2; exit 1; }}
 case ${{1:-}} in
 start)

@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use trikd::protocol::frame::encode;
 use trikd::scratch::Scratch;
 
-const STOPS: usize = 100;
+const STOPS: usize = 40;
 const START: &str = "brick.motor(M3).setPower(60)\nbrick.motor(M4).setPower(60)\n";
 
 /// A process that is asked to end, and waited for.

@@ -185,6 +185,12 @@ const display = {
     reset() { order('reset', 'clear'); },
 };
 
+// Part of a stop, where there is a display.
+const darken = () => {
+    if (native.isFile('display/device'))
+        order('hide', 'hide');
+};
+
 const DETECT_MS = 3000, DETECT_LOOK_MS = 20;
 class Camera {
     constructor(name) {
@@ -238,7 +244,9 @@ const camera = (name, Kind) => () => {
 };
 
 const values = (node) => native.numbers(`${node}/value`);
-const NO_PICTURE = 'pictures are not in the tree';
+const NO_PICTURE = 'the tree has no picture of the infrared camera; readSensor() gives its cells';
+// Three numbers for each point.
+const STILL = [320, 240];
 const irCamera = {
     init() { values('ir_camera'); },
     stop() {},
@@ -305,7 +313,7 @@ kit.hold('brick', {
     soundSensor() { return refuse('brick.soundSensor', 'the microphones are not in the tree'); },
     lidar() { return native.has('lidar') ? lidar : null; },
     irCamera() { return native.has('ir_camera') ? irCamera : null; },
-    getStillImage() { return refuse('brick.getStillImage', NO_PICTURE); },
+    getStillImage() { return native.photo(...STILL); },
     pwmCapture(name) { return measures(text(name)) ? new PwmCapture(text(name)) : null; },
     fifo(name) {
         const path = `${port(name)}/device`;
@@ -331,10 +339,12 @@ kit.hold('brick', {
     say(text) { native.say(kit.text(text)); },
     stop() {
         native.stop();
+        darken();
         emit(this.stopped);
     },
     reset() {
         native.stop();
+        darken();
         keys.reset();
         emit(this.resetCompleted);
     },

@@ -7,10 +7,16 @@ use crate::brick::Brick;
 use crate::engine::Engine;
 use crate::host::Host;
 use crate::log::tell;
+#[cfg(feature = "manual")]
+use crate::manual;
 use crate::program::{kill, launch::Launch};
 use crate::settings::Settings;
-use crate::{daemon, display, guardian, js, log, status};
+use crate::{daemon, diagram, display, guardian, js, log, status};
+#[cfg(feature = "manual")]
+use clap::CommandFactory;
 use clap::{Parser, Subcommand};
+#[cfg(feature = "manual")]
+use std::io::Write;
 use std::net::IpAddr;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -75,7 +81,7 @@ enum Command {
         /// Where the tree is mounted.
         #[arg(long, env = "TRIK_TREE", value_name = "DIR", default_value = "/trikfs")]
         tree: PathBuf,
-        /// Answer each order with a line "ok" or "error: REASON".
+        /// Answer each order with a line "ok COUNT" and COUNT bytes, or "error: REASON".
         #[arg(long)]
         answers: bool,
     },
@@ -86,8 +92,30 @@ enum Command {
         /// Where the tree is mounted.
         #[arg(long, env = "TRIK_TREE", value_name = "DIR", default_value = "/trikfs")]
         tree: PathBuf,
+        /// One line of a program in place of a file; nothing rests at its end.
+        #[arg(long, value_name = "TEXT", hide = true, conflicts_with = "file")]
+        line: Option<String>,
         /// The program.
         file: Option<PathBuf>,
+    },
+    /// The process of one diagram, whose standard input is the channel to the daemon.
+    #[command(hide = true)]
+    Diagram {
+        /// Where the tree is mounted.
+        #[arg(long, env = "TRIK_TREE", value_name = "DIR", default_value = "/trikfs")]
+        tree: PathBuf,
+    },
+    /// Print a completion script for a shell.
+    #[cfg(feature = "manual")]
+    Completions {
+        /// The shell.
+        shell: clap_complete::Shell,
+    },
+    /// Print the manual page, of the program or of one command, for example: trikd man serve | man -l -
+    #[cfg(feature = "manual")]
+    Man {
+        /// The command.
+        command: Option<String>,
     },
 }
 
@@ -135,13 +163,33 @@ fn perform(command: Command) -> Result<ExitCode, String> {
         Command::Draw { tree, answers } => {
             display::serve(&tree, &mut std::io::stdin().lock(), answers)?;
         }
-        Command::Js { tree, file: None } => return Ok(run_engine(&mut js::engine(), &tree)),
+        Command::Js {
+            tree,
+            line: Some(line),
+            ..
+        } => js::run_line(line, &tree)?,
         Command::Js {
             tree,
             file: Some(file),
+            ..
         } => js::run_alone(&file, &tree)?,
+        Command::Js { tree, .. } => return Ok(run_engine(&mut js::engine(), &tree)),
+        Command::Diagram { tree } => return Ok(run_engine(&mut diagram::engine(), &tree)),
+        #[cfg(feature = "manual")]
+        Command::Completions { shell } => show(&manual::completions(shell, Cli::command()))?,
+        #[cfg(feature = "manual")]
+        Command::Man { command } => show(&manual::page(command.as_deref(), Cli::command())?)?,
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// On standard output; a reader that has seen enough is no failure.
+#[cfg(feature = "manual")]
+fn show(text: &[u8]) -> Result<(), String> {
+    match std::io::stdout().write_all(text) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.to_string()),
+        _ => Ok(()),
+    }
 }
 
 /// Runs one program of an engine in this process.
@@ -164,7 +212,9 @@ fn run_engine(engine: &mut impl Engine, tree: &std::path::Path) -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(text) => {
             // The daemon that would show it may be gone.
-            let _ = host.error(&text);
+            if !text.is_empty() {
+                let _ = host.error(&text);
+            }
             ExitCode::FAILURE
         }
     }
@@ -173,10 +223,27 @@ fn run_engine(engine: &mut impl Engine, tree: &std::path::Path) -> ExitCode {
 #[cfg(test)]
 mod tests {
     use super::*;
+    #[cfg(not(feature = "manual"))]
     use clap::CommandFactory;
 
     #[test]
     fn the_definition_is_consistent() {
         Cli::command().debug_assert();
+    }
+
+    #[cfg(feature = "manual")]
+    #[test]
+    fn manual_pages_and_completions_know_the_commands_but_not_the_hidden_ones() {
+        let page =
+            |name| manual::page(name, Cli::command()).map(|page| String::from_utf8(page).unwrap());
+        assert!(page(None).unwrap().contains("trikd\\-serve(1)"));
+        assert!(page(Some("serve")).unwrap().contains("control\\-port"));
+        for unknown in ["launch", "daemon", "frobnicate"] {
+            let said = page(Some(unknown)).unwrap_err();
+            assert_eq!(said, format!("there is no command {unknown}"));
+        }
+        let script = manual::completions(clap_complete::Shell::Bash, Cli::command());
+        let script = String::from_utf8(script).unwrap();
+        assert!(script.contains("--telemetry-port"));
     }
 }

@@ -21,9 +21,27 @@ pub struct Client {
     pub outbox: Rc<Outbox>,
     since: Instant,
     requests: Cell<u32>,
+    watches: Cell<Watching>,
+}
+
+/// What a client wants to know of the running diagram.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum Watching {
+    /// Nothing.
+    #[default]
+    No,
+    /// Lines for people, as frames `info: ...`.
+    Lines,
+    /// JSON, an object on each line, without frames.
+    Objects,
 }
 
 impl Client {
+    /// Wants to know where the running diagram is, or no more.
+    pub fn watch(&self, watching: Watching) {
+        self.watches.set(watching);
+    }
+
     /// Counts a request.
     pub fn count(&self) {
         self.requests.set(self.requests.get().saturating_add(1));
@@ -47,6 +65,7 @@ impl Clients {
             outbox,
             since: Instant::now(),
             requests: Cell::new(0),
+            watches: Cell::default(),
         });
         let mut all = self.all.borrow_mut();
         all.retain(|other| other.strong_count() > 0);
@@ -69,6 +88,26 @@ impl Clients {
         for client in self.living() {
             if client.port == "control" {
                 client.outbox.push(frame.clone());
+            }
+        }
+    }
+
+    /// Whether anybody wants to know where the running diagram is.
+    pub fn are_watching(&self) -> bool {
+        self.living()
+            .iter()
+            .any(|client| client.watches.get() != Watching::No)
+    }
+
+    /// Tells those who want to know where the running diagram is.
+    pub fn tell_watchers(&self, line: &str, json: &str) {
+        let frame: Rc<[u8]> = encode(format!("info: {line}").as_bytes()).into();
+        let object: Rc<[u8]> = format!("{json}\n").into_bytes().into();
+        for client in self.living() {
+            match client.watches.get() {
+                Watching::No => {}
+                Watching::Lines => client.outbox.push(frame.clone()),
+                Watching::Objects => client.outbox.push(object.clone()),
             }
         }
     }

@@ -66,6 +66,8 @@ pub async fn serve(
         let (reader, mut writer) = stream.split();
         let handler = &mut *handler;
         tokio::select! {
+            // First what comes: then its answers go in the same turn.
+            biased;
             reason = read(reader, frame_bytes, held, handler) => reason,
             error = write(&mut writer, outbox) => match error {
                 Ok(()) => Reason::Plain("closed by this side".to_owned()),

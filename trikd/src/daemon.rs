@@ -7,6 +7,8 @@ use crate::access::Access;
 use crate::clients::Clients;
 use crate::connection::Held;
 use crate::feedback::Feedback;
+use crate::pace::Pace;
+use crate::pictures::Pictures;
 use crate::priority::{self, Rank};
 use crate::program::child::Owner;
 use crate::program::reaper::Reaper;
@@ -19,7 +21,6 @@ use crate::server::{self, Port};
 use crate::settings::{Service, Settings, StopKey};
 use crate::{heartbeat, keys, status};
 use crate::{limits, log};
-use nix::sys::prctl;
 use nix::unistd::{User, chown, geteuid};
 use std::cell::Cell;
 use std::io::Write;
@@ -56,6 +57,8 @@ pub struct Daemon {
     pub owner: Option<Owner>,
     /// The way to whoever runs programs.
     pub programs: Programs,
+    /// What the camera sees.
+    pub pictures: Pictures,
     /// Messages between robots.
     pub mailbox: Mailbox,
     /// Where lines of gamepads go.
@@ -188,6 +191,7 @@ impl Daemon {
             reaper: Reaper::default(),
             owner,
             programs: Programs::default(),
+            pictures: Pictures::new(&settings.tree),
             mailbox: Mailbox::new(&settings.state.join("mailbox")),
             gamepad_pipe: Pipe::new(&settings.gamepad_fifo),
             started: Instant::now(),
@@ -231,8 +235,10 @@ impl Daemon {
 /// # Errors
 /// In words, before anything was served.
 pub fn run(settings: Settings, restarts: u32) -> Result<(), String> {
+    let pace = Pace::default();
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
+        .on_thread_park(move || pace.rest())
         .max_blocking_threads(limits::BLOCKING_THREADS)
         .build()
         .map_err(|error| format!("no event loop: {error}"))?;
@@ -245,13 +251,15 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), String> {
     directory(&settings.scripts, "--scripts")?;
     directory(&settings.state, "--state")?;
     directory(&settings.run, "--run")?;
+    program::child::install(&settings.run)
+        .map_err(|error| format!("{}: {error}", settings.run.display()))?;
     let python = settings.run.join("python");
     program::python::install(&python).map_err(|error| format!("{}: {error}", python.display()))?;
     let listener = status::listen(&settings.run)
         .map_err(|error| format!("{}: {error}", settings.run.display()))?;
     let owner = owner(&settings)?;
     // Whoever loses its parent becomes a child of this process, and cannot outlive its program.
-    prctl::set_child_subreaper(true).map_err(|error| format!("no subreaper: {error}"))?;
+    program::kill::adopt_orphans()?;
     let mut ends = Vec::new();
     for kind in [
         SignalKind::terminate(),

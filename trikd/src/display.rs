@@ -2,7 +2,7 @@
 //!
 //! Owns the file of the tree and when it is written. What orders mean and how things look is in the crate `screen`.
 
-use crate::limits;
+use crate::{limits, pictures};
 use screen::order::Effect;
 use screen::picture::{self, RawFormat};
 use screen::{Drawing, Pixels};
@@ -131,8 +131,9 @@ impl Display {
 /// Orders of programs in other languages, and of people at a shell: one on each line of `input`.
 ///
 /// Beside those of [`screen::order`] there are `image PATH` and `show WIDTH HEIGHT FORMAT COUNT`, behind whose line
-/// stand COUNT numbers of four bytes, the lowest first. With `answers` each order is answered by a line `ok` or
-/// `error: TEXT`, otherwise failures alone are told, on standard error.
+/// stand COUNT numbers of four bytes, the lowest first. `photo WIDTH HEIGHT` is a question to the camera. With `answers`
+/// each order is answered by a line `ok COUNT` and COUNT bytes (those of a photo, three for each point, else none), or
+/// `error: TEXT`; otherwise failures alone are told, on standard error.
 ///
 /// # Errors
 /// The input or output fails, or an order has failed and nobody wants answers.
@@ -152,21 +153,19 @@ pub fn serve(root: &Path, input: &mut impl BufRead, answers: bool) -> Result<(),
             break;
         }
         let done = match std::str::from_utf8(&line) {
-            Ok(text) => perform(&mut display, text.trim_end_matches('\n'), input),
+            Ok(text) => perform(&mut display, root, text.trim_end_matches('\n'), input),
             Err(_) => Err("the order is no UTF-8".to_owned()),
         };
         failures += u32::from(done.is_err());
         if answers {
-            let answer = done.map_or_else(
-                |reason| format!("error: {reason}\n"),
-                |()| "ok\n".to_owned(),
-            );
-            let said = output
-                .write_all(answer.as_bytes())
-                .and_then(|()| output.flush());
+            let answer = match done {
+                Ok(bytes) => [format!("ok {}\n", bytes.len()).into_bytes(), bytes].concat(),
+                Err(reason) => format!("error: {reason}\n").into_bytes(),
+            };
+            let said = output.write_all(&answer).and_then(|()| output.flush());
             said.map_err(|error| format!("answers cannot be written: {error}"))?;
         } else if let Err(reason) = done {
-            eprintln!("trikd: {reason}");
+            crate::log::tell(reason);
         }
     }
     if failures > 0 && !answers {
@@ -175,24 +174,42 @@ pub fn serve(root: &Path, input: &mut impl BufRead, answers: bool) -> Result<(),
     Ok(())
 }
 
-fn perform(display: &mut Display, line: &str, input: &mut impl Read) -> Result<(), String> {
-    match line.split_once(' ') {
-        Some(("image", path)) => display.show_file(Path::new(path)),
-        Some(("show", words)) => {
-            let words: Vec<&str> = words.split(' ').collect();
-            let [width, height, format, count] = words[..] else {
-                return Err("show takes width, height, format and the count of numbers".to_owned());
-            };
-            let whole = |word: &str| {
-                let number = word.parse::<i32>();
-                number.map_err(|_| format!("show takes whole numbers, not '{word}'"))
-            };
+/// Does one order; the bytes are the answer.
+fn perform(
+    display: &mut Display,
+    root: &Path,
+    line: &str,
+    input: &mut impl Read,
+) -> Result<Vec<u8>, String> {
+    let (verb, rest) = line.split_once(' ').unwrap_or((line, ""));
+    let words: Vec<&str> = rest.split(' ').collect();
+    let whole = |word: &str| {
+        let number = word.parse::<i32>();
+        number.map_err(|_| format!("{verb} takes whole numbers, not '{word}'"))
+    };
+    match (verb, &words[..]) {
+        ("image", _) => display.show_file(Path::new(rest))?,
+        ("show", [width, height, format, count]) => {
             let (width, height, count) = (whole(width)?, whole(height)?, whole(count)?);
             let numbers = numbers(input, count)?;
-            display.show_numbers(&numbers, width, height, format)
+            display.show_numbers(&numbers, width, height, format)?;
         }
-        _ => display.order(line),
+        ("show", _) => {
+            return Err("show takes width, height, format and the count of numbers".to_owned());
+        }
+        ("photo", [width, height]) => {
+            let side = |word: &str| {
+                let side = u16::try_from(whole(word)?).ok();
+                let side = side.filter(|side| (1..=screen::limits::SIDE_MAX).contains(side));
+                side.ok_or_else(|| format!("{word} is no width or height of a photo"))
+            };
+            let (width, height) = (side(width)?, side(height)?);
+            return Ok(pictures::photo(root)?.scaled(width, height).to_rgb());
+        }
+        ("photo", _) => return Err("photo takes width and height".to_owned()),
+        _ => display.order(line)?,
     }
+    Ok(Vec::new())
 }
 
 /// So many numbers of four bytes.

@@ -30,7 +30,8 @@ pub trait Engine {
     /// [`Start::Direct`] it never returns by itself but when [`Host::receive`] says that the daemon is gone.
     ///
     /// # Errors
-    /// The text of the failure as a person shall read it: `Line 2: ReferenceError: ...` with backtrace lines. The
+    /// The text of the failure as a person shall read it: `Line 2: ReferenceError: ...` with backtrace lines; empty if
+    /// all was told already. The
     /// daemon puts `error: ` before it. Failures of direct texts are told with [`Host::error`] and do not end anything.
     fn run(&mut self, start: Start, brick: &Brick, host: &Host) -> Outcome;
 }

@@ -113,7 +113,7 @@ fn ended(daemon: Pid) -> Option<WaitStatus> {
 /// In words, empty if the serving process has told it.
 pub fn run(tree: &Path, arguments: &[OsString]) -> Result<ExitCode, String> {
     let fails = |error: nix::Error| format!("guardian: {error}");
-    prctl::set_child_subreaper(true).map_err(fails)?;
+    kill::adopt_orphans()?;
     let mut signals = SigSet::from_iter(ENDS);
     signals.add(Signal::SIGCHLD);
     signals.thread_block().map_err(fails)?;

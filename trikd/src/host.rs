@@ -11,6 +11,7 @@
 //! | `mail:HULL:TEXT` | a message of the mailbox |
 //! | `answer:TEXT` | the answer to a `mailbox:` question |
 //! | `web:` | asks for the variables that the program shows |
+//! | `watch:1`, `watch:0` | somebody, or nobody any more, wants to see where the program is |
 //!
 //! | program to daemon | means |
 //! | --- | --- |
@@ -20,13 +21,16 @@
 //! | `events:` | the program is event-driven from now on: direct texts may come in between |
 //! | `mailbox:WORDS` | a question to the mailbox, see [`crate::server::mailbox`] |
 //! | `web:JSON` | the variables |
+//! | `watch:LINE`, newline, JSON | where the program is, for people and for programs |
 
 use crate::engine::Start;
 use crate::limits;
 use crate::protocol::frame::{Decoder, encode};
+use nix::errno::Errno;
+use nix::sys::socket::MsgFlags;
 use std::cell::RefCell;
 use std::io::{self, Read, Write};
-use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
+use std::os::fd::{AsFd, AsRawFd, BorrowedFd, OwnedFd};
 use std::os::unix::net::UnixStream;
 use std::time::{Duration, Instant};
 
@@ -39,6 +43,8 @@ pub enum Incoming {
     Mail(i32, String),
     /// The variables server asks for the properties of `web`: answer with [`Host::web`].
     Web,
+    /// Whether somebody wants to see where the program is: tell it with [`Host::watch`].
+    Watch(bool),
     /// The daemon is gone; the program should end.
     Gone,
 }
@@ -136,6 +142,49 @@ impl Host {
         }
     }
 
+    /// The next message that has come by now.
+    ///
+    /// # Errors
+    /// Those of the socket.
+    pub fn waiting(&self) -> io::Result<Option<Incoming>> {
+        if let Some(early) = self.early.borrow_mut().pop_front() {
+            return Ok(Some(early));
+        }
+        let mut decoder = self.decoder.borrow_mut();
+        let mut buffer = [0; 4096];
+        loop {
+            while let Some(frame) = decoder.next().map_err(io::Error::other)? {
+                if let Some(message) = incoming(&String::from_utf8_lossy(frame)) {
+                    return Ok(Some(message));
+                }
+            }
+            let fd = self.channel.as_raw_fd();
+            match nix::sys::socket::recv(fd, &mut buffer, MsgFlags::MSG_DONTWAIT) {
+                Ok(0) | Err(Errno::ECONNRESET) => return Ok(Some(Incoming::Gone)),
+                Ok(size) => decoder.feed(&buffer[..size]),
+                Err(Errno::EAGAIN) => return Ok(None),
+                Err(Errno::EINTR) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+    }
+
+    /// Tells the mailbox something without waiting for its answer, which is dropped when it comes.
+    ///
+    /// # Errors
+    /// The daemon is gone.
+    pub fn post(&self, words: &str) -> io::Result<()> {
+        self.send("mailbox:", words)
+    }
+
+    /// Tells where the program is: a line for people, and a JSON object.
+    ///
+    /// # Errors
+    /// The daemon is gone.
+    pub fn watch(&self, line: &str, json: &str) -> io::Result<()> {
+        self.send("watch:", &format!("{line}\n{json}"))
+    }
+
     /// Shows output as it is; the newline is part of it.
     ///
     /// # Errors
@@ -220,6 +269,7 @@ fn incoming(frame: &str) -> Option<Incoming> {
             Some(Incoming::Mail(hull.parse().ok()?, text.to_owned()))
         }
         "web" => Some(Incoming::Web),
+        "watch" => Some(Incoming::Watch(rest == "1")),
         _ => None,
     }
 }

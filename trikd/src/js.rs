@@ -67,6 +67,19 @@ pub fn run_alone(file: &Path, tree: &Path) -> Outcome {
     }
 }
 
+/// Runs one line beside another program: nothing is brought to rest at its end.
+///
+/// # Errors
+/// The text of the failure.
+pub fn run_line(line: String, tree: &Path) -> Outcome {
+    session::run(
+        Start::Script(line),
+        tree,
+        &Alone::default(),
+        Box::new(Terminal),
+    )
+}
+
 /// The text of a program or of a file that it includes.
 fn read_text(path: &Path) -> Result<String, String> {
     let place = path.display();

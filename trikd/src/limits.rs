@@ -56,6 +56,14 @@ pub const NICE_REST: i32 = -20;
 pub const NICE_SERVING: i32 = -5;
 /// Priority of programs.
 pub const NICE_PROGRAM: i32 = 5;
+/// Milliseconds over which turns of the serving thread are counted.
+pub const PACE_WINDOW_MS: u64 = 100;
+/// Turns in a second from which it pauses between them.
+pub const PACE_MANY: u32 = 2000;
+/// Turns in a second, with pauses, below which it no longer does.
+pub const PACE_FEW: u32 = 500;
+/// Microseconds of a pause: so much later a stop is heard while thousands of requests come in a second.
+pub const PACE_PAUSE_US: u64 = 1000;
 /// Milliseconds within which a key pairs the computer that asked last.
 pub const PAIRING_MS: u64 = 30_000;
 /// Paired computers.
@@ -139,7 +147,11 @@ pub const HTTP_HEAD_BYTES: usize = 8 << 10;
 /// Milliseconds that a program has to show its variables.
 pub const WEB_MS: u64 = 1_000;
 /// Bytes of one picture.
-pub const PICTURE_BYTES: u64 = 1 << 20;
+pub const PICTURE_BYTES: usize = 1 << 20;
+/// Milliseconds after which a picture that is still the same is sent again: somebody may think that nobody sends.
+pub const PICTURE_AGAIN_MS: u64 = 1_000;
+/// Milliseconds that a viewer waits for the first picture: the camera may have to be started.
+pub const PICTURE_WAIT_MS: u64 = 30_000;
 /// Milliseconds between two pictures.
 pub const PICTURE_MS: u64 = 66;
 /// Milliseconds after the start at which a program runs by itself.
@@ -170,3 +182,18 @@ pub const BEATS_MISSING: u32 = 20;
 pub const RESTS_SHOWN: usize = 256;
 /// Numbers of one picture that a program shows, three for each pixel at most.
 pub const SHOWN_NUMBERS: usize = 3 << 20;
+
+/// How often a diagram tells where it is, in milliseconds.
+pub const WATCH_MS: u32 = 50;
+/// Bytes of the line that tells it to people.
+pub const WATCH_LINE_BYTES: usize = 1024;
+/// Bytes after which no more variables are told.
+pub const WATCH_JSON_BYTES: usize = 32 << 10;
+/// Characters of a text that is told.
+pub const WATCH_TEXT_CHARACTERS: usize = 1024;
+/// Warnings about a diagram that are told.
+pub const DIAGRAM_WARNINGS: usize = 20;
+/// Commands of the system that a diagram has at once.
+pub const DIAGRAM_COMMANDS: usize = 16;
+/// Messages of other robots that a diagram has not fetched.
+pub const DIAGRAM_MAIL: usize = 256;

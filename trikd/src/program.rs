@@ -41,6 +41,8 @@ struct Current {
     /// Nobody wants to hear that it began and ended.
     is_quiet: bool,
     told_error: bool,
+    /// It knows that somebody wants to see where it is.
+    is_watched: bool,
     meter: Meter,
     web: Vec<oneshot::Sender<String>>,
     ended: Option<(Ended, Instant)>,
@@ -97,7 +99,10 @@ impl Supervisor {
                         self.end(Way::Own(ended)).await;
                     }
                 }
-                _ = look.tick(), if self.current.is_some() => self.count_processes().await,
+                _ = look.tick(), if self.current.is_some() => {
+                    self.tell_watched();
+                    self.count_processes().await;
+                }
             }
         }
     }
@@ -230,6 +235,7 @@ impl Supervisor {
             takes_direct: false,
             is_quiet,
             told_error: false,
+            is_watched: false,
             meter: Meter::default(),
             web: Vec::new(),
             ended: None,
@@ -286,7 +292,22 @@ impl Supervisor {
                     let _ = answer.send(rest.to_owned());
                 }
             }
+            "watch" => {
+                let (line, json) = rest.split_once('\n').unwrap_or((rest, "{}"));
+                self.daemon.clients.tell_watchers(line, json);
+            }
             _ => {}
+        }
+    }
+
+    /// Tells a program when somebody begins or ceases to look at it.
+    fn tell_watched(&mut self) {
+        let watched = self.daemon.clients.are_watching();
+        if let Some(current) = &mut self.current
+            && current.is_watched != watched
+        {
+            current.is_watched = watched;
+            self.tell(if watched { b"watch:1" } else { b"watch:0" });
         }
     }
 

@@ -126,6 +126,15 @@ pub struct Settings {
     /// as warn,programs=debug; matters are clients, programs, tree and daemon.
     #[arg(long, value_name = "LEVEL", env = "TRIKD_LOG", default_value = "info")]
     pub log: Filter,
+    /// Language of what diagrams say: English, or Russian if it begins with ru, as LANG does.
+    #[arg(
+        long,
+        value_name = "LANGUAGE",
+        env = "LANG",
+        default_value = "en",
+        hide_env_values = true
+    )]
+    pub language: String,
     /// The Python interpreter.
     #[arg(long, value_name = "PROGRAM", default_value = "python3")]
     pub python: PathBuf,

@@ -53,6 +53,7 @@ const RESERVED: &[(&str, &[&str])] = &[
             "math",
             "packets",
             "params",
+            "pictures",
             "program",
             "pwm",
             "regulator",

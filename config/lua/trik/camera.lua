@@ -1,6 +1,6 @@
--- Camera sensors: line, object and colours, found by programs on the signal processor that talk through pipes.
+-- Camera: line, object and colours, found by programs on the signal processor that talk through pipes; and pictures.
 --
--- Owns their commands and answers. A sensor runs while one of its files is open for reading; only one runs at a time.
+-- Owns their commands and answers. A sensor or the encoder of pictures runs while one of its files is open for reading; only one runs at a time.
 local text = include 'trik/text.lua'
 local number = include 'trik/number.lua'
 
@@ -8,6 +8,28 @@ local camera = { top = true, ports = { camera = {} } }
 
 -- A first sample takes as long as the program needs to start.
 local START_MS = 30000
+
+-- Bytes of the largest picture: 320 x 240 points in the best quality have half of that.
+local PICTURE_BYTES = 65536
+
+-- JPEG pictures of the encoder on the signal processor, or of a pipe that the robot file names.
+local function pictures_of(entry)
+  local quality = entry:whole('quality', 50, 1, 100)
+  local src
+  if entry.given.pictures ~= nil then
+    src = pictures { path = entry:path('pictures') }
+  else
+    local script = '/etc/init.d/mjpg-encoder-ov7670'
+    src = pictures {
+      path = '/run/mjpg-encoder.out.fifo', start = { script, 'start', '--jpeg-qual', tostring(quality) },
+      stop = { script, 'stop' },
+    }
+  end
+  return {
+    about = 'pictures of the camera, each a JPEG file that is filled up with zero bytes',
+    src = src, input_tuple_size = PICTURE_BYTES, timeout_ms = START_MS,
+  }
+end
 
 -- A file that is written: the text of a command from numbers.
 local function command(sensor, about, format, least, greatest, line)
@@ -124,6 +146,7 @@ function camera.make(_, entry)
       object = located('object', 'largest spot of a colour: x and y -100 to 100, size 0 to 100, 0 if there is none',
         'i32 x, i32 y, i32 size'),
       color = colours(rows, columns),
+      picture = pictures_of(entry),
     },
   }
 end

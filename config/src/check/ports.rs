@@ -1,4 +1,4 @@
-//! The constructors of ports that need more than one path: `iio`, `pwm`, `gpio`, `lines`, `packets`.
+//! The constructors of ports that need more than one path: `iio`, `pwm`, `gpio`, `lines`, `pictures`, `packets`.
 //!
 //! Owns their keys, limits and defaults. Opens nothing, and does not look whether a port is there.
 
@@ -222,6 +222,28 @@ impl<'a> Fields<'_, 'a> {
                 start,
                 stop,
                 answer,
+                are_pictures: false,
+            }))
+        })
+    }
+
+    /// `pictures{ path = ..., start = { '/etc/init.d/x', 'start' }, stop = {...} }`
+    pub(super) fn pictures(&mut self, table: &'a Table) -> Result<SourceDescription, Problem> {
+        self.inner(table, |fields| {
+            fields.only("pictures", table, &["", "path", "start", "stop"])?;
+            let path = fields.own_path("pictures")?;
+            let start = fields.command("pictures", "start")?;
+            let stop = fields.command("pictures", "stop")?;
+            if stop.is_some() && start.is_none() {
+                return Err(fields.problem("src", "pictures: stop makes no sense without start"));
+            }
+            Ok(SourceDescription::Lines(LinesDescription {
+                path,
+                input: None,
+                start,
+                stop,
+                answer: None,
+                are_pictures: true,
             }))
         })
     }

@@ -197,6 +197,7 @@ impl<'a> Fields<'_, 'a> {
             b"gpio" => self.gpio(table),
             b"lines" => self.lines(table),
             b"packets" => self.packets(table),
+            b"pictures" => self.pictures(table),
             b"fake" => self.fake(table),
             b"replay" => self.replay(table),
             b"faulty" => self.faulty(table),

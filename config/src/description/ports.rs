@@ -94,6 +94,8 @@ pub struct LinesDescription {
     pub stop: Option<CommandDescription>,
     /// What is kept for those who come later.
     pub answer: Option<AnswerDescription>,
+    /// `pictures{ ... }`: the pipe gives JPEG pictures, one behind the other, and no lines.
+    pub are_pictures: bool,
 }
 
 /// A line to a sensor program that asks for one line from it.

@@ -34,6 +34,7 @@ test_boot() {
 }
 
 control=/etc/init.d/trikfs
+serving=/etc/init.d/trikd
 
 make_board() {
     local applet file
@@ -95,10 +96,11 @@ power_on() {
     local boots
     boots=$(grep -c "rc 5 is over" "$work/console" || true)
     # shellcheck disable=SC2016
-    unshare --mount --pid --fork --kill-child --propagation private sh -c '
+    unshare --mount --pid --net --fork --kill-child --propagation private sh -c '
         cd "$1"
         mount -t proc none proc
         for dir in run tmp var/log dev; do mount -t tmpfs none "$dir"; done
+        chroot . /bin/busybox ifconfig lo 127.0.0.1 up
         mknod dev/null c 1 3; mknod dev/zero c 1 5; mknod dev/urandom c 1 9; mknod dev/fuse c 10 229
         chmod 666 dev/*
         touch dev/console
@@ -122,7 +124,7 @@ power_off() {
 
 board_state() {
     # shellcheck disable=SC2016
-    board sh -c 'cd /; head -n 20 /run/trikfs/* /var/log/trikfs.log; grep trikfs /proc/mounts; ls /run/trikfs
+    board sh -c 'cd /; head -n 20 /run/trikfs/* /var/log/trikfs.log /var/log/trikd.log; grep trikfs /proc/mounts; ls /run/trikfs
         for dir in /proc/[0-9]*; do echo "${dir#/proc/} $(cat $dir/comm $dir/wchan) $(tr "\0" " " <$dir/cmdline)"; done' ||
         true
 }
@@ -137,7 +139,7 @@ shut_down() {
 
 # board COMMAND...: on the board.
 board() {
-    nsenter --target "$init" --mount --pid --root --wd env -i PATH=/sbin:/bin:/usr/sbin:/usr/bin HOME=/home/root "$@"
+    nsenter --target "$init" --mount --pid --net --root --wd env -i PATH=/sbin:/bin:/usr/sbin:/usr/bin HOME=/home/root "$@"
 }
 
 # pids NAME: prints the process ids, on the board, of the processes with that name; fails if there are none.
@@ -175,6 +177,8 @@ boot_tar() {
     check "status" gives 0 board "$control" status
     check "knows of trikGui" says "trikGui runs as well" board "$control" status
     check "the line is there once" lines 1 ^tf: "$board/etc/inittab"
+    check "and that of trikd" lines 1 ^td: "$board/etc/inittab"
+    check "trikd waits for trikGui to go" gives 3 board "$serving" status
     check "install.sh again" board /home/root/tar/install.sh
     check "the line is there once" lines 1 ^tf: "$board/etc/inittab"
     check "nothing is left of the copying" test "$(find "$board/etc" "$board/usr" -name '*.trikfs-new')" = ""
@@ -194,10 +198,34 @@ boot_gui() {
     check "and does not come back" not runs trikGui
     check "other services run on" runs sleep
     check "the tree is there" served 2
+    check "trikd serves" within 60 board "$serving" status
+    check "on the port of desktop programs" says "version: " board sh -c "{ printf 7:version; sleep 2; } | nc -w 2 127.0.0.1 8888"
+    check "start of what runs" says "control 8888" board "$serving" start
+    check "trikd: stop" board "$serving" stop
+    check "has ended" not runs trikd
+    check "trikd: status" gives 3 board "$serving" status
+    check "trikd: start" board "$serving" start
     check "gui-on" board "$control" gui-on
+    check "trikd has gone before" not runs trikd
     check "trikGui is back" within 15 runs trikGui
     check "gui-off" board "$control" gui-off
+    check "trikd serves" within 60 board "$serving" status
+    kill_all trikd
+    check "all of it killed: it serves again" within 60 board "$serving" status
 }
+
+# A program in JavaScript from the network moves something, and a stop brings it to rest.
+boot_program() {
+    check "trikd serves" within 60 board "$serving" status
+    board sh -c "{ printf '%s' '74:file:go.js:script.writeToFile(\"/trikfs/motor/value\", 70); script.wait(1e9)'
+        printf '9:run:go.js'; sleep 4; } | nc -w 2 127.0.0.1 8888" >"$work/heard" || true
+    check "a program from the network has started" grep -q "info: go.js has started" "$work/heard"
+    check "a motor turns" within 20 motor_has 70
+    check "stop" says "info: go.js was stopped" board sh -c "{ printf 4:stop; sleep 4; } | nc -w 2 127.0.0.1 8888"
+    check "and stands" motor_has 0
+}
+
+motor_has() { test "$(od -An -td2 <"$board/home/root/motor")" -eq "$1"; }
 
 boot_failures() {
     printf 'trikfs = {\n  motor = 5,\n}\n' >"$board/etc/trikfs/robot.lua"
@@ -249,6 +277,7 @@ LUA
     check "stop" board "$control" stop
     check "and stands" test "$(od -An -td2 <"$board/home/root/motor")" -eq 0
     check "start" board "$control" start
+    boot_program
     board sh -c 'echo 60 >/trikfs/motor/value'
     check "a motor turns" test "$(od -An -td2 <"$board/home/root/motor")" -eq 60
     check "shutdown" shut_down 0
@@ -265,6 +294,8 @@ boot_uninstall() {
     check "no tree" not board test -e /trikfs
     check "nothing of it runs" within 5 not runs trikfs
     check "nor its keeper" within 10 not runs respawn
+    check "nor trikd" within 10 not runs trikd
+    check "nor that of trikd" within 10 not runs respawn-trikd
     check "two changed files stay" test "$(cd "$board/etc" && echo default/trikfs trikfs/*)" = \
         "default/trikfs trikfs/robot.lua"
     check "uninstall is gone" not test -e "$board/usr/lib/trikfs"
@@ -273,7 +304,7 @@ boot_uninstall() {
 }
 
 # What there is now, without folders that any package may share.
-left_over() { everything | grep -vx 'usr/include d\|usr/lib d\|usr/share d\|etc/default d\|var/cache d'; }
+left_over() { everything | grep -vx 'usr/include d\|usr/lib d\|usr/share d\|etc/default d\|var/cache d\|var/lib d'; }
 
 # What opkg does with a package, in its order.
 opkg_install() {

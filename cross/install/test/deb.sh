@@ -26,15 +26,22 @@ test_deb() {
     check "every dependency is there" layer dpkg --audit
     check "trikfs --version" says "trikfs $version" layer trikfs --version
     check "trikfs-ev3dev --version" says "trikfs-ev3dev $version" layer trikfs-ev3dev --version
-    check "the service is there and not enabled" says disabled layer systemctl is-enabled trikfs.service
-    check "systemd-analyze verify" layer systemd-analyze verify trikfs.service
+    check "trikd --version" says "trikd $version" layer trikd --version
+    local service
+    for service in trikfs.service trikd.service; do
+        check "$service is there and not enabled" says disabled layer systemctl is-enabled "$service"
+        check "systemd-analyze verify $service" layer systemd-analyze verify "$service"
+    done
+    check "the user of programs is there" layer id trikd
     local page
-    for page in trikfs trikfs-mount trikfs-check trikfs-convert trikfs-new-converter trikfs-edit trikfs-umount trikfs-completions trikfs-man trikfs-ev3dev; do
+    for page in trikfs trikfs-mount trikfs-check trikfs-convert trikfs-new-converter trikfs-edit trikfs-umount trikfs-completions trikfs-man trikfs-ev3dev \
+        trikd trikd-serve trikd-status trikd-pair trikd-draw trikd-js trikd-completions trikd-man; do
         check "man $page" man_page "$page"
     done
-    check "no other man page" test "$(find "$layer/usr/share/man" -name 'trikfs*' | wc -l)" -eq 10
+    check "no other man page" test "$(find "$layer/usr/share/man" -name 'trik*' | wc -l)" -eq 18
     check "bash completion" layer bash -n /usr/share/bash-completion/completions/trikfs
     check "bash completion of the view" layer bash -n /usr/share/bash-completion/completions/trikfs-ev3dev
+    check "bash completion of trikd" layer bash -n /usr/share/bash-completion/completions/trikd
     check "the configuration is good" layer trikfs check /etc/trikfs/robot.lua
     check "so is the shipped example" layer trikfs check /usr/share/trikfs/lua/hello.lua
     check "the header compiles" layer sh -c "echo '#include <trikfs_converter.h>' | gcc -fsyntax-only -Wall -x c -"
@@ -69,8 +76,28 @@ test_service() {
     check "ExecReload of a bad one fails" gives 1 layer sh -c "$reload"
     check "and says why" says "config refused: config:" layer sh -c "$reload"
     cp -p "$work/robot.lua" "$layer/etc/trikfs/robot.lua"
+    test_trikd
     check "umount" layer trikfs umount /trikfs
     wait "$pid" || true
+}
+
+# The same of trikd, on free ports: those of the unit may be taken here.
+test_trikd() {
+    local unit=$layer/lib/systemd/system/trikd.service start pid options="--address 127.0.0.1 --without discovery" port
+    start=$(sed -n 's/^ExecStart=//p' "$unit")
+    for port in control telemetry mailbox gamepad video variables; do
+        options="$options --$port-port 0"
+    done
+    # shellcheck disable=SC2086
+    layer $start $options >"$work/trikd" 2>&1 &
+    pid=$!
+    check "trikd: ExecStart: it serves" within 20 grep -q "trikd: ready" "$work/trikd"
+    check "trikd: sees the tree" says "tree /trikfs mounted" layer trikd status
+    check "trikd: programs have a user of their own" says "programs run as trikd" layer trikd status
+    check "trikd: who owns the folder of programs" test "$(layer stat -c %U /var/lib/trikd/scripts)" = trikd
+    pkill -TERM -P "$pid" -x trikd || kill "$pid"
+    wait "$pid" || true
+    check "trikd: its end is in order" not grep -i crash "$work/trikd"
 }
 
 man_page() {

@@ -38,10 +38,13 @@ test_packages() {
 
 expected_files() {
     cat <<'FILES'
+etc/default/trikd
 etc/default/trikfs
+etc/init.d/trikd
 etc/init.d/trikfs
 etc/rc5.d/S99trikfs
 etc/trikfs/robot.lua
+usr/bin/trikd
 usr/bin/trikfs
 usr/bin/trikfs-ev3dev
 usr/include/trikfs_converter.h
@@ -49,6 +52,7 @@ usr/lib/trikfs/common.sh
 usr/lib/trikfs/libhello.so
 usr/lib/trikfs/libtrikfs_filters.so
 usr/lib/trikfs/respawn
+usr/lib/trikfs/respawn-trikd
 usr/lib/trikfs/tone
 usr/share/trikfs/lua/filters.lua
 usr/share/trikfs/lua/hello.lua
@@ -76,7 +80,8 @@ test_ipk() {
     check "ipk: all configuration files are there" sh -c "cd '$dir/data' && sed 's|^/|./|' ../control/conffiles | xargs ls"
     check "ipk: everything is root's" not sh -c "tar tvzf '$dir/data.tar.gz' | grep -v ' 0/0 '"
     check "ipk: programs can be executed, data cannot" same \
-        <(printf '%s\n' etc/init.d/trikfs usr/bin/trikfs usr/bin/trikfs-ev3dev usr/lib/trikfs/respawn usr/lib/trikfs/tone) \
+        <(printf '%s\n' etc/init.d/trikd etc/init.d/trikfs usr/bin/trikd usr/bin/trikfs usr/bin/trikfs-ev3dev \
+            usr/lib/trikfs/respawn usr/lib/trikfs/respawn-trikd usr/lib/trikfs/tone) \
         <(cd "$dir/data" && find . -type f -perm /111 -printf '%P\n' | sort)
 
     # An image that is made on a PC: only its files change, by the scripts that opkg runs with $D.
@@ -90,6 +95,7 @@ test_ipk() {
         check "image: $script" env D="$image" sh "$dir/control/"$script
     done
     check "image: our line is in its inittab" lines 1 ^tf: "$image/etc/inittab"
+    check "image: so is that of trikd" lines 1 ^td: "$image/etc/inittab"
     check "image: prerm" env IPKG_INSTROOT="$image" sh "$dir/control/prerm" remove
     check "image: its inittab is as before" same "$work/before" "$image/etc/inittab"
     check "image: the PC is untouched" not test -e /etc/init.d/trikfs -o -e /run/trikfs

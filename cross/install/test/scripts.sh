@@ -17,7 +17,7 @@ test_scripts() {
 
 test_texts() {
     local file
-    for file in "$controller"/{etc/init.d/trikfs,usr/lib/trikfs/respawn,usr/lib/trikfs/tone,usr/lib/trikfs/common.sh,tar/*.sh,ipk/p*} \
+    for file in "$controller"/{etc/init.d/trikfs,etc/init.d/trikd,usr/lib/trikfs/respawn,usr/lib/trikfs/respawn-trikd,usr/lib/trikfs/tone,usr/lib/trikfs/common.sh,tar/*.sh,ipk/p*} \
         "$install"/deb/p*; do
         check "${file#"$install/"}: shellcheck" shellcheck -x -P "$root" "$file"
         check "${file#"$install/"}: busybox" busybox sh -n "$file"
@@ -53,7 +53,8 @@ test_inittab() {
         check "$shell: enable" $control enable
         check "$shell: enable again" $control enable
         check "$shell: one line" lines 1 '^tf:5:respawn:/usr/lib/trikfs/respawn$' "$inittab"
-        check "$shell: all other lines as they were" same "$ROOT/original" <(grep -v ^tf: "$inittab")
+        check "$shell: one line of trikd" lines 1 '^td:5:respawn:/usr/lib/trikfs/respawn-trikd$' "$inittab"
+        check "$shell: all other lines as they were" same "$ROOT/original" <(grep -v '^t[fd]:' "$inittab")
         check "$shell: the mode stays" test "$(stat -c %a "$inittab")" = 640
         check "$shell: nothing is left beside it" test "$(find "$ROOT/etc" -name 'inittab?*')" = ""
 
@@ -76,7 +77,7 @@ test_inittab() {
         cp "$ROOT/once" "$inittab"
 
         check "$shell: gui-on" $control gui-on
-        check "$shell: gui-on gives back the very bytes" same "$ROOT/original" <(grep -v ^tf: "$inittab")
+        check "$shell: gui-on gives back the very bytes" same "$ROOT/original" <(grep -v '^t[fd]:' "$inittab")
         check "$shell: gui-on again" $control gui-on
         check "$shell: the choice is forgotten" not test -e "$ROOT/etc/trikfs/gui-off"
         check "$shell: gui-off" $control gui-off
@@ -96,6 +97,19 @@ test_inittab() {
         mkdir -p "$ROOT/run/trikfs" && touch "$ROOT/run/trikfs/stopped"
         check "$shell: stopped" gives 3 $control status
         check "$shell: nothing to reload" gives 7 $control reload
+
+        control="$1 $ROOT/etc/init.d/trikd"
+        rm "$ROOT/etc/trikfs/gui-off"
+        check "$shell: trikd waits while trikGui is on" says "trikGui is on" $control status
+        check "$shell: which is no failure" gives 3 $control status
+        check "$shell: start of trikd beside trikGui" gives 7 $control start
+        touch "$ROOT/etc/trikfs/gui-off"
+        check "$shell: trikd not running" gives 1 $control status
+        touch "$ROOT/run/trikfs/trikd-stopped"
+        check "$shell: trikd stopped" gives 3 $control status
+        check "$shell: trikd: unknown word" gives 2 $control frobnicate
+        check "$shell: trikd: help" says "serves desktop programs, now and after each boot" $control --help
+        rm "$ROOT/etc/trikfs/gui-off" "$ROOT/run/trikfs/trikd-stopped"
     }
 }
 

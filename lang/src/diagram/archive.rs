@@ -4,9 +4,10 @@
 //! A zip begins with `PK`; a legacy stream begins with the length of a name, which is a small number.
 
 use crate::limits;
-use crate::problem::{Problem, Words};
+use crate::problem::{Problem, Severity, Words, keep};
 use std::collections::{HashMap, HashSet};
 
+mod deflate;
 mod stream;
 mod words;
 mod zip;
@@ -147,31 +148,49 @@ impl Pieces<'_> {
 
     /// A name with `/` between its parts; `None`, and a problem, for one that leads out of the save.
     fn safe(&mut self, name: &str) -> Option<String> {
+        if is_plain(name) {
+            return Some(name.to_owned());
+        }
         let plain = name.replace('\\', "/");
-        let plain = plain.trim_start_matches('/');
-        let is_folder = plain.ends_with('/');
         let parts: Vec<&str> = plain
             .split('/')
             .filter(|part| !part.is_empty() && *part != ".")
             .collect();
-        let leads_out = |part: &&str| *part == ".." || part.contains(['\0', '\n', '\r']);
-        let has_drive = plain.as_bytes().get(1) == Some(&b':');
-        if parts.is_empty() || parts.iter().any(leads_out) || has_drive {
+        let mut whole = parts.join("/");
+        if plain.ends_with('/') {
+            whole.push('/');
+        }
+        if !is_plain(&whole) {
             self.report(name, words::leads_out());
             return None;
-        }
-        let mut whole = parts.join("/");
-        if is_folder {
-            whole.push('/');
         }
         Some(whole)
     }
 
     fn report(&mut self, name: &str, words: Words) {
         let mut problem = in_file(name, words);
-        problem.severity = crate::problem::Severity::Warning;
-        self.problems.push(problem);
+        problem.severity = Severity::Warning;
+        keep(self.problems, problem);
     }
+}
+
+/// Whether a name stays inside of the save and is written as it should be.
+fn is_plain(name: &str) -> bool {
+    let bytes = name.as_bytes();
+    // The length of a part that has nothing but dots so far; a name begins like a part.
+    let mut dots = Some(0);
+    for &byte in bytes {
+        match byte {
+            b'/' if matches!(dots, Some(0..=2)) => return false,
+            b'/' => dots = Some(0),
+            b'.' => dots = dots.map(|count| count + 1),
+            b'\\' | 0..b' ' => return false,
+            _ => dots = None,
+        }
+    }
+    let is_folder = bytes.last() == Some(&b'/');
+    let ends_well = is_folder || !matches!(dots, Some(0..=2));
+    ends_well && bytes.get(1) != Some(&b':')
 }
 
 /// An error in one piece.

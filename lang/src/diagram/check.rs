@@ -24,12 +24,33 @@ pub fn check(project: &Project, world: World) -> Vec<Problem> {
         Err(problem) => return vec![problem],
     };
     let flow = Flow::of(&program);
+    soften(&mut problems, &program, &flow);
+    problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
     problems.truncate(limits::PROBLEMS);
     problems.extend(expressions(&program, &flow));
     problems.extend(dead_ends(project, &program, &flow));
     problems.extend(endless_calls(&program));
     problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
     problems
+}
+
+/// What is wrong with blocks that the program never comes to is less bad: it runs.
+fn soften(problems: &mut [Problem], program: &Program, flow: &Flow) {
+    let nodes: HashMap<&str, usize> = program
+        .spots
+        .iter()
+        .enumerate()
+        .map(|(node, spot)| (&*spot.id, node))
+        .collect();
+    for problem in problems {
+        let node = problem.place.object.as_deref().and_then(|id| nodes.get(id));
+        if node.is_some_and(|&node| !flow.is_reached[node]) {
+            problem.severity = match problem.severity {
+                Severity::Error => Severity::Warning,
+                _ => Severity::Note,
+            };
+        }
+    }
 }
 
 /// Which nodes can be reached, in an order in which they may be.
@@ -62,7 +83,7 @@ impl Flow {
 }
 
 /// Where the flow may go from a node, the inside of a call first.
-fn successors(program: &Program, node: Node, tell: &mut dyn FnMut(Node)) {
+pub(super) fn successors(program: &Program, node: Node, tell: &mut dyn FnMut(Node)) {
     let Some(op) = program.ops.get(node as usize) else {
         return;
     };

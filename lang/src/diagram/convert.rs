@@ -225,13 +225,16 @@ fn printed_text_gets_a_size(objects: &mut Objects, meta: &mut Meta, _: &mut Vec<
             )
         })
         .collect();
+    if names.is_empty() {
+        return false;
+    }
     objects.replace_ids(|id| names.get(id).map(String::as_str));
     for object in logical(objects).filter(|one| one.element() == "TrikPrintText") {
         if object.property("FontSize").is_none() {
             object.set(Kind::Text, "FontSize", "20");
         }
     }
-    !names.is_empty()
+    true
 }
 
 /// 2022.2: where the robot is belongs to the world and not to the robot.

@@ -7,6 +7,7 @@
 mod clocks;
 mod flow;
 mod formulas;
+mod loops;
 mod perform;
 mod sensors;
 mod tasks;
@@ -30,6 +31,7 @@ use crate::problem::{Place, Problem, Words};
 use clocks::Clock;
 use formulas::Formulas;
 pub(crate) use formulas::wanted;
+use loops::Loops;
 use sensors::Sensors;
 use threads::{Handle, State, Threads};
 use trace::Trace;
@@ -105,7 +107,7 @@ pub struct Machine {
     /// What has to wait for the next turn.
     deferred: VecDeque<Deferred>,
     clocks: Vec<Clock>,
-    loops: Vec<Counter>,
+    loops: Loops,
     /// How many threads have come to each join.
     tokens: Vec<u32>,
     /// What each fork remembers.
@@ -127,14 +129,6 @@ enum Deferred {
     Block(Node),
 }
 
-/// The counter of a loop.
-#[derive(Clone, Copy, Debug, Default)]
-struct Counter {
-    left: i32,
-    /// Whether the number of iterations is known.
-    is_set: bool,
-}
-
 /// What a step works with.
 pub(crate) struct Env<'a> {
     pub brick: &'a mut dyn Brick,
@@ -146,7 +140,7 @@ impl Machine {
     pub fn new(program: Rc<Program>, options: Options) -> Self {
         let formulas = Formulas::new(&program, options.compat);
         Self {
-            loops: vec![Counter::default(); program.loops as usize],
+            loops: Loops::new(program.loops, options.compat),
             tokens: vec![0; program.joins.len()],
             forks: vec![BTreeMap::new(); program.forks.len()],
             formulas,
@@ -260,6 +254,11 @@ impl Machine {
         self.began = Some(now);
         self.sensors = Sensors::new(&self.formulas);
         self.sensors.refresh(env.brick);
+        if let Some(problem) = self.program.refusal.clone() {
+            self.tell(problem, env);
+            self.end_all(env);
+            return;
+        }
         let entry = match self.program.main {
             None => Err(words::no_main()),
             Some(main) => {
@@ -411,6 +410,7 @@ impl Machine {
         if !self.threads.end(handle) {
             return;
         }
+        self.loops.forget(handle.life, 0);
         env.trace.thread_ended(self.now, handle.slot);
         if self.threads.alive().next().is_none() {
             self.end_all(env);

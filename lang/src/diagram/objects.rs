@@ -5,9 +5,10 @@
 
 use super::archive::Entry;
 use crate::limits;
-use crate::problem::Problem;
+use crate::problem::{Problem, keep};
 use crate::xml::{self, Element};
 use std::collections::HashMap;
+use std::collections::hash_map::Entry as Slot;
 
 mod words;
 
@@ -221,14 +222,19 @@ impl Objects {
         self.list.is_empty()
     }
 
-    /// Takes an object in; `false` if its id is there already, which leaves the old one.
-    pub fn add(&mut self, object: Object) -> bool {
-        if self.places.contains_key(&object.id) {
-            return false;
+    /// Takes an object in.
+    ///
+    /// # Errors
+    /// The object itself, if another one has its id.
+    pub fn add(&mut self, object: Object) -> Result<(), Object> {
+        match self.places.entry(object.id.clone()) {
+            Slot::Occupied(_) => Err(object),
+            Slot::Vacant(slot) => {
+                slot.insert(self.list.len());
+                self.list.push(object);
+                Ok(())
+            }
         }
-        self.places.insert(object.id.clone(), self.list.len());
-        self.list.push(object);
-        true
     }
 
     /// Gives ids new values wherever they stand: as an object's own, as another's end, parent or child, in lists.
@@ -314,7 +320,7 @@ impl Object {
                 "properties" => properties(part, &mut object, references, problems)?,
                 // Where labels were dragged.
                 "graphicalParts" => {}
-                other => problems.push(unknown(&object, other)),
+                other => keep(problems, unknown(&object, other)),
             }
         }
         Ok(object)
@@ -336,7 +342,7 @@ fn properties(
             continue;
         }
         let (Some(kind), Some(key)) = (Kind::of(&tag.name), tag.attribute("key")) else {
-            problems.push(unknown(object, &tag.name));
+            keep(problems, unknown(object, &tag.name));
             continue;
         };
         object.properties.push(Property {

@@ -9,7 +9,7 @@ use super::convert;
 use super::objects::{self, Objects};
 use super::project::Project;
 use crate::limits;
-use crate::problem::{Problem, Severity};
+use crate::problem::{Problem, Severity, keep};
 
 pub(super) mod graph;
 mod meta;
@@ -83,29 +83,30 @@ pub(super) fn limited(mut problems: Vec<Problem>) -> Vec<Problem> {
 
 fn read_objects(archive: &Archive, problems: &mut Vec<Problem>) -> Objects {
     let mut objects = Objects::default();
-    let mut references = 0;
+    let (mut references, mut errors) = (0, 0);
     for (at, entry) in archive.entries.iter().enumerate() {
         if !objects::is_object_file(&entry.name) {
             continue;
         }
         match objects::parse(entry, &mut references, problems) {
             Ok(mut object) => {
-                let id = object.id.clone();
                 object.entry = Some(at);
-                if !objects.add(object) {
+                if let Err(object) = objects.add(object) {
                     let mut problem = Problem::warning(words::same_id());
                     problem.place.file = Some(entry.name.clone());
-                    problem.place.object = Some(id);
-                    problems.push(problem);
+                    problem.place.object = Some(object.id);
+                    keep(problems, problem);
                 }
             }
             Err(mut problem) => {
                 problem.place.file = Some(entry.name.clone());
-                problems.push(problem);
+                // Before warnings, so that there is always room for it.
+                problems.insert(0, problem);
+                errors += 1;
+                if errors == limits::PROBLEMS {
+                    break;
+                }
             }
-        }
-        if problems.len() > limits::PROBLEMS * 2 {
-            break;
         }
     }
     objects

@@ -74,6 +74,7 @@ impl Save {
     /// # Errors
     /// An id that is not in the save, and control characters that XML cannot carry.
     pub fn set_property(&mut self, id: &str, key: &str, value: &str) -> Result<(), Problem> {
+        writable(key)?;
         writable(value)?;
         let named = self.objects.get(id);
         let logical = named.and_then(|object| object.logical.clone());

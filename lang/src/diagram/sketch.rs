@@ -56,7 +56,7 @@ impl Sketch {
             current: 0,
             made: 0,
         };
-        sketch.objects.add(Object {
+        sketch.add(Object {
             id: ROOT.to_owned(),
             parent: super::objects::NOTHING.to_owned(),
             ..Object::default()
@@ -262,9 +262,14 @@ impl Sketch {
             if let Some(parent) = self.objects.get_mut(parent) {
                 parent.children.push(object.id.clone());
             }
-            self.objects.add(object);
+            self.add(object);
         }
         pair
+    }
+
+    fn add(&mut self, object: Object) {
+        let is_new = self.objects.add(object).is_ok();
+        debug_assert!(is_new, "each id is made once");
     }
 
     fn id(&mut self, kind: &str) -> String {

@@ -6,7 +6,7 @@
 use super::value::{Compat, Value};
 
 /// The value of a whole number.
-pub(super) fn whole(text: &str, compat: Compat) -> Value {
+pub fn whole(text: &str, compat: Compat) -> Value {
     let lower = text.to_ascii_lowercase();
     let (digits, base) = match lower.strip_prefix("0x") {
         Some(digits) => (digits, 16),
@@ -23,7 +23,7 @@ pub(super) fn whole(text: &str, compat: Compat) -> Value {
 }
 
 /// The value of another number.
-pub(super) fn float(text: &str, compat: Compat) -> f64 {
+pub fn float(text: &str, compat: Compat) -> f64 {
     if let Ok(number) = text.parse() {
         return number;
     }

@@ -5,7 +5,7 @@
 
 use super::code::{Base, Code, Op, Span};
 use super::names::Names;
-use super::reserved::{Function, SENSORS, SensorIndex};
+use super::reserved::SensorIndex;
 use super::store::Store;
 use super::tree::{Binary, Id};
 use super::value::{Compat, List, ListError, Value, round};
@@ -15,7 +15,7 @@ use std::rc::Rc;
 
 /// What expressions ask of the robot.
 pub trait Outside {
-    /// The present value of a sensor variable (index into [`SENSORS`]): a whole number or a table of them.
+    /// The present value of a sensor variable (index into [`super::reserved::SENSORS`]): a whole number or a table of them.
     fn sensor(&mut self, sensor: SensorIndex) -> Value;
 
     /// ms since the program began.
@@ -29,10 +29,10 @@ pub trait Outside {
 }
 
 pub(super) struct Run<'a> {
-    code: &'a Code,
-    names: &'a Names,
-    store: &'a mut Store,
-    outside: &'a mut dyn Outside,
+    pub(super) code: &'a Code,
+    pub(super) names: &'a Names,
+    pub(super) store: &'a mut Store,
+    pub(super) outside: &'a mut dyn Outside,
     is_fixed: bool,
     cells: u32,
     pub(super) faults: Vec<Fault>,
@@ -57,7 +57,7 @@ impl<'a> Run<'a> {
     }
 
     #[cold]
-    fn fault(&mut self, what: What, id: Id) {
+    pub(super) fn fault(&mut self, what: What, id: Id) {
         if self.faults.len() < limits::EXPRESSION_PROBLEMS_MAX {
             let at = self.code.places[id as usize];
             self.faults.push(Fault::new(what, at));
@@ -291,9 +291,8 @@ impl<'a> Run<'a> {
 
     fn equal(&mut self, id: Id, left: Id, right: Id) -> bool {
         let (left, right) = (self.value(left), self.value(right));
-        if let (Value::List(one), Value::List(two)) = (&left, &right)
-            && !self.pay(one.cells().min(two.cells()), id)
-        {
+        let is_long = |value: &Value| matches!(value, Value::List(_) | Value::Text(_));
+        if is_long(&left) && is_long(&right) && !self.pay(left.cells().min(right.cells()), id) {
             return false;
         }
         left.equals(&right)
@@ -318,11 +317,14 @@ impl<'a> Run<'a> {
             Op::Minus(_) | Op::MinusNarrow(_) => Value::Float(self.number(id)),
             Op::Not(_) => Value::Bool(self.truth(id)),
             Op::BitNot(_) => Value::Int(self.whole(id)),
-            Op::TextLength(operand) => Value::Int(length(&self.value(operand).to_text())),
-            Op::Length(operand) => Value::Int(match self.value(operand) {
-                Value::List(list) => i32::try_from(list.items().len()).unwrap_or(i32::MAX),
-                value => length(&value.to_text()),
-            }),
+            Op::TextLength(operand) | Op::Length(operand) => {
+                let value = self.value(operand);
+                Value::Int(match &value {
+                    Value::List(list) => i32::try_from(list.items().len()).unwrap_or(i32::MAX),
+                    _ if !self.pay(value.cells(), id) => 0,
+                    _ => length(&value.to_text()),
+                })
+            }
             Op::Binary(operator, left, right) => self.binary(id, operator, left, right),
             Op::Element(base, index) => self.element(id, base, index),
             Op::Elements(base, span) => self.elements(id, base, span),
@@ -385,7 +387,7 @@ impl<'a> Run<'a> {
         joined
     }
 
-    fn text(&self, value: &Value) -> Rc<str> {
+    pub(super) fn text(&self, value: &Value) -> Rc<str> {
         match value {
             Value::Float(number) if self.is_fixed && number.is_finite() => {
                 super::value::plain_text(*number).into()
@@ -473,8 +475,9 @@ impl<'a> Run<'a> {
             Some(Value::List(list)) => list,
             _ => Rc::default(),
         };
-        // A list that somebody else has, too, is copied.
-        if Rc::strong_count(&list) > 1 && !self.pay(list.cells(), id) {
+        // A list that somebody else has, too, is copied, and so may be a list in it.
+        let may_copy = Rc::strong_count(&list) > 1 || count > 1;
+        if may_copy && !self.pay(list.cells(), id) {
             let _ = self.store.set(slot, Value::List(list));
             return;
         }
@@ -519,103 +522,6 @@ impl<'a> Run<'a> {
             return Value::Nil;
         }
         Value::List(Rc::new(list))
-    }
-
-    fn argument(&self, span: Span, position: usize) -> Id {
-        self.code
-            .operands(span)
-            .get(position)
-            .copied()
-            .unwrap_or_default()
-    }
-
-    fn call(&mut self, id: Id, function: Function, span: Span) -> Value {
-        match function {
-            Function::Print => {
-                let value = self.value(self.argument(span, 0));
-                let text = self.text(&value);
-                self.outside.print(&text);
-                value
-            }
-            Function::Time => Value::Int(self.outside.time()),
-            Function::Sensor => self.sensor(id, self.argument(span, 0)),
-            Function::Sgn => {
-                let number = self.number(self.argument(span, 0));
-                Value::Int(i32::from(number > 0.0) - i32::from(number < 0.0))
-            }
-            Function::Ceil => Value::Int(self.number(self.argument(span, 0)).ceil() as i32),
-            Function::Floor => Value::Int(self.number(self.argument(span, 0)).floor() as i32),
-            _ => Value::Float(self.call_number(id, function, span)),
-        }
-    }
-
-    fn call_number(&mut self, id: Id, function: Function, span: Span) -> f64 {
-        match function {
-            Function::Print | Function::Time | Function::Sensor => {
-                self.call(id, function, span).to_float()
-            }
-            Function::Sgn | Function::Ceil | Function::Floor => {
-                self.call(id, function, span).to_float()
-            }
-            Function::Random => self.random(id, self.argument(span, 0)),
-            Function::Min | Function::Max | Function::Atan2 => {
-                let one = self.number(self.argument(span, 0));
-                let two = self.number(self.argument(span, 1));
-                match function {
-                    Function::Min if one < two => one,
-                    Function::Min => two,
-                    Function::Max if one < two => two,
-                    Function::Max => one,
-                    _ => one.atan2(two),
-                }
-            }
-            _ => {
-                let number = self.number(self.argument(span, 0));
-                match function {
-                    Function::Sin => number.sin(),
-                    Function::Cos => number.cos(),
-                    Function::Ln => number.ln(),
-                    Function::Exp => number.exp(),
-                    Function::Asin => number.asin(),
-                    Function::Acos => number.acos(),
-                    Function::Atan => number.atan(),
-                    Function::Sqrt => number.sqrt(),
-                    _ => number.abs(),
-                }
-            }
-        }
-    }
-
-    fn random(&mut self, id: Id, argument: Id) -> f64 {
-        match self.whole(argument).checked_abs().unwrap_or(i32::MAX) {
-            0 => {
-                self.fault(What::RandomOfNothing, id);
-                0.0
-            }
-            below => f64::from(self.outside.random(below)),
-        }
-    }
-
-    /// `sensor(port)`: the variable whose name is `sensor` and the port.
-    fn sensor(&mut self, id: Id, argument: Id) -> Value {
-        let port = self.value(argument).to_text();
-        if port.is_empty() {
-            return Value::Int(0);
-        }
-        let known = (0..)
-            .zip(&SENSORS)
-            .find(|(_, sensor)| sensor.name.strip_prefix("sensor") == Some(&*port));
-        if let Some((index, _)) = known {
-            return Value::Int(self.outside.sensor(index).to_int());
-        }
-        let name = format!("sensor{port}");
-        match self.names.find(&name).and_then(|slot| self.store.get(slot)) {
-            Some(value) => Value::Int(value.to_int()),
-            None => {
-                self.fault(What::Uninitialized(name), id);
-                Value::Int(0)
-            }
-        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! The oracle table of the real program, and more of its rules.
 
+mod documents;
 mod hostile;
 
 use super::reserved::{FUNCTIONS, SENSORS, SensorIndex};

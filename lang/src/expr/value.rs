@@ -281,9 +281,13 @@ fn round_wide(number: f64) -> i64 {
     }
 }
 
-/// The number that a text is, spaces around it allowed.
+/// The number that a text is, spaces around it allowed; a text beyond `limits::NUMBER_TEXT_MAX` is none.
 pub fn number_of(text: &str) -> Option<f64> {
+    if text.len() > limits::NUMBER_TEXT_MAX {
+        return None;
+    }
     let text = text.trim();
+    // Rust knows "infinity", Qt does not.
     if text.ends_with(['y', 'Y']) {
         return None;
     }
@@ -292,6 +296,9 @@ pub fn number_of(text: &str) -> Option<f64> {
 
 /// The whole number that a text is.
 fn whole_of(text: &str) -> Option<i32> {
+    if text.len() > limits::NUMBER_TEXT_MAX {
+        return None;
+    }
     text.trim().parse::<i64>().ok().map(|number| number as i32)
 }
 

@@ -15,6 +15,15 @@ fn names_with_colons_and_all_references_are_read() {
 }
 
 #[test]
+fn space_declarations_and_remarks_stand_anywhere() {
+    let text = "\u{feff}<?xml version='1.0'?>\n<!-- a --><a  b = '1'\n c=\"'\" ><d />\n</a >\n<!-- b -->\n";
+    let root = parse(text).unwrap();
+    assert_eq!(root.attribute("b"), Some("1"));
+    assert_eq!(root.attribute("c"), Some("'"));
+    assert_eq!(root.nodes.len(), 1);
+}
+
+#[test]
 fn lines_of_any_system_end_alike_in_values() {
     let root = parse("<a b=\"1\r\n2\n3\r4&#xd;5\"/>").unwrap();
     assert_eq!(root.attribute("b"), Some("1\n2\n3\n4\r5"));
@@ -37,17 +46,54 @@ fn hostile_documents_are_refused_with_place_and_reason() {
     assert!(refused("<a b='&c;'/>").contains("'&c' stands for nothing here"));
     assert!(refused("<a b='&'/>").contains("stands for nothing"));
     assert!(refused("<a b='&#0;'/>").contains("stands for nothing"));
+    assert!(refused("<a b='&#x1f;'/>").contains("stands for nothing"));
     assert!(refused("<a b='&#xd800;'/>").contains("stands for nothing"));
     let deep = "<a>".repeat(limits::XML_DEPTH + 1);
     assert!(refused(&deep).contains("tags are nested deeper than 64"));
     let wide = format!("<a>{}</a>", "<b/>".repeat(limits::XML_TAGS));
-    assert!(refused(&wide).contains("more than 200000 tags"));
+    assert!(refused(&wide).contains("more than 100000 tags"));
     let attributes: String = (0..=limits::XML_ATTRIBUTES)
         .map(|at| format!(" a{at}=''"))
         .collect();
     assert!(refused(&format!("<a{attributes}/>")).contains("more than 64 attributes"));
-    assert!(refused("<a b='1' b='2'/>").contains("not XML"));
-    assert!(refused("<a><b></a>").contains("not XML"));
+    assert!(refused("<a b='1' b='2'/>").contains("'b' is there twice"));
+    assert!(refused("<a><b>\n</a>").starts_with("2:1 </a> stands where </b> should"));
+    assert!(refused("</a>").contains("did not begin"));
+    assert!(refused("<a/></a>").contains("did not begin"));
+    for strange in [
+        "<>",
+        "< a/>",
+        "<a b='1'c='2'/>",
+        "<a/b>",
+        "<a =''/>",
+        "<!a/>",
+        "<a></a b>",
+    ] {
+        assert!(refused(strange).contains("this is not XML"), "{strange}");
+    }
+    for bare in ["<a b/>", "<a b=1/>", "<a b>"] {
+        assert!(
+            refused(bare).contains("'b' needs a value in quotes"),
+            "{bare}"
+        );
+    }
+    assert!(refused("<a b='<'/>").contains("write &lt;"));
+    for cut in [
+        "<",
+        "<a",
+        "<a ",
+        "<a b",
+        "<a b=",
+        "<a b='",
+        "<a b='1",
+        "<a b='1'",
+        "</",
+        "<!--",
+        "<![CDATA[",
+        "<?x",
+    ] {
+        refused(cut);
+    }
     assert!(refused("<a>").contains("cut short"));
     assert!(refused("").contains("cut short"));
     assert!(refused("<a/><b/>").contains("second document"));

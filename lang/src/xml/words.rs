@@ -17,10 +17,46 @@ pub(super) fn document_type() -> Words {
     )
 }
 
-pub(super) fn syntax(reason: &str) -> Words {
+pub(super) fn strange(found: char) -> Words {
+    let shown = found.escape_default();
     Words::new(
-        format!("this is not XML: {reason}"),
-        format!("это не XML: {reason}"),
+        format!("'{shown}' cannot stand here: this is not XML"),
+        format!("'{shown}' не может стоять здесь: это не XML"),
+    )
+}
+
+pub(super) fn no_value(name: &str) -> Words {
+    Words::new(
+        format!("the attribute '{name}' needs a value in quotes"),
+        format!("атрибуту '{name}' нужно значение в кавычках"),
+    )
+}
+
+pub(super) fn angle_in_value(name: &str) -> Words {
+    Words::new(
+        format!("'<' cannot stand in the value of '{name}': write &lt;"),
+        format!("'<' не может стоять в значении '{name}': напишите &lt;"),
+    )
+}
+
+pub(super) fn attribute_twice(name: &str) -> Words {
+    Words::new(
+        format!("the attribute '{name}' is there twice"),
+        format!("атрибут '{name}' указан дважды"),
+    )
+}
+
+pub(super) fn wrong_end(found: &str, open: &str) -> Words {
+    Words::new(
+        format!("</{found}> stands where </{open}> should"),
+        format!("</{found}> стоит там, где должен быть </{open}>"),
+    )
+}
+
+pub(super) fn end_of_nothing(found: &str) -> Words {
+    Words::new(
+        format!("</{found}> ends a tag that did not begin"),
+        format!("</{found}> закрывает тег, который не открыт"),
     )
 }
 

@@ -53,6 +53,7 @@ fn every_shipped_robot_has_every_port_and_says_what_everything_is() {
             "heading",
             "odometry",
             "display",
+            "camera/picture",
         ] {
             robot.node(path);
         }

@@ -56,6 +56,10 @@ impl Trikd {
         let fifo = place.board.join("run/gamepad-service.out.fifo");
         option("--gamepad-fifo", &fifo);
         list.extend(addresses.iter().map(|ip| format!("--address={ip}").into()));
+        // Who comes and goes is no news for the person in front of the robot, unless it is asked for.
+        if std::env::var_os("TRIKD_LOG").is_none() {
+            list.push("--log=info,clients=warn".into());
+        }
         if addresses.iter().all(IpAddr::is_loopback) {
             // Nobody else could connect.
             list.push("--without=discovery".into());

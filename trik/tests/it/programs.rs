@@ -226,6 +226,32 @@ fn a_program_that_fails_gives_its_reason_and_the_exit_code_1() {
 }
 
 #[test]
+fn programs_in_three_languages_draw_on_the_display() {
+    let Some(one) = Reachable::new() else { return };
+    for (name, text) in [
+        (
+            "draw.js",
+            "brick.display().addLabel('hi', 1, 1); brick.display().redraw(); script.quit();",
+        ),
+        (
+            "draw.py",
+            "brick.display().addLabel('hi', 1, 1)\nbrick.display().redraw()\n",
+        ),
+        (
+            "draw",
+            "#!/bin/sh\nprintf 'label 1 1 20 hi\\nredraw\\n' | \"$TRIKD\" draw\n",
+        ),
+    ] {
+        let black = vec![0; 320 * 240 * 2];
+        std::fs::write(one.robot.path("display/device"), &black).expect("a display");
+        let output = one.run(name, text);
+        assert_eq!((output.code(), output.stderr.as_str()), (0, ""), "{name}");
+        let shown = std::fs::read(one.robot.path("display/bin_data")).expect("a picture");
+        assert_ne!(shown, black, "{name}");
+    }
+}
+
+#[test]
 fn ctrl_c_stops_the_program_on_the_robot_and_a_second_one_does_not_wait() {
     let Some(one) = Reachable::new() else { return };
     let mut running = one.start("loop.js");

@@ -56,6 +56,8 @@ fn serve(shared: &Shared, outside: &dyn Outside) -> io::Result<()> {
                 Incoming::Direct(text) => shared.tell(Some(MAIN), &Event::Direct(text)),
                 Incoming::Mail(hull, text) => shared.post(hull, text),
                 Incoming::Web => shared.tell(Some(MAIN), &Event::Web),
+                // A program in a language of text has no blocks.
+                Incoming::Watch(_) => {}
                 Incoming::Gone => return Ok(()),
             }
         }

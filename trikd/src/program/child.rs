@@ -28,6 +28,8 @@ pub enum Language {
     JavaScript,
     /// CPython with the module `trik`.
     Python,
+    /// A child of our own with the machine of diagrams inside.
+    Diagram,
     /// Anything that can be executed.
     Native,
 }
@@ -38,6 +40,7 @@ impl Language {
         match path.extension().and_then(|ending| ending.to_str()) {
             Some("py") => Self::Python,
             Some("js" | "qts") => Self::JavaScript,
+            Some("qrs") => Self::Diagram,
             _ => {
                 let mut first = [0; 4];
                 let read = std::fs::File::open(path)
@@ -55,6 +58,7 @@ impl Language {
         match self {
             Self::JavaScript => "JavaScript",
             Self::Python => "Python",
+            Self::Diagram => "diagram",
             Self::Native => "native",
         }
     }
@@ -94,6 +98,19 @@ impl Owner {
 pub const SELF: &str = "/proc/self/exe";
 /// The name that it is started under: it may be part of a program that has several.
 pub const NAME: &str = "trikd";
+
+/// Makes a file in `run` that starts this program under its name, for programs that draw.
+///
+/// # Errors
+/// Those of the file system.
+pub fn install(run: &Path) -> io::Result<()> {
+    let path = run.join(NAME);
+    match std::fs::remove_file(&path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+        _ => {}
+    }
+    std::os::unix::fs::symlink(std::env::current_exe()?, path)
+}
 
 /// The command that starts this program once more.
 pub fn this_program() -> Command {
@@ -147,6 +164,7 @@ fn words(settings: &Settings, language: Language, path: Option<&Path>) -> Vec<Os
                 "import trik; trik._main()".into(),
             ]
         }
+        (Language::Diagram, _) => vec![SELF.into(), "diagram".into()],
         _ => vec![SELF.into(), "js".into()],
     }
 }
@@ -191,11 +209,9 @@ pub fn start(
         .env("HOME", &settings.scripts)
         .env("LANG", "C.UTF-8")
         .env("TRIK_TREE", &settings.tree)
+        .env("TRIK_LANGUAGE", &settings.language)
         // With it programs in all languages draw.
-        .env(
-            "TRIKD",
-            std::env::current_exe().unwrap_or_else(|_| "trikd".into()),
-        )
+        .env("TRIKD", settings.run.join(NAME))
         // Each further heap of a thread would take 64 MiB of the address space that a program may have.
         .env("MALLOC_ARENA_MAX", "1")
         .env("PYTHONPATH", python)

@@ -4,11 +4,29 @@
 //! what has to go. A program with a user of its own cannot even outrun the search: one kill(2) takes all of that user.
 
 use nix::errno::Errno;
+use nix::sys::prctl;
 use nix::sys::signal::{Signal, kill, killpg};
 use nix::unistd::{Pid, Uid};
 use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::os::unix::fs::MetadataExt;
+
+/// Makes this process the subreaper of everything below it. Linux has that since 3.4, but an emulator of another processor
+/// may not: there the robot works all the same, and says what it cannot promise.
+///
+/// # Errors
+/// In words: the kernel refuses.
+pub fn adopt_orphans() -> Result<(), String> {
+    match prctl::set_child_subreaper(true) {
+        Err(Errno::EINVAL) => {
+            crate::log::tell(
+                "this system has no PR_SET_CHILD_SUBREAPER: processes that leave their program outlive it",
+            );
+            Ok(())
+        }
+        other => other.map_err(|error| format!("no subreaper: {error}")),
+    }
+}
 
 /// A process as /proc shows it (proc(5)).
 struct Process {

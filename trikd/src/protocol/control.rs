@@ -24,6 +24,8 @@ pub enum Request<'a> {
     Direct(&'a [u8]),
     /// End the program and bring the robot to rest.
     Stop,
+    /// Tell this client where the running diagram is, or no more.
+    Watch(bool),
     /// What runs now, and how the last program ended, when everything asked for before is done.
     Status,
     /// Something else.
@@ -41,6 +43,8 @@ impl<'a> Request<'a> {
             b"configVersion" => return Self::ConfigVersion,
             b"stop" => return Self::Stop,
             b"status" => return Self::Status,
+            b"watch" => return Self::Watch(true),
+            b"unwatch" => return Self::Watch(false),
             _ => {}
         }
         if let Some(rest) = frame.strip_prefix(b"file:") {

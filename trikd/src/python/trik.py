@@ -405,35 +405,48 @@ def _once(told, what, why):
             print('info: %s: %s' % (what, why), file=sys.stderr)
 
 
-class Display:
-    """What is drawn goes to `trikd draw`, a process beside this one. What goes wrong is told once."""
+class _Helper:
+    """`trikd draw`, a process beside this one that draws and reads pictures."""
 
     def __init__(self):
-        self._process, self._lock, self._told = None, threading.Lock(), set()
+        self._process, self._lock = None, threading.Lock()
 
-    def _start(self):
-        # Standard input and output of this process are not the helper's.
-        program = os.environ.get('TRIKD') or shutil.which('trikd') or 'trikd'
-        self._process = subprocess.Popen([program, 'draw', '--answers', '--tree', _ROOT],
-                                         stdin=subprocess.PIPE, stdout=subprocess.PIPE)
-
-    def _order(self, name, line, data=b''):
+    def ask(self, line, data=b''):
+        """The bytes of its answer; a failure is an OSError with its text."""
         line = line.replace('\n', '\\n').encode('utf-8', 'replace') + b'\n' + data
         with self._lock:
-            try:
-                if self._process is None:
-                    self._start()
-                self._process.stdin.write(line)
-                self._process.stdin.flush()
-                answer = self._process.stdout.readline().decode('utf-8', 'replace').strip()
-            except OSError as error:
-                answer = 'error: %s' % error
-            if not answer:
-                answer = 'error: trikd draw has ended'
-            if answer.startswith('error: trikd draw'):
-                self._process = None
-        if answer != 'ok':
-            _once(self._told, 'display.' + name, answer.partition(' ')[2])
+            if self._process is None or self._process.poll() is not None:
+                program = os.environ.get('TRIKD') or shutil.which('trikd') or 'trikd'
+                self._process = subprocess.Popen([program, 'draw', '--answers', '--tree', _ROOT],
+                                                 stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+            self._process.stdin.write(line)
+            self._process.stdin.flush()
+            word, _, rest = self._process.stdout.readline().decode('utf-8', 'replace').strip().partition(' ')
+            if word == 'ok':
+                return self._process.stdout.read(int(rest))
+        raise OSError(rest or 'trikd draw has ended')
+
+
+_helper = _Helper()
+
+
+def getPhoto():
+    """A small picture of the camera, 160 x 120: one number for each point."""
+    rgb = _helper.ask('photo 160 120')
+    return [red << 16 | green << 8 | blue for red, green, blue in zip(rgb[::3], rgb[1::3], rgb[2::3])]
+
+
+class Display:
+    """What is drawn goes to the helper. What goes wrong is told once."""
+
+    def __init__(self):
+        self._told = set()
+
+    def _order(self, name, line, data=b''):
+        try:
+            _helper.ask(line, data)
+        except OSError as error:
+            _once(self._told, 'display.' + name, error)
 
     def addLabel(self, text, x, y, fontSize=-1):
         self._order('addLabel', 'label %s %s %s %s' % (x, y, fontSize, text))
@@ -551,6 +564,9 @@ class Brick:
     def sadSmile(self):
         self._display._order('sadSmile', 'sadsmile')
 
+    def getStillImage(self):
+        return _helper.ask('photo 320 240')
+
     def pwmCapture(self, port):
         return self._port(port, [('servos', PwmCapture)], 'duty_cycle')
 
@@ -613,6 +629,8 @@ class Brick:
 
     def stop(self):
         _file('stop', os.O_WRONLY).write('1\n')
+        if os.path.exists(os.path.join(_ROOT, 'display/device')):
+            self._display.hide()
 
 
 class Timer:
@@ -653,6 +671,9 @@ class Script:
     def system(self, command, synchronously=False):
         process = subprocess.Popen(['sh', '-c', command], stdin=subprocess.DEVNULL)
         return process.wait() if synchronously else 0
+
+    def getPhoto(self):
+        return getPhoto()
 
     def writeToFile(self, file, text):
         with open(file, 'a', encoding='utf-8') as out:
@@ -843,7 +864,7 @@ for _letter, _count in (('A', 6), ('D', 3), ('M', 4), ('E', 4), ('S', 6)):
     for _number in range(1, _count + 1):
         globals()['%s%d' % (_letter, _number)] = '%s%d' % (_letter, _number)
 
-__all__ = ['brick', 'script', 'mailbox', 'gamepad', 'web', 'KeysEnum'] + [
+__all__ = ['brick', 'script', 'getPhoto', 'mailbox', 'gamepad', 'web', 'KeysEnum'] + [
     name for name in list(globals()) if name[:1] in 'ADMES' and name[1:].isdigit()
 ]
 

@@ -1,7 +1,7 @@
 //! Port 8888: programs come, are started and stopped; what they say goes to all clients here.
 
 use super::Guest;
-use crate::clients::Client;
+use crate::clients::{Client, Watching};
 use crate::connection::{self, Handler, VERSION};
 use crate::daemon::Daemon;
 use crate::feedback::Moment;
@@ -98,6 +98,14 @@ impl Handler for Control {
                 return self.client.outbox.send(answer.as_bytes());
             }
             Request::Status => return self.status().await,
+            Request::Watch(is_wanted) => {
+                let watching = if is_wanted {
+                    Watching::Lines
+                } else {
+                    Watching::No
+                };
+                return self.client.watch(watching);
+            }
             // Whoever sees danger may stop the robot.
             Request::Stop => return self.command(Command::Stop("a client")).await,
             _ => {}

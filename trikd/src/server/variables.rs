@@ -1,10 +1,14 @@
-//! Port 10000, for this machine only: variables that the program shows to web pages.
+//! Port 10000, for this machine only: variables that the program shows to web pages, and where a diagram is.
 
 use super::Guest;
+use crate::clients::Watching;
 use crate::daemon::Daemon;
 use crate::limits;
+use crate::outbox::Outbox;
 use crate::program::Command;
 use crate::protocol::http::{Head, answer, parse};
+use std::io;
+use std::net::SocketAddr;
 use std::rc::Rc;
 use std::time::Duration;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
@@ -34,10 +38,41 @@ pub async fn head(stream: &mut TcpStream) -> Head {
         .unwrap_or(Head::Nonsense)
 }
 
+/// Tells where the running diagram is, one JSON object on each line, until the client leaves.
+async fn diagram(daemon: &Daemon, stream: &mut TcpStream, peer: SocketAddr) -> io::Result<()> {
+    stream
+        .write_all(
+            b"HTTP/1.0 200 OK\r\nContent-Type: application/x-ndjson\r\nConnection: close\r\n\r\n",
+        )
+        .await?;
+    let outbox = Rc::new(Outbox::new(limits::OUTBOX_BYTES));
+    let client = daemon.clients.add("diagram", peer, outbox.clone());
+    client.watch(Watching::Objects);
+    let mut rest = [0; 64];
+    loop {
+        tokio::select! {
+            line = outbox.next() => match line {
+                Some(line) => {
+                    let sent = stream.write_all(&line);
+                    timeout(Duration::from_millis(limits::SILENCE_MS), sent).await??;
+                }
+                None => return Ok(()),
+            },
+            read = stream.read(&mut rest) => {
+                if read? == 0 {
+                    return Ok(());
+                }
+            }
+        }
+    }
+}
+
 /// Serves one request.
 pub async fn serve(daemon: Rc<Daemon>, guest: Guest) {
     let Guest {
-        mut stream, seat, ..
+        mut stream,
+        peer,
+        seat,
     } = guest;
     let text = |status: &str, body: &str| answer(status, "text/plain; charset=utf-8", body);
     let reply = match head(&mut stream).await {
@@ -60,7 +95,11 @@ pub async fn serve(daemon: Rc<Daemon>, guest: Guest) {
                 text("503 Service Unavailable", "no program runs\n")
             }
         }
-        Head::Get { .. } => text("404 Not Found", "there is only /web/\n"),
+        Head::Get { path, .. } if path == "/diagram" => {
+            let _ = diagram(&daemon, &mut stream, peer).await;
+            return drop(seat);
+        }
+        Head::Get { .. } => text("404 Not Found", "there are only /web/ and /diagram\n"),
         Head::OtherMethod => text("405 Method Not Allowed", "only GET is understood\n"),
         Head::Nonsense | Head::Partial => text("400 Bad Request", "this is no HTTP request\n"),
     };

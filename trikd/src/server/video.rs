@@ -1,57 +1,71 @@
 //! Port 8080: pictures of the camera, if the tree has any.
 //!
-//! Pictures are JPEG in the file [`PICTURES`], each read of which gives the newest one. A tree without it is answered
-//! with a reason.
+//! Owns what stands around a picture on the wire. Where pictures come from, `pictures` knows.
 
 use super::Guest;
 use super::variables::head;
 use crate::daemon::Daemon;
 use crate::limits;
+use crate::pictures::Newest;
 use crate::protocol::http::{Head, answer};
 use std::io;
-use std::path::PathBuf;
 use std::rc::Rc;
+use std::sync::Arc;
 use std::time::Duration;
-use tokio::io::AsyncWriteExt;
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
-use tokio::time::{Instant, sleep_until, timeout};
+use tokio::sync::watch::Receiver;
+use tokio::time::timeout;
 
-/// Where the tree has the newest picture.
-pub const PICTURES: &str = "camera/picture/bin_data";
-
-/// The newest picture; a slow camera delays only who asks.
-async fn picture(path: PathBuf) -> io::Result<Vec<u8>> {
-    let read = move || {
-        let file = std::fs::File::open(path)?;
-        let mut bytes = Vec::new();
-        io::Read::read_to_end(&mut io::Read::take(file, limits::PICTURE_BYTES), &mut bytes)?;
-        Ok(bytes)
-    };
-    tokio::task::spawn_blocking(read)
-        .await
-        .map_err(io::Error::other)?
+/// The next picture.
+async fn next(watcher: &mut Receiver<Newest>) -> Result<Arc<[u8]>, String> {
+    let wait = Duration::from_millis(limits::PICTURE_WAIT_MS);
+    match timeout(wait, watcher.changed()).await {
+        Ok(Ok(())) => {}
+        Ok(Err(_)) => return Err("trikd ends".to_owned()),
+        Err(_) => {
+            let seconds = limits::PICTURE_WAIT_MS / 1000;
+            return Err(format!("the camera has given nothing for {seconds} s"));
+        }
+    }
+    let newest = watcher.borrow_and_update().clone();
+    newest.unwrap_or_else(|| Err("there is no picture yet".to_owned()))
 }
 
-/// Sends pictures until the client leaves: one after the other, at most so many in a second.
-async fn stream_pictures(stream: &mut TcpStream, path: PathBuf, first: Vec<u8>) -> io::Result<()> {
+/// Ends when the client has broken the connection. One that only says nothing more may still want its answer.
+async fn gone(stream: &mut (impl AsyncReadExt + Unpin)) {
+    let mut ignored = [0; 64];
+    loop {
+        match stream.read(&mut ignored).await {
+            Err(_) => return,
+            Ok(0) => std::future::pending().await,
+            Ok(_) => {}
+        }
+    }
+}
+
+/// Sends pictures until the client leaves or there are no more: one after the other, those that it is too slow for not.
+async fn stream_pictures(
+    stream: &mut TcpStream,
+    mut watcher: Receiver<Newest>,
+    first: Arc<[u8]>,
+) -> io::Result<()> {
     let start = "HTTP/1.0 200 OK\r\nConnection: close\r\nCache-Control: no-cache\r\n\
                  Content-Type: multipart/x-mixed-replace;boundary=picture\r\n\r\n";
     stream.write_all(start.as_bytes()).await?;
-    let mut next = first;
+    let mut picture = first;
     loop {
-        let due = Instant::now() + Duration::from_millis(limits::PICTURE_MS);
         let part = format!(
             "--picture\r\nContent-Type: image/jpeg\r\nContent-Length: {}\r\n\r\n",
-            next.len()
+            picture.len()
         );
         let send = async {
             stream.write_all(part.as_bytes()).await?;
-            stream.write_all(&next).await?;
+            stream.write_all(&picture).await?;
             stream.write_all(b"\r\n").await
         };
         timeout(Duration::from_millis(limits::SILENCE_MS), send).await??;
-        sleep_until(due).await;
-        next = picture(path.clone()).await?;
+        picture = next(&mut watcher).await.map_err(io::Error::other)?;
     }
 }
 
@@ -63,31 +77,37 @@ pub async fn serve(daemon: Rc<Daemon>, guest: Guest) {
         seat,
     } = guest;
     let text = |status: &str, body: &str| answer(status, "text/plain; charset=utf-8", body);
-    let path = daemon.settings.tree.join(PICTURES);
     let reply = match head(&mut stream).await {
-        Head::Get { path: asked, query } if asked == "/" => match picture(path.clone()).await {
-            Err(error) => {
-                let body = format!("there are no pictures: {}: {error}\n", path.display());
-                text("503 Service Unavailable", &body)
+        Head::Get { path: asked, query } if asked == "/" => {
+            let first = match daemon.pictures.watch() {
+                Ok(mut watcher) => tokio::select! {
+                    picture = next(&mut watcher) => picture.map(|picture| (picture, watcher)),
+                    () = gone(&mut stream) => return drop(seat),
+                },
+                Err(error) => Err(error.to_string()),
+            };
+            match first {
+                Err(reason) => text(
+                    "503 Service Unavailable",
+                    &format!("there are no pictures: {reason}\n"),
+                ),
+                Ok((picture, _)) if query.split('&').any(|word| word == "action=snapshot") => {
+                    let mut reply = format!(
+                        "HTTP/1.0 200 OK\r\nContent-Type: image/jpeg\r\nContent-Length: {}\r\n\r\n",
+                        picture.len()
+                    )
+                    .into_bytes();
+                    reply.extend_from_slice(&picture);
+                    reply
+                }
+                Ok((picture, watcher)) => {
+                    let outbox = Rc::new(crate::outbox::Outbox::new(0));
+                    let _client = daemon.clients.add("video", peer, outbox);
+                    let _ = stream_pictures(&mut stream, watcher, picture).await;
+                    return drop(seat);
+                }
             }
-            Ok(first) if query.split('&').any(|word| word == "action=snapshot") => {
-                let mut reply = format!(
-                    "HTTP/1.0 200 OK\r\nContent-Type: image/jpeg\r\nContent-Length: {}\r\n\r\n",
-                    first.len()
-                )
-                .into_bytes();
-                reply.extend(first);
-                reply
-            }
-            Ok(first) => {
-                let _client =
-                    daemon
-                        .clients
-                        .add("video", peer, Rc::new(crate::outbox::Outbox::new(0)));
-                let _ = stream_pictures(&mut stream, path, first).await;
-                return drop(seat);
-            }
-        },
+        }
         Head::Get { .. } => text(
             "404 Not Found",
             "there is only /?action=stream and /?action=snapshot\n",

@@ -349,3 +349,75 @@ fn a_program_in_javascript_drives_and_hears_the_gamepad() {
         number(&board.robot, "motors/M3/value") == Some(0)
     });
 }
+
+/// Parts of a stream of pictures: the JPEG file of each.
+fn pictures(client: &mut Client, count: usize) -> Vec<Vec<u8>> {
+    let mut reader = BufReader::new(client.stream.try_clone().expect("a socket"));
+    let mut found = Vec::new();
+    let mut length = 0;
+    while found.len() < count {
+        let mut line = String::new();
+        assert!(
+            reader.read_line(&mut line).expect("a head") > 0,
+            "{found:?}"
+        );
+        if let Some(number) = line.trim().strip_prefix("Content-Length: ") {
+            length = number.parse().expect("a number");
+        } else if line == "\r\n" && length > 0 {
+            let mut file = vec![0; length];
+            std::io::Read::read_exact(&mut reader, &mut file).expect("a picture");
+            found.push(file);
+            length = 0;
+        }
+    }
+    found
+}
+
+#[test]
+fn viewers_and_programs_see_what_the_camera_sees() {
+    let Some(board) = virtual_robot() else { return };
+    let robot = &board.robot;
+    let mut viewers: Vec<Client> = (0..3).map(|_| robot.client("video")).collect();
+    for viewer in &mut viewers {
+        viewer.raw("GET /?action=stream&filename=noname.jpg HTTP/1.1\r\nHost: robot\r\n\r\n");
+    }
+    for viewer in &mut viewers {
+        for file in pictures(viewer, 2) {
+            let seen = screen::picture::decode(&file).expect("a JPEG file");
+            assert_eq!((seen.width(), seen.height()), (320, 240));
+            let floor = seen.at(160, 235).expect("a point");
+            assert!(floor.red > 200 && floor.blue > 200, "{floor:?}");
+        }
+    }
+    // All of them are one reader of the tree.
+    let open = std::fs::read_dir(format!("/proc/{}/fd", robot.daemon())).expect("descriptors");
+    let picture = robot.tree.join("camera/picture/bin_data");
+    let readers = open
+        .flatten()
+        .filter(|entry| std::fs::read_link(entry.path()).is_ok_and(|target| target == picture));
+    assert_eq!(readers.count(), 1);
+    drop(viewers);
+    let mut client = robot.client("control");
+    for (name, text) in [
+        (
+            "photo.py",
+            "p = getPhoto()\nprint(len(p), p[-1] >> 16 > 200)\nprint(len(brick.getStillImage()))\n",
+        ),
+        (
+            "photo.js",
+            "var p = getPhoto();\nprint(p.length, ' ', p[p.length - 1] >> 16 > 200);\nprint(brick.getStillImage().length);\n",
+        ),
+    ] {
+        client.send(&format!("file:{name}:{text}"));
+        client.send(&format!("run:{name}"));
+        let told = client.until("print: 19200 ");
+        assert!(
+            told.trim().eq_ignore_ascii_case("print: 19200 true"),
+            "{told}"
+        );
+        client.until("print: 230400\n");
+        client.until(&format!("info: {name} has ended"));
+    }
+    let encoder = board.up.devices.join("run/mjpg-encoder.out.fifo");
+    eventually("an encoder that was stopped", || !encoder.exists());
+}

@@ -9,6 +9,8 @@ mod access;
 mod board;
 /// What the serving process leaves when it is killed.
 mod crash;
+/// Diagrams of TRIK Studio.
+mod diagrams;
 /// What documents say, byte for byte.
 mod documents;
 /// Frames, good and bad, and the clocks of connections.

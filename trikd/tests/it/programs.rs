@@ -417,6 +417,55 @@ fn without_a_tree_programs_run_and_the_lack_of_rest_is_told() {
     );
 }
 
+/// Doubles for some seconds, counts how often it is refused, and is bounded by itself: by depth and by time.
+const BOMB: &str = "import os, time
+end = time.time() + 4
+refused = 0
+print('go')
+while time.time() < end:
+    try:
+        os.fork()
+    except OSError:
+        refused += 1
+        if refused == 20:
+            os.write(1, b'refused\\n')
+        time.sleep(0.01)
+time.sleep(1000)
+";
+
+#[test]
+fn a_fork_bomb_of_another_user_is_held_by_the_kernel() {
+    if !nix::unistd::geteuid().is_root() {
+        return harness::skip("only root can start programs as another user");
+    }
+    // Each test has a user of its own: they count and kill all processes of it.
+    let Ok(Some(user)) = nix::unistd::User::from_name("news") else {
+        return harness::wait::note_skip("there is no user news");
+    };
+    let of_user = || trikd::program::kill::of_user(user.uid);
+    let before = of_user();
+    let home = crate::rig::small_tree();
+    for name in ["scripts", "run"] {
+        std::fs::create_dir_all(home.path(name)).unwrap();
+    }
+    let tree = home.path("tree");
+    let robot = Robot::start(home, tree, &["--user", "news", "--processes", "20"]);
+    let mut client = robot.client("control");
+    run(&mut client, "bomb.py", BOMB);
+    client.until("print: go\n");
+    client.until("print: refused\n");
+    let most = of_user() - before;
+    assert!((2..=20).contains(&most), "{most} processes");
+    // Others are served meanwhile, and a stop ends all of it.
+    client.sync();
+    client.send("stop");
+    client.until("info: bomb.py was stopped by a client");
+    eventually("nobody is left", || {
+        processes::children(robot.daemon()).is_empty() && of_user() <= before
+    });
+    assert!(!robot.log().contains("cannot be killed"), "{}", robot.log());
+}
+
 #[test]
 fn what_stops_motors_goes_before_programs() {
     let robot = robot(&[]);

@@ -3,8 +3,6 @@ var calls = {
     bus: function() { brick.smBusI2c(1, 0x40); },
     event: function() { brick.eventDevice("/dev/input/event0"); },
     sound: function() { brick.soundSensor(video2); },
-    still: function() { brick.getStillImage(); },
-    photo: getPhoto,
     image: function() { brick.irCamera().getImage(); },
     signal: function() { brick.irCamera().imageUpdated.connect(print); },
 };
@@ -15,7 +13,5 @@ for (var name in calls) {
 //> TypeError brick.smBusI2c
 //> TypeError brick.eventDevice
 //> TypeError brick.soundSensor
-//> TypeError brick.getStillImage
-//> TypeError getPhoto
 //> TypeError irCamera.getImage
 //> TypeError irCamera.imageUpdated

@@ -1,9 +1,10 @@
-//! Lines of text from the named pipe of a sensor program, and lines to it.
+//! Lines of text from the named pipe of a sensor program, and lines to it; or pictures from such a pipe.
 //!
-//! Owns what a line is, and the way from nothing to a running sensor: its program is started, its pipe appears, lines
+//! Owns what a line is (what a picture is, `picture` knows), and the way from nothing to a running sensor: its program is started, its pipe appears, lines
 //! come. Nobody waits for that: until there are lines, there is nothing to read. How programs are run, `programs` knows.
 
 pub mod answer;
+mod picture;
 
 use super::cutter::{Cut, Cutter, fill};
 use super::{Got, Sink, Stream, chardev, device_error, fifo};
@@ -14,6 +15,7 @@ use crate::stats::Counter;
 use answer::Answer;
 use config::description::{AnswerDescription, LinesDescription};
 use nix::sys::epoll::{Epoll, EpollCreateFlags, EpollEvent, EpollFlags, EpollTimeout};
+use picture::Pictures;
 use std::os::fd::{AsFd, BorrowedFd};
 use std::os::unix::fs::FileTypeExt;
 use std::path::{Path, PathBuf};
@@ -24,7 +26,7 @@ use std::time::{Duration, Instant};
 pub struct Lines {
     path: PathBuf,
     pipe: Option<fifo::Fifo>,
-    cutter: Cutter<Splitter>,
+    cutter: Cutter<Units>,
     /// Becomes readable with the pipe, which may come later.
     epoll: Epoll,
     /// Given up after the pipe, so that a program is stopped when nobody reads it.
@@ -51,15 +53,15 @@ impl Lines {
                 Some(programs.use_one(&commands, is_fifo(&path))?)
             }
         };
+        let units = if description.are_pictures {
+            Units::Pictures(Pictures::default())
+        } else {
+            Units::Lines(Splitter::default())
+        };
         let mut lines = Self {
             path,
             pipe: None,
-            cutter: Cutter::new(
-                Splitter::default(),
-                tuple_size,
-                limits::PORT_READ_BYTES,
-                damaged,
-            ),
+            cutter: Cutter::new(units, tuple_size, limits::PORT_READ_BYTES, damaged),
             epoll: Epoll::new(EpollCreateFlags::EPOLL_CLOEXEC).map_err(failed)?,
             program,
         };
@@ -147,6 +149,28 @@ impl Stream for Lines {
 
     fn is_still_there(&self) -> bool {
         self.pipe.as_ref().is_none_or(Stream::is_still_there)
+    }
+}
+
+/// What is cut out of the bytes.
+enum Units {
+    Lines(Splitter),
+    Pictures(Pictures),
+}
+
+impl Cut for Units {
+    fn cut(&mut self, input: &[u8], is_end: bool, tuple: &mut [u8]) -> (usize, bool) {
+        match self {
+            Self::Lines(lines) => lines.cut(input, is_end, tuple),
+            Self::Pictures(pictures) => pictures.cut(input, is_end, tuple),
+        }
+    }
+
+    fn take_damaged(&mut self) -> u32 {
+        match self {
+            Self::Lines(lines) => lines.take_damaged(),
+            Self::Pictures(pictures) => pictures.take_damaged(),
+        }
     }
 }
 

@@ -169,6 +169,7 @@ fn decode_one(mut bytes: Bytes<'_>) -> Option<RestAction> {
             start: None,
             stop: None,
             answer: None,
+            are_pictures: false,
         }),
         _ => return None,
     };
@@ -268,6 +269,7 @@ mod tests {
                 start: None,
                 stop: None,
                 answer: None,
+                are_pictures: false,
             }),
         ];
         let action = |(sink, size)| RestAction {

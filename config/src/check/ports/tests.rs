@@ -189,6 +189,24 @@ fn mistakes_in_pwm_and_gpio_are_refused() {
 }
 
 #[test]
+fn pictures_have_a_pipe_and_perhaps_a_program_and_cannot_be_written() {
+    let node = node(
+        "pictures{ path = '/run/p.fifo', start = { '/etc/p', 'start' }, stop = { '/etc/p', 'stop' } }, input_tuple_size = 64",
+    );
+    assert_eq!(node.mode, 0o444);
+    let SourceDescription::Lines(lines) = node.source else {
+        panic!("{:?}", node.source);
+    };
+    assert!(lines.are_pictures && lines.input.is_none() && lines.start.is_some());
+    let pictures = |fields: &str| refused(&format!("pictures{{ {fields} }}, input_tuple_size = 8"));
+    assert!(
+        pictures("'/run/p', stop = { '/etc/p' }").contains("stop makes no sense without start")
+    );
+    assert!(pictures("'/run/p', input = '/run/q'").contains("input"));
+    assert!(pictures("").contains("path"));
+}
+
+#[test]
 fn lines_have_a_pipe_and_perhaps_a_program() {
     let full = node(
         "lines{ path = '/run/s.out.fifo', input = '/run/s.in.fifo', start = { '/etc/s', 'start' }, stop = { '/etc/s', 'stop' } }, input_tuple_size = 64",
@@ -206,6 +224,7 @@ fn lines_have_a_pipe_and_perhaps_a_program() {
         start: command("start"),
         stop: command("stop"),
         answer: None,
+        are_pictures: false,
     };
     assert_eq!(full.source, SourceDescription::Lines(expected));
     let asks = node(

@@ -85,5 +85,10 @@ else
     /etc/init.d/trikfs stop >/dev/null
     /etc/init.d/trikfs start
 fi
+# As its old file it would run on.
+if /etc/init.d/trikd status >/dev/null; then
+    /etc/init.d/trikd restart
+fi
 echo "trikGui uses the same IIO and I2C devices as a configuration for this board: values of both can be wrong."
-echo "To end it, now and after each boot: /etc/init.d/trikfs gui-off; to take that back: /etc/init.d/trikfs gui-on"
+echo "To end it, now and after each boot, with trikd in its place: /etc/init.d/trikfs gui-off"
+echo "To take that back: /etc/init.d/trikfs gui-on"

@@ -3,6 +3,7 @@
 //! A record is the length of the name in bytes, the name in UTF-16BE, the length of the piece, the piece. A piece is how
 //! long it is unpacked and then a stream of zlib. All lengths have 32 bits, the highest byte first.
 
+use super::deflate::Unpacker;
 use super::{Pieces, in_file, number, words};
 use crate::limits;
 use crate::problem::Problem;
@@ -14,6 +15,7 @@ pub(super) fn is_likely(bytes: &[u8]) -> bool {
 }
 
 pub(super) fn unpack(bytes: &[u8], pieces: &mut Pieces<'_>) -> Result<(), Problem> {
+    let mut unpacker = Unpacker::new(true);
     let mut at = 0;
     while at < bytes.len() {
         pieces.count()?;
@@ -36,23 +38,14 @@ pub(super) fn unpack(bytes: &[u8], pieces: &mut Pieces<'_>) -> Result<(), Proble
         let begin = begin + 4;
         let end = begin.checked_add(length).filter(|&end| end <= bytes.len());
         let end = end.ok_or_else(|| in_file(&name, words::cut_at(at, bytes.len())))?;
-        let piece = inflate(&name, &bytes[begin..end], pieces)?;
-        pieces.add(&name, piece);
+        let piece = &bytes[begin..end];
+        let damaged = || in_file(&name, words::damaged());
+        let claimed = number(piece, 0).map(u32::from_be_bytes);
+        let claimed = claimed.filter(|&claimed| claimed > 0).ok_or_else(damaged)?;
+        let allowed = pieces.allowance(&name, claimed as usize)?;
+        let unpacked = unpacker.unpack(&piece[4..], allowed).ok_or_else(damaged)?;
+        pieces.add(&name, unpacked);
         at = end;
     }
     Ok(())
-}
-
-fn inflate(name: &str, piece: &[u8], pieces: &Pieces<'_>) -> Result<Vec<u8>, Problem> {
-    let damaged = || in_file(name, words::damaged());
-    let claimed = number(piece, 0)
-        .map(u32::from_be_bytes)
-        .ok_or_else(damaged)? as usize;
-    let allowed = pieces.allowance(name, claimed)?;
-    let unpacked = miniz_oxide::inflate::decompress_to_vec_zlib_with_limit(&piece[4..], allowed)
-        .map_err(|_| damaged())?;
-    if unpacked.is_empty() || unpacked.len() != claimed {
-        return Err(damaged());
-    }
-    Ok(unpacked)
 }

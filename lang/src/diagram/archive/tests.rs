@@ -1,7 +1,7 @@
 //! Containers whole, damaged and hostile.
 
 use super::*;
-use miniz_oxide::deflate::compress_to_vec_zlib;
+use flate2::{Compress, Compression, FlushCompress};
 
 fn entry(name: &str, bytes: &[u8]) -> Entry {
     Entry {
@@ -30,7 +30,11 @@ fn stream(entries: &[(&str, &[u8])]) -> Vec<u8> {
         let name: Vec<u8> = name.encode_utf16().flat_map(u16::to_be_bytes).collect();
         bytes.extend((name.len() as u32).to_be_bytes());
         bytes.extend(name);
-        let packed = compress_to_vec_zlib(piece, 6);
+        let mut packed = Vec::with_capacity(piece.len() + 64);
+        let mut compress = Compress::new(Compression::default(), true);
+        compress
+            .compress_vec(piece, &mut packed, FlushCompress::Finish)
+            .unwrap();
         bytes.extend((packed.len() as u32 + 4).to_be_bytes());
         bytes.extend((piece.len() as u32).to_be_bytes());
         bytes.extend(packed);

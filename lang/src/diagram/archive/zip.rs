@@ -3,10 +3,10 @@
 //! Reads by the central directory, as every unpacker does. What is written is the same in each run: all times are the
 //! beginning of the format's calendar.
 
+use super::deflate::{self, Unpacker, checksum};
 use super::{Pieces, in_file, number, words};
 use crate::limits;
 use crate::problem::Problem;
-use miniz_oxide::{deflate, inflate};
 
 const LOCAL: u32 = 0x0403_4b50;
 const CENTRAL: u32 = 0x0201_4b50;
@@ -54,6 +54,7 @@ pub(super) fn unpack(bytes: &[u8], pieces: &mut Pieces<'_>) -> Result<(), Proble
     let mut at = double(bytes, end + 16).ok_or_else(damaged)? as usize;
     // An honest zip holds each packed byte once; one that counts bytes twice wants to cost time.
     let mut budget = bytes.len();
+    let mut unpacker = Unpacker::new(false);
     for _ in 0..count {
         pieces.count()?;
         let entry = central(bytes, at).ok_or_else(damaged)?;
@@ -61,7 +62,7 @@ pub(super) fn unpack(bytes: &[u8], pieces: &mut Pieces<'_>) -> Result<(), Proble
         budget = budget
             .checked_sub(entry.packed)
             .ok_or_else(|| in_file(&entry.name, words::overlaps()))?;
-        let unpacked = take(bytes, &entry, pieces)?;
+        let unpacked = take(bytes, &entry, pieces, &mut unpacker)?;
         pieces.add(&entry.name, unpacked);
     }
     Ok(())
@@ -100,7 +101,12 @@ fn central(bytes: &[u8], at: usize) -> Option<Central> {
 }
 
 /// The bytes of an entry, unpacked and compared with their checksum.
-fn take(bytes: &[u8], entry: &Central, pieces: &Pieces<'_>) -> Result<Vec<u8>, Problem> {
+fn take(
+    bytes: &[u8],
+    entry: &Central,
+    pieces: &Pieces<'_>,
+    unpacker: &mut Unpacker,
+) -> Result<Vec<u8>, Problem> {
     let refuse = |words| in_file(&entry.name, words);
     if entry.flags & FLAG_ENCRYPTED != 0 {
         return Err(refuse(words::encrypted()));
@@ -108,16 +114,14 @@ fn take(bytes: &[u8], entry: &Central, pieces: &Pieces<'_>) -> Result<Vec<u8>, P
     let packed = data(bytes, entry).ok_or_else(|| refuse(words::damaged()))?;
     let allowed = pieces.allowance(&entry.name, entry.size)?;
     let unpacked = match entry.method {
-        STORED if packed.len() == allowed => packed.to_vec(),
-        DEFLATED => inflate::decompress_to_vec_with_limit(packed, allowed)
-            .map_err(|_| refuse(words::damaged()))?,
-        STORED => return Err(refuse(words::damaged())),
+        STORED => Some(packed.to_vec()),
+        DEFLATED => unpacker.unpack(packed, allowed),
         other => return Err(refuse(words::method(other))),
     };
-    if unpacked.len() != allowed || checksum(&unpacked) != entry.checksum {
-        return Err(refuse(words::damaged()));
-    }
-    Ok(unpacked)
+    let is_whole = |piece: &Vec<u8>| piece.len() == allowed && checksum(piece) == entry.checksum;
+    unpacked
+        .filter(is_whole)
+        .ok_or_else(|| refuse(words::damaged()))
 }
 
 fn data<'a>(bytes: &'a [u8], entry: &Central) -> Option<&'a [u8]> {
@@ -128,29 +132,6 @@ fn data<'a>(bytes: &'a [u8], entry: &Central) -> Option<&'a [u8]> {
     let begin = LOCAL_BYTES + usize::from(word(local, 26)?) + usize::from(word(local, 28)?);
     local.get(begin..begin.checked_add(entry.packed)?)
 }
-
-/// The checksum of the format, CRC-32 of IEEE 802.3, bits turned round.
-fn checksum(bytes: &[u8]) -> u32 {
-    !bytes.iter().fold(!0, |crc: u32, &byte| {
-        (crc >> 8) ^ TABLE[usize::from(crc.to_le_bytes()[0] ^ byte)]
-    })
-}
-
-static TABLE: [u32; 256] = {
-    let mut table = [0; 256];
-    let mut index = 0;
-    while index < 256 {
-        let mut crc = index as u32;
-        let mut bit = 0;
-        while bit < 8 {
-            crc = (crc >> 1) ^ (0xedb8_8320 & 0_u32.wrapping_sub(crc & 1));
-            bit += 1;
-        }
-        table[index] = crc;
-        index += 1;
-    }
-    table
-};
 
 /// A zip that grows.
 #[derive(Default)]
@@ -169,11 +150,10 @@ impl Packer {
         let size = u32::try_from(bytes.len()).map_err(|_| too_long())?;
         let length = u16::try_from(name.len()).map_err(|_| too_long())?;
         self.count = self.count.checked_add(1).ok_or_else(too_many)?;
-        let deflated = deflate::compress_to_vec(bytes, 6);
-        let (method, packed) = if deflated.len() < bytes.len() {
-            (DEFLATED, deflated.as_slice())
-        } else {
-            (STORED, bytes)
+        let deflated = deflate::pack(bytes);
+        let (method, packed) = match &deflated {
+            Some(packed) => (DEFLATED, packed.as_slice()),
+            None => (STORED, bytes),
         };
         let flags = if name.is_ascii() { 0 } else { FLAG_UTF8 };
         let attributes = if name.ends_with('/') {

@@ -131,6 +131,9 @@ impl<'a> Lowering<'a> {
                 // Nobody asks for the number of nobody.
                 Content::Expression(_) if act == Act::SendMail && value.trim().is_empty() => {}
                 Content::Expression(wanted) => {
+                    if wanted == Type::List {
+                        action.ports = motors(value);
+                    }
                     sources.push(self.source(value, wanted, property.shown));
                 }
                 Content::Evaluated if flag(at, "Evaluate") => {
@@ -223,6 +226,19 @@ impl<'a> Lowering<'a> {
         });
         self.watches.len() as u32 - 1
     }
+}
+
+/// Ports of a list that holds nothing but names of motors: what the expression would give, because these names are
+/// constants.
+fn motors(list: &str) -> Box<[Port]> {
+    let motor = |name: &str| match name.trim() {
+        name @ ("M1" | "M2" | "M3" | "M4") => Port::named(name),
+        _ => None,
+    };
+    list.split(',')
+        .map(motor)
+        .collect::<Option<_>>()
+        .unwrap_or_default()
 }
 
 /// The original evaluates the name of a port, so quotes around it are harmless.

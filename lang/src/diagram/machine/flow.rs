@@ -6,10 +6,12 @@
 use std::rc::Rc;
 
 use super::clocks::Purpose;
+use super::loops::Comer;
 use super::threads::{Handle, State};
-use super::{Counter, Deferred, Env, Machine, TURN_MS, words};
+use super::{Deferred, Env, Machine, TURN_MS, words};
 use crate::diagram::blocks::Type;
 use crate::diagram::program::{Node, Op, Program};
+use crate::expr::Compat;
 use crate::limits;
 
 /// How many blocks a thread enters before others get a turn.
@@ -86,12 +88,13 @@ impl Machine {
             return;
         };
         let (mut node, mut count) = (thread.node, thread.count);
+        let (mut from, mut depth) = (thread.from, thread.stack.len());
         loop {
             if is_entered {
                 env.trace.entered(self.now, handle.slot, node);
                 count += 1;
                 if count > BLOCKS_IN_A_TURN {
-                    self.save(handle, node, 0, State::Deferred);
+                    self.save(handle, (from, node), 0, State::Deferred);
                     self.deferred.push_back(Deferred::Thread(handle));
                     return;
                 }
@@ -108,19 +111,36 @@ impl Machine {
                     body,
                     next,
                     counter,
-                } => self.count_down(node, (source, counter), (body, next), env),
+                } => {
+                    let comer = Comer {
+                        node,
+                        from,
+                        life: handle.life,
+                        depth,
+                    };
+                    self.count_down(&program, comer, (source, counter), (body, next), env)
+                }
                 Op::If { source, yes, no } => match self.evaluate(node, source, Type::Truth, env) {
                     Some(value) => Flow::Next(if value.to_bool() { yes } else { no }),
                     None => Flow::Failed,
                 },
                 Op::Run { source, next } => self.run(handle, node, (source, next), env),
                 ref op => {
-                    self.save(handle, node, count, State::Waiting);
-                    self.special(&program, handle, node, op, env)
+                    self.save(handle, (from, node), count, State::Waiting);
+                    let flow = self.special(&program, handle, node, op, env);
+                    if let Some(thread) = self.threads.get(handle) {
+                        // Behind a return this is the call.
+                        node = thread.node;
+                        depth = thread.stack.len();
+                    }
+                    flow
                 }
             };
             match flow {
-                Flow::Next(next) => node = next,
+                Flow::Next(next) => {
+                    from = Some(node);
+                    node = next;
+                }
                 Flow::Leave => return,
                 Flow::Failed => {
                     self.end_thread(handle, env);
@@ -130,8 +150,15 @@ impl Machine {
         }
     }
 
-    fn save(&mut self, handle: Handle, node: Node, count: u32, state: State) {
+    fn save(
+        &mut self,
+        handle: Handle,
+        (from, node): (Option<Node>, Node),
+        count: u32,
+        state: State,
+    ) {
         if let Some(thread) = self.threads.get_mut(handle) {
+            thread.from = from;
             thread.node = node;
             thread.count = count;
             thread.state = state;
@@ -151,28 +178,21 @@ impl Machine {
 
     fn count_down(
         &mut self,
-        node: Node,
+        program: &Program,
+        comer: Comer,
         (source, counter): (u32, u32),
         (body, next): (Node, Node),
         env: &mut Env<'_>,
     ) -> Flow {
-        let at = counter as usize;
-        if !self.loops[at].is_set {
-            let Some(value) = self.evaluate(node, source, Type::Whole, env) else {
+        if self.loops.is_fresh(counter, comer, program) {
+            let Some(value) = self.evaluate(comer.node, source, Type::Whole, env) else {
                 return Flow::Failed;
             };
-            self.loops[at] = Counter {
-                left: value.to_int(),
-                is_set: true,
-            };
+            self.loops.set(counter, comer, value.to_int());
         }
-        let counter = &mut self.loops[at];
-        counter.left = counter.left.saturating_sub(1);
-        if counter.left < 0 {
-            counter.is_set = false;
-            Flow::Next(next)
-        } else {
-            Flow::Next(body)
+        match self.loops.next(counter, comer) {
+            true => Flow::Next(body),
+            false => Flow::Next(next),
         }
     }
 
@@ -199,10 +219,12 @@ impl Machine {
                     return Flow::Failed;
                 };
                 let text = value.to_text();
-                let found = switch
-                    .branches
-                    .binary_search_by(|(guard, _)| (**guard).cmp(&*text));
-                Flow::Next(found.map_or(switch.other, |at| switch.branches[at].1))
+                let branches = match self.options.compat {
+                    Compat::Studio => &switch.branches,
+                    Compat::Fixed => &switch.exact,
+                };
+                let found = branches.binary_search_by(|(guard, _)| (**guard).cmp(&*text));
+                Flow::Next(found.map_or(switch.other, |at| branches[at].1))
             }
             Op::Fork { fork } => self.fork(program, handle, node, fork as usize, env),
             Op::Join { join, .. } => self.join(program, handle, node, join as usize, env),
@@ -220,7 +242,7 @@ impl Machine {
                 let thread = self.threads.get_mut(handle);
                 match thread.and_then(|thread| thread.messages.pop_front()) {
                     Some(message) => {
-                        let statement = format!("{} = {message}", assignment.variable);
+                        let statement = self.received(&assignment.variable, &message);
                         self.splice(handle, node, &statement, next, env)
                     }
                     None if !assignment.wait => Flow::Next(next),

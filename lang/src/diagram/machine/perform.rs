@@ -139,13 +139,8 @@ impl Machine {
             Act::Backward => self.whole(node, action, 1, env)?.saturating_neg(),
             _ => self.whole(node, action, 1, env)?,
         };
-        let list = self.evaluate(node, *action.sources.first()?, Type::List, env)?;
         let brake = action.texts.first().is_some_and(|mode| &**mode == "brake");
-        for name in list.to_texts() {
-            let Some(port) = Port::find(self.program.kit, &name, Way::Out) else {
-                // The original leaves it out too.
-                continue;
-            };
+        let tell = |port: Port, env: &mut Env<'_>| {
             env.brick.tell(match (action.act, port.sort()) {
                 (Act::Stop, _) => Command::Off { port, brake },
                 (_, Sort::Servo) => Command::Servo {
@@ -157,6 +152,17 @@ impl Machine {
                     percent: power.clamp(-100, 100),
                 },
             });
+        };
+        if !action.ports.is_empty() {
+            action.ports.iter().for_each(|&port| tell(port, env));
+            return Some(());
+        }
+        let list = self.evaluate(node, *action.sources.first()?, Type::List, env)?;
+        for name in list.to_texts() {
+            // What is no port is left out, as in the original.
+            if let Some(port) = Port::find(self.program.kit, &name, Way::Out) {
+                tell(port, env);
+            }
         }
         Some(())
     }

@@ -13,7 +13,7 @@ use crate::limits;
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub(crate) struct Handle {
     pub slot: u16,
-    life: u32,
+    pub life: u32,
 }
 
 /// What a thread is about to do.
@@ -42,6 +42,8 @@ pub(crate) struct Frame {
 pub(crate) struct Thread {
     pub name: Rc<str>,
     pub node: Node,
+    /// Where it came from to its node.
+    pub from: Option<Node>,
     pub state: State,
     pub stack: Vec<Frame>,
     pub messages: VecDeque<Rc<str>>,
@@ -59,6 +61,7 @@ impl Thread {
 
     /// Enters a node next.
     pub fn go(&mut self, node: Node) {
+        self.from = Some(self.node);
         self.node = node;
         self.state = State::Ready;
     }
@@ -83,6 +86,7 @@ impl Threads {
         let thread = Thread {
             name,
             node,
+            from: None,
             state: State::Ready,
             stack: Vec::new(),
             messages: VecDeque::new(),

@@ -4,7 +4,7 @@ use super::meta::Meta;
 use super::{parameters, words};
 use crate::diagram::objects::{self, Kind, Object, Objects};
 use crate::diagram::project::{Block, Diagram, DiagramKind, Link, Project};
-use crate::problem::{Problem, Severity, Words};
+use crate::problem::{Problem, Severity, Words, keep};
 use std::collections::{HashMap, HashSet};
 
 /// Type of the one kind of links.
@@ -99,6 +99,9 @@ impl<'a> Graph<'a> {
             let link = self.link(object, &diagram.name, &block_places);
             diagram.links.push(link);
         }
+        // The last block whose list had the link, in each direction: lists may name a link many times.
+        let mut left = vec![usize::MAX; links.len()];
+        let mut entered = left.clone();
         for (at, object) in blocks.iter().enumerate() {
             let mut block = self.block(object, &diagram.name);
             for id in object.list("links") {
@@ -108,10 +111,10 @@ impl<'a> Graph<'a> {
                     continue;
                 };
                 let link = &diagram.links[place];
-                if link.from == Some(at) && !block.outgoing.contains(&place) {
+                if link.from == Some(at) && std::mem::replace(&mut left[place], at) != at {
                     block.outgoing.push(place);
                 }
-                if link.to == Some(at) && !block.incoming.contains(&place) {
+                if link.to == Some(at) && std::mem::replace(&mut entered[place], at) != at {
                     block.incoming.push(place);
                 }
             }
@@ -126,8 +129,12 @@ impl<'a> Graph<'a> {
         let (mut blocks, mut links) = (Vec::new(), Vec::new());
         for id in &object.children {
             let Some(child) = self.objects.get(id) else {
-                let words = words::lost_child(objects::element(id));
-                self.warn_at(id, objects::element(id), Some(name), words);
+                let element = objects::element(id);
+                let words = words::lost_child(element);
+                keep(
+                    self.problems,
+                    about_id(id, element.to_owned(), Some(name), words),
+                );
                 continue;
             };
             if !child.is_graphical() {
@@ -248,34 +255,37 @@ impl<'a> Graph<'a> {
         self.warn(first, None, words);
     }
 
-    fn inside(&mut self, object: &Object, diagram: &str, property: &str, problem: Problem) {
-        self.warn(object, Some(diagram), problem.words);
-        if let Some(last) = self.problems.last_mut() {
-            last.place.property = Some(property.to_owned());
-            last.place.position = problem.place.position;
-        }
+    /// Something that is wrong inside of the text of a property.
+    fn inside(&mut self, object: &Object, diagram: &str, property: &str, inner: Problem) {
+        let mut problem = about(object, Some(diagram), inner.words);
+        problem.place.property = Some(property.to_owned());
+        problem.place.position = inner.place.position;
+        keep(self.problems, problem);
     }
 
     fn note(&mut self, object: &Object, diagram: &str, words: Words) {
-        self.warn(object, Some(diagram), words);
-        if let Some(last) = self.problems.last_mut() {
-            last.severity = Severity::Note;
-        }
+        let mut problem = about(object, Some(diagram), words);
+        problem.severity = Severity::Note;
+        keep(self.problems, problem);
     }
 
     fn warn(&mut self, object: &Object, diagram: Option<&str>, words: Words) {
-        let name = object.property("name").unwrap_or_default();
-        let block = label(name, object.element());
-        self.warn_at(&object.id, &block, diagram, words);
+        keep(self.problems, about(object, diagram, words));
     }
+}
 
-    fn warn_at(&mut self, id: &str, block: &str, diagram: Option<&str>, words: Words) {
-        let mut problem = Problem::warning(words);
-        problem.place.diagram = diagram.map(str::to_owned);
-        problem.place.object = Some(id.to_owned());
-        problem.place.block = Some(block.to_owned());
-        self.problems.push(problem);
-    }
+/// A warning about an object.
+fn about(object: &Object, diagram: Option<&str>, words: Words) -> Problem {
+    let name = object.property("name").unwrap_or_default();
+    about_id(&object.id, label(name, object.element()), diagram, words)
+}
+
+fn about_id(id: &str, block: String, diagram: Option<&str>, words: Words) -> Problem {
+    let mut problem = Problem::warning(words);
+    problem.place.diagram = diagram.map(str::to_owned);
+    problem.place.object = Some(id.to_owned());
+    problem.place.block = Some(block);
+    problem
 }
 
 /// A block for people: its label and, if that says something else, its type.

@@ -216,7 +216,45 @@ fn no_save_tells_more_problems_than_a_person_reads() {
     entries.retain(|entry| !(entry.name.contains("logical") && entry.name.contains("Timer/{")));
     let (_, told) = opened(&entries);
     assert_eq!(told.len(), limits::PROBLEMS + 1);
-    assert_eq!(told[limits::PROBLEMS], "and 800 problems more");
+    assert_eq!(told[limits::PROBLEMS], "and at least 800 problems more");
+}
+
+#[test]
+fn a_flood_of_unknown_tags_keeps_nothing_from_being_read() {
+    let mut entries = entries();
+    change(&mut entries, &["logical", "InitialNode"], |text| {
+        let tags = "<odd/>".repeat(limits::PROBLEMS_KEPT * 2);
+        text.replace("</properties>", &format!("{tags}</properties>"))
+    });
+    let (project, told) = opened(&entries);
+    assert_eq!(project.diagrams[0].blocks[1].properties["Delay"], "1");
+    assert_eq!(told.len(), limits::PROBLEMS + 1);
+    change(&mut entries, &["graphical", "Timer"], |text| {
+        text.replace("</object>", "")
+    });
+    assert!(refused(&entries)[0].contains("cut short"));
+}
+
+#[test]
+fn a_link_that_is_named_many_times_is_there_once_and_costs_no_time() {
+    let mut sketch = Sketch::new();
+    let start = sketch.block("Fork", &[]);
+    let end = sketch.block("FinalNode", &[]);
+    for _ in 0..2000 {
+        sketch.link(start, end);
+    }
+    let mut entries = archive::open(&sketch.qrs().unwrap(), &mut Vec::new())
+        .unwrap()
+        .entries;
+    change(&mut entries, &["graphical", "Fork"], |text| {
+        let (before, rest) = text.split_once("<links type=\"qReal::IdList\">").unwrap();
+        let (list, after) = rest.split_once("</links>").unwrap();
+        let list = list.repeat(40);
+        format!("{before}<links type=\"qReal::IdList\">{list}</links>{after}")
+    });
+    let (project, _) = opened(&entries);
+    let fork = &project.diagrams[0].blocks[0];
+    assert_eq!(fork.outgoing, (0..2000).collect::<Vec<_>>());
 }
 
 #[test]

@@ -22,8 +22,8 @@ pub(super) fn no_meta() -> Words {
 
 pub(super) fn more_problems(rest: usize) -> Words {
     Words::new(
-        format!("and {rest} problems more"),
-        format!("и ещё проблем: {rest}"),
+        format!("and at least {rest} problems more"),
+        format!("и ещё проблем, не меньше: {rest}"),
     )
 }
 

@@ -49,7 +49,7 @@ fn deep_nesting_is_refused_where_it_begins() {
     let depth = 100_000 / 2;
     for text in [
         "(".repeat(depth),
-        "-".repeat(1) + &"~".repeat(depth),
+        "-".to_owned() + &"~".repeat(depth),
         "{".repeat(depth),
         "f(".repeat(depth / 2),
         "a[".repeat(depth / 2),
@@ -157,6 +157,50 @@ fn values_cannot_grow_without_end() {
         "{}",
         told[0]
     );
+}
+
+#[test]
+fn one_text_cannot_make_much_work() {
+    for (setup, text) in [
+        ("a = {} a[90000] = 1 b = {} b[90000] = 1", "x = a == b "),
+        ("a = {} a[90000] = 1", "b = a a[0] = 1 "),
+        (
+            "a = {} b = {} b[90000] = 1 a[0] = b",
+            "c = a[0] a[0][0] = 1 ",
+        ),
+        (
+            "t = 'abcdefghijklmnop' t = t..t..t..t t = t..t..t..t t = t..t..t..t t = t..t..t..t \
+             t = t..t..t..t t = t..t..t..t t = t..t u = t .. ''",
+            "x = t == u ",
+        ),
+        (
+            "t = 'abcdefghijklmnop' t = t..t..t..t t = t..t..t..t t = t..t..t..t t = t..t..t..t \
+             t = t..t..t..t t = t..t..t..t t = t..t",
+            "x = #t ",
+        ),
+    ] {
+        let mut names = Names::new(Kit::V62, Compat::Studio);
+        let mut store = Store::default();
+        let mut setup = Source::new(setup, Wanted::Any);
+        analyse(&mut setup, &mut names).unwrap();
+        evaluate(&setup, &names, &mut store, &mut Nobody).unwrap();
+        let mut source = Source::new(&text.repeat(2_000), Wanted::Any);
+        analyse(&mut source, &mut names).unwrap();
+        let told = evaluate(&source, &names, &mut store, &mut Nobody).unwrap_err();
+        assert!(
+            told[0].to_string().contains("makes too much work"),
+            "{text}: {}",
+            told[0]
+        );
+    }
+}
+
+#[test]
+fn a_long_text_is_no_number() {
+    let digits = "1".repeat(limits::NUMBER_TEXT_MAX + 1);
+    assert_eq!(Value::text(digits.as_str()).to_float(), 0.0);
+    assert_eq!(Value::text(digits.as_str()).to_int(), 0);
+    assert!(Value::text(&digits[1..]).to_float() > 1e300);
 }
 
 #[test]
@@ -321,6 +365,39 @@ proptest! {
     #[test]
     fn escapes_come_back(text in "\\PC{0,40}") {
         prop_assert_eq!(unescape(&escape(&text)), text);
+    }
+}
+
+#[test]
+fn what_the_fuzzer_feeds_does_no_harm() {
+    let seeds: [&[u8]; 4] = [
+        b"\x00a = {1, 2.5}\0a[0] = a[1] .. 'x'\0#a[0]",
+        b"\x01x = x + 1; y = -2 ^ 3 // 2 % 5",
+        b"\x8cM3, M4\0sensor('A1') < 5 and not nil or gyroscope[1] << 3",
+        b"\xff\xffprint \"\\n\" random(6) max(1, 2) f{[1]=2}:g() ...",
+    ];
+    let mut state = 1u32;
+    let mut random = |below: usize| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as usize % below
+    };
+    for seed in seeds {
+        crate::fuzz::expression(seed);
+        for _ in 0..2_000 {
+            let mut bytes = seed.to_vec();
+            for _ in 0..=random(4) {
+                let at = random(bytes.len());
+                match random(3) {
+                    0 => bytes[at] = random(256) as u8,
+                    1 => bytes.insert(at, b"()[]{}+-*/.'\"=~^#,;"[random(19)]),
+                    _ if bytes.len() > 1 => {
+                        bytes.remove(at);
+                    }
+                    _ => {}
+                }
+            }
+            crate::fuzz::expression(&bytes);
+        }
     }
 }
 

@@ -412,3 +412,31 @@ fn what_is_written_to_the_frame_buffer_can_be_seen_as_a_picture() {
         (seen[head.len()..][..9] == [0, 0, 0, 255, 0, 0, 0, 0, 0]).then_some(())
     });
 }
+
+#[test]
+fn the_encoder_gives_pictures_of_what_the_camera_sees() {
+    let scratch = Scratch::new();
+    let board = board(&scratch, "two-wheels");
+    let script = board.root().join("etc/init.d/mjpg-encoder-ov7670");
+    let run = |word: &str| {
+        Command::new(&script)
+            .args([word, "--jpeg-qual", "50"])
+            .status()
+            .unwrap()
+    };
+    assert!(run("start").success());
+    let mut out = open(&board, "run/mjpg-encoder.out.fifo").unwrap();
+    let mut file = bytes(&mut out, 2);
+    assert_eq!(file, [0xff, 0xd8]);
+    while !file.ends_with(&[0xff, 0xd9]) {
+        file.extend(bytes(&mut out, 1));
+    }
+    let seen = screen::picture::decode(&file).unwrap();
+    assert_eq!((seen.width(), seen.height()), (320, 240));
+    // At (0.8, 1.0) it looks at a box: floor at the bottom.
+    let floor = seen.at(160, 235).unwrap();
+    assert!(floor.red > 200 && floor.green > 200, "{floor:?}");
+    assert!(run("stop").success());
+    let fifo = board.root().join("run/mjpg-encoder.out.fifo");
+    wait("no pipe", || (!fifo.exists()).then_some(()));
+}

@@ -3,8 +3,9 @@
 //! Owns how values of JavaScript become orders and how pictures become values. A failure of the display is given back
 //! as a text, because a program goes on without it.
 
-use super::{Own, put};
-use rquickjs::Object;
+use super::{Own, failed, put};
+use crate::pictures;
+use rquickjs::{Ctx, Object};
 use std::rc::Rc;
 
 /// The functions.
@@ -29,6 +30,17 @@ pub fn install<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()>
         move |numbers: Vec<i32>, width: i32, height: i32, format: String| {
             let mut display = o.shared.display();
             told(display.show_numbers(&numbers, width, height, &format))
+        },
+    )?;
+    let o = own.clone();
+    put(
+        native,
+        "photo",
+        move |ctx: Ctx<'js>, width: u16, height: u16| {
+            let seen = pictures::photo(&o.shared.root);
+            let seen = seen.map_err(|reason| failed(&ctx, &reason))?;
+            let sized = seen.scaled(width, height);
+            Ok::<_, rquickjs::Error>(sized.to_rgb())
         },
     )
 }

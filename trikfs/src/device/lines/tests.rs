@@ -65,6 +65,7 @@ fn plain(scratch: &Scratch) -> LinesDescription {
         start: None,
         stop: None,
         answer: None,
+        are_pictures: false,
     }
 }
 

@@ -1,0 +1,158 @@
+//! Diagrams of TRIK Studio: the machine of crate `lang` with the tree as its robot.
+//!
+//! Owns the time of a running diagram and its way outside. `robot` is the tree as the machine sees it, `readings` its
+//! sensors, `watch` what is told of the run. What blocks mean is known in `lang` alone.
+
+mod readings;
+mod robot;
+mod watch;
+
+use crate::brick::Brick;
+use crate::engine::{Engine, Outcome, Start};
+use crate::host::{Host, Incoming};
+use crate::limits;
+use lang::diagram::lower::{World, lower};
+use lang::diagram::machine::{Machine, Options, STEP_MS, Status};
+use lang::diagram::read;
+use lang::problem::{Problem, Severity, Tongue};
+use nix::poll::{PollFd, PollFlags, ppoll};
+use nix::sys::time::TimeSpec;
+use robot::Robot;
+use std::io::{self, Read};
+use std::path::Path;
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+use watch::Watch;
+
+/// Runs diagrams.
+#[derive(Debug)]
+pub struct Diagram {
+    tongue: Tongue,
+}
+
+/// The engine of this build, with messages in the language that the environment names.
+pub fn engine() -> impl Engine {
+    Diagram {
+        tongue: tongue(&std::env::var("TRIK_LANGUAGE").unwrap_or_default()),
+    }
+}
+
+/// The language of messages by its name, as `LANG` has it: Russian if it begins with `ru`, else English.
+pub fn tongue(name: &str) -> Tongue {
+    if name.starts_with("ru") {
+        Tongue::Russian
+    } else {
+        Tongue::English
+    }
+}
+
+impl Engine for Diagram {
+    fn run(&mut self, start: Start, brick: &Brick, host: &Host) -> Outcome {
+        let Start::File(path) = start else {
+            return Err("a diagram is a file".to_owned());
+        };
+        let mut machine = self.load(&path, host)?;
+        let mut robot = Robot::new(brick, host);
+        let mut watch = Watch::new(self.tongue);
+        let ran = run(&mut machine, &mut robot, &mut watch, host);
+        machine.stop(&mut robot, &mut watch);
+        ran.map_err(|error| format!("the daemon cannot be heard: {error}"))?;
+        if machine.errors().is_empty() {
+            Ok(())
+        } else {
+            // They were told when they happened.
+            Err(String::new())
+        }
+    }
+}
+
+impl Diagram {
+    /// A machine with the program of a save; tells on the way what is wrong with it.
+    fn load(&self, path: &Path, host: &Host) -> Result<Machine, String> {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let bytes = read_save(path).map_err(|error| format!("{name}: {error}"))?;
+        let told = |problems: &[Problem]| {
+            let lines: Vec<_> = problems
+                .iter()
+                .filter(|problem| problem.severity == Severity::Error)
+                .map(|problem| problem.in_tongue(self.tongue))
+                .collect();
+            format!("{name}: {}", lines.join("\n"))
+        };
+        let opened = read::read(&bytes).map_err(|problems| told(&problems))?;
+        let lowered = lower(&opened.project, World::Robot).map_err(|problem| told(&[problem]))?;
+        let warnings = opened.problems.iter().chain(&lowered.problems);
+        for problem in warnings.take(limits::DIAGRAM_WARNINGS) {
+            // Faulty blocks tell their fault when they are reached; until then it is a warning.
+            let _ = host.info(&problem.in_tongue(self.tongue));
+        }
+        Ok(Machine::new(
+            Rc::new(lowered.program),
+            Options::of(World::Robot),
+        ))
+    }
+}
+
+/// A file that is no longer than a save may be.
+fn read_save(path: &Path) -> Result<Vec<u8>, String> {
+    let failed = |error: io::Error| format!("cannot be read: {error}");
+    let limit = lang::limits::SAVE_BYTES as u64;
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(failed)?;
+    file.take(limit + 1)
+        .read_to_end(&mut bytes)
+        .map_err(failed)?;
+    if bytes.len() as u64 > limit {
+        return Err(format!("is longer than {} MiB", limit >> 20));
+    }
+    Ok(bytes)
+}
+
+/// Steps until the program has ended or the daemon is gone.
+fn run(
+    machine: &mut Machine,
+    robot: &mut Robot<'_>,
+    watch: &mut Watch,
+    host: &Host,
+) -> io::Result<()> {
+    let start = Instant::now();
+    let step = Duration::from_millis(STEP_MS.into());
+    let mut due = start;
+    loop {
+        let now = u32::try_from(start.elapsed().as_millis()).unwrap_or(u32::MAX);
+        let status = machine.step(now, robot, watch);
+        watch.tell(machine, now, host)?;
+        if matches!(status, Status::Ended { .. }) {
+            return Ok(());
+        }
+        robot.reap();
+        // Steps that are missed are not made up: waits look at the time, not at steps.
+        due = (due + step).max(Instant::now());
+        // What came together with the beginning lies in the channel's buffer, where poll(2) does not see it.
+        loop {
+            while let Some(message) = host.waiting()? {
+                match message {
+                    Incoming::Mail(_, text) => robot.post(text),
+                    Incoming::Web => host.web(&watch::variables(machine))?,
+                    Incoming::Watch(is_wanted) => watch.set_wanted(is_wanted),
+                    Incoming::Direct(_) => {}
+                    Incoming::Gone => return Ok(()),
+                }
+            }
+            if !wait(host, due)? {
+                break;
+            }
+        }
+    }
+}
+
+/// Waits until a moment; true if something came from the daemon before.
+fn wait(host: &Host, until: Instant) -> io::Result<bool> {
+    let left = until.saturating_duration_since(Instant::now());
+    let mut awaited = [PollFd::new(host.fd(), PollFlags::POLLIN)];
+    match ppoll(&mut awaited, Some(TimeSpec::from(left)), None) {
+        Ok(ready) => Ok(ready > 0),
+        Err(nix::errno::Errno::EINTR) => Ok(false),
+        Err(error) => Err(error.into()),
+    }
+}

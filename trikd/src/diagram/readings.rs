@@ -1,0 +1,267 @@
+//! Sensors of the tree as a running diagram reads them: whole numbers, by the names of ports.
+//!
+//! Owns the open files of the sensors that were read, and the heading that counts as 0. A reading that fails is none.
+
+use crate::brick::Brick;
+use crate::brick::sensors::{Camera, Encoder, Gamepad, KEYS, Keys, NOT_PRESSED, Sensor, Vector};
+use lang::diagram::ports::{Port, Sort};
+use std::collections::HashMap;
+use std::io;
+
+/// Where the heading stands in the numbers of a gyroscope, in millidegrees.
+const HEADING: usize = 6;
+/// Millidegrees of a whole turn.
+const TURN: i32 = 360_000;
+/// Directions of a lidar.
+const DIRECTIONS: usize = 360;
+/// Millimetres in a centimetre, the unit of programs.
+const MM_IN_CM: f64 = 10.0;
+
+/// What one port is read from.
+enum From {
+    Sensor(Sensor),
+    Encoder(Encoder),
+    Gyroscope(Vector),
+    Accelerometer(Vector),
+    Camera(&'static str),
+    /// Object: x, y or size.
+    Object(usize),
+    Lidar,
+    Key(usize),
+    Pad(usize),
+    PadPressed(usize),
+    Wheel,
+    Button(usize),
+    Connected,
+    Nothing,
+}
+
+/// All sensors.
+pub struct Readings<'a> {
+    brick: &'a Brick,
+    ports: HashMap<Port, From>,
+    cameras: HashMap<String, Camera>,
+    keys: Keys,
+    gamepad: Gamepad,
+    /// What is taken from the heading.
+    zero: i32,
+}
+
+/// The nearest whole number; what does not fit is cut.
+fn whole(number: f64) -> i32 {
+    number.round() as i32
+}
+
+/// Millidegrees from -180000 to 180000.
+fn wrapped(angle: i32) -> i32 {
+    let turned = angle.rem_euclid(TURN);
+    if turned > TURN / 2 {
+        turned - TURN
+    } else {
+        turned
+    }
+}
+
+impl<'a> Readings<'a> {
+    pub(super) fn new(brick: &'a Brick) -> Self {
+        Self {
+            brick,
+            ports: HashMap::new(),
+            cameras: HashMap::new(),
+            keys: brick.keys(),
+            gamepad: brick.gamepad(),
+            zero: 0,
+        }
+    }
+
+    fn find(&self, port: Port) -> From {
+        let name = port.name();
+        let gamepad = name.strip_prefix("Gamepad");
+        let digit = |text: &str| text.bytes().find(u8::is_ascii_digit);
+        let number = |text: &str| digit(text).map_or(1, |digit| usize::from(digit - b'0'));
+        let from = match (port.sort(), gamepad) {
+            (Sort::Encoder, _) => self.brick.encoder(name).map(From::Encoder),
+            (Sort::Button(code), _) => {
+                let key = KEYS.iter().position(|key| i32::from(key.1) == code);
+                key.map(From::Key)
+            }
+            (_, Some(part)) if part.starts_with("Pad") && part.ends_with("PosPort") => {
+                Some(From::Pad(number(part)))
+            }
+            (_, Some(part)) if part.starts_with("Pad") => Some(From::PadPressed(number(part))),
+            (_, Some(part)) if part.starts_with("Button") => Some(From::Button(number(part))),
+            (_, Some("WheelPort")) => Some(From::Wheel),
+            (_, Some(_)) => Some(From::Connected),
+            _ => match name {
+                "GyroscopePort" => self.brick.gyroscope().map(From::Gyroscope),
+                "AccelerometerPort" => self.brick.accelerometer().map(From::Accelerometer),
+                "LineSensorPort" => Some(From::Camera("line")),
+                "ColorSensorPort" => Some(From::Camera("color")),
+                "ObjectSensorXPort" => Some(From::Object(0)),
+                "ObjectSensorYPort" => Some(From::Object(1)),
+                "ObjectSensorSizePort" => Some(From::Object(2)),
+                "LidarPort" => self.brick.tree().has("lidar").then_some(From::Lidar),
+                _ => self.brick.sensor(name).map(From::Sensor),
+            },
+        };
+        from.unwrap_or(From::Nothing)
+    }
+
+    fn camera(&mut self, mode: &str) -> Option<&Camera> {
+        if !self.cameras.contains_key(mode) {
+            let camera = self.brick.camera(mode)?;
+            self.cameras.insert(mode.to_owned(), camera);
+        }
+        self.cameras.get(mode)
+    }
+
+    pub(super) fn start_camera(&mut self, mode: &str, shows: bool) -> io::Result<()> {
+        match self.camera(mode) {
+            Some(camera) => camera.start(shows),
+            None => Err(io::Error::other("the robot has no such camera")),
+        }
+    }
+
+    pub(super) fn stop_camera(&mut self, mode: &str) {
+        if let Some(camera) = self.cameras.get(mode) {
+            camera.stop();
+        }
+    }
+
+    pub(super) fn detect(&mut self, mode: &str) -> io::Result<()> {
+        match self.camera(mode) {
+            Some(camera) => camera.detect(),
+            None => Err(io::Error::other("the robot has no such camera")),
+        }
+    }
+
+    /// The encoder begins at 0 again.
+    pub(super) fn reset(&mut self, port: Port) -> io::Result<()> {
+        match self.from(port) {
+            From::Encoder(encoder) => encoder.reset(),
+            _ => Err(io::Error::other("the robot has no such encoder")),
+        }
+    }
+
+    /// The present heading is 0 from now on.
+    pub(super) fn calibrate(&mut self) {
+        self.zero = 0;
+        let mut numbers = Vec::new();
+        let Some(port) = Port::named("GyroscopePort") else {
+            return;
+        };
+        if self.vector(port, &mut numbers) {
+            self.zero = numbers.get(HEADING).copied().unwrap_or(0);
+        }
+    }
+
+    fn from(&mut self, port: Port) -> &From {
+        if !self.ports.contains_key(&port) {
+            let found = self.find(port);
+            self.ports.insert(port, found);
+        }
+        self.ports.get(&port).unwrap_or(&From::Nothing)
+    }
+
+    pub(super) fn scalar(&mut self, port: Port) -> Option<i32> {
+        let read = match *self.from(port) {
+            From::Sensor(ref sensor) => sensor.read().ok(),
+            From::Encoder(ref encoder) => encoder.read().ok().map(f64::trunc),
+            From::Object(index) => {
+                let numbers = self.camera("object").and_then(|camera| camera.read().ok());
+                numbers.and_then(|numbers| numbers.get(index).copied())
+            }
+            From::Key(index) => {
+                let pressed = self.keys.pressed().unwrap_or_default();
+                Some(f64::from(pressed[index]))
+            }
+            From::PadPressed(number) => Some(f64::from(self.gamepad.pad(number).is_some())),
+            From::Wheel => Some(self.gamepad.wheel()),
+            From::Button(number) => Some(f64::from(self.gamepad.button(number))),
+            From::Connected => Some(f64::from(self.gamepad.is_connected())),
+            _ => None,
+        };
+        read.map(whole)
+    }
+
+    pub(super) fn vector(&mut self, port: Port, into: &mut Vec<i32>) -> bool {
+        let zero = self.zero;
+        let numbers = match *self.from(port) {
+            From::Gyroscope(ref gyroscope) => gyroscope.read().ok().map(|mut numbers| {
+                if let Some(heading) = numbers.get_mut(HEADING) {
+                    *heading = wrapped(whole(*heading).saturating_sub(zero)).into();
+                }
+                numbers
+            }),
+            From::Accelerometer(ref accelerometer) => accelerometer.read().ok(),
+            From::Camera("color") => self
+                .camera("color")
+                .and_then(|camera| camera.read().ok())
+                .map(|cells| middle_colour(&cells)),
+            From::Camera(mode) => self.camera(mode).and_then(|camera| camera.read().ok()),
+            From::Lidar => {
+                let mut distances = [0.0; DIRECTIONS];
+                let read = self.brick.lidar(&mut distances).ok();
+                read.map(|count| distances[..count].iter().map(|mm| mm / MM_IN_CM).collect())
+            }
+            From::Pad(number) => {
+                let (x, y) = self
+                    .gamepad
+                    .pad(number)
+                    .unwrap_or((NOT_PRESSED, NOT_PRESSED));
+                Some(vec![x, y])
+            }
+            _ => None,
+        };
+        match numbers {
+            Some(numbers) => {
+                into.extend(numbers.into_iter().map(whole));
+                true
+            }
+            None => false,
+        }
+    }
+}
+
+/// Red, green and blue of the cell in the middle of a square grid of `0xRRGGBB`.
+fn middle_colour(cells: &[f64]) -> Vec<f64> {
+    let cell = cells.get(cells.len() / 2).copied().unwrap_or(0.0);
+    let [_, red, green, blue] = (cell as u32).to_be_bytes();
+    [red, green, blue].map(f64::from).to_vec()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn headings_stay_within_half_a_turn() {
+        for (angle, expected) in [
+            (0, 0),
+            (180_000, 180_000),
+            (180_001, -179_999),
+            (-180_000, 180_000),
+            (-1, -1),
+            (725_000, 5_000),
+        ] {
+            assert_eq!(wrapped(angle), expected, "{angle}");
+        }
+    }
+
+    #[test]
+    fn the_colour_is_that_of_the_cell_in_the_middle() {
+        let cells = [
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+            f64::from(0x10_20_30),
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+        ];
+        assert_eq!(middle_colour(&cells), [16.0, 32.0, 48.0]);
+        assert_eq!(middle_colour(&[]), [0.0, 0.0, 0.0]);
+    }
+}

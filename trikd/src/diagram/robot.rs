@@ -1,0 +1,291 @@
+//! The tree as a running diagram sees it: commands of blocks to files.
+//!
+//! Owns which file a command goes to, and what a robot without that file means: the block does nothing, as on the robots
+//! of old, and the first failure of a device is told. Knows no blocks and no time.
+
+use super::readings::Readings;
+use crate::brick::Brick;
+use crate::brick::actuators::Motor;
+use crate::display::Display;
+use crate::host::Host;
+use crate::limits;
+use crate::program::child;
+use lang::diagram::brick::{self, Command, Figure};
+use lang::diagram::ports::Port;
+use std::collections::{HashMap, HashSet, VecDeque};
+use std::fmt::Display as Show;
+use std::fs::OpenOptions;
+use std::io::Write;
+use std::process::{Child, Stdio};
+
+/// The robot of one diagram.
+pub struct Robot<'a> {
+    brick: &'a Brick,
+    host: &'a Host,
+    motors: HashMap<Port, Option<Motor>>,
+    readings: Readings<'a>,
+    display: Display,
+    mail: VecDeque<String>,
+    /// Commands of the system that have not ended.
+    commands: Vec<Child>,
+    /// What has failed once.
+    told: HashSet<String>,
+    random: Random,
+}
+
+/// Numbers that look random (Marsaglia, Xorshift RNGs, 2003).
+struct Random(u32);
+
+impl Random {
+    /// Seeded by the address space and the time of day, which differ from run to run.
+    fn new() -> Self {
+        use std::hash::{BuildHasher, Hasher};
+        let hash = std::hash::RandomState::new().build_hasher().finish();
+        let [a, b, c, d, ..] = hash.to_le_bytes();
+        Self(u32::from_le_bytes([a, b, c, d]).max(1))
+    }
+
+    fn next(&mut self) -> u32 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 17;
+        self.0 ^= self.0 << 5;
+        self.0
+    }
+
+    /// Both bounds included.
+    fn between(&mut self, low: i32, high: i32) -> i32 {
+        let span = u64::from(high.abs_diff(low)) + 1;
+        let offset = (u64::from(self.next()) * span) >> 32;
+        let drawn = i64::from(low) + i64::try_from(offset).unwrap_or(0);
+        i32::try_from(drawn).unwrap_or(high)
+    }
+}
+
+impl<'a> Robot<'a> {
+    /// The robot over a tree. Opens nothing yet.
+    pub fn new(brick: &'a Brick, host: &'a Host) -> Self {
+        Self {
+            brick,
+            host,
+            motors: HashMap::new(),
+            readings: Readings::new(brick),
+            display: Display::new(brick.tree().root()),
+            mail: VecDeque::new(),
+            commands: Vec::new(),
+            told: HashSet::new(),
+            random: Random::new(),
+        }
+    }
+
+    /// Keeps a message of another robot; the oldest go when nobody takes them.
+    pub fn post(&mut self, text: String) {
+        if self.mail.len() >= limits::DIAGRAM_MAIL {
+            self.mail.pop_front();
+        }
+        self.mail.push_back(text);
+    }
+
+    /// Forgets commands of the system that have ended.
+    pub fn reap(&mut self) {
+        self.commands
+            .retain_mut(|child| matches!(child.try_wait(), Ok(None)));
+    }
+
+    /// Tells a failure, each once.
+    fn note(&mut self, what: &str, result: Result<(), impl Show>) {
+        if let Err(why) = result
+            && self.told.len() < limits::DIAGRAM_WARNINGS
+            && self.told.insert(what.to_owned())
+        {
+            // The daemon may be gone; then this process ends soon.
+            let _ = self.host.info(&format!("{what}: {why}"));
+        }
+    }
+
+    fn motor(&mut self, port: Port) -> Option<&Motor> {
+        let brick = self.brick;
+        let found = self
+            .motors
+            .entry(port)
+            .or_insert_with(|| brick.motor(port.name()));
+        found.as_ref()
+    }
+
+    fn set_power(&mut self, port: Port, power: i32) {
+        let result = match self.motor(port) {
+            None => return self.note(port.name(), Err("the robot has no such motor")),
+            Some(motor) => motor.set_power(power.into()),
+        };
+        self.note(port.name(), result);
+    }
+
+    /// What changes the display.
+    fn show(&mut self, command: Command<'_>) {
+        let order = match command {
+            Command::Draw(figure) => order(figure),
+            Command::Label { x, y, size, text } => {
+                let text = text.replace('\n', "\\n");
+                format!("label {x} {y} {size} {text}")
+            }
+            Command::PenColor { color } => format!("color {color}"),
+            Command::PenWidth { width } => format!("width {width}"),
+            Command::Background { color } => format!("background {color}"),
+            Command::Smile { sad } => if sad { "sadsmile" } else { "smile" }.to_owned(),
+            Command::ClearScreen => "clear".to_owned(),
+            Command::Redraw => "redraw".to_owned(),
+            _ => return,
+        };
+        let result = self.display.order(&order);
+        self.note("display", result);
+    }
+
+    /// Starts a command of the system, or a line of JavaScript, beside the program; it ends with the program.
+    fn start(&mut self, command: &str, is_code: bool) {
+        if self.commands.len() >= limits::DIAGRAM_COMMANDS {
+            return self.note("system", Err("too many commands run at once"));
+        }
+        let mut process = if is_code {
+            let mut process = child::this_program();
+            process
+                .arg("js")
+                .arg("--tree")
+                .arg(self.brick.tree().root());
+            process.args(["--line", command]);
+            process
+        } else {
+            let mut process = std::process::Command::new("sh");
+            process.args(["-c", command]);
+            process
+        };
+        match process.stdin(Stdio::null()).spawn() {
+            Ok(child) => self.commands.push(child),
+            Err(error) => self.note("system", Err(error)),
+        }
+    }
+
+    fn light(&mut self, color: &str) {
+        let green = matches!(color, "green" | "orange");
+        let red = matches!(color, "red" | "orange");
+        let result = self.brick.led().set(green, red);
+        self.note("led", result);
+    }
+
+    fn append(&mut self, file: &str, text: &str) {
+        let opened = OpenOptions::new().append(true).create(true).open(file);
+        let result = opened.and_then(|mut file| file.write_all(text.as_bytes()));
+        self.note(file, result);
+    }
+
+    fn mailbox(&mut self, words: &str) {
+        let result = self.host.post(words);
+        self.note("mailbox", result);
+    }
+}
+
+/// A figure as an order for the display.
+fn order(figure: Figure) -> String {
+    let words = |verb: &str, numbers: &[i32]| {
+        numbers
+            .iter()
+            .fold(verb.to_owned(), |words, number| format!("{words} {number}"))
+    };
+    match figure {
+        Figure::Pixel(at) => words("point", &at),
+        Figure::Line(ends) => words("line", &ends),
+        Figure::Rectangle(sides, filled) => {
+            format!("{} {}", words("rect", &sides), u8::from(filled))
+        }
+        Figure::Ellipse(sides, filled) => {
+            format!("{} {}", words("ellipse", &sides), u8::from(filled))
+        }
+        Figure::Arc(numbers) => words("arc", &numbers),
+    }
+}
+
+impl brick::Brick for Robot<'_> {
+    fn tell(&mut self, command: Command<'_>) {
+        match command {
+            Command::Power { port, percent } => self.set_power(port, percent),
+            Command::Servo { port, degrees } => self.set_power(port, degrees),
+            Command::Off { port, .. } => {
+                let result = self.motor(port).map_or(Ok(()), Motor::power_off);
+                self.note(port.name(), result);
+            }
+            Command::ResetEncoder { port } => {
+                let result = self.readings.reset(port);
+                self.note(port.name(), result);
+            }
+            Command::Sound { file } => {
+                let result = self.brick.sound().play(file);
+                self.note("sound", result);
+            }
+            Command::Tone { hertz, ms } => {
+                let result = self.brick.sound().tone(hertz, ms);
+                self.note("sound", result);
+            }
+            Command::Say { text } => {
+                let result = self.brick.sound().say(text);
+                self.note("sound", result);
+            }
+            Command::Led { color } => self.light(color),
+            Command::System { command, code } => self.start(command, code),
+            Command::Append { file, text } => self.append(file, text),
+            Command::Remove { file } => {
+                // It may never have been there.
+                let _ = std::fs::remove_file(file);
+            }
+            Command::StartCamera { mode, show } => {
+                let result = self.readings.start_camera(mode, show);
+                self.note("camera", result);
+            }
+            Command::StopCamera { mode } => self.readings.stop_camera(mode),
+            Command::Detect { mode } => {
+                let result = self.readings.detect(mode);
+                self.note("camera", result);
+            }
+            Command::Send { message, hull } => {
+                self.mailbox(&format!("send {} {message}", hull.unwrap_or(-1)));
+            }
+            Command::Join {
+                address,
+                port,
+                hull,
+            } => self.mailbox(&format!("join {address} {port} {hull}")),
+            Command::CalibrateGyroscope => self.readings.calibrate(),
+            Command::Console { text } => {
+                // As above.
+                let _ = self.host.print(&format!("{text}\n"));
+            }
+            Command::Draw(_)
+            | Command::Label { .. }
+            | Command::PenColor { .. }
+            | Command::PenWidth { .. }
+            | Command::Background { .. }
+            | Command::Smile { .. }
+            | Command::ClearScreen
+            | Command::Redraw => self.show(command),
+            // Pictures are made when somebody looks; a real robot has no marker; the daemon brings all to rest.
+            Command::StartVideo { .. }
+            | Command::StopVideo
+            | Command::MarkerDown { .. }
+            | Command::MarkerUp
+            | Command::Rest => {}
+        }
+    }
+
+    fn scalar(&mut self, port: Port) -> Option<i32> {
+        self.readings.scalar(port)
+    }
+
+    fn vector(&mut self, port: Port, into: &mut Vec<i32>) -> bool {
+        self.readings.vector(port, into)
+    }
+
+    fn random(&mut self, low: i32, high: i32) -> i32 {
+        self.random.between(low, high)
+    }
+
+    fn mail(&mut self) -> Option<String> {
+        self.mail.pop_front()
+    }
+}

@@ -1,0 +1,248 @@
+//! What a running diagram tells of itself: which block each thread is at, and what variables hold.
+//!
+//! Owns the two forms: a line for people, and a JSON object for programs. Told at most every [`limits::WATCH_MS`], and only
+//! while somebody looks; errors are always told at once.
+
+use crate::host::Host;
+use crate::limits;
+use lang::diagram::machine::Machine;
+use lang::diagram::machine::trace::Trace;
+use lang::diagram::program::Node;
+use lang::expr::Value;
+use lang::problem::{Problem, Tongue};
+use std::collections::BTreeSet;
+use std::fmt::Write;
+use std::io;
+
+/// Hears a machine and tells of it.
+pub struct Watch {
+    tongue: Tongue,
+    is_wanted: bool,
+    /// Everything is told next time.
+    is_new: bool,
+    /// A thread has moved, begun or ended.
+    has_moved: bool,
+    /// Assigned since the last time.
+    changed: BTreeSet<String>,
+    /// Not told yet.
+    errors: Vec<String>,
+    told_at: Option<u32>,
+}
+
+impl Watch {
+    pub(super) fn new(tongue: Tongue) -> Self {
+        Self {
+            tongue,
+            is_wanted: false,
+            is_new: false,
+            has_moved: false,
+            changed: BTreeSet::new(),
+            errors: Vec::new(),
+            told_at: None,
+        }
+    }
+
+    /// Whether somebody looks from now on.
+    pub(super) fn set_wanted(&mut self, is_wanted: bool) {
+        self.is_new = is_wanted;
+        self.is_wanted = is_wanted;
+        self.changed.clear();
+    }
+
+    /// Tells what is new, if it is time.
+    pub(super) fn tell(&mut self, machine: &Machine, now: u32, host: &Host) -> io::Result<()> {
+        let errors = std::mem::take(&mut self.errors);
+        for error in &errors {
+            host.error(error)?;
+        }
+        let is_due = self.told_at.is_none_or(|at| now - at >= limits::WATCH_MS);
+        let is_news = self.is_new || self.has_moved || !self.changed.is_empty();
+        if !self.is_wanted || !is_due && errors.is_empty() || !is_news && errors.is_empty() {
+            return Ok(());
+        }
+        let variables: Vec<(&str, &Value)> = machine
+            .variables()
+            .filter(|(name, _)| self.is_new || self.changed.contains(*name))
+            .collect();
+        host.watch(
+            &line(machine, &variables),
+            &json(machine, now, &variables, &errors),
+        )?;
+        self.told_at = Some(now);
+        self.is_new = false;
+        self.has_moved = false;
+        self.changed.clear();
+        Ok(())
+    }
+}
+
+impl Trace for Watch {
+    fn entered(&mut self, _now: u32, _thread: u16, _node: Node) {
+        self.has_moved = true;
+    }
+
+    fn changed(&mut self, _now: u32, _thread: u16, variable: &str, _value: &Value) {
+        if self.is_wanted && !self.changed.contains(variable) {
+            self.changed.insert(variable.to_owned());
+        }
+    }
+
+    fn trap(&mut self, _now: u32, problem: &Problem) {
+        if self.errors.len() < lang::limits::PROBLEMS {
+            self.errors.push(problem.in_tongue(self.tongue));
+        }
+    }
+
+    fn thread_started(&mut self, _now: u32, _thread: u16, _name: &str) {
+        self.has_moved = true;
+    }
+
+    fn thread_ended(&mut self, _now: u32, _thread: u16) {
+        self.has_moved = true;
+    }
+}
+
+/// Type of the block where a thread is, as the save has it.
+fn block(machine: &Machine, node: Node) -> &'static str {
+    machine
+        .program()
+        .row(node)
+        .map_or("unknown", |row| row.kind)
+}
+
+/// One line for people: `main: Timer; x = 3`.
+fn line(machine: &Machine, variables: &[(&str, &Value)]) -> String {
+    let threads = machine
+        .threads()
+        .map(|(name, node)| format!("{name}: {}", block(machine, node)));
+    let values = variables
+        .iter()
+        .map(|(name, value)| format!("{name} = {}", value.printed()));
+    let mut line = threads.chain(values).collect::<Vec<_>>().join("; ");
+    let mut end = line.len().min(limits::WATCH_LINE_BYTES);
+    while !line.is_char_boundary(end) {
+        end -= 1;
+    }
+    line.truncate(end);
+    line
+}
+
+/// One object for programs.
+fn json(machine: &Machine, now: u32, variables: &[(&str, &Value)], errors: &[String]) -> String {
+    let mut json = format!("{{\"ms\":{now},\"threads\":[");
+    for (index, (name, node)) in machine.threads().enumerate() {
+        let comma = if index > 0 { "," } else { "" };
+        let program = machine.program();
+        let _ = write!(
+            json,
+            "{comma}{{\"name\":{},\"diagram\":{},\"id\":{},\"block\":{}}}",
+            quoted(name),
+            quoted(program.diagram(node).unwrap_or("")),
+            quoted(program.id(node).unwrap_or("")),
+            quoted(block(machine, node))
+        );
+    }
+    let _ = write!(
+        json,
+        "],\"variables\":{}",
+        object(variables.iter().copied())
+    );
+    if !errors.is_empty() {
+        let errors: Vec<_> = errors.iter().map(|error| quoted(error)).collect();
+        let _ = write!(json, ",\"errors\":[{}]", errors.join(","));
+    }
+    json.push('}');
+    json
+}
+
+/// All variables as one JSON object.
+pub(super) fn variables(machine: &Machine) -> String {
+    object(machine.variables())
+}
+
+fn object<'a>(variables: impl Iterator<Item = (&'a str, &'a Value)>) -> String {
+    let mut json = "{".to_owned();
+    for (name, value) in variables {
+        if json.len() > limits::WATCH_JSON_BYTES {
+            break;
+        }
+        if json.len() > 1 {
+            json.push(',');
+        }
+        json.push_str(&quoted(name));
+        json.push(':');
+        put(&mut json, value);
+    }
+    json.push('}');
+    json
+}
+
+/// A value as JSON; what is no number there is `null`.
+fn put(json: &mut String, value: &Value) {
+    let _ = match value {
+        Value::Nil => write!(json, "null"),
+        Value::Bool(truth) => write!(json, "{truth}"),
+        Value::Int(number) => write!(json, "{number}"),
+        Value::Float(number) if number.is_finite() => write!(json, "{number}"),
+        Value::Float(_) => write!(json, "null"),
+        Value::Text(text) => write!(json, "{}", quoted(text)),
+        Value::List(list) => {
+            json.push('[');
+            for (index, item) in list.items().iter().enumerate() {
+                if json.len() > limits::WATCH_JSON_BYTES {
+                    break;
+                }
+                if index > 0 {
+                    json.push(',');
+                }
+                put(json, item);
+            }
+            write!(json, "]")
+        }
+    };
+}
+
+/// A JSON string (RFC 8259), cut if it is very long.
+fn quoted(text: &str) -> String {
+    let mut quoted = "\"".to_owned();
+    for letter in text.chars().take(limits::WATCH_TEXT_CHARACTERS) {
+        match letter {
+            '"' => quoted.push_str("\\\""),
+            '\\' => quoted.push_str("\\\\"),
+            '\n' => quoted.push_str("\\n"),
+            letter if u32::from(letter) < 0x20 => {
+                let _ = write!(quoted, "\\u{:04x}", u32::from(letter));
+            }
+            letter => quoted.push(letter),
+        }
+    }
+    quoted.push('"');
+    quoted
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_json_whatever_they_hold() {
+        let list = Value::ints(&[1, 2]);
+        let text = Value::text("a\"b\\\n\u{1}");
+        let values = [
+            ("f", &Value::Float(0.5)),
+            ("n", &Value::Float(f64::NAN)),
+            ("l", &list),
+            ("t", &text),
+            ("b", &Value::Bool(true)),
+            ("z", &Value::Nil),
+        ];
+        assert_eq!(
+            object(values.into_iter()),
+            "{\"f\":0.5,\"n\":null,\"l\":[1,2],\"t\":\"a\\\"b\\\\\\n\\u0001\",\"b\":true,\"z\":null}"
+        );
+        assert_eq!(
+            quoted(&"x".repeat(100_000)).len(),
+            limits::WATCH_TEXT_CHARACTERS + 2
+        );
+    }
+}

@@ -1,0 +1,160 @@
+//! Diagrams: uploaded, run, watched, refused.
+
+use crate::rig::{Client, Robot, robot};
+use harness::eventually;
+use lang::diagram::sketch::Sketch;
+use std::io::{BufRead, BufReader, Write};
+use std::net::TcpStream;
+
+/// M1 at 40 percent, a variable that counts, a wait, and on.
+fn counting() -> Vec<u8> {
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let clear = sketch.block("Function", &[("Body", "n = 0")]);
+    let forward = sketch.block(
+        "TrikV6EnginesForward",
+        &[("Ports", "M1"), ("Power", "20 * 2")],
+    );
+    let count = sketch.block("Function", &[("Body", "n = n + 1\nprint(n)")]);
+    let wait = sketch.block("Timer", &[("Delay", "30")]);
+    sketch.chain(&[start, clear, forward, count, wait, count]);
+    sketch.qrs().expect("a save")
+}
+
+fn upload(client: &mut Client, name: &str, save: &[u8]) {
+    let head = format!("file:{name}:");
+    client.raw(format!("{}:{head}", head.len() + save.len()));
+    client.raw(save);
+}
+
+fn motor(robot: &Robot) -> String {
+    let value = std::fs::read_to_string(robot.tree.join("motors/M1/value")).expect("a value");
+    value.trim().to_owned()
+}
+
+#[test]
+fn a_diagram_drives_prints_and_is_stopped_like_any_program() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    upload(&mut client, "count.qrs", &counting());
+    client.send("run:count.qrs");
+    client.expect("info: count.qrs has started");
+    client.expect("print: 1\n");
+    client.expect("print: 2\n");
+    assert_eq!(motor(&robot), "40");
+    robot.forget_rest();
+    client.send("stop");
+    let told = client.until("info: ");
+    assert!(
+        told.starts_with("info: count.qrs was stopped by a client"),
+        "{told}"
+    );
+    assert!(robot.has_rested());
+}
+
+#[test]
+fn who_asks_sees_the_block_and_the_variables_and_who_does_not_is_left_alone() {
+    let robot = robot(&[]);
+    let mut stream = TcpStream::connect(("127.0.0.1", robot.port("variables"))).unwrap();
+    stream
+        .set_read_timeout(Some(std::time::Duration::from_secs(30)))
+        .unwrap();
+    stream.write_all(b"GET /diagram HTTP/1.0\r\n\r\n").unwrap();
+    let mut curious = robot.client("control");
+    curious.send("watch");
+    upload(&mut curious, "count.qrs", &counting());
+    curious.send("run:count.qrs");
+    curious.until("info: main: ");
+    let line = curious.until("info: main: Timer; n = ");
+    assert!(line.len() < 60, "{line}");
+    let mut lines = BufReader::new(stream).lines().map(Result::unwrap);
+    assert_eq!(lines.next().as_deref(), Some("HTTP/1.0 200 OK"));
+    let object = lines
+        .find(|line| line.contains("\"variables\":{\"n\":"))
+        .unwrap();
+    assert!(
+        object.starts_with("{\"ms\":")
+            && object.contains("\"threads\":[{\"name\":\"main\",")
+            && object.contains("\"block\":\"Timer\"}]"),
+        "{object}"
+    );
+    // All variables, for web pages.
+    let mut web = robot.client("variables");
+    web.raw("GET /web/ HTTP/1.0\r\n\r\n");
+    let answer = web.exactly(4096);
+    let answer = String::from_utf8_lossy(&answer);
+    assert!(answer.contains("\r\n\r\n{\"n\":"), "{answer}");
+    let mut quiet = robot.client("control");
+    quiet.until("print: ");
+    quiet.send("stop");
+    loop {
+        let told = quiet.next().expect("a message");
+        assert!(!told.starts_with("info: main"), "{told}");
+        if told.starts_with("info: count.qrs was stopped") {
+            break;
+        }
+    }
+}
+
+#[test]
+fn errors_name_the_block_and_stay_with_the_diagram() {
+    let robot = robot(&["--language", "ru_RU.UTF-8"]);
+    let mut client = robot.client("control");
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let wrong = sketch.block("Function", &[("Body", "x = 1 / 0")]);
+    let end = sketch.block("FinalNode", &[]);
+    sketch.chain(&[start, wrong, end]);
+    upload(&mut client, "wrong.qrs", &sketch.qrs().unwrap());
+    client.send("run:wrong.qrs");
+    let told = client.until("error: ");
+    // In Russian, as that was asked for.
+    assert!(!told.is_ascii() && told.contains("1:"), "{told}");
+    assert!(client.until("info: wrong.qrs has failed").contains("after"));
+    let cut = &counting()[..100];
+    for (name, save) in [
+        ("cut.qrs", cut),
+        ("empty.qrs", b""),
+        ("noise.qrs", b"PK\x03\x04 nonsense"),
+    ] {
+        upload(&mut client, name, save);
+        client.send(&format!("run:{name}"));
+        let told = client.until("error: ");
+        assert!(told.starts_with(&format!("error: {name}: ")), "{told}");
+        client.until(&format!("info: {name} has failed"));
+    }
+    client.send("version");
+    client.until("version: 3.1.4");
+}
+
+#[test]
+fn a_diagram_reads_what_the_tree_has_and_says_what_it_has_not() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let show = sketch.block(
+        "Function",
+        &[("Body", "print(sensorA1 .. ' ' .. encoder1)")],
+    );
+    let note = sketch.block(
+        "TrikWriteToFile",
+        &[("File", "notes/n.txt"), ("Text", "'x'")],
+    );
+    let missing = sketch.block("TrikV6EnginesForward", &[("Ports", "M2"), ("Power", "1")]);
+    let shell = sketch.block(
+        "TrikSystem",
+        &[("Command", "echo from the shell > made.txt")],
+    );
+    let end = sketch.block("FinalNode", &[]);
+    sketch.chain(&[start, show, note, missing, shell, end]);
+    upload(&mut client, "read.qrs", &sketch.qrs().unwrap());
+    client.send("run:read.qrs");
+    client.until("print: 27 90\n");
+    client.until("info: notes/n.txt: ");
+    client.until("info: M2: the robot has no such motor");
+    client.until("info: read.qrs has ended");
+    eventually("what the command wrote", || {
+        robot.home.path("scripts/made.txt").exists()
+    });
+}
