@@ -91,6 +91,9 @@ fn diagram(project: &Project) -> (Vec<String>, bool) {
         robot.tick();
         status = machine.step(now, &mut robot, &mut Deaf);
     }
+    for error in machine.errors() {
+        println!("the diagram: {error}");
+    }
     (commands(&robot), status != Status::Running)
 }
 

@@ -227,13 +227,14 @@ impl Host<'_> {
             }
             "send" => {
                 if let Some(&to) = self.names.get(words[2]) {
-                    self.mail
-                        .entry(to)
-                        .or_default()
-                        .push_back(words[3].to_owned());
+                    let mail = self.mail.entry(to).or_default();
+                    mail.push_back(words[3].to_owned());
                     if matches!(self.threads.get(&to), Some(Thread::Receives)) {
+                        // Who has waited for it goes first.
                         self.threads.insert(to, Thread::Ready);
-                        self.ready.push(to);
+                        self.threads.insert(id(), Thread::Ready);
+                        self.ready.push(id());
+                        return to.to_string();
                     }
                 }
                 words[1].to_owned()

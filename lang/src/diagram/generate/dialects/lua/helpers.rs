@@ -113,10 +113,17 @@ function killThread(name)
 end
 function sendMessage(name, text)
   local thread = find(name)
-  if thread then table.insert(thread.mail, text) end
+  if not thread then return end
+  table.insert(thread.mail, text)
+  -- Who has waited for it goes first.
+  if thread.receives then step(thread) end
 end
 function receiveMessage(waits)
-  while waits and #current.mail == 0 do wait(10) end
+  while waits and #current.mail == 0 do
+    current.receives = true
+    coroutine.yield(math.huge)
+    current.receives = false
+  end
   return table.remove(current.mail, 1) or \"\"
 end
 function runThreads(main)
@@ -132,9 +139,9 @@ function runThreads(main)
       end
     end
     if not first then return end
-    local rest = first.due - milliseconds()
+    local rest = math.min(first.due - milliseconds(), 1000)
     if rest > 0 then sleep(rest) end
-    step(first)
+    if first.due ~= math.huge then step(first) end
   end
 end",
     ),
