@@ -15,6 +15,7 @@ pub mod program;
 pub mod project;
 pub mod read;
 pub mod save;
+pub mod show;
 pub mod sketch;
 pub mod stand_in;
 pub mod structure;
