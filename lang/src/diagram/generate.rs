@@ -97,7 +97,10 @@ impl Language {
         match self {
             Self::JavaScript => &dialects::javascript::JAVASCRIPT,
             Self::Python => &dialects::python::PYTHON,
-            _ => &dialects::python::PYTHON,
+            Self::Lua => &dialects::lua::LUA,
+            Self::C => &dialects::c::C,
+            Self::Pascal => &dialects::pascal::PASCAL,
+            Self::FSharp => &dialects::fsharp::FSHARP,
         }
     }
 }

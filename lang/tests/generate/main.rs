@@ -1,6 +1,8 @@
 //! Generated programs: all real projects in all languages, checked by the languages' own tools, and run against the
 //! machine.
 
+mod equal;
+mod host;
 mod syntax;
 
 use std::path::{Path, PathBuf};

@@ -97,6 +97,8 @@ pub(super) struct Syntax {
     pub(super) continue_: &'static str,
     pub(super) break_to: &'static str,
     pub(super) continue_to: &'static str,
+    /// At the foot of a loop, for languages where going on is a jump there.
+    pub(super) continue_label: &'static str,
     /// Before a loop that is named by a break.
     pub(super) name_loop: &'static str,
     pub(super) return_: &'static str,
@@ -292,6 +294,21 @@ impl<'a> Printer<'a> {
             && !routines
                 .iter()
                 .any(|routine| routine.parameters.contains(&number))
+    }
+
+    /// How many counters loops share.
+    pub(super) fn counters(&self) -> i64 {
+        let mut count = 0;
+        for routine in &self.script.routines {
+            super::each_code(&routine.body, &mut |code| {
+                if let Code::Do(What::Again, operands) = code
+                    && let Some(Code::Int(number)) = operands.first()
+                {
+                    count = count.max(number + 1);
+                }
+            });
+        }
+        count
     }
 
     /// Names of variables that several threads use and at least one sets.
@@ -503,6 +520,13 @@ impl<'a> Printer<'a> {
         self.around.push(label);
         self.block(body, depth + 1, out);
         self.around.pop();
+        if !syntax.continue_label.is_empty() && goes_on(body, label) {
+            self.line(
+                depth + 1,
+                &fill(syntax.continue_label, &[&loop_name(label)]),
+                out,
+            );
+        }
         self.end(syntax.end_loop, depth, out);
     }
 
@@ -536,7 +560,7 @@ impl<'a> Printer<'a> {
     }
 
     fn jump(&self, label: usize, near: &str, far: &str, depth: usize, out: &mut String) {
-        if self.around.last() == Some(&label) {
+        if self.around.last() == Some(&label) && !near.is_empty() {
             self.line(depth, near, out);
         } else {
             self.line(depth, &fill(far, &[&loop_name(label)]), out);
@@ -577,6 +601,12 @@ impl<'a> Printer<'a> {
             Code::List(parts) => {
                 let parts: Vec<_> = parts.iter().map(|part| self.code(part, 0)).collect();
                 (dialect.list)(&parts)
+            }
+            // Nothing needs to be said: the operand stands for itself.
+            Code::Do(what, operands)
+                if (dialect.row)(*what).text == "$1" && operands.len() == 1 =>
+            {
+                self.code(&operands[0], least)
             }
             Code::Do(what, operands) => {
                 let row = (dialect.row)(*what);
@@ -623,6 +653,17 @@ pub(super) fn own_name(own: Own, number: usize) -> String {
 
 fn loop_name(label: usize) -> String {
     format!("loop{}", label.wrapping_add(1))
+}
+
+/// Whether a loop is begun anew from the middle of its body.
+fn goes_on(body: &[Statement], label: usize) -> bool {
+    body.iter().any(|statement| {
+        *statement == Statement::Continue(label)
+            || statement
+                .parts()
+                .into_iter()
+                .any(|part| goes_on(part, label))
+    })
 }
 
 /// Loops that a jump inside of an inner loop names.

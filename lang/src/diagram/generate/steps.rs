@@ -3,7 +3,7 @@
 //! Owns the meaning of each operation, which is the machine's. Adding a block that tells a device something means a line
 //! here and a row in each dialect.
 
-use super::build::{self, number, reading, text, truth, whole};
+use super::build::{self, reading, text, truth, whole};
 use super::code::{Code, Kind, Light, Own, Statement, Typed, What};
 use super::routines::Lowerer;
 use super::texts::Sentence;
@@ -146,10 +146,9 @@ impl Lowerer<'_> {
             code @ Code::Do(What::At, _) if matches!(value.kind, Kind::List(_)) => {
                 Code::does(What::Copy, [code])
             }
-            Code::Int(number) if path.is_empty() && *wanted == Some(Kind::Float) =>
-            {
-                #[expect(clippy::cast_precision_loss, reason = "literals are below 2^53")]
-                Code::Float(number as f64)
+            Code::Port(name) => Code::Text(name),
+            code if value.kind == Kind::Int && path.is_empty() && *wanted == Some(Kind::Float) => {
+                Code::does(What::FloatOfInt, [code])
             }
             code => code,
         }
@@ -287,7 +286,7 @@ impl Lowerer<'_> {
             let value = match argument.kind {
                 ArgumentKind::Truth => truth(value),
                 ArgumentKind::Whole => whole(value),
-                ArgumentKind::Number => number(value),
+                ArgumentKind::Number => build::real(value),
                 ArgumentKind::Text => text(value),
             };
             values.push((self.texts.variables.declare(&argument.name), value));
