@@ -8,11 +8,12 @@ use std::sync::LazyLock;
 
 type Target = fn(&[u8]);
 
-const TARGETS: [(&str, Target); 4] = [
+const TARGETS: [(&str, Target); 5] = [
     ("frames", trikd::fuzz::fuzz_frames),
     ("messages", trikd::fuzz::fuzz_messages),
     ("lines", trikd::fuzz::fuzz_lines),
     ("strangers", trikd::fuzz::fuzz_strangers),
+    ("lowering", lang::fuzz::lowering),
 ];
 
 static TARGET: LazyLock<Target> = LazyLock::new(|| {

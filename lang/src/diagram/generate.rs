@@ -5,7 +5,9 @@
 
 mod build;
 mod code;
+mod commands;
 mod dialects;
+mod lines;
 mod names;
 pub(super) mod plan;
 mod print;

@@ -181,13 +181,27 @@ impl Host<'_> {
                 let message = self.mail.entry(id()).or_default().pop_front();
                 Some(message.unwrap_or_default())
             }
+            "wait" | "start" | "join" | "kill" | "send" | "receive" | "end" => {
+                Some(self.turn(words))
+            }
+            _ => {
+                self.tell(words);
+                None
+            }
+        }
+    }
+
+    /// Who runs after somebody has done something with threads.
+    fn turn(&mut self, words: &[&str]) -> String {
+        let id = || words[1].parse::<u32>().unwrap();
+        match words[0] {
             "wait" => {
                 self.asked = 0;
                 let wait = u32::try_from(number(words[2]).max(1)).unwrap();
                 let until = self.robot.now() + wait.div_ceil(STEP_MS) * STEP_MS;
                 let order = self.robot.log.len() as u32;
                 self.threads.insert(id(), Thread::Waits(until, order));
-                Some(self.next())
+                self.next()
             }
             "start" => {
                 let new = words[2].parse().unwrap();
@@ -195,21 +209,21 @@ impl Host<'_> {
                 self.ready.push(id());
                 self.threads.insert(new, Thread::Ready);
                 self.names.insert(words[3].to_owned(), new);
-                Some(new.to_string())
+                new.to_string()
             }
             "join" => {
                 if self.names.contains_key(words[2]) {
                     self.threads
                         .insert(id(), Thread::Joins(words[2].to_owned()));
-                    return Some(self.next());
+                    return self.next();
                 }
-                Some(words[1].to_owned())
+                words[1].to_owned()
             }
             "kill" => {
                 if let Some(killed) = self.names.remove(words[2]) {
                     self.forget(killed);
                 }
-                Some(words[1].to_owned())
+                words[1].to_owned()
             }
             "send" => {
                 if let Some(&to) = self.names.get(words[2]) {
@@ -222,22 +236,18 @@ impl Host<'_> {
                         self.ready.push(to);
                     }
                 }
-                Some(words[1].to_owned())
+                words[1].to_owned()
             }
             "receive" => {
                 if self.mail.get(&id()).is_some_and(|mail| !mail.is_empty()) {
-                    return Some(words[1].to_owned());
+                    return words[1].to_owned();
                 }
                 self.threads.insert(id(), Thread::Receives);
-                Some(self.next())
-            }
-            "end" => {
-                self.forget(id());
-                Some(self.next())
+                self.next()
             }
             _ => {
-                self.tell(words);
-                None
+                self.forget(id());
+                self.next()
             }
         }
     }
@@ -300,33 +310,31 @@ impl Host<'_> {
 
     /// Who runs next; time passes if nobody can.
     fn next(&mut self) -> String {
-        loop {
-            if let Some(thread) = self.ready.pop() {
-                return thread.to_string();
-            }
-            let names = &self.names;
-            let joined = self.threads.iter().find_map(|(&id, thread)| match thread {
-                Thread::Joins(name) if !names.contains_key(name) => Some(id),
+        if let Some(thread) = self.ready.pop() {
+            return thread.to_string();
+        }
+        let names = &self.names;
+        let joined = self.threads.iter().find_map(|(&id, thread)| match thread {
+            Thread::Joins(name) if !names.contains_key(name) => Some(id),
+            _ => None,
+        });
+        if let Some(joined) = joined {
+            return joined.to_string();
+        }
+        let waiting = self
+            .threads
+            .iter()
+            .filter_map(|(&id, thread)| match thread {
+                Thread::Waits(until, order) => Some((*until, *order, id)),
                 _ => None,
             });
-            if let Some(joined) = joined {
-                return joined.to_string();
-            }
-            let waiting = self
-                .threads
-                .iter()
-                .filter_map(|(&id, thread)| match thread {
-                    Thread::Waits(until, order) => Some((*until, *order, id)),
-                    _ => None,
-                });
-            let Some((until, _, id)) = waiting.min() else {
-                return "quit".to_owned();
-            };
-            while self.robot.now() < until {
-                self.tick();
-            }
-            return id.to_string();
+        let Some((until, _, id)) = waiting.min() else {
+            return "quit".to_owned();
+        };
+        while self.robot.now() < until {
+            self.tick();
         }
+        id.to_string()
     }
 
     /// One step of the world. What was read before is refreshed after each second one, when all have run, as the

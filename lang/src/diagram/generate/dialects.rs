@@ -3,7 +3,6 @@
 //! Owns what they share.
 
 pub(super) mod c;
-mod files;
 pub(super) mod fsharp;
 pub(super) mod javascript;
 mod library;

@@ -3,6 +3,8 @@
 //! Owns words of one language. Texts and tables are values of fixed size, so nothing has to be freed. The display has no
 //! file: labels go to the standard output.
 
+mod helpers;
+
 use super::super::code::{Kind, What};
 use super::super::names::Rules;
 use super::super::plan::Owner;
@@ -10,7 +12,6 @@ use super::super::print::{
     Dialect, NONE, Printer, Row, Syntax, apart, call, float, infix, postfix, prefix, quote,
 };
 use super::super::routines::{Abilities, Routine};
-use super::files;
 use super::lua::robot;
 use crate::diagram::structure::Jumps;
 
@@ -68,7 +69,7 @@ pub(in super::super) const C: Dialect = Dialect {
     },
     variable: "$1",
     function: "$1",
-    helpers: files::C,
+    helpers: helpers::HELPERS,
     is_typed: true,
     assemble,
 };
@@ -394,6 +395,6 @@ fn assemble(printer: &Printer<'_>) -> String {
     let threads = if script.has_threads { " -pthread" } else { "" };
     format!(
         "{title}\n/* cc{threads} -o program FILE.c -lm && ./program [TREE] */\n{}\n{helpers}{variables}\n{functions}{main}",
-        files::C_HEAD
+        helpers::HEAD
     )
 }

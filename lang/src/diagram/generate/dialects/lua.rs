@@ -2,6 +2,8 @@
 //!
 //! Owns words of one language. The display has no file: labels go to the standard output.
 
+mod helpers;
+
 use super::super::code::{Camera, Light, Own, What};
 use super::super::names::Rules;
 use super::super::plan::Owner;
@@ -9,7 +11,6 @@ use super::super::print::{
     Dialect, NONE, Printer, Row, Syntax, apart, call, float, infix, postfix, prefix, quote,
 };
 use super::super::routines::Abilities;
-use super::files;
 use crate::diagram::structure::Jumps;
 
 /// The language.
@@ -64,7 +65,7 @@ pub(in super::super) const LUA: Dialect = Dialect {
     list: super::zero_based,
     variable: "$1",
     function: "$1",
-    helpers: HELPERS,
+    helpers: helpers::HELPERS,
     is_typed: false,
     assemble,
 };
@@ -263,8 +264,6 @@ pub(super) fn robot(what: What) -> Row {
         _ => NONE,
     }
 }
-
-const HELPERS: &[(&str, &str)] = files::LUA;
 
 fn assemble(printer: &Printer<'_>) -> String {
     let script = printer.script;
