@@ -120,7 +120,8 @@ fn compare(test: &str, language: Language, tool: &str, shim_name: &str, ignored:
     let folder = crate::scratch(test);
     let shim = shim(shim_name);
     let mut complaints = Vec::new();
-    for (name, project) in crate::projects(test) {
+    let drawn = crate::drawn::projects();
+    for (name, project) in drawn.into_iter().chain(crate::projects(test)) {
         if let Some((_, reason)) = ignored.iter().find(|(known, _)| name.starts_with(known)) {
             println!("{name}: left out: {reason}");
             continue;

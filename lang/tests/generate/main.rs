@@ -1,6 +1,7 @@
 //! Generated programs: all real projects in all languages, checked by the languages' own tools, and run against the
 //! machine.
 
+mod drawn;
 mod equal;
 mod host;
 mod syntax;

@@ -3,15 +3,12 @@
 //! Owns the meaning of each operation, which is the machine's; what devices are told is in `commands`.
 
 use super::build::{self, reading, text, truth, whole};
-use super::code::{Code, Kind, Light, Own, Statement, Typed, What};
+use super::code::{Code, Kind, Own, Statement, Typed, What};
 use super::routines::Lowerer;
 use super::texts::Sentence;
 use super::words;
-use crate::diagram::blocks::{Act, Watch};
-use crate::diagram::ports::{Port, Sort, Way};
-use crate::diagram::program::{
-    Action, ArgumentKind, Axis, Node, Op, Program, Sign, Source, Watching,
-};
+use crate::diagram::blocks::Watch;
+use crate::diagram::program::{ArgumentKind, Axis, Node, Op, Program, Sign, Source, Watching};
 
 /// How often a block looks at its sensor, in milliseconds.
 const LOOK_MS: i64 = 20;

@@ -1,7 +1,7 @@
 //! C over the files of the tree.
 //!
-//! Owns words of one language. Texts and tables are values of fixed size, so nothing has to be freed. The display has no
-//! file: labels go to the standard output.
+//! Owns words of one language. Texts and tables are values of fixed size, so nothing has to be freed. Nothing is drawn:
+//! labels go to the standard output.
 
 mod helpers;
 

@@ -1,6 +1,6 @@
 //! Lua over the files of the tree, for LuaJIT.
 //!
-//! Owns words of one language. The display has no file: labels go to the standard output.
+//! Owns words of one language. Nothing is drawn: labels go to the standard output.
 
 mod helpers;
 

@@ -574,6 +574,6 @@ static void append(Text name, Text words)
     ("removeFile", "\nstatic void removeFile(Text name)\n{\n    remove(name.at);\n}"),
     ("detect", "\nstatic void detect(const char *mode)\n{\n    writeWhole(\"camera/\", mode, \"/detect\", 1);\n}"),
     ("say_text", "\nstatic void say_text(Text words)\n{\n    puts(words.at);\n}"),
-    ("label", "\n/* There is no file for the display: the text goes to the terminal. */\nstatic void label(Text words, Whole x, Whole y, Whole size)\n{\n    (void)x, (void)y, (void)size;\n    puts(words.at);\n}"),
+    ("label", "\n/* Nothing is drawn: the text goes to the terminal. */\nstatic void label(Text words, Whole x, Whole y, Whole size)\n{\n    (void)x, (void)y, (void)size;\n    puts(words.at);\n}"),
     ("rest", "\n/* Everything stops. */\nstatic void rest(void)\n{\n    writeWhole(\"stop\", \"\", \"\", 1);\n}"),
 ];

@@ -404,6 +404,6 @@ end",
     ("removeFile", "\nfunction removeFile(name)\n  os.remove(name)\nend"),
     ("detect", "\nfunction detect(mode)\n  writeFile(\"camera/\" .. mode .. \"/detect\", 1)\nend"),
     ("say_text", "\nfunction say_text(text)\n  print(text)\nend"),
-    ("label", "\n-- There is no file for the display: the text goes to the terminal.\nfunction label(text, x, y, size)\n  print(text)\nend"),
+    ("label", "\n-- Nothing is drawn: the text goes to the terminal.\nfunction label(text, x, y, size)\n  print(text)\nend"),
     ("rest", "\n-- Everything stops.\nfunction rest()\n  writeFile(\"stop\", 1)\nend"),
 ];
