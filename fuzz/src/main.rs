@@ -13,7 +13,6 @@ const TARGETS: [(&str, Target); 5] = [
     ("messages", trikd::fuzz::fuzz_messages),
     ("lines", trikd::fuzz::fuzz_lines),
     ("strangers", trikd::fuzz::fuzz_strangers),
-    ("lowering", lang::fuzz::lowering),
 ];
 
 static TARGET: LazyLock<Target> = LazyLock::new(|| {
