@@ -95,6 +95,11 @@ impl Language {
         Self::ALL.into_iter().find(is_it)
     }
 
+    /// Whether programs in it may jump: [`Options::goto`] changes nothing in others.
+    pub fn has_goto(self) -> bool {
+        self.dialect().abilities.jumps == Jumps::Goto
+    }
+
     fn dialect(self) -> &'static Dialect {
         match self {
             Self::JavaScript => &dialects::javascript::JAVASCRIPT,
