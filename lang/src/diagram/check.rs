@@ -14,6 +14,9 @@ use crate::expr::{self, Compat, Names, Source, Value};
 use crate::limits;
 use crate::problem::{Place, Problem, Severity};
 
+#[cfg(test)]
+mod tests;
+
 /// Checks a whole project as it would run in a world. At most [`limits::PROBLEMS`] of each kind, errors first.
 pub fn check(project: &Project, world: World) -> Vec<Problem> {
     let Lowered {
@@ -52,6 +55,10 @@ fn soften(problems: &mut [Problem], program: &Program, flow: &Flow) {
         }
     }
 }
+
+/// How far it is followed that nobody knows a value, and for how many names.
+const ROUNDS: usize = 8;
+const NAMES: usize = 200;
 
 /// Which nodes can be reached, in an order in which they may be.
 struct Flow {
@@ -195,6 +202,7 @@ fn expressions(program: &Program, flow: &Flow) -> Vec<Problem> {
             });
         }
     }
+    let unknown = spread(unknown, &texts);
     let mut problems = Vec::new();
     for &node in &flow.order {
         sources(program, node, &mut |index| {
@@ -205,7 +213,7 @@ fn expressions(program: &Program, flow: &Flow) -> Vec<Problem> {
             };
             // A message of another thread is an expression of its own: nobody knows its type.
             if problems.len() >= limits::PROBLEMS
-                || unknown.iter().any(|name| text.text.contains(&**name))
+                || unknown.iter().any(|name| text.text.contains(name.as_str()))
             {
                 return;
             }
@@ -223,6 +231,30 @@ fn expressions(program: &Program, flow: &Flow) -> Vec<Problem> {
         });
     }
     problems
+}
+
+/// Names whose values nobody knows beforehand, and those that get their values from them.
+fn spread(unknown: HashSet<&str>, texts: &HashMap<u32, Source>) -> HashSet<String> {
+    let mut all: HashSet<String> = unknown.into_iter().map(str::to_owned).collect();
+    for _ in 0..ROUNDS {
+        let before = all.len();
+        for source in texts.values() {
+            if !all.iter().any(|name| source.text().contains(name.as_str())) {
+                continue;
+            }
+            for node in &source.tree().nodes {
+                if let expr::tree::Node::Assign { target, .. } = node
+                    && let expr::tree::Node::Name(name) = source.tree().node(*target)
+                {
+                    all.insert(name.to_string());
+                }
+            }
+        }
+        if all.len() == before || all.len() > NAMES {
+            break;
+        }
+    }
+    all
 }
 
 /// Names that a block gives a value without an expression.

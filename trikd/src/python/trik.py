@@ -6,6 +6,7 @@ is -1, a pad that nobody touches is at -101.
 """
 
 import builtins
+import ctypes
 import errno
 import heapq
 import io
@@ -362,17 +363,39 @@ class Camera:
         self._name = name
         self._file = _File('camera/%s/value' % name, os.O_RDONLY | os.O_NONBLOCK)
         self._colour = _File('camera/%s/hsv' % name, os.O_RDONLY | os.O_NONBLOCK)
+        self._untold = None
 
     def init(self, show=False):
         # The sensor runs while its files are open.
+        self._untold = None
         self.read()
-        _file('camera/%s/video_out' % self._name, os.O_WRONLY).write('%d\n' % bool(show))
+        self._untold = bool(show)
+        self._tell()
+
+    def _write(self, name, text):
+        """Whether the sensor has heard it: it runs a while after init()."""
+        try:
+            _file('camera/%s/%s' % (self._name, name), os.O_WRONLY).write(text)
+        except OSError as error:
+            if error.errno != errno.ENODEV:
+                raise
+            return False
+        return True
+
+    def _tell(self):
+        if self._untold is not None and self._write('video_out', '%d\n' % self._untold):
+            self._untold = None
 
     def detect(self):
         self.getDetectParameters()
-        _file('camera/%s/detect' % self._name, os.O_WRONLY).write('1\n')
+        end = time.monotonic() + 3
+        while not self._write('detect', '1\n'):
+            if time.monotonic() > end:
+                raise OSError(errno.ENODEV, 'the sensor does not run: was init() called before?', self._name)
+            time.sleep(0.02)
 
     def read(self, row=None, column=None):
+        self._tell()
         try:
             numbers = self._file.numbers()
         except BlockingIOError:
@@ -391,6 +414,7 @@ class Camera:
             return []  # Nothing was detected yet.
 
     def stop(self):
+        self._untold = None
         self._file.close()
         self._colour.close()
 
@@ -720,6 +744,59 @@ class Script:
                 event[0]._call(event[1])
 
 
+class Threads:
+    """Threads of a program by their names, with messages; all variables are shared."""
+
+    def __init__(self):
+        self._threads, self._mail, self._lock = {}, {}, threading.Lock()
+
+    def _box(self, name):
+        with self._lock:
+            return self._mail.setdefault(name, queue.Queue())
+
+    def startThread(self, name, function):
+        known = self._threads.get(name)
+        if known and known.is_alive():
+            raise ValueError('the thread %s runs already' % name)
+        thread = threading.Thread(target=self._run, args=(function,), name=name)
+        self._threads[name] = thread
+        thread.start()
+
+    def _run(self, function):
+        try:
+            function()
+        except SystemExit:
+            pass
+        except BaseException:
+            # The program ends with the first thread that fails.
+            _tell_failure()
+            sys.stdout.flush()
+            os._exit(1)
+
+    def joinThread(self, name):
+        thread = self._threads.get(name)
+        if thread:
+            thread.join()
+
+    def killThread(self, name):
+        """Ends a thread before its next statement."""
+        thread = self._threads.get(name)
+        if thread and thread.is_alive():
+            raised = ctypes.py_object(SystemExit)
+            ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident), raised)
+
+    def sendMessage(self, name, text):
+        self._box(name).put(str(text))
+
+    def receiveMessage(self, wait=True):
+        mine = threading.current_thread()
+        box = self._box('main' if mine is threading.main_thread() else mine.name)
+        try:
+            return box.get(block=wait)
+        except queue.Empty:
+            return ''
+
+
 class Mailbox:
     def __init__(self):
         self.newMessage = _Signal()
@@ -858,13 +935,14 @@ class Gamepad:
 script = Script()
 mailbox = Mailbox()
 gamepad = Gamepad()
+Threading = Threads()
 brick = Brick()
 
 for _letter, _count in (('A', 6), ('D', 3), ('M', 4), ('E', 4), ('S', 6)):
     for _number in range(1, _count + 1):
         globals()['%s%d' % (_letter, _number)] = '%s%d' % (_letter, _number)
 
-__all__ = ['brick', 'script', 'getPhoto', 'mailbox', 'gamepad', 'web', 'KeysEnum'] + [
+__all__ = ['brick', 'script', 'getPhoto', 'mailbox', 'gamepad', 'web', 'KeysEnum', 'Threading'] + [
     name for name in list(globals()) if name[:1] in 'ADMES' and name[1:].isdigit()
 ]
 
