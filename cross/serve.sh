@@ -73,6 +73,7 @@ send() { printf '%d:%s' "${#1}" "$1" >&7; }
 
 # Bytes of the control port, as they come, into a file.
 serve_client() {
+    true >"$served/heard"
     exec 7<>"/dev/tcp/127.0.0.1/$control_port"
     cat <&7 >"$served/heard" &
     # trikd closes a connection that says nothing for 5 s.

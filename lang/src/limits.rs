@@ -77,3 +77,7 @@ pub const GENERATED_BLOCKS_MAX: usize = 20_000;
 pub const GENERATED_FUNCTIONS_MAX: usize = 1000;
 /// How deep an expression may nest that is written as text.
 pub const GENERATED_DEPTH_MAX: usize = 100;
+/// Blocks of one picture.
+pub const PICTURE_BLOCKS_MAX: usize = 5000;
+/// Corners of one link in a picture.
+pub const PICTURE_CORNERS_MAX: usize = 64;

@@ -4,8 +4,10 @@
 //! be reached.
 
 use crate::remote::{self, Target};
-use crate::{fault, limits, manual, up};
+use crate::{diagrams, fault, limits, manual, up};
 use clap::{Args, CommandFactory, Parser, Subcommand};
+use lang::diagram::generate::Language;
+use lang::problem::Tongue;
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::net::IpAddr;
@@ -28,6 +30,9 @@ Examples:
   trik run square.js --robot 192.168.77.1   the same on a robot in the network
   trik send a.js b.py --robot 192.168.77.1,192.168.77.2 --run a.js
   trik stop                          end the program, all motors rest
+  trik lint maze.qrs                 what is wrong with a diagram of TRIK Studio
+  trik gen --lang python maze.qrs -o maze.py   the diagram as a program
+  trik show maze.qrs --svg maze.svg  the diagram as a picture
   trik fault D1 unplug               pull the plug of the distance sensor D1
   trik fault D1 --clear              and put it back
   trik fault --at /tmp/robot D1 unplug   the same, if several robots run
@@ -71,6 +76,27 @@ enum Command {
     /// Programs see what they would see with a real device that fails so. Without a MOUNTPOINT it is the only robot
     /// that runs.
     Fault(FaultArgs),
+    /// Write a diagram of TRIK Studio as a program in a language with text.
+    ///
+    /// The program does what the diagram does, and goes to standard output, or into a new file with -o. Notes go to
+    /// standard error, for example that blocks had to be written twice because arrows cross.
+    ///
+    /// Exit status: 0 written; 1 the diagram has errors, or cannot be written in this language, or the file is there
+    /// already; 2 the diagram cannot be read, or the command line was not understood.
+    Gen(GenArgs),
+    /// Show a diagram of TRIK Studio as sentences, or as a picture.
+    ///
+    /// Exit status: 0 shown; 1 it is not clear what the diagram does, there is no diagram with this name, or the picture
+    /// could not be written; 2 the diagram cannot be read, or the command line was not understood.
+    Show(ShowArgs),
+    /// Find everything that is wrong with diagrams of TRIK Studio, without running them.
+    ///
+    /// A line for each problem: file, how bad, diagram, block and its place on the sheet in px, property, line and column
+    /// in its text, what is wrong. The worst come first. The last line counts them.
+    ///
+    /// Exit status: 0 no errors, perhaps warnings and notes; 1 errors; 2 a diagram cannot be read, or the command line
+    /// was not understood.
+    Lint(LintArgs),
     /// Print a completion script for a shell.
     Completions {
         /// The shell.
@@ -199,9 +225,72 @@ pub(crate) struct FaultArgs {
     pub kind: Vec<String>,
 }
 
+/// What `trik gen` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct GenArgs {
+    /// The diagram, a file NAME.qrs.
+    pub file: PathBuf,
+    /// The language: python, javascript, lua, c, pascal or fsharp.
+    #[arg(long, value_name = "LANGUAGE", value_parser = diagrams::language)]
+    pub lang: Language,
+    /// A new file for the program; - is standard output.
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+    /// Replace OUT if it is there already.
+    #[arg(long, requires = "output")]
+    pub force: bool,
+    /// Write arrows that cross as goto and not as copies of blocks: in C and Lua.
+    #[arg(long)]
+    pub goto: bool,
+    /// Language of messages: en or ru.
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = diagrams::tongue)]
+    pub language: Tongue,
+}
+
+/// What `trik show` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct ShowArgs {
+    /// The diagram, a file NAME.qrs.
+    pub file: PathBuf,
+    /// Write a picture into a new file; - is standard output.
+    #[arg(long, value_name = "OUT.svg")]
+    pub svg: Option<PathBuf>,
+    /// Print the program as sentences, as without this option.
+    #[arg(long, conflicts_with = "svg")]
+    pub text: bool,
+    /// The diagram with this name in the file [default: the main one]. Sentences are those of the diagram and of the
+    /// subprograms that it calls.
+    #[arg(long, value_name = "NAME")]
+    pub diagram: Option<String>,
+    /// Replace OUT.svg if it is there already.
+    #[arg(long, requires = "svg")]
+    pub force: bool,
+    /// Language of sentences and messages: en or ru.
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = diagrams::tongue)]
+    pub language: Tongue,
+}
+
+/// What `trik lint` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct LintArgs {
+    /// Diagrams, files NAME.qrs.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Language of messages: en or ru.
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = diagrams::tongue)]
+    pub language: Tongue,
+    /// Write the diagram into this new file, with blocks and links put back that are in the file but on no sheet, and
+    /// look at that. For one FILE.
+    #[arg(long, value_name = "OUT.qrs")]
+    pub recover: Option<PathBuf>,
+    /// Replace OUT.qrs if it is there already.
+    #[arg(long, requires = "recover")]
+    pub force: bool,
+}
+
 /// The program: reads the arguments of the process, does it, gives the exit code.
 pub fn main() -> ExitCode {
-    let cli = match Cli::try_parse() {
+    let cli = match Cli::try_parse().and_then(understood) {
         Ok(cli) => cli,
         Err(error) => {
             let _ = error.print();
@@ -220,11 +309,25 @@ pub fn main() -> ExitCode {
     }
 }
 
+/// What clap cannot say of a command line.
+fn understood(cli: Cli) -> Result<Cli, clap::Error> {
+    match &cli.command {
+        Command::Lint(args) if args.recover.is_some() && args.files.len() > 1 => {
+            let why = "--recover writes one file: name one FILE";
+            Err(Cli::command().error(clap::error::ErrorKind::TooManyValues, why))
+        }
+        _ => Ok(cli),
+    }
+}
+
 fn perform(command: Command) -> Result<ExitCode, String> {
     let done = match command {
         Command::Run(args) => return Ok(remote::run(&args)),
         Command::Stop(args) => return Ok(remote::stop(&args)),
         Command::Status(args) => return Ok(remote::status(&args)),
+        Command::Gen(args) => return Ok(diagrams::generate(&args)),
+        Command::Show(args) => return Ok(diagrams::show(&args)),
+        Command::Lint(args) => return Ok(diagrams::lint(&args)),
         Command::Send(args) => remote::send(&args),
         Command::Up(args) => up::up(args),
         Command::Fault(args) => print(fault::fault(&args)?.as_bytes()),
@@ -349,6 +452,9 @@ mod tests {
             "send",
             "status",
             "fault",
+            "gen",
+            "show",
+            "lint",
             "man",
             "completions",
         ] {

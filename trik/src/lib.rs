@@ -1,9 +1,11 @@
 //! The tool for a person at a PC: a whole virtual robot in one command.
 //!
 //! `cli` has the words, `up` starts the virtual board and the tree over it, `fault` breaks devices of a running board,
-//! `place` knows where the robots of a user are, `remote` brings programs to robots, `manual` prints man pages. Nothing of this runs on the controller.
+//! `place` knows where the robots of a user are, `remote` brings programs to robots, `diagrams` shows, checks and translates
+//! diagrams without a robot, `manual` prints man pages. Nothing of this runs on the controller.
 
 pub mod cli;
+mod diagrams;
 mod fault;
 pub mod limits;
 mod manual;

@@ -59,6 +59,20 @@ impl FromStr for Network {
     }
 }
 
+/// A computer that wants to be paired.
+#[derive(Clone, Copy, Debug)]
+struct Asked {
+    ip: IpAddr,
+    when: Instant,
+    /// When another one asked as well, if one did: nobody can know whom the key is meant for.
+    rival: Option<Instant>,
+}
+
+/// Whether a key that is pressed now still has to do with that.
+fn is_fresh(when: Instant) -> bool {
+    when.elapsed() < Duration::from_millis(limits::PAIRING_MS)
+}
+
 /// The lists in force.
 #[derive(Debug)]
 pub struct Access {
@@ -66,8 +80,8 @@ pub struct Access {
     /// None: pairing is off.
     paired: Option<RefCell<BTreeSet<IpAddr>>>,
     file: PathBuf,
-    /// Who asked last, and when: a key that is pressed soon after that pairs it.
-    asked: Cell<Option<(IpAddr, Instant)>>,
+    /// Who asked last: a key that is pressed soon after that pairs it.
+    asked: Cell<Option<Asked>>,
 }
 
 impl Access {
@@ -102,7 +116,19 @@ impl Access {
             .as_ref()
             .is_none_or(|paired| paired.borrow().contains(&ip));
         if !may {
-            self.asked.set(Some((ip, Instant::now())));
+            let before = self.asked.get().filter(|asked| is_fresh(asked.when));
+            let rival = before.and_then(|asked| {
+                if asked.ip == ip {
+                    asked.rival
+                } else {
+                    Some(asked.when)
+                }
+            });
+            self.asked.set(Some(Asked {
+                ip,
+                when: Instant::now(),
+                rival,
+            }));
         }
         may
     }
@@ -115,12 +141,20 @@ impl Access {
     /// Pairs the computer that asked within the last [`limits::PAIRING_MS`]; returns which.
     ///
     /// # Errors
-    /// It is paired, but cannot be remembered for the next start.
+    /// It is paired, but cannot be remembered for the next start; or several computers have asked in that time, of which
+    /// none is paired.
     pub fn pair_last(&self) -> io::Result<Option<IpAddr>> {
-        let limit = Duration::from_millis(limits::PAIRING_MS);
-        match self.asked.take() {
-            Some((ip, when)) if when.elapsed() < limit => self.pair(ip).map(|()| Some(ip)),
-            _ => Ok(None),
+        match self.asked.take().filter(|asked| is_fresh(asked.when)) {
+            Some(Asked {
+                ip,
+                rival: Some(at),
+                ..
+            }) if is_fresh(at) => Err(io::Error::other(format!(
+                "{ip} and others have asked within {} s, so none of them is paired: try again when only one asks, or use `trikd pair ADDRESS`",
+                limits::PAIRING_MS / 1000
+            ))),
+            Some(Asked { ip, .. }) => self.pair(ip).map(|()| Some(ip)),
+            None => Ok(None),
         }
     }
 
@@ -134,7 +168,7 @@ impl Access {
             return refused("pairing is off: everybody may run programs");
         };
         let mut paired = paired.borrow_mut();
-        if paired.len() >= limits::PAIRED {
+        if paired.len() >= limits::PAIRED && !paired.contains(&plain(ip)) {
             return refused(
                 "too many computers are paired: remove some from the file 'paired' and start again",
             );
@@ -209,6 +243,25 @@ mod tests {
                 "{bad}"
             );
         }
+    }
+
+    #[test]
+    fn a_key_pairs_nobody_when_two_computers_have_asked() {
+        let scratch = Scratch::new("access");
+        let access = Access::new(Vec::new(), true, &scratch.path().join("paired")).unwrap();
+        let (owner, thief): (IpAddr, IpAddr) =
+            ("10.0.0.7".parse().unwrap(), "10.0.0.8".parse().unwrap());
+        for asks in [&[owner, thief][..], &[thief, owner], &[owner, thief, thief]] {
+            for ip in asks {
+                assert!(!access.may_control(*ip));
+            }
+            let why = access.pair_last().unwrap_err().to_string();
+            assert!(why.contains("none of them is paired"), "{why}");
+            assert_eq!(access.pair_last().unwrap(), None);
+        }
+        assert!(!access.may_control(owner) && !access.may_control(owner));
+        assert_eq!(access.pair_last().unwrap(), Some(owner));
+        assert!(!access.may_control(thief));
     }
 
     #[test]

@@ -17,12 +17,11 @@ use crate::program::{self, Command, Programs, Supervisor, boot};
 use crate::sampler::Sampler;
 use crate::server::gamepad::Pipe;
 use crate::server::mailbox::Mailbox;
-use crate::server::{self, Port};
+use crate::server::{self, Port, Seats};
 use crate::settings::{Service, Settings, StopKey};
 use crate::{heartbeat, keys, status};
 use crate::{limits, log};
 use nix::unistd::{User, chown, geteuid};
-use std::cell::Cell;
 use std::io::Write;
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::Path;
@@ -42,7 +41,7 @@ pub struct Daemon {
     /// Who is connected.
     pub clients: Clients,
     /// Connections on all ports.
-    pub seats: Rc<Cell<usize>>,
+    pub seats: Rc<Seats>,
     /// Bytes of half frames.
     pub held: Held,
     /// What the robot senses.
@@ -226,7 +225,7 @@ impl Daemon {
             self.settings.processes,
             self.programs.describe(),
             self.mailbox.describe(),
-            self.seats.get(),
+            self.seats.taken(),
             self.settings.connections,
             self.clients.describe()
         )
@@ -318,6 +317,7 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), String> {
     let (done, ended) = oneshot::channel();
     daemon.programs.tell(Command::Quit(done)).await;
     let _ = ended.await;
+    daemon.mailbox.rest().await;
     Ok(())
 }
 

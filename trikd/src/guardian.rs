@@ -96,11 +96,19 @@ fn end(daemon: Pid) {
     });
 }
 
-/// How the serving process ended, if it has.
+/// How the serving process ended, if it has. One that is stopped (SIGSTOP) can neither serve nor see that it does not:
+/// a program with the same rights could do that to escape every stop. It is killed.
 fn ended(daemon: Pid) -> Option<WaitStatus> {
+    let look = WaitPidFlag::WNOHANG | WaitPidFlag::WUNTRACED;
     loop {
-        match waitpid(None, Some(WaitPidFlag::WNOHANG)) {
+        match waitpid(None, Some(look)) {
             Ok(WaitStatus::StillAlive) | Err(_) => return None,
+            Ok(WaitStatus::Stopped(pid, signal)) => {
+                if pid == daemon {
+                    tracing::error!(target: log::DAEMON, "the serving process was stopped with {signal}: it is killed");
+                    let _ = nix::sys::signal::kill(daemon, Signal::SIGKILL);
+                }
+            }
             Ok(status) if status.pid() == Some(daemon) => return Some(status),
             Ok(_) => {}
         }

@@ -190,7 +190,7 @@ impl Host {
     /// # Errors
     /// The daemon is gone.
     pub fn print(&self, text: &str) -> io::Result<()> {
-        self.send("print:", text)
+        self.send("print:", shown(text))
     }
 
     /// Shows a failure.
@@ -198,7 +198,7 @@ impl Host {
     /// # Errors
     /// The daemon is gone.
     pub fn error(&self, text: &str) -> io::Result<()> {
-        self.send("error:", text)
+        self.send("error:", shown(text))
     }
 
     /// Shows an information.
@@ -206,7 +206,7 @@ impl Host {
     /// # Errors
     /// The daemon is gone.
     pub fn info(&self, text: &str) -> io::Result<()> {
-        self.send("info:", text)
+        self.send("info:", shown(text))
     }
 
     /// Says that the program is event-driven from now on.
@@ -229,6 +229,15 @@ impl Host {
         let mut payload = Vec::with_capacity(word.len() + text.len());
         payload.extend_from_slice(word.as_bytes());
         payload.extend_from_slice(text.as_bytes());
+        if payload.len() > limits::CHANNEL_FRAME_BYTES {
+            // The daemon would take it for the end of the program.
+            let why = format!(
+                "{} bytes at once are too many: at most {} can be sent",
+                payload.len(),
+                limits::CHANNEL_FRAME_BYTES
+            );
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, why));
+        }
         (&self.channel).write_all(&encode(&payload))
     }
 
@@ -253,6 +262,11 @@ impl Host {
             }
         }
     }
+}
+
+/// So much of a text as is shown to people: the daemon would drop the rest.
+fn shown(text: &str) -> &str {
+    &text[..text.floor_char_boundary(limits::MESSAGE_BYTES)]
 }
 
 fn is_late(error: &io::Error) -> bool {
@@ -301,6 +315,30 @@ mod tests {
         assert_eq!(host.receive(Some(Duration::ZERO)).unwrap(), None);
         drop(daemon);
         assert_eq!(host.receive(None).unwrap(), Some(Incoming::Gone));
+    }
+
+    #[test]
+    fn what_is_too_long_does_not_end_the_channel() {
+        let (mut daemon, host) = pair();
+        let long = "\u{43f}".repeat(limits::CHANNEL_FRAME_BYTES / 2);
+        let drain = std::thread::spawn(move || {
+            let mut all = Vec::new();
+            daemon.read_to_end(&mut all).unwrap();
+            all
+        });
+        host.print(&format!("x{long}")).unwrap();
+        let refusal = host.post(&long).unwrap_err();
+        assert!(refusal.to_string().contains("too many"), "{refusal}");
+        host.print("end\n").unwrap();
+        drop(host);
+        let mut decoder = Decoder::new(limits::CHANNEL_FRAME_BYTES);
+        decoder.feed(&drain.join().unwrap());
+        let first = decoder.next().unwrap().unwrap().to_vec();
+        // Half of the last character would be one byte more.
+        assert_eq!(first.len(), "print:".len() + limits::MESSAGE_BYTES - 1);
+        assert!(String::from_utf8(first).is_ok());
+        assert_eq!(decoder.next().unwrap(), Some(&b"print:end\n"[..]));
+        assert_eq!(decoder.next().unwrap(), None);
     }
 
     #[test]

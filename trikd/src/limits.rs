@@ -78,6 +78,8 @@ pub const PROGRAM_MEMORY_MIB: u64 = 256;
 pub const PROGRAM_PROCESSES: u64 = 64;
 /// Connections at once on all ports together.
 pub const CONNECTIONS: u16 = 256;
+/// One part in so many of these is out of reach for each single computer.
+pub const CONNECTIONS_OF_OTHERS: usize = 4;
 /// Bytes that are read from a connection at once.
 pub const READ_BYTES: usize = 8 << 10;
 /// Milliseconds without a sent byte after which a keepalive is sent.
@@ -160,6 +162,8 @@ pub const AUTORUN_MS: u64 = 1_000;
 pub const AUTORUN_PROOF_MS: u64 = 10_000;
 /// Starts that may fail before such a program is no longer run.
 pub const AUTORUN_TRIES: u32 = 3;
+/// Milliseconds that the end of the daemon waits for the file of the mailbox.
+pub const SAVE_MS: u64 = 1_000;
 /// Further ports that the mailbox tries.
 pub const MAILBOX_PORTS: u16 = 4;
 /// Threads for files that may be slow.

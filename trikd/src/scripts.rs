@@ -5,6 +5,7 @@
 use crate::limits;
 use std::fs::{self, DirBuilder, File, OpenOptions};
 use std::io::{self, Write};
+use std::os::fd::AsRawFd;
 use std::os::unix::fs::{DirBuilderExt, OpenOptionsExt};
 use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -69,7 +70,8 @@ fn is_inside(folder: &Path, path: &Path) -> bool {
 /// In words, with the name and what to do.
 pub fn keep(folder: &Path, name: &[u8], content: &[u8]) -> Result<PathBuf, String> {
     let path = locate(folder, name)?;
-    let parent = path.parent().unwrap_or(folder);
+    let shown = String::from_utf8_lossy(name);
+    let refused = |why: &str| Err(format!("'{shown}' was not kept: {why}"));
     let fails = |error: io::Error| {
         let hint = match error.raw_os_error() {
             Some(libc::ENOSPC | libc::EDQUOT) => {
@@ -78,36 +80,53 @@ pub fn keep(folder: &Path, name: &[u8], content: &[u8]) -> Result<PathBuf, Strin
             Some(libc::EROFS) => "; the disk is read-only",
             _ => "",
         };
-        format!(
-            "'{}' was not kept: {error}{hint}",
-            String::from_utf8_lossy(name)
-        )
+        format!("'{shown}' was not kept: {error}{hint}")
     };
-    let mut builder = DirBuilder::new();
-    builder
+    let parent = path.parent().unwrap_or(folder);
+    let Some(place) = enter(folder, parent).map_err(fails)? else {
+        return refused("a folder in it is a link");
+    };
+    let last = inside(&place).join(path.file_name().unwrap_or_default());
+    if fs::symlink_metadata(&last).is_ok_and(|found| found.is_dir()) {
+        return refused("there is a folder of this name");
+    }
+    let mode = if is_executable(content) { 0o755 } else { 0o644 };
+    replace(&last, content, mode).map_err(fails)?;
+    Ok(path)
+}
+
+/// Names in an open folder, wherever it is and whatever has happened to its path meanwhile.
+fn inside(place: &File) -> PathBuf {
+    Path::new("/proc/self/fd").join(place.as_raw_fd().to_string())
+}
+
+/// Opens a folder below another one step by step, and makes what is missing. None: a step is a link. Programs may
+/// write here, so a step that is seen to be a folder could be a link a moment later; one that is open cannot.
+fn enter(folder: &Path, parent: &Path) -> io::Result<Option<File>> {
+    let make = |path: &Path| match DirBuilder::new().mode(0o755).create(path) {
+        Err(error) if error.kind() != io::ErrorKind::AlreadyExists => Err(error),
+        _ => Ok(()),
+    };
+    DirBuilder::new()
         .recursive(true)
         .mode(0o755)
-        .create(parent)
-        .map_err(fails)?;
-    if parent != folder && !is_inside(folder, parent) {
-        return Err(format!(
-            "'{}' was not kept: a folder in it is a link",
-            String::from_utf8_lossy(name)
-        ));
+        .create(folder)?;
+    let mut place = File::open(folder)?;
+    for part in parent.strip_prefix(folder).unwrap_or(Path::new("")) {
+        let next = inside(&place).join(part);
+        make(&next)?;
+        let opened = OpenOptions::new()
+            .read(true)
+            .custom_flags(libc::O_NOFOLLOW | libc::O_DIRECTORY)
+            .open(&next);
+        place = match opened {
+            Err(_) if fs::symlink_metadata(&next).is_ok_and(|found| found.is_symlink()) => {
+                return Ok(None);
+            }
+            opened => opened?,
+        };
     }
-    if path.is_dir() {
-        return Err(format!(
-            "'{}' was not kept: there is a folder of this name",
-            String::from_utf8_lossy(name)
-        ));
-    }
-    replace(
-        &path,
-        content,
-        if is_executable(content) { 0o755 } else { 0o644 },
-    )
-    .map_err(fails)?;
-    Ok(path)
+    Ok(Some(place))
 }
 
 /// Whether content says by itself that it can be executed.
@@ -237,6 +256,55 @@ mod tests {
         assert!(keep(&folder, b"l/y.js", b"").unwrap_err().contains("link"));
         assert!(find(&folder, b"l/x.js").unwrap_err().contains("link"));
         assert!(!scratch.path().join("outside/y.js").exists());
+        assert!(
+            keep(&folder, b"l/new/y.js", b"")
+                .unwrap_err()
+                .contains("link")
+        );
+        assert!(
+            !scratch.path().join("outside/new").exists(),
+            "no folder is made behind a link"
+        );
+        std::os::unix::fs::symlink(scratch.path().join("outside/x.js"), folder.join("x.js"))
+            .unwrap();
+        keep(&folder, b"x.js", b"new").unwrap();
+        assert_eq!(fs::read(scratch.path().join("outside/x.js")).unwrap(), b"");
+        assert_eq!(fs::read(folder.join("x.js")).unwrap(), b"new");
+    }
+
+    #[test]
+    fn a_folder_that_becomes_a_link_while_an_upload_comes_leads_nowhere() {
+        use std::sync::atomic::AtomicBool;
+        let scratch = Scratch::new("scripts");
+        let (folder, outside) = (
+            scratch.path().join("scripts"),
+            scratch.path().join("outside"),
+        );
+        fs::create_dir_all(folder.join("f")).unwrap();
+        fs::create_dir_all(&outside).unwrap();
+        let link = scratch.path().join("link");
+        std::os::unix::fs::symlink(&outside, &link).unwrap();
+        let is_over = AtomicBool::new(false);
+        std::thread::scope(|scope| {
+            scope.spawn(|| {
+                while !is_over.load(Ordering::Relaxed) {
+                    // What a program does that wants a file of the daemon elsewhere.
+                    nix::fcntl::renameat2(
+                        nix::fcntl::AT_FDCWD,
+                        &link,
+                        nix::fcntl::AT_FDCWD,
+                        &folder.join("f"),
+                        nix::fcntl::RenameFlags::RENAME_EXCHANGE,
+                    )
+                    .unwrap();
+                }
+            });
+            for _ in 0..300 {
+                let _ = keep(&folder, b"f/deep/x.js", b"");
+            }
+            is_over.store(true, Ordering::Relaxed);
+        });
+        assert_eq!(fs::read_dir(&outside).unwrap().count(), 0);
     }
 
     #[test]

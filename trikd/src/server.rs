@@ -13,10 +13,11 @@ pub mod variables;
 pub mod video;
 
 use crate::daemon::Daemon;
+use crate::protocol::frame::encode;
 use crate::protocol::mail::plain;
 use crate::{limits, log};
 use socket2::{Domain, Protocol, SockRef, Socket, Type};
-use std::cell::Cell;
+use std::cell::RefCell;
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 use std::rc::Rc;
@@ -126,24 +127,57 @@ pub struct Guest {
     pub seat: Seat,
 }
 
-/// One of the connections that may be there at once.
-#[derive(Debug)]
-pub struct Seat(Rc<Cell<usize>>);
+/// The connections of all ports, each as the network that it comes from.
+#[derive(Debug, Default)]
+pub struct Seats(RefCell<Vec<IpAddr>>);
 
-impl Seat {
-    /// A place, if there is one.
-    pub fn take(taken: &Rc<Cell<usize>>, limit: usize) -> Option<Self> {
-        if taken.get() >= limit {
-            return None;
-        }
-        taken.set(taken.get() + 1);
-        Some(Self(taken.clone()))
+/// Whose connections are counted together: an IPv6 computer has a whole network of addresses.
+fn origin(ip: IpAddr) -> IpAddr {
+    match ip {
+        IpAddr::V6(six) => Ipv6Addr::from_bits(six.to_bits() >> 64 << 64).into(),
+        IpAddr::V4(_) => ip,
     }
 }
 
+impl Seats {
+    /// How many there are.
+    pub fn taken(&self) -> usize {
+        self.0.borrow().len()
+    }
+
+    /// A place. A quarter of them is out of reach for each computer, so that none keeps all others out.
+    ///
+    /// # Errors
+    /// In words: there is none.
+    pub fn take(self: &Rc<Self>, limit: usize, ip: IpAddr) -> Result<Seat, String> {
+        let mut taken = self.0.borrow_mut();
+        let ip = origin(ip);
+        if taken.len() >= limit {
+            return Err(format!(
+                "there are {limit} connections already: close some, or wait"
+            ));
+        }
+        let most = limit - limit / limits::CONNECTIONS_OF_OTHERS;
+        if taken.iter().filter(|other| **other == ip).count() >= most {
+            return Err(format!(
+                "there are {most} connections from there already: close some"
+            ));
+        }
+        taken.push(ip);
+        Ok(Seat(self.clone(), ip))
+    }
+}
+
+/// One of the connections that may be there at once.
+#[derive(Debug)]
+pub struct Seat(Rc<Seats>, IpAddr);
+
 impl Drop for Seat {
     fn drop(&mut self) {
-        self.0.set(self.0.get() - 1);
+        let mut taken = self.0.0.borrow_mut();
+        if let Some(index) = taken.iter().position(|ip| *ip == self.1) {
+            taken.swap_remove(index);
+        }
     }
 }
 
@@ -170,13 +204,17 @@ async fn accept<F>(
             tracing::warn!(target: log::CLIENTS, "{name}: {peer} is not in the list of --allow");
             continue;
         }
-        let Some(seat) = Seat::take(&daemon.seats, usize::from(daemon.settings.connections)) else {
-            tracing::warn!(
-                target: log::CLIENTS,
-                "{name}: {peer} is refused: there are {} connections already",
-                daemon.seats.get()
-            );
-            continue;
+        let limit = usize::from(daemon.settings.connections);
+        let seat = match daemon.seats.take(limit, peer.ip()) {
+            Ok(seat) => seat,
+            Err(why) => {
+                tracing::warn!(target: log::CLIENTS, "{name}: {peer} is refused: {why}");
+                if name == "control" {
+                    // The only port on which people read; if it has no room for it, there is nobody to tell.
+                    let _ = stream.try_write(&encode(format!("error: {why}").as_bytes()));
+                }
+                continue;
+            }
         };
         prepare(&stream);
         tokio::task::spawn_local(serve(daemon.clone(), Guest { stream, peer, seat }));

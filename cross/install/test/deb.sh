@@ -35,10 +35,10 @@ test_deb() {
     check "the user of programs is there" layer id trikd
     local page
     for page in trikfs trikfs-mount trikfs-check trikfs-convert trikfs-new-converter trikfs-edit trikfs-umount trikfs-completions trikfs-man trikfs-ev3dev \
-        trikd trikd-serve trikd-status trikd-pair trikd-js trikd-completions trikd-man; do
+        trikd trikd-serve trikd-status trikd-pair trikd-draw trikd-js trikd-completions trikd-man; do
         check "man $page" man_page "$page"
     done
-    check "no other man page" test "$(find "$layer/usr/share/man" -name 'trik*' | wc -l)" -eq 17
+    check "no other man page" test "$(find "$layer/usr/share/man" -name 'trik*' | wc -l)" -eq 18
     check "bash completion" layer bash -n /usr/share/bash-completion/completions/trikfs
     check "bash completion of the view" layer bash -n /usr/share/bash-completion/completions/trikfs-ev3dev
     check "bash completion of trikd" layer bash -n /usr/share/bash-completion/completions/trikd

@@ -80,10 +80,10 @@ pub fn open(bytes: &[u8], problems: &mut Vec<Problem>) -> Result<Archive, Proble
 /// Puts pieces into a zip, with an entry for each folder before what is in it.
 ///
 /// # Errors
-/// More entries or bytes than a zip without extensions can count.
+/// More entries or bytes than a save may have, and a name that is there twice or too long for a zip.
 pub fn pack(entries: &[Entry]) -> Result<Vec<u8>, Problem> {
     let mut folders = HashSet::new();
-    let mut packer = zip::Packer::default();
+    let mut packer = zip::Packer::new();
     for entry in entries {
         let mut end = 0;
         while let Some(at) = entry.name[end..].find('/') {

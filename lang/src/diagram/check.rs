@@ -4,15 +4,21 @@
 //! what no way leads to. The machine tells only what the flow comes to; this tells all.
 
 use std::collections::{HashMap, HashSet, VecDeque};
+use std::rc::Rc;
 
 use super::lower::{Lowered, World, lower};
 use super::machine::wanted;
 use super::program::{ArgumentKind, NOWHERE, Node, Op, Program};
 use super::project::Project;
 use super::words;
-use crate::expr::{self, Compat, Names, Source, Value};
+use crate::expr::tree::{Id, Node as Part, Tree};
+use crate::expr::words::{Fault, What};
+use crate::expr::{self, Compat, Kind, Names, Source, Value};
 use crate::limits;
 use crate::problem::{Place, Problem, Severity};
+
+#[cfg(test)]
+mod tests;
 
 /// Checks a whole project as it would run in a world. At most [`limits::PROBLEMS`] of each kind, errors first.
 pub fn check(project: &Project, world: World) -> Vec<Problem> {
@@ -27,7 +33,7 @@ pub fn check(project: &Project, world: World) -> Vec<Problem> {
     soften(&mut problems, &program, &flow);
     problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
     problems.truncate(limits::PROBLEMS);
-    problems.extend(expressions(&program, &flow));
+    problems.extend(expressions(project, &program, &flow));
     problems.extend(dead_ends(project, &program, &flow));
     problems.extend(endless_calls(&program));
     problems.sort_by_key(|problem| std::cmp::Reverse(problem.severity));
@@ -52,6 +58,10 @@ fn soften(problems: &mut [Problem], program: &Program, flow: &Flow) {
         }
     }
 }
+
+/// How far it is followed that nobody knows a value, and for how many names.
+const ROUNDS: usize = 8;
+const NAMES: usize = 200;
 
 /// Which nodes can be reached, in an order in which they may be.
 struct Flow {
@@ -174,7 +184,7 @@ fn sources(program: &Program, node: Node, tell: &mut dyn FnMut(u32)) {
 }
 
 /// Errors of expressions that no order of running can mend.
-fn expressions(program: &Program, flow: &Flow) -> Vec<Problem> {
+fn expressions(project: &Project, program: &Program, flow: &Flow) -> Vec<Problem> {
     let mut names = Names::new(program.kit, Compat::Studio);
     let mut unknown = HashSet::new();
     for &node in &flow.order {
@@ -195,6 +205,10 @@ fn expressions(program: &Program, flow: &Flow) -> Vec<Problem> {
             });
         }
     }
+    let unknown = spread(unknown, &texts);
+    let mut given = given(program, flow, &texts);
+    let parameters = project.diagrams.iter().flat_map(|one| &one.parameters);
+    given.extend(parameters.map(|parameter| Rc::from(&*parameter.name)));
     let mut problems = Vec::new();
     for &node in &flow.order {
         sources(program, node, &mut |index| {
@@ -205,14 +219,17 @@ fn expressions(program: &Program, flow: &Flow) -> Vec<Problem> {
             };
             // A message of another thread is an expression of its own: nobody knows its type.
             if problems.len() >= limits::PROBLEMS
-                || unknown.iter().any(|name| text.text.contains(&**name))
+                || unknown.iter().any(|name| text.text.contains(name.as_str()))
             {
                 return;
             }
-            let found = match expr::analyse(source, &mut names) {
+            let mut found = match expr::analyse(source, &mut names) {
                 Ok(()) => source.warnings(),
                 Err(found) => found,
             };
+            if found.is_empty() {
+                found = without_value(source.tree(), &names, &given);
+            }
             for mut problem in found {
                 let position = problem.place.position;
                 problem.place = program.place(node);
@@ -223,6 +240,94 @@ fn expressions(program: &Program, flow: &Flow) -> Vec<Problem> {
         });
     }
     problems
+}
+
+/// Names whose values nobody knows beforehand, and those that get their values from them.
+fn spread(unknown: HashSet<&str>, texts: &HashMap<u32, Source>) -> HashSet<String> {
+    let mut all: HashSet<String> = unknown.into_iter().map(str::to_owned).collect();
+    for _ in 0..ROUNDS {
+        let before = all.len();
+        for source in texts.values() {
+            if !all.iter().any(|name| source.text().contains(name.as_str())) {
+                continue;
+            }
+            for node in &source.tree().nodes {
+                if let expr::tree::Node::Assign { target, .. } = node
+                    && let expr::tree::Node::Name(name) = source.tree().node(*target)
+                {
+                    all.insert(name.to_string());
+                }
+            }
+        }
+        if all.len() == before || all.len() > NAMES {
+            break;
+        }
+    }
+    all
+}
+
+/// Names that get a value anywhere: in a text, or by a block.
+fn given(program: &Program, flow: &Flow, texts: &HashMap<u32, Source>) -> HashSet<Rc<str>> {
+    let mut given = HashSet::new();
+    for source in texts.values() {
+        each_node(source.tree(), &mut |tree, node, _| {
+            let Part::Assign { target, .. } = node else {
+                return;
+            };
+            let mut target = *target;
+            while let Part::Index { table, .. } = tree.node(target) {
+                target = *table;
+            }
+            if let Part::Name(name) = tree.node(target) {
+                given.insert(name.clone());
+            }
+        });
+    }
+    for &node in &flow.order {
+        match program.ops.get(node as usize) {
+            Some(
+                Op::Random { assignment, .. }
+                | Op::AnyButton { assignment, .. }
+                | Op::Mail { assignment, .. }
+                | Op::Copy { assignment, .. }
+                | Op::Receive { assignment, .. }
+                | Op::Ask { assignment, .. },
+            ) => {
+                let variable = &program.assignments[*assignment as usize].variable;
+                given.insert((&**variable).into());
+            }
+            Some(Op::Call { call, .. }) => {
+                let arguments = program.calls[*call as usize].arguments.iter();
+                given.extend(arguments.map(|argument| Rc::from(&*argument.name)));
+            }
+            _ => {}
+        }
+    }
+    given
+}
+
+/// Variables that a text reads and nothing gives a value.
+fn without_value(tree: &Tree, names: &Names, given: &HashSet<Rc<str>>) -> Vec<Problem> {
+    let mut found = Vec::new();
+    each_node(tree, &mut |tree, node, id| {
+        if let Part::Name(name) = node
+            && !given.contains(name)
+            && let Some(Kind::Variable) = names.find(name).and_then(|slot| names.kind(slot))
+        {
+            let what = What::Undeclared(name.to_string());
+            found.push(Fault::new(what, tree.place(id)).problem());
+        }
+    });
+    found
+}
+
+/// All nodes of a text.
+fn each_node(tree: &Tree, seen: &mut dyn FnMut(&Tree, &Part, Id)) {
+    let mut left = tree.statements();
+    while let Some(id) = left.pop() {
+        seen(tree, tree.node(id), id);
+        tree.children(id, |child| left.push(child));
+    }
 }
 
 /// Names that a block gives a value without an expression.

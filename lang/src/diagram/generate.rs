@@ -5,7 +5,9 @@
 
 mod build;
 mod code;
+mod commands;
 mod dialects;
+mod lines;
 mod names;
 pub(super) mod plan;
 mod print;
@@ -93,11 +95,19 @@ impl Language {
         Self::ALL.into_iter().find(is_it)
     }
 
+    /// Whether programs in it may jump: [`Options::goto`] changes nothing in others.
+    pub fn has_goto(self) -> bool {
+        self.dialect().abilities.jumps == Jumps::Goto
+    }
+
     fn dialect(self) -> &'static Dialect {
         match self {
             Self::JavaScript => &dialects::javascript::JAVASCRIPT,
             Self::Python => &dialects::python::PYTHON,
-            _ => &dialects::python::PYTHON,
+            Self::Lua => &dialects::lua::LUA,
+            Self::C => &dialects::c::C,
+            Self::Pascal => &dialects::pascal::PASCAL,
+            Self::FSharp => &dialects::fsharp::FSHARP,
         }
     }
 }

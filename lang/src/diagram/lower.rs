@@ -11,6 +11,7 @@ use std::collections::HashMap;
 use std::rc::Rc;
 
 use super::blocks::{self, Act, Copied, Does, Row, Silent, foreign};
+use super::devices;
 use super::ports::{Kit, Port, Way};
 use super::program::{
     Action, Argument, ArgumentKind, Assignment, Axis, Call, Message, NOWHERE, Node, Op, Program,
@@ -70,7 +71,14 @@ pub fn lower(project: &Project, world: World) -> Result<Lowered, Problem> {
     if project.main.is_none() {
         lowering.problems.push(Problem::error(words::no_main()));
     }
-    Ok(lowering.finish(project))
+    let mut lowered = lowering.finish(project);
+    if world != World::Robot
+        && let Some(problem) = devices::mismatch(project, &lowered.program)
+    {
+        lowered.problems.push(problem.clone());
+        lowered.program.refusal = Some(problem);
+    }
+    Ok(lowered)
 }
 
 /// Tables that grow.
@@ -162,6 +170,7 @@ impl<'a> Lowering<'a> {
             assignments: self.assignments.into(),
             actions: self.actions.into(),
             watches: self.watches.into(),
+            refusal: None,
             loops: self.loops,
             kit: self.kit,
         };
@@ -350,15 +359,13 @@ impl<'a> Lowering<'a> {
     }
 
     fn switch(&mut self, at: At<'a>) -> Result<Op, Words> {
-        let (mut branches, other) = links::many_branches(at)?;
-        for link in at
-            .block
-            .outgoing
-            .iter()
-            .filter_map(|&link| at.diagram.links.get(link))
-        {
-            if link.guard.to_lowercase() != link.guard {
-                self.warn(words::never_matches(&link.guard), None);
+        let (mut exact, other) = links::many_branches(at)?;
+        exact.sort();
+        let lower = |(guard, to): &(Box<str>, Node)| (guard.to_lowercase().into(), *to);
+        let mut branches: Vec<(Box<str>, Node)> = exact.iter().map(lower).collect();
+        for ((written, _), (lower, _)) in exact.iter().zip(&branches) {
+            if written != lower {
+                self.warn(words::never_matches(written), None);
             }
         }
         branches.sort();
@@ -366,6 +373,7 @@ impl<'a> Lowering<'a> {
         self.switches.push(super::program::Switch {
             source,
             branches: branches.into(),
+            exact: exact.into(),
             other,
         });
         Ok(Op::Switch {

@@ -254,6 +254,11 @@ impl Machine {
         self.began = Some(now);
         self.sensors = Sensors::new(&self.formulas);
         self.sensors.refresh(env.brick);
+        if let Some(problem) = self.program.refusal.clone() {
+            self.tell(problem, env);
+            self.end_all(env);
+            return;
+        }
         let entry = match self.program.main {
             None => Err(words::no_main()),
             Some(main) => {

@@ -39,6 +39,8 @@ pub struct Program {
     pub(crate) assignments: Box<[Assignment]>,
     pub(crate) actions: Box<[Action]>,
     pub(crate) watches: Box<[Watching]>,
+    /// Why nothing of it can run.
+    pub(crate) refusal: Option<Problem>,
     /// How many loops with counters there are.
     pub(crate) loops: u32,
     /// Whose blocks these are.
@@ -137,8 +139,10 @@ pub(crate) const NOWHERE: Node = Node::MAX;
 #[derive(Clone, Debug)]
 pub(crate) struct Switch {
     pub source: Source,
-    /// Guards and targets, by guard.
+    /// Guards in lower case and targets, by guard.
     pub branches: Box<[(Box<str>, Node)]>,
+    /// The same with guards as they are written.
+    pub exact: Box<[(Box<str>, Node)]>,
     pub other: Node,
 }
 

@@ -266,6 +266,13 @@ pub(super) fn not_configured(device: &str, port: &str) -> Words {
     )
 }
 
+pub(super) fn other_sensor(port: &str) -> Words {
+    Words::new(
+        format!("Sensor on port {port} does not correspond to blocks on the diagram."),
+        format!("Датчик на порту {port} не подходит к блокам на диаграмме."),
+    )
+}
+
 pub(super) fn no_lidar() -> Words {
     Words::new("Lidar is not configured.", "Лидар не подключён.")
 }

@@ -1,6 +1,7 @@
 //! Documents that are read, refused and written.
 
 use super::*;
+use crate::limits;
 
 fn refused(text: &str) -> String {
     parse(text).expect_err("it is refused").to_string()
@@ -30,6 +31,17 @@ fn lines_of_any_system_end_alike_in_values() {
 }
 
 #[test]
+fn text_of_pieces_is_one_text() {
+    let root = parse("<a> \r\n&amp;<![CDATA[ & ]]>b\r<!-- c -->d </a>").unwrap();
+    let texts = [
+        Node::Text(" \n& & b\n".into()),
+        Node::Comment(" c ".into()),
+        Node::Text("d ".into()),
+    ];
+    assert_eq!(root.nodes, texts);
+}
+
+#[test]
 fn what_is_written_is_read_as_the_same() {
     let text = "<a x=\"&lt;&amp;&quot;&#xa;&#xd;&#x9;\">\n  <!-- why -->\n  <b>text &amp; <c/>more</b>\n  <d/>\n</a>\n";
     let root = parse(text).unwrap();
@@ -45,6 +57,9 @@ fn hostile_documents_are_refused_with_place_and_reason() {
     assert!(refused("<a>\n &c;</a>").contains("'&c' stands for nothing here"));
     assert!(refused("<a b='&c;'/>").contains("'&c' stands for nothing here"));
     assert!(refused("<a b='&'/>").contains("stands for nothing"));
+    assert!(refused("<a>1 & 2</a>").starts_with("1:6 '& 2"));
+    assert!(refused("<!DOCTYPE a").contains("a document type"));
+    assert!(refused("<!DOCTYPE>").contains("a document type"));
     assert!(refused("<a b='&#0;'/>").contains("stands for nothing"));
     assert!(refused("<a b='&#x1f;'/>").contains("stands for nothing"));
     assert!(refused("<a b='&#xd800;'/>").contains("stands for nothing"));
@@ -60,16 +75,9 @@ fn hostile_documents_are_refused_with_place_and_reason() {
     assert!(refused("<a><b>\n</a>").starts_with("2:1 </a> stands where </b> should"));
     assert!(refused("</a>").contains("did not begin"));
     assert!(refused("<a/></a>").contains("did not begin"));
-    for strange in [
-        "<>",
-        "< a/>",
-        "<a b='1'c='2'/>",
-        "<a/b>",
-        "<a =''/>",
-        "<!a/>",
-        "<a></a b>",
-    ] {
-        assert!(refused(strange).contains("this is not XML"), "{strange}");
+    for strange in ["<>", "< a/>", "<a/b>", "<a =''/>", "<!a/>", "<a></a b>"] {
+        let reason = refused(strange);
+        assert!(reason.contains("this is not XML"), "{strange}: {reason}");
     }
     for bare in ["<a b/>", "<a b=1/>", "<a b>"] {
         assert!(

@@ -2,6 +2,8 @@
 //!
 //! One binary, so that linking happens once. Below is the table of contents.
 
+/// Diagrams shown, checked and translated, and run in three languages.
+mod diagrams;
 /// What documents show of a robot.
 mod documents;
 /// The robot moves and its sensors see it.

@@ -18,13 +18,14 @@ const LOOP: &str = "brick.motor(M3).setPower(40); brick.motor(M4).setPower(40);\
                     print('drives');\nwhile (true) script.wait(50);\n";
 
 /// A robot that takes programs, and where.
-struct Reachable {
-    robot: Robot,
+pub struct Reachable {
+    pub robot: Robot,
     ip: String,
 }
 
 impl Reachable {
-    fn new() -> Option<Self> {
+    /// A robot in a home of its own; None if nothing can be mounted here.
+    pub fn new() -> Option<Self> {
         Some(Self::beside(&Arc::new(Home::new()?), &[]))
     }
 
@@ -37,7 +38,7 @@ impl Reachable {
     }
 
     /// Writes a program and runs it here.
-    fn run(&self, name: &str, text: &str) -> Output {
+    pub fn run(&self, name: &str, text: impl AsRef<[u8]>) -> Output {
         let file = self.robot.home.0.file(name, text);
         let file = file.to_str().expect("UTF-8");
         self.robot.home.run(&["run", file, "--robot", &self.ip])
@@ -59,7 +60,8 @@ impl Reachable {
         running
     }
 
-    fn rests(&self) -> bool {
+    /// Whether both motors are off.
+    pub fn rests(&self) -> bool {
         [3, 4]
             .iter()
             .all(|&motor| self.robot.duty(motor).is_ok_and(|duty| duty == 0))

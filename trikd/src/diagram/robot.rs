@@ -163,6 +163,19 @@ impl<'a> Robot<'a> {
         }
     }
 
+    fn light(&mut self, color: &str) {
+        let green = matches!(color, "green" | "orange");
+        let red = matches!(color, "red" | "orange");
+        let result = self.brick.led().set(green, red);
+        self.note("led", result);
+    }
+
+    fn append(&mut self, file: &str, text: &str) {
+        let opened = OpenOptions::new().append(true).create(true).open(file);
+        let result = opened.and_then(|mut file| file.write_all(text.as_bytes()));
+        self.note(file, result);
+    }
+
     fn mailbox(&mut self, words: &str) {
         let result = self.host.post(words);
         self.note("mailbox", result);
@@ -214,18 +227,9 @@ impl brick::Brick for Robot<'_> {
                 let result = self.brick.sound().say(text);
                 self.note("sound", result);
             }
-            Command::Led { color } => {
-                let green = matches!(color, "green" | "orange");
-                let red = matches!(color, "red" | "orange");
-                let result = self.brick.led().set(green, red);
-                self.note("led", result);
-            }
+            Command::Led { color } => self.light(color),
             Command::System { command, code } => self.start(command, code),
-            Command::Append { file, text } => {
-                let opened = OpenOptions::new().append(true).create(true).open(file);
-                let result = opened.and_then(|mut file| file.write_all(text.as_bytes()));
-                self.note(file, result);
-            }
+            Command::Append { file, text } => self.append(file, text),
             Command::Remove { file } => {
                 // It may never have been there.
                 let _ = std::fs::remove_file(file);

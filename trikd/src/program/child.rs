@@ -371,6 +371,8 @@ impl Child {
 
     /// The next thing that the child does. Can be given up at any point without loss.
     pub async fn said(&mut self) -> Said {
+        // Who says much in one breath leaves others their turn.
+        tokio::task::coop::consume_budget().await;
         loop {
             if let Some(said) = self.heard.pop_front() {
                 return said;

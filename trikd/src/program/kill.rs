@@ -19,8 +19,8 @@ use std::os::unix::fs::MetadataExt;
 pub fn adopt_orphans() -> Result<(), String> {
     match prctl::set_child_subreaper(true) {
         Err(Errno::EINVAL) => {
-            eprintln!(
-                "trikd: this system has no PR_SET_CHILD_SUBREAPER: processes that leave their program outlive it"
+            crate::log::tell(
+                "this system has no PR_SET_CHILD_SUBREAPER: processes that leave their program outlive it",
             );
             Ok(())
         }

@@ -6,6 +6,7 @@ is -1, a pad that nobody touches is at -101.
 """
 
 import builtins
+import ctypes
 import errno
 import heapq
 import io
@@ -743,6 +744,59 @@ class Script:
                 event[0]._call(event[1])
 
 
+class Threads:
+    """Threads of a program by their names, with messages; all variables are shared."""
+
+    def __init__(self):
+        self._threads, self._mail, self._lock = {}, {}, threading.Lock()
+
+    def _box(self, name):
+        with self._lock:
+            return self._mail.setdefault(name, queue.Queue())
+
+    def startThread(self, name, function):
+        known = self._threads.get(name)
+        if known and known.is_alive():
+            raise ValueError('the thread %s runs already' % name)
+        thread = threading.Thread(target=self._run, args=(function,), name=name)
+        self._threads[name] = thread
+        thread.start()
+
+    def _run(self, function):
+        try:
+            function()
+        except SystemExit:
+            pass
+        except BaseException:
+            # The program ends with the first thread that fails.
+            _tell_failure()
+            sys.stdout.flush()
+            os._exit(1)
+
+    def joinThread(self, name):
+        thread = self._threads.get(name)
+        if thread:
+            thread.join()
+
+    def killThread(self, name):
+        """Ends a thread before its next statement."""
+        thread = self._threads.get(name)
+        if thread and thread.is_alive():
+            raised = ctypes.py_object(SystemExit)
+            ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread.ident), raised)
+
+    def sendMessage(self, name, text):
+        self._box(name).put(str(text))
+
+    def receiveMessage(self, wait=True):
+        mine = threading.current_thread()
+        box = self._box('main' if mine is threading.main_thread() else mine.name)
+        try:
+            return box.get(block=wait)
+        except queue.Empty:
+            return ''
+
+
 class Mailbox:
     def __init__(self):
         self.newMessage = _Signal()
@@ -881,13 +935,14 @@ class Gamepad:
 script = Script()
 mailbox = Mailbox()
 gamepad = Gamepad()
+Threading = Threads()
 brick = Brick()
 
 for _letter, _count in (('A', 6), ('D', 3), ('M', 4), ('E', 4), ('S', 6)):
     for _number in range(1, _count + 1):
         globals()['%s%d' % (_letter, _number)] = '%s%d' % (_letter, _number)
 
-__all__ = ['brick', 'script', 'getPhoto', 'mailbox', 'gamepad', 'web', 'KeysEnum'] + [
+__all__ = ['brick', 'script', 'getPhoto', 'mailbox', 'gamepad', 'web', 'KeysEnum', 'Threading'] + [
     name for name in list(globals()) if name[:1] in 'ADMES' and name[1:].isdigit()
 ]
 

@@ -3,7 +3,7 @@
 //! Owns the list of known robots, the open links to them, our hull number, and what is remembered of these. A robot is
 //! known by the address of its server; hull numbers need not be unique.
 
-use super::{Guest, Seat};
+use super::Guest;
 use crate::connection::{self, Handler, VERSION};
 use crate::daemon::Daemon;
 use crate::outbox::Outbox;
@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use std::rc::{Rc, Weak};
 use std::time::Duration;
 use tokio::net::{TcpSocket, TcpStream};
-use tokio::time::{sleep, timeout};
+use tokio::time::{Instant, sleep, timeout};
 
 /// Hull number of a robot that has not said its own.
 const UNKNOWN_HULL: i32 = -1;
@@ -52,6 +52,10 @@ pub struct Mailbox {
     /// The robot that was joined.
     server: Cell<Option<SocketAddr>>,
     robots: RefCell<Vec<Robot>>,
+    /// What the file has, or soon will have.
+    saved: RefCell<String>,
+    /// Whether a task writes it.
+    is_saving: Cell<bool>,
     /// Messages for the next program.
     kept: RefCell<VecDeque<(i32, String)>>,
 }
@@ -105,6 +109,8 @@ impl Mailbox {
             hull: Cell::new(hull),
             server: Cell::new(server),
             robots: RefCell::default(),
+            saved: RefCell::default(),
+            is_saving: Cell::default(),
             kept: RefCell::default(),
         }
     }
@@ -118,17 +124,55 @@ impl Mailbox {
         }
     }
 
+    /// Remembers the hull number and the robot that was joined, if they are others than before. A disk may be slow and a
+    /// program may change them all the time, so a task writes what is newest then, and nobody waits for it.
     fn save(&self) {
         let mut text = format!("hullNumber={}\n", self.hull.get());
         if let Some(server) = self.server.get() {
             let _ = writeln!(text, "server={server}");
         }
-        if let Err(error) = scripts::replace(&self.file, text.as_bytes(), 0o600) {
-            tracing::warn!(
-                target: log::DAEMON,
-                "{}: {error}: the mailbox will not be remembered",
-                self.file.display()
-            );
+        if *self.saved.borrow() == text {
+            return;
+        }
+        self.saved.replace(text);
+        let Some(daemon) = self.daemon.borrow().upgrade() else {
+            return;
+        };
+        if !self.is_saving.replace(true) {
+            tokio::task::spawn_local(async move { daemon.mailbox.write().await });
+        }
+    }
+
+    /// Writes until the file has what is newest.
+    async fn write(&self) {
+        loop {
+            let (file, text) = (self.file.clone(), self.saved.borrow().clone());
+            let work = move || {
+                let done = scripts::replace(&file, text.as_bytes(), 0o600);
+                (text, done)
+            };
+            let Ok((text, done)) = tokio::task::spawn_blocking(work).await else {
+                break;
+            };
+            if let Err(error) = done {
+                tracing::warn!(
+                    target: log::DAEMON,
+                    "{}: {error}: the mailbox will not be remembered",
+                    self.file.display()
+                );
+            }
+            if *self.saved.borrow() == text {
+                break;
+            }
+        }
+        self.is_saving.set(false);
+    }
+
+    /// Waits until everything is written, a while at most.
+    pub async fn rest(&self) {
+        let deadline = Instant::now() + Duration::from_millis(limits::SAVE_MS);
+        while self.is_saving.get() && Instant::now() < deadline {
+            sleep(Duration::from_millis(2)).await;
         }
     }
 
@@ -280,7 +324,8 @@ impl Mailbox {
         Some(outbox)
     }
 
-    /// The place of a robot in the list; adds it, and corrects its hull number. None: the list is full.
+    /// The place of a robot in the list; adds it, and corrects its hull number. When the list is full, it takes the place
+    /// of one that is not linked: who tells of robots that do not exist keeps nobody out. None: all are linked.
     fn meet(&self, server: SocketAddr, hull: Option<i32>) -> Option<usize> {
         let mut robots = self.robots.borrow_mut();
         let known = robots
@@ -288,15 +333,21 @@ impl Mailbox {
             .position(|robot| (robot.ip, robot.port) == (server.ip(), server.port()));
         let index = match known {
             Some(index) => index,
-            None if robots.len() >= limits::ROBOTS => return None,
             None => {
-                robots.push(Robot {
+                let robot = Robot {
                     ip: server.ip(),
                     port: server.port(),
                     hull: UNKNOWN_HULL,
                     link: None,
-                });
-                robots.len() - 1
+                };
+                if robots.len() < limits::ROBOTS {
+                    robots.push(robot);
+                    robots.len() - 1
+                } else {
+                    let away = robots.iter().position(|robot| robot.link.is_none())?;
+                    robots[away] = robot;
+                    away
+                }
             }
         };
         if let Some(hull) = hull {
@@ -307,6 +358,10 @@ impl Mailbox {
 
     /// A robot has come and says who it is.
     fn register(&self, server: SocketAddr, hull: i32, link: &Rc<Link>) {
+        // Behind one connection is one robot: a crowd of them would have everybody connect to everybody.
+        if self.is_another(server, link) {
+            return;
+        }
         let before: Vec<(SocketAddr, i32)> = self
             .robots
             .borrow()
@@ -317,6 +372,7 @@ impl Mailbox {
         let Some(index) = self.meet(server, Some(hull)) else {
             return;
         };
+        self.robots.borrow_mut()[index].link = Some(link.clone());
         let others = before.into_iter().filter(|(other, _)| *other != server);
         for (other, other_hull) in others {
             if is_new {
@@ -338,7 +394,16 @@ impl Mailbox {
         }
         link.outbox
             .send(Message::Own(self.hull.get()).to_string().as_bytes());
-        self.robots.borrow_mut()[index].link = Some(link.clone());
+    }
+
+    /// Whether there is a robot at the other end of a link, and not this one.
+    fn is_another(&self, server: SocketAddr, link: &Rc<Link>) -> bool {
+        let robots = self.robots.borrow();
+        let mut linked = robots.iter().filter(|robot| {
+            let other = robot.link.as_ref();
+            other.is_some_and(|other| Rc::ptr_eq(other, link))
+        });
+        linked.any(|robot| (robot.ip, robot.port) != (server.ip(), server.port()))
     }
 
     /// Hull number of whoever is at the other end of a link.
@@ -483,9 +548,8 @@ async fn connect(daemon: Rc<Daemon>, server: SocketAddr, link: Rc<Link>, tries: 
         match timeout(wait, reach(&daemon.settings.address, server)).await {
             Ok(Ok(stream)) => {
                 let _ = stream.set_nodelay(true);
-                let Some(seat) =
-                    Seat::take(&daemon.seats, usize::from(daemon.settings.connections))
-                else {
+                let limit = usize::from(daemon.settings.connections);
+                let Ok(seat) = daemon.seats.take(limit, server.ip()) else {
                     break;
                 };
                 converse(&daemon, stream, server, &link).await;

@@ -51,3 +51,29 @@ fn the_serving_process_ends_with_its_guardian() {
     assert!(robot.has_rested());
     assert!(children.iter().all(|pid| !processes::is_alive(*pid)));
 }
+
+#[test]
+fn a_program_that_stops_the_serving_process_is_ended_and_another_one_serves() {
+    let robot = robot(&["--control-port", "18473", "--telemetry-port", "18474"]);
+    let mut client = robot.client("control");
+    client.send("file:a:#!/bin/sh\necho go\nsleep 1\nkill -STOP $PPID\nexec sleep 1000\n");
+    client.send("run:a");
+    client.until("print: go");
+    let daemon = robot.daemon();
+    let children = processes::children(daemon);
+    robot.forget_rest();
+    eventually("no program", || {
+        children.iter().all(|pid| !processes::is_alive(*pid))
+    });
+    eventually("rest", || robot.has_rested());
+    eventually("another one", || {
+        robot.daemon() != daemon && std::net::TcpStream::connect(("127.0.0.1", 18473)).is_ok()
+    });
+    robot.client("control").sync();
+    assert!(
+        robot.log().contains("was stopped with SIGSTOP"),
+        "{}",
+        robot.log()
+    );
+    assert_eq!(robot.end(), Some(0));
+}

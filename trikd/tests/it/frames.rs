@@ -158,8 +158,9 @@ fn a_client_that_does_not_read_loses_messages_and_nobody_else_does() {
 
 #[test]
 fn connections_beyond_the_limit_are_refused_and_places_are_given_again() {
+    // One computer may have six of eight.
     let robot = robot(&["--connections", "8"]);
-    let mut clients: Vec<Client> = (0..8).map(|_| robot.client("control")).collect();
+    let mut clients: Vec<Client> = (0..6).map(|_| robot.client("control")).collect();
     clients.iter_mut().for_each(Client::sync);
     for _ in 0..300 {
         let mut refused = robot.client("telemetry");
@@ -173,5 +174,34 @@ fn connections_beyond_the_limit_are_refused_and_places_are_given_again() {
         let mut client = robot.client("telemetry");
         let _ = client.stream.write_all(b"7:version");
         client.next().is_some()
+    });
+}
+
+#[test]
+fn one_computer_cannot_keep_the_others_out() {
+    let robot = robot(&["--connections", "8", "--address", "0.0.0.0"]);
+    let mut crowd: Vec<Client> = (0..6).map(|_| robot.client("gamepad")).collect();
+    harness::eventually("a full crowd", || {
+        robot.status().contains("\nconnections 6 of ")
+    });
+    let mut refused = robot.client("control");
+    assert_eq!(
+        refused.next().as_deref(),
+        Some("error: there are 6 connections from there already: close some")
+    );
+    assert_eq!(refused.next(), None);
+    // The same machine by another of its addresses stands for another computer.
+    let other = socket2::Socket::new(socket2::Domain::IPV4, socket2::Type::STREAM, None).unwrap();
+    let at = |ip: [u8; 4], port: u16| std::net::SocketAddr::from((ip, port));
+    other.bind(&at([127, 0, 0, 77], 0).into()).unwrap();
+    other
+        .connect(&at([127, 0, 0, 1], robot.port("control")).into())
+        .unwrap();
+    let mut other = Client::over(other.into());
+    other.send("version");
+    other.expect("version: 3.1.4");
+    crowd.clear();
+    harness::eventually("room again", || {
+        robot.status().contains("\nconnections 1 of ")
     });
 }

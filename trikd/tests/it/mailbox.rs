@@ -75,10 +75,15 @@ fn three_robots_in_a_ring_hear_all_and_equal_hulls() {
         x.send("run:say.py");
         x.until("print: ready");
     };
+    // Python may take long to start, and who says nothing for 5 s is gone.
+    let awake = |clients: [&mut Client; 3]| clients.map(|client| client.send("keepalive"));
+    awake([&mut a, &mut b, &mut c]);
     send(&robots[0], "", "to all");
+    awake([&mut a, &mut b, &mut c]);
     b.until("print: got to all\n");
     c.until("print: got to all\n");
     send(&robots[0], "2, ", "to hull 2");
+    awake([&mut a, &mut b, &mut c]);
     b.until("print: got to hull 2\n");
     c.until("print: got to hull 2\n");
     send(&robots[2], "1, ", "back");
@@ -143,4 +148,79 @@ fn a_message_waits_for_the_next_program_until_a_stop() {
     client.send("run:second.py");
     let told = client.until("print: got");
     assert!(!told.contains("two"), "{told}");
+}
+
+#[test]
+fn robots_that_do_not_exist_keep_nobody_out() {
+    let robot = robot(&[]);
+    let mut liar = robot.client("mailbox");
+    liar.send("register:2:1");
+    liar.until("self:");
+    for number in 0..400 {
+        // Addresses that lead nowhere (RFC 5737).
+        liar.send(&format!("connection:192.0.2.1:{}:5", 1000 + number));
+    }
+    liar.send("version");
+    liar.until("version: ");
+    let mut honest = robot.client("mailbox");
+    honest.send("register:8895:7");
+    honest.until("self:");
+    let status = robot.status();
+    assert!(
+        status.contains("robot 127.0.0.1:8895 hull 7 linked\n"),
+        "{status}"
+    );
+    let known = status
+        .lines()
+        .filter(|line| line.starts_with("robot "))
+        .count();
+    assert_eq!(known, 256, "{status}");
+}
+
+#[test]
+fn behind_one_connection_is_one_robot() {
+    let robot = robot(&[]);
+    let mut liar = robot.client("mailbox");
+    for number in 0..400 {
+        liar.send(&format!("register:{}:1", 1 + number));
+    }
+    liar.until("self:");
+    liar.sync();
+    let status = robot.status();
+    let known = |line: &&str| line.starts_with("robot ");
+    assert_eq!(
+        status.lines().filter(known).collect::<Vec<_>>(),
+        ["robot 127.0.0.1:1 hull 1 linked"]
+    );
+}
+
+#[test]
+fn a_program_that_floods_the_mailbox_hangs_nobody() {
+    let robot = robot(&[]);
+    let daemon = robot.daemon();
+    let mut client = robot.client("control");
+    // The channel of the program, without waiting for answers.
+    client.send(
+        "file:flood.py:import os, stat, time\n\
+         socket = next(fd for fd in range(3, 50) if stat.S_ISSOCK(os.fstat(fd).st_mode))\n\
+         print('go')\n\
+         end = time.monotonic() + 3\n\
+         while time.monotonic() < end:\n    os.write(socket, b'14:mailbox:hull 114:mailbox:hull 2' * 100)\n\
+         os.write(socket, b'14:mailbox:hull 3')\n\
+         print('done')\n\
+         time.sleep(1000)\n",
+    );
+    client.send("run:flood.py");
+    client.until("print: go");
+    robot.client("control").sync();
+    client.until("print: done");
+    eventually("the last number is heard", || {
+        robot.status().contains("mailbox hull 3\n")
+    });
+    client.send("stop");
+    client.until("info: flood.py was stopped");
+    assert_eq!(robot.daemon(), daemon, "{}", robot.log());
+    eventually("the last number is kept", || {
+        robot.home.content("state/mailbox") == b"hullNumber=3\n"
+    });
 }

@@ -44,6 +44,25 @@ fn a_python_program_prints_line_by_line_and_uses_the_robot() {
 }
 
 #[test]
+fn threads_of_a_python_program_share_variables_and_send_messages() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    let text = "count = 0\n\
+                def work():\n  global count\n  count += 1\n  Threading.sendMessage('main', count)\n\
+                def idle():\n  while True:\n    script.wait(1)\n\
+                Threading.startThread('idle', idle)\n\
+                Threading.startThread('work', work)\n\
+                print(Threading.receiveMessage(), repr(Threading.receiveMessage(False)))\n\
+                Threading.joinThread('work')\n\
+                Threading.killThread('idle')\nThreading.joinThread('idle')\nprint(count)\n";
+    run(&mut client, "t.py", text);
+    client.expect("print: 1 ''\n");
+    client.expect("print: 1\n");
+    let told = client.next().unwrap();
+    assert!(told.starts_with("info: t.py has ended after "), "{told}");
+}
+
+#[test]
 fn a_python_program_draws_on_the_display() {
     let robot = robot(&[]);
     std::fs::create_dir_all(robot.home.path("tree/display")).unwrap();

@@ -275,7 +275,11 @@ pub fn frame(payload: &str) -> Vec<u8> {
 impl Client {
     /// To a port of this machine.
     pub fn new(port: u16) -> Self {
-        let stream = TcpStream::connect(("127.0.0.1", port)).expect("a connection");
+        Self::over(TcpStream::connect(("127.0.0.1", port)).expect("a connection"))
+    }
+
+    /// Over a connection that is there.
+    pub fn over(stream: TcpStream) -> Self {
         stream.set_read_timeout(Some(SOON)).expect("a timeout");
         stream.set_nodelay(true).expect("an option");
         Self {

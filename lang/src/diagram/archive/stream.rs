@@ -15,7 +15,7 @@ pub(super) fn is_likely(bytes: &[u8]) -> bool {
 }
 
 pub(super) fn unpack(bytes: &[u8], pieces: &mut Pieces<'_>) -> Result<(), Problem> {
-    let mut unpacker = Unpacker::new(true);
+    let mut unpacker = Unpacker::new();
     let mut at = 0;
     while at < bytes.len() {
         pieces.count()?;

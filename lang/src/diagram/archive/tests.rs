@@ -175,26 +175,70 @@ fn bombs_are_refused_before_they_are_unpacked() {
     assert!(refused(&bytes).contains("damaged"));
 }
 
-#[test]
-fn entries_that_share_their_bytes_are_refused() {
-    let bytes = pack(&[entry("a", &[0; 100_000]), entry("b", &[0; 100_000])]).unwrap();
-    let end = find(&bytes, 0x0605_4b50);
-    let directory = find(&bytes, 0x0201_4b50);
-    let first = bytes[..directory].to_vec();
-    let record = &bytes[directory..end];
-    // The last record many times.
-    let mut bytes = first.clone();
+/// The list of a zip with one entry, a number of times and each time with another name of the same length or not.
+fn listed_again(zip: &[u8], count: u8, has_other_names: bool) -> Vec<u8> {
+    let end = find(zip, 0x0605_4b50);
+    let directory = find(zip, 0x0201_4b50);
+    let mut record = zip[directory..end].to_vec();
+    let mut bytes = zip[..directory].to_vec();
     let begin = bytes.len() as u32;
-    for _ in 0..200 {
-        bytes.extend(record);
+    for at in 0..count {
+        if has_other_names {
+            record[46] = b'a' + at;
+        }
+        bytes.extend(&record);
     }
     bytes.extend(0x0605_4b50_u32.to_le_bytes());
-    bytes.extend([0, 0, 0, 0, 200, 0, 200, 0]);
-    bytes.extend((200 * record.len() as u32).to_le_bytes());
+    bytes.extend([0, 0, 0, 0, count, 0, count, 0]);
+    bytes.extend((u32::from(count) * record.len() as u32).to_le_bytes());
     bytes.extend(begin.to_le_bytes());
     bytes.extend([0, 0]);
-    let reason = refused(&bytes);
+    bytes
+}
+
+#[test]
+fn entries_that_share_their_bytes_are_refused() {
+    let zip = pack(&[entry("a", &[0; 100_000])]).unwrap();
+    let reason = refused(&listed_again(&zip, 20, true));
     assert!(reason.contains("lie over each other"), "{reason}");
+}
+
+#[test]
+fn a_zip_that_lists_an_entry_twice_is_told_of_and_unpacked_once() {
+    let zip = pack(&[entry("a", &[0; 100_000])]).unwrap();
+    let (archive, problems) = opened(&listed_again(&zip, 200, false));
+    assert_eq!(archive.entries, [entry("a", &[0; 100_000])]);
+    assert_eq!(
+        problems,
+        ["some files are in the save twice, the later ones are taken"]
+    );
+}
+
+#[test]
+fn a_zip_with_wide_numbers_is_refused_before_its_list_is_read() {
+    let zip = pack(&[entry("a", b"1")]).unwrap();
+    let end = find(&zip, 0x0605_4b50);
+    let mut wide = zip[..end].to_vec();
+    wide.extend(b"PK\x06\x07");
+    wide.extend([0; 16]);
+    wide.extend(&zip[end..]);
+    assert!(refused(&wide).starts_with("the zip has 64-bit extensions"));
+}
+
+#[test]
+fn a_name_is_packed_once() {
+    let problem = pack(&[entry("a", b"1"), entry("a", b"2")]).unwrap_err();
+    assert!(problem.to_string().starts_with("a: it cannot be packed"));
+}
+
+#[test]
+fn names_of_a_zip_that_lead_out_are_left_out_and_told() {
+    let (archive, problems) = opened(&pack(&[entry("ok", b"1"), entry("../up", b"2")]).unwrap());
+    assert_eq!(archive.entries, [entry("ok", b"1")]);
+    assert!(
+        problems.iter().any(|told| told.contains("leads out")),
+        "{problems:?}"
+    );
 }
 
 #[test]

@@ -94,17 +94,31 @@ pub(super) fn cut_at(at: usize, length: usize) -> Words {
     )
 }
 
-pub(super) fn zip_cut() -> Words {
+pub(super) fn zip_damaged() -> Words {
     Words::new(
-        "the zip has no end: the file is cut short; take another copy of the project",
-        "у zip-архива нет конца: файл обрезан; возьмите другую копию проекта",
+        "the zip is cut short or its list of files is damaged; take another copy of the project",
+        "zip-архив обрезан или список файлов в нём повреждён; возьмите другую копию проекта",
     )
 }
 
-pub(super) fn directory_damaged() -> Words {
+pub(super) fn extensions_64() -> Words {
     Words::new(
-        "the list of files in the zip is damaged; take another copy of the project",
-        "список файлов в zip-архиве повреждён; возьмите другую копию проекта",
+        "the zip has 64-bit extensions, which no save needs: it was not made by TRIK Studio",
+        "в zip-архиве 64-битные расширения, не нужные ни одному сохранению: его сделал не TRIK Studio",
+    )
+}
+
+pub(super) fn some_twice() -> Words {
+    Words::new(
+        "some files are in the save twice, the later ones are taken",
+        "некоторые файлы есть в сохранении дважды, взяты последние",
+    )
+}
+
+pub(super) fn not_packed() -> Words {
+    Words::new(
+        "it cannot be packed: its name is too long or is there twice",
+        "его нельзя упаковать: имя слишком длинное или повторяется",
     )
 }
 

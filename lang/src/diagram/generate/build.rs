@@ -105,6 +105,14 @@ pub(super) fn number(value: Typed) -> Code {
     }
 }
 
+/// A value as a number that may have a fraction.
+pub(super) fn real(value: Typed) -> Code {
+    match value.kind {
+        Kind::Float => value.code,
+        _ => Code::does(What::FloatOfInt, [number(value)]),
+    }
+}
+
 /// A value as a whole number.
 pub(super) fn whole(value: Typed) -> Code {
     match (value.kind, value.code) {
@@ -130,9 +138,10 @@ pub(super) fn truth(value: Typed) -> Code {
 pub(super) fn text(value: Typed) -> Code {
     match (value.kind, value.code) {
         (_, Code::Int(number)) => Code::Text(number.to_string().into()),
+        (_, Code::Port(name)) => Code::Text(name),
         (Kind::Text, code) => code,
         // An element that is not there has no digits.
-        (_, code @ Code::Do(What::At, _)) => Code::does(What::TextOfAny, [code]),
+        (_, code @ Code::Do(What::At | What::AtWhole, _)) => Code::does(What::TextOfAny, [code]),
         (Kind::Int, code) => Code::does(What::TextOfInt, [code]),
         (Kind::Float, code) => Code::does(What::TextOfFloat, [code]),
         (Kind::Bool, code) => Code::does(What::TextOfBool, [code]),
@@ -272,14 +281,17 @@ impl Builder<'_> {
     fn binary(&self, operator: Binary, left: Typed, right: Typed) -> Typed {
         let arithmetic = |what| {
             let is_whole = left.kind == Kind::Int && right.kind == Kind::Int;
-            let kind = if is_whole { Kind::Int } else { Kind::Float };
-            typed(
-                Code::does(what, [number(left.clone()), number(right.clone())]),
-                kind,
-            )
+            if is_whole {
+                return int(what, [left.code.clone(), right.code.clone()]);
+            }
+            float(what, [real(left.clone()), real(right.clone())])
         };
         let bits = |what| int(what, [whole(left.clone()), whole(right.clone())]);
-        let order = |what| truth_of(what, [number(left.clone()), number(right.clone())]);
+        let order = |what| {
+            let is_real = left.kind == Kind::Float || right.kind == Kind::Float;
+            let as_wanted = if is_real { real } else { number };
+            truth_of(what, [as_wanted(left.clone()), as_wanted(right.clone())])
+        };
         // By way of whole numbers, as the original has it.
         let by_whole = |value: &Typed| match value.kind {
             Kind::Bool => value.code.clone(),
@@ -312,7 +324,7 @@ impl Builder<'_> {
             Binary::Subtract => arithmetic(What::Subtract),
             Binary::Multiply => arithmetic(What::Multiply),
             Binary::Divide => {
-                let right = number(right);
+                let right = number(right.clone());
                 let is_plain = match right {
                     Code::Int(number) => number != 0,
                     Code::Float(number) => number != 0.0,
@@ -323,11 +335,11 @@ impl Builder<'_> {
                 } else {
                     What::Divide
                 };
-                float(what, [number(left), right])
+                float(what, [real(left), real_literal(right)])
             }
             Binary::DivideWhole => bits(What::DivideWhole),
             Binary::Modulo => bits(What::Modulo),
-            Binary::Power => float(What::Power, [number(left), number(right)]),
+            Binary::Power => float(What::Power, [real(left), real(right)]),
         }
     }
 
@@ -386,12 +398,12 @@ impl Builder<'_> {
                 return Ok(int(What::Random, [Code::Int(0), below]));
             }
             "sensor" => return self.sensor(id, next()),
-            "sgn" => return Ok(int(What::Sgn, [number(next())])),
-            "ceil" => return Ok(int(What::Ceil, [number(next())])),
-            "floor" => return Ok(int(What::Floor, [number(next())])),
-            "min" => return Ok(float(What::Min, [number(next()), number(next())])),
-            "max" => return Ok(float(What::Max, [number(next()), number(next())])),
-            "atan2" => return Ok(float(What::Atan2, [number(next()), number(next())])),
+            "sgn" => return Ok(int(What::Sgn, [real(next())])),
+            "ceil" => return Ok(int(What::Ceil, [real(next())])),
+            "floor" => return Ok(int(What::Floor, [real(next())])),
+            "min" => return Ok(float(What::Min, [real(next()), real(next())])),
+            "max" => return Ok(float(What::Max, [real(next()), real(next())])),
+            "atan2" => return Ok(float(What::Atan2, [real(next()), real(next())])),
             "sin" => What::Sin,
             "cos" => What::Cos,
             "ln" => What::Ln,
@@ -402,7 +414,7 @@ impl Builder<'_> {
             "sqrt" => What::Sqrt,
             _ => What::Abs,
         };
-        Ok(float(unary, [number(next())]))
+        Ok(float(unary, [real(next())]))
     }
 
     fn sensor(&self, id: Id, port: Typed) -> Result<Typed, Wrong> {
@@ -437,15 +449,25 @@ fn equal(left: Typed, right: Typed, whats: [What; 3]) -> Typed {
     let operands = match (&left.kind, &right.kind) {
         (Kind::Bool, Kind::Bool) => return truth_of(numbers, [left.code, right.code]),
         (one, other) if is_number(one) && is_number(other) => {
-            return truth_of(numbers, [number(left), number(right)]);
+            let is_real = *one == Kind::Float || *other == Kind::Float;
+            let as_wanted = if is_real { real } else { number };
+            return truth_of(numbers, [as_wanted(left), as_wanted(right)]);
         }
-        (Kind::Text, Kind::Text) => return truth_of(texts, [left.code, right.code]),
+        (Kind::Text, Kind::Text) => return truth_of(texts, [text(left), text(right)]),
         (Kind::Text, other) if is_number(other) => {
             return truth_of(texts, [left.code, text(right)]);
         }
         _ => [left.code, right.code],
     };
     truth_of(any, operands)
+}
+
+/// A divisor as a number that may have a fraction.
+fn real_literal(code: Code) -> Code {
+    match code {
+        code @ (Code::Float(_) | Code::Do(What::FloatOfInt, _)) => code,
+        code => Code::does(What::FloatOfInt, [code]),
+    }
 }
 
 fn element(table: Typed, index: Code) -> Typed {
@@ -457,7 +479,6 @@ fn element(table: Typed, index: Code) -> Typed {
         Code::Do(What::Gyroscope, _) => 7,
         Code::Do(What::Accelerometer | What::LineSensor | What::ColorSensor, _) => 3,
         Code::Do(What::Lidar, _) => 360,
-        Code::List(parts) => i64::try_from(parts.len()).unwrap_or(0),
         _ => 0,
     };
     let pad = match (&table.code, &index) {
@@ -470,7 +491,11 @@ fn element(table: Typed, index: Code) -> Typed {
         return typed(code, Kind::Int);
     }
     let is_there = matches!(index, Code::Int(at) if (0..count).contains(&at));
-    let what = if is_there { What::AtPlain } else { What::At };
+    let what = match kind {
+        _ if is_there => What::AtPlain,
+        Kind::Int => What::AtWhole,
+        _ => What::At,
+    };
     typed(Code::does(what, [table.code, index]), kind)
 }
 

@@ -93,6 +93,8 @@ pub(super) enum What {
     Join,
     Length,
     // Conversions: a value.
+    /// A whole number where languages with types want another one.
+    FloatOfInt,
     WholeOfFloat,
     WholeOfBool,
     WholeOfAny,
@@ -129,7 +131,9 @@ pub(super) enum What {
     // Tables.
     /// table, index: nothing beyond the end
     At,
-    /// table, index: there is such an element
+    /// The same in a table of whole numbers.
+    AtWhole,
+    /// table, index: there is such a whole number
     AtPlain,
     /// table, index, value
     Put,

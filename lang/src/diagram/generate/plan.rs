@@ -282,6 +282,8 @@ impl Planner<'_> {
             };
             begun.push((name, *to));
         }
+        // The original begins them by their names.
+        begun.sort();
         Follow::Fork(begun, next)
     }
 }

@@ -94,7 +94,7 @@ pub(super) fn body_and_exit(at: At<'_>) -> Result<LoopLinks, Words> {
     })
 }
 
-/// Guards with targets, and where the blank link leads.
+/// Guards as they are written with targets, and where the blank link leads.
 type Branches = (Vec<(Box<str>, Node)>, Node);
 
 /// Links with different guards and exactly one blank one.
@@ -113,7 +113,7 @@ pub(super) fn many_branches(at: At<'_>) -> Result<Branches, Words> {
                 return Err(words::two_defaults());
             }
         } else if seen.insert(guard.clone()) {
-            branches.push((guard.into(), to));
+            branches.push((link.guard.as_str().into(), to));
         } else {
             return Err(words::branch_twice(&guard));
         }

@@ -11,6 +11,7 @@ use super::threads::{Handle, State};
 use super::{Deferred, Env, Machine, TURN_MS, words};
 use crate::diagram::blocks::Type;
 use crate::diagram::program::{Node, Op, Program};
+use crate::expr::Compat;
 use crate::limits;
 
 /// How many blocks a thread enters before others get a turn.
@@ -218,10 +219,12 @@ impl Machine {
                     return Flow::Failed;
                 };
                 let text = value.to_text();
-                let found = switch
-                    .branches
-                    .binary_search_by(|(guard, _)| (**guard).cmp(&*text));
-                Flow::Next(found.map_or(switch.other, |at| switch.branches[at].1))
+                let branches = match self.options.compat {
+                    Compat::Studio => &switch.branches,
+                    Compat::Fixed => &switch.exact,
+                };
+                let found = branches.binary_search_by(|(guard, _)| (**guard).cmp(&*text));
+                Flow::Next(found.map_or(switch.other, |at| branches[at].1))
             }
             Op::Fork { fork } => self.fork(program, handle, node, fork as usize, env),
             Op::Join { join, .. } => self.join(program, handle, node, join as usize, env),
@@ -239,7 +242,7 @@ impl Machine {
                 let thread = self.threads.get_mut(handle);
                 match thread.and_then(|thread| thread.messages.pop_front()) {
                     Some(message) => {
-                        let statement = format!("{} = {message}", assignment.variable);
+                        let statement = self.received(&assignment.variable, &message);
                         self.splice(handle, node, &statement, next, env)
                     }
                     None if !assignment.wait => Flow::Next(next),

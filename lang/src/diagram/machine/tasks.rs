@@ -7,7 +7,7 @@ use super::threads::{Frame, Handle, State};
 use super::{Env, Machine, words};
 use crate::diagram::blocks::Type;
 use crate::diagram::program::{ArgumentKind, NOWHERE, Node, Op, Program};
-use crate::expr::{Compat, Value};
+use crate::expr::{self, Compat, Value};
 use crate::limits;
 
 impl Machine {
@@ -189,6 +189,26 @@ impl Machine {
         Flow::Leave
     }
 
+    /// The statement that assigns a message of another thread. In the original the message is an expression of its own; if
+    /// oddities are mended, a number is a number and everything else a text, with its quotes or without.
+    pub(super) fn received(&self, variable: &str, message: &str) -> String {
+        if self.options.compat == Compat::Studio || message.trim().parse::<i32>().is_ok() {
+            return format!("{variable} = {message}");
+        }
+        if let Ok(number) = message.trim().parse::<f64>()
+            && number.is_finite()
+        {
+            return format!("{variable} = {number:?}");
+        }
+        let quoted = ['\'', '"']
+            .into_iter()
+            .find_map(|quote| message.strip_prefix(quote)?.strip_suffix(quote));
+        format!(
+            "{variable} = \"{}\"",
+            expr::escape(quoted.unwrap_or(message))
+        )
+    }
+
     pub(super) fn send(
         &mut self,
         program: &Program,
@@ -230,7 +250,7 @@ impl Machine {
                 Flow::Next(next)
             }
             Some((assignment, their_next)) => {
-                let statement = format!("{} = {text}", assignment.variable);
+                let statement = self.received(&assignment.variable, &text);
                 if self.run_text(at, other.slot, &statement, env) {
                     if let Some(thread) = self.threads.get_mut(handle) {
                         thread.go(next);

@@ -246,6 +246,15 @@ fn vector(brick: &Brick, name: &str) -> crate::brick::sensors::Vector {
     crate::brick::sensors::Vector::with(brick.tree(), name, Access::Read)
 }
 
+/// Programs read at once after `init()`, and expect three numbers.
+fn or_zeros(numbers: Vec<f64>) -> Vec<f64> {
+    if numbers.is_empty() {
+        vec![0.0; 3]
+    } else {
+        numbers
+    }
+}
+
 fn cameras<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     let o = own.clone();
     put(native, "hasCamera", move |name: String| {
@@ -283,13 +292,7 @@ fn cameras<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     })?;
     let w = with.clone();
     put(native, "cameraRead", move |ctx: Ctx<'js>, name: String| {
-        let numbers = w(&ctx, &name, &Camera::read)?;
-        // Programs read at once after init(), and expect three numbers.
-        Ok::<_, Error>(if numbers.is_empty() {
-            vec![0.0; 3]
-        } else {
-            numbers
-        })
+        w(&ctx, &name, &Camera::read).map(or_zeros)
     })?;
     let w = with.clone();
     put(

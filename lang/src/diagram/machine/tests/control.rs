@@ -94,6 +94,10 @@ fn a_counted_loop_is_counted_anew_when_it_is_entered_if_oddities_are_mended() {
 }
 
 fn branch(expression: &str, guards: &[&str]) -> Ran {
+    branch_with(expression, guards, Options::simulated())
+}
+
+fn branch_with(expression: &str, guards: &[&str], options: Options) -> Ran {
     let mut sketch = Sketch::new();
     let start = sketch.block("InitialNode", &[]);
     let switch = sketch.block("SwitchBlock", &[("Expression", expression)]);
@@ -104,7 +108,7 @@ fn branch(expression: &str, guards: &[&str]) -> Ran {
         sketch.guarded(switch, taken, guard);
         sketch.link(taken, end);
     }
-    run(&sketch, 100)
+    run_with(&sketch, 100, options, World::default(), |_| {})
 }
 
 #[test]
@@ -114,6 +118,15 @@ fn switches_compare_texts_with_guards_in_lower_case() {
     assert_eq!(branch("'A'", &["A", ""]).text("taken"), "g");
     assert_eq!(branch("'a'", &["A", ""]).text("taken"), "gA");
     assert_eq!(branch("true", &["TRUE", ""]).text("taken"), "gTRUE");
+    let fixed = Options {
+        compat: Compat::Fixed,
+        ..Options::simulated()
+    };
+    let mended = |value| branch_with(value, &["A", ""], fixed).text("taken");
+    assert_eq!(
+        (mended("'A'").as_str(), mended("'a'").as_str()),
+        ("gA", "g")
+    );
 }
 
 #[test]

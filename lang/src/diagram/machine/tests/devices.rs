@@ -201,6 +201,34 @@ fn a_sensor_that_is_not_there_is_told() {
 }
 
 #[test]
+fn another_sensor_on_the_port_keeps_the_program_from_running() {
+    const WORLD: &str = r#"<root><robots><robot id="trikKitRobot"><sensors>
+        <sensor port="JA1###input######sensor1" type="trik::robotModel::parts::TrikTouchSensor"/>
+        <sensor port="A1###input###JA1###sensorA1" type="trik::robotModel::parts::TrikInfraredSensor"/>
+        <sensor port="A2###input###JA2###sensorA2" type=""/>
+        <sensor port="A3###input###sensorA3" type="trik::robotModel::parts::TrikTouchSensor"/>
+    </sensors></robot></robots></root>"#;
+    let told = |kind: &str, port: &str, locked: &str, world: World| {
+        let mut sketch = chain(&[(kind, &[("Port", port), ("Sign", "greater")])]);
+        sketch.world(WORLD);
+        sketch.meta("twoDModelSensorsReadOnly", locked);
+        let ran = run_with(&sketch, 100, Options::of(world), world, |robot| {
+            robot.readings.insert(Port::named(port).unwrap(), 50);
+        });
+        ran.errors().join("; ")
+    };
+    let here = World::default();
+    let wrong =
+        |port| format!("Sensor on port {port} does not correspond to blocks on the diagram.");
+    assert_eq!(told("TrikWaitForIRDistance", "A1", "false", here), "");
+    assert_eq!(told("TrikWaitForLight", "A1", "false", here), wrong("A1"));
+    assert_eq!(told("TrikWaitForLight", "A2", "false", here), "");
+    assert_eq!(told("TrikWaitForLight", "A2", "true", here), wrong("A2"));
+    assert_eq!(told("TrikWaitForLight", "A3", "false", here), "");
+    assert_eq!(told("TrikWaitForLight", "A1", "true", World::Robot), "");
+}
+
+#[test]
 fn buttons_and_the_gamepad_are_waited_for() {
     let pressed = |name: &'static str| {
         move |robot: &mut StandIn| {

@@ -213,6 +213,10 @@ fn no_more_than_a_hundred_threads() {
 }
 
 fn message(text: &'static str) -> Ran {
+    message_with(text, Options::simulated())
+}
+
+fn message_with(text: &'static str, options: Options) -> Ran {
     let mut forked = Forked::new();
     let send = forked.sketch.block(
         "SendMessageThreads",
@@ -225,7 +229,26 @@ fn message(text: &'static str) -> Ran {
         "main",
         &[("ReceiveMessageThreads", &[("Variable", "got")]), say("m")],
     );
-    forked.run(1000)
+    run_with(&forked.sketch, 1000, options, World::default(), |_| {})
+}
+
+#[test]
+fn messages_are_texts_or_numbers_if_oddities_are_mended() {
+    let fixed = Options {
+        compat: Compat::Fixed,
+        ..Options::simulated()
+    };
+    for (sent, got) in [
+        ("\"hello\"", "hello"),
+        ("\"'hello'\"", "hello"),
+        ("\"1 + 2\"", "1 + 2"),
+        ("12", "12"),
+        ("0.5", "0.5"),
+        ("\"a' .. x\"", "a' .. x"),
+    ] {
+        let ran = message_with(sent, fixed);
+        assert_eq!((ran.text("got").as_str(), ran.errors().len()), (got, 0));
+    }
 }
 
 #[test]

@@ -1,0 +1,112 @@
+//! `trik lint`: everything that is wrong with diagrams, and the way back for blocks that an editor of old has lost.
+//!
+//! Owns the order of files, the summary and the exit code. What is wrong is found in `lang`.
+
+use super::output::{Output, standard};
+use super::telling::{Count, Teller, named};
+use super::{REFUSED, Refusal, UNREADABLE, Unreadable, end, open, words};
+use crate::cli::LintArgs;
+use lang::diagram::check::check;
+use lang::diagram::lower::World;
+use lang::diagram::read::Opened;
+use lang::problem::{Problem, Tongue};
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Does it.
+pub(crate) fn lint(args: &LintArgs) -> ExitCode {
+    end(linted(args))
+}
+
+fn linted(args: &LintArgs) -> Result<u8, Refusal> {
+    let mut count = Count::default();
+    let mut unreadable = 0;
+    for file in &args.files {
+        let mut opened = match open(file) {
+            Ok(opened) => opened,
+            Err(why) => {
+                unreadable += 1;
+                let lines = unread(file, why, &mut count, args.language);
+                standard(lines.as_bytes())?;
+                continue;
+            }
+        };
+        let name = match &args.recover {
+            None => file,
+            Some(out) => {
+                if recover(&mut opened, file, out, args)? {
+                    out
+                } else {
+                    file
+                }
+            }
+        };
+        let text = found(name, &opened, &mut count, args.language);
+        standard(text.as_bytes())?;
+    }
+    let summary = words::summary(args.files.len(), unreadable, count, args.language);
+    standard(format!("{summary}\n").as_bytes())?;
+    Ok(match (unreadable, count.errors) {
+        (0, 0) => 0,
+        (0, _) => REFUSED,
+        _ => UNREADABLE,
+    })
+}
+
+/// Lines of a save that could not be read.
+fn unread(file: &Path, why: Unreadable, count: &mut Count, tongue: Tongue) -> String {
+    let teller = Teller::new(file, None, tongue);
+    let lines = match why {
+        Unreadable::File(why) => {
+            count.errors += 1;
+            let error = words::severity(lang::problem::Severity::Error, tongue);
+            vec![format!("{}: {error}: {why}", named(file))]
+        }
+        Unreadable::Save(mut problems) => {
+            teller.sort(&mut problems);
+            count.add(&problems);
+            teller.lines(&problems)
+        }
+    };
+    joined(&lines)
+}
+
+/// Lines of a save that could be read.
+fn found(file: &Path, opened: &Opened, count: &mut Count, tongue: Tongue) -> String {
+    let teller = Teller::new(file, Some(&opened.project), tongue);
+    let mut problems: Vec<Problem> = opened.problems.clone();
+    problems.extend(check(&opened.project, World::Robot));
+    teller.sort(&mut problems);
+    count.add(&problems);
+    joined(&teller.lines(&problems))
+}
+
+fn joined(lines: &[String]) -> String {
+    lines.iter().map(|line| format!("{line}\n")).collect()
+}
+
+/// Puts back what was lost and writes the save; whether there was anything.
+fn recover(opened: &mut Opened, file: &Path, out: &Path, args: &LintArgs) -> Result<bool, Refusal> {
+    let output = Output {
+        path: Some(out),
+        force: args.force,
+        source: file,
+    };
+    output.look()?;
+    let recovered = opened.save.recover_orphans();
+    let told = match recovered {
+        0 => words::nothing_to_recover(args.language).to_owned(),
+        _ => {
+            let bytes = opened.save.write().map_err(|problem| Refusal {
+                lines: Teller::new(file, None, args.language).lines(&[problem]),
+                code: REFUSED,
+            })?;
+            output.write(&bytes)?;
+            (opened.project, opened.problems) = opened.save.project();
+            words::recovered(recovered, args.language)
+        }
+    };
+    let name = named(if recovered == 0 { file } else { out });
+    standard(format!("{name}: {told}\n").as_bytes())?;
+    Ok(recovered > 0)
+}
