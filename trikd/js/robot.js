@@ -208,12 +208,15 @@ class Detector extends Camera {
     // Measures the colour in the middle of the picture and looks for it from then on.
     detect() {
         const before = String(this.getDetectParameters());
-        const end = native.clock() + DETECT_MS;
+        let end = native.clock() + DETECT_MS;
         let measured = [];
-        // Behind init() the sensor needs a while until it hears.
+        // Behind init() the sensor needs a while until it hears; then it has the whole time for its answer.
         let heard = false;
         while (native.clock() < end) {
-            heard = heard || native.cameraDetect(this._name);
+            if (!heard && native.cameraDetect(this._name)) {
+                heard = true;
+                end = native.clock() + DETECT_MS;
+            }
             kit.wait(DETECT_LOOK_MS);
             measured = this.getDetectParameters();
             if (String(measured) !== before)

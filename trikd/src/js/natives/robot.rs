@@ -288,11 +288,7 @@ fn cameras<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     )?;
     let w = with.clone();
     put(native, "cameraStop", move |ctx: Ctx<'js>, name: String| {
-        let stop = |camera: &Camera| {
-            camera.stop();
-            Ok(Vec::new())
-        };
-        w(&ctx, &name, &stop).map(drop)
+        w(&ctx, &name, &|camera| Ok(nothing(camera.stop()))).map(drop)
     })?;
     let w = with.clone();
     put(native, "cameraRead", move |ctx: Ctx<'js>, name: String| {
@@ -303,10 +299,8 @@ fn cameras<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
         native,
         "cameraDetect",
         move |ctx: Ctx<'js>, name: String| {
-            let heard = w(&ctx, &name, &|camera| {
-                camera.detect().map(|heard| vec![1.0; usize::from(heard)])
-            });
-            heard.map(|heard| !heard.is_empty())
+            let detect = |camera: &Camera| camera.detect().map(|heard| vec![1.0; heard.into()]);
+            w(&ctx, &name, &detect).map(|heard| !heard.is_empty())
         },
     )?;
     let w = with.clone();
