@@ -62,6 +62,8 @@ int main(int argc, char **argv)
 {
   int floor_left, floor_right, turn;
 
+  if (getenv("TRIK_TREE"))
+    tree = getenv("TRIK_TREE");
   if (argc > 1)
     tree = argv[1];
   left_motor = open_file("motors/left/value", O_WRONLY);

@@ -2,7 +2,7 @@
 const fs = require('fs');
 const { setTimeout: sleep } = require('timers/promises');
 
-const tree = process.argv[2] || '/trikfs';
+const tree = process.argv[2] || process.env.TRIK_TREE || '/trikfs';
 
 // Degrees of a wheel of 56 mm for 300 mm ahead, and for a quarter of a turn with wheels 155 mm apart.
 const side = 614;

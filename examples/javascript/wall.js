@@ -2,7 +2,7 @@
 const fs = require('fs');
 const { setTimeout: sleep } = require('timers/promises');
 
-const tree = process.argv[2] || '/trikfs';
+const tree = process.argv[2] || process.env.TRIK_TREE || '/trikfs';
 
 // Motors that stay open until the program ends come to rest then, also after Ctrl-C.
 const leftMotor = fs.openSync(tree + '/motors/left/value', 'r+');

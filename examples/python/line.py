@@ -5,7 +5,7 @@ import signal
 import sys
 import time
 
-TREE = sys.argv[1] if len(sys.argv) > 1 else '/trikfs'
+TREE = sys.argv[1] if len(sys.argv) > 1 else os.environ.get('TRIK_TREE', '/trikfs')
 
 # Motors that stay open until the program ends come to rest then, also after Ctrl-C.
 LEFT = os.open(TREE + '/motors/left/value', os.O_WRONLY)

@@ -5,7 +5,7 @@ import signal
 import sys
 import time
 
-TREE = sys.argv[1] if len(sys.argv) > 1 else '/trikfs'
+TREE = sys.argv[1] if len(sys.argv) > 1 else os.environ.get('TRIK_TREE', '/trikfs')
 
 # Degrees of a wheel of 56 mm for 300 mm ahead, and for a quarter of a turn with wheels 155 mm apart.
 SIDE = 614

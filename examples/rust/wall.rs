@@ -14,7 +14,8 @@ struct Robot {
 impl Robot {
     /// Motors that stay open until the program ends come to rest then, also after Ctrl-C.
     fn open() -> io::Result<Self> {
-        let tree = std::env::args().nth(1).unwrap_or("/trikfs".to_owned());
+        let tree = std::env::args().nth(1).or(std::env::var("TRIK_TREE").ok());
+        let tree = tree.unwrap_or("/trikfs".to_owned());
         let motor = |name: &str| {
             File::options()
                 .write(true)

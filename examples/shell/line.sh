@@ -1,7 +1,7 @@
 #!/bin/sh
 # Follows a dark line on a bright floor until Ctrl-C: sh line.sh [TREE]
 set -eu
-tree=${1:-/trikfs}
+tree=${1:-${TRIK_TREE:-/trikfs}}
 
 # Motors that stay open until the program ends come to rest then, also after Ctrl-C.
 exec 3>"$tree/motors/left/value" 4>"$tree/motors/right/value"

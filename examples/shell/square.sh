@@ -1,7 +1,7 @@
 #!/bin/sh
 # Drives a square of 30 cm by its encoders: sh square.sh [TREE]
 set -eu
-tree=${1:-/trikfs}
+tree=${1:-${TRIK_TREE:-/trikfs}}
 
 # Degrees of a wheel of 56 mm for 300 mm ahead, and for a quarter of a turn with wheels 155 mm apart.
 side=614

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Goes to the wall ahead and stops 20 cm before it: sh wall.sh [TREE]
 set -eu
-tree=${1:-/trikfs}
+tree=${1:-${TRIK_TREE:-/trikfs}}
 
 # Motors that stay open until the program ends come to rest then, also after Ctrl-C.
 exec 3>"$tree/motors/left/value" 4>"$tree/motors/right/value"

@@ -8,12 +8,14 @@ use std::sync::LazyLock;
 
 type Target = fn(&[u8]);
 
-const TARGETS: [(&str, Target); 5] = [
+const TARGETS: [(&str, Target); 7] = [
+    ("reader", lang::fuzz::reader),
+    ("expression", lang::fuzz::expression),
+    ("lowering", lang::fuzz::lowering),
     ("frames", trikd::fuzz::fuzz_frames),
     ("messages", trikd::fuzz::fuzz_messages),
     ("lines", trikd::fuzz::fuzz_lines),
     ("strangers", trikd::fuzz::fuzz_strangers),
-    ("lowering", lang::fuzz::lowering),
 ];
 
 static TARGET: LazyLock<Target> = LazyLock::new(|| {

@@ -459,7 +459,10 @@ impl Session<'_> {
             "\nIts virtual board, with pose, control/keys and faults, is {board}\n"
         ));
         if let (Some(trikd), Some(at)) = (&self.trikd, self.address) {
-            text.push_str(&trikd::welcome(at, &trikd.scripts));
+            let program = std::env::current_exe().ok();
+            let path = std::env::var_os("PATH");
+            let trik = trikd::own_command(program.as_deref(), path.as_deref());
+            text.push_str(&trikd::welcome(at, &trikd.scripts, &trik));
         }
         if let Some((_, at)) = &self.ev3dev {
             let at = at.display();

@@ -208,10 +208,12 @@ class Detector extends Camera {
     // Measures the colour in the middle of the picture and looks for it from then on.
     detect() {
         const before = String(this.getDetectParameters());
-        native.cameraDetect(this._name);
         const end = native.clock() + DETECT_MS;
         let measured = [];
+        // Behind init() the sensor needs a while until it hears.
+        let heard = false;
         while (native.clock() < end) {
+            heard = heard || native.cameraDetect(this._name);
             kit.wait(DETECT_LOOK_MS);
             measured = this.getDetectParameters();
             if (String(measured) !== before)

@@ -134,12 +134,15 @@ impl Ports {
 
 /// Makes a directory that is missing.
 fn directory(path: &Path, option: &str) -> Result<(), String> {
-    std::fs::create_dir_all(path).map_err(|error| {
-        format!(
-            "{}: {error}: name another directory with {option}",
-            path.display()
-        )
-    })
+    std::fs::create_dir_all(path).map_err(|error| unusable(path, &error, option))
+}
+
+/// Why nothing can be put there, and what to do.
+fn unusable(path: &Path, error: &std::io::Error, option: &str) -> String {
+    format!(
+        "{}: {error}: name another directory with {option}",
+        path.display()
+    )
 }
 
 /// The user of programs, and whether they may write into their folder.
@@ -251,12 +254,11 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), String> {
     directory(&settings.scripts, "--scripts")?;
     directory(&settings.state, "--state")?;
     directory(&settings.run, "--run")?;
-    program::child::install(&settings.run)
-        .map_err(|error| format!("{}: {error}", settings.run.display()))?;
     let python = settings.run.join("python");
-    program::python::install(&python).map_err(|error| format!("{}: {error}", python.display()))?;
-    let listener = status::listen(&settings.run)
-        .map_err(|error| format!("{}: {error}", settings.run.display()))?;
+    let unusable = |path: &Path, error| unusable(path, &error, "--run");
+    program::child::install(&settings.run).map_err(|error| unusable(&settings.run, error))?;
+    program::python::install(&python).map_err(|error| unusable(&python, error))?;
+    let listener = status::listen(&settings.run).map_err(|error| unusable(&settings.run, error))?;
     let owner = owner(&settings)?;
     // Whoever loses its parent becomes a child of this process, and cannot outlive its program.
     program::kill::adopt_orphans()?;

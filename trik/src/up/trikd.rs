@@ -8,7 +8,7 @@ use super::companion::Companion;
 use crate::cli::UpArgs;
 use crate::place::Place;
 use nix::unistd::{User, geteuid};
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
 
@@ -144,20 +144,32 @@ fn ports(first: u16) -> Result<impl Iterator<Item = String>, String> {
     }))
 }
 
-/// What a person is told: where clients connect, and where programs are.
-pub(super) fn welcome(at: SocketAddr, scripts: &Path) -> String {
-    let target = if at.port() == CONTROL_PORT {
-        format!(
-            "TRIK Studio: connect to {}; in a terminal: trik run FILE",
-            at.ip()
-        )
-    } else {
-        format!("In a terminal: trik run --robot {at} FILE; TRIK Studio needs port {CONTROL_PORT}")
+/// What a person is told: where clients connect, and where programs are; `trik` is how this program is called.
+pub(super) fn welcome(at: SocketAddr, scripts: &Path, trik: &str) -> String {
+    let robot = match at.ip() == Ipv4Addr::LOCALHOST && at.port() == CONTROL_PORT {
+        true => String::new(),
+        false if at.port() == CONTROL_PORT => format!("--robot {} ", at.ip()),
+        false => format!("--robot {at} "),
+    };
+    let studio = match at.port() {
+        CONTROL_PORT => format!("TRIK Studio: connect to {}", at.ip()),
+        _ => format!("TRIK Studio needs port {CONTROL_PORT}"),
     };
     format!(
-        "\n{target}\nUploaded programs are in {}\n",
+        "\nIn a terminal: {trik} run {robot}FILE\n{studio}\nUploaded programs are in {}\n",
         scripts.display()
     )
+}
+
+/// How a person calls this program: its name if the shell finds one by it, else its path.
+pub(super) fn own_command(program: Option<&Path>, path: Option<&OsStr>) -> String {
+    let name = Path::new("trik");
+    let is_found =
+        path.is_some_and(|path| std::env::split_paths(path).any(|dir| dir.join(name).is_file()));
+    match program {
+        Some(program) if !is_found => program.display().to_string(),
+        _ => name.display().to_string(),
+    }
 }
 
 #[cfg(test)]
@@ -179,15 +191,39 @@ mod tests {
         assert_eq!(own_address(1).to_string(), "127.0.0.1");
         assert_eq!(own_address(32).to_string(), "127.0.0.32");
         assert_eq!(reachable("::".parse().unwrap()).to_string(), "127.0.0.1");
-        let text = welcome("127.0.0.2:8888".parse().unwrap(), Path::new("/s"));
+        let told = |at: &str| welcome(at.parse().unwrap(), Path::new("/s"), "trik");
         assert_eq!(
-            text,
-            "\nTRIK Studio: connect to 127.0.0.2; in a terminal: trik run FILE\nUploaded programs are in /s\n"
+            told("127.0.0.1:8888"),
+            "\nIn a terminal: trik run FILE\nTRIK Studio: connect to 127.0.0.1\nUploaded programs are in /s\n"
         );
-        let text = welcome("127.0.0.1:4000".parse().unwrap(), Path::new("/s"));
+        // Without it `trik run` asks which of several robots is meant.
+        let second = told("127.0.0.2:8888");
         assert!(
-            text.contains("trik run --robot 127.0.0.1:4000 FILE"),
-            "{text}"
+            second.contains("trik run --robot 127.0.0.2 FILE\nTRIK Studio: connect to 127.0.0.2"),
+            "{second}"
         );
+        let other = told("127.0.0.1:4000");
+        assert!(
+            other.contains("trik run --robot 127.0.0.1:4000 FILE\nTRIK Studio needs port 8888"),
+            "{other}"
+        );
+    }
+
+    #[test]
+    fn a_program_that_the_shell_does_not_find_is_called_by_its_path() {
+        let built = Some(Path::new("/src/target/release/trik"));
+        let nowhere = OsStr::new("/nowhere:/nor/here");
+        assert_eq!(
+            own_command(built, Some(nowhere)),
+            "/src/target/release/trik"
+        );
+        assert_eq!(own_command(built, None), "/src/target/release/trik");
+        let dir = std::env::temp_dir().join(format!("trik-own-command-{}", std::process::id()));
+        std::fs::create_dir_all(&dir).unwrap();
+        std::fs::write(dir.join("trik"), "").unwrap();
+        let found = own_command(built, Some(dir.as_os_str()));
+        std::fs::remove_dir_all(&dir).unwrap();
+        assert_eq!(found, "trik");
+        assert_eq!(own_command(None, None), "trik");
     }
 }

@@ -191,6 +191,25 @@ fn programs_in_three_languages_drive_the_robot_and_talk_here() {
 }
 
 #[test]
+fn a_sensor_of_the_camera_that_starts_slowly_fails_no_program() {
+    let Some(one) = Reachable::new() else { return };
+    let script = one.robot.devices.join("etc/init.d/line-sensor-ov7670");
+    let text = std::fs::read_to_string(&script).expect("the script of the sensor");
+    let slow = text.replacen("start)\n", "start)\n    sleep 1\n", 1);
+    assert_ne!(text, slow);
+    std::fs::write(&script, slow).expect("a slower script");
+    let (js, py) = (
+        "var s = brick.lineSensor('video1'); s.init(true); print(s.read().length); s.stop(); script.quit();",
+        "s = brick.lineSensor('video1')\ns.init(True)\nprint(len(s.read()))\ns.stop()\n",
+    );
+    for (name, text) in [("see.js", js), ("see.py", py)] {
+        let output = one.run(name, text);
+        let said = (output.stdout.as_str(), output.stderr.as_str());
+        assert_eq!(said, ("3\n", ""), "{name}");
+    }
+}
+
+#[test]
 fn a_program_that_fails_gives_its_reason_and_the_exit_code_1() {
     let Some(one) = Reachable::new() else { return };
     for (name, text, reasons) in [

@@ -1,6 +1,7 @@
 //! What a program senses.
 
 use crate::tree::{Access, Node, Tree};
+use std::cell::Cell;
 use std::io;
 use std::rc::Rc;
 
@@ -226,6 +227,13 @@ pub struct Camera {
     hsv_read: Rc<Node>,
     hsv_write: Rc<Node>,
     video_out: Rc<Node>,
+    /// Whether the picture shall be shown, until the sensor has been told.
+    untold: Rc<Cell<Option<bool>>>,
+}
+
+/// The program of the sensor takes no lines: it was not started, or it has no pipe yet.
+fn is_absent(error: &io::Error) -> bool {
+    error.raw_os_error() == Some(libc::ENODEV)
 }
 
 impl Camera {
@@ -237,10 +245,11 @@ impl Camera {
             hsv_read: node("hsv", Access::ReadNow),
             hsv_write: node("hsv", Access::Write),
             video_out: node("video_out", Access::Write),
+            untold: Rc::default(),
         }
     }
 
-    /// Starts the sensor; its first sample takes up to 20 s.
+    /// Starts the sensor; its first sample takes up to 20 s, and lines for it as long.
     ///
     /// # Errors
     /// Those of the tree.
@@ -251,15 +260,33 @@ impl Camera {
             _ => {}
         }
         let _ = self.hsv_read.bytes(&mut [0; 1]);
-        self.video_out.write(if shows { "1\n" } else { "0\n" })
+        self.untold.set(Some(shows));
+        self.tell()
     }
 
-    /// Measures the colour in the middle of the picture and looks for it.
+    /// Says whether to show the picture, if the sensor can hear it by now.
+    fn tell(&self) -> io::Result<()> {
+        let Some(shows) = self.untold.get() else {
+            return Ok(());
+        };
+        match self.video_out.write(if shows { "1\n" } else { "0\n" }) {
+            Err(error) if is_absent(&error) => Ok(()),
+            done => {
+                self.untold.set(None);
+                done
+            }
+        }
+    }
+
+    /// Measures the colour in the middle of the picture and looks for it. False: the sensor does not run yet.
     ///
     /// # Errors
     /// Those of the tree.
-    pub fn detect(&self) -> io::Result<()> {
-        self.detect.write("1\n")
+    pub fn detect(&self) -> io::Result<bool> {
+        match self.detect.write("1\n") {
+            Err(error) if is_absent(&error) => Ok(false),
+            done => done.map(|()| true),
+        }
     }
 
     /// Hue, saturation and value that were measured, each followed by its tolerance.
@@ -289,6 +316,7 @@ impl Camera {
     /// # Errors
     /// Those of the tree; EAGAIN before the first picture.
     pub fn read(&self) -> io::Result<Vec<f64>> {
+        self.tell()?;
         let mut numbers = vec![0.0; 9];
         let count = self.value.numbers(&mut numbers)?;
         numbers.truncate(count);
@@ -297,6 +325,7 @@ impl Camera {
 
     /// Stops the sensor.
     pub fn stop(&self) {
+        self.untold.set(None);
         for node in [&self.value, &self.hsv_read] {
             node.close();
         }

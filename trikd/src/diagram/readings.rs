@@ -130,7 +130,8 @@ impl<'a> Readings<'a> {
 
     pub(super) fn detect(&mut self, mode: &str) -> io::Result<()> {
         match self.camera(mode) {
-            Some(camera) => camera.detect(),
+            Some(camera) if camera.detect()? => Ok(()),
+            Some(_) => Err(io::Error::other("the sensor does not run yet")),
             None => Err(io::Error::other("the robot has no such camera")),
         }
     }

@@ -363,17 +363,39 @@ class Camera:
         self._name = name
         self._file = _File('camera/%s/value' % name, os.O_RDONLY | os.O_NONBLOCK)
         self._colour = _File('camera/%s/hsv' % name, os.O_RDONLY | os.O_NONBLOCK)
+        self._untold = None
 
     def init(self, show=False):
         # The sensor runs while its files are open.
+        self._untold = None
         self.read()
-        _file('camera/%s/video_out' % self._name, os.O_WRONLY).write('%d\n' % bool(show))
+        self._untold = bool(show)
+        self._tell()
+
+    def _write(self, name, text):
+        """Whether the sensor has heard it: it runs a while after init()."""
+        try:
+            _file('camera/%s/%s' % (self._name, name), os.O_WRONLY).write(text)
+        except OSError as error:
+            if error.errno != errno.ENODEV:
+                raise
+            return False
+        return True
+
+    def _tell(self):
+        if self._untold is not None and self._write('video_out', '%d\n' % self._untold):
+            self._untold = None
 
     def detect(self):
         self.getDetectParameters()
-        _file('camera/%s/detect' % self._name, os.O_WRONLY).write('1\n')
+        end = time.monotonic() + 3
+        while not self._write('detect', '1\n'):
+            if time.monotonic() > end:
+                raise OSError(errno.ENODEV, 'the sensor does not run: was init() called before?', self._name)
+            time.sleep(0.02)
 
     def read(self, row=None, column=None):
+        self._tell()
         try:
             numbers = self._file.numbers()
         except BlockingIOError:
@@ -392,6 +414,7 @@ class Camera:
             return []  # Nothing was detected yet.
 
     def stop(self):
+        self._untold = None
         self._file.close()
         self._colour.close()
 

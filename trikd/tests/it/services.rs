@@ -144,6 +144,30 @@ fn a_port_that_is_taken_is_named_with_what_to_do_and_nothing_is_started() {
     assert_ne!(robot.port("mailbox").to_string(), number);
 }
 
+#[test]
+fn a_folder_that_cannot_be_used_is_named_with_its_option() {
+    for (in_the_way, option) in [
+        ("scripts", "--scripts"),
+        ("state", "--state"),
+        ("run", "--run"),
+        ("run/python", "--run"),
+        ("run/status.sock/x", "--run"),
+    ] {
+        let home = small_tree();
+        std::fs::create_dir_all(home.path(in_the_way).parent().unwrap()).unwrap();
+        home.file(in_the_way, "");
+        let output = command(&home, &home.path("tree"), &[]).output().unwrap();
+        let text = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(1));
+        assert!(
+            text.trim_end()
+                .ends_with(&format!("name another directory with {option}")),
+            "{in_the_way}: {text}"
+        );
+        assert!(output.stdout.is_empty());
+    }
+}
+
 fn taken_tree() -> std::path::PathBuf {
     "/nonexistent".into()
 }

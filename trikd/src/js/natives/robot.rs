@@ -300,7 +300,10 @@ fn cameras<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
         native,
         "cameraDetect",
         move |ctx: Ctx<'js>, name: String| {
-            w(&ctx, &name, &|camera| camera.detect().map(nothing)).map(drop)
+            let heard = w(&ctx, &name, &|camera| {
+                camera.detect().map(|heard| vec![1.0; usize::from(heard)])
+            });
+            heard.map(|heard| !heard.is_empty())
         },
     )?;
     let w = with.clone();
