@@ -251,6 +251,14 @@ impl Newest {
         Ok(())
     }
 
+    /// After a write: what was sampled before it is not what the device says now, and the clock may be late.
+    pub fn renew(&self, node: &Arc<Node>) {
+        let by_clock = matches!(node.description.pace, Pace::Every { .. });
+        if by_clock && node.regulation().is_none() && !node.is_retired() {
+            self.sample(node);
+        }
+    }
+
     /// The newest sample. None: there is none yet.
     pub fn get(&self, tuple: &mut Vec<u8>) -> Result<Option<u32>, Error> {
         let Some(node) = self.node.upgrade() else {

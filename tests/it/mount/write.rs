@@ -191,3 +191,24 @@ os.close(fd)
     );
     assert!(m.stat("motor", "writes") >= 2.0);
 }
+
+#[test]
+fn who_reads_after_a_write_gets_nothing_from_before_it() {
+    let board = Board::new();
+    board.file("position", "abcd");
+    let Some(m) = mount_on(
+        board,
+        "trikfs = { e = { src = '$DIR/position', input_tuple_size = 4, output_tuple_size = 4, format = 'u8 a, u8 b, u8 c, u8 d',
+  poll_ms = 3600000,
+} }",
+    ) else {
+        return;
+    };
+    harness::eventually("the first sample", || m.stat("e", "samples") > 0.0);
+    assert_eq!(m.text("e/value"), "97 98 99 100\n");
+    m.sh("echo 1 2 3 4 > e/value");
+    assert_eq!(m.text("e/value"), "1 2 3 4\n");
+    m.sh("printf wxyz > e/device");
+    assert_eq!(m.text("e/value"), "119 120 121 122\n");
+    assert_eq!(m.read("e/bin_data").unwrap(), b"wxyz");
+}

@@ -24,8 +24,6 @@ pub fn square() -> Vec<u8> {
     let begin = sketch.block("Function", &[("Body", "side = 0")]);
     let sides = sketch.block("Loop", &[("Iterations", "2")]);
     let clear = sketch.block("TrikV62ClearEncoder", &[("Ports", "E3, E4")]);
-    // The tree shows that an encoder was cleared with its next sample.
-    let settle = sketch.block("Timer", &[("Delay", "100")]);
     let both = |sketch: &mut Sketch, kind: &str, ports: &str| {
         sketch.block(kind, &[("Ports", ports), ("Power", "60")])
     };
@@ -43,9 +41,7 @@ pub fn square() -> Vec<u8> {
     let end = sketch.block("FinalNode", &[]);
     sketch.chain(&[start, begin, sides]);
     sketch.guarded(sides, clear, "iteration");
-    sketch.chain(&[
-        clear, settle, forward, far, turn, turned, stop, count, sides,
-    ]);
+    sketch.chain(&[clear, forward, far, turn, turned, stop, count, sides]);
     sketch.link(sides, end);
     sketch.qrs().expect("a save")
 }

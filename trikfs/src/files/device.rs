@@ -170,6 +170,7 @@ impl OpenFile for DeviceFile {
         let turn = self.node.take_turn();
         let taken = lock_patiently(writer).write(data, !request.nonblocking)?;
         drop(turn);
+        self.node.newest.renew(&self.node);
         self.node.stats.writes.add(1);
         Ok(Outcome::Done(taken))
     }

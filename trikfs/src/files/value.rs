@@ -212,6 +212,7 @@ impl OpenFile for ValueFile {
         let turn = self.node.take_turn();
         lock_patiently(writer).write_whole(&tuple, !request.nonblocking)?;
         drop(turn);
+        self.node.newest.renew(&self.node);
         self.node.wrote(tuple);
         self.node.stats.writes.add(1);
         Ok(Outcome::Done(data.len()))
