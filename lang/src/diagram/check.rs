@@ -205,10 +205,10 @@ fn expressions(project: &Project, program: &Program, flow: &Flow) -> Vec<Problem
             });
         }
     }
-    let unknown = spread(unknown, &texts);
     let mut given = given(program, flow, &texts);
     let parameters = project.diagrams.iter().flat_map(|one| &one.parameters);
     given.extend(parameters.map(|parameter| Rc::from(&*parameter.name)));
+    let unknown = spread(unknown, &texts);
     let mut problems = Vec::new();
     for &node in &flow.order {
         sources(program, node, &mut |index| {
@@ -240,30 +240,6 @@ fn expressions(project: &Project, program: &Program, flow: &Flow) -> Vec<Problem
         });
     }
     problems
-}
-
-/// Names whose values nobody knows beforehand, and those that get their values from them.
-fn spread(unknown: HashSet<&str>, texts: &HashMap<u32, Source>) -> HashSet<String> {
-    let mut all: HashSet<String> = unknown.into_iter().map(str::to_owned).collect();
-    for _ in 0..ROUNDS {
-        let before = all.len();
-        for source in texts.values() {
-            if !all.iter().any(|name| source.text().contains(name.as_str())) {
-                continue;
-            }
-            for node in &source.tree().nodes {
-                if let expr::tree::Node::Assign { target, .. } = node
-                    && let expr::tree::Node::Name(name) = source.tree().node(*target)
-                {
-                    all.insert(name.to_string());
-                }
-            }
-        }
-        if all.len() == before || all.len() > NAMES {
-            break;
-        }
-    }
-    all
 }
 
 /// Names that get a value anywhere: in a text, or by a block.
@@ -318,6 +294,8 @@ fn without_value(tree: &Tree, names: &Names, given: &HashSet<Rc<str>>) -> Vec<Pr
             found.push(Fault::new(what, tree.place(id)).problem());
         }
     });
+    found.sort_by_key(|problem| problem.place.position);
+    found.truncate(limits::EXPRESSION_PROBLEMS_MAX);
     found
 }
 
@@ -328,6 +306,30 @@ fn each_node(tree: &Tree, seen: &mut dyn FnMut(&Tree, &Part, Id)) {
         seen(tree, tree.node(id), id);
         tree.children(id, |child| left.push(child));
     }
+}
+
+/// Names whose values nobody knows beforehand, and those that get their values from them.
+fn spread(unknown: HashSet<&str>, texts: &HashMap<u32, Source>) -> HashSet<String> {
+    let mut all: HashSet<String> = unknown.into_iter().map(str::to_owned).collect();
+    for _ in 0..ROUNDS {
+        let before = all.len();
+        for source in texts.values() {
+            if !all.iter().any(|name| source.text().contains(name.as_str())) {
+                continue;
+            }
+            for node in &source.tree().nodes {
+                if let expr::tree::Node::Assign { target, .. } = node
+                    && let expr::tree::Node::Name(name) = source.tree().node(*target)
+                {
+                    all.insert(name.to_string());
+                }
+            }
+        }
+        if all.len() == before || all.len() > NAMES {
+            break;
+        }
+    }
+    all
 }
 
 /// Names that a block gives a value without an expression.

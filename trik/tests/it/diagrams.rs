@@ -207,7 +207,7 @@ fn a_diagram_is_shown_as_sentences_and_as_a_picture() {
     let done = sketch.block("FinalNode", &[]);
     sketch.chain(&[inner, wait, done]);
     sketch.draw_on(sketch.main());
-    let say = sketch.block("TrikSay", &[("Text", "<&\u{1b}[2J")]);
+    let say = sketch.block("TrikSay", &[("Text", "<&\u{9b}2J")]);
     let call = sketch.call(sheet, &[]);
     let end = sketch.block("FinalNode", &[]);
     sketch.chain(&[start, say, call, end]);
@@ -215,7 +215,7 @@ fn a_diagram_is_shown_as_sentences_and_as_a_picture() {
     let text = trik(&board, &["show", "two.qrs"]);
     assert_eq!(text.code(), 0, "{}", text.stderr);
     assert!(text.stdout.contains("1234") && text.stdout.contains("Say"));
-    assert!(!text.stdout.contains('\x1b'), "{}", text.stdout);
+    assert!(!text.stdout.contains('\u{9b}'), "{}", text.stdout);
     assert_eq!(
         trik(&board, &["show", "--text", "two.qrs"]).stdout,
         text.stdout

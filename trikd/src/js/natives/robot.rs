@@ -255,6 +255,11 @@ fn or_zeros(numbers: Vec<f64>) -> Vec<f64> {
     }
 }
 
+fn stopped(camera: &Camera) -> io::Result<Vec<f64>> {
+    camera.stop();
+    Ok(Vec::new())
+}
+
 fn cameras<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     let o = own.clone();
     put(native, "hasCamera", move |name: String| {
@@ -288,7 +293,7 @@ fn cameras<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     )?;
     let w = with.clone();
     put(native, "cameraStop", move |ctx: Ctx<'js>, name: String| {
-        w(&ctx, &name, &|camera| Ok(nothing(camera.stop()))).map(drop)
+        w(&ctx, &name, &stopped).map(drop)
     })?;
     let w = with.clone();
     put(native, "cameraRead", move |ctx: Ctx<'js>, name: String| {
