@@ -114,7 +114,10 @@ fn attribute_refusal(error: &AttrError, content: &str, length: usize) -> Words {
 
 /// Whether a character cannot be in a name: space, and the signs of XML.
 fn is_sign(c: char) -> bool {
-    c <= ' ' || "<>/=&'\"?!".contains(c)
+    matches!(
+        c,
+        '\0'..=' ' | '<' | '>' | '/' | '=' | '&' | '\'' | '"' | '?' | '!'
+    )
 }
 
 /// A name as it stands, if it is one.
@@ -162,12 +165,9 @@ impl<'a> Builder<'a> {
                 return Err(words::too_many_attributes());
             }
             let key = name(found.key.0)?;
-            if found.value.contains('<') {
-                return Err(words::angle_in_value(key));
-            }
             let value = match found.value {
-                Cow::Borrowed(value) => plain(value)?,
-                Cow::Owned(value) => Cow::Owned(plain(&value)?.into_owned()),
+                Cow::Borrowed(value) => plain(key, value)?,
+                Cow::Owned(value) => Cow::Owned(plain(key, &value)?.into_owned()),
             };
             attributes.push((Cow::Borrowed(key), value));
         }
@@ -227,12 +227,15 @@ fn lines(text: Cow<'_, str>) -> Cow<'_, str> {
     }
 }
 
-/// A value with its references replaced.
-fn plain(value: &str) -> Result<Cow<'_, str>, Words> {
+/// The value of an attribute with its references replaced.
+fn plain<'a>(key: &str, value: &'a str) -> Result<Cow<'a, str>, Words> {
     // Without a branch for each byte, so that many are looked at together.
-    let is_special = |found: bool, &byte: &u8| found | (byte == b'&') | (byte == b'\r');
+    let is_special = |found: bool, &byte: &u8| found | matches!(byte, b'&' | b'\r' | b'<');
     if !value.as_bytes().iter().fold(false, is_special) {
         return Ok(Cow::Borrowed(value));
+    }
+    if value.contains('<') {
+        return Err(words::angle_in_value(key));
     }
     let mut plain = String::with_capacity(value.len());
     let mut rest = value;
