@@ -328,6 +328,8 @@ impl Client {
             match self.stream.read(&mut piece) {
                 Ok(0) => return None,
                 Ok(size) => self.buffer.extend_from_slice(&piece[..size]),
+                // A wait with a timeout is not taken up again by the kernel when somebody stops and continues us.
+                Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
                 Err(error) if error.kind() == std::io::ErrorKind::ConnectionReset => return None,
                 Err(error) => panic!("nothing came: {error}"),
             }
@@ -340,6 +342,7 @@ impl Client {
         while self.buffer.len() < count {
             match self.stream.read(&mut piece) {
                 Ok(size) if size > 0 => self.buffer.extend_from_slice(&piece[..size]),
+                Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
                 _ => break,
             }
         }
