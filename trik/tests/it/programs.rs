@@ -463,8 +463,11 @@ fn a_trikd_that_hangs_does_not_hold_up_the_end_for_ever() {
             return;
         };
         let (guardian, serving) = one.trikd();
-        processes::signal(serving, Signal::SIGSTOP);
-        eventually("a standstill", || processes::is_stopped(serving));
+        // The guardian would not suffer a serving process that stands still.
+        for process in [guardian, serving] {
+            processes::signal(process, Signal::SIGSTOP);
+            eventually("a standstill", || processes::is_stopped(process));
+        }
         if signals > 1 {
             processes::signal(one.robot.pid(), Signal::SIGTERM);
         }
