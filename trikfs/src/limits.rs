@@ -49,6 +49,8 @@ pub const LOG_BYTES: usize = 64 << 10;
 pub const RECORDING_BYTES_MAX: usize = 16 << 20;
 /// Milliseconds between two looks whether an open source is still at its path.
 pub const PRESENCE_MS: u64 = 500;
+/// Milliseconds that a write to a sampled node waits for the sample behind it.
+pub const RENEWAL_MS: u64 = 100;
 /// Milliseconds between attempts to open a lost device again.
 pub const REOPEN_MS: u64 = 250;
 /// Bytes of Lua memory that prepared states may hold together, beyond the first.

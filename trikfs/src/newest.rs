@@ -20,6 +20,7 @@ use crate::state_reader::StateReader;
 use crate::transport::RequestId;
 use config::description::Pace;
 use config::format::FieldKind;
+pub use pace::renew;
 use pace::{Ageing, Listening, Sampling, check_age, too_old};
 use page::Page;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -249,14 +250,6 @@ impl Newest {
             self.sample(&node);
         }
         Ok(())
-    }
-
-    /// After a write: what was sampled before it is not what the device says now, and the clock may be late.
-    pub fn renew(&self, node: &Arc<Node>) {
-        let by_clock = matches!(node.description.pace, Pace::Every { .. });
-        if by_clock && node.regulation().is_none() && !node.is_retired() {
-            self.sample(node);
-        }
     }
 
     /// The newest sample. None: there is none yet.

@@ -3,6 +3,7 @@
 use crate::{mount, mount_on};
 use harness::Board;
 use std::io::Read;
+use std::os::unix::fs::FileExt;
 
 const MOTOR: &str = "trikfs = { motor = {
   src = '$DIR/motor', input_tuple_size = 2, output_tuple_size = 2, format = 'i8 left, u8 right',
@@ -206,8 +207,16 @@ fn who_reads_after_a_write_gets_nothing_from_before_it() {
     };
     harness::eventually("the first sample", || m.stat("e", "samples") > 0.0);
     assert_eq!(m.text("e/value"), "97 98 99 100\n");
-    m.sh("echo 1 2 3 4 > e/value");
-    assert_eq!(m.text("e/value"), "1 2 3 4\n");
+    // A small tuple: its reads come from the page cache.
+    let cached = m.open("e/bin_data");
+    let mut seen = [0; 4];
+    for (told, bytes) in [("1 2 3 4", [1, 2, 3, 4]), ("5 6 7 8", [5, 6, 7, 8])] {
+        cached.read_exact_at(&mut seen, 0).unwrap();
+        m.sh(&format!("echo {told} > e/value"));
+        assert_eq!(m.text("e/value"), format!("{told}\n"));
+        cached.read_exact_at(&mut seen, 0).unwrap();
+        assert_eq!(seen, bytes);
+    }
     m.sh("printf wxyz > e/device");
     assert_eq!(m.text("e/value"), "119 120 121 122\n");
     assert_eq!(m.read("e/bin_data").unwrap(), b"wxyz");

@@ -10,6 +10,7 @@ use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::{Ready, lock};
 use crate::limits;
+use crate::newest;
 use crate::node::{Feed, Node};
 use crate::reader::Reader;
 use crate::state_reader::StateReader;
@@ -170,7 +171,7 @@ impl OpenFile for DeviceFile {
         let turn = self.node.take_turn();
         let taken = lock_patiently(writer).write(data, !request.nonblocking)?;
         drop(turn);
-        self.node.newest.renew(&self.node);
+        newest::renew(&self.node);
         self.node.stats.writes.add(1);
         Ok(Outcome::Done(taken))
     }

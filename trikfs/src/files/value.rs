@@ -11,7 +11,7 @@ use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::{Ready, lock};
 use crate::limits;
-use crate::newest::Waiter;
+use crate::newest::{self, Waiter};
 use crate::node::Node;
 use crate::text;
 use crate::transport::{Access, Answer, Caller, Outcome, PollHandle, RequestId, Transfer};
@@ -212,7 +212,7 @@ impl OpenFile for ValueFile {
         let turn = self.node.take_turn();
         lock_patiently(writer).write_whole(&tuple, !request.nonblocking)?;
         drop(turn);
-        self.node.newest.renew(&self.node);
+        newest::renew(&self.node);
         self.node.wrote(tuple);
         self.node.stats.writes.add(1);
         Ok(Outcome::Done(data.len()))

@@ -8,7 +8,8 @@ use crate::events::{Due, lock};
 use crate::limits;
 use crate::node::Node;
 use config::description::Pace;
-use std::sync::Weak;
+use std::sync::mpsc::{SyncSender, sync_channel};
+use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
 
 /// The age from which a sample taken in the background is no longer shown. None: it is never too old.
@@ -61,6 +62,42 @@ impl Due for Sampling {
         let origin = node.engine.schedule.origin();
         Some(next_on_grid(origin, period, Instant::now()))
     }
+}
+
+/// One sample out of turn.
+struct Renewal {
+    node: Weak<Node>,
+    done: SyncSender<()>,
+}
+
+impl Due for Renewal {
+    fn due(&self) -> Option<Instant> {
+        let node = self.node.upgrade()?;
+        if !node.is_retired() {
+            node.newest.sample(&node);
+        }
+        // Whoever waited may have given up.
+        let _ = self.done.try_send(());
+        None
+    }
+}
+
+/// After a write: what the clock had sampled before is not what the device says now. Waits for a sample of the thread that
+/// takes the others, which alone may wait for the page cache, but not for ever: that thread may be busy with a device that
+/// hangs.
+pub fn renew(node: &Arc<Node>) {
+    let by_clock = matches!(node.description.pace, Pace::Every { .. });
+    if !by_clock || node.regulation().is_some() || node.is_retired() {
+        return;
+    }
+    let (done, sampled) = sync_channel(1);
+    let renewal: Arc<dyn Due> = Arc::new(Renewal {
+        node: Arc::downgrade(node),
+        done,
+    });
+    node.sampling_schedule()
+        .at(Instant::now(), Arc::downgrade(&renewal));
+    let _ = sampled.recv_timeout(Duration::from_millis(limits::RENEWAL_MS));
 }
 
 /// Takes a value out of the page cache when it has become too old although the sampler still waits for the device.
