@@ -41,6 +41,8 @@ struct Running {
     name: &'static str,
     out: Out,
     input: In,
+    /// For the colour in the middle; the answer was not told yet.
+    is_asked: bool,
     due_s: f64,
     ranges: Hsv,
     grid: [i32; 2],
@@ -92,6 +94,7 @@ impl Camera {
             name,
             out,
             input,
+            is_asked: false,
             due_s: 0.0,
             ranges: if name == "object" { RED } else { BLACK },
             grid: [MAX_GRID; 2],
@@ -147,14 +150,16 @@ impl Running {
     fn run(&mut self, shared: &Shared, now_s: f64) -> f64 {
         let is_read = self.out.reader() != Reader::None;
         for line in self.input.lines() {
-            if self.order(&line) && is_read && self.name != PICTURES {
-                let ranges = picture(shared).detect().map(|part| part.to_string());
-                self.out
-                    .send(format!("hsv: {}\n", ranges.join(" ")).as_bytes());
-            }
+            self.is_asked |= self.order(&line) && self.name != PICTURES;
         }
+        // A program waits with its answer for who opens the pipe.
         if !is_read {
             return f64::INFINITY;
+        }
+        if std::mem::take(&mut self.is_asked) {
+            let ranges = picture(shared).detect().map(|part| part.to_string());
+            self.out
+                .send(format!("hsv: {}\n", ranges.join(" ")).as_bytes());
         }
         if self.due_s <= now_s {
             let slower_s = self.frame(shared);

@@ -298,6 +298,35 @@ fn there_are_no_atomics_that_the_controller_lacks() {
 }
 
 #[test]
+fn what_is_pure_knows_no_files_network_threads_or_clocks() {
+    let mut complaints = Vec::new();
+    for source in sources().iter().filter(|source| !source.is_test()) {
+        let is_pure = ["lang/src/", "screen/src/", "filters/src/"]
+            .iter()
+            .any(|part| source.path.starts_with(part));
+        // Reads vectors, for tests.
+        if !is_pure || source.path == "filters/src/golden.rs" {
+            continue;
+        }
+        for (number, line) in source.code() {
+            if [
+                "std::fs",
+                "std::net",
+                "std::thread",
+                "std::time",
+                "std::process",
+            ]
+            .iter()
+            .any(|part| line.contains(part))
+            {
+                complaints.push(format!("{}:{number}: {}", source.path, line.trim()));
+            }
+        }
+    }
+    none(&complaints);
+}
+
+#[test]
 fn only_the_cross_build_names_its_target() {
     // In two pieces, so that this file does not name it either.
     let name = ["arm", "v5te"].concat();

@@ -4,7 +4,7 @@
 //! be reached.
 
 use crate::remote::{self, Target};
-use crate::{diagrams, fault, limits, manual, up};
+use crate::{diagrams, fault, limits, up};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use lang::diagram::generate::Language;
 use lang::problem::Tongue;
@@ -13,6 +13,7 @@ use std::io::{self, Write};
 use std::net::IpAddr;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use trikd::manual;
 
 /// A whole virtual TRIK robot in one command, for a person at a PC.
 #[derive(Parser)]

@@ -2,13 +2,12 @@
 //!
 //! `cli` has the words, `up` starts the virtual board and the tree over it, `fault` breaks devices of a running board,
 //! `place` knows where the robots of a user are, `remote` brings programs to robots, `diagrams` shows, checks and translates
-//! diagrams without a robot, `manual` prints man pages. Nothing of this runs on the controller.
+//! diagrams without a robot. Nothing of this runs on the controller.
 
 pub mod cli;
 mod diagrams;
 mod fault;
 pub mod limits;
-mod manual;
 pub mod place;
 mod remote;
 mod up;

@@ -10,10 +10,11 @@ mod watch;
 use crate::brick::Brick;
 use crate::engine::{Engine, Outcome, Start};
 use crate::host::{Host, Incoming};
-use crate::limits;
+use crate::{limits, settings};
 use lang::diagram::lower::{World, lower};
 use lang::diagram::machine::{Machine, Options, STEP_MS, Status};
 use lang::diagram::read;
+use lang::expr::Compat;
 use lang::problem::{Problem, Severity, Tongue};
 use nix::poll::{PollFd, PollFlags, ppoll};
 use nix::sys::time::TimeSpec;
@@ -28,12 +29,19 @@ use watch::Watch;
 #[derive(Debug)]
 pub struct Diagram {
     tongue: Tongue,
+    compat: Compat,
 }
 
-/// The engine of this build, with messages in the language that the environment names.
+/// The engine of this build, with the language of messages and the rules that the environment names.
 pub fn engine() -> impl Engine {
+    let named = |name: &str| std::env::var(name).unwrap_or_default();
     Diagram {
-        tongue: tongue(&std::env::var("TRIK_LANGUAGE").unwrap_or_default()),
+        tongue: tongue(&named("TRIK_LANGUAGE")),
+        compat: if named("TRIK_COMPAT") == settings::Compat::Fixed.name() {
+            Compat::Fixed
+        } else {
+            Compat::Studio
+        },
     }
 }
 
@@ -88,7 +96,10 @@ impl Diagram {
         }
         Ok(Machine::new(
             Rc::new(lowered.program),
-            Options::of(World::Robot),
+            Options {
+                compat: self.compat,
+                ..Options::of(World::Robot)
+            },
         ))
     }
 }
@@ -125,7 +136,7 @@ fn run(
         if matches!(status, Status::Ended { .. }) {
             return Ok(());
         }
-        robot.reap();
+        robot.go_on();
         // Steps that are missed are not made up: waits look at the time, not at steps.
         due = (due + step).max(Instant::now());
         // What came together with the beginning lies in the channel's buffer, where poll(2) does not see it.

@@ -23,7 +23,7 @@ pub mod keys;
 pub mod limits;
 pub mod log;
 #[cfg(feature = "manual")]
-mod manual;
+pub mod manual;
 pub mod outbox;
 pub mod pace;
 pub mod pictures;

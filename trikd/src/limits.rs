@@ -197,6 +197,8 @@ pub const WATCH_JSON_BYTES: usize = 32 << 10;
 pub const WATCH_TEXT_CHARACTERS: usize = 1024;
 /// Warnings about a diagram that are told.
 pub const DIAGRAM_WARNINGS: usize = 20;
+/// Milliseconds within which a sensor of the camera must hear a diagram after its start.
+pub const DETECT_MS: u64 = 20_000;
 /// Commands of the system that a diagram has at once.
 pub const DIAGRAM_COMMANDS: usize = 16;
 /// Messages of other robots that a diagram has not fetched.

@@ -1,13 +1,14 @@
-//! The command line described for shells and for `man`, made from the same words as its help.
+//! A command line described for shells and for `man`, made from the same words as its help.
 //!
-//! Owns nothing else. Behind the feature `manual`, which is on by default: a robot with little memory has no use for it.
+//! Owns nothing else; `trik` takes it for its own command line. Behind the feature `manual`, which is on by default: a robot with little memory has no use for it.
 
 use clap_complete::Shell;
 
 /// The completion script of a shell.
-pub(crate) fn completions(shell: Shell, mut program: clap::Command) -> Vec<u8> {
+pub fn completions(shell: Shell, mut program: clap::Command) -> Vec<u8> {
     let mut text = Vec::new();
-    clap_complete::generate(shell, &mut program, "trikd", &mut text);
+    let name = program.get_name().to_owned();
+    clap_complete::generate(shell, &mut program, name, &mut text);
     text
 }
 
@@ -15,16 +16,21 @@ pub(crate) fn completions(shell: Shell, mut program: clap::Command) -> Vec<u8> {
 ///
 /// # Errors
 /// There is no such command.
-pub(crate) fn page(name: Option<&str>, mut program: clap::Command) -> Result<Vec<u8>, String> {
+pub fn page(name: Option<&str>, mut program: clap::Command) -> Result<Vec<u8>, String> {
     // Gives the commands their full names and the help options that a parse would give them.
     program.build();
+    let (own, version) = (program.get_name().to_owned(), env!("CARGO_PKG_VERSION"));
     let page = match name {
         None => program,
         Some(name) => program
             .find_subcommand(name)
             .filter(|command| !command.is_hide_set())
             .cloned()
-            .map(|command| command.display_name(format!("trikd-{name}")))
+            .map(|command| {
+                command
+                    .display_name(format!("{own}-{name}"))
+                    .version(version)
+            })
             .ok_or_else(|| format!("there is no command {name}"))?,
     };
     let mut text = Vec::new();

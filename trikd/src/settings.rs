@@ -37,6 +37,25 @@ pub enum StopKey {
     None,
 }
 
+/// The rules by which diagrams run.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+pub enum Compat {
+    /// Those of TRIK Studio, with its oddities.
+    Studio,
+    /// Oddities are mended.
+    Fixed,
+}
+
+impl Compat {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Studio => "studio",
+            Self::Fixed => "fixed",
+        }
+    }
+}
+
 /// All of it.
 #[derive(Args, Clone, Debug)]
 pub struct Settings {
@@ -126,6 +145,15 @@ pub struct Settings {
     /// as warn,programs=debug; matters are clients, programs, tree and daemon.
     #[arg(long, value_name = "LEVEL", env = "TRIKD_LOG", default_value = "info")]
     pub log: Filter,
+    /// Whether diagrams have the oddities of TRIK Studio, or what a user would expect in their place.
+    #[arg(
+        long,
+        value_name = "RULES",
+        env = "TRIKD_COMPAT",
+        value_enum,
+        default_value = "studio"
+    )]
+    pub compat: Compat,
     /// Language of what diagrams say: English, or Russian if it begins with ru, as LANG does.
     #[arg(
         long,

@@ -127,19 +127,7 @@ pub(super) fn successors(program: &Program, node: Node, tell: &mut dyn FnMut(Nod
             }
             tell(next);
         }
-        Op::Pass { next }
-        | Op::Run { next, .. }
-        | Op::Join { next, .. }
-        | Op::Kill { next, .. }
-        | Op::Send { next, .. }
-        | Op::Receive { next, .. }
-        | Op::Timer { next, .. }
-        | Op::Random { next, .. }
-        | Op::AnyButton { next, .. }
-        | Op::Mail { next, .. }
-        | Op::Copy { next, .. }
-        | Op::Act { next, .. }
-        | Op::Watch { next, .. } => tell(next),
+        op => op.next().into_iter().for_each(tell),
     }
 }
 

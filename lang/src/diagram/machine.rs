@@ -23,7 +23,7 @@ use std::rc::Rc;
 
 use super::brick::{Brick, Command};
 use super::lower::World;
-use super::program::{Node, Op, Program};
+use super::program::{Node, Program};
 use super::words;
 use crate::expr::{Compat, Value};
 use crate::limits;
@@ -364,29 +364,7 @@ impl Machine {
 
     /// Where the flow goes after a block with one link.
     fn next_of(&self, node: Node) -> Option<Node> {
-        match *self.program.ops.get(node as usize)? {
-            Op::Pass { next }
-            | Op::Run { next, .. }
-            | Op::Join { next, .. }
-            | Op::Kill { next, .. }
-            | Op::Send { next, .. }
-            | Op::Receive { next, .. }
-            | Op::Call { next, .. }
-            | Op::Timer { next, .. }
-            | Op::Random { next, .. }
-            | Op::Ask { next, .. }
-            | Op::AnyButton { next, .. }
-            | Op::Mail { next, .. }
-            | Op::Copy { next, .. }
-            | Op::Act { next, .. }
-            | Op::Watch { next, .. } => Some(next),
-            Op::End
-            | Op::Fault { .. }
-            | Op::If { .. }
-            | Op::Loop { .. }
-            | Op::Switch { .. }
-            | Op::Fork { .. } => None,
-        }
+        self.program.ops.get(node as usize)?.next()
     }
 
     /// Tells an error at a block.

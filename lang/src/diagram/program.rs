@@ -133,6 +133,35 @@ pub(crate) enum Op {
     Watch { watch: u32, next: Node },
 }
 
+impl Op {
+    /// Where the flow goes on, if there is one place for that.
+    pub(crate) fn next(self) -> Option<Node> {
+        match self {
+            Self::Pass { next }
+            | Self::Run { next, .. }
+            | Self::Join { next, .. }
+            | Self::Kill { next, .. }
+            | Self::Send { next, .. }
+            | Self::Receive { next, .. }
+            | Self::Call { next, .. }
+            | Self::Timer { next, .. }
+            | Self::Random { next, .. }
+            | Self::Ask { next, .. }
+            | Self::AnyButton { next, .. }
+            | Self::Mail { next, .. }
+            | Self::Copy { next, .. }
+            | Self::Act { next, .. }
+            | Self::Watch { next, .. } => Some(next),
+            Self::End
+            | Self::Fault { .. }
+            | Self::If { .. }
+            | Self::Loop { .. }
+            | Self::Switch { .. }
+            | Self::Fork { .. } => None,
+        }
+    }
+}
+
 /// No node.
 pub(crate) const NOWHERE: Node = Node::MAX;
 

@@ -115,9 +115,7 @@ fn shim(name: &str) -> PathBuf {
 
 /// Runs all projects in a language beside the machine; `ignored` projects are known to differ, with the reason.
 fn compare(test: &str, language: Language, tool: &str, shim_name: &str, ignored: &[(&str, &str)]) {
-    let probe = std::process::Command::new(tool).arg("-v").output();
-    if probe.is_err() {
-        println!("skipped {test}: no {tool}");
+    if !crate::has_tool(test, tool) {
         return;
     }
     let folder = crate::scratch(test);

@@ -38,6 +38,20 @@ fn projects(test: &str) -> Vec<(String, Project)> {
     paths.into_iter().map(open).collect()
 }
 
+/// Whether a tool is there; says by name that a test is skipped if not. With `TRIK_REQUIRE_TOOLS=1` that is a failure.
+fn has_tool(test: &str, tool: &str) -> bool {
+    let answers = |word| std::process::Command::new(tool).arg(word).output().is_ok();
+    let is_there = answers("--version") || answers("-v");
+    if !is_there {
+        assert!(
+            std::env::var_os("TRIK_REQUIRE_TOOLS").is_none(),
+            "{test} needs {tool}, which is missing"
+        );
+        println!("skipped {test}: no {tool}");
+    }
+    is_there
+}
+
 /// A new empty folder for the files of one test.
 fn scratch(test: &str) -> PathBuf {
     let path = std::env::temp_dir().join(format!("lang-{test}-{}", std::process::id()));

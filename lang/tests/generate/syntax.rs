@@ -13,10 +13,7 @@ fn check(test: &str, language: Language, tool: &[&str]) {
     } else {
         &[]
     };
-    if Command::new(tool[0]).arg("--version").output().is_err()
-        && Command::new(tool[0]).arg("-v").output().is_err()
-    {
-        println!("skipped {test}: no {}", tool[0]);
+    if !crate::has_tool(test, tool[0]) {
         return;
     }
     let folder = crate::scratch(test);

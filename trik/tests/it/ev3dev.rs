@@ -197,10 +197,11 @@ fn a_motor_runs_at_its_speed_and_stops_as_it_was_told() {
     let at = |name: &str| format!("{LEFT}/{name}");
     view.run(LEFT, &[("speed_sp", 400)], "run-forever");
     assert_eq!(view.state(LEFT), "running");
-    eventually("the speed", || {
-        (380..=420).contains(&view.number(&at("speed")))
+    // On a busy machine the loop that holds the speed is late now and then.
+    eventually("the speed, with the power for it", || {
+        let (speed, power) = (view.number(&at("speed")), view.number(&at("duty_cycle")));
+        (380..=420).contains(&speed) && (20..50).contains(&power)
     });
-    assert!((20..50).contains(&view.number(&at("duty_cycle"))));
     assert_ne!(robot.duty(3).unwrap(), 0);
     view.write(&at("stop_action"), "brake");
     view.write(&at("command"), "stop");

@@ -7,6 +7,7 @@ mod pretended;
 
 use crate::rig::{Home, Robot, loopback};
 use harness::{Output, eventually, processes};
+use lang::diagram::sketch::Sketch;
 use nix::sys::signal::Signal;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{TcpListener, TcpStream};
@@ -45,7 +46,7 @@ impl Reachable {
     }
 
     /// Writes a program and starts it.
-    fn spawn(&self, name: &str, text: &str) -> Running {
+    fn spawn(&self, name: &str, text: impl AsRef<[u8]>) -> Running {
         let file = self.robot.home.0.file(name, text);
         let file = file.to_str().expect("UTF-8");
         Running::new(&mut self.robot.home.command(&["run", file, "--robot", &self.ip]))
@@ -207,6 +208,20 @@ fn a_sensor_of_the_camera_that_starts_slowly_fails_no_program() {
         let said = (output.stdout.as_str(), output.stderr.as_str());
         assert_eq!(said, ("3\n", ""), "{name}");
     }
+    // A diagram detects as soon as the sensor hears, and the sensor runs until it has ended.
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let on = sketch.block("TrikInitCamera", &[("Mode", "line")]);
+    let detect = sketch.block("TrikDetect", &[("Mode", "line")]);
+    let wait = sketch.block("Timer", &[("Delay", "60000")]);
+    let end = sketch.block("FinalNode", &[]);
+    sketch.chain(&[start, on, detect, wait, end]);
+    let running = one.spawn("see.qrs", sketch.qrs().expect("a save"));
+    eventually("an answer of the sensor", || {
+        let colours = one.robot.read("camera/line/hsv");
+        colours.is_ok_and(|text| text.split(' ').count() == 6)
+    });
+    assert!(!running.said().contains("camera"), "{}", running.said());
 }
 
 #[test]

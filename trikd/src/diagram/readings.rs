@@ -4,9 +4,11 @@
 
 use crate::brick::Brick;
 use crate::brick::sensors::{Camera, Encoder, Gamepad, KEYS, Keys, NOT_PRESSED, Sensor, Vector};
+use crate::limits;
 use lang::diagram::ports::{Port, Sort};
 use std::collections::HashMap;
 use std::io;
+use std::time::{Duration, Instant};
 
 /// Where the heading stands in the numbers of a gyroscope, in millidegrees.
 const HEADING: usize = 6;
@@ -45,6 +47,8 @@ pub struct Readings<'a> {
     gamepad: Gamepad,
     /// What is taken from the heading.
     zero: i32,
+    /// A sensor of the camera that has not heard that it shall detect, and until when that is tried.
+    unheard: Option<(String, Instant)>,
 }
 
 /// The nearest whole number; what does not fit is cut.
@@ -71,6 +75,7 @@ impl<'a> Readings<'a> {
             keys: brick.keys(),
             gamepad: brick.gamepad(),
             zero: 0,
+            unheard: None,
         }
     }
 
@@ -128,11 +133,26 @@ impl<'a> Readings<'a> {
         }
     }
 
+    /// Looks for what is in the middle of the picture, now or as soon as the sensor hears.
     pub(super) fn detect(&mut self, mode: &str) -> io::Result<()> {
-        match self.camera(mode) {
-            Some(camera) if camera.detect()? => Ok(()),
-            Some(_) => Err(io::Error::other("the sensor does not run yet")),
+        let until = Instant::now() + Duration::from_millis(limits::DETECT_MS);
+        self.unheard = Some((mode.to_owned(), until));
+        self.detect_again()
+    }
+
+    /// A sensor that was started a moment ago does not hear yet.
+    pub(super) fn detect_again(&mut self) -> io::Result<()> {
+        let Some((mode, until)) = self.unheard.take() else {
+            return Ok(());
+        };
+        match self.camera(&mode) {
             None => Err(io::Error::other("the robot has no such camera")),
+            Some(camera) if camera.detect()? => Ok(()),
+            Some(_) if Instant::now() < until => {
+                self.unheard = Some((mode, until));
+                Ok(())
+            }
+            Some(_) => Err(io::Error::other("the sensor does not run")),
         }
     }
 

@@ -85,8 +85,11 @@ impl<'a> Robot<'a> {
         self.mail.push_back(text);
     }
 
-    /// Forgets commands of the system that have ended.
-    pub fn reap(&mut self) {
+    /// Between two steps: tells a camera again what it could not hear yet, and forgets commands of the system that have
+    /// ended.
+    pub fn go_on(&mut self) {
+        let result = self.readings.detect_again();
+        self.note("camera", result);
         self.commands
             .retain_mut(|child| matches!(child.try_wait(), Ok(None)));
     }

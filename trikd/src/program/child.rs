@@ -210,6 +210,7 @@ pub fn start(
         .env("LANG", "C.UTF-8")
         .env("TRIK_TREE", &settings.tree)
         .env("TRIK_LANGUAGE", &settings.language)
+        .env("TRIK_COMPAT", settings.compat.name())
         // With it programs in all languages draw.
         .env("TRIKD", settings.run.join(NAME))
         // Each further heap of a thread would take 64 MiB of the address space that a program may have.

@@ -158,3 +158,20 @@ fn a_diagram_reads_what_the_tree_has_and_says_what_it_has_not() {
         robot.home.path("scripts/made.txt").exists()
     });
 }
+
+#[test]
+fn the_oddities_of_the_original_are_kept_or_mended_as_the_robot_is_told() {
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let show = sketch.block("Function", &[("Body", "print(-16777217)")]);
+    let end = sketch.block("FinalNode", &[]);
+    sketch.chain(&[start, show, end]);
+    let save = sketch.qrs().expect("a save");
+    for (rules, shown) in [("studio", "-16777216"), ("fixed", "-16777217")] {
+        let robot = robot(&["--compat", rules]);
+        let mut client = robot.client("control");
+        upload(&mut client, "odd.qrs", &save);
+        client.send("run:odd.qrs");
+        assert_eq!(client.until("print: "), format!("print: {shown}\n"));
+    }
+}

@@ -27,7 +27,11 @@ pub(super) fn page(name: Option<&str>) -> Result<Vec<u8>, String> {
             .find_subcommand(name)
             .filter(|command| !command.is_hide_set())
             .cloned()
-            .map(|command| command.display_name(format!("trikfs-{name}")))
+            .map(|command| {
+                command
+                    .display_name(format!("trikfs-{name}"))
+                    .version(env!("CARGO_PKG_VERSION"))
+            })
             .ok_or_else(|| format!("there is no command {name}"))?,
     };
     let mut text = Vec::new();

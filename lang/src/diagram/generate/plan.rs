@@ -223,18 +223,7 @@ impl Planner<'_> {
                 self.fail(node, words::no_questions());
                 Way::End
             }
-            Op::Pass { next }
-            | Op::Run { next, .. }
-            | Op::Kill { next, .. }
-            | Op::Send { next, .. }
-            | Op::Receive { next, .. }
-            | Op::Timer { next, .. }
-            | Op::Random { next, .. }
-            | Op::AnyButton { next, .. }
-            | Op::Mail { next, .. }
-            | Op::Copy { next, .. }
-            | Op::Act { next, .. }
-            | Op::Watch { next, .. } => Way::Step(next as usize),
+            op => op.next().map_or(Way::End, |next| Way::Step(next as usize)),
         };
         Follow::Ways(ways)
     }

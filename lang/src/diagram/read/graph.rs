@@ -252,7 +252,10 @@ impl<'a> Graph<'a> {
         };
         let links = orphans.iter().filter(|one| one.element() == LINK).count();
         let words = words::orphans(orphans.len() - links, links);
-        self.warn(first, None, words);
+        // It is about all of them, so only the id names one.
+        let mut problem = Problem::warning(words);
+        problem.place.object = Some(first.id.clone());
+        keep(self.problems, problem);
     }
 
     /// Something that is wrong inside of the text of a property.

@@ -4,7 +4,7 @@
 //! branches that meet there, and a jump that is no fall-through is a break, a continue, a goto, or the node once more.
 
 use super::flow::Flow;
-use super::work::{Kind, Work};
+use super::work::{Kind, Work, shared};
 use super::{Jumps, follow};
 use crate::diagram::tree::{Condition, Tree, leave};
 use crate::limits::{COPIES_FREE, COPIES_PER_BLOCK, LOOPS_NESTING_MAX, NESTING_MAX};
@@ -396,17 +396,9 @@ impl Emitter<'_> {
         let joins = self.joins(node);
         let after = joins.first().copied().or(next);
         let pending = self.wait_for(&joins);
-        let mut branches: Vec<(Vec<usize>, Vec<Tree>)> = Vec::new();
-        let mut written: Vec<usize> = Vec::new();
-        for (number, &way) in ways.iter().enumerate() {
-            // Ways to one place share their branch.
-            match written.iter().position(|&other| other == way) {
-                Some(index) => branches[index].0.push(number),
-                None => {
-                    written.push(way);
-                    branches.push((vec![number], self.list(Some(way), after)?));
-                }
-            }
+        let mut branches = Vec::new();
+        for (way, numbers) in shared(&ways) {
+            branches.push((numbers, self.list(Some(way), after)?));
         }
         out.push(Tree::Switch { on, branches });
         if joins.is_empty() {

@@ -2,7 +2,7 @@
 //!
 //! Owns which blocks stand together: those that are reached on one way only.
 
-use super::work::{Kind, Work};
+use super::work::{Kind, Work, shared};
 use crate::diagram::tree::Tree;
 use crate::limits::STATES_NESTING_MAX;
 
@@ -85,17 +85,10 @@ impl States<'_> {
                     return;
                 }
                 Kind::Switch(on) => {
-                    let mut branches: Vec<(Vec<usize>, Vec<Tree>)> = Vec::new();
-                    let mut written: Vec<usize> = Vec::new();
-                    for (number, &way) in ways.iter().enumerate() {
-                        match written.iter().position(|&other| other == way) {
-                            Some(index) => branches[index].0.push(number),
-                            None => {
-                                written.push(way);
-                                branches.push((vec![number], self.branch(way, depth)));
-                            }
-                        }
-                    }
+                    let ways = shared(ways).into_iter();
+                    let branches = ways
+                        .map(|(way, numbers)| (numbers, self.branch(way, depth)))
+                        .collect();
                     out.push(Tree::Switch { on: *on, branches });
                     return;
                 }

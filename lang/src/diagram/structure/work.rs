@@ -31,6 +31,18 @@ pub(super) struct Work {
     pub(super) nodes: Vec<Node>,
 }
 
+/// Places that ways lead to, in their order, each with the numbers of its ways: ways to one place share a branch.
+pub(super) fn shared(ways: &[usize]) -> Vec<(usize, Vec<usize>)> {
+    let mut places: Vec<(usize, Vec<usize>)> = Vec::new();
+    for (number, &way) in ways.iter().enumerate() {
+        match places.iter_mut().find(|(place, _)| *place == way) {
+            Some((_, numbers)) => numbers.push(number),
+            None => places.push((way, vec![number])),
+        }
+    }
+    places
+}
+
 /// The ways of a block that exist.
 pub(super) fn ways(graph: &Graph, block: usize) -> &[usize] {
     match &graph.ways[block] {

@@ -1,7 +1,6 @@
 //! Programs that want too much, or are no programs at all.
 
 use std::rc::Rc;
-use std::time::Instant;
 
 use super::{Sketch, code, run};
 use crate::diagram::check::check;
@@ -145,8 +144,10 @@ fn indices_that_lead_nowhere_are_loose_links() {
     ));
 }
 
-/// A chain of so many blocks, checked and lowered.
-fn long_chain(count: usize) -> std::time::Duration {
+#[test]
+fn a_million_blocks_are_checked() {
+    // Work that grows with the square of their number would take hours.
+    let count = 1_000_000;
     let mut blocks = vec![blank("InitialNode", vec![0])];
     blocks.extend((1..count).map(|at| blank("FiBlock", vec![at])));
     let links = (0..count).map(|at| Link {
@@ -155,19 +156,7 @@ fn long_chain(count: usize) -> std::time::Duration {
         ..Link::default()
     });
     let project = only(blocks, links.collect());
-    let began = Instant::now();
     assert!(check(&project, World::default()).is_empty());
-    began.elapsed()
-}
-
-#[test]
-fn many_blocks_take_time_by_their_number() {
-    let (few, many) = (long_chain(30_000), long_chain(300_000));
-    // Ten times as many; five times of that for a busy machine. Quadratic would be a hundred times.
-    assert!(
-        many < few * 50 + std::time::Duration::from_secs(5),
-        "{few:?} {many:?}"
-    );
 }
 
 #[test]
