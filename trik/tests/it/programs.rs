@@ -299,16 +299,21 @@ fn ctrl_c_stops_the_program_on_the_robot_and_a_second_one_does_not_wait() {
     running.says("trik: loop.js was stopped by a client after ");
     assert_eq!(running.code(), Some(1));
     assert!(one.rests());
-    // A trikd that hangs cannot stop anything.
+    // A trikd that hangs cannot stop anything. Its guardian would not suffer a serving process that stands still.
     let mut running = one.start("again.js");
-    let (_, serving) = one.trikd();
-    processes::signal(serving, Signal::SIGSTOP);
+    let (guardian, serving) = one.trikd();
+    for process in [guardian, serving] {
+        processes::signal(process, Signal::SIGSTOP);
+        eventually("a standstill", || processes::is_stopped(process));
+    }
     processes::signal(running.child.id(), Signal::SIGINT);
     running.says("trik: stopping again.js");
     processes::signal(running.child.id(), Signal::SIGINT);
     assert_eq!(running.code(), Some(1));
     running.says("trik: left; again.js may still run on ");
-    processes::signal(serving, Signal::SIGCONT);
+    for process in [serving, guardian] {
+        processes::signal(process, Signal::SIGCONT);
+    }
     eventually("the stop that was asked for", || one.rests());
 }
 
