@@ -5,6 +5,7 @@
 
 pub mod events;
 pub mod failure;
+pub mod ground;
 pub mod machine;
 pub mod natives;
 pub mod outside;
