@@ -2,7 +2,7 @@
 //!
 //! `cli` has the words, `up` starts the virtual board and the tree over it, `fault` breaks devices of a running board,
 //! `place` knows where the robots of a user are, `remote` brings programs to robots, `diagrams` shows, checks and translates
-//! diagrams without a robot. Nothing of this runs on the controller.
+//! diagrams without a robot, `script` runs programs with text under a judge. Nothing of this runs on the controller.
 
 pub mod cli;
 mod diagrams;
@@ -10,4 +10,5 @@ mod fault;
 pub mod limits;
 pub mod place;
 mod remote;
+pub mod script;
 mod up;

@@ -142,6 +142,11 @@ impl Tree {
                 .is_none_or(|error| error.raw_os_error() != Some(libc::ENODEV))
     }
 
+    /// Whether the tree is mounted somewhere, or will be.
+    pub fn is_mounted(&self) -> bool {
+        self.answers.is_none()
+    }
+
     /// Whether the tree has this file.
     pub fn is_file(&self, path: &str) -> bool {
         match &self.answers {

@@ -70,6 +70,9 @@ pub trait Ground {
     /// Something has changed that other threads wait for.
     fn give_way(&self) {}
 
+    /// The program has printed something.
+    fn has_spoken(&self) {}
+
     /// Asks the mailbox.
     ///
     /// # Errors

@@ -49,6 +49,9 @@ impl<T> Handles<T> {
 
 /// The exception for a failure of the tree, with what `fault` says.
 pub fn unreadable(ctx: &Ctx<'_>, brick: &Brick, place: &str, error: &io::Error) -> Error {
+    if !brick.tree().is_mounted() {
+        return failed(ctx, &format!("{place}: {error}"));
+    }
     let root = brick.tree().root();
     let node = root.join(place);
     let node = if node.is_dir() {

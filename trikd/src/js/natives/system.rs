@@ -26,6 +26,7 @@ fn output<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     let o = own.clone();
     put(native, "print", move |text: String| {
         o.shared.say(|output| output.print(&text));
+        o.ground.has_spoken();
     })?;
     let o = own.clone();
     put(native, "info", move |text: String| {
