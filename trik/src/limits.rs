@@ -54,6 +54,8 @@ pub const ROOM_MS: u32 = 20;
 pub const OUTPUT_PIECES: usize = 64;
 /// Calls to the robot in one tick of a judged world: who asks without waiting is charged a tick for so many.
 pub const SCRIPT_CALLS: u32 = 100;
+/// For how many calls it counts when a program computes until its engine looks up, which is every 10 000 jumps and calls.
+pub const SCRIPT_LOOK_CALLS: u32 = 50;
 /// Bytes of the files that a judged program has written; they are kept in memory.
 pub const SCRIPT_FILES_BYTES: usize = 16 << 20;
 /// Bytes that a judged program prints between two calls; what is more is lost.

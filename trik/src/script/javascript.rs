@@ -11,7 +11,7 @@ use lang::diagram::brick::{Brick, Command};
 use lang::diagram::machine::{STEP_MS, Status};
 use lang::problem::Problem;
 use sim::judge::Program;
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::{Arc, PoisonError};
@@ -114,6 +114,7 @@ impl JavaScript {
             let here = Here {
                 stage: self.stage.clone(),
                 heard: Rc::clone(&heard),
+                has_looked_up: Cell::new(false),
             };
             let (shared, own) = (self.shared.clone(), slot.clone());
             let words: usize = (JS_STACK_BYTES + JS_STACK_SPARE_BYTES) / size_of::<usize>();

@@ -2,7 +2,7 @@
 //!
 //! Owns the hand-over and what it costs. A thread runs on a stack of its own, so a call may stop in its middle, however
 //! deep, and go on in a later step. Whoever asks [`limits::SCRIPT_CALLS`] times without waiting, or computes until the
-//! engine looks up (some ten thousand turns of a loop), is charged one tick.
+//! engine has looked up a few times (some 10 000 turns of a loop), is charged one tick.
 
 use super::drawing;
 use super::input::Input;
@@ -69,9 +69,9 @@ impl Stage {
         generator::yield_with(());
     }
 
-    /// One more call.
-    fn charge(&self) {
-        let calls = self.calls.get() + 1;
+    /// So many more calls.
+    fn charge(&self, calls: u32) {
+        let calls = self.calls.get() + calls;
         self.calls.set(calls);
         if calls > limits::SCRIPT_CALLS {
             self.hand_over(Wish::Tick);
@@ -80,7 +80,7 @@ impl Stage {
 
     /// Does something with the robot. None: nobody steps the program any more.
     fn with<T: 'static>(&self, work: impl FnOnce(&mut dyn Brick) -> T + 'static) -> Option<T> {
-        self.charge();
+        self.charge(1);
         let answer = Rc::new(Cell::new(None));
         let into = answer.clone();
         let work: Work = Box::new(move |brick| into.set(Some(work(brick))));
@@ -187,6 +187,8 @@ pub struct Here {
     pub stage: Rc<Stage>,
     /// What it listens to.
     pub heard: Rc<RefCell<Heard>>,
+    /// Whether its engine has looked up from its work.
+    pub has_looked_up: Cell<bool>,
 }
 
 impl fmt::Debug for Here {
@@ -263,19 +265,20 @@ impl Ground for Here {
     }
 
     fn clock_ms(&self) -> f64 {
-        self.stage.charge();
+        self.stage.charge(1);
         self.stage.now.get().into()
     }
 
     fn stops(&self, slot: &Slot) -> bool {
-        if !slot.stops() {
-            self.stage.hand_over(Wish::Tick);
+        // The engine looks up for the first time when it has just begun.
+        if self.has_looked_up.replace(true) && !slot.stops() {
+            self.stage.charge(limits::SCRIPT_LOOK_CALLS);
         }
         slot.stops()
     }
 
     fn wait(&self, slot: &Slot, until_ms: f64) -> io::Result<bool> {
-        self.stage.charge();
+        self.stage.charge(1);
         let has_reason = || slot.bell.is_rung() || !self.heard.borrow().records.is_empty();
         if !has_reason() && until_ms > f64::from(self.stage.now.get()) {
             self.stage.hand_over(Wish::Wait(until_ms));
@@ -296,7 +299,7 @@ impl Ground for Here {
     }
 
     fn drain(&self, path: &str) -> Vec<Record> {
-        self.stage.charge();
+        self.stage.charge(1);
         let mut drained = Vec::new();
         self.heard.borrow_mut().records.retain(|(other, record)| {
             if other == path {
@@ -319,7 +322,7 @@ impl Ground for Here {
     }
 
     fn give_way(&self) {
-        self.stage.charge();
+        self.stage.charge(1);
         self.stage.hand_over(Wish::After);
     }
 
@@ -377,12 +380,12 @@ impl Ground for Here {
     }
 
     fn include(&self, shared: &Shared, file: &str) -> Result<String, String> {
-        self.stage.charge();
+        self.stage.charge(1);
         beside(shared, file)
     }
 
     fn read_file(&self, shared: &Shared, file: &str) -> Result<String, String> {
-        self.stage.charge();
+        self.stage.charge(1);
         if let Some(bytes) = self.stage.tree.borrow().written(file) {
             return Ok(String::from_utf8_lossy(bytes).into_owned());
         }
@@ -417,7 +420,7 @@ impl Ground for Here {
     }
 
     fn date_ms(&self) -> Option<f64> {
-        self.stage.charge();
+        self.stage.charge(1);
         Some((limits::SCRIPT_EPOCH_MS + u64::from(self.stage.now.get())) as f64)
     }
 }
