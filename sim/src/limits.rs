@@ -62,3 +62,7 @@ pub const FIELD_ROBOTS: usize = 16;
 pub const FIELD_SENSORS: usize = 64;
 /// Messages of other robots that wait for one.
 pub const MAIL_MAX: usize = 10_000;
+/// Bytes of pictures on the floor that a drawing of a run holds.
+pub const PICTURE_BYTES: usize = 8 << 20;
+/// Poses of one robot that an animated page holds.
+pub const PAGE_POSES: usize = 6_000;
