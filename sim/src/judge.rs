@@ -4,7 +4,19 @@
 //! an outcome out. What a world does is in [`crate::arena`]; what a task demands is in `lang`.
 
 pub mod json;
+pub mod picture;
 pub mod program;
+pub mod replay;
+pub mod report;
+pub mod run;
+mod scene;
+pub mod task;
 pub mod trajectory;
+mod words;
 
+pub use picture::{Caption, page, svg};
 pub use program::{Diagram, Program};
+pub use replay::judge_recorded;
+pub use run::{Outcome, Settings, Verdict, judge};
+pub use task::{Task, Texts};
+pub use trajectory::Trajectory;

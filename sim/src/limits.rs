@@ -52,3 +52,17 @@ pub const RECORDS: usize = 800_000;
 pub const ROBOTS: usize = 16;
 /// Farthest place of a recorded pose, in pixels.
 pub const FAR_PX: f64 = 1e7;
+/// Largest number in a world model, in units of its text and in pixels.
+pub const FIELD_NUMBER: f64 = 1e6;
+/// Walls, solids, drawn things, regions and the like of one field, strokes and sensors included.
+pub const FIELD_THINGS: usize = 20_000;
+/// Robots of one field; there is one for each kit.
+pub const FIELD_ROBOTS: usize = 16;
+/// Sensors of one robot.
+pub const FIELD_SENSORS: usize = 64;
+/// Messages of other robots that wait for one.
+pub const MAIL_MAX: usize = 10_000;
+/// Bytes of pictures on the floor that a drawing of a run holds.
+pub const PICTURE_BYTES: usize = 8 << 20;
+/// Poses of one robot that an animated page holds.
+pub const PAGE_POSES: usize = 6_000;

@@ -1,6 +1,6 @@
 //! Programs in languages with text under a judge: JavaScript and Python in virtual time.
 //!
-//! Owns which engine a file gets. Model time passes only while a program waits, so the same program in the same world
+//! Model time passes only while a program waits, so the same program in the same world
 //! does the same each time. `tree` is the robot as files, `drawing` its display, `input` its keys and gamepad; `stage` is
 //! where JavaScript stands, `javascript` steps its threads.
 
@@ -13,20 +13,6 @@ mod tree;
 pub use javascript::JavaScript;
 
 use lang::problem::{Place, Position, Problem, Words};
-use sim::judge::Program;
-use std::path::Path;
-
-/// A program of a file, before its first step.
-///
-/// # Errors
-/// It cannot be read, or nobody knows its language.
-pub fn open(file: &Path) -> Result<Box<dyn Program>, String> {
-    let ending = file.extension().and_then(|ending| ending.to_str());
-    match ending {
-        Some("js" | "qts") => Ok(Box::new(JavaScript::open(file)?)),
-        _ => Err(format!("{}: a script is a file .js or .py", file.display())),
-    }
-}
 
 /// A failure of a program as a problem: its file, and its line if the text begins with one.
 fn problem(file: &str, text: &str) -> Problem {

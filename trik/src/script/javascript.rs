@@ -15,10 +15,10 @@ use std::cell::{Cell, RefCell};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::{Arc, PoisonError};
+use trikd::js::events::Record;
 use trikd::js::machine::{self, Job, Kind};
 use trikd::js::shared::{MAIN, Shared, Slot, unbroken};
 use trikd::js::source::with_call_of_main;
-use trikd::js::{events::Record, read_text};
 use trikd::limits::{JS_MESSAGES, JS_STACK_BYTES, JS_STACK_SPARE_BYTES};
 
 /// All that a thread does.
@@ -56,24 +56,15 @@ pub struct JavaScript {
 }
 
 impl JavaScript {
-    /// A program of a file; other files beside it can be included and read.
-    ///
-    /// # Errors
-    /// It cannot be read.
-    pub fn open(file: &Path) -> Result<Self, String> {
-        let file = std::path::absolute(file)
-            .map_err(|error| format!("{}: where is it? {error}", file.display()))?;
-        let text = read_text(&file)?;
-        let folder = file.parent().unwrap_or(Path::new("/")).to_owned();
-        let name = file.file_name().unwrap_or_default().to_string_lossy();
-        Self::new(&name, text, folder)
-    }
-
-    /// A program by its text.
+    /// A program by its text; other files beside its own can be included and read.
     ///
     /// # Errors
     /// No more descriptors.
-    pub fn new(name: &str, text: String, folder: PathBuf) -> Result<Self, String> {
+    pub fn new(file: &Path, text: &str) -> Result<Self, String> {
+        let name = file.file_name().unwrap_or_default().to_string_lossy();
+        let file = std::path::absolute(file)
+            .map_err(|error| format!("{}: where is it? {error}", file.display()))?;
+        let folder = file.parent().unwrap_or(Path::new("/")).to_owned();
         let failed = |reason: String| format!("{name}: cannot be started: {reason}");
         let ear = Ear::default();
         let shared = Shared::new(PathBuf::new(), folder, Box::new(ear.clone()))
@@ -82,12 +73,12 @@ impl JavaScript {
         let slot = shared.admit(MAIN).map_err(failed)?;
         let job = Job {
             name: MAIN.to_owned(),
-            text: with_call_of_main(text).into(),
+            text: with_call_of_main(text.to_owned()).into(),
             kind: Kind::Program,
         };
         stage.begins.borrow_mut().push((job, slot));
         Ok(Self {
-            file: name.to_owned(),
+            file: name.clone().into_owned(),
             shared: Arc::new(shared),
             ear,
             stage,

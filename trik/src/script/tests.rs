@@ -2,11 +2,12 @@ use super::*;
 use lang::diagram::machine::{STEP_MS, Status};
 use lang::diagram::ports::Port;
 use lang::diagram::stand_in::{Placing, StandIn};
-use std::path::PathBuf;
+use sim::judge::Program;
+use std::path::Path;
 
 /// Runs a program for at most so long; its log, its status and the first error.
 fn run(text: &str, ms: u32, robot: &mut StandIn) -> (Status, String) {
-    let mut program = JavaScript::new("p.js", text.to_owned(), PathBuf::from("/nowhere")).unwrap();
+    let mut program = JavaScript::new(Path::new("/nowhere/p.js"), text).unwrap();
     let mut now = 0;
     let mut status = program.step(now, robot);
     while status == Status::Running && now < ms {
@@ -176,7 +177,7 @@ fn keys_and_timers_are_events() {
     let mut robot = robot();
     let text = "brick.keys().buttonPressed.connect((code, value) => print(code, ' ', value)); \
         script.timer(100).timeout.connect(() => print('timer')); script.run();";
-    let mut program = JavaScript::new("p.js", text.to_owned(), PathBuf::from("/nowhere")).unwrap();
+    let mut program = JavaScript::new(Path::new("/nowhere/p.js"), text).unwrap();
     let enter = Port::named("Enter").unwrap();
     for now in (0..=150).step_by(STEP_MS as usize) {
         robot.readings.insert(enter, i32::from(now == 50));
