@@ -114,7 +114,7 @@ fn judged(job: &Job, args: &CheckArgs) -> Result<(Task, Outcome), Lines> {
         let outcome = judge::judge_recorded(&task, &trajectory, &settings);
         return Ok((task, outcome));
     }
-    let mut program = solution.program(&mut task, &settings, args)?;
+    let mut program = solution.program(&mut task, args)?;
     let outcome = judge::judge(&task, &mut *program, &settings);
     Ok((task, outcome))
 }
@@ -188,16 +188,10 @@ impl Solution {
     }
 
     /// The program, ready for its first step; the task gets the sensors that it needs.
-    fn program(
-        self,
-        task: &mut Task,
-        settings: &Settings,
-        args: &CheckArgs,
-    ) -> Result<Box<dyn Program>, Lines> {
+    fn program(self, task: &mut Task, args: &CheckArgs) -> Result<Box<dyn Program>, Lines> {
         if let Some((language, text)) = &self.script {
             let given = Given {
                 file: &self.file,
-                inputs: &settings.answers,
                 seed: args.seed,
                 wall_seconds: args.wall_limit,
             };
