@@ -279,11 +279,7 @@ def other():
 Threading.startThread('b', other)
 print(Threading.receiveMessage(True))
 Threading.joinThread('b')
-count = 0
-for i in range(20000): count += 1
-print(count)
-while brick.encoder('E3').read() < 60: count += 1
-print(count)
+while brick.encoder('E3').read() < 60: pass
 brick.display().addLabel('x', 1, 2)
 brick.marker().down('red')
 timer = script.timer(50)
@@ -298,8 +294,6 @@ brick.motor('M3').powerOff()
         "130 print \"begins\"",
         "160 print \"hello\"",
         "160 print \"sent\"",
-        "170 print \"20000\"",
-        "220 print \"20404\"",
         "220 label 1 2 20 \"x\"",
         "220 marker red",
         "270 print \"tick\"",
