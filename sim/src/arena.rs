@@ -1,0 +1,3 @@
+//! The running world of TRIK Studio's simulator.
+
+pub mod floor;
