@@ -38,7 +38,7 @@ impl Coverage {
 
     /// A point on the grid of corners.
     pub fn on_grid(x: f64) -> f64 {
-        (x * GRID).trunc() / GRID
+        (x * GRID).round() / GRID
     }
 
     /// One edge of a closed outline, in pixels of the window. What is outside costs nothing.
