@@ -13,6 +13,7 @@ mod camera;
 mod control;
 mod display;
 pub mod faults;
+pub mod field;
 mod fifo;
 mod files;
 pub mod geometry;

@@ -58,3 +58,13 @@ pub const PICTURE_DEPTH: u32 = 64;
 pub const TRACE_STROKES: usize = 400_000;
 /// Cells of the floor's table that list one thing; a larger thing is looked at from everywhere.
 pub const CELLS_OF_THING: i64 = 256;
+/// Largest number in a world model, in units of its text and in pixels.
+pub const FIELD_NUMBER: f64 = 1e6;
+/// Walls, solids, drawn things, regions and the like of one field, strokes and sensors included.
+pub const FIELD_THINGS: usize = 20_000;
+/// Robots of one field; there is one for each kit.
+pub const FIELD_ROBOTS: usize = 16;
+/// Sensors of one robot.
+pub const FIELD_SENSORS: usize = 64;
+/// Messages of other robots that wait for one.
+pub const MAIL_MAX: usize = 10_000;
