@@ -68,3 +68,9 @@ pub const FIELD_ROBOTS: usize = 16;
 pub const FIELD_SENSORS: usize = 64;
 /// Messages of other robots that wait for one.
 pub const MAIL_MAX: usize = 10_000;
+/// Remarks on pictures and colours of one floor.
+pub const FLOOR_PROBLEMS: usize = 50;
+/// Things on one virtual display.
+pub const SCREEN_OBJECTS: usize = 20_000;
+/// Characters of a text on it, and of what a robot says.
+pub const SCREEN_TEXT: usize = 4096;

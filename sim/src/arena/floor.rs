@@ -9,10 +9,14 @@
 //! painted with smooth edges, turned without smoothing, and its middle is cut out.
 
 pub mod colour;
+mod lay;
 pub mod outline;
 pub mod picture;
 pub mod raster;
 pub mod sensors;
+mod words;
+
+pub use lay::lay;
 
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -204,7 +208,9 @@ impl Floor {
         let cut = (half.round() as usize).saturating_sub(1);
         window.side = 2 * cut + 1;
         window.pixels.clear();
-        window.pixels.resize(window.side * window.side, [u8::MAX; 3]);
+        window
+            .pixels
+            .resize(window.side * window.side, [u8::MAX; 3]);
         if size == 0 || !(at.x.abs() < limits::SCENE_EDGE && at.y.abs() < limits::SCENE_EDGE) {
             return;
         }

@@ -39,7 +39,10 @@ impl Tint {
 }
 
 fn svg(text: &str) -> Option<Tint> {
-    if !text.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'#') {
+    if !text
+        .bytes()
+        .all(|byte| byte.is_ascii_alphanumeric() || byte == b'#')
+    {
         return None;
     }
     let colour = svgtypes::Color::from_str(text).ok()?;
@@ -76,7 +79,13 @@ mod tests {
     fn colours_have_names_and_numbers() {
         let cases = [
             ("#ff000000", Tint::solid([0, 0, 0])),
-            ("#80ff0001", Tint { rgb: [255, 0, 1], opacity: 128 }),
+            (
+                "#80ff0001",
+                Tint {
+                    rgb: [255, 0, 1],
+                    opacity: 128,
+                },
+            ),
             ("#0a141e", Tint::solid([10, 20, 30])),
             ("#f0a", Tint::solid([255, 0, 170])),
             (" LightSkyBlue ", Tint::solid([135, 206, 250])),
@@ -85,7 +94,16 @@ mod tests {
         for (text, tint) in cases {
             assert_eq!(Tint::named(text), Some(tint), "{text}");
         }
-        for text in ["", "#", "#12", "#12345", "no colour", "#+12", "rgb(1,2,3)", "#ff00zz"] {
+        for text in [
+            "",
+            "#",
+            "#12",
+            "#12345",
+            "no colour",
+            "#+12",
+            "rgb(1,2,3)",
+            "#ff00zz",
+        ] {
             assert_eq!(Tint::named(text), None, "{text}");
         }
         assert_eq!(Tint::named("transparent").map(|tint| tint.opacity), Some(0));
@@ -98,7 +116,14 @@ mod tests {
         assert_eq!(under, [155; 3]);
         lay(&mut under, Tint::solid([9, 8, 7]), 255);
         assert_eq!(under, [9, 8, 7]);
-        lay(&mut under, Tint { rgb: [255; 3], opacity: 0 }, 255);
+        lay(
+            &mut under,
+            Tint {
+                rgb: [255; 3],
+                opacity: 0,
+            },
+            255,
+        );
         assert_eq!(under, [9, 8, 7]);
     }
 }

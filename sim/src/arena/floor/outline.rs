@@ -115,7 +115,9 @@ impl Affine {
         let (x, y) = back.apply(e, f);
         let [a, b, c, d, ..] = back.0;
         let back = [a, b, c, d, -x, -y];
-        back.iter().all(|part| part.is_finite()).then_some(Self(back))
+        back.iter()
+            .all(|part| part.is_finite())
+            .then_some(Self(back))
     }
 
     /// Around how many times it enlarges.
@@ -193,7 +195,11 @@ impl Outline {
         if nib.style == "none" {
             return None;
         }
-        let width = if nib.width > 0.0 { nib.width as f32 } else { 1.0 };
+        let width = if nib.width > 0.0 {
+            nib.width as f32
+        } else {
+            1.0
+        };
         let dashes: &[f32] = match nib.style {
             "dot" => &[1.0, 2.0],
             "dash" => &[4.0, 2.0],
@@ -273,9 +279,13 @@ impl Outline {
             let u = 1.0 - t;
             let weights = [u * u * u, 3.0 * u * u * t, 3.0 * u * t * t, t * t * t];
             let sum = |part: [f64; 4]| -> f64 {
-                part.iter().zip(weights).map(|(value, weight)| value * weight).sum()
+                part.iter()
+                    .zip(weights)
+                    .map(|(value, weight)| value * weight)
+                    .sum()
             };
-            self.points.push((sum([p.0, q.0, r.0, s.0]), sum([p.1, q.1, r.1, s.1])));
+            self.points
+                .push((sum([p.0, q.0, r.0, s.0]), sum([p.1, q.1, r.1, s.1])));
         }
     }
 }

@@ -134,13 +134,15 @@ impl Picture {
                 usvg::FillRule::NonZero => Rule::NonZero,
                 usvg::FillRule::EvenOdd => Rule::EvenOdd,
             };
-            self.layers.push(Layer::Filled(path.data().clone(), rule, tint, to));
+            self.layers
+                .push(Layer::Filled(path.data().clone(), rule, tint, to));
         }
         if let Some(stroke) = path.stroke()
             && let Some(tint) = self.tint(stroke.paint(), stroke.opacity().get() * opacity)
         {
             let stroke = Box::new(stroke.to_tiny_skia());
-            self.layers.push(Layer::Drawn(path.data().clone(), stroke, tint, to));
+            self.layers
+                .push(Layer::Drawn(path.data().clone(), stroke, tint, to));
         }
     }
 
@@ -159,7 +161,8 @@ impl Picture {
             }
             usvg::ImageKind::SVG(tree) => self.add_group(tree.root(), &place, opacity, depth + 1),
             usvg::ImageKind::GIF(_) | usvg::ImageKind::WEBP(_) => {
-                self.lacks.push("a picture inside that is neither PNG nor JPEG");
+                self.lacks
+                    .push("a picture inside that is neither PNG nor JPEG");
             }
         }
     }
@@ -169,7 +172,8 @@ impl Picture {
         let (width, height) = (f64::from(pixels.width()), f64::from(pixels.height()));
         if width > 0.0 && height > 0.0 {
             let own = Affine([1.0 / width, 0.0, 0.0, 1.0 / height, 0.0, 0.0]);
-            self.layers.push(Layer::Pixels(pixels.into(), own.then(place)));
+            self.layers
+                .push(Layer::Pixels(pixels.into(), own.then(place)));
         }
     }
 
@@ -189,14 +193,25 @@ impl Picture {
                 return None;
             }
         };
-        self.lacks.push("a gradient, shown in the mean of its colours");
+        self.lacks
+            .push("a gradient, shown in the mean of its colours");
         let count = stops.len() as f32;
         let mean = |part: fn(usvg::Color) -> u8| {
-            byte(stops.iter().map(|stop| f32::from(part(stop.color()))).sum::<f32>() / count)
+            byte(
+                stops
+                    .iter()
+                    .map(|stop| f32::from(part(stop.color())))
+                    .sum::<f32>()
+                    / count,
+            )
         };
         let glass = stops.iter().map(|stop| stop.opacity().get()).sum::<f32>() / count;
         Some(Tint {
-            rgb: [mean(|one| one.red), mean(|one| one.green), mean(|one| one.blue)],
+            rgb: [
+                mean(|one| one.red),
+                mean(|one| one.green),
+                mean(|one| one.blue),
+            ],
             opacity: byte(opacity * glass * 255.0),
         })
     }
@@ -272,7 +287,12 @@ mod tests {
 
     #[test]
     fn what_is_no_picture_is_told() {
-        for (path, text) in [("a.svg", "no"), ("a.png", "aGVsbG8="), ("a.png", ""), ("", "<svg")] {
+        for (path, text) in [
+            ("a.svg", "no"),
+            ("a.png", "aGVsbG8="),
+            ("a.png", ""),
+            ("", "<svg"),
+        ] {
             assert!(Picture::read(path, text).is_err(), "{path} {text}");
         }
     }

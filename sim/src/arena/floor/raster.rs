@@ -99,7 +99,11 @@ impl Coverage {
         let (mut x, mut y) = (x0, y0);
         for row in first..=last {
             let below = y1.min((row + 1) as f64);
-            let next = if row == last { x1 } else { x0 + slope * (below - y0) };
+            let next = if row == last {
+                x1
+            } else {
+                x0 + slope * (below - y0)
+            };
             self.in_row(row, x, next, (below - y) * sign);
             (x, y) = (next, below);
         }
@@ -210,7 +214,12 @@ mod tests {
 
     #[test]
     fn numbers_that_are_none_are_left_out() {
-        let strange = [(f64::NAN, 0.0), (1.0, f64::INFINITY), (1e308, -1e308), (-1e308, 1e308)];
+        let strange = [
+            (f64::NAN, 0.0),
+            (1.0, f64::INFINITY),
+            (1e308, -1e308),
+            (-1e308, 1e308),
+        ];
         // Any answer, no panic, within the window.
         assert_eq!(covered(&strange, Rule::NonZero).len(), 3);
     }

@@ -65,7 +65,11 @@ pub fn colour(window: &Window, random: Option<&mut Random>) -> [u8; 3] {
     let count = window.pixels.len().max(1) as f64;
     let noise = random.map_or(0.0, |random| noise(random, COLOUR_VARIANCE));
     let mean = |channel: usize| {
-        let sum: u32 = window.pixels.iter().map(|pixel| u32::from(pixel[channel])).sum();
+        let sum: u32 = window
+            .pixels
+            .iter()
+            .map(|pixel| u32::from(pixel[channel]))
+            .sum();
         (f64::from(sum) / count + noise).round().clamp(0.0, 255.0) as u8
     };
     std::array::from_fn(mean)
@@ -75,7 +79,11 @@ pub fn colour(window: &Window, random: Option<&mut Random>) -> [u8; 3] {
 pub fn learned(window: &Window) -> [u8; 3] {
     let count = u32::try_from(window.pixels.len().max(1)).unwrap_or(u32::MAX);
     std::array::from_fn(|channel| {
-        let sum: u32 = window.pixels.iter().map(|pixel| u32::from(pixel[channel])).sum();
+        let sum: u32 = window
+            .pixels
+            .iter()
+            .map(|pixel| u32::from(pixel[channel]))
+            .sum();
         u8::try_from(sum / count).unwrap_or(u8::MAX)
     })
 }
@@ -90,7 +98,10 @@ pub fn line(window: &Window, wanted: [u8; 3]) -> [i32; 3] {
     let half = side as f64 / 2.0;
     let cross_rows = (side as f64 * CROSS_PART) as usize;
     let is_near = |pixel: &[u8; 3]| {
-        let apart = pixel.iter().zip(wanted).map(|(seen, wanted)| seen.abs_diff(wanted));
+        let apart = pixel
+            .iter()
+            .zip(wanted)
+            .map(|(seen, wanted)| seen.abs_diff(wanted));
         apart.max().unwrap_or(0) < NEAR
     };
     let (mut place, mut count, mut crossing, mut rows) = (0.0, 0usize, 0usize, 0u32);
@@ -112,7 +123,11 @@ pub fn line(window: &Window, wanted: [u8; 3]) -> [i32; 3] {
             crossing += in_row;
         }
     }
-    let place = if rows > 0 { place / f64::from(rows) } else { 0.0 };
+    let place = if rows > 0 {
+        place / f64::from(rows)
+    } else {
+        0.0
+    };
     let crossing = crossing as f64 * 100.0 / (side * cross_rows).max(1) as f64;
     [
         rounded(place),
@@ -183,8 +198,17 @@ mod tests {
         assert_eq!(colour(&window, None), [11, 20, 30]);
         assert_eq!(learned(&window), [11, 20, 30]);
         let noisy = colour(&window, Some(&mut Random::new(1)));
-        let apart: Vec<i32> = noisy.iter().zip([11, 20, 30]).map(|(one, other)| i32::from(*one) - other).collect();
-        assert!(apart.iter().all(|difference| (difference - apart[0]).abs() <= 1), "{apart:?}");
+        let apart: Vec<i32> = noisy
+            .iter()
+            .zip([11, 20, 30])
+            .map(|(one, other)| i32::from(*one) - other)
+            .collect();
+        assert!(
+            apart
+                .iter()
+                .all(|difference| (difference - apart[0]).abs() <= 1),
+            "{apart:?}"
+        );
     }
 
     #[test]

@@ -59,7 +59,11 @@ fn markers_leave_what_can_be_seen_and_wiped() {
     });
     assert_eq!(floor.trace(), [red]);
     let window = seen(&mut floor, point(0.0, 0.0), 0.0, 12, 1.0);
-    let count = window.pixels.iter().filter(|pixel| **pixel == [255, 0, 0]).count();
+    let count = window
+        .pixels
+        .iter()
+        .filter(|pixel| **pixel == [255, 0, 0])
+        .count();
     assert!((50..70).contains(&count), "{count} of 121 pixels are red");
     floor.wipe();
     assert!(floor.trace().is_empty());
