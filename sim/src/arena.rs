@@ -24,8 +24,10 @@ pub use timeline::Timeline;
 
 use std::collections::VecDeque;
 
+use lang::diagram::devices;
 use lang::diagram::machine::STEP_MS;
 use lang::diagram::ports::Port;
+use lang::diagram::program::Program;
 use lang::diagram::stand_in::{Motion, motion};
 
 use crate::field::{self, Field, SensorKind};
@@ -42,6 +44,26 @@ pub struct Setup {
     pub others: Vec<field::Robot>,
     /// What a person answers when a program asks, in order.
     pub answers: VecDeque<String>,
+}
+
+impl Setup {
+    /// With the sensors that a program waits for.
+    pub fn of(program: &Program) -> Self {
+        let kind = |sensor| match sensor {
+            devices::Sensor::Infrared => SensorKind::Infrared,
+            devices::Sensor::Sonar => SensorKind::Sonar,
+            devices::Sensor::Light => SensorKind::Light,
+            devices::Sensor::Touch => SensorKind::Touch,
+            devices::Sensor::Other => SensorKind::Other,
+        };
+        Self {
+            sensors: devices::needed(program)
+                .into_iter()
+                .map(|(port, sensor)| (port, kind(sensor)))
+                .collect(),
+            ..Self::default()
+        }
+    }
 }
 
 /// A field on which robots drive.
