@@ -18,6 +18,7 @@ mod fifo;
 mod files;
 pub mod geometry;
 mod input;
+pub mod judge;
 mod lidar;
 mod limits;
 pub mod machine;

@@ -2,8 +2,9 @@
 //!
 //! `cli` has the words, `up` starts the virtual board and the tree over it, `fault` breaks devices of a running board,
 //! `place` knows where the robots of a user are, `remote` brings programs to robots, `diagrams` shows, checks and translates
-//! diagrams without a robot. Nothing of this runs on the controller.
+//! diagrams without a robot, `check` runs and judges solutions of tasks. Nothing of this runs on the controller.
 
+mod check;
 pub mod cli;
 mod diagrams;
 mod fault;

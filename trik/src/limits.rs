@@ -52,3 +52,25 @@ pub const TURN_MS: u32 = 250;
 pub const ROOM_MS: u32 = 20;
 /// Pieces of output that wait for whoever reads it.
 pub const OUTPUT_PIECES: usize = 64;
+/// Longest run that is judged, in seconds of model time.
+pub const MODEL_SECONDS_MAX: f64 = 3600.0;
+/// Longest run that is judged, in seconds of real time.
+pub const WALL_SECONDS_MAX: f64 = 3600.0;
+/// What a worker gets beyond the time of a run, for reading files and writing pictures, in milliseconds.
+pub const WORKER_GRACE_MS: u32 = 5_000;
+/// Solutions of one command.
+pub const SOLUTIONS_MAX: usize = 100_000;
+/// Fields of one command.
+pub const FIELDS_MAX: usize = 1_000;
+/// How deep directories of solutions may nest.
+pub const FOLDERS_DEEP: usize = 8;
+/// Bytes of a world, a program or a file of inputs.
+pub const WORLD_BYTES_MAX: u64 = 32 << 20;
+/// Bytes of a recorded trajectory.
+pub const LOG_BYTES_MAX: u64 = 256 << 20;
+/// Bytes of what a worker says of one run.
+pub const ROW_BYTES_MAX: usize = 4 << 20;
+/// Messages of one run that a line of results has.
+pub const ROW_MESSAGES_MAX: usize = 200;
+/// Characters of one of them.
+pub const ROW_MESSAGE_CHARS_MAX: usize = 2_000;
