@@ -7,13 +7,16 @@
 //! something, sensors that look at walls and solids in the order and with the roundings of its paths.
 
 mod brick;
+pub mod floor;
 mod outline;
 mod ranges;
 mod robot;
+pub mod screen;
 mod solids;
 mod timeline;
 
 pub use brick::Handle;
+pub use floor::Floor;
 pub use outline::{Bounds, Outline};
 pub use robot::{Dice, Gamepad, Marker, Pad, Robot};
 pub use solids::Solids;
@@ -72,6 +75,10 @@ pub struct Arena {
     solids: Solids,
     robots: Vec<Robot>,
     answers: VecDeque<String>,
+    /// Laid when somebody looks at it or leaves something on it.
+    floor: Option<Box<Floor>>,
+    /// Room for windows of the floor.
+    window: floor::Window,
     /// Room for outlines that live for one call.
     scratch: Outline,
 }
@@ -102,6 +109,8 @@ impl Arena {
             now: 0,
             robots,
             answers: setup.answers,
+            floor: None,
+            window: floor::Window::default(),
             scratch: Outline::default(),
         }
     }
@@ -123,7 +132,17 @@ impl Arena {
                 motion(robot.chosen, robot.pose.degrees)
             };
             robot.motion = moved;
+            let begin = robot.centre();
             robot.advance(&self.field.settings);
+            if robot.marker.is_down && robot.centre() != begin {
+                let rgb = screen::named(&robot.marker.colour);
+                let stroke = floor::Stroke {
+                    begin,
+                    end: robot.centre(),
+                    rgb: [rgb.red, rgb.green, rgb.blue],
+                };
+                laid(&mut self.floor, &self.field).mark(stroke);
+            }
         }
     }
 
@@ -146,6 +165,24 @@ impl Arena {
     pub fn edit(&mut self, change: impl FnOnce(&mut Field)) {
         change(&mut self.field);
         self.solids = Solids::of(&self.field);
+        if let Some(old) = self.floor.take() {
+            // What markers have left lies over everything new.
+            let floor = laid(&mut self.floor, &self.field);
+            floor.wipe();
+            for stroke in old.trace() {
+                floor.mark(*stroke);
+            }
+        }
+    }
+
+    /// What optical sensors see, and what markers have left on it.
+    pub fn floor(&mut self) -> &mut Floor {
+        laid(&mut self.floor, &self.field)
+    }
+
+    /// What markers have left; nothing as long as none was down.
+    pub fn trace(&self) -> &[floor::Stroke] {
+        self.floor.as_deref().map_or(&[], Floor::trace)
     }
 
     /// What robots and rays run into.
@@ -171,6 +208,11 @@ impl Arena {
         assert!(index < self.robots.len(), "no robot number {index}");
         Handle { arena: self, index }
     }
+}
+
+/// The floor, laid at the first call.
+fn laid<'a>(floor: &'a mut Option<Box<Floor>>, field: &Field) -> &'a mut Floor {
+    floor.get_or_insert_with(|| Box::new(floor::lay(field).0))
 }
 
 #[cfg(test)]

@@ -1,0 +1,101 @@
+use super::*;
+use crate::geometry::point;
+
+fn black_right_half() -> Floor {
+    let mut floor = Floor::default();
+    let path = outline::rectangle(point(0.0, -1e4), point(1e4, 1e4)).unwrap();
+    let outline = Outline::inside(&path, &Affine::SAME, raster::Rule::NonZero).unwrap();
+    floor.add_area(outline, Tint::solid([0; 3]));
+    floor
+}
+
+fn seen(floor: &mut Floor, at: Point, degrees: f64, side: u16, part: f64) -> Window {
+    let mut window = Window::default();
+    floor.look(at, degrees, side, part, &mut window);
+    window
+}
+
+#[test]
+fn windows_have_the_sizes_of_the_original() {
+    let mut floor = Floor::default();
+    for (side, part, pixels) in [(12, 1.0, 11), (18, 2.0, 35), (18, 0.3, 5), (18, 0.2, 3)] {
+        for degrees in [0.0, 45.0, 90.0, 123.4, -270.0, 1e9] {
+            let window = seen(&mut floor, point(3.0, 4.0), degrees, side, part);
+            assert_eq!(window.side, pixels);
+            assert!(window.pixels.iter().all(|pixel| *pixel == [255; 3]));
+        }
+    }
+}
+
+#[test]
+fn up_is_where_the_sensor_looks() {
+    let mut floor = black_right_half();
+    // Looking to the right: what is ahead is black and at the top.
+    let window = seen(&mut floor, point(0.0, 0.0), 0.0, 12, 1.0);
+    assert_eq!(window.pixels[5], [0; 3]);
+    assert_eq!(window.pixels[10 * 11 + 5], [255; 3]);
+    // Looking down: what is to the right of the scene is at the left.
+    let window = seen(&mut floor, point(0.0, 0.0), 90.0, 12, 1.0);
+    assert_eq!(window.pixels[5 * 11], [0; 3]);
+    assert_eq!(window.pixels[5 * 11 + 10], [255; 3]);
+    // The same at angles that are turned pixel by pixel.
+    let window = seen(&mut floor, point(0.0, 0.0), 89.0, 12, 1.0);
+    assert_eq!(window.pixels[5 * 11], [0; 3]);
+    assert_eq!(window.pixels[5 * 11 + 10], [255; 3]);
+}
+
+#[test]
+fn markers_leave_what_can_be_seen_and_wiped() {
+    let mut floor = Floor::default();
+    let red = Stroke {
+        begin: point(-20.0, 0.0),
+        end: point(20.0, 0.0),
+        rgb: [255, 0, 0],
+    };
+    floor.mark(red);
+    floor.mark(Stroke {
+        end: red.begin,
+        ..red
+    });
+    assert_eq!(floor.trace(), [red]);
+    let window = seen(&mut floor, point(0.0, 0.0), 0.0, 12, 1.0);
+    let count = window
+        .pixels
+        .iter()
+        .filter(|pixel| **pixel == [255, 0, 0])
+        .count();
+    assert!((50..70).contains(&count), "{count} of 121 pixels are red");
+    floor.wipe();
+    assert!(floor.trace().is_empty());
+    let window = seen(&mut floor, point(0.0, 0.0), 0.0, 12, 1.0);
+    assert!(window.pixels.iter().all(|pixel| *pixel == [255; 3]));
+}
+
+#[test]
+fn pixels_of_pictures_are_seen_where_they_lie() {
+    let mut floor = Floor::default();
+    let mut pixels = Pixels::new(2, 1, Some(screen::colour::BLACK));
+    pixels.set(1, 0, screen::colour::colour(0, 255, 0));
+    let own = Affine([0.5, 0.0, 0.0, 1.0, 0.0, 0.0]);
+    let picture = picture::Picture {
+        layers: vec![picture::Layer::Pixels(pixels.into(), own)],
+        lacks: Vec::new(),
+    };
+    // 200 x 100 at (10, 20).
+    floor.add_picture(&picture, &Affine([200.0, 0.0, 0.0, 100.0, 10.0, 20.0]));
+    for (x, colour) in [(60.0, [0; 3]), (160.0, [0, 255, 0]), (300.0, [255; 3])] {
+        let window = seen(&mut floor, point(x, 70.0), 30.0, 18, 0.3);
+        assert!(window.pixels.iter().all(|pixel| *pixel == colour), "at {x}");
+    }
+}
+
+#[test]
+fn places_that_are_none_are_white() {
+    let mut floor = black_right_half();
+    for place in [f64::NAN, f64::INFINITY, 1e308] {
+        let window = seen(&mut floor, point(place, 0.0), 10.0, 12, 1.0);
+        assert_eq!(window.pixels[0], [255; 3]);
+    }
+    let window = seen(&mut floor, point(0.0, 0.0), f64::NAN, 12, 1.0);
+    assert_eq!(window.side, 11);
+}
