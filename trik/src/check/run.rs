@@ -20,7 +20,7 @@ use lang::problem::{Problem, Tongue};
 use sim::judge::{self, Caption, Diagram, Outcome, Program, Settings, Task, Texts, Trajectory};
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::time::Duration;
 
@@ -144,6 +144,8 @@ fn settings(args: &CheckArgs) -> Result<Settings, String> {
 struct Solution {
     project: Project,
     script: Option<(Language, String)>,
+    /// Where the program comes from.
+    file: PathBuf,
 }
 
 impl Solution {
@@ -177,7 +179,12 @@ impl Solution {
             None if args.is_embedded => Some(embedded(&project, path)?),
             script => script,
         };
-        Ok(Self { project, script })
+        let file = args.script.as_deref().unwrap_or(path).to_owned();
+        Ok(Self {
+            project,
+            script,
+            file,
+        })
     }
 
     /// The program, ready for its first step; the task gets the sensors that it needs.
@@ -189,6 +196,7 @@ impl Solution {
     ) -> Result<Box<dyn Program>, Lines> {
         if let Some((language, text)) = &self.script {
             let given = Given {
+                file: &self.file,
                 inputs: &settings.answers,
                 seed: args.seed,
                 wall_seconds: args.wall_limit,
