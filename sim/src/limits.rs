@@ -88,3 +88,5 @@ pub const FLOOR_PROBLEMS: usize = 50;
 pub const SCREEN_OBJECTS: usize = 20_000;
 /// Characters of a text on it, and of what a robot says.
 pub const SCREEN_TEXT: usize = 4096;
+/// Things on a display that one record tells.
+pub const OBJECTS_TOLD: usize = 200;
