@@ -286,7 +286,7 @@ fn write(job: &Job, args: &CheckArgs, task: &Task, outcome: &Outcome) -> Result<
 
 /// Writes one file of a run.
 fn put(job: &Job, args: &CheckArgs, path: &Path, ending: &str, bytes: &[u8]) -> Result<(), String> {
-    let is_one = !args.worker;
+    let is_one = args.is_one;
     let path = place(path, job, ending, is_one);
     if let (false, Some(folder)) = (is_one, path.parent()) {
         let made = std::fs::create_dir_all(folder);
