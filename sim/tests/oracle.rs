@@ -88,11 +88,7 @@ fn run(data: &Path, oracle: &Oracle, fixed: Option<i32>) -> Ran {
         .map(|field| std::fs::read_to_string(data.join(field)).unwrap());
     let world = text.or(opened.project.world.clone()).unwrap_or_default();
     let field = Field::read(&world).unwrap().field;
-    let program = Rc::new(
-        lower(&opened.project, World::default())
-            .unwrap()
-            .program,
-    );
+    let program = Rc::new(lower(&opened.project, World::default()).unwrap().program);
     let mut arena = Arena::new(&field, Setup::of(&program));
     arena.robot_mut(0).unwrap().dice.fixed = fixed;
     let mut machine = Machine::new(program, Options::simulated());
