@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 
 type Target = fn(&[u8]);
 
-const TARGETS: [(&str, Target); 7] = [
+const TARGETS: [(&str, Target); 8] = [
     ("reader", lang::fuzz::reader),
     ("expression", lang::fuzz::expression),
     ("lowering", lang::fuzz::lowering),
@@ -16,6 +16,7 @@ const TARGETS: [(&str, Target); 7] = [
     ("messages", trikd::fuzz::fuzz_messages),
     ("lines", trikd::fuzz::fuzz_lines),
     ("strangers", trikd::fuzz::fuzz_strangers),
+    ("picture", sim::arena::floor::fuzz::picture),
 ];
 
 static TARGET: LazyLock<Target> = LazyLock::new(|| {
