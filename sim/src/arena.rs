@@ -8,11 +8,11 @@
 
 mod brick;
 pub mod floor;
-mod outline;
+pub mod outline;
 mod ranges;
 mod robot;
 pub mod screen;
-mod solids;
+pub mod solids;
 mod timeline;
 
 pub use brick::Handle;
