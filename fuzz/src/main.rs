@@ -17,6 +17,7 @@ const TARGETS: [(&str, Target); 8] = [
     ("messages", trikd::fuzz::fuzz_messages),
     ("lines", trikd::fuzz::fuzz_lines),
     ("strangers", trikd::fuzz::fuzz_strangers),
+    ("picture", sim::arena::floor::fuzz::picture),
 ];
 
 static TARGET: LazyLock<Target> = LazyLock::new(|| {

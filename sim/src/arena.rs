@@ -7,6 +7,7 @@
 //! something, sensors that look at walls and solids in the order and with the roundings of its paths.
 
 mod brick;
+mod dynamics;
 pub mod floor;
 pub mod outline;
 mod ranges;
@@ -23,6 +24,8 @@ pub use solids::Solids;
 pub use timeline::Timeline;
 
 use std::collections::VecDeque;
+
+use self::dynamics::Dynamics;
 
 use lang::diagram::devices;
 use lang::diagram::machine::STEP_MS;
@@ -77,6 +80,8 @@ pub struct Arena {
     answers: VecDeque<String>,
     /// Laid when somebody looks at it or leaves something on it.
     floor: Option<Box<Floor>>,
+    /// In place of ideal physics, made at the first tick.
+    dynamics: Option<Box<Dynamics>>,
     /// Room for windows of the floor.
     window: floor::Window,
     /// Room for outlines that live for one call.
@@ -110,6 +115,7 @@ impl Arena {
             robots,
             answers: setup.answers,
             floor: None,
+            dynamics: None,
             window: floor::Window::default(),
             scratch: Outline::default(),
         }
@@ -118,20 +124,17 @@ impl Arena {
     /// One tick: 10 ms of the world. A program's step at the same time comes after it.
     pub fn tick(&mut self) {
         self.now = self.now.saturating_add(STEP_MS);
+        if self.field.settings.realistic_physics {
+            let made = || Box::new(Dynamics::new(&self.field, &self.robots));
+            let dynamics = self.dynamics.get_or_insert_with(made);
+            let solids = &mut self.solids;
+            dynamics.tick(&mut self.robots, &mut self.field, |index, solid| {
+                solids.moved(index, solid);
+            });
+        } else {
+            self.ideal();
+        }
         for robot in &mut self.robots {
-            robot.outline_into(&mut self.scratch);
-            let moved = if self.solids.meets(&self.scratch) {
-                robot.is_stuck = true;
-                let Motion { shift, turn } = robot.motion;
-                Motion {
-                    shift: (-shift.0, -shift.1),
-                    turn: -turn,
-                }
-            } else {
-                robot.is_stuck = false;
-                motion(robot.chosen, robot.pose.degrees)
-            };
-            robot.motion = moved;
             let begin = robot.centre();
             robot.advance(&self.field.settings);
             if robot.marker.is_down && robot.centre() != begin {
@@ -143,6 +146,23 @@ impl Arena {
                 };
                 laid(&mut self.floor, &self.field).mark(stroke);
             }
+        }
+    }
+
+    /// What a tick moves the robots with ideal wheels; who touches something takes his last step back.
+    fn ideal(&mut self) {
+        for robot in &mut self.robots {
+            robot.outline_into(&mut self.scratch);
+            robot.is_stuck = self.solids.meets(&self.scratch);
+            robot.motion = if robot.is_stuck {
+                let Motion { shift, turn } = robot.motion;
+                Motion {
+                    shift: (-shift.0, -shift.1),
+                    turn: -turn,
+                }
+            } else {
+                motion(robot.chosen, robot.pose.degrees)
+            };
         }
     }
 
@@ -165,6 +185,7 @@ impl Arena {
     pub fn edit(&mut self, change: impl FnOnce(&mut Field)) {
         change(&mut self.field);
         self.solids = Solids::of(&self.field);
+        self.dynamics = None;
         if let Some(old) = self.floor.take() {
             // What markers have left lies over everything new.
             let floor = laid(&mut self.floor, &self.field);

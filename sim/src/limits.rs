@@ -40,6 +40,18 @@ pub const PHOTO_HEIGHT: u16 = 240;
 pub const PHOTO_QUALITY: u8 = 70;
 /// What the FIFO of pictures holds, in bytes: one picture at any time.
 pub const PHOTO_FIFO_BYTES: i32 = 64 << 10;
+/// How deep values of JSON may nest.
+pub const JSON_DEPTH: usize = 32;
+/// Values of one text of JSON: an hour of ticks of one robot has 2.2 million.
+pub const JSON_VALUES: usize = 4_000_000;
+/// Longest run that is judged, in milliseconds of model time.
+pub const RUN_MS_MAX: u32 = 3_600_000;
+/// Records of one trajectory: an hour of one robot, and as much for its devices.
+pub const RECORDS: usize = 800_000;
+/// Robots of one trajectory.
+pub const ROBOTS: usize = 16;
+/// Farthest place of a recorded pose, in pixels.
+pub const FAR_PX: f64 = 1e7;
 /// Corners of one outline on a floor.
 pub const OUTLINE_POINTS: usize = 200_000;
 /// Dashes are drawn on lines up to so many widths of their pen; longer ones are drawn whole.
@@ -80,6 +92,8 @@ pub const FIELD_ROBOTS: usize = 16;
 pub const FIELD_SENSORS: usize = 64;
 /// Messages of other robots that wait for one.
 pub const MAIL_MAX: usize = 10_000;
+/// Poses of one robot that an animated page holds.
+pub const PAGE_POSES: usize = 6_000;
 /// Remarks on pictures and colours of one floor.
 pub const FLOOR_PROBLEMS: usize = 50;
 /// Things on one virtual display.
@@ -90,3 +104,5 @@ pub const SCREEN_TEXT: usize = 4096;
 pub const DRAWING_BYTES: usize = 8 << 20;
 /// Poses of one robot that an animated page holds.
 pub const PAGE_POSES: usize = 6_000;
+/// Things on a display that one record tells.
+pub const OBJECTS_TOLD: usize = 200;

@@ -2,7 +2,8 @@
 //!
 //! `cli` has the words, `up` starts the virtual board and the tree over it, `fault` breaks devices of a running board,
 //! `place` knows where the robots of a user are, `remote` brings programs to robots, `diagrams` shows, checks and translates
-//! diagrams without a robot, `check` runs and judges solutions of tasks. Nothing of this runs on the controller.
+//! diagrams without a robot, `check` runs and judges solutions of tasks, `script` runs programs with text for it. Nothing of
+//! this runs on the controller.
 
 mod check;
 pub mod cli;
@@ -11,4 +12,5 @@ mod fault;
 pub mod limits;
 pub mod place;
 mod remote;
+pub mod script;
 mod up;

@@ -9,6 +9,7 @@
 //! painted with smooth edges, turned without smoothing, and its middle is cut out.
 
 pub mod colour;
+pub mod fuzz;
 mod lay;
 pub mod outline;
 pub mod picture;

@@ -460,7 +460,7 @@ fn size_of(kind: SensorKind) -> Option<(f64, f64)> {
 }
 
 /// What of a sensor is solid, in the robot's coordinates; of one that measures distance only the half behind.
-fn body_of(sensor: &Sensor) -> Option<[Point; 4]> {
+pub(super) fn body_of(sensor: &Sensor) -> Option<[Point; 4]> {
     let (width, height) = size_of(sensor.kind)?;
     let right = match sensor.kind {
         SensorKind::Infrared | SensorKind::Sonar => 0.0,

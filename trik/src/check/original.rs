@@ -6,9 +6,9 @@
 
 use super::CheckArgs;
 use super::jobs::Job;
+use super::pool;
 use super::row::Verdict;
 use super::run::text;
-use super::worker;
 use crate::cli::GenArgs;
 use crate::diagrams::output::Output;
 use crate::diagrams::{self, must_open, say};
@@ -200,6 +200,7 @@ pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         seed: 1,
         language: tongue(),
         worker: false,
+        is_one: true,
         is_embedded: is_script,
     };
     let job = Job {
@@ -207,7 +208,7 @@ pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         field: None,
         name: PathBuf::new(),
     };
-    let row = worker::guarded(&job, &check);
+    let row = pool::run_one(job, &check);
     say(&row.lines(check.language));
     let has_error = row.messages.iter().any(|(level, _)| level == "error");
     ExitCode::from(match row.verdict {

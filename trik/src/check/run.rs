@@ -20,7 +20,7 @@ use lang::problem::{Problem, Tongue};
 use sim::judge::{self, Caption, Diagram, Outcome, Program, Settings, Task, Texts, Trajectory};
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::time::Duration;
 
@@ -114,7 +114,7 @@ fn judged(job: &Job, args: &CheckArgs) -> Result<(Task, Outcome), Lines> {
         let outcome = judge::judge_recorded(&task, &trajectory, &settings);
         return Ok((task, outcome));
     }
-    let mut program = solution.program(&mut task, &settings, args)?;
+    let mut program = solution.program(&mut task, args)?;
     let outcome = judge::judge(&task, &mut *program, &settings);
     Ok((task, outcome))
 }
@@ -144,6 +144,8 @@ fn settings(args: &CheckArgs) -> Result<Settings, String> {
 struct Solution {
     project: Project,
     script: Option<(Language, String)>,
+    /// Where the program comes from.
+    file: PathBuf,
 }
 
 impl Solution {
@@ -177,19 +179,19 @@ impl Solution {
             None if args.is_embedded => Some(embedded(&project, path)?),
             script => script,
         };
-        Ok(Self { project, script })
+        let file = args.script.as_deref().unwrap_or(path).to_owned();
+        Ok(Self {
+            project,
+            script,
+            file,
+        })
     }
 
     /// The program, ready for its first step; the task gets the sensors that it needs.
-    fn program(
-        self,
-        task: &mut Task,
-        settings: &Settings,
-        args: &CheckArgs,
-    ) -> Result<Box<dyn Program>, Lines> {
+    fn program(self, task: &mut Task, args: &CheckArgs) -> Result<Box<dyn Program>, Lines> {
         if let Some((language, text)) = &self.script {
             let given = Given {
-                inputs: &settings.answers,
+                file: &self.file,
                 seed: args.seed,
                 wall_seconds: args.wall_limit,
             };
@@ -284,7 +286,7 @@ fn write(job: &Job, args: &CheckArgs, task: &Task, outcome: &Outcome) -> Result<
 
 /// Writes one file of a run.
 fn put(job: &Job, args: &CheckArgs, path: &Path, ending: &str, bytes: &[u8]) -> Result<(), String> {
-    let is_one = !args.worker;
+    let is_one = args.is_one;
     let path = place(path, job, ending, is_one);
     if let (false, Some(folder)) = (is_one, path.parent()) {
         let made = std::fs::create_dir_all(folder);

@@ -2,8 +2,10 @@
 //!
 //! Owns which language a file is in. Knows no engine from inside.
 
+use crate::script::{JavaScript, Python};
 use sim::judge::Program;
 use std::path::Path;
+use std::time::Duration;
 
 /// A language of programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,8 +35,8 @@ impl Language {
 /// What a program is given beside its text.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Given<'a> {
-    /// Lines for programs that read.
-    pub inputs: &'a [String],
+    /// Where its text comes from.
+    pub file: &'a Path,
     /// Seed of random numbers.
     pub seed: u32,
     /// Longest run in seconds of real time.
@@ -47,8 +49,15 @@ pub(super) struct Given<'a> {
 /// No engine for this language can be started here.
 pub(super) fn open(
     language: Language,
-    _text: &str,
-    _given: Given<'_>,
+    text: &str,
+    given: Given<'_>,
 ) -> Result<Box<dyn Program>, String> {
-    Err(format!("programs in {language:?} cannot be judged yet"))
+    match language {
+        Language::JavaScript => Ok(Box::new(JavaScript::new(given.file, text)?)),
+        Language::Python => {
+            let longest = Duration::from_secs_f64(given.wall_seconds);
+            let python = Python::new(given.file, text, given.seed, longest)?;
+            Ok(Box::new(python))
+        }
+    }
 }
