@@ -70,18 +70,6 @@ pub const PICTURE_DEPTH: u32 = 64;
 pub const TRACE_STROKES: usize = 400_000;
 /// Cells of the floor's table that list one thing; a larger thing is looked at from everywhere.
 pub const CELLS_OF_THING: i64 = 256;
-/// How deep values of JSON may nest.
-pub const JSON_DEPTH: usize = 32;
-/// Values of one text of JSON: an hour of ticks of one robot has 2.2 million.
-pub const JSON_VALUES: usize = 4_000_000;
-/// Longest run that is judged, in milliseconds of model time.
-pub const RUN_MS_MAX: u32 = 3_600_000;
-/// Records of one trajectory: an hour of one robot, and as much for its devices.
-pub const RECORDS: usize = 800_000;
-/// Robots of one trajectory.
-pub const ROBOTS: usize = 16;
-/// Farthest place of a recorded pose, in pixels.
-pub const FAR_PX: f64 = 1e7;
 /// Largest number in a world model, in units of its text and in pixels.
 pub const FIELD_NUMBER: f64 = 1e6;
 /// Walls, solids, drawn things, regions and the like of one field, strokes and sensors included.
@@ -102,7 +90,5 @@ pub const SCREEN_OBJECTS: usize = 20_000;
 pub const SCREEN_TEXT: usize = 4096;
 /// Bytes of pictures on the floor that a drawing of a run holds.
 pub const DRAWING_BYTES: usize = 8 << 20;
-/// Poses of one robot that an animated page holds.
-pub const PAGE_POSES: usize = 6_000;
 /// Things on a display that one record tells.
 pub const OBJECTS_TOLD: usize = 200;
