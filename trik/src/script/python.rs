@@ -391,7 +391,7 @@ impl Python {
                 _ => calls += 1,
             }
             let answer = self.reply(word, text, robot);
-            if calls > limits::SCRIPT_CALLS {
+            if calls > limits::SCRIPT_CALLS || self.tree.has_cleared(self.now) {
                 // Who asks and asks has used up his tick.
                 self.pending = Some(Pending::Answer(answer));
                 return true;
