@@ -1,13 +1,15 @@
 //! Programs in languages with text under a judge: JavaScript and Python in virtual time.
 //!
 //! Model time passes only while a program waits, so the same program in the same world does the same each time. `tree` is
-//! the robot as files, `drawing` its display, `input` its keys and gamepad; `stage` is where JavaScript stands, `javascript`
+//! the robot as files, `drawing` its display, `input` its keys and gamepad, `refresh` how old
+//! readings are; `stage` is where JavaScript stands, `javascript`
 //! steps its threads; `python` serves a child process.
 
 mod drawing;
 mod input;
 mod javascript;
 mod python;
+mod refresh;
 mod stage;
 mod tree;
 
@@ -18,6 +20,10 @@ use lang::diagram::brick::Command;
 use lang::problem::{Place, Position, Problem, Words};
 use std::path::{Component, Path};
 use trikd::js::read_text;
+
+/// When a program begins, in milliseconds of model time: as late as a diagram does in the original's simulator, so that
+/// what rules do at the beginning is done by then.
+const START_MS: u32 = 30;
 
 /// A file of the program's folder: programs under a judge see nothing else.
 fn beside(folder: &Path, file: &str) -> Result<String, String> {

@@ -4,8 +4,9 @@
 //! of them wait. What a program does beside its questions (its own files, the network) is not held back.
 
 use super::input::{GAMEPAD, Input, KEYS};
+use super::refresh::Readings;
 use super::tree::Tree;
-use super::{drawing, problem};
+use super::{START_MS, drawing, problem};
 use crate::limits;
 use lang::diagram::brick::{Answer, Brick, Command, Question};
 use lang::diagram::machine::Status;
@@ -55,6 +56,7 @@ pub struct Python {
     now: u32,
     hull: i32,
     remarks: Vec<String>,
+    readings: Readings,
     errors: Vec<Problem>,
     ended: Option<u32>,
 }
@@ -85,6 +87,7 @@ impl Python {
             now: 0,
             hull: 0,
             remarks: Vec::new(),
+            readings: Readings::default(),
             errors: Vec::new(),
             ended: None,
         })
@@ -388,7 +391,7 @@ impl Python {
                 _ => calls += 1,
             }
             let answer = self.reply(word, text, robot);
-            if calls > limits::SCRIPT_CALLS {
+            if calls > limits::SCRIPT_CALLS || self.tree.has_cleared(self.now) {
                 // Who asks and asks has used up his tick.
                 self.pending = Some(Pending::Answer(answer));
                 return true;
@@ -405,8 +408,12 @@ impl Program for Python {
         if self.ended.is_some() {
             return self.status();
         }
-        if self.began.is_none() {
-            self.began = Some(now_ms);
+        let began = *self.began.get_or_insert(now_ms + START_MS);
+        let Some(now) = now_ms.checked_sub(began) else {
+            return Status::Running;
+        };
+        self.now = now;
+        if self.child.is_none() {
             if let Err(error) = self.start() {
                 self.fail(&format!(
                     "python3 cannot be started: {error}: is it installed?"
@@ -415,10 +422,11 @@ impl Program for Python {
                 return self.status();
             }
         }
-        self.now = now_ms.saturating_sub(self.began.unwrap_or(now_ms));
-        if !self.serve(robot) {
+        let mut readings = std::mem::take(&mut self.readings);
+        if !self.serve(&mut readings.of(robot, now + START_MS)) {
             self.end(robot);
         }
+        self.readings = readings;
         self.status()
     }
 

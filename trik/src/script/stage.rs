@@ -233,10 +233,18 @@ impl Answers for Here {
 
     fn write(&self, path: &str, text: &str) -> io::Result<()> {
         let text = text.to_owned();
-        self.tree(path, move |tree, brick, path| {
+        let done = self.tree(path, move |tree, brick, path| {
             tree.write(brick, path, &text)
-        })
-        .unwrap_or_else(over)
+        });
+        let has_cleared = self
+            .stage
+            .tree
+            .borrow_mut()
+            .has_cleared(self.stage.now.get());
+        if has_cleared {
+            self.stage.hand_over(Wish::Tick);
+        }
+        done.unwrap_or_else(over)
     }
 
     fn now_us(&self) -> u128 {

@@ -39,7 +39,7 @@ fn log(text: &str) -> Vec<String> {
     robot
         .log
         .iter()
-        .map(|(ms, line)| format!("{ms} {line}"))
+        .map(|(ms, line)| format!("{} {line}", ms - START_MS))
         .collect()
 }
 
@@ -184,8 +184,8 @@ fn keys_and_timers_are_events() {
         script.timer(100).timeout.connect(() => print('timer')); script.run();";
     let mut program = JavaScript::new(Path::new("/nowhere/p.js"), text).unwrap();
     let enter = Port::named("Enter").unwrap();
-    for now in (0..=150).step_by(STEP_MS as usize) {
-        robot.readings.insert(enter, i32::from(now == 50));
+    for now in (0..=180).step_by(STEP_MS as usize) {
+        robot.readings.insert(enter, i32::from(now == 80));
         assert_eq!(program.step(now, &mut robot), Status::Running);
         robot.tick();
     }
@@ -251,7 +251,9 @@ fn python_log(text: &str) -> Vec<String> {
     assert!(matches!(status, Status::Ended { .. }), "{text}: {status:?}");
     assert_eq!(error, "", "{text}");
     let lines = robot.log.iter();
-    lines.map(|(ms, line)| format!("{ms} {line}")).collect()
+    lines
+        .map(|(ms, line)| format!("{} {line}", ms - START_MS))
+        .collect()
 }
 
 #[test]
