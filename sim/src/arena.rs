@@ -8,7 +8,7 @@
 
 mod brick;
 mod outline;
-mod ranges;
+pub(crate) mod ranges;
 mod robot;
 mod solids;
 mod timeline;
