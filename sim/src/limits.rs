@@ -40,8 +40,8 @@ pub const PHOTO_HEIGHT: u16 = 240;
 pub const PHOTO_QUALITY: u8 = 70;
 /// What the FIFO of pictures holds, in bytes: one picture at any time.
 pub const PHOTO_FIFO_BYTES: i32 = 64 << 10;
-/// Corners of one outline on a floor.
-pub const OUTLINE_POINTS: usize = 200_000;
+/// Lines and curves of one outline on a floor.
+pub const OUTLINE_STEPS: usize = 200_000;
 /// Dashes are drawn on lines up to so many widths of their pen; longer ones are drawn whole.
 pub const DASHED_LENGTH: f32 = 10_000.0;
 /// Farthest place on a floor, in pixels either way, for which lines and pictures are drawn.

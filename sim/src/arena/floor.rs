@@ -15,6 +15,7 @@ pub mod outline;
 pub mod picture;
 pub mod raster;
 pub mod sensors;
+pub mod stroke;
 mod words;
 
 pub use lay::lay;

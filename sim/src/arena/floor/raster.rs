@@ -14,6 +14,10 @@ pub enum Rule {
 
 /// Parts of a pixel that corners lie on.
 const GRID: f64 = 64.0;
+/// Control points are at most so far from a curve that is drawn as a line, in pixels.
+const STRAIGHT: f64 = 42.0 / 256.0;
+/// How often a curve is halved.
+const CURVE_DEPTH: usize = 16;
 
 /// Coverage of the pixels of a window.
 #[derive(Clone, Debug, Default)]
@@ -86,6 +90,36 @@ impl Coverage {
         }
     }
 
+    /// A cubic curve of a closed outline. It is cut into edges where the original's painter cuts it: as soon as its control
+    /// points are within about a sixth of a pixel of a straight line.
+    pub fn curve(&mut self, points: [(f64, f64); 4]) {
+        let mut stack = [points; CURVE_DEPTH + 1];
+        let mut depth = 0;
+        loop {
+            let arc = stack[depth];
+            if depth == CURVE_DEPTH || self.is_aside(&arc) || is_straight(&arc) {
+                self.edge(arc[0], arc[3]);
+                if depth == 0 {
+                    return;
+                }
+                depth -= 1;
+            } else {
+                let (first, second) = halves(arc);
+                (stack[depth], stack[depth + 1]) = (second, first);
+                depth += 1;
+            }
+        }
+    }
+
+    /// Whether of a curve only its ends matter: it is above, below, left or right of the window.
+    fn is_aside(&self, arc: &[(f64, f64); 4]) -> bool {
+        let (width, height) = (self.width as f64, self.height as f64);
+        arc.iter().all(|point| point.1 <= 0.0)
+            || arc.iter().all(|point| point.1 >= height)
+            || arc.iter().all(|point| point.0 <= 0.0)
+            || arc.iter().all(|point| point.0 >= width)
+    }
+
     /// A piece of an edge within the window, downwards.
     fn piece(&mut self, (x0, y0): (f64, f64), (x1, y1): (f64, f64), sign: f64) {
         if y1 <= y0 {
@@ -151,6 +185,28 @@ impl Coverage {
     }
 }
 
+/// Whether a curve is drawn as a line: the measure of FreeType's smooth rasteriser, which the original's painter has.
+fn is_straight(arc: &[(f64, f64); 4]) -> bool {
+    let way = |index: usize| (arc[index].0 - arc[0].0, arc[index].1 - arc[0].1);
+    let (chord, one, other) = (way(3), way(1), way(2));
+    let (x, y) = (chord.0.abs(), chord.1.abs());
+    // Near the length of the chord, and not above it by more than a fifth.
+    let length = x.max(y) + x.min(y) * 3.0 / 8.0;
+    let limit = length * STRAIGHT;
+    let far = |way: (f64, f64)| (chord.1 * way.0 - chord.0 * way.1).abs();
+    let is_behind = |way: (f64, f64)| way.0 * (way.0 - chord.0) + way.1 * (way.1 - chord.1) > 0.0;
+    far(one) <= limit && far(other) <= limit && !is_behind(one) && !is_behind(other)
+}
+
+/// Both halves of a curve.
+pub(super) fn halves([p, q, r, s]: [(f64, f64); 4]) -> ([(f64, f64); 4], [(f64, f64); 4]) {
+    let middle = |a: (f64, f64), b: (f64, f64)| (f64::midpoint(a.0, b.0), f64::midpoint(a.1, b.1));
+    let (pq, qr, rs) = (middle(p, q), middle(q, r), middle(r, s));
+    let (left, right) = (middle(pq, qr), middle(qr, rs));
+    let centre = middle(left, right);
+    ([p, pq, left, centre], [centre, right, rs, s])
+}
+
 /// A covered area in 256 steps.
 fn level(area: f64, rule: Rule) -> u8 {
     // Sums of exact parts may miss a whole number by the last bit.
@@ -210,6 +266,29 @@ mod tests {
         let twice: Vec<_> = [(1.0, 0.0), (3.0, 0.0), (3.0, 1.0), (1.0, 1.0)].repeat(2);
         assert_eq!(covered(&twice, Rule::NonZero)[0], [0, 255, 255, 0]);
         assert_eq!(covered(&twice, Rule::EvenOdd)[0], [0; 4]);
+    }
+
+    #[test]
+    fn a_curve_covers_what_is_inside_of_it() {
+        let mut coverage = Coverage::default();
+        coverage.begin(10, 10);
+        let near = 4.0 * 0.5523;
+        // A quarter of a disc with a radius of 4, and both straight sides.
+        coverage.curve([(4.0, 0.0), (4.0, near), (near, 4.0), (0.0, 4.0)]);
+        coverage.edge((0.0, 4.0), (0.0, 0.0));
+        coverage.edge((0.0, 0.0), (4.0, 0.0));
+        let mut sum = 0.0;
+        coverage.pixels(Rule::NonZero, |_, _, level| sum += f64::from(level) / 255.0);
+        assert!((sum - std::f64::consts::PI * 4.0).abs() < 0.4, "{sum}");
+        let mut aside = Coverage::default();
+        aside.begin(3, 3);
+        aside.curve([(-5.0, -9.0), (-90.0, 3.0), (-7.0, 50.0), (-5.0, 12.0)]);
+        aside.edge((9.0, 12.0), (9.0, -9.0));
+        let mut count = 0;
+        aside.pixels(Rule::NonZero, |_, _, level| {
+            count += usize::from(level == 255)
+        });
+        assert_eq!(count, 9);
     }
 
     #[test]
