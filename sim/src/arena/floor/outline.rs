@@ -152,14 +152,23 @@ impl Outline {
         })
     }
 
-    /// What a pen leaves that goes along a path; nothing if it leaves nothing.
-    pub fn along(path: &skia::Path, place: &Affine, stroke: &skia::Stroke) -> Option<Self> {
+    /// What a pen leaves that goes along a path; nothing if it leaves nothing. `dashes` are lengths of dashes and gaps in
+    /// turn.
+    pub fn along(
+        path: &skia::Path,
+        place: &Affine,
+        stroke: &skia::Stroke,
+        dashes: &[f32],
+    ) -> Option<Self> {
         let fine = FINE * (place.scale() as f32).clamp(1e-3, 1e3);
-        let dashed = match &stroke.dash {
-            Some(dash) => Some(path.dash(dash, fine)?),
-            None => None,
-        };
-        let steps = stroke::steps(dashed.as_ref().unwrap_or(path));
+        let mut steps = stroke::steps(path);
+        // A line of very many dashes is as good as a whole one.
+        if let Some(dash) = stroke.dash.as_ref().filter(|_| {
+            let every: f64 = dashes.iter().copied().map(f64::from).sum();
+            stroke::length(&steps) < limits::DASHES * every
+        }) {
+            steps = stroke::steps(&path.dash(dash, fine)?);
+        }
         Self::of(stroke::stroked(&steps, stroke), place, Rule::NonZero)
     }
 
@@ -181,9 +190,6 @@ impl Outline {
             _ => &[],
         };
         let lengths: Vec<f32> = dashes.iter().map(|length| length * width).collect();
-        // A line of very many dashes is as good as a whole one.
-        let is_dashed = !lengths.is_empty()
-            && path.bounds().width().max(path.bounds().height()) < limits::DASHED_LENGTH * width;
         let stroke = skia::Stroke {
             width,
             line_cap: match nib.cap {
@@ -192,14 +198,20 @@ impl Outline {
                 Cap::Flat => skia::LineCap::Butt,
             },
             line_join: skia::LineJoin::Bevel,
-            dash: if is_dashed {
-                skia::StrokeDash::new(lengths, 0.0)
-            } else {
-                None
-            },
+            dash: skia::StrokeDash::new(lengths.clone(), 0.0),
             ..skia::Stroke::default()
         };
-        Self::along(path, &Affine::SAME, &stroke)
+        Self::along(path, &Affine::SAME, &stroke, &lengths)
+    }
+
+    /// How many lines and curves it has.
+    pub fn len(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// Whether there is nothing in it.
+    pub fn is_empty(&self) -> bool {
+        self.steps.is_empty()
     }
 
     /// The rectangle around it.

@@ -67,6 +67,26 @@ pub fn steps(path: &skia::Path) -> Vec<Step> {
     steps
 }
 
+/// About how long steps are, and not less.
+pub fn length(steps: &[Step]) -> f64 {
+    let (mut sum, mut here) = (0.0, (0.0, 0.0));
+    let mut go = |to: Spot, is_drawn: bool| {
+        let (x, y): Spot = (to.0 - here.0, to.1 - here.1);
+        if is_drawn {
+            sum += x.hypot(y);
+        }
+        here = to;
+    };
+    for step in steps {
+        match *step {
+            Step::Move(to) => go(to, false),
+            Step::Line(to) => go(to, true),
+            Step::Curve(spots) => spots.into_iter().for_each(|spot| go(spot, true)),
+        }
+    }
+    sum
+}
+
 /// A line of two points, or a curve of four.
 #[derive(Clone, Copy, Debug)]
 struct Piece {

@@ -99,3 +99,53 @@ fn places_that_are_none_are_white() {
     let window = seen(&mut floor, point(0.0, 0.0), f64::NAN, 12, 1.0);
     assert_eq!(window.side, 11);
 }
+
+#[test]
+fn fields_are_laid_and_what_cannot_be_shown_is_told() {
+    use crate::field::{Drawn, Field, Pen, Shape};
+    let text = "<root version=\"20251219\"><world><colorFields>\
+        <line id=\"a\" begin=\"0:-50\" end=\"0:50\" stroke=\"#ff0000\" stroke-width=\"40\" stroke-style=\"solid\"/>\
+        <ellipse id=\"b\" begin=\"60:-20\" end=\"100:20\" stroke=\"blu\" stroke-width=\"4\" stroke-style=\"none\" fill=\"#0000ff\" fill-style=\"solid\"/>\
+        </colorFields><images><image id=\"i\" imageId=\"none\" rect=\"0:0:10:10\" position=\"0:0\" isBackground=\"false\"/>\
+        </images></world><settings backgroundColor=\"#00ff00\"/></root>";
+    let field = Field::read(text).unwrap().field;
+    let (mut floor, problems) = lay(&field);
+    assert!(
+        problems
+            .iter()
+            .any(|problem| problem.words.english.contains("none")),
+        "{problems:?}"
+    );
+    for (x, colour) in [
+        (0.0, [255, 0, 0]),
+        (80.0, [0, 0, 255]),
+        (-200.0, [0, 255, 0]),
+    ] {
+        let window = seen(&mut floor, point(x, 0.0), 12.0, 12, 1.0);
+        assert!(window.pixels.iter().all(|pixel| *pixel == colour), "at {x}");
+    }
+    let mut field = Field::default();
+    let pen = Pen {
+        colour: "blu".to_owned(),
+        width: 3.0,
+        ..Pen::default()
+    };
+    let line = Shape::Line(point(0.0, 0.0), point(9.0, 9.0));
+    field.drawn.push(Drawn::new(line, pen));
+    let (_, problems) = lay(&field);
+    assert!(problems[0].words.english.contains("'blu' is no colour"));
+}
+
+#[test]
+fn many_dashes_are_one_line() {
+    let path = outline::line(point(0.0, 0.0), point(9e5, 0.0)).unwrap();
+    let nib = |width, style| Nib {
+        width,
+        style,
+        cap: Cap::Flat,
+    };
+    let whole = Outline::drawn(&path, nib(1.0, "dash")).unwrap();
+    assert!(whole.len() < 20);
+    let dashed = Outline::drawn(&path, nib(100.0, "dash")).unwrap();
+    assert!(dashed.len() > 2000, "{}", dashed.len());
+}
