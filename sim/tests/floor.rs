@@ -10,6 +10,7 @@ use lang::diagram::machine::trace::Deaf;
 use lang::diagram::machine::{Machine, Options, STEP_MS};
 use lang::diagram::read::read;
 use lang::diagram::stand_in::Pose;
+use sim::arena::screen::{Form, Object, hex};
 use sim::arena::{Arena, Setup};
 use sim::field::Field;
 
@@ -27,7 +28,10 @@ fn data(name: &str) -> Option<PathBuf> {
 
 /// An example in its own world, before its first step.
 fn open(data: &Path, example: &str) -> (Arena, Machine) {
-    let file = data.join("examples").join(format!("{example}.qrs"));
+    open_file(&data.join("examples").join(format!("{example}.qrs")))
+}
+
+fn open_file(file: &Path) -> (Arena, Machine) {
     let opened = read(&std::fs::read(file).unwrap()).unwrap();
     let mut field = Field::read(opened.project.world.as_deref().unwrap())
         .unwrap()
@@ -195,4 +199,73 @@ fn the_camera_keeps_a_robot_on_its_line() {
     println!("way {way:.0} px, line seen {seen} of 201 times");
     assert!(way > 300.0, "{way}");
     assert!(seen > 190, "{seen}");
+}
+
+/// One object as the record writes it.
+fn told(object: &Object) -> String {
+    let pen = |kind: &str, rest: String| {
+        let (colour, thickness) = (hex(object.colour), object.thickness);
+        format!("{rest},\"thickness\":{thickness},\"type\":\"{kind}\"").replacen(
+            "COLOUR",
+            &format!("\"color\":\"{colour}\""),
+            1,
+        )
+    };
+    match &object.form {
+        Form::Ellipse([x, y, a, b], _) => {
+            let start = pen("ellipse", format!("\"a\":{a},\"b\":{b},COLOUR"));
+            format!("{{{start},\"x\":{x},\"y\":{y}}}")
+        }
+        Form::Arc([x, y, width, height, start, span]) => {
+            let (a, b) = (width / 2, height / 2);
+            let angles = format!("\"spanAngle\":{span},\"startAngle\":{start}");
+            let start = pen("arc", format!("\"a\":{a},\"b\":{b},COLOUR,{angles}"));
+            let (x, y) = (x + (width - 1) / 2, y + (height - 1) / 2);
+            format!("{{{start},\"x\":{x},\"y\":{y}}}")
+        }
+        Form::Text([x, y], text, size) => {
+            let text = text.replace('"', "\\\"");
+            let start = pen(
+                "text",
+                format!("COLOUR,\"fontSize\":{size},\"text\":\"{text}\""),
+            );
+            format!("{{{start},\"x\":{x},\"y\":{y}}}")
+        }
+        other => panic!("{other:?} is in no record"),
+    }
+}
+
+/// The list of a display is the one that the original recorded last.
+#[test]
+fn displays_list_what_the_original_listed() {
+    let Some(data) = data("displays_list_what_the_original_listed") else {
+        return;
+    };
+    for (file, record, until) in [
+        (
+            "examples/6._AlongTheLineVideo.qrs",
+            "example-6._AlongTheLineVideo",
+            100,
+        ),
+        (
+            "examples/12._Array_to_screen.qrs",
+            "example-12._Array_to_screen",
+            5000,
+        ),
+        (
+            "examples/23._Parallel_tasks.qrs",
+            "example-23._Parallel_tasks",
+            500,
+        ),
+        ("course/smile--54cf23d6.qrs", "stepik-smile--54cf23d6", 500),
+    ] {
+        let (mut arena, mut machine) = open_file(&data.join(file));
+        run(&mut arena, &mut machine, until, |_, _| {});
+        let screen = &arena.robots()[0].shown().screen;
+        let objects: Vec<String> = screen.objects().iter().map(told).collect();
+        assert!(!objects.is_empty(), "{file}");
+        let list = format!("\"objects\",[{}]", objects.join(","));
+        let text = std::fs::read_to_string(data.join(format!("oracle/{record}.json"))).unwrap();
+        assert!(text.contains(&list), "{file}: {list}");
+    }
 }
