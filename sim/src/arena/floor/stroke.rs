@@ -272,8 +272,7 @@ impl Pen<'_> {
             let [_, one, other, to] = moved;
             return self.out.push(Step::Curve([one, other, to]));
         }
-        let (first, second) = super::raster::halves(piece.points);
-        for points in [first, second] {
+        for points in super::raster::halves(piece.points) {
             let half = Piece {
                 points,
                 is_curve: true,
