@@ -12,6 +12,7 @@ const TARGETS: [(&str, Target); 8] = [
     ("reader", lang::fuzz::reader),
     ("expression", lang::fuzz::expression),
     ("lowering", lang::fuzz::lowering),
+    ("field", sim::fuzz::field),
     ("frames", trikd::fuzz::fuzz_frames),
     ("messages", trikd::fuzz::fuzz_messages),
     ("lines", trikd::fuzz::fuzz_lines),

@@ -10,7 +10,7 @@ mod brick;
 mod dynamics;
 pub mod floor;
 mod outline;
-mod ranges;
+pub(crate) mod ranges;
 mod robot;
 pub mod screen;
 mod solids;

@@ -92,6 +92,22 @@ pub fn lidar(solids: &Solids, at: Point, degrees: f64, scratch: &mut Outline, in
     }
 }
 
+/// How far a ray without a width goes, in pixels; nothing within a lidar's reach.
+pub fn ray(solids: &Solids, at: Point, degrees: f64) -> Option<f64> {
+    let reach = f64::from(LIDAR.reach_cm) * PIXELS_IN_CM;
+    let end = at.moved(Point::towards(degrees.to_radians()), reach);
+    let mut best = f64::INFINITY;
+    solids.each_near(&Bounds::of(&[at, end]), |solid, _| {
+        for side in super::outline::sides(solid) {
+            if let Some(met) = crossing((at, end), side) {
+                best = best.min(met.from(at).length());
+            }
+        }
+        true
+    });
+    best.is_finite().then_some(best)
+}
+
 /// The nearest corner of what a slice and solid things have in common: corners of either inside the other, and crossings.
 fn nearest(solids: &Solids, slice: &Outline, from: Point) -> f64 {
     use super::outline::{is_inside, sides};
