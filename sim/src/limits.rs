@@ -56,6 +56,12 @@ pub const FAR_PX: f64 = 1e7;
 pub const OUTLINE_POINTS: usize = 200_000;
 /// Dashes are drawn on lines up to so many widths of their pen; longer ones are drawn whole.
 pub const DASHED_LENGTH: f32 = 10_000.0;
+/// Lines and curves of one outline on a floor.
+pub const OUTLINE_STEPS: usize = 200_000;
+/// Dashes of one line on a floor; a line of more is drawn whole.
+pub const DASHES: f64 = 10_000.0;
+/// Lines and curves of everything on one floor, markers apart.
+pub const FLOOR_STEPS: usize = 1_000_000;
 /// Farthest place on a floor, in pixels either way, for which lines and pictures are drawn.
 pub const SCENE_EDGE: f64 = 1e6;
 /// Bytes of an SVG on a floor.
@@ -67,7 +73,7 @@ pub const PICTURE_LAYERS: usize = 20_000;
 /// Groups within groups of one SVG.
 pub const PICTURE_DEPTH: u32 = 64;
 /// Pieces of what markers leave; more are not kept.
-pub const TRACE_STROKES: usize = 400_000;
+pub const TRACE_STROKES: usize = 200_000;
 /// Cells of the floor's table that list one thing; a larger thing is looked at from everywhere.
 pub const CELLS_OF_THING: i64 = 256;
 /// Largest number in a world model, in units of its text and in pixels.

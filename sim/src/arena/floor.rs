@@ -15,6 +15,7 @@ pub mod outline;
 pub mod picture;
 pub mod raster;
 pub mod sensors;
+pub mod stroke;
 mod words;
 
 pub use lay::lay;
@@ -44,6 +45,8 @@ enum Thing {
     Area(Outline, Tint),
     /// Pixels, and what takes a place of the scene to one of them.
     Pixels(Rc<Pixels>, Affine, Bounds),
+    /// What a marker has left; its outline is made when somebody looks, because there are very many.
+    Mark(Stroke),
 }
 
 impl Thing {
@@ -51,6 +54,14 @@ impl Thing {
         match self {
             Self::Area(outline, _) => outline.bounds(),
             Self::Pixels(_, _, bounds) => *bounds,
+            Self::Mark(stroke) => {
+                let mut bounds = Bounds::NOTHING;
+                for end in [stroke.begin, stroke.end] {
+                    bounds.add(end.x - MARKER_WIDTH, end.y - MARKER_WIDTH);
+                    bounds.add(end.x + MARKER_WIDTH, end.y + MARKER_WIDTH);
+                }
+                bounds
+            }
         }
     }
 }
@@ -77,6 +88,10 @@ pub struct Floor {
     everywhere: Vec<u32>,
     /// How many things are not of markers.
     count: usize,
+    /// Lines and curves of all areas.
+    steps: usize,
+    /// Whether something was left out because there is too much.
+    is_full: bool,
     trace: Vec<Stroke>,
     coverage: Coverage,
     found: Vec<u32>,
@@ -107,6 +122,8 @@ impl Floor {
             cells: HashMap::new(),
             everywhere: Vec::new(),
             count: 0,
+            steps: 0,
+            is_full: false,
             trace: Vec::new(),
             coverage: Coverage::default(),
             found: Vec::new(),
@@ -146,16 +163,8 @@ impl Floor {
         if stroke.begin == stroke.end || self.trace.len() >= limits::TRACE_STROKES {
             return;
         }
-        let nib = Nib {
-            width: MARKER_WIDTH,
-            style: "solid",
-            cap: Cap::Round,
-        };
-        let path = outline::line(stroke.begin, stroke.end);
-        if let Some(outline) = path.and_then(|path| Outline::drawn(&path, nib)) {
-            self.add(Thing::Area(outline, Tint::solid(stroke.rgb)));
-            self.trace.push(stroke);
-        }
+        self.add(Thing::Mark(stroke));
+        self.trace.push(stroke);
     }
 
     /// What markers have left, in order.
@@ -184,6 +193,13 @@ impl Floor {
         let [left, top, right, bottom] = bounds.0.map(cell);
         if !bounds.0.iter().all(|side| side.is_finite()) {
             return;
+        }
+        if let Thing::Area(outline, _) = &thing {
+            if self.steps + outline.len() > limits::FLOOR_STEPS {
+                self.is_full = true;
+                return;
+            }
+            self.steps += outline.len();
         }
         let across = i64::from(right) - i64::from(left) + 1;
         let down = i64::from(bottom) - i64::from(top) + 1;
@@ -267,12 +283,15 @@ impl Floor {
             }
             match thing {
                 Thing::Area(outline, tint) => {
-                    self.coverage.begin(size, size);
-                    outline.cover(&mut self.coverage, corner.x, corner.y, ratio);
-                    let canvas = &mut self.canvas;
-                    self.coverage.pixels(outline.rule(), |x, y, level| {
-                        colour::lay(&mut canvas[y * size + x], *tint, level);
-                    });
+                    let (coverage, canvas) = (&mut self.coverage, &mut self.canvas);
+                    fill(outline, *tint, coverage, canvas, corner, size, ratio);
+                }
+                Thing::Mark(stroke) => {
+                    if let Some(outline) = mark(stroke) {
+                        let (coverage, canvas) = (&mut self.coverage, &mut self.canvas);
+                        let tint = Tint::solid(stroke.rgb);
+                        fill(&outline, tint, coverage, canvas, corner, size, ratio);
+                    }
                 }
                 Thing::Pixels(pixels, back, _) => {
                     let whole = |value: f64| value.floor() as i32;
@@ -288,6 +307,33 @@ impl Floor {
             }
         }
     }
+}
+
+/// The outline of what a marker has left.
+fn mark(stroke: &Stroke) -> Option<Outline> {
+    let nib = Nib {
+        width: MARKER_WIDTH,
+        style: "solid",
+        cap: Cap::Round,
+    };
+    Outline::drawn(&outline::line(stroke.begin, stroke.end)?, nib)
+}
+
+/// Paints an area onto a square of `size` pixels.
+fn fill(
+    outline: &Outline,
+    tint: Tint,
+    coverage: &mut Coverage,
+    canvas: &mut [[u8; 3]],
+    corner: Point,
+    size: usize,
+    ratio: f64,
+) {
+    coverage.begin(size, size);
+    outline.cover(coverage, corner.x, corner.y, ratio);
+    coverage.pixels(outline.rule(), |x, y, level| {
+        colour::lay(&mut canvas[y * size + x], tint, level);
+    });
 }
 
 fn cell(place: f64) -> i32 {

@@ -35,6 +35,9 @@ pub fn lay(field: &Field) -> (Floor, Vec<Problem>) {
             rgb,
         });
     }
+    if layer.floor.is_full {
+        layer.warn("", words::too_much());
+    }
     (layer.floor, layer.problems)
 }
 

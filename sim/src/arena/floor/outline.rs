@@ -1,4 +1,4 @@
-//! Figures to outlines: lines with pens, filled insides, curves as chains of short edges.
+//! Figures to outlines: lines with pens, and filled insides.
 //!
 //! Owns what a pen of the original does: square ends and cut corners where nothing else is said, dashes in widths of the
 //! pen, a pen without width as a line of one pixel. Knows neither colours nor the field.
@@ -6,14 +6,11 @@
 use usvg::tiny_skia_path as skia;
 
 use super::raster::{Coverage, Rule};
+use super::stroke::{self, Spot, Step};
 use crate::geometry::Point;
 use crate::limits;
 
-/// Farthest that a chain of edges is from its curve, in pixels.
-const FLATNESS: f64 = 0.01;
-/// Edges of one curve.
-const CURVE_MAX: u32 = 256;
-/// How finely the corners of a pen are turned, in parts of a pixel.
+/// How finely dashes are measured, in parts of a pixel.
 const FINE: f32 = 8.0;
 
 /// How the ends of lines look.
@@ -41,9 +38,7 @@ pub struct Nib<'a> {
 /// A closed outline in pixels of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
-    points: Vec<(f64, f64)>,
-    /// Where each closed part ends in `points`.
-    ends: Vec<usize>,
+    steps: Vec<Step>,
     rule: Rule,
     bounds: Bounds,
 }
@@ -130,64 +125,51 @@ impl Affine {
 impl Outline {
     /// The inside of a path; nothing if it has none or too many corners.
     pub fn inside(path: &skia::Path, place: &Affine, rule: Rule) -> Option<Self> {
-        let mut outline = Self {
-            points: Vec::new(),
-            ends: Vec::new(),
-            rule,
-            bounds: Bounds::NOTHING,
-        };
-        let mut here = (0.0, 0.0);
-        let put = |point: skia::Point| place.apply(point.x.into(), point.y.into());
-        for segment in path.segments() {
-            match segment {
-                skia::PathSegment::MoveTo(to) => {
-                    outline.close();
-                    here = put(to);
-                    outline.points.push(here);
-                }
-                skia::PathSegment::LineTo(to) => {
-                    here = put(to);
-                    outline.points.push(here);
-                }
-                skia::PathSegment::QuadTo(control, to) => {
-                    let (control, to) = (put(control), put(to));
-                    let between = |end: (f64, f64)| {
-                        let part = |end: f64, control: f64| end + (control - end) * 2.0 / 3.0;
-                        (part(end.0, control.0), part(end.1, control.1))
-                    };
-                    outline.curve([here, between(here), between(to), to]);
-                    here = to;
-                }
-                skia::PathSegment::CubicTo(one, other, to) => {
-                    let to = put(to);
-                    outline.curve([here, put(one), put(other), to]);
-                    here = to;
-                }
-                skia::PathSegment::Close => outline.close(),
-            }
-            if outline.points.len() > limits::OUTLINE_POINTS {
-                return None;
-            }
-        }
-        outline.close();
-        let is_finite = |point: &(f64, f64)| point.0.is_finite() && point.1.is_finite();
-        if outline.points.is_empty() || !outline.points.iter().all(is_finite) {
-            return None;
-        }
-        for &(x, y) in &outline.points {
-            outline.bounds.add(x, y);
-        }
-        Some(outline)
+        Self::of(stroke::steps(path), place, rule)
     }
 
-    /// What a pen leaves that goes along a path; nothing if it leaves nothing.
-    pub fn along(path: &skia::Path, place: &Affine, stroke: &skia::Stroke) -> Option<Self> {
-        let fine = FINE * (place.scale() as f32).clamp(1e-3, 1e3);
-        let drawn = match &stroke.dash {
-            Some(dash) => path.dash(dash, fine)?.stroke(stroke, fine)?,
-            None => path.stroke(stroke, fine)?,
+    fn of(mut steps: Vec<Step>, place: &Affine, rule: Rule) -> Option<Self> {
+        if steps.is_empty() || steps.len() > limits::OUTLINE_STEPS {
+            return None;
+        }
+        let mut bounds = Bounds::NOTHING;
+        let mut is_finite = true;
+        let mut put = |spot: &mut Spot| {
+            *spot = place.apply(spot.0, spot.1);
+            is_finite &= spot.0.is_finite() && spot.1.is_finite();
+            bounds.add(spot.0, spot.1);
         };
-        Self::inside(&drawn, place, Rule::NonZero)
+        for step in &mut steps {
+            match step {
+                Step::Move(to) | Step::Line(to) => put(to),
+                Step::Curve(spots) => spots.iter_mut().for_each(&mut put),
+            }
+        }
+        is_finite.then_some(Self {
+            steps,
+            rule,
+            bounds,
+        })
+    }
+
+    /// What a pen leaves that goes along a path; nothing if it leaves nothing. `dashes` are lengths of dashes and gaps in
+    /// turn.
+    pub fn along(
+        path: &skia::Path,
+        place: &Affine,
+        stroke: &skia::Stroke,
+        dashes: &[f32],
+    ) -> Option<Self> {
+        let fine = FINE * (place.scale() as f32).clamp(1e-3, 1e3);
+        let mut steps = stroke::steps(path);
+        // A line of very many dashes is as good as a whole one.
+        if let Some(dash) = stroke.dash.as_ref().filter(|_| {
+            let every: f64 = dashes.iter().copied().map(f64::from).sum();
+            stroke::length(&steps) < limits::DASHES * every
+        }) {
+            steps = stroke::steps(&path.dash(dash, fine)?);
+        }
+        Self::of(stroke::stroked(&steps, stroke), place, Rule::NonZero)
     }
 
     /// What a pen of the original leaves along a path.
@@ -208,9 +190,6 @@ impl Outline {
             _ => &[],
         };
         let lengths: Vec<f32> = dashes.iter().map(|length| length * width).collect();
-        // A line of very many dashes is as good as a whole one.
-        let is_dashed = !lengths.is_empty()
-            && path.bounds().width().max(path.bounds().height()) < limits::DASHED_LENGTH * width;
         let stroke = skia::Stroke {
             width,
             line_cap: match nib.cap {
@@ -219,14 +198,20 @@ impl Outline {
                 Cap::Flat => skia::LineCap::Butt,
             },
             line_join: skia::LineJoin::Bevel,
-            dash: if is_dashed {
-                skia::StrokeDash::new(lengths, 0.0)
-            } else {
-                None
-            },
+            dash: skia::StrokeDash::new(lengths.clone(), 0.0),
             ..skia::Stroke::default()
         };
-        Self::along(path, &Affine::SAME, &stroke)
+        Self::along(path, &Affine::SAME, &stroke, &lengths)
+    }
+
+    /// How many lines and curves it has.
+    pub fn len(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// Whether there is nothing in it.
+    pub fn is_empty(&self) -> bool {
+        self.steps.is_empty()
     }
 
     /// The rectangle around it.
@@ -241,52 +226,32 @@ impl Outline {
 
     /// Its edges into a window whose corner is at (`left`, `top`), `ratio` times as large as the scene.
     pub fn cover(&self, coverage: &mut Coverage, left: f64, top: f64, ratio: f64) {
-        let mut begin = 0;
-        let put = |point: (f64, f64)| {
+        let put = |spot: Spot| {
             (
-                Coverage::on_grid((point.0 - left) * ratio),
-                Coverage::on_grid((point.1 - top) * ratio),
+                Coverage::on_grid((spot.0 - left) * ratio),
+                Coverage::on_grid((spot.1 - top) * ratio),
             )
         };
-        for &end in &self.ends {
-            let part = &self.points[begin..end];
-            begin = end;
-            let Some(&last) = part.last() else { continue };
-            let mut from = put(last);
-            for &point in part {
-                let to = put(point);
-                coverage.edge(from, to);
-                from = to;
+        let (mut begin, mut here) = ((0.0, 0.0), (0.0, 0.0));
+        for step in &self.steps {
+            match *step {
+                Step::Move(to) => {
+                    coverage.edge(here, begin);
+                    (begin, here) = (put(to), put(to));
+                }
+                Step::Line(to) => {
+                    let to = put(to);
+                    coverage.edge(here, to);
+                    here = to;
+                }
+                Step::Curve(spots) => {
+                    let [one, other, to] = spots.map(put);
+                    coverage.curve([here, one, other, to]);
+                    here = to;
+                }
             }
         }
-    }
-
-    fn close(&mut self) {
-        if self.points.len() > self.ends.last().copied().unwrap_or(0) {
-            self.ends.push(self.points.len());
-        }
-    }
-
-    /// A cubic curve as edges; how many follows from its second differences.
-    fn curve(&mut self, [p, q, r, s]: [(f64, f64); 4]) {
-        let bend = |a: (f64, f64), b: (f64, f64), c: (f64, f64)| {
-            (a.0 - 2.0 * b.0 + c.0).hypot(a.1 - 2.0 * b.1 + c.1)
-        };
-        let bend = bend(p, q, r).max(bend(q, r, s));
-        let count = ((bend * 0.75 / FLATNESS).sqrt().ceil() as u32).clamp(1, CURVE_MAX);
-        for step in 1..=count {
-            let t = f64::from(step) / f64::from(count);
-            let u = 1.0 - t;
-            let weights = [u * u * u, 3.0 * u * u * t, 3.0 * u * t * t, t * t * t];
-            let sum = |part: [f64; 4]| -> f64 {
-                part.iter()
-                    .zip(weights)
-                    .map(|(value, weight)| value * weight)
-                    .sum()
-            };
-            self.points
-                .push((sum([p.0, q.0, r.0, s.0]), sum([p.1, q.1, r.1, s.1])));
-        }
+        coverage.edge(here, begin);
     }
 }
 

@@ -26,8 +26,8 @@ pub struct Picture {
 pub enum Layer {
     /// An inside in one colour, and what takes it to the picture's square.
     Filled(skia::Path, Rule, Tint, Affine),
-    /// The same of a line.
-    Drawn(skia::Path, Box<skia::Stroke>, Tint, Affine),
+    /// The same of a line, with the lengths of its dashes and gaps.
+    Drawn(skia::Path, Box<(skia::Stroke, Vec<f32>)>, Tint, Affine),
     /// Pixels, and what takes the place of a pixel to the picture's square.
     Pixels(std::rc::Rc<Pixels>, Affine),
 }
@@ -39,8 +39,10 @@ impl Layer {
             Self::Filled(path, rule, tint, to) => {
                 Some((Outline::inside(path, &to.then(place), *rule)?, *tint))
             }
-            Self::Drawn(path, stroke, tint, to) => {
-                Some((Outline::along(path, &to.then(place), stroke)?, *tint))
+            Self::Drawn(path, pen, tint, to) => {
+                let (stroke, dashes) = &**pen;
+                let outline = Outline::along(path, &to.then(place), stroke, dashes)?;
+                Some((outline, *tint))
             }
             Self::Pixels(..) => None,
         }
@@ -140,7 +142,8 @@ impl Picture {
         if let Some(stroke) = path.stroke()
             && let Some(tint) = self.tint(stroke.paint(), stroke.opacity().get() * opacity)
         {
-            let stroke = Box::new(stroke.to_tiny_skia());
+            let dashes = stroke.dasharray().unwrap_or_default().to_vec();
+            let stroke = Box::new((stroke.to_tiny_skia(), dashes));
             self.layers
                 .push(Layer::Drawn(path.data().clone(), stroke, tint, to));
         }

@@ -3,6 +3,8 @@
 //! Owns the arithmetic: signed areas of edges, summed from left to right, as in smooth rasterisers of fonts; 256 levels,
 //! corners on a grid of 1/64 pixel, because the original's painter has both. Knows no colours and no scene.
 
+use super::stroke::Spot;
+
 /// What counts as inside.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Rule {
@@ -14,6 +16,10 @@ pub enum Rule {
 
 /// Parts of a pixel that corners lie on.
 const GRID: f64 = 64.0;
+/// Control points are at most so far from a curve that is drawn as a line, in pixels.
+const STRAIGHT: f64 = 42.0 / 256.0;
+/// How often a curve is halved.
+const CURVE_DEPTH: usize = 16;
 
 /// Coverage of the pixels of a window.
 #[derive(Clone, Debug, Default)]
@@ -29,9 +35,15 @@ pub struct Coverage {
 impl Coverage {
     /// Nothing covered, in a window of this size.
     pub fn begin(&mut self, width: usize, height: usize) {
-        self.width = width;
-        self.height = height;
-        self.rows = None;
+        let dirty = self.rows.take();
+        if (width, height) == (self.width, self.height) {
+            // Most areas touch few rows.
+            if let Some((first, last)) = dirty {
+                self.changes[first * (width + 2)..(last + 1) * (width + 2)].fill(0.0);
+            }
+            return;
+        }
+        (self.width, self.height) = (width, height);
         self.changes.clear();
         self.changes.resize((width + 2) * height, 0.0);
     }
@@ -42,7 +54,7 @@ impl Coverage {
     }
 
     /// One edge of a closed outline, in pixels of the window. What is outside costs nothing.
-    pub fn edge(&mut self, from: (f64, f64), to: (f64, f64)) {
+    pub fn edge(&mut self, from: Spot, to: Spot) {
         let (width, height) = (self.width as f64, self.height as f64);
         let ((mut x0, mut y0), (mut x1, mut y1)) = (from, to);
         let mut sign = 1.0;
@@ -86,8 +98,38 @@ impl Coverage {
         }
     }
 
+    /// A cubic curve of a closed outline. It is cut into edges where the original's painter cuts it: as soon as its control
+    /// points are within about a sixth of a pixel of a straight line.
+    pub fn curve(&mut self, points: [Spot; 4]) {
+        let mut stack = [points; CURVE_DEPTH + 1];
+        let mut depth = 0;
+        loop {
+            let arc = stack[depth];
+            if depth == CURVE_DEPTH || self.is_aside(&arc) || is_straight(&arc) {
+                self.edge(arc[0], arc[3]);
+                if depth == 0 {
+                    return;
+                }
+                depth -= 1;
+            } else {
+                let [first, second] = halves(arc);
+                (stack[depth], stack[depth + 1]) = (second, first);
+                depth += 1;
+            }
+        }
+    }
+
+    /// Whether of a curve only its ends matter: it is above, below, left or right of the window.
+    fn is_aside(&self, arc: &[Spot; 4]) -> bool {
+        let (width, height) = (self.width as f64, self.height as f64);
+        arc.iter().all(|point| point.1 <= 0.0)
+            || arc.iter().all(|point| point.1 >= height)
+            || arc.iter().all(|point| point.0 <= 0.0)
+            || arc.iter().all(|point| point.0 >= width)
+    }
+
     /// A piece of an edge within the window, downwards.
-    fn piece(&mut self, (x0, y0): (f64, f64), (x1, y1): (f64, f64), sign: f64) {
+    fn piece(&mut self, (x0, y0): Spot, (x1, y1): Spot, sign: f64) {
         if y1 <= y0 {
             return;
         }
@@ -151,6 +193,28 @@ impl Coverage {
     }
 }
 
+/// Whether a curve is drawn as a line: the measure of FreeType's smooth rasteriser, which the original's painter has.
+fn is_straight(arc: &[Spot; 4]) -> bool {
+    let way = |index: usize| (arc[index].0 - arc[0].0, arc[index].1 - arc[0].1);
+    let (chord, one, other) = (way(3), way(1), way(2));
+    let (x, y) = (chord.0.abs(), chord.1.abs());
+    // Near the length of the chord, and not above it by more than a fifth.
+    let length = x.max(y) + x.min(y) * 3.0 / 8.0;
+    let limit = length * STRAIGHT;
+    let far = |way: Spot| (chord.1 * way.0 - chord.0 * way.1).abs();
+    let is_behind = |way: Spot| way.0 * (way.0 - chord.0) + way.1 * (way.1 - chord.1) > 0.0;
+    far(one) <= limit && far(other) <= limit && !is_behind(one) && !is_behind(other)
+}
+
+/// Both halves of a curve.
+pub(super) fn halves([p, q, r, s]: [Spot; 4]) -> [[Spot; 4]; 2] {
+    let middle = |a: Spot, b: Spot| (f64::midpoint(a.0, b.0), f64::midpoint(a.1, b.1));
+    let (pq, qr, rs) = (middle(p, q), middle(q, r), middle(r, s));
+    let (left, right) = (middle(pq, qr), middle(qr, rs));
+    let centre = middle(left, right);
+    [[p, pq, left, centre], [centre, right, rs, s]]
+}
+
 /// A covered area in 256 steps.
 fn level(area: f64, rule: Rule) -> u8 {
     // Sums of exact parts may miss a whole number by the last bit.
@@ -169,7 +233,7 @@ fn level(area: f64, rule: Rule) -> u8 {
 mod tests {
     use super::*;
 
-    fn covered(corners: &[(f64, f64)], rule: Rule) -> Vec<Vec<u8>> {
+    fn covered(corners: &[Spot], rule: Rule) -> Vec<Vec<u8>> {
         let mut coverage = Coverage::default();
         coverage.begin(4, 3);
         for (index, &corner) in corners.iter().enumerate() {
@@ -210,6 +274,29 @@ mod tests {
         let twice: Vec<_> = [(1.0, 0.0), (3.0, 0.0), (3.0, 1.0), (1.0, 1.0)].repeat(2);
         assert_eq!(covered(&twice, Rule::NonZero)[0], [0, 255, 255, 0]);
         assert_eq!(covered(&twice, Rule::EvenOdd)[0], [0; 4]);
+    }
+
+    #[test]
+    fn a_curve_covers_what_is_inside_of_it() {
+        let mut coverage = Coverage::default();
+        coverage.begin(10, 10);
+        let near = 4.0 * 0.5523;
+        // A quarter of a disc with a radius of 4, and both straight sides.
+        coverage.curve([(4.0, 0.0), (4.0, near), (near, 4.0), (0.0, 4.0)]);
+        coverage.edge((0.0, 4.0), (0.0, 0.0));
+        coverage.edge((0.0, 0.0), (4.0, 0.0));
+        let mut sum = 0.0;
+        coverage.pixels(Rule::NonZero, |_, _, level| sum += f64::from(level) / 255.0);
+        assert!((sum - std::f64::consts::PI * 4.0).abs() < 0.4, "{sum}");
+        let mut aside = Coverage::default();
+        aside.begin(3, 3);
+        aside.curve([(-5.0, -9.0), (-90.0, 3.0), (-7.0, 50.0), (-5.0, 12.0)]);
+        aside.edge((9.0, 12.0), (9.0, -9.0));
+        let mut count = 0;
+        aside.pixels(Rule::NonZero, |_, _, level| {
+            count += usize::from(level == 255)
+        });
+        assert_eq!(count, 9);
     }
 
     #[test]

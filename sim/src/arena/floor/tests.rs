@@ -99,3 +99,158 @@ fn places_that_are_none_are_white() {
     let window = seen(&mut floor, point(0.0, 0.0), f64::NAN, 12, 1.0);
     assert_eq!(window.side, 11);
 }
+
+#[test]
+fn fields_are_laid_and_what_cannot_be_shown_is_told() {
+    use crate::field::{Drawn, Field, Pen, Shape};
+    let text = "<root version=\"20251219\"><world><colorFields>\
+        <line id=\"a\" begin=\"0:-50\" end=\"0:50\" stroke=\"#ff0000\" stroke-width=\"40\" stroke-style=\"solid\"/>\
+        <ellipse id=\"b\" begin=\"60:-20\" end=\"100:20\" stroke=\"blu\" stroke-width=\"4\" stroke-style=\"none\" fill=\"#0000ff\" fill-style=\"solid\"/>\
+        </colorFields><images><image id=\"i\" imageId=\"none\" rect=\"0:0:10:10\" position=\"0:0\" isBackground=\"false\"/>\
+        </images></world><settings backgroundColor=\"#00ff00\"/></root>";
+    let field = Field::read(text).unwrap().field;
+    let (mut floor, problems) = lay(&field);
+    assert!(
+        problems
+            .iter()
+            .any(|problem| problem.words.english.contains("none")),
+        "{problems:?}"
+    );
+    for (x, colour) in [
+        (0.0, [255, 0, 0]),
+        (80.0, [0, 0, 255]),
+        (-200.0, [0, 255, 0]),
+    ] {
+        let window = seen(&mut floor, point(x, 0.0), 12.0, 12, 1.0);
+        assert!(window.pixels.iter().all(|pixel| *pixel == colour), "at {x}");
+    }
+    let mut field = Field::default();
+    let pen = Pen {
+        colour: "blu".to_owned(),
+        width: 3.0,
+        ..Pen::default()
+    };
+    let line = Shape::Line(point(0.0, 0.0), point(9.0, 9.0));
+    field.drawn.push(Drawn::new(line, pen));
+    let (_, problems) = lay(&field);
+    assert!(problems[0].words.english.contains("'blu' is no colour"));
+}
+
+#[test]
+fn many_dashes_are_one_line() {
+    let path = outline::line(point(0.0, 0.0), point(9e5, 0.0)).unwrap();
+    let nib = |width, style| Nib {
+        width,
+        style,
+        cap: Cap::Flat,
+    };
+    let whole = Outline::drawn(&path, nib(1.0, "dash")).unwrap();
+    assert!(whole.len() < 20);
+    let dashed = Outline::drawn(&path, nib(100.0, "dash")).unwrap();
+    assert!(dashed.len() > 2000, "{}", dashed.len());
+}
+
+/// A robot with a light sensor behind it and a camera ahead of it, on an empty field.
+fn robot_with_sensors(is_noisy: bool) -> crate::arena::Arena {
+    use crate::field::{Field, Robot, Sensor, SensorKind};
+    use lang::diagram::ports::Port;
+    let mut robot = Robot::default();
+    let mut light = Sensor::new(Port::named("A1").unwrap(), SensorKind::Light);
+    light.at = point(-20.0, 25.0);
+    let camera = Sensor::new(Port::named("LineSensorPort").unwrap(), SensorKind::Camera);
+    robot.sensors = vec![light, camera];
+    let mut field = Field::default();
+    field.settings.realistic_sensors = is_noisy;
+    field.robots.push(robot);
+    let setup = crate::arena::Setup {
+        seed: 11,
+        ..Default::default()
+    };
+    crate::arena::Arena::new(&field, setup)
+}
+
+#[test]
+fn sensors_see_what_a_marker_has_left() {
+    use lang::diagram::brick::{Brick, Command};
+    use lang::diagram::ports::Port;
+    let mut arena = robot_with_sensors(false);
+    let port = |name| Port::named(name).unwrap();
+    assert_eq!(arena.robot(0).scalar(port("A1")), Some(0));
+    let mut line = Vec::new();
+    assert!(arena.robot(0).vector(port("LineSensorPort"), &mut line));
+    assert_eq!(line, [0, 0, 0]);
+    arena.robot(0).tell(Command::MarkerDown { color: "black" });
+    for name in ["M3", "M4"] {
+        let port = port(name);
+        arena.robot(0).tell(Command::Power { port, percent: 100 });
+    }
+    for _ in 0..200 {
+        arena.tick();
+    }
+    // A line of 6 px under a window of 11.
+    let light = arena.robot(0).scalar(port("A1")).unwrap();
+    assert!((45..65).contains(&light), "{light}");
+    assert!(arena.trace().len() > 190);
+    // Back over it: the camera is ahead and sees it in the middle.
+    for name in ["M3", "M4"] {
+        let port = port(name);
+        arena.robot(0).tell(Command::Power {
+            port,
+            percent: -100,
+        });
+    }
+    arena.robot(0).tell(Command::MarkerUp);
+    let marks = arena.trace().len();
+    for _ in 0..100 {
+        arena.tick();
+    }
+    assert_eq!(arena.trace().len(), marks);
+    line.clear();
+    assert!(arena.robot(0).vector(port("LineSensorPort"), &mut line));
+    assert!(line[0].abs() <= 3 && (5..=7).contains(&line[2]), "{line:?}");
+    // It learns another colour, and black is no line any more.
+    arena
+        .robot_mut(0)
+        .unwrap()
+        .put(lang::diagram::stand_in::Pose::default());
+    arena.robot(0).tell(Command::Detect { mode: "line" });
+    line.clear();
+    arena.robot(0).vector(port("ColorSensorPort"), &mut line);
+    assert_eq!(line.len(), 3);
+}
+
+#[test]
+fn noise_is_the_same_for_the_same_seed() {
+    use lang::diagram::brick::Brick;
+    use lang::diagram::ports::Port;
+    let readings = || {
+        let mut arena = robot_with_sensors(true);
+        (0..50)
+            .map(|_| arena.robot(0).scalar(Port::named("A1").unwrap()).unwrap())
+            .collect::<Vec<_>>()
+    };
+    let first = readings();
+    assert_eq!(first, readings());
+    assert!(first.iter().any(|reading| *reading > 0), "{first:?}");
+}
+
+/// Not a measurement: only that nothing is slow by orders of magnitude.
+#[test]
+fn many_looks_take_no_time() {
+    let mut floor = Floor::default();
+    for index in 0..5000 {
+        let at = f64::from(index);
+        floor.mark(Stroke {
+            begin: point(at, 0.0),
+            end: point(at + 1.0, 0.0),
+            rgb: [0; 3],
+        });
+    }
+    let begin = std::time::Instant::now();
+    for index in 0..1000 {
+        seen(&mut floor, point(f64::from(index), 0.0), 33.0, 18, 2.0);
+    }
+    let each = begin.elapsed() / 1000;
+    println!("{each:?} for a look of a camera along a marker's line");
+    assert!(each < std::time::Duration::from_millis(20), "{each:?}");
+}

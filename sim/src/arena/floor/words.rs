@@ -49,3 +49,15 @@ pub(super) fn lacks(what: &str) -> Words {
         format!("в картинке есть то, что датчики видят иначе или не видят совсем: {what}"),
     )
 }
+
+pub(super) fn too_much() -> Words {
+    let limit = crate::limits::FLOOR_STEPS;
+    Words::new(
+        format!(
+            "more than {limit} lines are drawn on the field; sensors do not see the last ones. Make a PNG of them"
+        ),
+        format!(
+            "на поле нарисовано больше {limit} линий; последних датчики не видят. Сделайте из них PNG"
+        ),
+    )
+}
