@@ -120,6 +120,71 @@ fn what_documents_say_of_checking_is_what_really_happens() {
     assert!(count > 8, "only {count} examples");
 }
 
+/// What is said, the exit code, and a part of the answer.
+const CASES: &[(&[&str], i32, &str)] = &[
+    (&["check", "line.qrs"], 0, "line.qrs: accomplished, "),
+    (
+        &["check", "short.qrs"],
+        1,
+        "short.qrs: not accomplished, 0.53",
+    ),
+    (
+        &["check", "free.qrs"],
+        0,
+        "free.qrs: ended (no rules), 0.53",
+    ),
+    (
+        &["check", "nowhere.qrs"],
+        2,
+        "there is no world in it: --field gives one",
+    ),
+    (&["check", "class/damaged.qrs"], 2, "could not be run"),
+    (
+        &["check", "nothing.qrs"],
+        2,
+        "nothing.qrs: there is no such file",
+    ),
+    (&["check", "line.qrs", "--field", "bad.xml"], 2, "bad.xml: "),
+    (
+        &["check", "line.qrs", "--field", "no.xml"],
+        2,
+        "no.xml: there is no such file",
+    ),
+    (
+        &["check", "line.qrs", "--field", "fields/far.xml"],
+        1,
+        "not accomplished",
+    ),
+    (
+        &["check", "line.qrs", "--field", "fields/near.xml"],
+        0,
+        "accomplished",
+    ),
+    (
+        &["check", "line.qrs", "--field", "fields", "--own"],
+        1,
+        "3 runs: 2 accomplished, 1 not",
+    ),
+    (
+        &["check", "class"],
+        2,
+        "3 runs: 1 accomplished, 1 not accomplished, 1 could not be run",
+    ),
+    (
+        &["check", "endless.qrs"],
+        1,
+        "endless.qrs: not accomplished, 10.0",
+    ),
+    (
+        &["check", "endless.qrs", "--time-limit", "2"],
+        1,
+        "--time-limit allows more",
+    ),
+    (&["check", "fields"], 2, "fields: there is no *.qrs here"),
+    (&["check"], 2, ""),
+    (&["check", "line.qrs", "--language", "ru"], 0, "line.qrs: "),
+];
+
 #[test]
 fn exit_codes_are_true() {
     let board = folder();
@@ -136,72 +201,10 @@ fn exit_codes_are_true() {
         "bad.xml",
         world(100).replace("<timelimit value=\"10000\"/>", ""),
     );
-    for (words, code, said) in [
-        (&["check", "line.qrs"][..], 0, "line.qrs: accomplished, "),
-        (
-            &["check", "short.qrs"],
-            1,
-            "short.qrs: not accomplished, 0.53",
-        ),
-        (
-            &["check", "free.qrs"],
-            0,
-            "free.qrs: ended (no rules), 0.53",
-        ),
-        (
-            &["check", "nowhere.qrs"],
-            2,
-            "there is no world in it: --field gives one",
-        ),
-        (&["check", "class/damaged.qrs"], 2, "could not be run"),
-        (
-            &["check", "nothing.qrs"],
-            2,
-            "nothing.qrs: there is no such file",
-        ),
-        (&["check", "line.qrs", "--field", "bad.xml"], 2, "bad.xml: "),
-        (
-            &["check", "line.qrs", "--field", "no.xml"],
-            2,
-            "no.xml: there is no such file",
-        ),
-        (
-            &["check", "line.qrs", "--field", "fields/far.xml"],
-            1,
-            "not accomplished",
-        ),
-        (
-            &["check", "line.qrs", "--field", "fields/near.xml"],
-            0,
-            "accomplished",
-        ),
-        (
-            &["check", "line.qrs", "--field", "fields", "--own"],
-            1,
-            "3 runs: 2 accomplished, 1 not",
-        ),
-        (
-            &["check", "class"],
-            2,
-            "3 runs: 1 accomplished, 1 not accomplished, 1 could not be run",
-        ),
-        (
-            &["check", "endless.qrs"],
-            1,
-            "endless.qrs: not accomplished, 10.0",
-        ),
-        (
-            &["check", "endless.qrs", "--time-limit", "2"],
-            1,
-            "--time-limit allows more",
-        ),
-        (&["check", "fields"], 2, "fields: there is no *.qrs here"),
-        (&["check"], 2, ""),
-        (&["check", "line.qrs", "--language", "ru"], 0, "line.qrs: "),
-    ] {
+    for (words, code, said) in CASES {
         let output = trik(&board, words);
         let all = format!("{}{}", output.stdout, output.stderr);
-        assert_eq!(output.code(), code, "{words:?}: {all}");
+        assert_eq!(output.code(), *code, "{words:?}: {all}");
         assert!(all.contains(said), "{words:?}: {all}");
     }
 }
