@@ -9,11 +9,11 @@
 mod brick;
 mod dynamics;
 pub mod floor;
-mod outline;
+pub mod outline;
 mod ranges;
 mod robot;
 pub mod screen;
-mod solids;
+pub mod solids;
 mod timeline;
 
 pub use brick::Handle;

@@ -278,7 +278,11 @@ fn round_wide(number: f64) -> i64 {
     if number.abs() < 9.2e18 {
         let down = number.floor();
         // Adding a half would lose it in the numbers just below one.
-        (if number - down < 0.5 { down } else { down + 1.0 }) as i64
+        (if number - down < 0.5 {
+            down
+        } else {
+            down + 1.0
+        }) as i64
     } else {
         0
     }

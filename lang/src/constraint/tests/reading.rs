@@ -119,165 +119,175 @@ fn a_comment_counts_as_a_child_where_children_are_counted_and_nowhere_else() {
     );
 }
 
+fn in_event(condition: &str, trigger: &str) -> String {
+    format!("<event><condition>{condition}</condition><trigger>{trigger}</trigger></event>")
+}
+
+/// Conditions, and what is said of them.
+const CONDITIONS: &[(&str, &str)] = &[
+    (
+        r#"<timer/>"#,
+        r#"timer: "timer" tag must have "timeout" attribute."#,
+    ),
+    (
+        r#"<timer timeout=""/>"#,
+        r#"timer: Attribute "timeout" of the tag "timer" must not be empty."#,
+    ),
+    (
+        r#"<timer timeout="1.5"/>"#,
+        r#"timer: Invalid integer value "1.5""#,
+    ),
+    (
+        r#"<timer timeout="1" forceDropOnTimeout="yes"/>"#,
+        r#"timer: Invalid boolean value "yes" (expected "true" or "false")"#,
+    ),
+    (
+        r#"<inside regionId="a"/>"#,
+        r#"inside: "inside" tag must have "objectId" attribute."#,
+    ),
+    (
+        r#"<inside objectId="a"/>"#,
+        r#"inside: "inside" tag must have "regionId" attribute."#,
+    ),
+    (
+        r#"<settedUp/>"#,
+        r#"settedUp: "settedUp" tag must have "id" attribute."#,
+    ),
+    (
+        r#"<dropped id=""/>"#,
+        r#"dropped: Attribute "id" of the tag "dropped" must not be empty."#,
+    ),
+    (
+        r#"<equals _1="1"/>"#,
+        "equals: equals tag must have exactly 2 child tag(s), or attributes _1 and _2 instead of them; 1 found",
+    ),
+    (
+        r#"<equals/>"#,
+        "equals: equals tag must have exactly 2 child tag(s), or attributes _1 and _2 instead of them; 0 found",
+    ),
+    (
+        r#"<equals><int value="1"/></equals>"#,
+        "equals: equals tag must have exactly 2 child tag(s)",
+    ),
+    (r#"<not/>"#, "not: not tag must have exactly 1 child tag(s)"),
+    (
+        r#"<conditions glue="xor"><true/><true/></conditions>"#,
+        r#"conditions: "Glue" attribute must have value "and" or "or"."#,
+    ),
+    (
+        r#"<conditions><true/><true/></conditions>"#,
+        r#"conditions: "conditions" tag must have "glue" attribute."#,
+    ),
+    (
+        r#"<conditions glue="and"/>"#,
+        "conditions: conditions tag must have at least 1 child tag(s)",
+    ),
+    (
+        r#"<using><return><true/></return></using>"#,
+        "using: using tag must have at least 2 child tag(s)",
+    ),
+    (
+        r#"<using><success/><success/></using>"#,
+        r#"using: There must be "return" tag in "using" expression."#,
+    ),
+    (
+        r#"<using><return><true/></return><return><true/></return></using>"#,
+        r#"using: There must be only one tag "return" in "using" expression."#,
+    ),
+    (
+        r#"<equals _1="${}" _2="1"/>"#,
+        "equals: Object path is empty!",
+    ),
+];
+
+/// Values, and what is said of them.
+const VALUES: &[(&str, &str)] = &[
+    (r#"<bool/>"#, r#""bool" tag must have "value" attribute."#),
+    (
+        r#"<bool value="1"/>"#,
+        r#"Invalid boolean value "1" (expected "true" or "false")"#,
+    ),
+    (r#"<int value="x"/>"#, r#"Invalid integer value "x""#),
+    (
+        r#"<double value="1e999"/>"#,
+        r#"Invalid floating point value "1e999""#,
+    ),
+    (
+        r#"<double value="nan"/>"#,
+        r#"Invalid floating point value "nan""#,
+    ),
+    (
+        r#"<string/>"#,
+        r#""string" tag must have "value" attribute."#,
+    ),
+    (
+        r#"<variableValue/>"#,
+        r#""variableValue" tag must have "name" attribute."#,
+    ),
+    (
+        r#"<objectState/>"#,
+        r#""objectState" tag must have "object" attribute."#,
+    ),
+    (r#"<objectState object="."/>"#, "Object path is empty!"),
+    (
+        r#"<typeOf/>"#,
+        r#""typeOf" tag must have "objectId" attribute."#,
+    ),
+    (
+        r#"<abs/>"#,
+        "abs tag must have exactly 1 child tag(s), or attributes _1 instead of them; 0 found",
+    ),
+];
+
+/// Triggers, and what is said of them.
+const TRIGGERS: &[(&str, &str)] = &[
+    (r#"<fail/>"#, r#""fail" tag must have "message" attribute."#),
+    (
+        r#"<fail message=""/>"#,
+        r#"Attribute "message" of the tag "fail" must not be empty."#,
+    ),
+    (
+        r#"<success deferred="maybe"/>"#,
+        r#"Invalid boolean value "maybe" (expected "true" or "false")"#,
+    ),
+    (
+        r#"<message/>"#,
+        r#""message" tag must have "text" attribute."#,
+    ),
+    (r#"<log/>"#, r#""log" tag must have "text" attribute."#),
+    (
+        r#"<setter _1="2"/>"#,
+        r#""setter" tag must have "name" attribute."#,
+    ),
+    (
+        r#"<setter name="a"/>"#,
+        "setter tag must have exactly 1 child tag(s), or attributes _1 instead of them; 0 found",
+    ),
+    (r#"<setUp/>"#, r#""setUp" tag must have "id" attribute."#),
+    (r#"<drop/>"#, r#""drop" tag must have "id" attribute."#),
+    (
+        r#"<setState property="a" _1="1"/>"#,
+        r#""setState" tag must have "object" attribute."#,
+    ),
+    (
+        r#"<setState object="a" _1="1"/>"#,
+        r#""setState" tag must have "property" attribute."#,
+    ),
+];
+
 #[test]
 fn attributes_are_demanded_and_must_be_what_they_are() {
-    let in_event = |condition: &str, trigger: &str| {
-        format!("<event><condition>{condition}</condition><trigger>{trigger}</trigger></event>")
-    };
-    for (condition, words) in [
-        (
-            r#"<timer/>"#,
-            r#"timer: "timer" tag must have "timeout" attribute."#,
-        ),
-        (
-            r#"<timer timeout=""/>"#,
-            r#"timer: Attribute "timeout" of the tag "timer" must not be empty."#,
-        ),
-        (
-            r#"<timer timeout="1.5"/>"#,
-            r#"timer: Invalid integer value "1.5""#,
-        ),
-        (
-            r#"<timer timeout="1" forceDropOnTimeout="yes"/>"#,
-            r#"timer: Invalid boolean value "yes" (expected "true" or "false")"#,
-        ),
-        (
-            r#"<inside regionId="a"/>"#,
-            r#"inside: "inside" tag must have "objectId" attribute."#,
-        ),
-        (
-            r#"<inside objectId="a"/>"#,
-            r#"inside: "inside" tag must have "regionId" attribute."#,
-        ),
-        (
-            r#"<settedUp/>"#,
-            r#"settedUp: "settedUp" tag must have "id" attribute."#,
-        ),
-        (
-            r#"<dropped id=""/>"#,
-            r#"dropped: Attribute "id" of the tag "dropped" must not be empty."#,
-        ),
-        (
-            r#"<equals _1="1"/>"#,
-            "equals: equals tag must have exactly 2 child tag(s), or attributes _1 and _2 instead of them; 1 found",
-        ),
-        (
-            r#"<equals/>"#,
-            "equals: equals tag must have exactly 2 child tag(s), or attributes _1 and _2 instead of them; 0 found",
-        ),
-        (
-            r#"<equals><int value="1"/></equals>"#,
-            "equals: equals tag must have exactly 2 child tag(s)",
-        ),
-        (r#"<not/>"#, "not: not tag must have exactly 1 child tag(s)"),
-        (
-            r#"<conditions glue="xor"><true/><true/></conditions>"#,
-            r#"conditions: "Glue" attribute must have value "and" or "or"."#,
-        ),
-        (
-            r#"<conditions><true/><true/></conditions>"#,
-            r#"conditions: "conditions" tag must have "glue" attribute."#,
-        ),
-        (
-            r#"<conditions glue="and"/>"#,
-            "conditions: conditions tag must have at least 1 child tag(s)",
-        ),
-        (
-            r#"<using><return><true/></return></using>"#,
-            "using: using tag must have at least 2 child tag(s)",
-        ),
-        (
-            r#"<using><success/><success/></using>"#,
-            r#"using: There must be "return" tag in "using" expression."#,
-        ),
-        (
-            r#"<using><return><true/></return><return><true/></return></using>"#,
-            r#"using: There must be only one tag "return" in "using" expression."#,
-        ),
-        (
-            r#"<equals _1="${}" _2="1"/>"#,
-            "equals: Object path is empty!",
-        ),
-    ] {
+    for (condition, words) in CONDITIONS {
         let words = format!("{EVENT} > condition > {words}");
         refused(&in_event(condition, "<success/>"), &[&words]);
     }
-    for (value, words) in [
-        (r#"<bool/>"#, r#""bool" tag must have "value" attribute."#),
-        (
-            r#"<bool value="1"/>"#,
-            r#"Invalid boolean value "1" (expected "true" or "false")"#,
-        ),
-        (r#"<int value="x"/>"#, r#"Invalid integer value "x""#),
-        (
-            r#"<double value="1e999"/>"#,
-            r#"Invalid floating point value "1e999""#,
-        ),
-        (
-            r#"<double value="nan"/>"#,
-            r#"Invalid floating point value "nan""#,
-        ),
-        (
-            r#"<string/>"#,
-            r#""string" tag must have "value" attribute."#,
-        ),
-        (
-            r#"<variableValue/>"#,
-            r#""variableValue" tag must have "name" attribute."#,
-        ),
-        (
-            r#"<objectState/>"#,
-            r#""objectState" tag must have "object" attribute."#,
-        ),
-        (r#"<objectState object="."/>"#, "Object path is empty!"),
-        (
-            r#"<typeOf/>"#,
-            r#""typeOf" tag must have "objectId" attribute."#,
-        ),
-        (
-            r#"<abs/>"#,
-            "abs tag must have exactly 1 child tag(s), or attributes _1 instead of them; 0 found",
-        ),
-    ] {
+    for (value, words) in VALUES {
         let condition = format!("<less>{value}<int value=\"1\"/></less>");
         let tag = value[1..].split(['/', ' ']).next().unwrap_or_default();
         let words = format!("{EVENT} > condition > less > {tag}: {words}");
         refused(&in_event(&condition, "<success/>"), &[&words]);
     }
-    for (trigger, words) in [
-        (r#"<fail/>"#, r#""fail" tag must have "message" attribute."#),
-        (
-            r#"<fail message=""/>"#,
-            r#"Attribute "message" of the tag "fail" must not be empty."#,
-        ),
-        (
-            r#"<success deferred="maybe"/>"#,
-            r#"Invalid boolean value "maybe" (expected "true" or "false")"#,
-        ),
-        (
-            r#"<message/>"#,
-            r#""message" tag must have "text" attribute."#,
-        ),
-        (r#"<log/>"#, r#""log" tag must have "text" attribute."#),
-        (
-            r#"<setter _1="2"/>"#,
-            r#""setter" tag must have "name" attribute."#,
-        ),
-        (
-            r#"<setter name="a"/>"#,
-            "setter tag must have exactly 1 child tag(s), or attributes _1 instead of them; 0 found",
-        ),
-        (r#"<setUp/>"#, r#""setUp" tag must have "id" attribute."#),
-        (r#"<drop/>"#, r#""drop" tag must have "id" attribute."#),
-        (
-            r#"<setState property="a" _1="1"/>"#,
-            r#""setState" tag must have "object" attribute."#,
-        ),
-        (
-            r#"<setState object="a" _1="1"/>"#,
-            r#""setState" tag must have "property" attribute."#,
-        ),
-    ] {
+    for (trigger, words) in TRIGGERS {
         let tag = trigger[1..].split(['/', ' ']).next().unwrap_or_default();
         let words = format!("{EVENT} > trigger > {tag}: {words}");
         refused(&in_event("<true/>", trigger), &[&words]);

@@ -206,7 +206,7 @@ fn the_library_scores_robots_that_stop_finish_and_start() {
         [""; 0]
     );
     let left = use_it("object-left-region-with-score", there);
-    assert_eq!(ten(&left, true).1, [scored.clone()]);
+    assert_eq!(ten(&left, true).1, ["Points scored: 10"]);
     let (verdict, told) = ten(&use_it("robot-finish-in-region-with-score", here), false);
     assert_eq!(verdict, Verdict::Accomplished { after_ms: 30 });
     assert_eq!(

@@ -226,13 +226,13 @@ fn types_are_names_of_classes_and_undefined_for_what_is_not_there() {
     let mut stage = Stage::new();
     stage.add(
         "robot1.A1",
-        "trik::robotModel::twoD::parts::TwoDInfraredSensor",
+        "trik::robotModel::twoD::parts::TwoDLightSensor",
     );
     stage.add("robot1.A2", "");
     for (object, class) in [
         (
             "robot1.A1",
-            "trik::robotModel::twoD::parts::TwoDInfraredSensor",
+            "trik::robotModel::twoD::parts::TwoDLightSensor",
         ),
         ("robot1.A2", "undefined"),
         ("robot1.A3", "undefined"),
@@ -248,6 +248,30 @@ fn types_are_names_of_classes_and_undefined_for_what_is_not_there() {
                 assert_eq!(holds_on(copy, &condition), (wanted, vec![]), "{condition}");
             }
         }
+    }
+}
+
+#[test]
+fn classes_of_old_versions_have_their_new_names() {
+    for (old, new) in [
+        (
+            "trik::robotModel::twoD::parts::TwoDInfraredSensor",
+            "twoDModel::robotModel::parts::RangeSensor",
+        ),
+        (
+            "trikKitInterpreter::robotModel::twoD::parts::TwoDLightSensor",
+            "trik::robotModel::twoD::parts::TwoDLightSensor",
+        ),
+        (
+            "commonTwoDModel::robotModel::parts::TouchSensor",
+            "twoDModel::robotModel::parts::TouchSensor",
+        ),
+    ] {
+        let mut stage = Stage::new();
+        stage.add("robot1.A1", new);
+        let condition =
+            format!(r#"<equals><typeOf objectId="robot1.A1"/><string value="{old}"/></equals>"#);
+        assert_eq!(holds_on(stage, &condition), (true, vec![]));
     }
 }
 
@@ -295,6 +319,30 @@ fn a_bounding_rectangle_is_around_objects_points_records_and_lists() {
             "{object}.{property}: {told:?}"
         );
     }
+}
+
+#[test]
+fn a_colour_on_the_left_is_compared_by_name_or_number_and_on_the_right_by_number() {
+    let mut stage = Stage::new();
+    stage.set("robot1", "colour", Value::Colour(0x00_8000));
+    for (left, right, wanted) in [
+        ("${robot1.colour}", "green", true),
+        ("${robot1.colour}", "#008000", true),
+        ("${robot1.colour}", "#ff008000", true),
+        ("${robot1.colour}", "#080", false),
+        ("${robot1.colour}", "greenish", false),
+        ("#008000", "${robot1.colour}", true),
+        ("green", "${robot1.colour}", false),
+    ] {
+        let copy = Stage {
+            objects: stage.objects.clone(),
+            properties: stage.properties.clone(),
+            ..Stage::default()
+        };
+        let condition = format!(r#"<equals _1="{left}" _2="{right}"/>"#);
+        assert_eq!(holds_on(copy, &condition), (wanted, vec![]), "{condition}");
+    }
+    assert!(Value::Colour(0x00_8888).equals(&Value::text("#088")));
 }
 
 #[test]
