@@ -21,7 +21,7 @@ mod words;
 pub use lay::lay;
 
 use std::collections::HashMap;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use screen::Pixels;
 
@@ -44,7 +44,7 @@ enum Thing {
     /// A painted area.
     Area(Outline, Tint),
     /// Pixels, and what takes a place of the scene to one of them.
-    Pixels(Rc<Pixels>, Affine, Bounds),
+    Pixels(Arc<Pixels>, Affine, Bounds),
     /// What a marker has left; its outline is made when somebody looks, because there are very many.
     Mark(Stroke),
 }
@@ -149,7 +149,7 @@ impl Floor {
                     bounds.add(x, y);
                 }
                 if let Some(back) = to.inverse() {
-                    self.add(Thing::Pixels(Rc::clone(pixels), back, bounds));
+                    self.add(Thing::Pixels(Arc::clone(pixels), back, bounds));
                 }
             } else if let Some((outline, tint)) = layer.outline(place) {
                 self.add(Thing::Area(outline, tint));

@@ -1,3 +1,5 @@
+//! Realistic physics against the few numbers that the original gave, and in strange worlds.
+
 use lang::diagram::brick::{Brick, Command};
 use lang::diagram::ports::Port;
 

@@ -29,7 +29,7 @@ pub enum Layer {
     /// The same of a line, with the lengths of its dashes and gaps.
     Drawn(skia::Path, Box<(skia::Stroke, Vec<f32>)>, Tint, Affine),
     /// Pixels, and what takes the place of a pixel to the picture's square.
-    Pixels(std::rc::Rc<Pixels>, Affine),
+    Pixels(std::sync::Arc<Pixels>, Affine),
 }
 
 impl Layer {

@@ -1,3 +1,5 @@
+//! A floor as sensors see it: windows, traces, pictures, fields; noise; and what must not happen.
+
 use super::*;
 use crate::geometry::point;
 
