@@ -52,10 +52,6 @@ pub const RECORDS: usize = 800_000;
 pub const ROBOTS: usize = 16;
 /// Farthest place of a recorded pose, in pixels.
 pub const FAR_PX: f64 = 1e7;
-/// Corners of one outline on a floor.
-pub const OUTLINE_POINTS: usize = 200_000;
-/// Dashes are drawn on lines up to so many widths of their pen; longer ones are drawn whole.
-pub const DASHED_LENGTH: f32 = 10_000.0;
 /// Lines and curves of one outline on a floor.
 pub const OUTLINE_STEPS: usize = 200_000;
 /// Dashes of one line on a floor; a line of more is drawn whole.
