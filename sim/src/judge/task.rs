@@ -52,7 +52,9 @@ impl Task {
         let rules = match &field.constraints {
             Some(element) if element.elements().next().is_some() => {
                 let rules = read_with_templates(element, templates.as_ref());
-                Some(Rc::new(rules.map_err(in_rules)?))
+                let rules = rules.map_err(in_rules)?;
+                problems.extend(rules.warnings().iter().cloned());
+                Some(Rc::new(rules))
             }
             _ => None,
         };
