@@ -19,6 +19,7 @@ mod files;
 pub mod fuzz;
 pub mod geometry;
 mod input;
+pub mod judge;
 mod lidar;
 mod limits;
 pub mod machine;

@@ -299,6 +299,19 @@ class PwmCapture {
     dutyRaw() { return refuse('pwmCapture.dutyRaw', 'the driver tells no raw width of pulses; duty() gives percent'); }
 }
 
+const marker = {
+    _down: false,
+    down(color = 'black') {
+        native.mark(text(color));
+        marker._down = true;
+    },
+    up() {
+        native.mark('');
+        marker._down = false;
+    },
+    isDown() { return marker._down; },
+    setDown(on) { on ? marker.down() : marker.up(); },
+};
 const configurable = ['lineSensor', 'objectSensor', 'colorSensor'];
 const NO_BUS = 'raw transfers on a bus are not in the tree; describe the device in the robot file and read its node';
 const NO_EVENTS = 'raw input devices are not in the tree; keys and gamepad are brick.keys() and gamepad';
@@ -331,7 +344,7 @@ kit.hold('brick', {
     i2c() { return refuse('brick.i2c', NO_BUS); },
     smBusI2c() { return refuse('brick.smBusI2c', NO_BUS); },
     gamepad() { return globalThis.gamepad; },
-    marker() { return null; },
+    marker() { return native.has('marker') ? marker : null; },
     configure(name, type) {
         if (!configurable.includes(type))
             absent(`brick.configure of ${name}`, 'the robot file says what is plugged in; nothing is changed');
