@@ -413,14 +413,14 @@ impl Program for Python {
             return Status::Running;
         };
         self.now = now;
-        if self.child.is_none() {
-            if let Err(error) = self.start() {
-                self.fail(&format!(
-                    "python3 cannot be started: {error}: is it installed?"
-                ));
-                self.end(robot);
-                return self.status();
-            }
+        if self.child.is_none()
+            && let Err(error) = self.start()
+        {
+            self.fail(&format!(
+                "python3 cannot be started: {error}: is it installed?"
+            ));
+            self.end(robot);
+            return self.status();
         }
         let mut readings = std::mem::take(&mut self.readings);
         if !self.serve(&mut readings.of(robot, now + START_MS)) {

@@ -77,7 +77,7 @@ fn printed(text: &str) -> Vec<String> {
 fn who_asks_without_waiting_takes_time_as_well() {
     let asks = "let n = 0; while (brick.encoder(E3).read() < 11) n++; print(n)";
     let told = printed(&format!("brick.motor(M3).setPower(100); {asks}"));
-    assert_eq!(told, ["20 195"]);
+    assert_eq!(told, ["30 296"]);
     // Who only computes, too; who computes between waits does not.
     let told = printed(
         "const end = Date.now() + 50; let n = 0; for (;;) { for (let i = 0; i < 1000; i++); if (Date.now() >= end) break; n++ } print(n)",
@@ -296,11 +296,11 @@ brick.motor('M3').powerOff()
         "130 print \"begins\"",
         "160 print \"hello\"",
         "160 print \"sent\"",
-        "220 label 1 2 20 \"x\"",
-        "220 marker red",
-        "270 print \"tick\"",
-        "270 power M3 0",
-        "270 rest",
+        "230 label 1 2 20 \"x\"",
+        "230 marker red",
+        "280 print \"tick\"",
+        "280 power M3 0",
+        "280 rest",
     ];
     assert_eq!(python_log(text), wanted);
 }

@@ -24,5 +24,7 @@ mod hold;
 mod programs;
 /// A running `trik up`.
 mod rig;
+/// Programs with text as solutions.
+mod scripts;
 /// What is said to a person, and what is refused.
 mod words;
