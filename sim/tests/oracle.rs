@@ -175,3 +175,31 @@ fn every_recorded_pose_is_met_where_no_floor_is_seen() {
     }
     assert!(count >= 40, "only {count} runs");
 }
+
+#[test]
+fn real_worlds_are_written_as_they_were_read() {
+    let Some(data) = data() else {
+        println!("skipped real_worlds_are_written_as_they_were_read: no ../shared");
+        return;
+    };
+    let mut count = 0;
+    for folder in ["examples", "course", "grading", "fields", "worlds"] {
+        for entry in std::fs::read_dir(data.join(folder)).unwrap() {
+            let path = entry.unwrap().path();
+            let bytes = std::fs::read(&path).unwrap();
+            let text = match path.extension().and_then(|ending| ending.to_str()) {
+                Some("xml") => String::from_utf8(bytes).unwrap(),
+                _ => read(&bytes).unwrap().project.world.unwrap_or_default(),
+            };
+            let field = Field::read(&text).unwrap().field;
+            let again = Field::read(&field.write()).unwrap().field;
+            assert_eq!(again.walls, field.walls, "{}", path.display());
+            assert_eq!(again.drawn, field.drawn, "{}", path.display());
+            assert_eq!(again.regions, field.regions, "{}", path.display());
+            assert_eq!(again.robots, field.robots, "{}", path.display());
+            assert_eq!(again.constraints, field.constraints, "{}", path.display());
+            count += 1;
+        }
+    }
+    assert!(count >= 40, "only {count} worlds");
+}

@@ -155,6 +155,10 @@ pub(crate) struct UpArgs {
     /// Which robot: its body in the simulator, and its configuration robots/NAME.lua.
     #[arg(long, value_name = "NAME", default_value = up::DEFAULT_ROBOT, value_parser = up::robot_name)]
     pub robot: String,
+    /// A world of TRIK Studio in the place of the robot's own: FILE.xml, or a project FILE.qrs with a world in it. The robot
+    /// stands where the world has it, and has the wheels and sensors that are plugged in there.
+    #[arg(long, value_name = "FILE", conflicts_with = "robot")]
+    pub world: Option<PathBuf>,
     /// Configuration in the place of the robot's own.
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,

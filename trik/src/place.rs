@@ -21,6 +21,8 @@ use std::path::{Path, PathBuf};
 const VIEW: &str = "ev3dev";
 /// Ending of the directory for the folders of trikd.
 const TRIKD: &str = "trikd";
+/// Ending of the configuration that a world makes.
+const WORLD: &str = "lua";
 
 /// The directory for the robots of this user.
 ///
@@ -62,6 +64,8 @@ pub struct Place {
     pub board: PathBuf,
     /// For the folders of trikd; nothing is there yet.
     pub trikd: PathBuf,
+    /// The file of a configuration that is made for a world.
+    pub world: PathBuf,
     /// From 1: which of the robots of this user it is.
     pub number: usize,
     made_mountpoint: bool,
@@ -104,6 +108,7 @@ impl Place {
                 mountpoint: mountpoint.unwrap_or(&default).to_owned(),
                 board: base.join(format!("{name}.board")),
                 trikd: lock.with_extension(TRIKD),
+                world: lock.with_extension(WORLD),
                 number,
                 made_mountpoint: false,
                 made_view: None,
@@ -180,6 +185,7 @@ impl Drop for Place {
         let _ = self.made_view.as_ref().map(fs::remove_dir);
         let _ = fs::remove_dir_all(&self.board);
         let _ = fs::remove_dir_all(&self.trikd);
+        let _ = fs::remove_file(&self.world);
         let _ = fs::remove_file(&self.lock);
         // Only the last robot succeeds.
         let _ = self.lock.parent().map(fs::remove_dir);
@@ -300,6 +306,7 @@ fn sweep(base: &Path) {
         let _ = fs::remove_dir(view);
         let _ = fs::remove_dir_all(base.join(format!("{name}.board")));
         let _ = fs::remove_dir_all(lock.with_extension(TRIKD));
+        let _ = fs::remove_file(lock.with_extension(WORLD));
         let _ = fs::remove_file(&lock);
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Owns the order of things: place, board, tree, and all three backwards, whatever ends them. Everything that happens
 //! is waited for in one poll(2) in the main thread. `tree` is the child, `companion` others beside it, of which there are
-//! `trikd` and `ev3dev`, `view` says how the robot is, `screen` draws it, `hints` says what to try.
+//! `trikd` and `ev3dev`, `world` reads worlds of TRIK Studio, `view` says how the robot is, `screen` draws it, `hints` says what to try.
 
 mod companion;
 mod ev3dev;
@@ -11,6 +11,7 @@ mod screen;
 pub(crate) mod tree;
 mod trikd;
 mod view;
+mod world;
 
 use crate::cli::UpArgs;
 use crate::limits;
@@ -60,7 +61,11 @@ pub(crate) fn robot_name(text: &str) -> Result<String, String> {
 /// # Errors
 /// Why it does not run, or how it ended, empty if another process has told it.
 pub(crate) fn up(args: UpArgs) -> Result<(), String> {
-    let config = configuration(&args)?;
+    let world = args.world.as_deref().map(world::read).transpose()?;
+    let config = match world {
+        Some(_) if args.config.is_none() => None,
+        _ => Some(configuration(&args)?),
+    };
     let robot = sim::robots::by_name(&args.robot)
         .ok_or_else(|| format!("there is no robot {}", args.robot))?;
     // Before the board has threads, so that these come to the main thread alone.
@@ -88,13 +93,25 @@ pub(crate) fn up(args: UpArgs) -> Result<(), String> {
         seed: args.seed,
         ..Options::default()
     };
-    let board = Board::start(&place.board, robot.body(), options)
+    let body = match &world {
+        Some(field) => world::body(field, args.seed),
+        None => robot.body(),
+    };
+    let config = match (config, &world) {
+        (None, Some(field)) => world::configure(field, &place.world)?,
+        (config, _) => config.unwrap_or_default(),
+    };
+    let board = Board::start(&place.board, body, options)
         .map_err(|error| format!("the virtual board in {}: {error}", place.board.display()))?;
     let arguments = arguments(&args, &config, &place);
     let tree = start(&arguments)?;
     let mut session = Session {
         arguments: &arguments,
-        robot: &args.robot,
+        robot: if world.is_some() {
+            "in the world"
+        } else {
+            &args.robot
+        },
         speed: args.speed,
         place: &place,
         board: &board,
