@@ -143,7 +143,15 @@ impl Node {
     /// # Errors
     /// Those of the tree: `fault` beside the file says more.
     pub fn bytes(&self, buffer: &mut [u8]) -> io::Result<usize> {
-        self.with(|file| file.read_at(buffer, 0))
+        self.bytes_at(buffer, 0)
+    }
+
+    /// Bytes from a position on, for files in which it means something.
+    ///
+    /// # Errors
+    /// As [`Node::bytes`].
+    pub fn bytes_at(&self, buffer: &mut [u8], position: u64) -> io::Result<usize> {
+        self.with(|file| file.read_at(buffer, position))
     }
 
     /// The newest text without the newline.
@@ -191,8 +199,16 @@ impl Node {
     /// # Errors
     /// Those of the tree.
     pub fn write(&self, text: &str) -> io::Result<()> {
-        let written = self.with(|file| file.write_at(text.as_bytes(), 0))?;
-        if written == text.len() {
+        self.write_at(text.as_bytes(), 0)
+    }
+
+    /// Writes bytes at a position, for files in which it means something.
+    ///
+    /// # Errors
+    /// As [`Node::write`].
+    pub fn write_at(&self, bytes: &[u8], position: u64) -> io::Result<()> {
+        let written = self.with(|file| file.write_at(bytes, position))?;
+        if written == bytes.len() {
             Ok(())
         } else {
             Err(io::ErrorKind::WriteZero.into())

@@ -113,6 +113,10 @@ fn events<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
         o.streams.listen(&o.brick, &path, numbers).is_ok()
     })?;
     let o = with();
+    put(native, "forget", move |path: String| {
+        o.streams.forget(&path);
+    })?;
+    let o = with();
     put(native, "drain", move |ctx: Ctx<'js>, path: String| {
         let all = Array::new(ctx.clone())?;
         for (index, record) in o.streams.drain(&path).into_iter().enumerate() {
