@@ -392,6 +392,19 @@ class Sound extends Camera {
     volume(coefficient) { native.write('microphones/volume', `${Math.round(coefficient)}\n`); }
 }
 
+const marker = {
+    _down: false,
+    down(color = 'black') {
+        native.mark(text(color));
+        marker._down = true;
+    },
+    up() {
+        native.mark('');
+        marker._down = false;
+    },
+    isDown() { return marker._down; },
+    setDown(on) { on ? marker.down() : marker.up(); },
+};
 const configurable = ['lineSensor', 'objectSensor', 'colorSensor'];
 kit.hold('brick', {
     motor: plugged(native.motor, (handle) => new Motor(handle)),
@@ -433,7 +446,7 @@ kit.hold('brick', {
     },
     smBusI2c(bus, address) { return new I2c(busNumber(bus), busAddress(Number(address)), false, false); },
     gamepad() { return globalThis.gamepad; },
-    marker() { return null; },
+    marker() { return native.has('marker') ? marker : null; },
     configure(name, type) {
         if (!configurable.includes(type))
             absent(`brick.configure of ${name}`, 'the robot file says what is plugged in; nothing is changed');

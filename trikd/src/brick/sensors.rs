@@ -196,9 +196,7 @@ impl Vector {
         if let Some((tilt, heading)) = &self.angles {
             let mut angles = [0.0; 2];
             tilt.numbers(&mut angles)?;
-            let time_us = std::time::SystemTime::now()
-                .duration_since(std::time::UNIX_EPOCH)
-                .map_or(0, |time| time.as_micros() % (1 << 31));
+            let time_us = self.value.now_us() % (1 << 31);
             // Below 2^31, so that every float of 64 bits holds it.
             numbers.push(f64::from(u32::try_from(time_us).unwrap_or(0)));
             numbers.extend(angles);

@@ -49,6 +49,9 @@ impl<T> Handles<T> {
 
 /// The exception for a failure of the tree, with what `fault` says.
 pub fn unreadable(ctx: &Ctx<'_>, brick: &Brick, place: &str, error: &io::Error) -> Error {
+    if !brick.tree().is_mounted() {
+        return failed(ctx, &format!("{place}: {error}"));
+    }
     let root = brick.tree().root();
     let node = root.join(place);
     let node = if node.is_dir() {
@@ -371,7 +374,7 @@ fn tree<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     })?;
     let o = own.clone();
     put(native, "isFile", move |path: String| {
-        path.split('/').all(is_name) && o.brick.tree().root().join(&path).is_file()
+        path.split('/').all(is_name) && o.brick.tree().is_file(&path)
     })?;
     let o = own.clone();
     put(native, "numbers", move |ctx: Ctx<'js>, path: String| {
@@ -393,6 +396,12 @@ fn tree<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
         ];
         let group = groups.into_iter().find(|other| other.directory() == group);
         group.map_or_else(Vec::new, |group| o.brick.ports(group))
+    })?;
+    let o = own.clone();
+    put(native, "mark", move |ctx: Ctx<'js>, color: String| {
+        let file = o.brick.tree().node("marker/value", Access::Write);
+        file.write(&color)
+            .map_err(|error| unreadable(&ctx, &o.brick, "marker", &error))
     })?;
     let o = own.clone();
     put(native, "stop", move |ctx: Ctx<'js>| {
