@@ -168,7 +168,11 @@ pub fn generate(
         .and_then(|main| program.diagrams.get(main as usize));
     let title = main.map_or("A diagram", |sheet| &sheet.name).to_owned();
     let title = format!("{title}: written from a diagram of TRIK Studio.");
-    let printer = Printer::new(dialect, &script, program, title);
+    let mut printer = Printer::new(dialect, &script, program, title.clone());
+    if language == Language::JavaScript && script.has_threads && !printer.shared().is_empty() {
+        let dialect = &dialects::javascript::turns::TURNS;
+        printer = Printer::new(dialect, &script, program, title);
+    }
     let mut notes: Vec<Problem> = lowered.problems;
     notes.retain(|problem| problem.severity != Severity::Error);
     let problems = refusals(&printer, language);

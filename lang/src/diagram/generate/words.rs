@@ -232,13 +232,14 @@ fn thing(what: What) -> (String, String) {
     }
 }
 
+/// Why threads of JavaScript are not those of the controller.
 pub(super) fn shared_variables(names: &str) -> Words {
     Words::new(
         format!(
-            "Threads in JavaScript share no variables, but these are used by several: {names}. Send messages instead."
+            "Several threads use {names}, so the threads take turns in one engine, as generators: trikd runs that, the first runtimes of TRIK do not."
         ),
         format!(
-            "Потоки в JavaScript не имеют общих переменных, а эти нужны нескольким: {names}. Передавайте их сообщениями."
+            "Эти переменные нужны нескольким потокам: {names}. Поэтому потоки работают по очереди в одной среде, как генераторы: trikd это выполнит, первые среды ТРИК - нет."
         ),
     )
 }
