@@ -50,6 +50,8 @@ pub(in super::super) const FSHARP: Dialect = Dialect {
         cyrillic: true,
         caseless: false,
         reserved: RESERVED,
+        taken: "",
+        underscores: true,
     },
     abilities: Abilities {
         jumps: Jumps::Plain,

@@ -47,6 +47,8 @@ pub(in super::super) const JAVASCRIPT: Dialect = Dialect {
         cyrillic: true,
         caseless: false,
         reserved: RESERVED,
+        taken: "",
+        underscores: true,
     },
     abilities: Abilities {
         jumps: Jumps::Labelled,
