@@ -6,6 +6,7 @@
 // Problems are rare, and their size costs nothing where none is.
 #![allow(clippy::result_large_err)]
 
+pub mod constraint;
 pub mod diagram;
 pub mod expr;
 pub mod fuzz;

@@ -56,6 +56,28 @@ impl<'a> Element<'a> {
             .map(|(_, value)| value.as_ref())
     }
 
+    /// The same without the text that it was read from.
+    pub fn into_owned(self) -> Element<'static> {
+        let owned = |text: Cow<'a, str>| Cow::Owned(text.into_owned());
+        Element {
+            name: owned(self.name),
+            attributes: self
+                .attributes
+                .into_iter()
+                .map(|(name, value)| (owned(name), owned(value)))
+                .collect(),
+            nodes: self
+                .nodes
+                .into_iter()
+                .map(|node| match node {
+                    Node::Element(element) => Node::Element(element.into_owned()),
+                    Node::Text(text) => Node::Text(owned(text)),
+                    Node::Comment(text) => Node::Comment(owned(text)),
+                })
+                .collect(),
+        }
+    }
+
     /// Gives an attribute a value, at its old place if it has one.
     pub fn set(&mut self, name: &str, value: &str) {
         match self.attributes.iter_mut().find(|(key, _)| key == name) {

@@ -4,6 +4,7 @@
 //! opens them cannot tell them from the real ones but by their kind of file. Behind the connectors is a
 //! [`body::Body`]. This crate knows no filesystem of ours and no configuration: the devices are the contract.
 
+pub mod arena;
 mod attributes;
 pub mod board;
 pub mod body;
@@ -12,10 +13,12 @@ mod camera;
 mod control;
 mod display;
 pub mod faults;
+pub mod field;
 mod fifo;
 mod files;
 pub mod geometry;
 mod input;
+pub mod judge;
 mod lidar;
 mod limits;
 pub mod machine;

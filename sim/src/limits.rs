@@ -40,3 +40,29 @@ pub const PHOTO_HEIGHT: u16 = 240;
 pub const PHOTO_QUALITY: u8 = 70;
 /// What the FIFO of pictures holds, in bytes: one picture at any time.
 pub const PHOTO_FIFO_BYTES: i32 = 64 << 10;
+/// How deep values of JSON may nest.
+pub const JSON_DEPTH: usize = 32;
+/// Values of one text of JSON: an hour of ticks of one robot has 2.2 million.
+pub const JSON_VALUES: usize = 4_000_000;
+/// Longest run that is judged, in milliseconds of model time.
+pub const RUN_MS_MAX: u32 = 3_600_000;
+/// Records of one trajectory: an hour of one robot, and as much for its devices.
+pub const RECORDS: usize = 800_000;
+/// Robots of one trajectory.
+pub const ROBOTS: usize = 16;
+/// Farthest place of a recorded pose, in pixels.
+pub const FAR_PX: f64 = 1e7;
+/// Largest number in a world model, in units of its text and in pixels.
+pub const FIELD_NUMBER: f64 = 1e6;
+/// Walls, solids, drawn things, regions and the like of one field, strokes and sensors included.
+pub const FIELD_THINGS: usize = 20_000;
+/// Robots of one field; there is one for each kit.
+pub const FIELD_ROBOTS: usize = 16;
+/// Sensors of one robot.
+pub const FIELD_SENSORS: usize = 64;
+/// Messages of other robots that wait for one.
+pub const MAIL_MAX: usize = 10_000;
+/// Bytes of pictures on the floor that a drawing of a run holds.
+pub const PICTURE_BYTES: usize = 8 << 20;
+/// Poses of one robot that an animated page holds.
+pub const PAGE_POSES: usize = 6_000;

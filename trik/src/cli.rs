@@ -3,8 +3,10 @@
 //! Owns the words, the help and the exit codes: 0 done, 1 refused or failed, 2 not understood, or a robot that could not
 //! be reached.
 
+pub(crate) use crate::check::CheckArgs;
+use crate::check::original;
 use crate::remote::{self, Target};
-use crate::{diagrams, fault, limits, up};
+use crate::{check, diagrams, fault, limits, up};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use lang::diagram::generate::Language;
 use lang::problem::Tongue;
@@ -34,6 +36,8 @@ Examples:
   trik lint maze.qrs                 what is wrong with a diagram of TRIK Studio
   trik gen --lang python maze.qrs -o maze.py   the diagram as a program
   trik show maze.qrs --svg maze.svg  the diagram as a picture
+  trik check maze.qrs                does it solve its task?
+  trik check class/ --field hard.xml --results all.jsonl   a class, in another world
   trik fault D1 unplug               pull the plug of the distance sensor D1
   trik fault D1 --clear              and put it back
   trik fault --at /tmp/robot D1 unplug   the same, if several robots run
@@ -98,6 +102,30 @@ enum Command {
     /// Exit status: 0 no errors, perhaps warnings and notes; 1 errors; 2 a diagram cannot be read, or the command line
     /// was not understood.
     Lint(LintArgs),
+    /// Run solutions of tasks in virtual time and judge them.
+    ///
+    /// A solution is a diagram of TRIK Studio in a file NAME.qrs, with a world in it and rules that say what the task is;
+    /// --field puts it into other worlds. The world is simulated as TRIK Studio does it, much faster than real time, and
+    /// the same run always ends in the same way. One run tells its messages, several make a table. A directory stands for
+    /// all solutions below it, which are done on all cores; a run that crashes or hangs harms no other.
+    ///
+    /// Exit status: 0 all tasks were accomplished, or there were no rules and no errors; 1 one was not; 2 a solution could
+    /// not be run or judged, or the command line was not understood.
+    Check(Box<CheckArgs>),
+    /// Run as TRIK Studio's program 2D-model, with its options, for graders that call it.
+    #[command(name = "2d-model", disable_help_flag = true)]
+    Model {
+        /// Options and save, as for 2D-model; see --help.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<OsString>,
+    },
+    /// Change a save as TRIK Studio's program patcher, with its options, for graders that call it.
+    #[command(name = "patcher", disable_help_flag = true)]
+    Patcher {
+        /// Options and save, as for patcher; see --help.
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        arguments: Vec<OsString>,
+    },
     /// Print a completion script for a shell.
     Completions {
         /// The shell.
@@ -310,6 +338,21 @@ pub fn main() -> ExitCode {
     }
 }
 
+/// Whether a program's name is one of TRIK Studio's that this program stands in for.
+pub fn is_of_studio(name: &str) -> bool {
+    original::is_model(name) || original::is_patcher(name)
+}
+
+/// Such a program, with the arguments of the process.
+pub fn of_studio(name: &str) -> ExitCode {
+    let arguments = std::env::args_os().skip(1);
+    if original::is_model(name) {
+        original::model(arguments)
+    } else {
+        original::patcher(arguments)
+    }
+}
+
 /// What clap cannot say of a command line.
 fn understood(cli: Cli) -> Result<Cli, clap::Error> {
     match &cli.command {
@@ -329,6 +372,9 @@ fn perform(command: Command) -> Result<ExitCode, String> {
         Command::Gen(args) => return Ok(diagrams::generate(&args)),
         Command::Show(args) => return Ok(diagrams::show(&args)),
         Command::Lint(args) => return Ok(diagrams::lint(&args)),
+        Command::Check(args) => return Ok(check::check(&args)),
+        Command::Model { arguments } => return Ok(original::model(arguments.into_iter())),
+        Command::Patcher { arguments } => return Ok(original::patcher(arguments.into_iter())),
         Command::Send(args) => remote::send(&args),
         Command::Up(args) => up::up(args),
         Command::Fault(args) => print(fault::fault(&args)?.as_bytes()),
@@ -456,6 +502,8 @@ mod tests {
             "gen",
             "show",
             "lint",
+            "check",
+            "2d-model",
             "man",
             "completions",
         ] {

@@ -5,9 +5,9 @@
 
 mod generate;
 mod lint;
-mod output;
+pub(crate) mod output;
 mod show;
-mod telling;
+pub(crate) mod telling;
 mod words;
 
 pub(crate) use generate::{generate, language};
@@ -23,20 +23,20 @@ use std::process::ExitCode;
 use telling::Teller;
 
 /// Exit code of what was refused or failed.
-const REFUSED: u8 = 1;
+pub(crate) const REFUSED: u8 = 1;
 /// Exit code of a file that cannot be read.
-const UNREADABLE: u8 = 2;
+pub(crate) const UNREADABLE: u8 = 2;
 
 /// Why a command ends early: lines for standard error, and the exit code.
 #[derive(Debug, PartialEq)]
-struct Refusal {
-    lines: Vec<String>,
-    code: u8,
+pub(crate) struct Refusal {
+    pub lines: Vec<String>,
+    pub code: u8,
 }
 
 impl Refusal {
     /// One line that says why something was not done.
-    fn new(reason: impl Into<String>) -> Self {
+    pub fn new(reason: impl Into<String>) -> Self {
         Self {
             lines: vec![format!("trik: {}", reason.into())],
             code: REFUSED,
@@ -45,7 +45,7 @@ impl Refusal {
 }
 
 /// Why a save cannot be read.
-enum Unreadable {
+pub(crate) enum Unreadable {
     /// The file itself.
     File(String),
     /// What is in it.
@@ -62,7 +62,7 @@ pub(crate) fn tongue(name: &str) -> Result<Tongue, String> {
 }
 
 /// Ends a command: what kept it from being done goes to standard error.
-fn end(done: Result<u8, Refusal>) -> ExitCode {
+pub(crate) fn end(done: Result<u8, Refusal>) -> ExitCode {
     let code = done.unwrap_or_else(|refusal| {
         say(&refusal.lines);
         refusal.code
@@ -71,7 +71,7 @@ fn end(done: Result<u8, Refusal>) -> ExitCode {
 }
 
 /// Lines to standard error. Nobody is told if nobody can hear it.
-fn say(lines: &[String]) {
+pub(crate) fn say(lines: &[String]) {
     let mut err = io::stderr().lock();
     for line in lines {
         let _ = writeln!(err, "{line}");
@@ -79,13 +79,13 @@ fn say(lines: &[String]) {
 }
 
 /// Reads a save.
-fn open(path: &Path) -> Result<Opened, Unreadable> {
+pub(crate) fn open(path: &Path) -> Result<Opened, Unreadable> {
     let bytes = bytes(path).map_err(Unreadable::File)?;
     read::read(&bytes).map_err(Unreadable::Save)
 }
 
 /// Reads a save of which nothing else can be said if it cannot be read.
-fn must_open(path: &Path, tongue: Tongue) -> Result<Opened, Refusal> {
+pub(crate) fn must_open(path: &Path, tongue: Tongue) -> Result<Opened, Refusal> {
     open(path).map_err(|why| Refusal {
         lines: match why {
             Unreadable::File(why) => vec![format!("trik: {}: {why}", telling::named(path))],

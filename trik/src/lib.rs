@@ -2,12 +2,15 @@
 //!
 //! `cli` has the words, `up` starts the virtual board and the tree over it, `fault` breaks devices of a running board,
 //! `place` knows where the robots of a user are, `remote` brings programs to robots, `diagrams` shows, checks and translates
-//! diagrams without a robot. Nothing of this runs on the controller.
+//! diagrams without a robot, `check` runs and judges solutions of tasks, `script` runs programs with text for it. Nothing of
+//! this runs on the controller.
 
+mod check;
 pub mod cli;
 mod diagrams;
 mod fault;
 pub mod limits;
 pub mod place;
 mod remote;
+pub mod script;
 mod up;

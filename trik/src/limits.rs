@@ -52,3 +52,39 @@ pub const TURN_MS: u32 = 250;
 pub const ROOM_MS: u32 = 20;
 /// Pieces of output that wait for whoever reads it.
 pub const OUTPUT_PIECES: usize = 64;
+/// Calls to the robot in one tick of a judged world: who asks without waiting is charged a tick for so many.
+pub const SCRIPT_CALLS: u32 = 100;
+/// For how many calls it counts when a program computes until its engine looks up, which is every 10 000 jumps and calls.
+pub const SCRIPT_LOOK_CALLS: u32 = 50;
+/// Bytes of the files that a judged program has written; they are kept in memory.
+pub const SCRIPT_FILES_BYTES: usize = 16 << 20;
+/// Bytes that a judged program prints between two calls; what is more is lost.
+pub const SCRIPT_PRINT_BYTES: usize = 1 << 20;
+/// Remarks about a judged program that are kept.
+pub const SCRIPT_REMARKS: usize = 20;
+/// Events of the keys and the gamepad that wait for one thread of a judged program.
+pub const SCRIPT_EVENTS: usize = 256;
+/// Moment of the calendar at which judged programs begin, in milliseconds of the epoch: 2026-01-01, 00:00 UTC.
+pub const SCRIPT_EPOCH_MS: u64 = 1_767_225_600_000;
+/// Longest run that is judged, in seconds of model time.
+pub const MODEL_SECONDS_MAX: f64 = 3600.0;
+/// Longest run that is judged, in seconds of real time.
+pub const WALL_SECONDS_MAX: f64 = 3600.0;
+/// What a worker gets beyond the time of a run, for reading files and writing pictures, in milliseconds.
+pub const WORKER_GRACE_MS: u32 = 5_000;
+/// Solutions of one command.
+pub const SOLUTIONS_MAX: usize = 100_000;
+/// Fields of one command.
+pub const FIELDS_MAX: usize = 1_000;
+/// How deep directories of solutions may nest.
+pub const FOLDERS_DEEP: usize = 8;
+/// Bytes of a world, a program or a file of inputs.
+pub const WORLD_BYTES_MAX: u64 = 32 << 20;
+/// Bytes of a recorded trajectory.
+pub const LOG_BYTES_MAX: u64 = 256 << 20;
+/// Bytes of what a worker says of one run.
+pub const ROW_BYTES_MAX: usize = 4 << 20;
+/// Messages of one run that a line of results has.
+pub const ROW_MESSAGES_MAX: usize = 200;
+/// Characters of one of them.
+pub const ROW_MESSAGE_CHARS_MAX: usize = 2_000;

@@ -167,6 +167,22 @@ kit.until = (condition) => {
 function printed(value) {
     return Array.isArray(value) ? `[${value.map(printed).join(', ')}]` : String(value);
 }
+// Where time is not that of the world, neither are the calendar and chance.
+if (native.date() !== undefined) {
+    const Real = Date;
+    const Virtual = function Date(...values) {
+        const date = values.length > 0 ? new Real(...values) : new Real(native.date());
+        return new.target ? date : String(date);
+    };
+    Virtual.prototype = Real.prototype;
+    Virtual.prototype.constructor = Virtual;
+    Object.assign(Virtual, { now: native.date, parse: Real.parse, UTC: Real.UTC });
+    hold('Date', Virtual);
+    const MOST = 2 ** 30;
+    Math.random = () => native.random(0, MOST - 1) / MOST;
+    hold('performance', { now: native.clock, timeOrigin: native.date() });
+}
+
 hold('print', (...values) => native.print(text(values.map(printed).join('') + '\n')));
 hold('include', (file) => native.include(text(file)));
 
@@ -186,6 +202,9 @@ hold('script', {
     timeInterval(first, second) { return (Number(second) - Number(first)) & 0x7fffffff; },
     random(a, b) {
         const least = Math.ceil(Math.min(a, b)), most = Math.floor(Math.max(a, b));
+        const drawn = native.random(least, most);
+        if (drawn !== undefined)
+            return drawn;
         return least + Math.floor(Math.random() * (most - least + 1));
     },
     timer(ms) { return new Timer(ms); },

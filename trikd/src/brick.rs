@@ -6,13 +6,14 @@
 pub mod actuators;
 pub mod sensors;
 
-use crate::tree::{Access, Tree, is_name};
+use crate::tree::{Access, Answers, Tree, is_name};
 use actuators::{Led, Motor, Sound};
 use sensors::{Battery, Camera, Encoder, Gamepad, Keys, Sensor, Vector};
 use std::fs::{File, OpenOptions};
 use std::io;
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
+use std::rc::Rc;
 
 /// Port names are unique only within one of these groups of the tree.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -50,6 +51,13 @@ impl Brick {
     pub fn new(root: &Path) -> Self {
         Self {
             tree: Tree::new(root),
+        }
+    }
+
+    /// The robot of a tree that is mounted nowhere.
+    pub fn answered(answers: Rc<dyn Answers>) -> Self {
+        Self {
+            tree: Tree::answered(answers),
         }
     }
 
@@ -119,11 +127,16 @@ impl Brick {
             .then(|| Vector::gyroscope(&self.tree))
     }
 
-    /// The camera as a sensor of `line`, `object` or `color`; None if there is none.
+    /// The camera as a sensor of `line`, `object` or `color`, or the microphones as one of `sound`; None if there is
+    /// none.
     pub fn camera(&self, sensor: &str) -> Option<Camera> {
-        let known = ["line", "object", "color"].contains(&sensor);
-        (known && self.tree.root().join("camera").join(sensor).is_dir())
-            .then(|| Camera::new(&self.tree, sensor))
+        let directory = match sensor {
+            "line" | "object" | "color" => format!("camera/{sensor}"),
+            "sound" => "microphones".to_owned(),
+            _ => return None,
+        };
+        let is_there = self.tree.is_directory(&directory);
+        is_there.then(|| Camera::new(&self.tree, &directory))
     }
 
     /// The gamepad, connected or not.

@@ -5,6 +5,7 @@
 
 pub mod events;
 pub mod failure;
+pub mod ground;
 pub mod machine;
 pub mod natives;
 pub mod outside;
@@ -81,7 +82,10 @@ pub fn run_line(line: String, tree: &Path) -> Outcome {
 }
 
 /// The text of a program or of a file that it includes.
-fn read_text(path: &Path) -> Result<String, String> {
+///
+/// # Errors
+/// Why it cannot be read, with its place.
+pub fn read_text(path: &Path) -> Result<String, String> {
     let place = path.display();
     let file =
         std::fs::File::open(path).map_err(|error| format!("{place}: cannot be opened: {error}"))?;

@@ -6,11 +6,13 @@
 use crate::limits;
 use std::cell::RefCell;
 use std::collections::HashMap;
+use std::fmt;
 use std::fs::{File, OpenOptions};
 use std::io;
 use std::os::unix::fs::{FileExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 /// How a file is opened.
 #[derive(Clone, Copy, Debug, Eq, Hash, PartialEq)]
@@ -23,12 +25,41 @@ pub enum Access {
     Write,
 }
 
+/// A tree that is not mounted: its files are what somebody answers. Paths are relative to the root.
+pub trait Answers: fmt::Debug {
+    /// Whether this directory is there, and something is plugged in.
+    fn has(&self, directory: &str) -> bool;
+
+    /// Whether this file is there.
+    fn is_file(&self, path: &str) -> bool;
+
+    /// Names in a directory, sorted.
+    fn names(&self, directory: &str) -> Vec<String>;
+
+    /// The newest text.
+    ///
+    /// # Errors
+    /// As a mounted tree would fail.
+    fn read(&self, path: &str) -> io::Result<String>;
+
+    /// Takes one text.
+    ///
+    /// # Errors
+    /// As a mounted tree would fail.
+    fn write(&self, path: &str, text: &str) -> io::Result<()>;
+
+    /// Its time of day, in microseconds of the epoch.
+    fn now_us(&self) -> u128;
+}
+
 /// One file of the tree.
 #[derive(Debug)]
 pub struct Node {
     path: PathBuf,
     access: Access,
     file: RefCell<Option<File>>,
+    /// Who answers in the place of a file, and the path that he knows.
+    answers: Option<(Rc<dyn Answers>, String)>,
 }
 
 /// The files of one tree that somebody has asked for.
@@ -36,6 +67,7 @@ pub struct Node {
 pub struct Tree {
     root: PathBuf,
     nodes: RefCell<HashMap<(String, Access), Rc<Node>>>,
+    answers: Option<Rc<dyn Answers>>,
 }
 
 /// The file's server has died or was told to let go of it: another opening may help.
@@ -63,6 +95,16 @@ impl Tree {
         Self {
             root: root.to_owned(),
             nodes: RefCell::default(),
+            answers: None,
+        }
+    }
+
+    /// A tree that is mounted nowhere.
+    pub fn answered(answers: Rc<dyn Answers>) -> Self {
+        Self {
+            root: PathBuf::new(),
+            nodes: RefCell::default(),
+            answers: Some(answers),
         }
     }
 
@@ -79,6 +121,10 @@ impl Tree {
                 path: self.root.join(path),
                 access,
                 file: RefCell::default(),
+                answers: self
+                    .answers
+                    .as_ref()
+                    .map(|answers| (answers.clone(), path.to_owned())),
             })
         });
         made.clone()
@@ -86,6 +132,9 @@ impl Tree {
 
     /// Whether the tree has this directory, and something is plugged in there.
     pub fn has(&self, directory: &str) -> bool {
+        if let Some(answers) = &self.answers {
+            return answers.has(directory);
+        }
         let path = self.root.join(directory);
         path.is_dir()
             && File::open(path.join("value"))
@@ -93,8 +142,32 @@ impl Tree {
                 .is_none_or(|error| error.raw_os_error() != Some(libc::ENODEV))
     }
 
+    /// Whether the tree is mounted somewhere, or will be.
+    pub fn is_mounted(&self) -> bool {
+        self.answers.is_none()
+    }
+
+    /// Whether the tree has this file.
+    pub fn is_file(&self, path: &str) -> bool {
+        match &self.answers {
+            Some(answers) => answers.is_file(path),
+            None => self.root.join(path).is_file(),
+        }
+    }
+
+    /// Whether the tree has this directory, whatever is plugged in there.
+    pub fn is_directory(&self, path: &str) -> bool {
+        match &self.answers {
+            Some(answers) => answers.has(path),
+            None => self.root.join(path).is_dir(),
+        }
+    }
+
     /// Names in a directory, sorted; empty if there is none.
     pub fn names(&self, directory: &str) -> Vec<String> {
+        if let Some(answers) = &self.answers {
+            return answers.names(directory);
+        }
         let Ok(entries) = std::fs::read_dir(self.root.join(directory)) else {
             return Vec::new();
         };
@@ -143,7 +216,22 @@ impl Node {
     /// # Errors
     /// Those of the tree: `fault` beside the file says more.
     pub fn bytes(&self, buffer: &mut [u8]) -> io::Result<usize> {
+        if let Some((answers, path)) = &self.answers {
+            let text = answers.read(path)?;
+            let size = text.len().min(buffer.len());
+            buffer[..size].copy_from_slice(&text.as_bytes()[..size]);
+            return Ok(size);
+        }
         self.with(|file| file.read_at(buffer, 0))
+    }
+
+    /// Bytes from a position on, for files in which it means something: only mounted trees have such.
+    ///
+    /// # Errors
+    /// As [`Node::bytes`].
+    pub fn bytes_at(&self, buffer: &mut [u8], position: u64) -> io::Result<usize> {
+        self.mounted()?;
+        self.with(|file| file.read_at(buffer, position))
     }
 
     /// The newest text without the newline.
@@ -191,11 +279,40 @@ impl Node {
     /// # Errors
     /// Those of the tree.
     pub fn write(&self, text: &str) -> io::Result<()> {
-        let written = self.with(|file| file.write_at(text.as_bytes(), 0))?;
-        if written == text.len() {
+        if let Some((answers, path)) = &self.answers {
+            return answers.write(path, text);
+        }
+        self.write_at(text.as_bytes(), 0)
+    }
+
+    fn mounted(&self) -> io::Result<()> {
+        match self.answers {
+            Some(_) => Err(io::ErrorKind::Unsupported.into()),
+            None => Ok(()),
+        }
+    }
+
+    /// Writes bytes at a position, as [`Node::bytes_at`] reads them.
+    ///
+    /// # Errors
+    /// As [`Node::write`].
+    pub fn write_at(&self, bytes: &[u8], position: u64) -> io::Result<()> {
+        self.mounted()?;
+        let written = self.with(|file| file.write_at(bytes, position))?;
+        if written == bytes.len() {
             Ok(())
         } else {
             Err(io::ErrorKind::WriteZero.into())
+        }
+    }
+
+    /// The time of day of whoever reads the tree, in microseconds of the epoch.
+    pub fn now_us(&self) -> u128 {
+        match &self.answers {
+            Some((answers, _)) => answers.now_us(),
+            None => SystemTime::now()
+                .duration_since(UNIX_EPOCH)
+                .map_or(0, |time| time.as_micros()),
         }
     }
 

@@ -83,6 +83,25 @@ pub fn plugged_in(world: &str, kit: Kit) -> BTreeMap<Port, Sensor> {
     sensors
 }
 
+/// The sensors that the blocks of a program wait for, by port: what is put onto ports that are empty.
+pub fn needed(program: &Program) -> BTreeMap<Port, Sensor> {
+    wishes(program)
+        .map(|(_, port, sensor)| (port, sensor))
+        .collect()
+}
+
+/// Each block that waits for a sensor that is plugged in, with its port.
+fn wishes(program: &Program) -> impl Iterator<Item = (Node, Port, Sensor)> {
+    program.ops.iter().enumerate().filter_map(|(node, op)| {
+        let Op::Watch { watch, .. } = *op else {
+            return None;
+        };
+        let node = node as Node;
+        let port = program.watches[watch as usize].port.as_ref().ok()?;
+        Some((node, *port, wanted(program, node)?))
+    })
+}
+
 /// The first block that wants another sensor than the world has, as the original tells it.
 pub(super) fn mismatch(project: &Project, program: &Program) -> Option<Problem> {
     let mut sensors = plugged_in(project.world.as_deref()?, program.kit);
@@ -90,17 +109,7 @@ pub(super) fn mismatch(project: &Project, program: &Program) -> Option<Problem> 
         .meta
         .get("twoDModelSensorsReadOnly")
         .is_some_and(|value| value.eq_ignore_ascii_case("true"));
-    for (node, op) in program.ops.iter().enumerate() {
-        let Op::Watch { watch, .. } = *op else {
-            continue;
-        };
-        let node = node as Node;
-        let Some(wanted) = wanted(program, node) else {
-            continue;
-        };
-        let Ok(port) = program.watches[watch as usize].port else {
-            continue;
-        };
+    for (node, port, wanted) in wishes(program) {
         match sensors.get(&port) {
             Some(&there) if there == wanted => {}
             None if !locked => drop(sensors.insert(port, wanted)),

@@ -16,7 +16,7 @@ use crate::expr::Kit;
 use crate::xml::{self, Element};
 
 /// Pixels in a centimetre.
-const PIXELS_IN_CM: f64 = 16.0 / 5.6;
+pub const PIXELS_IN_CM: f64 = 16.0 / 5.6;
 /// Degrees of a wheel in a millisecond at one percent.
 const DEGREES_PER_PERCENT: f64 = 0.0055;
 const WHEEL_RADIUS: f64 = 8.0;
@@ -192,7 +192,8 @@ impl StandIn {
     /// One tick of the world, before the step of the program at the same time.
     pub fn tick(&mut self) {
         self.now = self.now.saturating_add(STEP_MS);
-        let (shift, turn) = self.motion();
+        let Motion { shift, turn } =
+            motion(self.wheels.map(|wheel| wheel.chosen), self.pose.degrees);
         for wheel in &mut self.wheels {
             let power = wheel.motor.and_then(|motor| self.powers.get(&motor));
             wheel.chosen = power.copied().unwrap_or(0);
@@ -206,43 +207,57 @@ impl StandIn {
         });
         for wheel in self.wheels {
             if let Some(encoder) = wheel.motor.and_then(encoder_of) {
-                let degrees = f64::from(STEP_MS) * f64::from(wheel.chosen) * DEGREES_PER_PERCENT;
-                *self.encoders.entry(encoder).or_default() += degrees;
+                *self.encoders.entry(encoder).or_default() += wheel_turn(wheel.chosen);
             }
         }
     }
+}
 
-    /// Shift and turn of one tick at the speeds that were chosen.
-    fn motion(&self) -> ((f32, f32), f64) {
-        let speed = |wheel: Wheel| {
-            f64::from(wheel.chosen)
-                * 2.0
-                * std::f64::consts::PI
-                * WHEEL_RADIUS
-                * DEGREES_PER_PERCENT
-                / 360.0
+/// What one tick moves a robot.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion {
+    /// Pixels to the right and down.
+    pub shift: (f32, f32),
+    /// Degrees clockwise.
+    pub turn: f64,
+}
+
+/// Speed of a wheel's rim in pixels in a millisecond, at a power in percent.
+pub fn rim_speed(percent: i32) -> f64 {
+    f64::from(percent) * 2.0 * std::f64::consts::PI * WHEEL_RADIUS * DEGREES_PER_PERCENT / 360.0
+}
+
+/// Degrees that a wheel turns in one tick, at a power in percent.
+pub fn wheel_turn(percent: i32) -> f64 {
+    f64::from(STEP_MS) * f64::from(percent) * DEGREES_PER_PERCENT
+}
+
+/// What one tick of exact rolling moves a robot whose left and right wheel have these powers in percent and which looks
+/// this many degrees clockwise from the right.
+pub fn motion(powers: [i32; 2], degrees: f64) -> Motion {
+    let [left, right] = powers.map(rim_speed);
+    let mean = f64::midpoint(left, right);
+    let time = f64::from(STEP_MS);
+    let heading = degrees.to_radians();
+    if (left - right).abs() < SAME {
+        let way = (mean * time) as f32;
+        let direction = (heading.cos() as f32, heading.sin() as f32);
+        return Motion {
+            shift: (way * direction.0, way * direction.1),
+            turn: 0.0,
         };
-        let [left, right] = self.wheels.map(speed);
-        let mean = f64::midpoint(left, right);
-        let time = f64::from(STEP_MS);
-        let heading = self.pose.degrees.to_radians();
-        if (left - right).abs() < SAME {
-            let way = (mean * time) as f32;
-            let direction = (heading.cos() as f32, heading.sin() as f32);
-            return ((way * direction.0, way * direction.1), 0.0);
-        }
-        let turn = (left - right) * time / TRACK;
-        let radius = mean / (turn / time);
-        // The centre of the robot around the point beside its axle, in the robot's own directions.
-        let (x, y) = (-AXLE, -radius);
-        let x_turned = x * turn.cos() - y * turn.sin() + AXLE;
-        let y_turned = x * turn.sin() + y * turn.cos() + radius;
-        let shift_x = x_turned * heading.cos() - y_turned * heading.sin();
-        let shift_y = x_turned * heading.sin() + y_turned * heading.cos();
-        (
-            (shift_x as f32, shift_y as f32),
-            turn * 180.0 / std::f64::consts::PI,
-        )
+    }
+    let turn = (left - right) * time / TRACK;
+    let radius = mean / (turn / time);
+    // The centre of the robot around the point beside its axle, in the robot's own directions.
+    let (x, y) = (-AXLE, -radius);
+    let x_turned = x * turn.cos() - y * turn.sin() + AXLE;
+    let y_turned = x * turn.sin() + y * turn.cos() + radius;
+    let shift_x = x_turned * heading.cos() - y_turned * heading.sin();
+    let shift_y = x_turned * heading.sin() + y_turned * heading.cos();
+    Motion {
+        shift: (shift_x as f32, shift_y as f32),
+        turn: turn * 180.0 / std::f64::consts::PI,
     }
 }
 

@@ -9,7 +9,7 @@ use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
 /// Where a result goes.
-pub(super) struct Output<'a> {
+pub(crate) struct Output<'a> {
     /// `None` and `-` are standard output.
     pub path: Option<&'a Path>,
     /// Whether a file that is there may be replaced.
@@ -22,6 +22,11 @@ impl Output<'_> {
     /// The file, or `None` for standard output.
     fn file(&self) -> Option<&Path> {
         self.path.filter(|path| *path != Path::new("-"))
+    }
+
+    /// Whether it goes to standard output.
+    pub fn is_standard(&self) -> bool {
+        self.file().is_none()
     }
 
     /// Refuses what must not be replaced: better before the work than after it.
@@ -77,7 +82,7 @@ impl Output<'_> {
 }
 
 /// Bytes to standard output.
-pub(super) fn standard(bytes: &[u8]) -> Result<(), Refusal> {
+pub(crate) fn standard(bytes: &[u8]) -> Result<(), Refusal> {
     let mut out = io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {

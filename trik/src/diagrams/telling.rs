@@ -132,12 +132,12 @@ impl<'a> Teller<'a> {
 }
 
 /// A path for people.
-pub(super) fn named(path: &Path) -> String {
+pub(crate) fn named(path: &Path) -> String {
     harmless(&path.to_string_lossy())
 }
 
 /// One line that no terminal obeys: without control characters and those that turn the direction of writing.
-pub(super) fn harmless(text: &str) -> String {
+pub(crate) fn harmless(text: &str) -> String {
     let is_turn = |c: char| matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     let mut shown = String::new();
     for (count, c) in text.trim_end().chars().enumerate() {

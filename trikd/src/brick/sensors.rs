@@ -196,9 +196,7 @@ impl Vector {
         if let Some((tilt, heading)) = &self.angles {
             let mut angles = [0.0; 2];
             tilt.numbers(&mut angles)?;
-            let time_us = std::time::SystemTime::now()
-                .duration_since(std::time::UNIX_EPOCH)
-                .map_or(0, |time| time.as_micros() % (1 << 31));
+            let time_us = self.value.now_us() % (1 << 31);
             // Below 2^31, so that every float of 64 bits holds it.
             numbers.push(f64::from(u32::try_from(time_us).unwrap_or(0)));
             numbers.extend(angles);
@@ -237,8 +235,8 @@ fn is_absent(error: &io::Error) -> bool {
 }
 
 impl Camera {
-    pub(super) fn new(tree: &Tree, sensor: &str) -> Self {
-        let node = |name: &str, access| tree.node(&format!("camera/{sensor}/{name}"), access);
+    pub(super) fn new(tree: &Tree, directory: &str) -> Self {
+        let node = |name: &str, access| tree.node(&format!("{directory}/{name}"), access);
         Self {
             value: node("value", Access::ReadNow),
             detect: node("detect", Access::Write),
@@ -311,7 +309,8 @@ impl Camera {
         self.hsv_write.write(&format!("{}\n", words.join(" ")))
     }
 
-    /// The newest numbers: line x, crossroads, mass; object x, y, size; colours cell by cell as 0xRRGGBB.
+    /// The newest numbers: line x, crossroads, mass; object x, y, size; sound angle, left, right; colours cell by cell
+    /// as 0xRRGGBB.
     ///
     /// # Errors
     /// Those of the tree; EAGAIN before the first picture.

@@ -3,10 +3,10 @@
 //! Owns the order of things in a thread of a program, and what makes it end: its text, a failure, the end of all.
 
 use super::failure::Failure;
+use super::ground::{Ground, Mounted};
 use super::natives::{self, Own};
 use super::shared::{Shared, Slot};
 use super::source;
-use crate::brick::Brick;
 use crate::engine::Outcome;
 use crate::limits;
 use rquickjs::context::EvalOptions;
@@ -76,23 +76,31 @@ pub fn run_jobs(ctx: &Ctx<'_>) {
     while ctx.execute_pending_job() {}
 }
 
-/// Runs one engine to its end.
+/// Runs one engine on the mounted tree to its end.
 ///
 /// # Errors
 /// The text of a failure, if it was no end that was asked for.
 pub fn run(job: &Job, shared: &Arc<Shared>, slot: &Arc<Slot>) -> Outcome {
+    run_on(Rc::new(Mounted::new(&shared.root)), job, shared, slot)
+}
+
+/// Runs one engine to its end, on any ground.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_on(
+    ground: Rc<dyn Ground>,
+    job: &Job,
+    shared: &Arc<Shared>,
+    slot: &Arc<Slot>,
+) -> Outcome {
     let broken = |error: Error| format!("JavaScript cannot be started: {error}");
     let runtime = Runtime::new().map_err(broken)?;
     runtime.set_memory_limit(limits::JS_MEMORY_BYTES);
     runtime.set_max_stack_size(limits::JS_STACK_BYTES);
-    let asked = slot.clone();
-    runtime.set_interrupt_handler(Some(Box::new(move || asked.stops())));
-    let own = Rc::new(Own::new(
-        Brick::new(&shared.root),
-        shared.clone(),
-        slot.clone(),
-        &job.text,
-    ));
+    let (asked, under) = (slot.clone(), ground.clone());
+    runtime.set_interrupt_handler(Some(Box::new(move || under.stops(&asked))));
+    let own = Rc::new(Own::new(ground, shared.clone(), slot.clone(), &job.text));
     let (lost, text) = (own.clone(), job.text.clone());
     runtime.set_host_promise_rejection_tracker(Some(Box::new(
         move |ctx, _promise, reason, is_handled| {

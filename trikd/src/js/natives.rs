@@ -7,8 +7,9 @@ pub mod media;
 pub mod robot;
 pub mod system;
 
-use super::events::{Record, Streams};
+use super::events::Record;
 use super::failure::Failure;
+use super::ground::Ground;
 use super::machine::run_jobs;
 use super::shared::{Event, Shared, Slot};
 use crate::brick::Brick;
@@ -17,10 +18,11 @@ use rquickjs::{Array, Ctx, Exception, Function, IntoJs, Object, Value};
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
 
 /// What an engine has.
 pub struct Own {
+    /// What it stands on.
+    pub ground: Rc<dyn Ground>,
     /// The robot.
     pub brick: Brick,
     /// The program.
@@ -32,33 +34,25 @@ pub struct Own {
     /// A promise that failed and nobody looked.
     pub lost: RefCell<Option<Failure>>,
     text: Arc<str>,
-    streams: Streams,
-    began: Instant,
 }
 
 impl Own {
     /// For one thread of a program with this text.
-    pub fn new(brick: Brick, shared: Arc<Shared>, slot: Arc<Slot>, text: &Arc<str>) -> Self {
+    pub fn new(
+        ground: Rc<dyn Ground>,
+        shared: Arc<Shared>,
+        slot: Arc<Slot>,
+        text: &Arc<str>,
+    ) -> Self {
         Self {
-            brick,
+            brick: ground.brick(),
+            ground,
             shared,
             slot,
             events: Cell::new(false),
             lost: RefCell::default(),
             text: text.clone(),
-            streams: Streams::default(),
-            began: Instant::now(),
         }
-    }
-
-    fn clock_ms(&self) -> f64 {
-        self.began.elapsed().as_secs_f64() * 1000.0
-    }
-
-    /// None: for ever.
-    fn instant(&self, at_ms: f64) -> Option<Instant> {
-        let seconds = Duration::try_from_secs_f64(at_ms / 1000.0).ok()?;
-        self.began.checked_add(seconds)
     }
 }
 
@@ -93,7 +87,7 @@ pub fn make<'js>(ctx: &Ctx<'js>, own: &Rc<Own>) -> rquickjs::Result<Object<'js>>
 fn events<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     let with = || own.clone();
     let o = with();
-    put(native, "clock", move || o.clock_ms())?;
+    put(native, "clock", move || o.ground.clock_ms())?;
     let o = with();
     put(native, "next", move |ctx: Ctx<'js>, until_ms: f64| {
         next(&ctx, &o, until_ms)
@@ -103,19 +97,23 @@ fn events<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
         native,
         "listen",
         move |ctx: Ctx<'js>, path: String, numbers: usize| {
-            o.streams
+            o.ground
                 .listen(&o.brick, &path, numbers)
                 .map_err(|error| robot::unreadable(&ctx, &o.brick, &path, &error))
         },
     )?;
     let o = with();
     put(native, "tryListen", move |path: String, numbers: usize| {
-        o.streams.listen(&o.brick, &path, numbers).is_ok()
+        o.ground.listen(&o.brick, &path, numbers).is_ok()
+    })?;
+    let o = with();
+    put(native, "forget", move |path: String| {
+        o.ground.forget(&path);
     })?;
     let o = with();
     put(native, "drain", move |ctx: Ctx<'js>, path: String| {
         let all = Array::new(ctx.clone())?;
-        for (index, record) in o.streams.drain(&path).into_iter().enumerate() {
+        for (index, record) in o.ground.drain(&path).into_iter().enumerate() {
             all.set(index, value(&ctx, record)?)?;
         }
         Ok::<_, rquickjs::Error>(all)
@@ -131,7 +129,13 @@ fn events<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
         }
     })?;
     let o = with();
-    put(native, "quit", move || o.shared.quit(Some(&o.slot)))
+    put(native, "quit", move || o.shared.quit(Some(&o.slot)))?;
+    let o = with();
+    put(native, "date", move || o.ground.date_ms())?;
+    let o = with();
+    put(native, "random", move |low: f64, high: f64| {
+        o.ground.random(low as i32, high as i32)
+    })
 }
 
 fn value<'js>(ctx: &Ctx<'js>, record: Record) -> rquickjs::Result<Value<'js>> {
@@ -158,7 +162,6 @@ fn event<'js, const N: usize>(
 /// The next event as its source and values, null when the time has come or something has changed. Throws when the
 /// program is to end.
 fn next<'js>(ctx: &Ctx<'js>, own: &Own, until_ms: f64) -> rquickjs::Result<Value<'js>> {
-    let until = own.instant(until_ms);
     let mut woken = false;
     loop {
         run_jobs(ctx);
@@ -174,13 +177,13 @@ fn next<'js>(ctx: &Ctx<'js>, own: &Own, until_ms: f64) -> rquickjs::Result<Value
                 Event::Web => event(ctx, "web", []),
             };
         }
-        if let Some((path, record)) = own.streams.next() {
+        if let Some((path, record)) = own.ground.next() {
             return event(ctx, &path, [value(ctx, record)?]);
         }
         if woken {
             return Ok(Value::new_null(ctx.clone()));
         }
-        let waited = own.streams.wait(&own.slot, until);
+        let waited = own.ground.wait(&own.slot, until_ms);
         waited.map_err(|error| failed(ctx, &format!("nothing can be waited for: {error}")))?;
         woken = true;
     }

@@ -33,27 +33,40 @@ pub enum Event {
 
 /// A descriptor that is readable after it was rung.
 #[derive(Debug)]
-pub struct Bell(EventFd);
+pub struct Bell {
+    fd: EventFd,
+    rung: AtomicBool,
+}
 
 impl Bell {
     fn new() -> io::Result<Self> {
         let flags = EfdFlags::EFD_CLOEXEC | EfdFlags::EFD_NONBLOCK;
-        Ok(Self(EventFd::from_flags(flags)?))
+        Ok(Self {
+            fd: EventFd::from_flags(flags)?,
+            rung: AtomicBool::new(false),
+        })
     }
 
     /// To wait on.
     pub fn fd(&self) -> BorrowedFd<'_> {
-        self.0.as_fd()
+        self.fd.as_fd()
     }
 
     /// Fails only when it has been rung so often that it is readable for sure.
     pub fn ring(&self) {
-        let _ = self.0.write(1);
+        self.rung.store(true, Ordering::Relaxed);
+        let _ = self.fd.write(1);
     }
 
     /// Silent again; whether it was rung.
     pub fn hush(&self) -> bool {
-        self.0.read().is_ok()
+        self.rung.store(false, Ordering::Relaxed);
+        self.fd.read().is_ok()
+    }
+
+    /// Whether it was rung and not hushed, for whoever waits on the same thread.
+    pub fn is_rung(&self) -> bool {
+        self.rung.load(Ordering::Relaxed)
     }
 }
 
@@ -108,6 +121,12 @@ impl Slot {
 /// A panic of another thread leaves nothing half done here.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The work of one engine; who waits for its end must hear of it in any case.
+pub fn unbroken(work: impl FnOnce() -> Result<(), String>) -> Result<(), String> {
+    catch_unwind(AssertUnwindSafe(work))
+        .unwrap_or_else(|_| Err("trikd has a defect: its JavaScript broke off".to_owned()))
 }
 
 /// A question to the mailbox and where its answer goes.
@@ -186,11 +205,31 @@ impl Shared {
     /// # Errors
     /// Why there is none: its name is taken, there are too many.
     pub fn start(self: &Arc<Self>, job: Job) -> Result<(), String> {
+        let slot = self.admit(&job.name)?;
+        let (shared, own) = (self.clone(), slot.clone());
+        let started = std::thread::Builder::new()
+            .name("js".to_owned())
+            .stack_size(limits::JS_STACK_BYTES + limits::JS_STACK_SPARE_BYTES)
+            .spawn(move || {
+                let outcome = unbroken(|| machine::run(&job, &shared, &own));
+                shared.finish(&own, outcome);
+            });
+        if let Err(error) = started {
+            lock(&self.running).remove(&slot.name);
+            return Err(format!("no thread: {error}"));
+        }
+        Ok(())
+    }
+
+    /// A slot for a thread that begins now; whoever runs it calls [`Shared::finish`] at its end.
+    ///
+    /// # Errors
+    /// Its name is taken, or there are too many.
+    pub fn admit(&self, name: &str) -> Result<Arc<Slot>, String> {
         let mut running = lock(&self.running);
-        if running.contains_key(&job.name) {
+        if running.contains_key(name) {
             return Err(format!(
-                "Attempt to create a thread with an already occupied id {}",
-                job.name
+                "Attempt to create a thread with an already occupied id {name}"
             ));
         }
         if running.len() >= limits::JS_THREADS {
@@ -199,25 +238,13 @@ impl Shared {
                 limits::JS_THREADS
             ));
         }
-        let slot = Arc::new(Slot::new(&job.name).map_err(|error| format!("no thread: {error}"))?);
-        let (shared, own) = (self.clone(), slot.clone());
-        std::thread::Builder::new()
-            .name("js".to_owned())
-            .stack_size(limits::JS_STACK_BYTES + limits::JS_STACK_SPARE_BYTES)
-            .spawn(move || {
-                // Who waits for the end of this thread must hear of it in any case.
-                let work = AssertUnwindSafe(|| machine::run(&job, &shared, &own));
-                let outcome = catch_unwind(work).unwrap_or_else(|_| {
-                    Err("trikd has a defect: its JavaScript broke off".to_owned())
-                });
-                shared.finish(&own, outcome);
-            })
-            .map_err(|error| format!("no thread: {error}"))?;
-        running.insert(slot.name.clone(), slot);
-        Ok(())
+        let slot = Arc::new(Slot::new(name).map_err(|error| format!("no thread: {error}"))?);
+        running.insert(slot.name.clone(), slot.clone());
+        Ok(slot)
     }
 
-    fn finish(&self, slot: &Slot, outcome: Result<(), String>) {
+    /// A thread has ended; with its failure the program ends.
+    pub fn finish(&self, slot: &Slot, outcome: Result<(), String>) {
         let mut running = lock(&self.running);
         running.remove(&slot.name);
         lock(&self.notes).remove(&slot.name);

@@ -4,7 +4,7 @@
 //! as a text, because a program goes on without it.
 
 use super::{Own, failed, put};
-use crate::pictures;
+use crate::js::ground::Shown;
 use rquickjs::{Ctx, Object};
 use std::rc::Rc;
 
@@ -16,20 +16,19 @@ pub fn install<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()>
     let told = |done: Result<(), String>| done.err().unwrap_or_default();
     let o = own.clone();
     put(native, "draw", move |line: String| {
-        told(o.shared.display().order(&line))
+        told(o.ground.show(&o.shared, Shown::Order(&line)))
     })?;
     let o = own.clone();
     put(native, "showFile", move |file: String| {
-        let path = o.shared.folder.join(&file);
-        told(o.shared.display().show_file(&path))
+        told(o.ground.show(&o.shared, Shown::File(&file)))
     })?;
     let o = own.clone();
     put(
         native,
         "showNumbers",
         move |numbers: Vec<i32>, width: i32, height: i32, format: String| {
-            let mut display = o.shared.display();
-            told(display.show_numbers(&numbers, width, height, &format))
+            let shown = Shown::Numbers(&numbers, width, height, &format);
+            told(o.ground.show(&o.shared, shown))
         },
     )?;
     let o = own.clone();
@@ -37,7 +36,7 @@ pub fn install<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()>
         native,
         "photo",
         move |ctx: Ctx<'js>, width: u16, height: u16| {
-            let seen = pictures::photo(&o.shared.root);
+            let seen = o.ground.photo(&o.shared);
             let seen = seen.map_err(|reason| failed(&ctx, &reason))?;
             let sized = seen.scaled(width, height);
             Ok::<_, rquickjs::Error>(sized.to_rgb())

@@ -5,11 +5,8 @@
 use super::{Own, failed, put};
 use crate::js::failure::Failure;
 use crate::js::machine::{Job, Kind, evaluate};
-use crate::js::read_text;
 use rquickjs::{Ctx, Error, Object, Value};
-use std::fs::OpenOptions;
-use std::io::{self, Write};
-use std::process::{Command, Stdio};
+use std::io;
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -29,6 +26,7 @@ fn output<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     let o = own.clone();
     put(native, "print", move |text: String| {
         o.shared.say(|output| output.print(&text));
+        o.ground.has_spoken();
     })?;
     let o = own.clone();
     put(native, "info", move |text: String| {
@@ -44,9 +42,8 @@ fn output<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
 fn texts<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     let o = own.clone();
     put(native, "include", move |ctx: Ctx<'js>, file: String| {
-        let path = o.shared.folder.join(&file);
-        let text =
-            read_text(&path).map_err(|reason| failed(&ctx, &format!("include: {reason}")))?;
+        let text = o.ground.include(&o.shared, &file);
+        let text = text.map_err(|reason| failed(&ctx, &format!("include: {reason}")))?;
         evaluate(&ctx, &text, &file).map(drop)
     })?;
     let o = own.clone();
@@ -79,19 +76,7 @@ fn survive(own: &Own, failure: &Failure) -> bool {
     lives
 }
 
-fn reap(mut child: std::process::Child) {
-    // Without a thread it stays a zombie until the program ends, which is no harm.
-    let _ = std::thread::Builder::new()
-        .name("system".to_owned())
-        .stack_size(64 << 10)
-        .spawn(move || child.wait());
-}
-
 fn files<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
-    let append = |path: &std::path::Path, bytes: &[u8]| {
-        let mut file = OpenOptions::new().append(true).create(true).open(path)?;
-        file.write_all(bytes)
-    };
     let told =
         |ctx: &Ctx<'js>, file: &str, error: &io::Error| failed(ctx, &format!("{file}: {error}"));
     let o = own.clone();
@@ -99,8 +84,8 @@ fn files<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
         native,
         "append",
         move |ctx: Ctx<'js>, file: String, text: String| {
-            append(&o.shared.folder.join(&file), text.as_bytes())
-                .map_err(|error| told(&ctx, &file, &error))
+            let done = o.ground.append(&o.shared, &file, text.as_bytes());
+            done.map_err(|error| told(&ctx, &file, &error))
         },
     )?;
     let o = own.clone();
@@ -108,43 +93,29 @@ fn files<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
         native,
         "appendBytes",
         move |ctx: Ctx<'js>, file: String, bytes: Vec<u8>| {
-            append(&o.shared.folder.join(&file), &bytes).map_err(|error| told(&ctx, &file, &error))
+            let done = o.ground.append(&o.shared, &file, &bytes);
+            done.map_err(|error| told(&ctx, &file, &error))
         },
     )?;
     let o = own.clone();
     put(native, "readAll", move |ctx: Ctx<'js>, file: String| {
-        let text =
-            read_text(&o.shared.folder.join(&file)).map_err(|reason| failed(&ctx, &reason))?;
+        let text = o.ground.read_file(&o.shared, &file);
+        let text = text.map_err(|reason| failed(&ctx, &reason))?;
         let lines = text.split_inclusive('\n').map(str::to_owned);
         Ok::<_, Error>(lines.collect::<Vec<_>>())
     })?;
     let o = own.clone();
     put(native, "remove", move |ctx: Ctx<'js>, file: String| {
-        match std::fs::remove_file(o.shared.folder.join(&file)) {
-            // That it is not there is what was wanted.
-            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(told(&ctx, &file, &error)),
-            _ => Ok(()),
-        }
+        let done = o.ground.remove(&o.shared, &file);
+        done.map_err(|error| told(&ctx, &file, &error))
     })?;
     let o = own.clone();
     put(
         native,
         "system",
         move |ctx: Ctx<'js>, command: String, waits: bool| {
-            let mut shell = Command::new("sh");
-            shell.arg("-c").arg(&command).stdin(Stdio::null());
-            shell.current_dir(&o.shared.folder);
-            let started = shell.spawn();
-            let mut child =
-                started.map_err(|error| failed(&ctx, &format!("script.system: {error}")))?;
-            if waits {
-                let ended = child.wait();
-                let ended =
-                    ended.map_err(|error| failed(&ctx, &format!("script.system: {error}")))?;
-                return Ok(ended.code().unwrap_or(-1));
-            }
-            reap(child);
-            Ok::<_, Error>(0)
+            let code = o.ground.system(&o.shared, &command, waits);
+            code.map_err(|error| failed(&ctx, &format!("script.system: {error}")))
         },
     )
 }
@@ -152,8 +123,7 @@ fn files<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
 fn mailbox<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     let o = own.clone();
     put(native, "mailbox", move |ctx: Ctx<'js>, words: String| {
-        let answer = o.shared.ask(words).recv();
-        let answer = answer.unwrap_or_else(|_| Err(io::Error::other("the program ends")));
+        let answer = o.ground.mailbox(&o.shared, words);
         answer.map_err(|error| failed(&ctx, &format!("mailbox: {error}")))
     })?;
     let o = own.clone();
@@ -173,8 +143,8 @@ fn threads<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
                 text: Arc::clone(&o.text),
                 kind: Kind::Thread { globals, call },
             };
-            o.shared
-                .start(job)
+            o.ground
+                .start(&o.shared, job)
                 .map_err(|reason| failed(&ctx, &format!("Threading: {reason}")))
         },
     )?;
@@ -191,15 +161,18 @@ fn threads<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     let o = own.clone();
     put(native, "killThread", move |name: String| {
         o.shared.kill(|other| other == name);
+        o.ground.give_way();
     })?;
     let o = own.clone();
     put(native, "killOthers", move || {
         o.shared
             .kill(|other| other != o.slot.name && other != crate::js::shared::MAIN);
+        o.ground.give_way();
     })?;
     let o = own.clone();
     put(native, "sendMessage", move |name: String, text: String| {
         o.shared.leave_note(&name, text);
+        o.ground.give_way();
     })?;
     let o = own.clone();
     put(native, "takeMessage", move || {

@@ -1,0 +1,165 @@
+//! A robot of an arena as its program sees it: commands in, readings out.
+//!
+//! Owns which command goes to which part and which sensor answers for which port. Knows no programs.
+
+use lang::diagram::brick::{Answer, Brick, Command, Question};
+use lang::diagram::ports::{Port, Sort};
+
+use super::Arena;
+use super::ranges;
+use crate::field::SensorKind;
+use crate::limits;
+
+/// Deviation of a distance sensor's noise, in centimetres.
+const RANGE_NOISE: f64 = 1.5;
+/// What a noisy distance sensor says at most.
+const RANGE_NOISE_MAX: f64 = 255.0;
+
+/// One robot of an arena.
+#[derive(Debug)]
+pub struct Handle<'a> {
+    pub(super) arena: &'a mut Arena,
+    pub(super) index: usize,
+}
+
+impl Handle<'_> {
+    /// What a sensor that looks at solid things says.
+    fn range(&mut self, port: Port) -> Option<i32> {
+        let arena = &mut *self.arena;
+        let robot = &mut arena.robots[self.index];
+        let sensor = robot.sensor(port)?;
+        let (at, degrees) = robot.sensor_pose(sensor);
+        let beam = match sensor.kind {
+            SensorKind::Infrared => ranges::INFRARED,
+            SensorKind::Sonar => ranges::SONAR,
+            SensorKind::Touch => {
+                let is_touching =
+                    ranges::is_touching(&arena.solids, at, degrees, &mut arena.scratch);
+                return Some(i32::from(is_touching));
+            }
+            SensorKind::Light | SensorKind::Camera | SensorKind::Lidar | SensorKind::Other => {
+                return None;
+            }
+        };
+        let cm = ranges::distance(&arena.solids, at, degrees, beam, &mut arena.scratch);
+        if !arena.field.settings.realistic_sensors {
+            return Some(cm);
+        }
+        let noisy = f64::from(cm) + robot.noise() * RANGE_NOISE;
+        Some(noisy.round().clamp(0.0, RANGE_NOISE_MAX) as i32)
+    }
+
+    fn gamepad(&self, port: Port) -> Option<i32> {
+        let gamepad = self.arena.robots[self.index].gamepad();
+        if port.name() == "GamepadConnectionIndicatorPort" {
+            return Some(i32::from(gamepad.is_some()));
+        }
+        let gamepad = gamepad?;
+        let name = port.name();
+        let button = name
+            .strip_prefix("GamepadButton")
+            .and_then(|rest| rest.strip_suffix("Port"))
+            .and_then(|number| number.parse::<usize>().ok());
+        match (name, button) {
+            ("GamepadPad1PressedPort", _) => Some(i32::from(gamepad.pads[0].is_pressed)),
+            ("GamepadPad2PressedPort", _) => Some(i32::from(gamepad.pads[1].is_pressed)),
+            ("GamepadWheelPort", _) => Some(gamepad.wheel),
+            (_, Some(number)) => {
+                let button = gamepad.buttons.get(number.checked_sub(1)?)?;
+                Some(i32::from(*button))
+            }
+            _ => None,
+        }
+    }
+
+    /// Puts a message into the boxes of other robots.
+    fn send(&mut self, message: &str, hull: Option<i32>) {
+        for (index, robot) in self.arena.robots.iter_mut().enumerate() {
+            let is_meant = hull.is_none_or(|hull| hull == robot.hull);
+            if index != self.index && is_meant && robot.mail.len() < limits::MAIL_MAX {
+                robot.mail.push_back(message.to_owned());
+            }
+        }
+    }
+}
+
+impl Brick for Handle<'_> {
+    fn tell(&mut self, command: Command<'_>) {
+        let robot = &mut self.arena.robots[self.index];
+        match command {
+            Command::Power { port, percent } => robot.set_power(port, percent),
+            Command::Off { port, .. } => robot.set_power(port, 0),
+            Command::Servo { port, degrees } => robot.set_servo(port, degrees),
+            Command::ResetEncoder { port } => robot.reset_encoder(port),
+            Command::CalibrateGyroscope => robot.calibrate(),
+            Command::Rest => robot.rest(),
+            Command::MarkerDown { color } => {
+                robot.marker.is_down = true;
+                color.clone_into(&mut robot.marker.colour);
+            }
+            Command::MarkerUp => robot.marker.is_down = false,
+            Command::Join { hull, .. } => robot.hull = hull,
+            Command::Send { message, hull } => self.send(message, hull),
+            _ => {}
+        }
+    }
+
+    fn scalar(&mut self, port: Port) -> Option<i32> {
+        let robot = &self.arena.robots[self.index];
+        match port.sort() {
+            Sort::Encoder => Some(robot.encoder(port) as i32),
+            Sort::Button(code) => Some(i32::from(robot.is_pressed(code))),
+            Sort::Scalar if port.name().starts_with("Gamepad") => self.gamepad(port),
+            Sort::Scalar => self.range(port),
+            Sort::Motor | Sort::Servo | Sort::Vector => None,
+        }
+    }
+
+    fn vector(&mut self, port: Port, into: &mut Vec<i32>) -> bool {
+        let arena = &mut *self.arena;
+        let robot = &arena.robots[self.index];
+        match port.name() {
+            "GyroscopePort" => {
+                let (rate, angle) = robot.gyroscope();
+                let now = i32::try_from(arena.now).unwrap_or(i32::MAX);
+                into.extend_from_slice(&[0, 0, rate, now, 0, 0, angle]);
+                true
+            }
+            "AccelerometerPort" => {
+                into.extend_from_slice(&robot.accelerometer());
+                true
+            }
+            "LidarPort" => {
+                let Some(sensor) = robot.sensor_of(SensorKind::Lidar) else {
+                    return false;
+                };
+                let (at, degrees) = robot.sensor_pose(sensor);
+                ranges::lidar(&arena.solids, at, degrees, &mut arena.scratch, into);
+                true
+            }
+            "GamepadPad1PosPort" | "GamepadPad2PosPort" => {
+                let pad = usize::from(port.name() == "GamepadPad2PosPort");
+                robot.gamepad().is_some_and(|gamepad| {
+                    into.extend_from_slice(&[gamepad.pads[pad].x, gamepad.pads[pad].y]);
+                    true
+                })
+            }
+            _ => false,
+        }
+    }
+
+    fn random(&mut self, low: i32, high: i32) -> i32 {
+        self.arena.robots[self.index].roll(low, high)
+    }
+
+    fn mail(&mut self) -> Option<String> {
+        self.arena.robots[self.index].mail.pop_front()
+    }
+
+    fn ask(&mut self, _question: Question<'_>) -> Answer {
+        self.arena
+            .answers
+            .pop_front()
+            .map_or(Answer::Cancelled, Answer::Text)
+    }
+}

@@ -1,0 +1,94 @@
+//! What can be wrong with a world model, in words.
+
+use lang::problem::{Severity, Words};
+
+pub(super) fn no_world() -> Words {
+    Words::new(
+        "it is no world model: it has no <root> with a <world> in it; save the field in TRIK Studio again",
+        "это не модель мира: в ней нет <root>, а в нём <world>; сохраните поле в TRIK Studio ещё раз",
+    )
+}
+
+/// A tag, which of its kind, its id, an attribute and its text.
+pub(super) fn number(
+    tag: &str,
+    ordinal: usize,
+    id: &str,
+    name: &str,
+    text: &str,
+    severity: Severity,
+) -> Words {
+    let text: String = text.chars().take(40).collect();
+    let id = if id.is_empty() {
+        String::new()
+    } else {
+        format!(" (id {id})")
+    };
+    if severity == Severity::Error {
+        Words::new(
+            format!(
+                "<{tag}> number {ordinal}{id}: {name}=\"{text}\" is beyond what a field can have; write a number between -1000000 and 1000000"
+            ),
+            format!(
+                "<{tag}> номер {ordinal}{id}: {name}=\"{text}\" больше, чем бывает на поле; напишите число от -1000000 до 1000000"
+            ),
+        )
+    } else {
+        Words::new(
+            format!(
+                "<{tag}> number {ordinal}{id}: {name}=\"{text}\" is no number of this form and counts as 0"
+            ),
+            format!(
+                "<{tag}> номер {ordinal}{id}: {name}=\"{text}\" не число такого вида и считается нулём"
+            ),
+        )
+    }
+}
+
+pub(super) fn same_id(tag: &str, id: &str) -> Words {
+    Words::new(
+        format!("a <{tag}> before has the id '{id}' too; this one is left out"),
+        format!("у <{tag}> раньше тот же id '{id}'; этот элемент пропущен"),
+    )
+}
+
+pub(super) fn too_many(limit: usize) -> Words {
+    Words::new(
+        format!("there are more than {limit} things on the field; nobody needs so many"),
+        format!("на поле больше {limit} элементов; столько не нужно никому"),
+    )
+}
+
+pub(super) fn bad_region(kind: &str) -> Words {
+    Words::new(
+        format!(
+            "a region of the type '{kind}' is left out; there are ellipse, rectangle and bound"
+        ),
+        format!("область типа '{kind}' пропущена; бывают ellipse, rectangle и bound"),
+    )
+}
+
+pub(super) fn bad_bound(id: &str) -> Words {
+    Words::new(
+        format!("a region is bound to '{id}', but no drawn thing has this id; it is left out"),
+        format!("область привязана к '{id}', но нарисованного с таким id нет; она пропущена"),
+    )
+}
+
+pub(super) fn bad_port(text: &str) -> Words {
+    Words::new(
+        format!(
+            "'{text}' is no port of TRIK (it should be as M3###output######); nothing is plugged in there"
+        ),
+        format!(
+            "'{text}' не порт TRIK (должно быть как M3###output######); там ничего не подключено"
+        ),
+    )
+}
+
+pub(super) fn no_blob(id: &str) -> Words {
+    Words::new(
+        format!("the picture '{id}' is not in the project, so nothing is seen in its place"),
+        format!("изображения '{id}' нет в проекте, на его месте ничего не видно"),
+    )
+}

@@ -1,0 +1,22 @@
+//! One run of a solution in a world, judged: program, world and rules, tick by tick, to a verdict.
+//!
+//! Owns the order of one tick, the limits of a run and what is told of it. Knows neither files nor processes: texts in,
+//! an outcome out. What a world does is in [`crate::arena`]; what a task demands is in `lang`.
+
+pub mod json;
+pub mod picture;
+pub mod program;
+pub mod replay;
+pub mod report;
+pub mod run;
+mod scene;
+pub mod task;
+pub mod trajectory;
+mod words;
+
+pub use picture::{Caption, page, svg};
+pub use program::{Diagram, Program};
+pub use replay::judge_recorded;
+pub use run::{Outcome, Settings, Verdict, judge};
+pub use task::{Task, Texts};
+pub use trajectory::Trajectory;

@@ -1,0 +1,250 @@
+//! One run, tick by tick: the world, the rules, the program, and what ends it.
+//!
+//! Owns the order of one tick (the world moves, the rules look, the program steps) and the limits of a run. The same task,
+//! program and settings give the same outcome; only the limit of real time can make a difference, and then there is no
+//! verdict.
+
+use super::program::Program;
+use super::task::Task;
+use super::trajectory::{Record, Trajectory};
+use super::words;
+use crate::arena::{Arena, Setup};
+use crate::limits;
+use lang::constraint::{Checker, Entry, Level, Value, Verdict as Decision};
+use lang::diagram::machine::{STEP_MS, Status};
+use lang::problem::{Problem, Tongue};
+use std::time::{Duration, Instant};
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Verdict {
+    /// The task was accomplished.
+    Accomplished,
+    /// There are no rules, and the program has ended without an error.
+    Ended,
+    /// The task was not accomplished, or the program has errors.
+    Failed,
+    /// It took too much real time, so nothing is known.
+    Unknown,
+}
+
+/// How a run is judged.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Language of messages.
+    pub tongue: Tongue,
+    /// Whether to go on after the first failure and collect all.
+    pub keep_going: bool,
+    /// Longest run, in milliseconds of model time.
+    pub longest_ms: u32,
+    /// Longest run in real time.
+    pub longest: Duration,
+    /// Seed of everything that is random.
+    pub seed: u64,
+    /// What a person answers when a program asks, in order.
+    pub answers: Vec<String>,
+    /// Whether a trajectory is kept.
+    pub is_recording: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            tongue: Tongue::English,
+            keep_going: false,
+            longest_ms: 600_000,
+            longest: Duration::from_secs(60),
+            seed: 1,
+            answers: Vec::new(),
+            is_recording: false,
+        }
+    }
+}
+
+/// What has come out.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// How it ended.
+    pub verdict: Verdict,
+    /// When, in milliseconds of model time.
+    pub ms: u32,
+    /// What was said, in order.
+    pub entries: Vec<Entry>,
+    /// What the rules have counted.
+    pub total_score: Option<f64>,
+    /// Where robots were; empty if it was not recorded.
+    pub trajectory: Trajectory,
+}
+
+/// How often the clock is looked at, in ticks.
+const CLOCK_TICKS: u32 = 64;
+
+/// Runs a program in the world of a task, to its verdict.
+pub fn judge(task: &Task, program: &mut dyn Program, settings: &Settings) -> Outcome {
+    let setup = Setup {
+        seed: settings.seed,
+        sensors: task.sensors.clone(),
+        answers: settings.answers.iter().cloned().collect(),
+        ..Setup::default()
+    };
+    let mut arena = Arena::new(&task.field, setup);
+    let mut run = Run::new(task, settings, &arena);
+    let began = Instant::now();
+    let mut now = 0;
+    loop {
+        if now > 0 {
+            arena.tick();
+            run.record(now, &arena);
+            if run.look(now, &mut arena) {
+                break;
+            }
+        }
+        let status = program.step(now, &mut arena.robot(0));
+        run.hear(now, program.errors());
+        if let Status::Ended { with_errors, .. } = status {
+            run.ended(now, with_errors, &mut arena);
+            break;
+        }
+        if now >= settings.longest_ms {
+            run.fail(now, words::too_long(f64::from(now) / 1000.0));
+            break;
+        }
+        if (now / STEP_MS).is_multiple_of(CLOCK_TICKS) && began.elapsed() > settings.longest {
+            run.fail(now, words::too_slow(settings.longest.as_secs_f64()));
+            run.verdict = Some(Verdict::Unknown);
+            break;
+        }
+        now += STEP_MS;
+    }
+    program.stop(&mut arena.robot(0));
+    run.outcome(now)
+}
+
+/// What changes while a run is judged.
+pub(super) struct Run<'a> {
+    settings: &'a Settings,
+    checker: Option<Checker>,
+    entries: Vec<Entry>,
+    trajectory: Trajectory,
+    heard: usize,
+    /// Once it is known.
+    pub verdict: Option<Verdict>,
+}
+
+impl<'a> Run<'a> {
+    pub fn new(task: &Task, settings: &'a Settings, arena: &Arena) -> Self {
+        let checker = task.rules.clone().map(|rules| {
+            let checker = Checker::new(rules, settings.tongue);
+            if settings.keep_going {
+                checker.continuing()
+            } else {
+                checker
+            }
+        });
+        let mut trajectory = Trajectory::default();
+        for robot in arena.robots() {
+            trajectory.robots.push(robot.description().id.clone());
+        }
+        Self {
+            settings,
+            checker,
+            entries: Vec::new(),
+            trajectory,
+            heard: 0,
+            verdict: None,
+        }
+    }
+
+    /// Keeps where the robots are.
+    pub fn record(&mut self, now: u32, arena: &Arena) {
+        if !self.settings.is_recording {
+            return;
+        }
+        for (index, robot) in arena.robots().iter().enumerate() {
+            if self.trajectory.records.len() >= limits::RECORDS {
+                return;
+            }
+            let pose = robot.pose();
+            self.trajectory.records.push(Record::Pose {
+                robot: index as u16,
+                ms: now,
+                x: pose.x,
+                y: pose.y,
+                degrees: pose.degrees,
+            });
+        }
+    }
+
+    /// Lets the rules look; whether they have decided.
+    pub fn look(&mut self, now: u32, arena: &mut Arena) -> bool {
+        let Some(checker) = &mut self.checker else {
+            return false;
+        };
+        let decision = checker.check(u64::from(now), arena, &mut self.entries);
+        self.decide(decision)
+    }
+
+    /// The program has ended by itself.
+    pub fn ended(&mut self, now: u32, with_errors: bool, arena: &mut Arena) {
+        match &mut self.checker {
+            None if with_errors => self.verdict = Some(Verdict::Failed),
+            None => self.verdict = Some(Verdict::Ended),
+            Some(checker) => {
+                let time = u64::from(now);
+                let decision = checker.program_ended(time, with_errors, arena, &mut self.entries);
+                self.decide(decision);
+            }
+        }
+    }
+
+    fn decide(&mut self, decision: Decision) -> bool {
+        let verdict = match decision {
+            Decision::Open => return false,
+            Decision::Accomplished { .. } => Verdict::Accomplished,
+            Decision::Failed { .. } => Verdict::Failed,
+        };
+        self.verdict = Some(verdict);
+        true
+    }
+
+    /// Tells what is new among the errors of a program.
+    fn hear(&mut self, now: u32, errors: &[Problem]) {
+        for problem in errors.iter().skip(self.heard) {
+            self.entries.push(Entry {
+                level: Level::Error,
+                at_ms: u64::from(now),
+                text: problem.in_tongue(self.settings.tongue),
+            });
+        }
+        self.heard = self.heard.max(errors.len());
+    }
+
+    /// Ends it as failed, for a reason of the judge's own.
+    pub fn fail(&mut self, now: u32, why: lang::problem::Words) {
+        self.entries.push(Entry {
+            level: Level::Error,
+            at_ms: u64::from(now),
+            text: why.in_tongue(self.settings.tongue).to_owned(),
+        });
+        self.verdict = Some(Verdict::Failed);
+    }
+
+    pub fn outcome(self, now: u32) -> Outcome {
+        let score = self
+            .checker
+            .as_ref()
+            .and_then(|checker| checker.variable("total_score"));
+        Outcome {
+            // A run that ends without a word of the rules is no success.
+            verdict: self.verdict.unwrap_or(Verdict::Failed),
+            ms: now,
+            total_score: score.and_then(|score| match score {
+                Value::Int(number) => Some(f64::from(*number)),
+                Value::Double(number) => Some(*number),
+                _ => None,
+            }),
+            entries: self.entries,
+            trajectory: self.trajectory,
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! What the judge says itself, in English and Russian.
+
+use lang::problem::{Tongue, Words};
+
+/// Names of what can be moved on a page: time, speed.
+pub(super) fn page(tongue: Tongue) -> [&'static str; 2] {
+    match tongue {
+        Tongue::English => ["time", "speed"],
+        Tongue::Russian => ["время", "скорость"],
+    }
+}
+
+/// The run is longer than its limit of model time.
+pub(super) fn too_long(seconds: f64) -> Words {
+    Words::new(
+        format!(
+            "The program was stopped after {seconds} s of model time: --time-limit allows more"
+        ),
+        format!(
+            "Программа остановлена после {seconds} с модельного времени: --time-limit разрешит больше"
+        ),
+    )
+}
+
+/// The run takes too much real time.
+pub(super) fn too_slow(seconds: f64) -> Words {
+    Words::new(
+        format!("The run took more than {seconds} s of real time: --wall-limit allows more"),
+        format!("Запуск длился больше {seconds} с реального времени: --wall-limit разрешит больше"),
+    )
+}
+
+/// The record of a run says nothing of the robot.
+pub(super) fn nothing_recorded() -> Words {
+    Words::new(
+        "The recorded trajectory has no poses: TRIK Studio writes them only with --console",
+        "В записанной траектории нет положений робота: TRIK Studio пишет их только с --console",
+    )
+}
+
+/// Something is wrong with rules.
+pub(super) fn in_rules(words: &Words) -> Words {
+    Words::new(
+        format!("Error while parsing constraints: {}", words.english),
+        format!("Ошибка при разборе ограничений: {}", words.russian),
+    )
+}

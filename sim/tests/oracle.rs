@@ -1,0 +1,153 @@
+//! Real projects on real fields in the arena, against poses that the original recorded.
+//!
+//! Reads `../shared/data` if it is there; skips by name if not. What sees the floor has no place here.
+
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+use lang::diagram::lower::{World, lower};
+use lang::diagram::machine::trace::Deaf;
+use lang::diagram::machine::{Machine, Options, STEP_MS, Status};
+use lang::diagram::read::read;
+use lang::diagram::stand_in::Pose;
+use sim::arena::{Arena, Setup};
+use sim::field::Field;
+
+/// Recorded poses every 100 ms have six decimals, so they are off by half of the last one.
+const NEAR: f64 = 0.51e-6;
+/// The last pose has all digits.
+const SAME: f64 = 1e-9;
+
+fn data() -> Option<PathBuf> {
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data"));
+    path.is_dir().then(|| path.to_owned())
+}
+
+/// What the original did.
+struct Oracle {
+    project: String,
+    field: Option<String>,
+    last: Option<[f64; 4]>,
+    poses: Vec<[f64; 4]>,
+}
+
+impl Oracle {
+    /// Reads the few shapes of JSON that the recorder writes.
+    fn read(path: &Path) -> Self {
+        let text = std::fs::read_to_string(path).unwrap();
+        let string = |key: &str| {
+            let rest = after(&text, &format!("\"{key}\":\""))?;
+            Some(rest.split('"').next()?.to_owned())
+        };
+        let poses = after(&text, "\"poses_100ms\":[").unwrap();
+        let last = after(&text, "\"last_pose_ms_x_y_deg\":").unwrap();
+        Self {
+            project: string("project").unwrap(),
+            field: string("field"),
+            last: last.strip_prefix('[').map(four),
+            poses: match poses.find("]]") {
+                Some(end) if !poses.starts_with(']') => {
+                    poses[..end].split('[').skip(1).map(four).collect()
+                }
+                _ => Vec::new(),
+            },
+        }
+    }
+}
+
+fn after<'a>(text: &'a str, mark: &str) -> Option<&'a str> {
+    Some(&text[text.find(mark)? + mark.len()..])
+}
+
+fn four(text: &str) -> [f64; 4] {
+    let mut numbers = text
+        .split([',', ']'])
+        .map(|number| number.trim().parse().unwrap());
+    std::array::from_fn(|_| numbers.next().unwrap())
+}
+
+fn distance(pose: Pose, recorded: [f64; 4]) -> f64 {
+    let [_, x, y, degrees] = recorded;
+    [pose.x - x, pose.y - y, pose.degrees - degrees]
+        .into_iter()
+        .fold(0.0, |worst, difference| worst.max(difference.abs()))
+}
+
+/// How a recorded run went with us: how many poses were met from the first on, and how far the last one was off.
+struct Ran {
+    met: usize,
+    last: f64,
+    first_off: Option<(f64, f64)>,
+}
+
+fn run(data: &Path, oracle: &Oracle, fixed: Option<i32>) -> Ran {
+    let opened = read(&std::fs::read(data.join(&oracle.project)).unwrap()).unwrap();
+    let text = oracle
+        .field
+        .as_ref()
+        .map(|field| std::fs::read_to_string(data.join(field)).unwrap());
+    let world = text.or(opened.project.world.clone()).unwrap_or_default();
+    let field = Field::read(&world).unwrap().field;
+    let program = Rc::new(lower(&opened.project, World::default()).unwrap().program);
+    let mut arena = Arena::new(&field, Setup::of(&program));
+    arena.robot_mut(0).unwrap().dice.fixed = fixed;
+    let mut machine = Machine::new(program, Options::simulated());
+    let until = oracle.last.map_or(20_000.0, |last| last[0]);
+    let mut poses = oracle.poses.iter().peekable();
+    let mut ran = Ran {
+        met: 0,
+        last: f64::INFINITY,
+        first_off: None,
+    };
+    let mut now = 0;
+    while f64::from(now) <= until {
+        if now > 0 {
+            arena.tick();
+        }
+        let status = machine.step(now, &mut arena.robot(0), &mut Deaf);
+        let pose = arena.robots()[0].pose();
+        if let Some(recorded) = poses.next_if(|pose| pose[0] == f64::from(now)) {
+            let off = distance(pose, *recorded);
+            if off < NEAR && ran.first_off.is_none() {
+                ran.met += 1;
+            } else if ran.first_off.is_none() {
+                ran.first_off = Some((recorded[0], off));
+            }
+        }
+        if let Some(last) = oracle.last.filter(|last| last[0] == f64::from(now)) {
+            ran.last = distance(pose, last);
+        }
+        if status != Status::Running && oracle.last.is_none() {
+            break;
+        }
+        now += STEP_MS;
+    }
+    ran
+}
+
+#[test]
+fn look() {
+    let Some(data) = data() else { return };
+    let mut names: Vec<_> = std::fs::read_dir(data.join("oracle"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    names.sort();
+    for path in names {
+        let oracle = Oracle::read(&path);
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        let fixed = match name {
+            "randomizer-solutions" => Some(2),
+            name if name.starts_with("randomizer") => Some(1),
+            _ => None,
+        };
+        let ran = run(&data, &oracle, fixed);
+        println!(
+            "{name}: {}/{} last {:e} {:?}",
+            ran.met,
+            oracle.poses.len(),
+            ran.last,
+            ran.first_off
+        );
+    }
+}

@@ -1,0 +1,223 @@
+//! `trik check`: solutions of tasks are run in virtual time and judged by the rules of their worlds.
+//!
+//! Owns what a person or a grader sees: messages, table, lines of JSON, exit codes. Which runs there are is in `jobs`, one
+//! of them in `run`, many of them in `pool` and `worker`; `row` is what is said of one. What a world does and what its
+//! rules mean is in crate `sim`.
+
+mod args;
+mod jobs;
+pub(crate) mod original;
+mod pool;
+mod row;
+mod run;
+mod script;
+mod words;
+mod worker;
+
+use crate::diagrams::output::{Output, standard};
+use crate::diagrams::{Refusal, UNREADABLE, end, telling};
+pub(crate) use args::CheckArgs;
+use jobs::Job;
+use lang::problem::Tongue;
+use row::{Row, Verdict, Widths};
+use std::io::{self, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+/// How often progress is shown.
+const PROGRESS_EVERY: Duration = Duration::from_millis(200);
+
+/// Does it.
+pub(crate) fn check(args: &CheckArgs) -> ExitCode {
+    end(checked(args))
+}
+
+fn checked(args: &CheckArgs) -> Result<u8, Refusal> {
+    if args.worker {
+        worker::serve(args).map_err(Refusal::new)?;
+        return Ok(0);
+    }
+    let jobs = jobs::jobs(args).map_err(|why| Refusal {
+        lines: vec![format!("trik: {why}")],
+        code: UNREADABLE,
+    })?;
+    let results = args.results.as_deref().map(|path| Output {
+        path: Some(path),
+        force: args.force,
+        source: &args.paths[0],
+    });
+    if let Some(results) = &results {
+        results.look()?;
+    }
+    match &jobs[..] {
+        [job] => one(job, args, results),
+        _ => many(&jobs, args, results),
+    }
+}
+
+/// One run, in this process.
+fn one(job: &Job, args: &CheckArgs, results: Option<Output<'_>>) -> Result<u8, Refusal> {
+    // Outputs of one run are files and not directories.
+    let row = worker::guarded(job, args);
+    let mut is_told = false;
+    if let Some(results) = results {
+        let line = row.write() + "\n";
+        results.write(line.as_bytes())?;
+        is_told = results.is_standard();
+    }
+    if !is_told {
+        let lines = row.lines(args.language).join("\n") + "\n";
+        standard(lines.as_bytes())?;
+    }
+    Ok(row.verdict.code())
+}
+
+/// Many runs, in processes.
+fn many(jobs: &[Job], args: &CheckArgs, results: Option<Output<'_>>) -> Result<u8, Refusal> {
+    let folders = [&args.report, &args.trajectory, &args.svg, &args.html];
+    for folder in folders.into_iter().flatten() {
+        std::fs::create_dir_all(folder).map_err(|error| {
+            let name = telling::named(folder);
+            Refusal::new(format!(
+                "{name}: with several runs this is a directory: {error}"
+            ))
+        })?;
+    }
+    let mut told = Told::new(jobs, args, results)?;
+    let mut failure = None;
+    let done = pool::run(jobs, args, |index, row| {
+        told.tell(index, &row).map_err(|refusal| {
+            failure = Some(refusal);
+            String::new()
+        })
+    });
+    if let Some(refusal) = failure {
+        return Err(refusal);
+    }
+    done.map_err(Refusal::new)?;
+    told.finish()
+}
+
+/// What has been told of many runs.
+struct Told<'a> {
+    tongue: Tongue,
+    widths: Widths,
+    counts: [usize; 4],
+    worst: Option<Verdict>,
+    all: usize,
+    /// Lines of JSON, written as they come: to a file beside the place of the result, or to standard output.
+    results: Option<Results<'a>>,
+    shown: Option<Instant>,
+    is_terminal: bool,
+}
+
+struct Results<'a> {
+    output: Output<'a>,
+    bytes: Vec<u8>,
+}
+
+impl<'a> Told<'a> {
+    fn new(jobs: &[Job], args: &CheckArgs, results: Option<Output<'a>>) -> Result<Self, Refusal> {
+        let tongue = args.language;
+        let names = |path: &Path| telling::named(path);
+        let all: Vec<(String, Option<String>)> = jobs
+            .iter()
+            .map(|job| (names(&job.solution), job.field.as_deref().map(names)))
+            .collect();
+        let widths = Widths::new(
+            all.iter()
+                .map(|(solution, field)| (&**solution, field.as_deref())),
+            tongue,
+        );
+        let told = Self {
+            tongue,
+            widths,
+            counts: [0; 4],
+            worst: None,
+            all: jobs.len(),
+            results: results.map(|output| Results {
+                output,
+                bytes: Vec::new(),
+            }),
+            shown: None,
+            is_terminal: io::stderr().is_terminal(),
+        };
+        if told.has_table() {
+            let heading = told.widths.line(&words::heading(tongue));
+            standard(format!("{heading}\n").as_bytes())?;
+        }
+        Ok(told)
+    }
+
+    fn has_table(&self) -> bool {
+        !self
+            .results
+            .as_ref()
+            .is_some_and(|results| results.output.is_standard())
+    }
+
+    fn tell(&mut self, index: usize, row: &Row) -> Result<(), Refusal> {
+        self.counts[row.verdict as usize] += 1;
+        self.worst = self.worst.max(Some(row.verdict));
+        let has_table = self.has_table();
+        if let Some(results) = &mut self.results {
+            let line = row.write() + "\n";
+            if results.output.is_standard() {
+                standard(line.as_bytes())?;
+            } else {
+                results.bytes.extend_from_slice(line.as_bytes());
+            }
+        }
+        if has_table {
+            let line = self.widths.line(&row.cells(self.tongue));
+            self.clear();
+            standard(format!("{line}\n").as_bytes())?;
+        }
+        self.progress(index + 1);
+        Ok(())
+    }
+
+    /// How far it is, on a terminal only.
+    fn progress(&mut self, done: usize) {
+        let is_due = self
+            .shown
+            .is_none_or(|shown| shown.elapsed() > PROGRESS_EVERY);
+        if self.is_terminal && is_due && done < self.all {
+            let text = words::progress(done, self.all, self.tongue);
+            let _ = write!(io::stderr(), "\r{text}\x1b[K");
+            self.shown = Some(Instant::now());
+        }
+    }
+
+    fn clear(&self) {
+        if self.shown.is_some() {
+            let _ = write!(io::stderr(), "\r\x1b[K");
+        }
+    }
+
+    fn finish(self) -> Result<u8, Refusal> {
+        self.clear();
+        let has_table = self.has_table();
+        if let Some(results) = &self.results
+            && has_table
+        {
+            results.output.write(&results.bytes)?;
+        }
+        if has_table {
+            let summary = words::summary(self.counts, self.tongue);
+            standard(format!("{summary}\n").as_bytes())?;
+        }
+        Ok(self.worst.map_or(UNREADABLE, Verdict::code))
+    }
+}
+
+/// Where a file of one run goes: the file itself, or one in a directory.
+fn place(wanted: &Path, job: &Job, ending: &str, is_one: bool) -> PathBuf {
+    if is_one {
+        return wanted.to_owned();
+    }
+    let mut name = job.name.clone().into_os_string();
+    name.push(ending);
+    wanted.join(name)
+}

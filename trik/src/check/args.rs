@@ -1,0 +1,135 @@
+//! What `trik check` can be told.
+//!
+//! Owns the options and how they are passed to a worker process. Knows nothing of what they do.
+
+use crate::{diagrams, limits};
+use clap::Args;
+use lang::problem::Tongue;
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+/// Options of `trik check`.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct CheckArgs {
+    /// Solutions: diagrams NAME.qrs, programs NAME.js and NAME.py if a field is given, and directories of them.
+    #[arg(value_name = "FILE|DIR", required_unless_present = "worker")]
+    pub paths: Vec<PathBuf>,
+    /// A world with its rules in place of the solution's own: walls, robot, sensors and constraints are all replaced. May
+    /// be given several times; a directory stands for all NAME.xml in it.
+    #[arg(long, value_name = "WORLD.xml")]
+    pub field: Vec<PathBuf>,
+    /// With --field: run each solution in its own world too.
+    #[arg(long, requires = "field")]
+    pub own: bool,
+    /// A program in JavaScript or Python that drives the robot in place of the diagram.
+    #[arg(long, value_name = "PROG.js|.py", conflicts_with = "log")]
+    pub script: Option<PathBuf>,
+    /// Lines that the program is given when it asks: answers for Input blocks, and what programs with text read.
+    #[arg(long, value_name = "FILE")]
+    pub inputs: Option<PathBuf>,
+    /// Judge a recorded trajectory in place of running a program: a file that --trajectory or TRIK Studio has written.
+    #[arg(long, value_name = "T.json")]
+    pub log: Option<PathBuf>,
+    /// Write all messages as JSON, in the form of TRIK Studio. With several runs here and below: a directory, with a
+    /// file for each run.
+    #[arg(long, value_name = "OUT.json")]
+    pub report: Option<PathBuf>,
+    /// Write where the robot was in each tick and what its devices were told, in the form of TRIK Studio.
+    #[arg(long, value_name = "OUT.json")]
+    pub trajectory: Option<PathBuf>,
+    /// Draw the field and the way of the robot.
+    #[arg(long, value_name = "OUT.svg")]
+    pub svg: Option<PathBuf>,
+    /// Write a page that shows the run, for any browser.
+    #[arg(long, value_name = "OUT.html")]
+    pub html: Option<PathBuf>,
+    /// Write a line of JSON for each run, in the order of the runs; - is standard output, in place of the table.
+    #[arg(long, value_name = "OUT.jsonl")]
+    pub results: Option<PathBuf>,
+    /// Replace files that are there already.
+    #[arg(long)]
+    pub force: bool,
+    /// Go on after the first failure and collect all of them.
+    #[arg(long = "continue")]
+    pub keep_going: bool,
+    /// How many runs at once [default: one for each core].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub jobs: Option<u16>,
+    /// Longest run in seconds of model time, whatever the rules say.
+    #[arg(long, value_name = "SECONDS", default_value_t = 600.0, value_parser = model_seconds)]
+    pub time_limit: f64,
+    /// Longest run in seconds of real time; what takes longer could not be run.
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = wall_seconds)]
+    pub wall_limit: f64,
+    /// Most memory of one process, in MiB.
+    #[arg(long, value_name = "MIB", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(64..=65536))]
+    pub memory: u32,
+    /// Seed of everything that is random. The same seed gives the same run.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    pub seed: u32,
+    /// Language of messages: en or ru.
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = diagrams::tongue)]
+    pub language: Tongue,
+    /// Serve jobs from standard input.
+    #[arg(long, hide = true)]
+    pub worker: bool,
+    /// Run the program that the save itself holds beside the diagram; for `2D-model --mode script`.
+    #[arg(skip)]
+    pub is_embedded: bool,
+}
+
+impl CheckArgs {
+    /// The words with which a worker process is started that does such runs.
+    pub(super) fn for_worker(&self) -> Vec<OsString> {
+        let mut words: Vec<OsString> = vec!["check".into(), "--worker".into()];
+        let paths = [
+            ("--script", &self.script),
+            ("--inputs", &self.inputs),
+            ("--log", &self.log),
+            ("--report", &self.report),
+            ("--trajectory", &self.trajectory),
+            ("--svg", &self.svg),
+            ("--html", &self.html),
+        ];
+        for (name, path) in paths {
+            if let Some(path) = path {
+                let mut word = OsString::from(name);
+                word.push("=");
+                word.push(path);
+                words.push(word);
+            }
+        }
+        for (name, is_set) in [("--force", self.force), ("--continue", self.keep_going)] {
+            if is_set {
+                words.push(name.into());
+            }
+        }
+        let language = match self.language {
+            Tongue::English => "en",
+            Tongue::Russian => "ru",
+        };
+        words.extend([
+            format!("--time-limit={}", self.time_limit).into(),
+            format!("--wall-limit={}", self.wall_limit).into(),
+            format!("--memory={}", self.memory).into(),
+            format!("--seed={}", self.seed).into(),
+            format!("--language={language}").into(),
+        ]);
+        words
+    }
+}
+
+fn model_seconds(text: &str) -> Result<f64, String> {
+    seconds(text, limits::MODEL_SECONDS_MAX)
+}
+
+fn wall_seconds(text: &str) -> Result<f64, String> {
+    seconds(text, limits::WALL_SECONDS_MAX)
+}
+
+fn seconds(text: &str, max: f64) -> Result<f64, String> {
+    let number: Option<f64> = text.parse().ok();
+    number
+        .filter(|seconds| (0.01..=max).contains(seconds))
+        .ok_or_else(|| format!("not a number of seconds from 0.01 to {max}"))
+}

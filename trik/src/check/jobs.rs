@@ -1,0 +1,136 @@
+//! Which solution is run in which world: files, directories and fields to a list of runs.
+//!
+//! Owns the order (as it was said, directories by name) and the names of files that a run writes. Opens nothing but
+//! directories; links to directories are not followed.
+
+use crate::cli::CheckArgs;
+use crate::diagrams::telling::named;
+use crate::limits;
+use std::collections::HashSet;
+use std::ffi::OsStr;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// One run to be done.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Job {
+    /// The solution.
+    pub solution: PathBuf,
+    /// The world in place of its own.
+    pub field: Option<PathBuf>,
+    /// What files of this run are called, below a directory for results and without an ending.
+    pub name: PathBuf,
+}
+
+/// All runs.
+///
+/// # Errors
+/// A path that cannot be read, a directory without solutions or fields, more than the limits allow.
+pub(super) fn jobs(args: &CheckArgs) -> Result<Vec<Job>, String> {
+    let mut fields: Vec<Option<PathBuf>> = Vec::new();
+    if args.own || args.field.is_empty() {
+        fields.push(None);
+    }
+    for path in &args.field {
+        let found = below(path, &["xml"], 1, limits::FIELDS_MAX)?;
+        fields.extend(found.into_iter().map(|(field, _)| Some(field)));
+        if fields.len() > limits::FIELDS_MAX {
+            return Err(format!("there are more than {} fields", limits::FIELDS_MAX));
+        }
+    }
+    let endings: &[&str] = match args.field.is_empty() {
+        true => &["qrs"],
+        false => &["qrs", "js", "py"],
+    };
+    let (mut all, mut names) = (Vec::new(), HashSet::new());
+    for path in &args.paths {
+        for (solution, name) in below(path, endings, limits::FOLDERS_DEEP, limits::SOLUTIONS_MAX)? {
+            for field in &fields {
+                let job = Job {
+                    solution: solution.clone(),
+                    field: field.clone(),
+                    name: free(&name, field.as_deref(), fields.len() > 1, &mut names),
+                };
+                all.push(job);
+            }
+            if all.len() > limits::SOLUTIONS_MAX {
+                let max = limits::SOLUTIONS_MAX;
+                return Err(format!("there are more than {max} runs to do"));
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// A name for files that no other run has.
+fn free(
+    name: &Path,
+    field: Option<&Path>,
+    are_many: bool,
+    names: &mut HashSet<PathBuf>,
+) -> PathBuf {
+    let mut whole = name.with_extension("").into_os_string();
+    if are_many {
+        let field = field.and_then(Path::file_stem);
+        whole.push("--");
+        whole.push(field.unwrap_or(OsStr::new("own")));
+    }
+    let mut found = PathBuf::from(&whole);
+    let mut count = 1;
+    while !names.insert(found.clone()) {
+        count += 1;
+        let mut other = whole.clone();
+        other.push(format!("-{count}"));
+        found = other.into();
+    }
+    found
+}
+
+/// A file as it is, or those with an ending below a directory, sorted, with their names from there.
+fn below(
+    path: &Path,
+    endings: &[&str],
+    deep: usize,
+    max: usize,
+) -> Result<Vec<(PathBuf, PathBuf)>, String> {
+    let failed = |error: io::Error| match error.kind() {
+        io::ErrorKind::NotFound => format!("{}: there is no such file", named(path)),
+        _ => format!("{} cannot be read: {error}", named(path)),
+    };
+    if !fs::metadata(path).map_err(failed)?.is_dir() {
+        let name = path.file_name().map_or_else(|| path.into(), PathBuf::from);
+        return Ok(vec![(path.to_owned(), name)]);
+    }
+    let mut found = Vec::new();
+    let mut folders = vec![(path.to_owned(), 0)];
+    while let Some((folder, depth)) = folders.pop() {
+        for entry in fs::read_dir(&folder).map_err(failed)? {
+            let entry = entry.map_err(failed)?;
+            let kind = entry.file_type().map_err(failed)?;
+            let inside = entry.path();
+            let is_wanted = || {
+                let ending = inside.extension().and_then(OsStr::to_str);
+                ending.is_some_and(|ending| endings.contains(&ending))
+            };
+            if kind.is_dir() {
+                if depth + 1 < deep {
+                    folders.push((inside, depth + 1));
+                }
+            } else if is_wanted() && (kind.is_file() || inside.is_file()) {
+                let name = inside.strip_prefix(path).unwrap_or(&inside).to_owned();
+                found.push((inside, name));
+                if found.len() > max {
+                    return Err(format!("{}: there are more than {max} files", named(path)));
+                }
+            }
+        }
+    }
+    if found.is_empty() {
+        let endings: Vec<String> = endings.iter().map(|one| format!("*.{one}")).collect();
+        let endings = endings.join(" and ");
+        return Err(format!("{}: there is no {endings} here", named(path)));
+    }
+    found.sort();
+    Ok(found)
+}

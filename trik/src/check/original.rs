@@ -1,0 +1,366 @@
+//! In the place of TRIK Studio's `2D-model` and `patcher`: the same option names, for graders that call these programs.
+//!
+//! Owns the words and the exit codes of both: 2D-model 0 done, 1 errors in the report, 2 could not be run, 3 no program
+//! written, 4 unknown language; patcher 0 done, 1 unreadable, 2 contradicting options, 255 not saved. The exit code of the
+//! original is 0 for failed tasks too; here it is true. What a run is, is in `run`.
+
+use super::CheckArgs;
+use super::jobs::Job;
+use super::row::Verdict;
+use super::run::text;
+use super::worker;
+use crate::cli::GenArgs;
+use crate::diagrams::output::Output;
+use crate::diagrams::{self, must_open, say};
+use crate::limits;
+use clap::Parser;
+use lang::diagram::generate::Language;
+use lang::problem::Tongue;
+use sim::field::Field;
+use std::ffi::{OsStr, OsString};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// What `2D-model` can be told.
+#[derive(Parser, Debug)]
+#[command(
+    name = "2D-model",
+    version,
+    about = "Runs a save and judges it by the rules of its world, as TRIK Studio's 2D-model does.",
+    after_help = "Exit status: 0 done; 1 the task was not accomplished, or the report has an error; 2 it could not be run; \
+                  3 no program could be written; 4 unknown language."
+)]
+struct Model {
+    /// Save that is run.
+    #[arg(value_name = "qrs-file")]
+    file: PathBuf,
+    /// As fast as possible; it is always so here.
+    #[arg(short, long)]
+    background: bool,
+    /// Needed there without a screen; does nothing here.
+    #[arg(long, value_name = "PLATFORM")]
+    platform: Option<String>,
+    /// File for what the rules said (JSON).
+    #[arg(short, long, value_name = "path-to-report")]
+    report: Option<PathBuf>,
+    /// File or FIFO for the trajectory (JSON); recorded with and without --console.
+    #[arg(short, long, value_name = "path-to-trajectory")]
+    trajectory: Option<PathBuf>,
+    /// Lines for programs that read.
+    #[arg(short, long, value_name = "path-to-input")]
+    input: Option<PathBuf>,
+    /// "diagram", or "script" for the program in JavaScript or Python.
+    #[arg(short, long, default_value = "diagram")]
+    mode: String,
+    /// Speed; does nothing here.
+    #[arg(short, long, default_value = "0")]
+    speed: String,
+    /// Does nothing here: there is no window.
+    #[arg(long)]
+    close: bool,
+    /// Does nothing here: there is no window.
+    #[arg(long)]
+    close_on_success: bool,
+    /// Does nothing here.
+    #[arg(short, long)]
+    console: bool,
+    /// Does nothing here.
+    #[arg(short, long)]
+    display: bool,
+    /// New file for the diagram as a program.
+    #[arg(long, value_name = "path-to-save-code")]
+    generate_path: Option<PathBuf>,
+    /// "python" or "javascript".
+    #[arg(long, default_value = "javascript")]
+    generate_mode: String,
+    /// Program in JavaScript or Python that is run in the world of the save.
+    #[arg(long, value_name = "script-path")]
+    script_path: Option<PathBuf>,
+    /// Only write the program.
+    #[arg(long)]
+    only_generate: bool,
+    /// Does nothing here.
+    #[arg(long, value_name = "ms", default_value = "0")]
+    delay_before_exit: String,
+}
+
+/// What `patcher` can be told.
+#[derive(Parser, Debug)]
+#[command(
+    name = "patcher",
+    version,
+    about = "Changes a save in its place, as TRIK Studio's patcher does.",
+    after_help = "Exit status: 0 done; 1 a file cannot be read; 2 more than one of -f, -w and --wp; 255 not saved."
+)]
+struct Patcher {
+    /// Save that is changed.
+    #[arg(value_name = "save-file")]
+    file: PathBuf,
+    /// Field that replaces the whole world, with robot, sensors and rules.
+    #[arg(short, value_name = "field.xml")]
+    field: Option<PathBuf>,
+    /// Field that replaces the world but for the robot, its place and its sensors.
+    #[arg(short, value_name = "field.xml")]
+    world: Option<PathBuf>,
+    /// Field that replaces the world but for the robot's sensors.
+    #[arg(long = "wp", value_name = "field.xml")]
+    with_place: Option<PathBuf>,
+    /// Program that is put into the save.
+    #[arg(short, value_name = "script.js")]
+    script: Option<PathBuf>,
+    /// Puts the robot onto its start marker.
+    #[arg(long = "rrp")]
+    to_start: bool,
+}
+
+/// Whether a program's name is one of the original's, perhaps with the ending of its debug build.
+pub(crate) fn is_model(name: &str) -> bool {
+    matches!(name, "2D-model" | "2D-model-d")
+}
+
+/// See [`is_model`].
+pub(crate) fn is_patcher(name: &str) -> bool {
+    matches!(name, "patcher" | "patcher-d")
+}
+
+/// `-platform` and its like, as Qt has them, with two dashes.
+fn words(name: &str, arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
+    let long = |word: OsString| match word.to_str() {
+        Some("-platform") => "--platform".into(),
+        Some("-wp") => "--wp".into(),
+        Some("-rrp") => "--rrp".into(),
+        _ => word,
+    };
+    std::iter::once(name.into())
+        .chain(arguments.map(long))
+        .collect()
+}
+
+fn parsed<T: Parser>(name: &str, arguments: impl Iterator<Item = OsString>) -> Result<T, ExitCode> {
+    T::try_parse_from(words(name, arguments)).map_err(|error| {
+        let _ = error.print();
+        ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
+    })
+}
+
+/// The language of messages is that of the system, as there.
+fn tongue() -> Tongue {
+    let names = ["LC_ALL", "LC_MESSAGES", "LANG"];
+    let mut values = names.into_iter().filter_map(std::env::var_os);
+    match values.find(|value| !value.is_empty()) {
+        Some(value) if value.to_string_lossy().starts_with("ru") => Tongue::Russian,
+        _ => Tongue::English,
+    }
+}
+
+/// `2D-model` with these arguments.
+pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> ExitCode {
+    let args: Model = match parsed("2D-model", arguments) {
+        Ok(args) => args,
+        Err(code) => return code,
+    };
+    let code = match &args.generate_path {
+        Some(path) => generated(&args, path),
+        None => 0,
+    };
+    if code != 0 || args.only_generate {
+        return ExitCode::from(code);
+    }
+    let is_script = match &*args.mode {
+        "diagram" => false,
+        "script" => true,
+        other => {
+            say(&[format!(
+                "2D-model: there is no mode '{other}'; there are diagram and script"
+            )]);
+            return ExitCode::from(2);
+        }
+    };
+    let check = CheckArgs {
+        paths: vec![args.file.clone()],
+        field: Vec::new(),
+        own: false,
+        script: args
+            .script_path
+            .filter(|path| is_script && !path.as_os_str().is_empty()),
+        // A grader names files that are not there when there are no inputs.
+        inputs: args.input.filter(|path| path.exists()),
+        log: None,
+        report: args.report,
+        trajectory: args.trajectory,
+        svg: None,
+        html: None,
+        results: None,
+        force: true,
+        keep_going: false,
+        jobs: None,
+        time_limit: limits::MODEL_SECONDS_MAX,
+        wall_limit: limits::WALL_SECONDS_MAX,
+        memory: 1024,
+        seed: 1,
+        language: tongue(),
+        worker: false,
+        is_embedded: is_script,
+    };
+    let job = Job {
+        solution: args.file,
+        field: None,
+        name: PathBuf::new(),
+    };
+    let row = worker::guarded(&job, &check);
+    say(&row.lines(check.language));
+    let has_error = row.messages.iter().any(|(level, _)| level == "error");
+    ExitCode::from(match row.verdict {
+        Verdict::Broken => 2,
+        Verdict::Failed => 1,
+        Verdict::Accomplished | Verdict::Ended => u8::from(has_error),
+    })
+}
+
+/// Writes the diagram as a program; the exit code if that is all.
+fn generated(args: &Model, path: &Path) -> u8 {
+    let lang = match &*args.generate_mode {
+        "python" => Language::Python,
+        "javascript" => Language::JavaScript,
+        other => {
+            say(&[format!(
+                "2D-model: there is no language '{other}'; there are python and javascript"
+            )]);
+            return 4;
+        }
+    };
+    let wanted = GenArgs {
+        file: args.file.clone(),
+        lang,
+        output: Some(path.to_owned()),
+        force: false,
+        goto: false,
+        language: tongue(),
+    };
+    if diagrams::generate(&wanted) == ExitCode::SUCCESS {
+        0
+    } else {
+        3
+    }
+}
+
+/// `patcher` with these arguments.
+pub(crate) fn patcher(arguments: impl Iterator<Item = OsString>) -> ExitCode {
+    let args: Patcher = match parsed("patcher", arguments) {
+        Ok(args) => args,
+        Err(code) => return code,
+    };
+    match patched(&args) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err((lines, code)) => {
+            say(&lines);
+            ExitCode::from(code)
+        }
+    }
+}
+
+type Refused = (Vec<String>, u8);
+
+fn patched(args: &Patcher) -> Result<(), Refused> {
+    let because = |code: u8| move |why: String| (vec![format!("patcher: {why}")], code);
+    let tongue = tongue();
+    let fields = [&args.field, &args.world, &args.with_place];
+    if fields.iter().filter(|field| field.is_some()).count() > 1 {
+        return Err(because(2)("use only one of -f, -w and --wp".to_owned()));
+    }
+    let mut opened = must_open(&args.file, tongue).map_err(|refusal| (refusal.lines, 1))?;
+    let told = |problem: lang::problem::Problem| because(1)(problem.in_tongue(tongue));
+    if let Some(path) = fields.into_iter().flatten().next() {
+        let world = text(path, limits::WORLD_BYTES_MAX).map_err(because(1))?;
+        let world = match &args.field {
+            Some(_) => world,
+            None => {
+                let old = opened.project.world.as_deref().unwrap_or_default();
+                merged(&world, old, args.world.is_some()).map_err(because(1))?
+            }
+        };
+        opened.save.set_world(&world).map_err(told)?;
+    }
+    if let Some(path) = args
+        .script
+        .as_deref()
+        .filter(|path| !path.as_os_str().is_empty())
+    {
+        let code = text(path, limits::WORLD_BYTES_MAX).map_err(because(1))?;
+        let ending = path
+            .extension()
+            .and_then(OsStr::to_str)
+            .unwrap_or("js")
+            .to_lowercase();
+        opened.save.set_code(&code, &ending).map_err(told)?;
+    }
+    if args.to_start {
+        let (project, _) = opened.save.project();
+        let mut field =
+            field_of(project.world.as_deref().unwrap_or_default(), tongue).map_err(because(1))?;
+        if let Some(robot) = field.robot_mut() {
+            robot.to_start();
+        }
+        opened.save.set_world(&field.write()).map_err(told)?;
+    }
+    let bytes = opened
+        .save
+        .write()
+        .map_err(|problem| because(255)(problem.in_tongue(tongue)))?;
+    let output = Output {
+        path: Some(&args.file),
+        force: true,
+        // The save itself is what is replaced.
+        source: Path::new(""),
+    };
+    output.write(&bytes).map_err(|refusal| (refusal.lines, 255))
+}
+
+fn field_of(world: &str, tongue: Tongue) -> Result<Field, String> {
+    let opened = Field::read(world).map_err(|problems| {
+        let lines: Vec<String> = problems
+            .iter()
+            .map(|problem| problem.in_tongue(tongue))
+            .collect();
+        lines.join("; ")
+    })?;
+    Ok(opened.field)
+}
+
+/// A new world with the robots of an old one; they keep the new place unless `keep_place`.
+fn merged(new: &str, old: &str, keep_place: bool) -> Result<String, String> {
+    let tongue = tongue();
+    let mut field = field_of(new, tongue)?;
+    let old = field_of(old, tongue)?;
+    if let (Some(robot), Some(before)) = (field.robot_mut(), old.robot()) {
+        let (position, direction, start) = (robot.position, robot.direction, robot.start.clone());
+        *robot = before.clone();
+        if !keep_place {
+            (robot.position, robot.direction, robot.start) = (position, direction, start);
+        }
+    }
+    Ok(field.write())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_words_of_the_original_are_understood() {
+        Model::command().debug_assert();
+        Patcher::command().debug_assert();
+        let line = "-b -platform minimal --report r -t t -i i -m script -s 20 --close -c x.qrs";
+        let words = words("2D-model", line.split(' ').map(OsString::from));
+        let args = Model::try_parse_from(words).unwrap();
+        assert_eq!(args.platform.as_deref(), Some("minimal"));
+        assert_eq!((args.file, args.mode.as_str()), ("x.qrs".into(), "script"));
+        assert_eq!(args.report, Some("r".into()));
+        let line = "x.qrs -f field.xml -s ";
+        let words: Vec<_> = line.split(' ').map(OsString::from).collect();
+        let args = Patcher::try_parse_from(super::words("patcher", words.into_iter())).unwrap();
+        assert_eq!(args.field, Some("field.xml".into()));
+        assert_eq!(args.script, Some("".into()));
+    }
+}

@@ -1,0 +1,232 @@
+//! Many runs on all cores: processes that do one run after another, and whoever watches them.
+//!
+//! Owns the processes. A run that crashes, eats its memory or hangs takes only its process with it: another one is started
+//! and does the rest. Results come in the order of the runs; whoever is far ahead waits, so memory is bounded.
+
+use super::jobs::Job;
+use super::row::Row;
+use crate::cli::CheckArgs;
+use crate::limits;
+use std::ffi::OsString;
+use std::io::{self, BufRead, BufReader, Read, Write};
+use std::os::unix::ffi::OsStrExt;
+use std::os::unix::process::{CommandExt, ExitStatusExt};
+use std::path::Path;
+use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::Duration;
+
+/// This program, whatever has happened to its file since it was started.
+const SELF: &str = "/proc/self/exe";
+/// How far a run may be ahead of the first one that is not done.
+const AHEAD_MAX: usize = 2_000;
+
+/// Which run is next, and which is the first that has not been told.
+#[derive(Debug, Default)]
+struct Progress {
+    next: usize,
+    told: usize,
+    is_over: bool,
+}
+
+#[derive(Debug, Default)]
+struct Shared {
+    progress: Mutex<Progress>,
+    has_moved: Condvar,
+}
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, Progress> {
+        self.progress.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The next run for somebody, when it is not too far ahead.
+    fn take(&self, count: usize) -> Option<usize> {
+        let mut progress = self.lock();
+        loop {
+            if progress.is_over || progress.next >= count {
+                return None;
+            }
+            if progress.next < progress.told + AHEAD_MAX {
+                progress.next += 1;
+                return Some(progress.next - 1);
+            }
+            progress = self
+                .has_moved
+                .wait(progress)
+                .unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+/// Does all runs in processes, and gives each result to `tell` in order; stops early if that says so.
+///
+/// # Errors
+/// What `tell` says.
+pub(super) fn run(
+    jobs: &[Job],
+    args: &CheckArgs,
+    mut tell: impl FnMut(usize, Row) -> Result<(), String>,
+) -> Result<(), String> {
+    let cores = thread::available_parallelism().map_or(1, usize::from);
+    let crew = args
+        .jobs
+        .map_or(cores, usize::from)
+        .clamp(1, jobs.len().max(1));
+    let shared = Shared::default();
+    let (send, results) = sync_channel::<(usize, Row)>(crew * 2);
+    thread::scope(|scope| {
+        for _ in 0..crew {
+            let (send, shared) = (send.clone(), &shared);
+            scope.spawn(move || feed(jobs, args, shared, &send));
+        }
+        drop(send);
+        let done = in_order(&shared, &results, &mut tell);
+        shared.lock().is_over = true;
+        shared.has_moved.notify_all();
+        // Whoever waits for room is let go.
+        drop(results);
+        done
+    })
+}
+
+fn in_order(
+    shared: &Shared,
+    results: &Receiver<(usize, Row)>,
+    tell: &mut impl FnMut(usize, Row) -> Result<(), String>,
+) -> Result<(), String> {
+    let mut early = std::collections::BTreeMap::new();
+    let mut next = 0;
+    for (index, row) in results {
+        early.insert(index, row);
+        while let Some(row) = early.remove(&next) {
+            tell(next, row)?;
+            next += 1;
+        }
+        shared.lock().told = next;
+        shared.has_moved.notify_all();
+    }
+    Ok(())
+}
+
+/// Takes runs for one process until there are none.
+fn feed(jobs: &[Job], args: &CheckArgs, shared: &Shared, send: &SyncSender<(usize, Row)>) {
+    let words = args.for_worker();
+    let patience = Duration::from_secs_f64(args.wall_limit)
+        + Duration::from_millis(u64::from(limits::WORKER_GRACE_MS));
+    let mut worker = None;
+    while let Some(index) = shared.take(jobs.len()) {
+        let job = &jobs[index];
+        let row = done(&mut worker, job, &words, patience).unwrap_or_else(|why| {
+            // Whatever it was, the next run gets a fresh process.
+            worker = None;
+            let field = job.field.as_deref().map(shown);
+            Row::broken(shown(&job.solution), field, why)
+        });
+        if send.send((index, row)).is_err() {
+            return;
+        }
+    }
+}
+
+/// A path as a row has it.
+pub(super) fn shown(path: &Path) -> String {
+    path.to_string_lossy().into_owned()
+}
+
+fn done(
+    worker: &mut Option<Worker>,
+    job: &Job,
+    words: &[OsString],
+    patience: Duration,
+) -> Result<Row, String> {
+    let worker = match worker {
+        Some(worker) => worker,
+        None => {
+            let fresh = Worker::start(words).map_err(|error| format!("no process: {error}"))?;
+            worker.insert(fresh)
+        }
+    };
+    let line = worker.ask(job, patience)?;
+    Row::read(&line).ok_or_else(|| "the process that ran it said something strange".to_owned())
+}
+
+/// A process that does runs. Dropping it kills it.
+struct Worker {
+    child: Child,
+    stdin: Option<ChildStdin>,
+    lines: Receiver<String>,
+}
+
+impl Worker {
+    fn start(words: &[OsString]) -> io::Result<Self> {
+        let mut child = Command::new(SELF)
+            .arg0("trik")
+            .args(words)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()?;
+        let (stdin, stdout) = (child.stdin.take(), child.stdout.take());
+        let (send, lines) = sync_channel(1);
+        thread::spawn(move || {
+            let mut reader = stdout.map(BufReader::new);
+            while let Some(reader) = reader.as_mut() {
+                let mut line = String::new();
+                let most = limits::ROW_BYTES_MAX as u64;
+                let read = reader.by_ref().take(most).read_line(&mut line);
+                if !matches!(read, Ok(1..)) || send.send(line).is_err() {
+                    return;
+                }
+            }
+        });
+        Ok(Self {
+            child,
+            stdin,
+            lines,
+        })
+    }
+
+    /// Has a run done.
+    fn ask(&mut self, job: &Job, patience: Duration) -> Result<String, String> {
+        let mut bytes = Vec::new();
+        let field = job.field.as_deref().unwrap_or(Path::new(""));
+        for path in [&*job.solution, field, &job.name] {
+            bytes.extend_from_slice(path.as_os_str().as_bytes());
+            bytes.push(0);
+        }
+        let written = self.stdin.as_mut().map(|stdin| stdin.write_all(&bytes));
+        if !matches!(written, Some(Ok(()))) {
+            return Err(self.died());
+        }
+        match self.lines.recv_timeout(patience) {
+            Ok(line) => Ok(line),
+            Err(RecvTimeoutError::Disconnected) => Err(self.died()),
+            Err(RecvTimeoutError::Timeout) => {
+                let seconds = patience.as_secs_f64();
+                Err(format!(
+                    "it hung for {seconds:.0} s of real time and was killed"
+                ))
+            }
+        }
+    }
+
+    /// What has become of it.
+    fn died(&mut self) -> String {
+        let status = self.child.wait().unwrap_or(ExitStatus::from_raw(0));
+        match status.signal() {
+            Some(6) => "the process that ran it has crashed, perhaps for want of memory: --memory is its limit".to_owned(),
+            Some(signal) => format!("the process that ran it was killed by signal {signal}"),
+            None => format!("the process that ran it has ended: {status}"),
+        }
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        drop(self.stdin.take());
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

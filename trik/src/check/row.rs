@@ -1,0 +1,311 @@
+//! What is said of one run: a line of JSON, and a row of the table.
+//!
+//! Owns both forms. The line is also what a worker process tells.
+
+use super::words;
+use crate::diagrams::telling::harmless;
+use crate::limits;
+use lang::problem::Tongue;
+use sim::judge::json::{self, Value};
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Verdict {
+    /// The task was accomplished.
+    Accomplished,
+    /// There are no rules, and the program ended without an error.
+    Ended,
+    /// The task was not accomplished, or the program has errors.
+    Failed,
+    /// It could not be run or judged.
+    Broken,
+}
+
+impl Verdict {
+    /// The exit code.
+    pub fn code(self) -> u8 {
+        match self {
+            Self::Accomplished | Self::Ended => 0,
+            Self::Failed => 1,
+            Self::Broken => 2,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Accomplished => "accomplished",
+            Self::Ended => "ended",
+            Self::Failed => "failed",
+            Self::Broken => "broken",
+        }
+    }
+
+    fn named(name: &str) -> Option<Self> {
+        let all = [Self::Accomplished, Self::Ended, Self::Failed, Self::Broken];
+        all.into_iter().find(|verdict| verdict.name() == name)
+    }
+}
+
+/// One run.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Row {
+    /// The solution.
+    pub solution: String,
+    /// The field; none for the solution's own world.
+    pub field: Option<String>,
+    /// How it ended.
+    pub verdict: Verdict,
+    /// When, in milliseconds of model time.
+    pub ms: u32,
+    /// What the rules have counted.
+    pub total_score: Option<f64>,
+    /// Level and text, in order: the first [`limits::ROW_MESSAGES_MAX`].
+    pub messages: Vec<(String, String)>,
+    /// Messages that are left out.
+    pub more: usize,
+}
+
+impl Row {
+    /// A run that could not be.
+    pub fn broken(solution: String, field: Option<String>, why: String) -> Self {
+        Self {
+            solution,
+            field,
+            verdict: Verdict::Broken,
+            ms: 0,
+            total_score: None,
+            messages: vec![("error".to_owned(), why)],
+            more: 0,
+        }
+    }
+
+    /// Adds a message, unless there are very many.
+    pub fn say(&mut self, level: &str, text: &str) {
+        if self.messages.len() < limits::ROW_MESSAGES_MAX {
+            let mut chars = text.chars();
+            let mut kept: String = chars.by_ref().take(limits::ROW_MESSAGE_CHARS_MAX).collect();
+            if chars.next().is_some() {
+                kept.push_str("...");
+            }
+            self.messages.push((level.to_owned(), kept));
+        } else {
+            self.more += 1;
+        }
+    }
+
+    /// The last whole number in what the rules said, for tasks that tell points in words.
+    fn last_number(&self) -> Option<i64> {
+        let texts = self.messages.iter().rev().map(|(_, text)| text);
+        let mut numbers = texts.filter_map(|text| {
+            let is_part = |c: char| c.is_ascii_digit() || matches!(c, '-' | '.');
+            let words = text
+                .split(|c| !is_part(c))
+                .map(|word| word.trim_matches('.'));
+            words.filter_map(|word| word.parse().ok()).next_back()
+        });
+        numbers.next()
+    }
+
+    /// As one line of JSON, without its end.
+    pub fn write(&self) -> String {
+        let mut line = String::from("{\"solution\":");
+        json::text(&mut line, &self.solution);
+        line.push_str(",\"field\":");
+        match &self.field {
+            Some(field) => json::text(&mut line, field),
+            None => line.push_str("null"),
+        }
+        line.push_str(&format!(
+            ",\"verdict\":\"{}\",\"ms\":{}",
+            self.verdict.name(),
+            self.ms
+        ));
+        line.push_str(",\"total_score\":");
+        json::number(&mut line, self.total_score.unwrap_or(f64::NAN));
+        line.push_str(",\"last_number\":");
+        match self.last_number() {
+            Some(number) => line.push_str(&number.to_string()),
+            None => line.push_str("null"),
+        }
+        line.push_str(",\"messages\":[");
+        for (index, (level, text)) in self.messages.iter().enumerate() {
+            line.push_str(if index == 0 { "" } else { "," });
+            line.push_str("{\"level\":");
+            json::text(&mut line, level);
+            line.push_str(",\"message\":");
+            json::text(&mut line, text);
+            line.push('}');
+        }
+        line.push_str("],\"more\":");
+        line.push_str(&self.more.to_string());
+        line.push('}');
+        line
+    }
+
+    /// Reads such a line.
+    pub fn read(line: &str) -> Option<Self> {
+        let value = json::read(line).ok()?;
+        let text = |name| value.get(name).and_then(Value::text);
+        let number = |name| value.get(name).and_then(Value::number);
+        let Some(Value::List(all)) = value.get("messages") else {
+            return None;
+        };
+        let messages = all.iter().map(|one| {
+            let part = |name| one.get(name).and_then(Value::text).map(str::to_owned);
+            Some((part("level")?, part("message")?))
+        });
+        Some(Self {
+            solution: text("solution")?.to_owned(),
+            field: text("field").map(str::to_owned),
+            verdict: Verdict::named(text("verdict")?)?,
+            ms: number("ms")? as u32,
+            total_score: number("total_score"),
+            messages: messages.collect::<Option<_>>()?,
+            more: number("more")? as usize,
+        })
+    }
+
+    /// Lines for a person who runs one solution.
+    pub fn lines(&self, tongue: Tongue) -> Vec<String> {
+        let mut lines: Vec<String> = self
+            .messages
+            .iter()
+            .map(|(level, text)| format!("{}: {}", words::level(level, tongue), harmless(text)))
+            .collect();
+        if self.more > 0 {
+            lines.push(words::more(self.more, tongue));
+        }
+        let solution = harmless(&self.solution);
+        let verdict = words::verdict(self.verdict, tongue);
+        let at = match self.verdict {
+            Verdict::Broken => String::new(),
+            _ => format!(", {}", words::seconds(self.ms, tongue)),
+        };
+        let score = self.score().map_or_else(String::new, |score| {
+            format!(", {}: {score}", words::heading(tongue)[4])
+        });
+        lines.push(format!("{solution}: {verdict}{at}{score}"));
+        lines
+    }
+
+    fn score(&self) -> Option<f64> {
+        self.total_score.filter(|score| *score != 0.0)
+    }
+
+    /// The cells of its row in the table.
+    pub fn cells(&self, tongue: Tongue) -> [String; 6] {
+        let field = self.field.as_deref();
+        let first = self
+            .messages
+            .iter()
+            .find(|(level, _)| level == "error")
+            .map_or("", |(_, text)| text);
+        let is_broken = self.verdict == Verdict::Broken;
+        [
+            harmless(&self.solution),
+            field.map_or_else(|| words::own(tongue).to_owned(), harmless),
+            words::verdict(self.verdict, tongue).to_owned(),
+            if is_broken {
+                "-".to_owned()
+            } else {
+                words::seconds(self.ms, tongue)
+            },
+            self.score()
+                .map_or_else(|| "-".to_owned(), |score| score.to_string()),
+            harmless(first),
+        ]
+    }
+}
+
+/// Widths of the columns of a table.
+pub(super) struct Widths([usize; 3]);
+
+impl Widths {
+    /// For these solutions and fields.
+    pub fn new<'a>(
+        names: impl Iterator<Item = (&'a str, Option<&'a str>)>,
+        tongue: Tongue,
+    ) -> Self {
+        let heading = words::heading(tongue);
+        let count = |text: &str| text.chars().count();
+        let mut widths = [count(heading[0]), count(heading[1]), 0];
+        for (solution, field) in names {
+            widths[0] = widths[0].max(count(solution));
+            widths[1] = widths[1].max(field.map_or(count(words::own(tongue)), count));
+        }
+        let all = [
+            Verdict::Accomplished,
+            Verdict::Ended,
+            Verdict::Failed,
+            Verdict::Broken,
+        ];
+        for verdict in all {
+            widths[2] = widths[2].max(count(words::verdict(verdict, tongue)));
+        }
+        Self(widths)
+    }
+
+    /// A line of the table.
+    pub fn line(&self, cells: &[impl AsRef<str>; 6]) -> String {
+        let [solution, field, verdict, seconds, score, message] =
+            cells.each_ref().map(AsRef::as_ref);
+        let [one, two, three] = self.0;
+        let line = format!(
+            "{solution:one$}  {field:two$}  {verdict:three$}  {seconds:>9}  {score:>5}  {message}"
+        );
+        line.trim_end().to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row() -> Row {
+        Row {
+            solution: "a\nb.qrs".into(),
+            field: Some("f.xml".into()),
+            verdict: Verdict::Failed,
+            ms: 19_830,
+            total_score: Some(2.5),
+            messages: vec![
+                ("info".into(), "points: 20.".into()),
+                ("error".into(), "out \"there\"".into()),
+            ],
+            more: 3,
+        }
+    }
+
+    #[test]
+    fn a_line_is_read_as_it_was_written() {
+        let line = row().write();
+        assert!(!line.contains('\n'), "{line}");
+        assert!(
+            line.contains(r#""ms":19830,"total_score":2.5,"last_number":20,"#),
+            "{line}"
+        );
+        assert_eq!(Row::read(&line), Some(row()));
+        assert_eq!(Row::read("{}"), None);
+        assert_eq!(Row::read("[1"), None);
+    }
+
+    #[test]
+    fn a_table_has_even_columns_and_no_line_that_a_terminal_obeys() {
+        let widths = Widths::new(
+            [("a b.qrs", Some("f.xml")), ("c", None)].into_iter(),
+            Tongue::English,
+        );
+        let line = widths.line(&row().cells(Tongue::English));
+        assert_eq!(
+            line,
+            "a b.qrs   f.xml  not accomplished    19.83 s    2.5  out \"there\""
+        );
+        let mut many = row();
+        for _ in 0..limits::ROW_MESSAGES_MAX * 2 {
+            many.say("log", &"x".repeat(limits::ROW_MESSAGE_CHARS_MAX * 2));
+        }
+        assert_eq!(many.messages.len(), limits::ROW_MESSAGES_MAX);
+        assert_eq!(many.more, 3 + limits::ROW_MESSAGES_MAX + 2);
+        assert!(many.write().len() < limits::ROW_BYTES_MAX);
+    }
+}

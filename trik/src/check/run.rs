@@ -1,0 +1,309 @@
+//! One run: files in, a verdict and files out.
+//!
+//! Owns what of a solution and a field is taken: a field replaces the whole world of a project. What becomes of it is known
+//! in `sim`.
+
+use super::jobs::Job;
+use super::place;
+use super::pool::shown;
+use super::row::{Row, Verdict};
+use super::script::{self, Given, Language};
+use super::words;
+use crate::cli::CheckArgs;
+use crate::diagrams::output::Output;
+use crate::diagrams::{Unreadable, open};
+use crate::limits;
+use lang::constraint::Level;
+use lang::diagram::lower::{World, lower};
+use lang::diagram::project::Project;
+use lang::problem::{Problem, Tongue};
+use sim::judge::{self, Caption, Diagram, Outcome, Program, Settings, Task, Texts, Trajectory};
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+use std::time::Duration;
+
+/// Does a run and writes its files.
+pub(super) fn run(job: &Job, args: &CheckArgs) -> Row {
+    let mut row = Row {
+        solution: shown(&job.solution),
+        field: job.field.as_deref().map(shown),
+        verdict: Verdict::Broken,
+        ms: 0,
+        total_score: None,
+        messages: Vec::new(),
+        more: 0,
+    };
+    match judged(job, args) {
+        Ok((task, outcome)) => {
+            tell(&outcome, &mut row);
+            if let Err(lines) = write(job, args, &task, &outcome) {
+                row.verdict = Verdict::Broken;
+                lines.iter().for_each(|line| row.say("error", line));
+            }
+        }
+        Err(lines) => {
+            lines.iter().for_each(|line| row.say("error", line));
+            let report = args
+                .report
+                .as_deref()
+                .map(|path| (path, row.messages.clone()));
+            if let Some((path, messages)) = report {
+                let text = judge::report::of_messages(&messages);
+                if let Err(why) = put(job, args, path, ".json", text.as_bytes()) {
+                    row.say("error", &why);
+                }
+            }
+        }
+    }
+    row
+}
+
+/// What came out, as a row.
+fn tell(outcome: &Outcome, row: &mut Row) {
+    row.verdict = match outcome.verdict {
+        judge::Verdict::Accomplished => Verdict::Accomplished,
+        judge::Verdict::Ended => Verdict::Ended,
+        judge::Verdict::Failed => Verdict::Failed,
+        judge::Verdict::Unknown => Verdict::Broken,
+    };
+    row.ms = outcome.ms;
+    row.total_score = outcome.total_score;
+    for entry in &outcome.entries {
+        if entry.level != Level::Variables {
+            row.say(judge::report::level(entry.level), &entry.text);
+        }
+    }
+}
+
+type Lines = Vec<String>;
+
+fn judged(job: &Job, args: &CheckArgs) -> Result<(Task, Outcome), Lines> {
+    let settings = settings(args).map_err(|why| vec![why])?;
+    let mut solution = Solution::read(&job.solution, args)?;
+    let field = match &job.field {
+        None => None,
+        Some(path) => Some(text(path, limits::WORLD_BYTES_MAX).map_err(|why| vec![why])?),
+    };
+    if let Some(world) = field {
+        solution.project.world = Some(world);
+        // The field has its own pictures.
+        solution.project.blobs = None;
+    }
+    let project = &solution.project;
+    let Some(world) = &project.world else {
+        let why = format!(
+            "{}: there is no world in it: --field gives one",
+            shown(&job.solution)
+        );
+        return Err(vec![why]);
+    };
+    let place = job.field.as_deref().unwrap_or(&job.solution);
+    let texts = Texts {
+        world,
+        blobs: project.blobs.as_deref(),
+        templates: Some(&project.templates),
+    };
+    let task = Task::read(texts).map_err(|problems| lines(place, &problems, args.language))?;
+    let (mut task, _) = task;
+    if let Some(log) = &args.log {
+        let text = text(log, limits::LOG_BYTES_MAX).map_err(|why| vec![why])?;
+        let trajectory = Trajectory::read(&text);
+        let trajectory = trajectory.map_err(|why| vec![format!("{}: {why}", shown(log))])?;
+        let outcome = judge::judge_recorded(&task, &trajectory, &settings);
+        return Ok((task, outcome));
+    }
+    let mut program = solution.program(&mut task, &settings, args)?;
+    let outcome = judge::judge(&task, &mut *program, &settings);
+    Ok((task, outcome))
+}
+
+fn settings(args: &CheckArgs) -> Result<Settings, String> {
+    let answers = match &args.inputs {
+        None => Vec::new(),
+        Some(path) => text(path, limits::WORLD_BYTES_MAX)?
+            .lines()
+            .map(str::to_owned)
+            .collect(),
+    };
+    Ok(Settings {
+        tongue: args.language,
+        keep_going: args.keep_going,
+        longest_ms: (args.time_limit * 1000.0) as u32,
+        longest: Duration::from_secs_f64(args.wall_limit),
+        seed: u64::from(args.seed),
+        answers,
+        is_recording: [&args.trajectory, &args.svg, &args.html]
+            .into_iter()
+            .any(Option::is_some),
+    })
+}
+
+/// What is to be judged.
+struct Solution {
+    project: Project,
+    script: Option<(Language, String)>,
+    /// Where the program comes from.
+    file: PathBuf,
+}
+
+impl Solution {
+    fn read(path: &Path, args: &CheckArgs) -> Result<Self, Lines> {
+        let script = args.script.as_deref();
+        let own = Language::of(path);
+        let (project, script) = match own {
+            Some(_) => (Project::default(), script.or(Some(path))),
+            None => {
+                let opened = open(path).map_err(|why| match why {
+                    Unreadable::File(why) => vec![format!("{}: {why}", shown(path))],
+                    Unreadable::Save(problems) => lines(path, &problems, args.language),
+                })?;
+                (opened.project, script)
+            }
+        };
+        let script = match script {
+            None => None,
+            Some(path) => {
+                let language = Language::of(path).ok_or_else(|| {
+                    vec![format!(
+                        "{}: programs are files NAME.js and NAME.py",
+                        shown(path)
+                    )]
+                })?;
+                let text = text(path, limits::WORLD_BYTES_MAX).map_err(|why| vec![why])?;
+                Some((language, text))
+            }
+        };
+        let script = match script {
+            None if args.is_embedded => Some(embedded(&project, path)?),
+            script => script,
+        };
+        let file = args.script.as_deref().unwrap_or(path).to_owned();
+        Ok(Self {
+            project,
+            script,
+            file,
+        })
+    }
+
+    /// The program, ready for its first step; the task gets the sensors that it needs.
+    fn program(
+        self,
+        task: &mut Task,
+        settings: &Settings,
+        args: &CheckArgs,
+    ) -> Result<Box<dyn Program>, Lines> {
+        if let Some((language, text)) = &self.script {
+            let given = Given {
+                file: &self.file,
+                inputs: &settings.answers,
+                seed: args.seed,
+                wall_seconds: args.wall_limit,
+            };
+            return script::open(*language, text, given).map_err(|why| vec![why]);
+        }
+        let lowered = lower(&self.project, World::default());
+        let lowered = lowered.map_err(|problem| vec![problem.in_tongue(args.language)])?;
+        task.plug_in(&self.project, &lowered.program);
+        Ok(Box::new(Diagram::new(Rc::new(lowered.program))))
+    }
+}
+
+/// The program that a save holds beside its diagram.
+fn embedded(project: &Project, path: &Path) -> Result<(Language, String), Lines> {
+    let key = |name| project.meta.get(name).filter(|value| !value.is_empty());
+    let (Some(code), ending) = (key("activeCode"), key("activeCodeLanguageExtension")) else {
+        return Err(vec![format!(
+            "{}: there is no program with text in it",
+            shown(path)
+        )]);
+    };
+    let ending = ending.map_or("js", |ending| ending);
+    let language = Language::of_ending(ending)
+        .ok_or_else(|| vec![format!("{}: there is no language '{ending}'", shown(path))])?;
+    Ok((language, code.clone()))
+}
+
+fn lines(path: &Path, problems: &[Problem], tongue: Tongue) -> Lines {
+    let name = shown(path);
+    problems
+        .iter()
+        .map(|problem| format!("{name}: {}", problem.in_tongue(tongue)))
+        .collect()
+}
+
+/// A text file that is no longer than it may be.
+pub(super) fn text(path: &Path, max: u64) -> Result<String, String> {
+    let name = shown(path);
+    let failed = |error: std::io::Error| match error.kind() {
+        std::io::ErrorKind::NotFound => format!("{name}: there is no such file"),
+        _ => format!("{name} cannot be read: {error}"),
+    };
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(failed)?;
+    file.take(max + 1).read_to_end(&mut bytes).map_err(failed)?;
+    if bytes.len() as u64 > max {
+        return Err(format!("{name}: longer than {} MiB", max >> 20));
+    }
+    String::from_utf8(bytes).map_err(|_| format!("{name}: this is no text in UTF-8"))
+}
+
+/// Writes the files of a run.
+fn write(job: &Job, args: &CheckArgs, task: &Task, outcome: &Outcome) -> Result<(), Lines> {
+    let mut wrong = Vec::new();
+    let mut write = |path: &Option<std::path::PathBuf>, ending, make: &dyn Fn() -> String| {
+        if let Some(path) = path
+            && let Err(why) = put(job, args, path, ending, make().as_bytes())
+        {
+            wrong.push(why);
+        }
+    };
+    write(&args.report, ".json", &|| {
+        judge::report::write(&outcome.entries)
+    });
+    write(&args.trajectory, ".trajectory.json", &|| {
+        outcome.trajectory.write()
+    });
+    write(&args.svg, ".svg", &|| {
+        judge::svg(&task.field, &outcome.trajectory)
+    });
+    write(&args.html, ".html", &|| {
+        let mut row = Row::broken(shown(&job.solution), None, String::new());
+        tell(outcome, &mut row);
+        let verdict = format!(
+            "{}, {}",
+            words::verdict(row.verdict, args.language),
+            words::seconds(outcome.ms, args.language)
+        );
+        let caption = Caption {
+            title: &row.solution,
+            verdict: &verdict,
+            is_good: row.verdict.code() == 0,
+            tongue: args.language,
+        };
+        judge::page(&task.field, &outcome.trajectory, &outcome.entries, caption)
+    });
+    match wrong.is_empty() {
+        true => Ok(()),
+        false => Err(wrong),
+    }
+}
+
+/// Writes one file of a run.
+fn put(job: &Job, args: &CheckArgs, path: &Path, ending: &str, bytes: &[u8]) -> Result<(), String> {
+    let is_one = !args.worker;
+    let path = place(path, job, ending, is_one);
+    if let (false, Some(folder)) = (is_one, path.parent()) {
+        let made = std::fs::create_dir_all(folder);
+        made.map_err(|error| format!("{} cannot be made: {error}", shown(folder)))?;
+    }
+    let output = Output {
+        path: Some(&path),
+        force: args.force,
+        source: &job.solution,
+    };
+    output
+        .write(bytes)
+        .map_err(|refusal| refusal.lines.join("; "))
+}

@@ -1,0 +1,60 @@
+//! Programs in languages with text, as solutions: the border to the engines that run them in virtual time.
+//!
+//! Owns which language a file is in. Knows no engine from inside.
+
+use crate::script::JavaScript;
+use sim::judge::Program;
+use std::path::Path;
+
+/// A language of programs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Language {
+    /// JavaScript.
+    JavaScript,
+    /// Python 3.
+    Python,
+}
+
+impl Language {
+    /// By the ending of a file, as `js`.
+    pub fn of_ending(ending: &str) -> Option<Self> {
+        match ending {
+            "js" | "qts" => Some(Self::JavaScript),
+            "py" => Some(Self::Python),
+            _ => None,
+        }
+    }
+
+    /// By the name of a file.
+    pub fn of(path: &Path) -> Option<Self> {
+        Self::of_ending(path.extension()?.to_str()?)
+    }
+}
+
+/// What a program is given beside its text.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Given<'a> {
+    /// Where its text comes from.
+    pub file: &'a Path,
+    /// Lines for programs that read.
+    pub inputs: &'a [String],
+    /// Seed of random numbers.
+    pub seed: u32,
+    /// Longest run in seconds of real time.
+    pub wall_seconds: f64,
+}
+
+/// Makes a program ready to run.
+///
+/// # Errors
+/// No engine for this language can be started here.
+pub(super) fn open(
+    language: Language,
+    text: &str,
+    given: Given<'_>,
+) -> Result<Box<dyn Program>, String> {
+    match language {
+        Language::JavaScript => Ok(Box::new(JavaScript::new(given.file, text)?)),
+        Language::Python => Err("programs in Python cannot be judged yet".to_owned()),
+    }
+}

@@ -1,0 +1,92 @@
+//! What `trik check` says itself, in English and Russian.
+
+use super::row::Verdict;
+use lang::problem::Tongue;
+
+fn choose(tongue: Tongue, english: &'static str, russian: &'static str) -> &'static str {
+    match tongue {
+        Tongue::English => english,
+        Tongue::Russian => russian,
+    }
+}
+
+/// How a run ended.
+pub(super) fn verdict(verdict: Verdict, tongue: Tongue) -> &'static str {
+    match verdict {
+        Verdict::Accomplished => choose(tongue, "accomplished", "выполнено"),
+        Verdict::Ended => choose(tongue, "ended (no rules)", "завершено (без правил)"),
+        Verdict::Failed => choose(tongue, "not accomplished", "не выполнено"),
+        Verdict::Broken => choose(tongue, "could not be run", "не запущено"),
+    }
+}
+
+/// A level of a message.
+pub(super) fn level(name: &str, tongue: Tongue) -> &'static str {
+    match name {
+        "info" => choose(tongue, "info", "сообщение"),
+        "log" => choose(tongue, "log", "журнал"),
+        _ => choose(tongue, "error", "ошибка"),
+    }
+}
+
+/// The solution's own world.
+pub(super) fn own(tongue: Tongue) -> &'static str {
+    choose(tongue, "own", "своё")
+}
+
+/// Names of the columns.
+pub(super) fn heading(tongue: Tongue) -> [&'static str; 6] {
+    match tongue {
+        Tongue::English => ["solution", "field", "verdict", "time", "score", "why"],
+        Tongue::Russian => ["решение", "поле", "вердикт", "время", "баллы", "почему"],
+    }
+}
+
+/// Model time.
+pub(super) fn seconds(ms: u32, tongue: Tongue) -> String {
+    let unit = choose(tongue, "s", "с");
+    format!("{}.{:02} {unit}", ms / 1000, ms % 1000 / 10)
+}
+
+/// Messages that are left out.
+pub(super) fn more(count: usize, tongue: Tongue) -> String {
+    match tongue {
+        Tongue::English => format!("and {count} more messages"),
+        Tongue::Russian => format!("и ещё сообщений: {count}"),
+    }
+}
+
+/// The last line of a table.
+pub(super) fn summary(counts: [usize; 4], tongue: Tongue) -> String {
+    let [accomplished, ended, failed, broken] = counts;
+    let all: usize = counts.iter().sum();
+    match tongue {
+        Tongue::English => {
+            let s = if all == 1 { "" } else { "s" };
+            let ended = match ended {
+                0 => String::new(),
+                _ => format!(", {ended} ended without rules"),
+            };
+            format!(
+                "{all} run{s}: {accomplished} accomplished{ended}, {failed} not accomplished, {broken} could not be run"
+            )
+        }
+        Tongue::Russian => {
+            let ended = match ended {
+                0 => String::new(),
+                _ => format!(", завершено без правил: {ended}"),
+            };
+            format!(
+                "запусков: {all}; выполнено: {accomplished}{ended}, не выполнено: {failed}, не запущено: {broken}"
+            )
+        }
+    }
+}
+
+/// How far it is.
+pub(super) fn progress(done: usize, all: usize, tongue: Tongue) -> String {
+    match tongue {
+        Tongue::English => format!("{done} of {all}"),
+        Tongue::Russian => format!("{done} из {all}"),
+    }
+}

@@ -1,0 +1,73 @@
+//! The process that does runs for another one: jobs on standard input, a line of JSON for each on standard output.
+//!
+//! Owns its limit of memory and its end with its parent. A run that panics is told as one that could not be run.
+
+use super::jobs::Job;
+use super::pool::shown;
+use super::row::Row;
+use super::run;
+use crate::cli::CheckArgs;
+use nix::sys::prctl::set_pdeathsig;
+use nix::sys::resource::{Resource, rlim_t, setrlimit};
+use nix::sys::signal::Signal;
+use std::ffi::OsString;
+use std::io::{self, BufRead, Read, Write};
+use std::os::unix::ffi::OsStringExt;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
+
+/// Bytes of three paths.
+const JOB_BYTES_MAX: u64 = 64 << 10;
+
+/// Serves until there are no more jobs.
+///
+/// # Errors
+/// The pipes, and what the system says of limits.
+pub(super) fn serve(args: &CheckArgs) -> Result<(), String> {
+    set_pdeathsig(Signal::SIGKILL).map_err(|error| format!("worker: {error}"))?;
+    limit_memory(args).map_err(|error| format!("--memory: {error}"))?;
+    let mut input = io::stdin().lock();
+    let mut output = io::stdout().lock();
+    while let Some(job) = next(&mut input).map_err(|error| format!("jobs: {error}"))? {
+        let mut line = guarded(&job, args).write();
+        line.push('\n');
+        let written = output.write_all(line.as_bytes());
+        written
+            .and_then(|()| output.flush())
+            .map_err(|error| format!("results: {error}"))?;
+    }
+    Ok(())
+}
+
+/// Holds this process to its memory, so that an overflow ends it and nobody else.
+pub(super) fn limit_memory(args: &CheckArgs) -> nix::Result<()> {
+    let most = rlim_t::from(args.memory) << 20;
+    setrlimit(Resource::RLIMIT_AS, most, most)?;
+    // A crash is expected: nobody wants its memory on the disk.
+    setrlimit(Resource::RLIMIT_CORE, 0, 0)
+}
+
+/// Does a run; a panic in it is its result.
+pub(super) fn guarded(job: &Job, args: &CheckArgs) -> Row {
+    catch_unwind(AssertUnwindSafe(|| run::run(job, args))).unwrap_or_else(|_| {
+        let field = job.field.as_deref().map(shown);
+        let why = "trik has a defect and cannot judge this: please report it with this file";
+        Row::broken(shown(&job.solution), field, why.to_owned())
+    })
+}
+
+fn next(input: &mut impl BufRead) -> io::Result<Option<Job>> {
+    let mut parts: [Vec<u8>; 3] = Default::default();
+    for part in &mut parts {
+        input.by_ref().take(JOB_BYTES_MAX).read_until(0, part)?;
+        if part.pop() != Some(0) {
+            return Ok(None);
+        }
+    }
+    let [solution, field, name] = parts.map(|part| PathBuf::from(OsString::from_vec(part)));
+    Ok(Some(Job {
+        solution,
+        field: Some(field).filter(|field| !field.as_os_str().is_empty()),
+        name,
+    }))
+}

@@ -1,0 +1,223 @@
+use super::*;
+use lang::diagram::machine::{STEP_MS, Status};
+use lang::diagram::ports::Port;
+use lang::diagram::stand_in::{Placing, StandIn};
+use sim::judge::Program;
+use std::path::Path;
+
+/// Runs a program for at most so long; its log, its status and the first error.
+fn run(text: &str, ms: u32, robot: &mut StandIn) -> (Status, String) {
+    let mut program = JavaScript::new(Path::new("/nowhere/p.js"), text).unwrap();
+    let mut now = 0;
+    let mut status = program.step(now, robot);
+    while status == Status::Running && now < ms {
+        now += STEP_MS;
+        robot.tick();
+        status = program.step(now, robot);
+    }
+    program.stop(robot);
+    let errors: Vec<_> = program.errors().iter().map(ToString::to_string).collect();
+    (status, errors.join("\n"))
+}
+
+fn robot() -> StandIn {
+    let mut robot = StandIn::new(Placing::default());
+    robot.readings.insert(Port::named("A1").unwrap(), 45);
+    robot
+}
+
+fn log(text: &str) -> Vec<String> {
+    let mut robot = robot();
+    let (status, error) = run(text, 10_000, &mut robot);
+    assert!(matches!(status, Status::Ended { .. }), "{text}: {status:?}");
+    assert_eq!(error, "", "{text}");
+    robot
+        .log
+        .iter()
+        .map(|(ms, line)| format!("{ms} {line}"))
+        .collect()
+}
+
+#[test]
+fn a_wait_lets_the_world_move() {
+    let told = log(
+        "brick.motor(M3).setPower(50); script.wait(25); print(script.time() % 1000, ' ', brick.sensor(A1).read()); \
+        brick.motor(M3).powerOff(); script.wait(0); print(brick.encoder(E3).read() > 0)",
+    );
+    assert_eq!(
+        told,
+        [
+            "0 power M3 50",
+            "30 print \"30 45\"",
+            "30 power M3 0",
+            "30 print \"true\"",
+            "30 rest"
+        ]
+    );
+}
+
+/// What was printed, with the time.
+fn printed(text: &str) -> Vec<String> {
+    let lines = log(text).into_iter();
+    lines
+        .filter_map(|line| {
+            let (ms, rest) = line.split_once(' ')?;
+            let what = rest.strip_prefix("print \"")?.strip_suffix('"')?;
+            Some(format!("{ms} {what}"))
+        })
+        .collect()
+}
+
+#[test]
+fn who_asks_without_waiting_takes_time_as_well() {
+    let asks = "let n = 0; while (brick.encoder(E3).read() < 11) n++; print(n)";
+    let told = printed(&format!("brick.motor(M3).setPower(100); {asks}"));
+    assert_eq!(told, ["20 195"]);
+    // Who only computes, too; who computes between waits does not.
+    let told = printed(
+        "const end = Date.now() + 50; let n = 0; for (;;) { for (let i = 0; i < 1000; i++); if (Date.now() >= end) break; n++ } print(n)",
+    );
+    assert_eq!(told, ["50 49"]);
+    let told = printed(
+        "for (let k = 0; k < 20; k++) { for (let i = 0; i < 4000; i++); script.wait(10) } print()",
+    );
+    assert_eq!(told, ["200 "]);
+}
+
+#[test]
+fn a_program_without_end_is_ended_wherever_it_is() {
+    let endless = [
+        "for (;;);",
+        "for (;;) { try { script.wait(10) } catch (error) { } }",
+        "for (;;) { try { for (;;); } finally { for (;;); } }",
+        "const f = async () => { for (;;) await 0; }; f(); f();",
+        "script.timer(10).timeout.connect(() => { for (;;); }); script.run();",
+        "function a() { for (;;) brick.sensor(A1).read(); }
+            var main = function () { Threading.startThread('a', a); Threading.joinThread('a'); }",
+        "for (;;) print('x'.repeat(1000));",
+        "for (;;) { Threading.sendMessage('main', 'x'); Threading.receiveMessage(true); }",
+        "/(a*)*b/.exec('a'.repeat(100));",
+    ];
+    for text in endless {
+        let mut robot = robot();
+        robot.is_logging = false;
+        let (status, error) = run(text, 300, &mut robot);
+        assert_eq!((status, error.as_str()), (Status::Running, ""), "{text}");
+    }
+}
+
+#[test]
+fn threads_take_turns_in_a_fixed_order() {
+    let text = "
+        function talk(name) { for (let i = 0; i < 2; i++) { print(name, i); script.wait(20); } }
+        function a() { talk('a'); }
+        function b() { talk('b'); Threading.sendMessage('main', 'hello'); print('b sent'); }
+        var main = function () {
+            Threading.startThread('a', a); print('begun');
+            Threading.startThread('b', b);
+            print(Threading.receiveMessage(true)); Threading.joinThread('b'); print('joined');
+        }";
+    let told = printed(text);
+    let wanted = [
+        "0 a0",
+        "0 begun",
+        "0 b0",
+        "20 a1",
+        "20 b1",
+        "40 hello",
+        "40 b sent",
+        "40 joined",
+    ];
+    assert_eq!(told, wanted);
+}
+
+#[test]
+fn the_calendar_and_chance_are_those_of_the_judge() {
+    let text = "print(new Date(0).getTime(), ' ', new Date().toISOString(), ' ', typeof Date(), ' ', \
+        new Date() instanceof Date, ' ', Date.now() - new Date(2026, 0, 1) < 1e9, ' ', performance.now());
+        script.wait(1500); print(Date.now() % 60000); print(script.random(5, 5), ' ', Math.random() < 1);
+        const numbers = []; for (let i = 0; i < 5; i++) numbers.push(script.random(1, 1000)); print(numbers)";
+    let told = printed(text);
+    assert_eq!(told[0], "0 0 2026-01-01T00:00:00.000Z string true true 0");
+    assert_eq!(told[1], "1500 1500");
+    assert_eq!(told[2], "1500 5 true");
+    assert_eq!(told, printed(text), "chance is the same each time");
+}
+
+#[test]
+fn failures_have_their_line_and_end_all_threads() {
+    let mut robot = robot();
+    let text = "function a() { for (;;) script.wait(10); }\nvar main = function () { Threading.startThread('a', a); script.wait(50);\nbrick.motor('Z9').setPower(1); }";
+    let (status, error) = run(text, 1000, &mut robot);
+    let ended = Status::Ended {
+        at: 50,
+        with_errors: true,
+    };
+    assert_eq!(status, ended);
+    assert!(
+        error.contains("p.js") && error.contains('3') && error.contains("brick.motor('Z9')"),
+        "{error}"
+    );
+}
+
+#[test]
+fn files_stay_in_memory_and_only_those_beside_the_program_are_read() {
+    let told = printed(
+        "script.writeToFile('a.txt', 'one\\n'); script.writeToFile('a.txt', 'two'); print(script.readAll('a.txt').length);
+        script.removeFile('a.txt');
+        for (const file of ['a.txt', '/etc/passwd', '../x']) { try { print(script.readAll(file)) } catch (error) { print('no') } }
+        print(script.system('rm -rf /'))",
+    );
+    assert_eq!(told, ["0 2", "0 no", "0 no", "0 no", "0 0"]);
+    assert!(!std::path::Path::new("a.txt").exists());
+}
+
+#[test]
+fn keys_and_timers_are_events() {
+    let mut robot = robot();
+    let text = "brick.keys().buttonPressed.connect((code, value) => print(code, ' ', value)); \
+        script.timer(100).timeout.connect(() => print('timer')); script.run();";
+    let mut program = JavaScript::new(Path::new("/nowhere/p.js"), text).unwrap();
+    let enter = Port::named("Enter").unwrap();
+    for now in (0..=150).step_by(STEP_MS as usize) {
+        robot.readings.insert(enter, i32::from(now == 50));
+        assert_eq!(program.step(now, &mut robot), Status::Running);
+        robot.tick();
+    }
+    program.stop(&mut robot);
+    let told: Vec<_> = robot.log.iter().map(|(_, line)| line.as_str()).collect();
+    assert_eq!(
+        told,
+        [
+            "print \"28 1\"",
+            "print \"28 0\"",
+            "print \"timer\"",
+            "rest"
+        ]
+    );
+}
+
+#[test]
+fn the_display_and_the_marker_tell_what_blocks_tell() {
+    let told = log(
+        "const d = brick.display(); d.setBackground('white'); d.addLabel('Hi', 1, 2); d.drawRect(1, 2, 3, 4, true); d.redraw(); \
+        brick.marker().down('red'); brick.marker().up(); brick.led().orange(); brick.playTone(440, 100); brick.smile(); mailbox.send(3, 'hey')",
+    );
+    let told: Vec<_> = told.iter().map(|line| &line[2..]).collect();
+    assert_eq!(
+        told,
+        [
+            "background white",
+            "label 1 2 20 \"Hi\"",
+            "rectangle 1 2 3 4 filled",
+            "redraw",
+            "marker red",
+            "marker up",
+            "led orange",
+            "tone 440 100",
+            "smile",
+            "send \"hey\" 3",
+            "rest"
+        ]
+    );
+}

@@ -1,0 +1,313 @@
+//! The tree of files as a simulated robot has it: paths to readings and commands.
+//!
+//! Owns which file stands for what of a [`Brick`], so that what reads the tree of a real robot (JavaScript, Python) reads
+//! this one as well. Knows no language and no order of time: the robot is handed in with each question.
+
+use crate::limits;
+use lang::diagram::brick::{Brick, Command};
+use lang::diagram::ports::{Kit, Port, Sort, Way};
+use std::collections::BTreeMap;
+use std::io;
+
+/// The files of the keys, in the order of the tree.
+const KEYS: [&str; 7] = ["Power", "Up", "Esc", "Left", "Right", "Down", "Enter"];
+/// Pads that nobody touches.
+const RELEASED: i32 = -101;
+/// Volts of a battery that never runs out.
+const BATTERY: &str = "12.0";
+/// Cells of the colour sensor, three in a row.
+const CELLS: usize = 9;
+/// Where the heading stands among the numbers of the gyroscope.
+const HEADING: usize = 6;
+
+/// What the robot does not say by itself.
+#[derive(Debug, Default)]
+pub struct Tree {
+    /// What motors and servos were told last.
+    powers: BTreeMap<Port, i32>,
+    green: bool,
+    red: bool,
+    /// How often each sensor of the camera has looked for its colour.
+    detections: BTreeMap<String, u32>,
+    /// Files that the program has written.
+    written: BTreeMap<String, Vec<u8>>,
+}
+
+fn absent() -> io::Error {
+    io::Error::new(
+        io::ErrorKind::NotFound,
+        "the simulated robot has no such file",
+    )
+}
+
+fn unplugged() -> io::Error {
+    io::Error::new(
+        io::ErrorKind::NotFound,
+        "nothing is plugged in there in this world",
+    )
+}
+
+fn nothing_yet() -> io::Error {
+    io::ErrorKind::WouldBlock.into()
+}
+
+fn port(name: &str, way: Way) -> Option<Port> {
+    Port::find(Kit::V62, name, way)
+}
+
+fn whole(text: &str) -> io::Result<i32> {
+    let number: f64 = text
+        .trim()
+        .parse()
+        .map_err(|_| io::Error::from(io::ErrorKind::InvalidInput))?;
+    Ok(number as i32)
+}
+
+fn joined(numbers: impl IntoIterator<Item = i32>) -> String {
+    let words: Vec<String> = numbers
+        .into_iter()
+        .map(|number| number.to_string())
+        .collect();
+    words.join(" ")
+}
+
+/// Numbers of a sensor with several, at least as many as asked for; zeros where it has none.
+fn vector(brick: &mut dyn Brick, name: &str, least: usize) -> Option<Vec<i32>> {
+    let mut numbers = Vec::new();
+    let found = brick.vector(Port::named(name)?, &mut numbers);
+    if numbers.len() < least {
+        numbers.resize(least, 0);
+    }
+    found.then_some(numbers)
+}
+
+fn scalar(brick: &mut dyn Brick, name: &str) -> Option<i32> {
+    brick.scalar(Port::named(name)?)
+}
+
+/// Presses of the keys, in the order of the tree.
+pub fn keys(brick: &mut dyn Brick) -> [i32; 7] {
+    KEYS.map(|name| scalar(brick, name).unwrap_or(0))
+}
+
+impl Tree {
+    /// Whether this directory is there and something is plugged in.
+    pub fn has(&self, brick: &mut dyn Brick, directory: &str) -> bool {
+        match directory.split_once('/') {
+            Some(("motors", name)) => is_sort(name, Way::Out, Sort::Motor),
+            Some(("servos", name)) => is_sort(name, Way::Out, Sort::Servo),
+            Some(("encoders", name)) => is_sort(name, Way::In, Sort::Encoder),
+            Some(("sensors", name)) => {
+                let port = port(name, Way::In).filter(|port| port.sort() == Sort::Scalar);
+                port.is_some_and(|port| brick.scalar(port).is_some())
+            }
+            Some(("camera", mode)) => ["line", "object", "color"].contains(&mode),
+            Some(_) => false,
+            None => match directory {
+                "gyroscope" => vector(brick, "GyroscopePort", 0).is_some(),
+                "accelerometer" => vector(brick, "AccelerometerPort", 0).is_some(),
+                "lidar" => vector(brick, "LidarPort", 0).is_some(),
+                "marker" | "keys" | "led" | "battery" | "gamepad" | "display" => true,
+                _ => false,
+            },
+        }
+    }
+
+    /// Names in a directory.
+    pub fn names(&self, brick: &mut dyn Brick, directory: &str) -> Vec<String> {
+        let mut names: Vec<String> = Port::all()
+            .map(|port| port.name().to_owned())
+            .filter(|name| self.has(brick, &format!("{directory}/{name}")))
+            .collect();
+        names.sort();
+        names
+    }
+
+    /// The newest text of a file.
+    pub fn read(&self, brick: &mut dyn Brick, path: &str) -> io::Result<String> {
+        let parts: Vec<&str> = path.split('/').collect();
+        let text = match parts[..] {
+            ["motors" | "servos", name, "value"] => {
+                let port = port(name, Way::Out).ok_or_else(absent)?;
+                self.powers.get(&port).copied().unwrap_or(0).to_string()
+            }
+            ["servos", _, "units"] => "deg".to_owned(),
+            ["sensors" | "encoders", name, "value" | "raw"] => {
+                let port = port(name, Way::In).ok_or_else(absent)?;
+                brick.scalar(port).ok_or_else(unplugged)?.to_string()
+            }
+            ["keys", "value"] => joined(keys(brick)),
+            ["battery", _] => BATTERY.to_owned(),
+            ["gyroscope", part] => {
+                let all = vector(brick, "GyroscopePort", HEADING + 1).ok_or_else(unplugged)?;
+                match part {
+                    "tilt" => joined(all[4..6].iter().copied()),
+                    "heading" => all[HEADING].to_string(),
+                    _ => joined(all[..3].iter().copied()),
+                }
+            }
+            ["accelerometer", _] => {
+                joined(vector(brick, "AccelerometerPort", 3).ok_or_else(unplugged)?)
+            }
+            ["lidar", "value"] => joined(vector(brick, "LidarPort", 0).ok_or_else(unplugged)?),
+            ["camera", mode, part] => self.camera(brick, mode, part)?,
+            ["gamepad", part, kind] => gamepad(brick, part, kind)?,
+            _ => return Err(absent()),
+        };
+        Ok(text)
+    }
+
+    fn camera(&self, brick: &mut dyn Brick, mode: &str, part: &str) -> io::Result<String> {
+        if part == "hsv" {
+            let count = self.detections.get(mode).ok_or_else(nothing_yet)?;
+            return Ok(format!("{count} 0 0 0 0 0"));
+        }
+        Ok(match mode {
+            "line" => joined(vector(brick, "LineSensorPort", 3).unwrap_or_else(|| vec![0; 3])),
+            "color" => {
+                let all = vector(brick, "ColorSensorPort", 3).unwrap_or_else(|| vec![0; 3]);
+                let colour = all[..3]
+                    .iter()
+                    .fold(0, |sum, part| sum << 8 | (part & 0xff));
+                joined([colour; CELLS])
+            }
+            "object" => joined(
+                ["X", "Y", "Size"]
+                    .map(|part| scalar(brick, &format!("ObjectSensor{part}Port")).unwrap_or(0)),
+            ),
+            _ => return Err(absent()),
+        })
+    }
+
+    /// Takes one text.
+    pub fn write(&mut self, brick: &mut dyn Brick, path: &str, text: &str) -> io::Result<()> {
+        let parts: Vec<&str> = path.split('/').collect();
+        match parts[..] {
+            ["motors", name, "value"] => {
+                let port = port(name, Way::Out).ok_or_else(absent)?;
+                let percent = whole(text)?;
+                self.powers.insert(port, percent);
+                brick.tell(Command::Power { port, percent });
+            }
+            ["servos", name, "value"] => {
+                let port = port(name, Way::Out).ok_or_else(absent)?;
+                let degrees = whole(text)?;
+                self.powers.insert(port, degrees);
+                brick.tell(Command::Servo { port, degrees });
+            }
+            ["motors" | "servos", name, "brake" | "power"] => {
+                let port = port(name, Way::Out).ok_or_else(absent)?;
+                self.powers.remove(&port);
+                let brake = parts[2] == "brake";
+                brick.tell(Command::Off { port, brake });
+            }
+            ["encoders", name, "value"] => {
+                let port = port(name, Way::In).ok_or_else(absent)?;
+                brick.tell(Command::ResetEncoder { port });
+            }
+            ["led", light, "value"] => self.light(brick, light, whole(text)? != 0),
+            ["sound", "play", "value"] => {
+                let file = text.rsplit('/').next().unwrap_or(text);
+                brick.tell(Command::Sound { file });
+            }
+            ["sound", "say", "value"] => brick.tell(Command::Say { text }),
+            ["sound", "tone", "value"] => {
+                let (hertz, ms) = text.trim().split_once(' ').ok_or_else(absent)?;
+                let (hertz, ms) = (whole(hertz)?, whole(ms)?);
+                brick.tell(Command::Tone { hertz, ms });
+            }
+            ["camera", mode, "video_out"] => {
+                let show = whole(text)? != 0;
+                brick.tell(Command::StartCamera { mode, show });
+            }
+            ["camera", mode, "detect"] => {
+                *self.detections.entry(mode.to_owned()).or_default() += 1;
+                brick.tell(Command::Detect { mode });
+            }
+            // The colour that was detected is looked for anyway.
+            ["camera", _, "hsv"] => {}
+            ["marker", "value"] => brick.tell(match text.trim() {
+                "" => Command::MarkerUp,
+                color => Command::MarkerDown { color },
+            }),
+            ["stop"] => {
+                self.powers.clear();
+                brick.tell(Command::Rest);
+            }
+            _ => return Err(absent()),
+        }
+        Ok(())
+    }
+
+    /// One order sets green and red one after the other; the colour is told when red is known.
+    fn light(&mut self, brick: &mut dyn Brick, light: &str, on: bool) {
+        if light == "green" {
+            self.green = on;
+            return;
+        }
+        self.red = on;
+        let color = match (self.green, self.red) {
+            (true, true) => "orange",
+            (true, false) => "green",
+            (false, true) => "red",
+            (false, false) => "off",
+        };
+        brick.tell(Command::Led { color });
+    }
+
+    /// What the program has put into a file of its own; it never reaches the disk.
+    pub fn written(&self, file: &str) -> Option<&[u8]> {
+        self.written.get(file).map(Vec::as_slice)
+    }
+
+    /// Puts something behind what is in a file of the program.
+    pub fn append(&mut self, brick: &mut dyn Brick, file: &str, bytes: &[u8]) -> io::Result<()> {
+        let held: usize = self
+            .written
+            .iter()
+            .map(|(name, bytes)| name.len() + bytes.len())
+            .sum();
+        if held + file.len() + bytes.len() > limits::SCRIPT_FILES_BYTES {
+            return Err(io::Error::other(format!(
+                "the files of a judged program hold at most {} MiB",
+                limits::SCRIPT_FILES_BYTES >> 20
+            )));
+        }
+        let whole = self.written.entry(file.to_owned()).or_default();
+        whole.extend_from_slice(bytes);
+        let text = &*String::from_utf8_lossy(bytes);
+        brick.tell(Command::Append { file, text });
+        Ok(())
+    }
+
+    /// Removes a file of the program.
+    pub fn remove(&mut self, brick: &mut dyn Brick, file: &str) {
+        self.written.remove(file);
+        brick.tell(Command::Remove { file });
+    }
+}
+
+fn is_sort(name: &str, way: Way, sort: Sort) -> bool {
+    port(name, way).is_some_and(|port| port.sort() == sort)
+}
+
+fn gamepad(brick: &mut dyn Brick, part: &str, kind: &str) -> io::Result<String> {
+    let is_connected = scalar(brick, "GamepadConnectionIndicatorPort").unwrap_or(0) != 0;
+    Ok(match (part, kind) {
+        ("pad1" | "pad2", "value") => {
+            let name = if part == "pad1" { "Pad1" } else { "Pad2" };
+            let pressed = scalar(brick, &format!("Gamepad{name}PressedPort")).unwrap_or(0);
+            let at = vector(brick, &format!("Gamepad{name}PosPort"), 2);
+            let at = at.unwrap_or_else(|| vec![RELEASED; 2]);
+            joined([at[0], at[1], i32::from(pressed != 0)])
+        }
+        ("wheel", "value") => scalar(brick, "GamepadWheelPort")
+            .unwrap_or(RELEASED)
+            .to_string(),
+        ("buttons", "value" | "presses") if is_connected => joined(
+            [1, 2, 3, 4, 5]
+                .map(|number| scalar(brick, &format!("GamepadButton{number}Port")).unwrap_or(0)),
+        ),
+        _ => return Err(nothing_yet()),
+    })
+}
