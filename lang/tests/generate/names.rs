@@ -82,7 +82,8 @@ fn project(name: &str, words: &[String]) -> Project {
     sketch.project()
 }
 
-fn projects() -> Vec<(String, Project)> {
+/// Projects whose names and texts hurt.
+pub fn projects() -> Vec<(String, Project)> {
     let words: Vec<String> = WORDS.split_whitespace().map(str::to_owned).collect();
     let by_words = words.chunks(40).map(|part| {
         let name = format!("t {}", part[0]);

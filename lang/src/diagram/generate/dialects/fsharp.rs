@@ -195,6 +195,16 @@ const RESERVED: &[&str] = &[
     "sqrt",
     "round",
     "truncate",
+    "atomic",
+    "break",
+    "checked",
+    "constructor",
+    "continue",
+    "method",
+    "object",
+    "select",
+    "threads",
+    "volatile",
 ];
 
 fn row(what: What) -> Row {
