@@ -80,6 +80,7 @@ pub(in super::super) const FSHARP: Dialect = Dialect {
 };
 
 const RESERVED: &[&str] = &[
+    "_",
     "abstract",
     "and",
     "as",
