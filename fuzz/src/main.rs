@@ -8,14 +8,17 @@ use std::sync::LazyLock;
 
 type Target = fn(&[u8]);
 
-const TARGETS: [(&str, Target); 7] = [
+const TARGETS: [(&str, Target); 10] = [
     ("reader", lang::fuzz::reader),
     ("expression", lang::fuzz::expression),
     ("lowering", lang::fuzz::lowering),
+    ("constraints", lang::fuzz::constraints),
+    ("field", sim::fuzz::field),
     ("frames", trikd::fuzz::fuzz_frames),
     ("messages", trikd::fuzz::fuzz_messages),
     ("lines", trikd::fuzz::fuzz_lines),
     ("strangers", trikd::fuzz::fuzz_strangers),
+    ("picture", sim::arena::floor::fuzz::picture),
 ];
 
 static TARGET: LazyLock<Target> = LazyLock::new(|| {

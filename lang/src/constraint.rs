@@ -22,3 +22,6 @@ pub use read::{read, read_with_templates};
 pub use rules::Rules;
 pub use scene::{Missing, Object, ObjectPoint, Scene, Unfit};
 pub use value::{Point, Rect, Value};
+
+#[cfg(test)]
+mod tests;

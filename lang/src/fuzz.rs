@@ -2,8 +2,10 @@
 //!
 //! Run by tests with mutated saves, and by anybody's fuzzer.
 
+mod constraints;
 mod diagrams;
 
+pub use constraints::constraints;
 pub use diagrams::{lowering, project};
 
 use crate::diagram::archive::{self, Entry};

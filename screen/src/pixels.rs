@@ -156,6 +156,22 @@ impl Pixels {
             .collect()
     }
 
+    /// A PNG file. Absent pixels are black.
+    pub fn to_png(&self) -> Vec<u8> {
+        let mut file = Vec::new();
+        let mut encoder = png::Encoder::new(&mut file, self.width.into(), self.height.into());
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        // Writing to memory fails only for a picture without pixels, which makes an empty file.
+        let written = encoder
+            .write_header()
+            .and_then(|mut writer| writer.write_image_data(&self.to_rgb()));
+        if written.is_err() {
+            file.clear();
+        }
+        file
+    }
+
     /// A PPM file, which all viewers of pictures open (netpbm, format P6).
     pub fn to_ppm(&self) -> Vec<u8> {
         let mut file = format!("P6\n{} {}\n255\n", self.width, self.height).into_bytes();

@@ -7,19 +7,25 @@
 //! something, sensors that look at walls and solids in the order and with the roundings of its paths.
 
 mod brick;
-mod outline;
-mod ranges;
+mod dynamics;
+pub mod floor;
+pub mod outline;
+pub(crate) mod ranges;
 mod robot;
-mod solids;
+pub mod screen;
+pub mod solids;
 mod timeline;
 
 pub use brick::Handle;
+pub use floor::Floor;
 pub use outline::{Bounds, Outline};
 pub use robot::{Dice, Gamepad, Marker, Pad, Robot};
 pub use solids::Solids;
 pub use timeline::Timeline;
 
 use std::collections::VecDeque;
+
+use self::dynamics::Dynamics;
 
 use lang::diagram::devices;
 use lang::diagram::machine::STEP_MS;
@@ -72,6 +78,12 @@ pub struct Arena {
     solids: Solids,
     robots: Vec<Robot>,
     answers: VecDeque<String>,
+    /// Laid when somebody looks at it or leaves something on it.
+    floor: Option<Box<Floor>>,
+    /// In place of ideal physics, made at the first tick.
+    dynamics: Option<Box<Dynamics>>,
+    /// Room for windows of the floor.
+    window: floor::Window,
     /// Room for outlines that live for one call.
     scratch: Outline,
 }
@@ -102,6 +114,9 @@ impl Arena {
             now: 0,
             robots,
             answers: setup.answers,
+            floor: None,
+            dynamics: None,
+            window: floor::Window::default(),
             scratch: Outline::default(),
         }
     }
@@ -109,21 +124,45 @@ impl Arena {
     /// One tick: 10 ms of the world. A program's step at the same time comes after it.
     pub fn tick(&mut self) {
         self.now = self.now.saturating_add(STEP_MS);
+        if self.field.settings.realistic_physics {
+            let made = || Box::new(Dynamics::new(&self.field, &self.robots));
+            let dynamics = self.dynamics.get_or_insert_with(made);
+            let solids = &mut self.solids;
+            dynamics.tick(&mut self.robots, &mut self.field, |index, solid| {
+                solids.moved(index, solid);
+            });
+        } else {
+            self.ideal();
+        }
+        for robot in &mut self.robots {
+            let begin = robot.centre();
+            robot.advance(&self.field.settings);
+            if robot.marker.is_down && robot.centre() != begin {
+                let rgb = screen::named(&robot.marker.colour);
+                let stroke = floor::Stroke {
+                    begin,
+                    end: robot.centre(),
+                    rgb: [rgb.red, rgb.green, rgb.blue],
+                };
+                laid(&mut self.floor, &self.field).mark(stroke);
+            }
+        }
+    }
+
+    /// What a tick moves the robots with ideal wheels; who touches something takes his last step back.
+    fn ideal(&mut self) {
         for robot in &mut self.robots {
             robot.outline_into(&mut self.scratch);
-            let moved = if self.solids.meets(&self.scratch) {
-                robot.is_stuck = true;
+            robot.is_stuck = self.solids.meets(&self.scratch);
+            robot.motion = if robot.is_stuck {
                 let Motion { shift, turn } = robot.motion;
                 Motion {
                     shift: (-shift.0, -shift.1),
                     turn: -turn,
                 }
             } else {
-                robot.is_stuck = false;
                 motion(robot.chosen, robot.pose.degrees)
             };
-            robot.motion = moved;
-            robot.advance(&self.field.settings);
         }
     }
 
@@ -146,6 +185,25 @@ impl Arena {
     pub fn edit(&mut self, change: impl FnOnce(&mut Field)) {
         change(&mut self.field);
         self.solids = Solids::of(&self.field);
+        self.dynamics = None;
+        if let Some(old) = self.floor.take() {
+            // What markers have left lies over everything new.
+            let floor = laid(&mut self.floor, &self.field);
+            floor.wipe();
+            for stroke in old.trace() {
+                floor.mark(*stroke);
+            }
+        }
+    }
+
+    /// What optical sensors see, and what markers have left on it.
+    pub fn floor(&mut self) -> &mut Floor {
+        laid(&mut self.floor, &self.field)
+    }
+
+    /// What markers have left; nothing as long as none was down.
+    pub fn trace(&self) -> &[floor::Stroke] {
+        self.floor.as_deref().map_or(&[], Floor::trace)
     }
 
     /// What robots and rays run into.
@@ -171,6 +229,11 @@ impl Arena {
         assert!(index < self.robots.len(), "no robot number {index}");
         Handle { arena: self, index }
     }
+}
+
+/// The floor, laid at the first call.
+fn laid<'a>(floor: &'a mut Option<Box<Floor>>, field: &Field) -> &'a mut Floor {
+    floor.get_or_insert_with(|| Box::new(floor::lay(field).0))
 }
 
 #[cfg(test)]

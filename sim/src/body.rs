@@ -6,6 +6,7 @@
 pub mod battery;
 pub mod bench;
 pub mod motor;
+pub mod studio;
 pub mod two_wheels;
 
 use crate::geometry::Pose;

@@ -6,6 +6,7 @@
 pub mod json;
 pub mod picture;
 pub mod program;
+mod recorder;
 pub mod replay;
 pub mod report;
 pub mod run;

@@ -16,6 +16,7 @@ pub mod faults;
 pub mod field;
 mod fifo;
 mod files;
+pub mod fuzz;
 pub mod geometry;
 mod input;
 pub mod judge;

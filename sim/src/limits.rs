@@ -52,6 +52,30 @@ pub const RECORDS: usize = 800_000;
 pub const ROBOTS: usize = 16;
 /// Farthest place of a recorded pose, in pixels.
 pub const FAR_PX: f64 = 1e7;
+/// Corners of one outline on a floor.
+pub const OUTLINE_POINTS: usize = 200_000;
+/// Dashes are drawn on lines up to so many widths of their pen; longer ones are drawn whole.
+pub const DASHED_LENGTH: f32 = 10_000.0;
+/// Lines and curves of one outline on a floor.
+pub const OUTLINE_STEPS: usize = 200_000;
+/// Dashes of one line on a floor; a line of more is drawn whole.
+pub const DASHES: f64 = 10_000.0;
+/// Lines and curves of everything on one floor, markers apart.
+pub const FLOOR_STEPS: usize = 1_000_000;
+/// Farthest place on a floor, in pixels either way, for which lines and pictures are drawn.
+pub const SCENE_EDGE: f64 = 1e6;
+/// Bytes of an SVG on a floor.
+pub const SVG_BYTES: usize = 4 << 20;
+/// Bytes of another picture on a floor.
+pub const PICTURE_BYTES: usize = 4 << 20;
+/// Lines and areas of one SVG.
+pub const PICTURE_LAYERS: usize = 20_000;
+/// Groups within groups of one SVG.
+pub const PICTURE_DEPTH: u32 = 64;
+/// Pieces of what markers leave; more are not kept.
+pub const TRACE_STROKES: usize = 200_000;
+/// Cells of the floor's table that list one thing; a larger thing is looked at from everywhere.
+pub const CELLS_OF_THING: i64 = 256;
 /// Largest number in a world model, in units of its text and in pixels.
 pub const FIELD_NUMBER: f64 = 1e6;
 /// Walls, solids, drawn things, regions and the like of one field, strokes and sensors included.
@@ -62,7 +86,15 @@ pub const FIELD_ROBOTS: usize = 16;
 pub const FIELD_SENSORS: usize = 64;
 /// Messages of other robots that wait for one.
 pub const MAIL_MAX: usize = 10_000;
-/// Bytes of pictures on the floor that a drawing of a run holds.
-pub const PICTURE_BYTES: usize = 8 << 20;
 /// Poses of one robot that an animated page holds.
 pub const PAGE_POSES: usize = 6_000;
+/// Remarks on pictures and colours of one floor.
+pub const FLOOR_PROBLEMS: usize = 50;
+/// Things on one virtual display.
+pub const SCREEN_OBJECTS: usize = 20_000;
+/// Characters of a text on it, and of what a robot says.
+pub const SCREEN_TEXT: usize = 4096;
+/// Bytes of pictures on the floor that a drawing of a run holds.
+pub const DRAWING_BYTES: usize = 8 << 20;
+/// Things on a display that one record tells.
+pub const OBJECTS_TOLD: usize = 200;

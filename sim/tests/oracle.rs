@@ -125,29 +125,53 @@ fn run(data: &Path, oracle: &Oracle, fixed: Option<i32>) -> Ran {
     ran
 }
 
+/// Runs in which the robot sees the floor: another part's matter.
+const SEE_THE_FLOOR: [&str; 3] = [
+    "example-4._AlongTheLine",
+    "grading-solution_full-1_square",
+    "grading-solution_full-2_square",
+];
+
+/// The random number that the original got, where its rules or its luck fixed one.
+fn fixed(name: &str) -> Option<i32> {
+    match name {
+        "randomizer-solutions" | "randomizer-tasks" => Some(2),
+        name if name.starts_with("randomizer") => Some(1),
+        _ => None,
+    }
+}
+
 #[test]
-fn look() {
-    let Some(data) = data() else { return };
-    let mut names: Vec<_> = std::fs::read_dir(data.join("oracle"))
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .collect();
-    names.sort();
-    for path in names {
-        let oracle = Oracle::read(&path);
+fn every_recorded_pose_is_met_where_no_floor_is_seen() {
+    let Some(data) = data() else {
+        println!("skipped every_recorded_pose_is_met_where_no_floor_is_seen: no ../shared");
+        return;
+    };
+    let mut count = 0;
+    for entry in std::fs::read_dir(data.join("oracle")).unwrap() {
+        let path = entry.unwrap().path();
         let name = path.file_stem().unwrap().to_str().unwrap();
-        let fixed = match name {
-            "randomizer-solutions" => Some(2),
-            name if name.starts_with("randomizer") => Some(1),
-            _ => None,
+        if SEE_THE_FLOOR.contains(&name) {
+            continue;
+        }
+        let oracle = Oracle::read(&path);
+        let ran = run(&data, &oracle, fixed(name));
+        // Behind its first random number this one is another dance.
+        let until = match name {
+            "example-15._Dance_in_a_circle" => 6,
+            _ => oracle.poses.len(),
         };
-        let ran = run(&data, &oracle, fixed);
-        println!(
-            "{name}: {}/{} last {:e} {:?}",
+        assert!(
+            ran.met >= until,
+            "{name}: {} of {} poses, then off by {:?}",
             ran.met,
             oracle.poses.len(),
-            ran.last,
             ran.first_off
         );
+        if oracle.last.is_some() {
+            assert!(ran.last < SAME, "{name}: last pose off by {}", ran.last);
+        }
+        count += 1;
     }
+    assert!(count >= 40, "only {count} runs");
 }

@@ -56,10 +56,9 @@ fn checked(args: &CheckArgs) -> Result<u8, Refusal> {
     }
 }
 
-/// One run, in this process.
+/// One run: its outputs are files and not directories.
 fn one(job: &Job, args: &CheckArgs, results: Option<Output<'_>>) -> Result<u8, Refusal> {
-    // Outputs of one run are files and not directories.
-    let row = worker::guarded(job, args);
+    let row = pool::run_one(job.clone(), args);
     let mut is_told = false;
     if let Some(results) = results {
         let line = row.write() + "\n";

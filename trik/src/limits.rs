@@ -60,6 +60,8 @@ pub const SCRIPT_LOOK_CALLS: u32 = 50;
 pub const SCRIPT_FILES_BYTES: usize = 16 << 20;
 /// Bytes that a judged program prints between two calls; what is more is lost.
 pub const SCRIPT_PRINT_BYTES: usize = 1 << 20;
+/// Bytes of one message of a judged program in a process of its own.
+pub const SCRIPT_FRAME_BYTES: usize = 1 << 20;
 /// Remarks about a judged program that are kept.
 pub const SCRIPT_REMARKS: usize = 20;
 /// Events of the keys and the gamepad that wait for one thread of a judged program.

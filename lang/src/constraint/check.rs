@@ -544,7 +544,7 @@ impl Run<'_> {
 }
 
 /// Seconds as the original tells them: at most six digits, and no more than needed.
-fn seconds(ms: u64) -> String {
+pub(super) fn seconds(ms: u64) -> String {
     #[allow(clippy::cast_precision_loss)] // A run of 2^53 ms is no run.
     let seconds = ms as f64 / 1000.0;
     let rounded = format!("{seconds:.5e}").parse().unwrap_or(seconds);

@@ -392,7 +392,7 @@ fn content(element: &Element<'_>) -> String {
     let inside = text
         .strip_prefix("<x>")
         .and_then(|text| text.strip_suffix("</x>\n"));
-    inside.unwrap_or_default().to_owned()
+    inside.unwrap_or_default().trim_matches('\n').to_owned()
 }
 
 fn owned(text: &str) -> Cow<'static, str> {

@@ -26,6 +26,11 @@ impl Rules {
         &self.warnings
     }
 
+    /// How many events there are, constraints and the time limit among them.
+    pub fn events(&self) -> usize {
+        self.events.len()
+    }
+
     /// Milliseconds of model time that a program may work.
     pub fn time_limit_ms(&self) -> u32 {
         self.time_limit_ms

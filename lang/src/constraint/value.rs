@@ -48,6 +48,8 @@ pub enum Value {
     Point(Point),
     /// A rectangle.
     Rect(Rect),
+    /// A colour, as 0xrrggbb.
+    Colour(u32),
     /// Several values.
     List(Rc<[Value]>),
     /// Something with named properties that is no object of the scene, as a figure on a screen.
@@ -112,6 +114,7 @@ impl Value {
             Self::Int(number) => number.to_string(),
             Self::Double(number) => shown(*number),
             Self::Text(text) => text.to_string(),
+            Self::Colour(rgb) => format!("#{rgb:06x}"),
             _ => String::new(),
         }
     }
@@ -126,6 +129,7 @@ impl Value {
             Self::Text(_) => "QString",
             Self::Point(_) => "QPoint",
             Self::Rect(_) => "QRect",
+            Self::Colour(_) => "QColor",
             Self::List(_) => "QVariantList",
             Self::Record(_) | Self::Object(_) => "QObject*",
         }
@@ -143,9 +147,10 @@ impl Value {
     /// The other value as the type of this one; `None` if it cannot be.
     fn converted(&self, other: &Value) -> Option<Value> {
         match (self, other) {
-            (Self::Text(_), Self::Bool(_) | Self::Int(_) | Self::Double(_)) => {
+            (Self::Text(_), Self::Bool(_) | Self::Int(_) | Self::Double(_) | Self::Colour(_)) => {
                 Some(Self::text(&other.to_text()))
             }
+            (Self::Colour(_), Self::Text(text)) => colour(text).map(Self::Colour),
             (Self::Int(_), Self::Text(text)) => text.trim().parse().ok().map(Self::Int),
             (Self::Double(_), Self::Text(text)) => double(text.trim()).map(Self::Double),
             (Self::Bool(_), Self::Text(text)) => {
@@ -168,6 +173,7 @@ impl Value {
             (Self::Point(left), Self::Point(right)) => left == right,
             (Self::Rect(left), Self::Rect(right)) => left == right,
             (Self::Object(left), Self::Object(right)) => left == right,
+            (Self::Colour(left), Self::Colour(right)) => left == right,
             (Self::List(left), Self::List(right)) => {
                 left.len() == right.len()
                     && left
@@ -256,6 +262,45 @@ impl Value {
                 .map(|(_, value)| value.clone()),
             _ => return None,
         })
+    }
+}
+
+/// Names of colours that programs and fields use.
+const COLOURS: [(&str, u32); 20] = [
+    ("black", 0),
+    ("blue", 0x0000ff),
+    ("cyan", 0x00ffff),
+    ("darkblue", 0x00008b),
+    ("darkcyan", 0x008b8b),
+    ("darkgray", 0xa9a9a9),
+    ("darkgreen", 0x006400),
+    ("darkmagenta", 0x8b008b),
+    ("darkred", 0x8b0000),
+    ("gray", 0x808080),
+    ("green", 0x008000),
+    ("grey", 0x808080),
+    ("lightgray", 0xd3d3d3),
+    ("lime", 0x00ff00),
+    ("magenta", 0xff00ff),
+    ("orange", 0xffa500),
+    ("pink", 0xffc0cb),
+    ("red", 0xff0000),
+    ("white", 0xffffff),
+    ("yellow", 0xffff00),
+];
+
+/// A colour by its name, or as `#rgb`, `#rrggbb` or `#aarrggbb`.
+fn colour(text: &str) -> Option<u32> {
+    let text = text.trim().to_ascii_lowercase();
+    let Some(digits) = text.strip_prefix('#') else {
+        let found = COLOURS.iter().find(|(name, _)| *name == text);
+        return found.map(|(_, rgb)| *rgb);
+    };
+    let number = u32::from_str_radix(digits, 16).ok()?;
+    match digits.len() {
+        3 => Some(((number & 0xf00) << 8 | (number & 0xf0) << 4 | number & 0xf) * 0x11),
+        6 | 8 => Some(number & 0xff_ffff),
+        _ => None,
     }
 }
 

@@ -324,20 +324,38 @@ impl Machine {
         if is_turn {
             due = self.deferred.len();
         }
+        // The original takes posted events before its timers, and a thread that has run long enough waits for a timer:
+        // one that a block has just led on comes in the same pass, one that a timer has led on in the next.
+        let mut soon = VecDeque::new();
         for _ in 0..due {
             match self.deferred.pop_front() {
                 None => break,
-                Some(Deferred::Block(node)) => self.done(node, env),
-                Some(Deferred::Thread(handle)) => {
-                    if let Some(thread) = self.threads.get_mut(handle)
-                        && matches!(thread.state, State::Deferred)
-                    {
-                        thread.state = State::Resumed;
-                        self.active.push(handle);
-                        self.drive(env);
+                Some(Deferred::Block(node)) => {
+                    let before = self.deferred.len();
+                    self.done(node, env);
+                    for at in (before..self.deferred.len()).rev() {
+                        if let Deferred::Thread(handle) = self.deferred[at] {
+                            self.deferred.remove(at);
+                            soon.push_front(handle);
+                        }
                     }
                 }
+                Some(Deferred::Thread(handle)) => self.resume(handle, env),
             }
+        }
+        for handle in soon {
+            self.resume(handle, env);
+        }
+    }
+
+    /// A thread that has run long enough goes on.
+    fn resume(&mut self, handle: Handle, env: &mut Env<'_>) {
+        if let Some(thread) = self.threads.get_mut(handle)
+            && matches!(thread.state, State::Deferred)
+        {
+            thread.state = State::Resumed;
+            self.active.push(handle);
+            self.drive(env);
         }
     }
 

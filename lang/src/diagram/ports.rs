@@ -174,6 +174,16 @@ impl Port {
         (!name.is_empty()).then_some(name)
     }
 
+    /// Its place in the table of ports.
+    pub fn index(self) -> u8 {
+        self.0
+    }
+
+    /// The port at a place in the table.
+    pub fn at(index: u8) -> Option<Self> {
+        (usize::from(index) < PORTS.len()).then_some(Self(index))
+    }
+
     /// All ports.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..PORTS.len()).filter_map(|index| u8::try_from(index).ok().map(Self))

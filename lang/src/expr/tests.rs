@@ -487,7 +487,7 @@ fn blocks_get_what_they_ask_for() {
         evaluate(&source, &bench.names, &mut bench.store, &mut bench.robot).unwrap()
     };
     assert!(matches!(ask("2.5", Wanted::Int), Value::Int(3)));
-    assert!(matches!(ask("0 - 2.5", Wanted::Int), Value::Int(-3)));
+    assert!(matches!(ask("0 - 2.5", Wanted::Int), Value::Int(-2)));
     assert!(matches!(ask("'12'", Wanted::Int), Value::Int(12)));
     assert!(matches!(ask("'1.5'", Wanted::Int), Value::Int(0)));
     assert!(matches!(ask("0.4", Wanted::Bool), Value::Bool(false)));

@@ -1,7 +1,7 @@
 //! Values of the language and how they become each other: numbers, truths, texts, lists.
 //!
 //! The conversions are those of TRIK Studio's variants, as its expressions show them: a text that is no number counts
-//! as 0, a float becomes an integer by rounding half away from zero, a list is no text.
+//! as 0, a float becomes an integer by rounding halves up, a list is no text.
 
 use crate::limits;
 use std::rc::Rc;
@@ -187,7 +187,7 @@ impl Value {
         }
     }
 
-    /// As a whole number: floats are rounded half away from zero, and what is above 32 bits is cut off.
+    /// As a whole number: floats are rounded with halves up, and what is above 32 bits is cut off.
     pub fn to_int(&self) -> i32 {
         match self {
             Self::Int(number) => *number,
@@ -266,7 +266,8 @@ impl Value {
     }
 }
 
-/// Rounds half away from zero and keeps the low 32 bits; what has no 64-bit value is 0.
+/// Rounds halves up, also below zero (a recorded run takes -19.5 as -19), and keeps the low 32 bits; what has no 64-bit
+/// value is 0.
 pub fn round(number: f64) -> i32 {
     let wide = round_wide(number);
     // The low half, as the real program's cast has it.
@@ -275,7 +276,13 @@ pub fn round(number: f64) -> i32 {
 
 fn round_wide(number: f64) -> i64 {
     if number.abs() < 9.2e18 {
-        number.round() as i64
+        let down = number.floor();
+        // Adding a half would lose it in the numbers just below one.
+        (if number - down < 0.5 {
+            down
+        } else {
+            down + 1.0
+        }) as i64
     } else {
         0
     }

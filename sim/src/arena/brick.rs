@@ -5,12 +5,14 @@
 use lang::diagram::brick::{Answer, Brick, Command, Question};
 use lang::diagram::ports::{Port, Sort};
 
-use super::Arena;
+use super::floor::sensors;
 use super::ranges;
+use super::{Arena, laid};
 use crate::field::SensorKind;
+use crate::geometry::Point;
 use crate::limits;
 
-/// Deviation of a distance sensor's noise, in centimetres.
+/// Variance of a distance sensor's noise, in square centimetres.
 const RANGE_NOISE: f64 = 1.5;
 /// What a noisy distance sensor says at most.
 const RANGE_NOISE_MAX: f64 = 255.0;
@@ -37,7 +39,8 @@ impl Handle<'_> {
                     ranges::is_touching(&arena.solids, at, degrees, &mut arena.scratch);
                 return Some(i32::from(is_touching));
             }
-            SensorKind::Light | SensorKind::Camera | SensorKind::Lidar | SensorKind::Other => {
+            SensorKind::Light => return self.light(port),
+            SensorKind::Camera | SensorKind::Lidar | SensorKind::Other => {
                 return None;
             }
         };
@@ -45,8 +48,45 @@ impl Handle<'_> {
         if !arena.field.settings.realistic_sensors {
             return Some(cm);
         }
-        let noisy = f64::from(cm) + robot.noise() * RANGE_NOISE;
+        let noisy = f64::from(cm) + sensors::noise(robot.noise_mut(), RANGE_NOISE);
         Some(noisy.round().clamp(0.0, RANGE_NOISE_MAX) as i32)
+    }
+
+    /// Looks at the floor through a sensor that stands somewhere and looks somewhere.
+    fn look(&mut self, (at, degrees): (Point, f64), side: u16, part: f64) {
+        let arena = &mut *self.arena;
+        let floor = laid(&mut arena.floor, &arena.field);
+        floor.look(at, degrees, side, part, &mut arena.window);
+    }
+
+    /// What a light sensor says.
+    fn light(&mut self, port: Port) -> Option<i32> {
+        let robot = &self.arena.robots[self.index];
+        let place = robot.sensor_pose(robot.sensor(port)?);
+        self.look(place, sensors::LIGHT_SIDE, 1.0);
+        let arena = &mut *self.arena;
+        let is_noisy = arena.field.settings.realistic_sensors;
+        let noise = is_noisy.then_some(arena.robots[self.index].noise_mut());
+        Some(sensors::light(&arena.window, noise))
+    }
+
+    /// Looks at the floor through the camera; false without one.
+    fn look_ahead(&mut self, part: f64) -> bool {
+        let robot = &self.arena.robots[self.index];
+        let camera = robot.sensor_of(SensorKind::Camera);
+        let place = camera.map(|camera| robot.sensor_pose(camera));
+        if let Some(place) = place {
+            self.look(place, sensors::CAMERA_SIDE, part);
+        }
+        place.is_some()
+    }
+
+    /// The line sensor learns the colour in the middle of the camera's picture.
+    fn learn(&mut self) {
+        if self.look_ahead(sensors::DETECT_PART) {
+            let learned = sensors::learned(&self.arena.window);
+            self.arena.robots[self.index].line_colour = learned;
+        }
     }
 
     fn gamepad(&self, port: Port) -> Option<i32> {
@@ -92,7 +132,10 @@ impl Brick for Handle<'_> {
             Command::Servo { port, degrees } => robot.set_servo(port, degrees),
             Command::ResetEncoder { port } => robot.reset_encoder(port),
             Command::CalibrateGyroscope => robot.calibrate(),
-            Command::Rest => robot.rest(),
+            Command::Rest => {
+                robot.rest();
+                robot.shown.tell(&command);
+            }
             Command::MarkerDown { color } => {
                 robot.marker.is_down = true;
                 color.clone_into(&mut robot.marker.colour);
@@ -100,7 +143,8 @@ impl Brick for Handle<'_> {
             Command::MarkerUp => robot.marker.is_down = false,
             Command::Join { hull, .. } => robot.hull = hull,
             Command::Send { message, hull } => self.send(message, hull),
-            _ => {}
+            Command::Detect { mode: "line" } => self.learn(),
+            _ => robot.shown.tell(&command),
         }
     }
 
@@ -116,6 +160,28 @@ impl Brick for Handle<'_> {
     }
 
     fn vector(&mut self, port: Port, into: &mut Vec<i32>) -> bool {
+        match port.name() {
+            "LineSensorPort" => {
+                let is_there = self.look_ahead(sensors::LINE_PART);
+                if is_there {
+                    let wanted = self.arena.robots[self.index].line_colour;
+                    into.extend_from_slice(&sensors::line(&self.arena.window, wanted));
+                }
+                return is_there;
+            }
+            "ColorSensorPort" => {
+                let is_there = self.look_ahead(sensors::COLOUR_PART);
+                if is_there {
+                    let arena = &mut *self.arena;
+                    let is_noisy = arena.field.settings.realistic_sensors;
+                    let noise = is_noisy.then_some(arena.robots[self.index].noise_mut());
+                    let colour = sensors::colour(&arena.window, noise);
+                    into.extend(colour.map(i32::from));
+                }
+                return is_there;
+            }
+            _ => {}
+        }
         let arena = &mut *self.arena;
         let robot = &arena.robots[self.index];
         match port.name() {

@@ -220,7 +220,7 @@ fn are_crossing(p: (Point, Point), q: (Point, Point)) -> bool {
 }
 
 /// How far the control points of a quarter of a circle are from its ends, by the original's account.
-const KAPPA: f64 = 0.552_284_749_8;
+pub(super) const KAPPA: f64 = 0.552_284_749_8;
 
 /// The point of a quarter of the unit circle, from (1, 0) to (0, 1), as the cubic curve has it.
 pub(super) fn quarter_at(t: f64) -> (f64, f64) {
@@ -229,6 +229,12 @@ pub(super) fn quarter_at(t: f64) -> (f64, f64) {
         rest * rest * rest + 3.0 * rest * rest * t + 3.0 * rest * t * t * KAPPA
     };
     (at(t), at(1.0 - t))
+}
+
+/// Which way that curve goes there, by its parameter.
+pub(super) fn quarter_slope(t: f64) -> (f64, f64) {
+    let slope = |t: f64| ((6.0 - 9.0 * KAPPA) * t + 6.0 * (KAPPA - 1.0)) * t;
+    (slope(t), -slope(1.0 - t))
 }
 
 /// Points of a curve in each pixel around it: a third of pi, as the original has it.

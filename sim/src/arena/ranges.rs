@@ -5,7 +5,7 @@
 
 use lang::diagram::stand_in::PIXELS_IN_CM;
 
-use super::outline::{Bounds, Outline, parts_of, quarter_at};
+use super::outline::{Bounds, KAPPA, Outline, parts_of, quarter_at, quarter_slope};
 use super::solids::Solids;
 use crate::geometry::{Point, point};
 
@@ -92,6 +92,22 @@ pub fn lidar(solids: &Solids, at: Point, degrees: f64, scratch: &mut Outline, in
     }
 }
 
+/// How far a ray without a width goes, in pixels; nothing within a lidar's reach.
+pub fn ray(solids: &Solids, at: Point, degrees: f64) -> Option<f64> {
+    let reach = f64::from(LIDAR.reach_cm) * PIXELS_IN_CM;
+    let end = at.moved(Point::towards(degrees.to_radians()), reach);
+    let mut best = f64::INFINITY;
+    solids.each_near(&Bounds::of(&[at, end]), |solid, _| {
+        for side in super::outline::sides(solid) {
+            if let Some(met) = crossing((at, end), side) {
+                best = best.min(met.from(at).length());
+            }
+        }
+        true
+    });
+    best.is_finite().then_some(best)
+}
+
 /// The nearest corner of what a slice and solid things have in common: corners of either inside the other, and crossings.
 fn nearest(solids: &Solids, slice: &Outline, from: Point) -> f64 {
     use super::outline::{is_inside, sides};
@@ -147,11 +163,6 @@ pub fn slice(at: Point, degrees: f64, width: f64, radius: f64, into: &mut Outlin
     std::mem::swap(&mut points, &mut into.spare);
     points.clear();
     points.push(at);
-    let on_circle = |degrees: f64| {
-        let (sin, cos) = degrees.to_radians().sin_cos();
-        point(at.x + radius * cos, at.y - radius * sin)
-    };
-    points.push(on_circle(begin));
     let end = begin + width;
     let (first, last) = ((begin / 90.0).floor(), (end / 90.0).floor());
     let mut quarter = first;
@@ -177,39 +188,50 @@ pub fn slice(at: Point, degrees: f64, width: f64, radius: f64, into: &mut Outlin
         }
         quarter += 1.0;
     }
-    if let Some(last) = points.last_mut() {
-        *last = on_circle(end);
-    }
     into.add(points.iter().copied());
     into.spare = points;
 }
 
-/// The straight parts of a piece of a quarter, without its first point. Quarters go against the clock from the right.
+/// The straight parts of a piece of a quarter; its first point only if nothing but the slice's point is before. Quarters go against the clock from the right.
 fn arc(at: Point, radius: f64, quarter: f64, (from, to): (f64, f64), points: &mut Vec<Point>) {
+    let turned = |(across, along): (f64, f64)| match quarter.rem_euclid(4.0) as u8 {
+        0 => (across, along),
+        1 => (-along, across),
+        2 => (-across, -along),
+        _ => (along, -across),
+    };
     let place = |t: f64| {
-        let (across, along) = quarter_at(t);
-        let (x, y) = match quarter.rem_euclid(4.0) as u8 {
-            0 => (across, along),
-            1 => (-along, across),
-            2 => (-across, -along),
-            _ => (along, -across),
-        };
+        let (x, y) = turned(quarter_at(t));
         point(at.x + radius * x, at.y - radius * y)
     };
-    let around = Bounds::of(&[place(from), place(to)]);
+    // The control points count for how finely it is drawn.
+    let third = (to - from) / 3.0 * radius;
+    let control = |t: f64, third: f64| {
+        let (x, y) = turned(quarter_slope(t));
+        let end = place(t);
+        point(end.x + third * x, end.y - third * y)
+    };
+    let around = Bounds::of(&[
+        place(from),
+        control(from, third),
+        control(to, -third),
+        place(to),
+    ]);
     let size = around.high.from(around.low);
     let parts = parts_of(size.x, size.y);
-    for part in 1..=parts {
+    for part in u32::from(points.len() > 1)..=parts {
         points.push(place(
             from + (to - from) * f64::from(part) / f64::from(parts),
         ));
     }
 }
 
-/// Where on the curve of a quarter an angle is, as a share of a right angle: the mean of what the original finds by two
-/// steps of Newton's method for the cosine and two for the sine.
+/// Where on the curve of a quarter an angle is, as a share of a right angle.
+///
+/// The original looks for the cosine in two steps of Newton's method, from there for the sine in two more, and takes the
+/// mean. In the slope for the sine one sign is wrong there, which moves the ends of arcs by hundredths of a degree; so it
+/// is here, because readings depend on it.
 fn parameter(share: f64) -> f64 {
-    const KAPPA: f64 = 0.552_284_749_8;
     if share <= 1e-12 {
         return 0.0;
     }
@@ -217,20 +239,18 @@ fn parameter(share: f64) -> f64 {
         return 1.0;
     }
     let (sin, cos) = (share * 90.0).to_radians().sin_cos();
-    let improve = |t: f64, cubic: [f64; 3], target: f64, constant: f64| {
-        let [three, two, one] = cubic;
-        let value = ((three * t + two) * t + one) * t + constant - target;
-        t - value / ((3.0 * three * t + 2.0 * two) * t + one)
-    };
-    let of_cos = [2.0 - 3.0 * KAPPA, 3.0 * (KAPPA - 1.0), 0.0];
-    let of_sin = [3.0 * KAPPA - 2.0, 3.0 - 6.0 * KAPPA, 3.0 * KAPPA];
     let mut by_cos = share;
     for _ in 0..2 {
-        by_cos = improve(by_cos, of_cos, cos, 1.0);
+        let value = ((2.0 - 3.0 * KAPPA) * by_cos + 3.0 * (KAPPA - 1.0)) * by_cos * by_cos + 1.0;
+        let slope = ((6.0 - 9.0 * KAPPA) * by_cos + 6.0 * (KAPPA - 1.0)) * by_cos;
+        by_cos -= (value - cos) / slope;
     }
     let mut by_sin = by_cos;
     for _ in 0..2 {
-        by_sin = improve(by_sin, of_sin, sin, 0.0);
+        let inner = (3.0 * KAPPA - 2.0) * by_sin - 6.0 * KAPPA + 3.0;
+        let value = (inner * by_sin + 3.0 * KAPPA) * by_sin;
+        let slope = ((9.0 * KAPPA - 6.0) * by_sin + 12.0 * KAPPA - 6.0) * by_sin + 3.0 * KAPPA;
+        by_sin -= (value - sin) / slope;
     }
     f64::midpoint(by_cos, by_sin)
 }

@@ -4,10 +4,13 @@
 
 use std::collections::VecDeque;
 
+use lang::diagram::machine::STEP_MS;
 use lang::diagram::ports::{Port, Sort};
 use lang::diagram::stand_in::{Motion, Pose, wheel_turn};
 
+use super::floor::sensors::noise;
 use super::outline::Outline;
+use super::screen::Shown;
 use crate::field::{self, ROBOT_SIZE, Sensor, SensorKind, Settings};
 use crate::geometry::{Point, point};
 use crate::random::Random;
@@ -18,7 +21,7 @@ const STAMPS: usize = 50;
 const ACCELERATION_SCALE: f64 = 30_000.0;
 /// What it calls the fall of things.
 const GRAVITY: i32 = 4065;
-/// Deviation of a real motor's speed, as a share of it.
+/// Variance of a real motor's speed, as a share of it.
 const MOTOR_NOISE: f64 = 0.0125;
 /// Thousandths of a degree all around.
 const TURN: i32 = 360_000;
@@ -111,6 +114,9 @@ pub struct Robot {
     pub dice: Dice,
     noise: Random,
     pub(crate) marker: Marker,
+    pub(crate) shown: Shown,
+    /// Colour that the line sensor looks for.
+    pub(super) line_colour: [u8; 3],
     pub(super) mail: VecDeque<String>,
     pub(super) hull: i32,
 }
@@ -154,6 +160,8 @@ impl Robot {
             },
             noise: Random::new(!seed),
             marker: Marker::default(),
+            shown: Shown::default(),
+            line_colour: [0; 3],
             mail: VecDeque::new(),
             hull: index as i32 + 1,
             placed,
@@ -238,12 +246,13 @@ impl Robot {
         for (side, motor) in self.wheels.into_iter().enumerate() {
             let power = motor.map_or(0, |motor| self.powers[motor]);
             self.chosen[side] = if settings.realistic_motors {
-                let share = 1.0 + self.noise.normal() * MOTOR_NOISE;
+                let share = 1.0 + noise(&mut self.noise, MOTOR_NOISE);
                 (f64::from(power) * share).round().clamp(-100.0, 100.0) as i32
             } else {
                 power
             };
         }
+        self.shown.tick(STEP_MS);
         self.pose.x += f64::from(self.motion.shift.0);
         self.pose.y += f64::from(self.motion.shift.1);
         self.pose.degrees += self.motion.turn;
@@ -409,6 +418,11 @@ impl Robot {
         self.gamepad.as_ref()
     }
 
+    /// Its display, light and loudspeaker, and what it said.
+    pub fn shown(&self) -> &Shown {
+        &self.shown
+    }
+
     /// The marker.
     pub fn marker(&self) -> &Marker {
         &self.marker
@@ -424,9 +438,9 @@ impl Robot {
         self.dice.roll(low, high)
     }
 
-    /// Noise of sensors: mean 0, deviation 1.
-    pub(crate) fn noise(&mut self) -> f64 {
-        self.noise.normal()
+    /// Where noise of its sensors comes from.
+    pub(crate) fn noise_mut(&mut self) -> &mut Random {
+        &mut self.noise
     }
 }
 
@@ -446,7 +460,7 @@ fn size_of(kind: SensorKind) -> Option<(f64, f64)> {
 }
 
 /// What of a sensor is solid, in the robot's coordinates; of one that measures distance only the half behind.
-fn body_of(sensor: &Sensor) -> Option<[Point; 4]> {
+pub(super) fn body_of(sensor: &Sensor) -> Option<[Point; 4]> {
     let (width, height) = size_of(sensor.kind)?;
     let right = match sensor.kind {
         SensorKind::Infrared | SensorKind::Sonar => 0.0,

@@ -166,6 +166,22 @@ impl Codec<'_, '_> {
         self.length(names[1], &mut value.y, default.y);
     }
 
+    /// A point in two attributes, of which one alone says nothing.
+    pub fn both(&mut self, names: [&str; 2], value: &mut Point, default: Point) {
+        let mut there = default;
+        if names.into_iter().all(|name| self.has(name)) {
+            self.reading().pair(names, &mut there, default);
+        }
+        if self.is_reading() {
+            *value = there;
+        } else if *value != there {
+            let scale = self.scale;
+            for (name, number) in names.into_iter().zip([value.x, value.y]) {
+                self.element.set(name, &format!("{}", number / scale));
+            }
+        }
+    }
+
     /// A rectangle as `x:y:width:height`.
     pub fn rectangle(&mut self, name: &str, at: &mut Point, size: &mut Point) {
         let mut list = [at.x, at.y, size.x, size.y];

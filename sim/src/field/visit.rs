@@ -152,15 +152,9 @@ impl Region {
         codec.text("type", &mut self.kind, &default.kind);
         codec.text("boundItem", &mut self.bound, "");
         // The original takes numbers in pairs or not at all.
-        if !codec.is_reading() || codec.has("x") && codec.has("y") {
-            codec.pair(["x", "y"], &mut self.at, default.at);
-        }
-        if !codec.is_reading() || codec.has("width") && codec.has("height") {
-            codec.pair(["width", "height"], &mut self.size, default.size);
-        }
-        if !codec.is_reading() || codec.has("textX") && codec.has("textY") {
-            codec.pair(["textX", "textY"], &mut self.text_at, default.text_at);
-        }
+        codec.both(["x", "y"], &mut self.at, default.at);
+        codec.both(["width", "height"], &mut self.size, default.size);
+        codec.both(["textX", "textY"], &mut self.text_at, default.text_at);
         codec.flag("filled", &mut self.filled, default.filled);
         codec.flag("visible", &mut self.visible, default.visible);
         codec.text("color", &mut self.colour, &default.colour);

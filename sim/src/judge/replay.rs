@@ -3,10 +3,10 @@
 //! Owns the way back from a trajectory to a world: robots are put where they were, and devices are told again what they
 //! were told. Sensors of such a world show what they would have shown there.
 
-use super::json::Value;
+use super::recorder::replay;
 use super::run::{Outcome, Run, Settings, Verdict};
 use super::task::Task;
-use super::trajectory::{Record, Told, Trajectory};
+use super::trajectory::{Record, Trajectory};
 use super::words;
 use crate::arena::{Arena, Setup};
 use lang::diagram::brick::{Brick, Command};
@@ -46,7 +46,7 @@ pub fn judge_recorded(task: &Task, trajectory: &Trajectory, settings: &Settings)
             if let Record::Told { robot, told, .. } = record
                 && usize::from(*robot) < tracks.len()
             {
-                tell(&mut arena, usize::from(*robot), told);
+                replay(&mut arena.robot(usize::from(*robot)), told);
             }
         }
         run.record(now, &arena);
@@ -105,23 +105,5 @@ impl Track {
         if let Some(port) = Port::named("M3") {
             arena.robot(index).tell(Command::Power { port, percent });
         }
-    }
-}
-
-/// Tells a device again what it was told.
-fn tell(arena: &mut Arena, robot: usize, told: &Told) {
-    let mut brick = arena.robot(robot);
-    match (&*told.property, &told.value) {
-        ("lastPhrase", Value::Text(text)) => brick.tell(Command::Say { text }),
-        ("color", Value::Text(color)) if told.device == "led" => brick.tell(Command::Led { color }),
-        ("background", Value::Text(color)) => brick.tell(Command::Background { color }),
-        ("isDown", Value::Bool(true)) => brick.tell(Command::MarkerDown { color: "black" }),
-        ("isDown", Value::Bool(false)) => brick.tell(Command::MarkerUp),
-        ("color", Value::Text(color)) if told.device == "marker" => {
-            brick.tell(Command::MarkerDown { color });
-        }
-        ("smiles", Value::Bool(true)) => brick.tell(Command::Smile { sad: false }),
-        ("sadSmiles", Value::Bool(true)) => brick.tell(Command::Smile { sad: true }),
-        _ => {}
     }
 }

@@ -5,6 +5,7 @@
 //! verdict.
 
 use super::program::Program;
+use super::recorder::Recorder;
 use super::task::Task;
 use super::trajectory::{Record, Trajectory};
 use super::words;
@@ -99,7 +100,7 @@ pub fn judge(task: &Task, program: &mut dyn Program, settings: &Settings) -> Out
                 break;
             }
         }
-        let status = program.step(now, &mut arena.robot(0));
+        let status = run.step(now, program, &mut arena);
         run.hear(now, program.errors());
         if let Status::Ended { with_errors, .. } = status {
             run.ended(now, with_errors, &mut arena);
@@ -173,6 +174,20 @@ impl<'a> Run<'a> {
                 degrees: pose.degrees,
             });
         }
+    }
+
+    /// A step of the program; what it tells its robot is kept.
+    fn step(&mut self, now: u32, program: &mut dyn Program, arena: &mut Arena) -> Status {
+        if !self.settings.is_recording {
+            return program.step(now, &mut arena.robot(0));
+        }
+        let mut robot = Recorder {
+            arena,
+            robot: 0,
+            ms: now,
+            trajectory: &mut self.trajectory,
+        };
+        program.step(now, &mut robot)
     }
 
     /// Lets the rules look; whether they have decided.

@@ -73,8 +73,11 @@ pub(crate) struct CheckArgs {
     /// Serve jobs from standard input.
     #[arg(long, hide = true)]
     pub worker: bool,
+    /// Outputs are files, not directories.
+    #[arg(long = "one", hide = true)]
+    pub is_one: bool,
     /// Run the program that the save itself holds beside the diagram; for `2D-model --mode script`.
-    #[arg(skip)]
+    #[arg(long = "embedded", hide = true)]
     pub is_embedded: bool,
 }
 
@@ -99,7 +102,12 @@ impl CheckArgs {
                 words.push(word);
             }
         }
-        for (name, is_set) in [("--force", self.force), ("--continue", self.keep_going)] {
+        for (name, is_set) in [
+            ("--force", self.force),
+            ("--continue", self.keep_going),
+            ("--one", self.is_one),
+            ("--embedded", self.is_embedded),
+        ] {
             if is_set {
                 words.push(name.into());
             }

@@ -6,9 +6,9 @@
 
 use super::CheckArgs;
 use super::jobs::Job;
+use super::pool;
 use super::row::Verdict;
 use super::run::text;
-use super::worker;
 use crate::cli::GenArgs;
 use crate::diagrams::output::Output;
 use crate::diagrams::{self, must_open, say};
@@ -48,7 +48,7 @@ struct Model {
     trajectory: Option<PathBuf>,
     /// Lines for programs that read.
     #[arg(short, long, value_name = "path-to-input")]
-    input: Option<PathBuf>,
+    input: Option<OsString>,
     /// "diagram", or "script" for the program in JavaScript or Python.
     #[arg(short, long, default_value = "diagram")]
     mode: String,
@@ -75,7 +75,7 @@ struct Model {
     generate_mode: String,
     /// Program in JavaScript or Python that is run in the world of the save.
     #[arg(long, value_name = "script-path")]
-    script_path: Option<PathBuf>,
+    script_path: Option<OsString>,
     /// Only write the program.
     #[arg(long)]
     only_generate: bool,
@@ -107,7 +107,7 @@ struct Patcher {
     with_place: Option<PathBuf>,
     /// Program that is put into the save.
     #[arg(short, value_name = "script.js")]
-    script: Option<PathBuf>,
+    script: Option<OsString>,
     /// Puts the robot onto its start marker.
     #[arg(long = "rrp")]
     to_start: bool,
@@ -141,6 +141,11 @@ fn parsed<T: Parser>(name: &str, arguments: impl Iterator<Item = OsString>) -> R
         let _ = error.print();
         ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
     })
+}
+
+/// A path that was named; graders give an empty one for none.
+fn named(path: Option<OsString>) -> Option<PathBuf> {
+    path.filter(|path| !path.is_empty()).map(PathBuf::from)
 }
 
 /// The language of messages is that of the system, as there.
@@ -180,11 +185,9 @@ pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         paths: vec![args.file.clone()],
         field: Vec::new(),
         own: false,
-        script: args
-            .script_path
-            .filter(|path| is_script && !path.as_os_str().is_empty()),
+        script: named(args.script_path).filter(|_| is_script),
         // A grader names files that are not there when there are no inputs.
-        inputs: args.input.filter(|path| path.exists()),
+        inputs: named(args.input).filter(|path| path.exists()),
         log: None,
         report: args.report,
         trajectory: args.trajectory,
@@ -200,6 +203,7 @@ pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         seed: 1,
         language: tongue(),
         worker: false,
+        is_one: true,
         is_embedded: is_script,
     };
     let job = Job {
@@ -207,7 +211,7 @@ pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         field: None,
         name: PathBuf::new(),
     };
-    let row = worker::guarded(&job, &check);
+    let row = pool::run_one(job, &check);
     say(&row.lines(check.language));
     let has_error = row.messages.iter().any(|(level, _)| level == "error");
     ExitCode::from(match row.verdict {
@@ -281,12 +285,8 @@ fn patched(args: &Patcher) -> Result<(), Refused> {
         };
         opened.save.set_world(&world).map_err(told)?;
     }
-    if let Some(path) = args
-        .script
-        .as_deref()
-        .filter(|path| !path.as_os_str().is_empty())
-    {
-        let code = text(path, limits::WORLD_BYTES_MAX).map_err(because(1))?;
+    if let Some(path) = named(args.script.clone()) {
+        let code = text(&path, limits::WORLD_BYTES_MAX).map_err(because(1))?;
         let ending = path
             .extension()
             .and_then(OsStr::to_str)

@@ -95,7 +95,19 @@ impl Row {
 
     /// The last whole number in what the rules said, for tasks that tell points in words.
     fn last_number(&self) -> Option<i64> {
+        if self.verdict == Verdict::Broken {
+            return None;
+        }
+        // The time of success is no number of points.
+        let is_time = |text: &str| {
+            let marks = [
+                "The task was accomplished in ",
+                "\u{417}\u{430}\u{434}\u{430}\u{43d}\u{438}\u{435} \u{432}\u{44b}\u{43f}\u{43e}\u{43b}\u{43d}\u{435}\u{43d}\u{43e} \u{437}\u{430} ",
+            ];
+            marks.iter().any(|mark| text.starts_with(mark))
+        };
         let texts = self.messages.iter().rev().map(|(_, text)| text);
+        let texts = texts.filter(|text| !is_time(text));
         let mut numbers = texts.filter_map(|text| {
             let is_part = |c: char| c.is_ascii_digit() || matches!(c, '-' | '.');
             let words = text
@@ -271,6 +283,7 @@ mod tests {
             messages: vec![
                 ("info".into(), "points: 20.".into()),
                 ("error".into(), "out \"there\"".into()),
+                ("info".into(), "The task was accomplished in 15 sec!".into()),
             ],
             more: 3,
         }

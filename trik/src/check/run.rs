@@ -114,7 +114,7 @@ fn judged(job: &Job, args: &CheckArgs) -> Result<(Task, Outcome), Lines> {
         let outcome = judge::judge_recorded(&task, &trajectory, &settings);
         return Ok((task, outcome));
     }
-    let mut program = solution.program(&mut task, &settings, args)?;
+    let mut program = solution.program(&mut task, args)?;
     let outcome = judge::judge(&task, &mut *program, &settings);
     Ok((task, outcome))
 }
@@ -188,16 +188,10 @@ impl Solution {
     }
 
     /// The program, ready for its first step; the task gets the sensors that it needs.
-    fn program(
-        self,
-        task: &mut Task,
-        settings: &Settings,
-        args: &CheckArgs,
-    ) -> Result<Box<dyn Program>, Lines> {
+    fn program(self, task: &mut Task, args: &CheckArgs) -> Result<Box<dyn Program>, Lines> {
         if let Some((language, text)) = &self.script {
             let given = Given {
                 file: &self.file,
-                inputs: &settings.answers,
                 seed: args.seed,
                 wall_seconds: args.wall_limit,
             };
@@ -292,7 +286,7 @@ fn write(job: &Job, args: &CheckArgs, task: &Task, outcome: &Outcome) -> Result<
 
 /// Writes one file of a run.
 fn put(job: &Job, args: &CheckArgs, path: &Path, ending: &str, bytes: &[u8]) -> Result<(), String> {
-    let is_one = !args.worker;
+    let is_one = args.is_one;
     let path = place(path, job, ending, is_one);
     if let (false, Some(folder)) = (is_one, path.parent()) {
         let made = std::fs::create_dir_all(folder);

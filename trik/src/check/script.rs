@@ -2,9 +2,10 @@
 //!
 //! Owns which language a file is in. Knows no engine from inside.
 
-use crate::script::JavaScript;
+use crate::script::{JavaScript, Python};
 use sim::judge::Program;
 use std::path::Path;
+use std::time::Duration;
 
 /// A language of programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,8 +37,6 @@ impl Language {
 pub(super) struct Given<'a> {
     /// Where its text comes from.
     pub file: &'a Path,
-    /// Lines for programs that read.
-    pub inputs: &'a [String],
     /// Seed of random numbers.
     pub seed: u32,
     /// Longest run in seconds of real time.
@@ -55,6 +54,10 @@ pub(super) fn open(
 ) -> Result<Box<dyn Program>, String> {
     match language {
         Language::JavaScript => Ok(Box::new(JavaScript::new(given.file, text)?)),
-        Language::Python => Err("programs in Python cannot be judged yet".to_owned()),
+        Language::Python => {
+            let longest = Duration::from_secs_f64(given.wall_seconds);
+            let python = Python::new(given.file, text, given.seed, longest)?;
+            Ok(Box::new(python))
+        }
     }
 }

@@ -40,7 +40,7 @@ pub(super) fn serve(args: &CheckArgs) -> Result<(), String> {
 }
 
 /// Holds this process to its memory, so that an overflow ends it and nobody else.
-pub(super) fn limit_memory(args: &CheckArgs) -> nix::Result<()> {
+fn limit_memory(args: &CheckArgs) -> nix::Result<()> {
     let most = rlim_t::from(args.memory) << 20;
     setrlimit(Resource::RLIMIT_AS, most, most)?;
     // A crash is expected: nobody wants its memory on the disk.
@@ -48,7 +48,7 @@ pub(super) fn limit_memory(args: &CheckArgs) -> nix::Result<()> {
 }
 
 /// Does a run; a panic in it is its result.
-pub(super) fn guarded(job: &Job, args: &CheckArgs) -> Row {
+fn guarded(job: &Job, args: &CheckArgs) -> Row {
     catch_unwind(AssertUnwindSafe(|| run::run(job, args))).unwrap_or_else(|_| {
         let field = job.field.as_deref().map(shown);
         let why = "trik has a defect and cannot judge this: please report it with this file";

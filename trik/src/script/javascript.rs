@@ -4,8 +4,9 @@
 //! did that, then who is due, in the order in which they began to wait.
 
 use super::input::{GAMEPAD, KEYS};
-use super::problem;
+use super::refresh::Readings;
 use super::stage::{Ear, Heard, Here, Stage, Wish};
+use super::{START_MS, problem};
 use generator::{Generator, Gn};
 use lang::diagram::brick::{Brick, Command};
 use lang::diagram::machine::{STEP_MS, Status};
@@ -51,6 +52,7 @@ pub struct JavaScript {
     threads: Vec<Thread>,
     began: Option<u32>,
     turns: u32,
+    readings: Readings,
     errors: Vec<Problem>,
     ended: Option<u32>,
 }
@@ -85,6 +87,7 @@ impl JavaScript {
             threads: Vec::new(),
             began: None,
             turns: 0,
+            readings: Readings::default(),
             errors: Vec::new(),
             ended: None,
         })
@@ -292,6 +295,15 @@ impl JavaScript {
         })
     }
 
+    /// All that is due in this step.
+    fn act(&mut self, robot: &mut dyn Brick) {
+        self.hear(robot);
+        self.work_off(Some(robot));
+        if self.threads.is_empty() {
+            self.end(robot);
+        }
+    }
+
     /// No thread lives any more.
     fn end(&mut self, robot: &mut dyn Brick) {
         self.ended = Some(self.stage.now.get());
@@ -313,13 +325,14 @@ impl Program for JavaScript {
         if self.ended.is_some() {
             return self.status();
         }
-        let began = *self.began.get_or_insert(now_ms);
-        self.stage.now.set(now_ms.saturating_sub(began));
-        self.hear(robot);
-        self.work_off(Some(robot));
-        if self.threads.is_empty() {
-            self.end(robot);
-        }
+        let began = *self.began.get_or_insert(now_ms + START_MS);
+        let Some(now) = now_ms.checked_sub(began) else {
+            return Status::Running;
+        };
+        self.stage.now.set(now);
+        let mut readings = std::mem::take(&mut self.readings);
+        self.act(&mut readings.of(robot, now + START_MS));
+        self.readings = readings;
         self.status()
     }
 

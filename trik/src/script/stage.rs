@@ -4,23 +4,21 @@
 //! deep, and go on in a later step. Whoever asks [`limits::SCRIPT_CALLS`] times without waiting, or computes until the
 //! engine has looked up a few times (some 10 000 turns of a loop), is charged one tick.
 
-use super::drawing;
 use super::input::Input;
 use super::tree::Tree;
+use super::{beside, drawing, mailbox};
 use crate::limits;
 use lang::diagram::brick::{Brick, Command};
 use std::cell::{Cell, RefCell};
 use std::collections::{BTreeSet, VecDeque};
 use std::fmt;
 use std::io;
-use std::path::{Component, Path};
 use std::rc::Rc;
 use std::sync::{Arc, Mutex, PoisonError};
 use trikd::js::events::Record;
 use trikd::js::ground::{Ground, Shown};
 use trikd::js::machine::Job;
 use trikd::js::outside::Output;
-use trikd::js::read_text;
 use trikd::js::shared::{Shared, Slot};
 use trikd::tree::Answers;
 
@@ -235,28 +233,23 @@ impl Answers for Here {
 
     fn write(&self, path: &str, text: &str) -> io::Result<()> {
         let text = text.to_owned();
-        self.tree(path, move |tree, brick, path| {
+        let done = self.tree(path, move |tree, brick, path| {
             tree.write(brick, path, &text)
-        })
-        .unwrap_or_else(over)
+        });
+        let has_cleared = self
+            .stage
+            .tree
+            .borrow_mut()
+            .has_cleared(self.stage.now.get());
+        if has_cleared {
+            self.stage.hand_over(Wish::Tick);
+        }
+        done.unwrap_or_else(over)
     }
 
     fn now_us(&self) -> u128 {
         u128::from(self.stage.now.get()) * 1000
     }
-}
-
-/// A file of the program's folder: programs under a judge see nothing else.
-fn beside(shared: &Shared, file: &str) -> Result<String, String> {
-    let is_plain = Path::new(file)
-        .components()
-        .all(|part| matches!(part, Component::Normal(_)));
-    if !is_plain {
-        return Err(format!(
-            "{file}: a judged program reads only files of its own folder"
-        ));
-    }
-    read_text(&shared.folder.join(file))
 }
 
 impl Ground for Here {
@@ -332,36 +325,14 @@ impl Ground for Here {
     }
 
     fn mailbox(&self, _shared: &Shared, words: String) -> io::Result<String> {
-        let (word, rest) = words.split_once(' ').unwrap_or((&words, ""));
-        let number = |text: &str| text.trim().parse::<i32>().ok();
-        let tell = |told: Told| {
-            let told = self.stage.with(move |brick| brick.tell(told.command()));
-            told.map_or_else(over, |()| Ok(String::new()))
-        };
-        match word {
-            "send" => {
-                let (hull, text) = rest.split_once(' ').unwrap_or((rest, ""));
-                let hull = number(hull).filter(|hull| *hull >= 0);
-                tell(Told::Send(text.to_owned(), hull))
-            }
-            "join" => {
-                let mut parts = rest.split(' ');
-                let address = parts.next().unwrap_or("").to_owned();
-                let mut part = || parts.next().and_then(number).unwrap_or(-1);
-                let (port, hull) = (part(), part());
-                self.stage.hull.set(hull.max(0));
-                tell(Told::Join(address, port, hull))
-            }
-            "hull" => {
-                if let Some(hull) = number(rest) {
-                    self.stage.hull.set(hull);
-                }
-                Ok(self.stage.hull.get().to_string())
-            }
-            "ip" => Ok("127.0.0.1".to_owned()),
-            "connected" | "enabled" => Ok("1".to_owned()),
-            _ => Ok(String::new()),
-        }
+        let stage = self.stage.clone();
+        let answer = self.stage.with(move |brick| {
+            let mut hull = stage.hull.get();
+            let answer = mailbox(&words, &mut hull, |command| brick.tell(command));
+            stage.hull.set(hull);
+            answer
+        });
+        answer.map_or_else(over, Ok)
     }
 
     fn show(&self, _shared: &Shared, shown: Shown<'_>) -> Result<(), String> {
@@ -381,7 +352,7 @@ impl Ground for Here {
 
     fn include(&self, shared: &Shared, file: &str) -> Result<String, String> {
         self.stage.charge(1);
-        beside(shared, file)
+        beside(&shared.folder, file)
     }
 
     fn read_file(&self, shared: &Shared, file: &str) -> Result<String, String> {
@@ -389,7 +360,7 @@ impl Ground for Here {
         if let Some(bytes) = self.stage.tree.borrow().written(file) {
             return Ok(String::from_utf8_lossy(bytes).into_owned());
         }
-        beside(shared, file)
+        beside(&shared.folder, file)
     }
 
     fn append(&self, _shared: &Shared, file: &str, bytes: &[u8]) -> io::Result<()> {
@@ -422,27 +393,5 @@ impl Ground for Here {
     fn date_ms(&self) -> Option<f64> {
         self.stage.charge(1);
         Some((limits::SCRIPT_EPOCH_MS + u64::from(self.stage.now.get())) as f64)
-    }
-}
-
-/// A message that outlives its program's words.
-enum Told {
-    Send(String, Option<i32>),
-    Join(String, i32, i32),
-}
-
-impl Told {
-    fn command(&self) -> Command<'_> {
-        match self {
-            Self::Send(message, hull) => Command::Send {
-                message,
-                hull: *hull,
-            },
-            Self::Join(address, port, hull) => Command::Join {
-                address,
-                port: *port,
-                hull: *hull,
-            },
-        }
     }
 }

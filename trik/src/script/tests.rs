@@ -4,10 +4,15 @@ use lang::diagram::ports::Port;
 use lang::diagram::stand_in::{Placing, StandIn};
 use sim::judge::Program;
 use std::path::Path;
+use std::time::Duration;
 
-/// Runs a program for at most so long; its log, its status and the first error.
+/// Runs a program in JavaScript for at most so long: its status and what went wrong.
 fn run(text: &str, ms: u32, robot: &mut StandIn) -> (Status, String) {
     let mut program = JavaScript::new(Path::new("/nowhere/p.js"), text).unwrap();
+    drive(&mut program, ms, robot)
+}
+
+fn drive(program: &mut dyn Program, ms: u32, robot: &mut StandIn) -> (Status, String) {
     let mut now = 0;
     let mut status = program.step(now, robot);
     while status == Status::Running && now < ms {
@@ -34,7 +39,7 @@ fn log(text: &str) -> Vec<String> {
     robot
         .log
         .iter()
-        .map(|(ms, line)| format!("{ms} {line}"))
+        .map(|(ms, line)| format!("{} {line}", ms - START_MS))
         .collect()
 }
 
@@ -179,8 +184,8 @@ fn keys_and_timers_are_events() {
         script.timer(100).timeout.connect(() => print('timer')); script.run();";
     let mut program = JavaScript::new(Path::new("/nowhere/p.js"), text).unwrap();
     let enter = Port::named("Enter").unwrap();
-    for now in (0..=150).step_by(STEP_MS as usize) {
-        robot.readings.insert(enter, i32::from(now == 50));
+    for now in (0..=180).step_by(STEP_MS as usize) {
+        robot.readings.insert(enter, i32::from(now == 80));
         assert_eq!(program.step(now, &mut robot), Status::Running);
         robot.tick();
     }
@@ -220,4 +225,152 @@ fn the_display_and_the_marker_tell_what_blocks_tell() {
             "rest"
         ]
     );
+}
+
+/// Whether there is a Python to run.
+fn has_python(test: &str) -> bool {
+    let found = std::process::Command::new("python3")
+        .arg("--version")
+        .output()
+        .is_ok_and(|output| output.status.success());
+    if !found {
+        println!("skipped {test}: no python3");
+    }
+    found
+}
+
+fn python(text: &str, ms: u32, robot: &mut StandIn) -> (Status, String) {
+    let wall = Duration::from_secs(60);
+    let mut program = Python::new(Path::new("/nowhere/p.py"), text, 1, wall).unwrap();
+    drive(&mut program, ms, robot)
+}
+
+fn python_log(text: &str) -> Vec<String> {
+    let mut robot = robot();
+    let (status, error) = python(text, 10_000, &mut robot);
+    assert!(matches!(status, Status::Ended { .. }), "{text}: {status:?}");
+    assert_eq!(error, "", "{text}");
+    let lines = robot.log.iter();
+    lines
+        .map(|(ms, line)| format!("{} {line}", ms - START_MS))
+        .collect()
+}
+
+#[test]
+fn python_waits_in_model_time_too() {
+    if !has_python("python_waits_in_model_time_too") {
+        return;
+    }
+    let text = "
+import queue, threading, time
+began = time.time()
+brick.motor('M3').setPower(50)
+script.wait(25)
+print(brick.sensor(A1).read(), round(time.time() - began, 3))
+box = queue.Queue()
+def work():
+    time.sleep(0.1)
+    box.put('from a thread')
+threading.Thread(target=work).start()
+print(box.get())
+def other():
+    print('begins')
+    script.wait(30)
+    Threading.sendMessage('main', 'hello')
+    print('sent')
+Threading.startThread('b', other)
+print(Threading.receiveMessage(True))
+Threading.joinThread('b')
+while brick.encoder('E3').read() < 60: pass
+brick.display().addLabel('x', 1, 2)
+brick.marker().down('red')
+timer = script.timer(50)
+timer.timeout.connect(lambda: (print('tick'), script.quit()))
+script.run()
+brick.motor('M3').powerOff()
+";
+    let wanted = [
+        "0 power M3 50",
+        "30 print \"45 0.03\"",
+        "130 print \"from a thread\"",
+        "130 print \"begins\"",
+        "160 print \"hello\"",
+        "160 print \"sent\"",
+        "220 label 1 2 20 \"x\"",
+        "220 marker red",
+        "270 print \"tick\"",
+        "270 power M3 0",
+        "270 rest",
+    ];
+    assert_eq!(python_log(text), wanted);
+}
+
+#[test]
+fn python_does_the_same_each_time() {
+    if !has_python("python_does_the_same_each_time") {
+        return;
+    }
+    let text = "
+import random, threading, time
+def work(name):
+    for i in range(5):
+        print(name, random.randint(1, 1000), script.random(1, 1000), hash('x') % 100, time.time())
+        time.sleep(random.random() / 10)
+for name in 'abc': threading.Thread(target=work, args=(name,)).start()
+";
+    let first = python_log(text);
+    assert!(first.len() > 10, "{first:?}");
+    for _ in 0..3 {
+        assert_eq!(python_log(text), first);
+    }
+}
+
+#[test]
+fn python_that_never_ends_or_fails_is_ended_and_says_where() {
+    if !has_python("python_that_never_ends_or_fails_is_ended_and_says_where") {
+        return;
+    }
+    for text in [
+        "while True: pass",
+        "while True:\n  try:\n    script.wait(10)\n  except BaseException: pass",
+        "Threading.startThread('a', lambda: brick.keys().buttonCode())",
+        "import threading\nthreading.Lock().acquire()\nlock = threading.Lock()\nlock.acquire()\nlock.acquire()",
+        "while True: print('x' * 1000)",
+    ] {
+        let (status, error) = python(text, 300, &mut robot());
+        assert_eq!((status, error.as_str()), (Status::Running, ""), "{text}");
+    }
+    let failures = [
+        ("\n1 / 0", "2:1 ZeroDivisionError: division by zero"),
+        ("x = (", "1:1 SyntaxError: '(' was never closed"),
+        (
+            "def f():\n  brick.motor('Z1').setPower(1)\nThreading.startThread('a', f)\nscript.wait(100)",
+            "2:1 AttributeError",
+        ),
+        ("import sys\nsys.exit(3)", "ended itself with an error"),
+        ("import os\nos._exit(0)", "broken off"),
+    ];
+    for (text, said) in failures {
+        let (status, error) = python(text, 1000, &mut robot());
+        assert!(
+            matches!(
+                status,
+                Status::Ended {
+                    with_errors: true,
+                    ..
+                }
+            ),
+            "{text}"
+        );
+        assert!(error.contains(said), "{text}: {error}");
+    }
+    let mut slow = Python::new(
+        Path::new("/nowhere/p.py"),
+        "sum(range(10 ** 12))",
+        1,
+        Duration::from_millis(300),
+    )
+    .unwrap();
+    let (_, error) = drive(&mut slow, 1000, &mut robot());
+    assert!(error.contains("does not wait"), "{error}");
 }

@@ -20,6 +20,9 @@ const CELLS: usize = 9;
 /// Where the heading stands among the numbers of the gyroscope.
 const HEADING: usize = 6;
 
+/// How often the original's simulator comes through its events.
+const TURN_MS: u32 = 30;
+
 /// What the robot does not say by itself.
 #[derive(Debug, Default)]
 pub struct Tree {
@@ -29,6 +32,9 @@ pub struct Tree {
     red: bool,
     /// How often each sensor of the camera has looked for its colour.
     detections: BTreeMap<String, u32>,
+    /// Whether an encoder was cleared, and when one was cleared at no cost.
+    cleared: bool,
+    free: Option<u32>,
     /// Files that the program has written.
     written: BTreeMap<String, Vec<u8>>,
 }
@@ -204,6 +210,7 @@ impl Tree {
             ["encoders", name, "value"] => {
                 let port = port(name, Way::In).ok_or_else(absent)?;
                 brick.tell(Command::ResetEncoder { port });
+                self.cleared = true;
             }
             ["led", light, "value"] => self.light(brick, light, whole(text)? != 0),
             ["sound", "play", "value"] => {
@@ -237,6 +244,19 @@ impl Tree {
             _ => return Err(absent()),
         }
         Ok(())
+    }
+
+    /// Whether an encoder was cleared since the last question, and whoever did it goes on in the next tick. So it is for a
+    /// diagram: the block takes a turn of the simulator's, which comes through its events every third tick.
+    pub fn has_cleared(&mut self, now_ms: u32) -> bool {
+        if !std::mem::take(&mut self.cleared) {
+            return false;
+        }
+        if now_ms.is_multiple_of(TURN_MS) && self.free != Some(now_ms) {
+            self.free = Some(now_ms);
+            return false;
+        }
+        true
     }
 
     /// One order sets green and red one after the other; the colour is told when red is known.

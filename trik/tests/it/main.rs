@@ -2,6 +2,8 @@
 //!
 //! One binary, so that linking happens once. Below is the table of contents.
 
+/// Solutions of tasks, judged.
+mod check;
 /// Diagrams shown, checked and translated, and run in three languages.
 mod diagrams;
 /// What documents show of a robot.

@@ -3,7 +3,8 @@
 use std::io;
 use std::path::Path;
 
-const MODULE: &str = include_str!("../python/trik.py");
+/// Its text.
+pub const MODULE: &str = include_str!("../python/trik.py");
 
 /// Puts the module into `folder`.
 ///

@@ -79,6 +79,14 @@ def _has(directory):
     return os.path.isdir(os.path.join(_ROOT, directory))
 
 
+def _is_there(path):
+    return os.path.exists(os.path.join(_ROOT, path))
+
+
+def _names(directory):
+    return sorted(os.listdir(os.path.join(_ROOT, directory)))
+
+
 class _Channel:
     """Frames to and from trikd."""
 
@@ -625,7 +633,7 @@ class Brick:
         for directory, make in kinds:
             place = '%s/%s' % (directory, port)
             plain = '/' not in port and port not in ('', '.', '..')
-            if (place, file) not in self._made and plain and os.path.exists(os.path.join(_ROOT, place, file)):
+            if (place, file) not in self._made and plain and _is_there(os.path.join(place, file)):
                 self._made[place, file] = make(place)
             if (place, file) in self._made:
                 return self._made[place, file]
@@ -662,7 +670,7 @@ class Brick:
         return self._port(port, [('servos', PwmCapture)], 'duty_cycle')
 
     def pwmCapturePorts(self):
-        return [port for port in sorted(os.listdir(os.path.join(_ROOT, 'servos'))) if self.pwmCapture(port)]
+        return [port for port in _names('servos') if self.pwmCapture(port)]
 
     def battery(self):
         return Battery()
@@ -736,17 +744,17 @@ class Brick:
         _file('sound/say/value', os.O_WRONLY).write(text)
 
     def motorPorts(self, kind=None):
-        return sorted(os.listdir(os.path.join(_ROOT, 'motors')))
+        return _names('motors')
 
     def sensorPorts(self, kind=None):
-        return sorted(os.listdir(os.path.join(_ROOT, 'sensors')))
+        return _names('sensors')
 
     def encoderPorts(self):
-        return sorted(os.listdir(os.path.join(_ROOT, 'encoders')))
+        return _names('encoders')
 
     def stop(self):
         _file('stop', os.O_WRONLY).write('1\n')
-        if os.path.exists(os.path.join(_ROOT, 'display/device')):
+        if _is_there('display/device'):
             self._display.hide()
 
 

@@ -6,6 +6,30 @@ use super::super::words;
 use super::{Reader, is};
 use crate::xml::{Element, Node};
 
+/// Names of classes that fields of old versions ask for, and what they are called now; the original renames them when it
+/// opens a save of such a version, with the field that was put into it.
+const OLD_CLASSES: [(&str, &str); 4] = [
+    (
+        "trik::robotModel::twoD::parts::TwoDInfraredSensor",
+        "twoDModel::robotModel::parts::RangeSensor",
+    ),
+    (
+        "trikKitInterpreter::robotModel::twoD::parts::TwoDInfraredSensor",
+        "twoDModel::robotModel::parts::RangeSensor",
+    ),
+    ("trikKitInterpreter::", "trik::"),
+    ("commonTwoDModel::", "twoDModel::"),
+];
+
+/// A text, with the name of a class as it is now.
+fn modern(text: &str) -> Value {
+    let renamed = OLD_CLASSES.iter().find_map(|(old, new)| {
+        let rest = text.strip_prefix(old)?;
+        Some(format!("{new}{rest}"))
+    });
+    renamed.map_or_else(|| Value::text(text), |text| Value::text(&text))
+}
+
 impl Reader {
     /// The name of an object.
     pub(super) fn name(&mut self, text: &str) -> Name {
@@ -147,7 +171,7 @@ impl Reader {
 
     fn constant(&mut self, element: &Element<'_>) -> Option<Value> {
         if is(element, "string") {
-            return self.present(element, "value").map(Value::text);
+            return self.present(element, "value").map(modern);
         }
         if is(element, "int") {
             return self.whole(element, "value").map(Value::Int);

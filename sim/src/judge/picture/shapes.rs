@@ -132,7 +132,7 @@ pub(super) fn field(field: &Field, out: &mut String) {
             continue;
         };
         bytes += blob.text.len();
-        if bytes > limits::PICTURE_BYTES || !is_near(image.at) || !is_near(image.size) {
+        if bytes > limits::DRAWING_BYTES || !is_near(image.at) || !is_near(image.size) {
             continue;
         }
         if let Some(source) = data(blob) {

@@ -1,0 +1,166 @@
+use lang::diagram::brick::{Brick, Command};
+use lang::diagram::ports::Port;
+
+use crate::arena::{Arena, Setup};
+use crate::field::{Field, Robot, Solid, SolidKind, Wall};
+use crate::geometry::point;
+
+/// A robot at (0, 0) that looks to the right, with realistic physics, M3 at the left and M4 at the right.
+fn field() -> Field {
+    let mut field = Field::default();
+    field.settings.realistic_physics = true;
+    field.robots.push(Robot::default());
+    field
+}
+
+fn power(arena: &mut Arena, left: i32, right: i32) {
+    let mut robot = arena.robot(0);
+    for (name, percent) in [("M3", left), ("M4", right)] {
+        let port = Port::named(name).unwrap();
+        robot.tell(Command::Power { port, percent });
+    }
+}
+
+fn encoder(arena: &mut Arena, name: &str) -> i32 {
+    arena.robot(0).scalar(Port::named(name).unwrap()).unwrap()
+}
+
+/// So many ticks at these powers, and one more for the speeds that were chosen in the last one.
+fn drive(arena: &mut Arena, left: i32, right: i32, ticks: u32) {
+    power(arena, left, right);
+    for _ in 0..ticks {
+        arena.tick();
+    }
+    power(arena, 0, 0);
+    arena.tick();
+    arena.tick();
+}
+
+/// The original gives 68.3 px where ideal physics gives 76.8.
+#[test]
+fn a_second_straight_is_as_long_as_with_the_original() {
+    let mut arena = Arena::new(&field(), Setup::default());
+    drive(&mut arena, 100, 100, 100);
+    let pose = arena.robots()[0].pose();
+    assert!((pose.x - 68.3).abs() < 0.7, "{pose:?}");
+    assert!(pose.y.abs() < 0.01 && pose.degrees.abs() < 0.01, "{pose:?}");
+    // Both wheels stand: it has stopped dead.
+    arena.tick();
+    assert_eq!(arena.robots()[0].pose(), pose);
+}
+
+/// The original gives -177 degrees where ideal physics gives -200.
+#[test]
+fn a_second_on_the_spot_turns_as_far_as_with_the_original() {
+    let mut arena = Arena::new(&field(), Setup::default());
+    drive(&mut arena, -100, 100, 100);
+    let pose = arena.robots()[0].pose();
+    assert!((pose.degrees + 177.0).abs() < 2.0, "{pose:?}");
+}
+
+/// The original gives 2194 where ideal physics gives 1039, because encoders go on counting at a wall.
+#[test]
+fn encoders_count_at_a_wall() {
+    let mut field = field();
+    field
+        .walls
+        .push(Wall::new(point(200.0, -100.0), point(200.0, 100.0)));
+    let mut arena = Arena::new(&field, Setup::default());
+    drive(&mut arena, 100, 100, 400);
+    let counted = encoder(&mut arena, "E3");
+    assert!((counted - 2194).abs() <= 11, "{counted}");
+    let pose = arena.robots()[0].pose();
+    // The body's nose is 49 px before the corner of the square, the wall's face at 195.
+    assert!((pose.x + 49.0 - 195.0).abs() < 1.0, "{pose:?}");
+}
+
+#[test]
+fn things_are_pushed_and_come_to_rest() {
+    let mut field = field();
+    for (kind, y) in [(SolidKind::Skittle, 10.0), (SolidKind::Cube, 40.0)] {
+        field.solids.push(Solid::new(kind, point(90.0, y)));
+    }
+    field
+        .solids
+        .push(Solid::new(SolidKind::Ball, point(400.0, 400.0)));
+    let mut arena = Arena::new(&field, Setup::default());
+    drive(&mut arena, 100, 100, 200);
+    let solids = &arena.field().solids;
+    for solid in &solids[..2] {
+        assert!(solid.at.x > 120.0, "{:?} at {:?}", solid.kind, solid.at);
+    }
+    assert_eq!(solids[2].at, point(400.0, 400.0));
+    for _ in 0..500 {
+        arena.tick();
+    }
+    let before: Vec<_> = arena.field().solids.iter().map(|solid| solid.at).collect();
+    for _ in 0..10 {
+        arena.tick();
+    }
+    for (solid, before) in arena.field().solids.iter().zip(before) {
+        assert!(solid.at.from(before).length() < 0.01);
+    }
+}
+
+#[test]
+fn a_ball_rolls_on_and_bounces_from_a_wall() {
+    let mut field = field();
+    field
+        .solids
+        .push(Solid::new(SolidKind::Ball, point(80.0, 25.0)));
+    field
+        .walls
+        .push(Wall::new(point(250.0, -100.0), point(250.0, 150.0)));
+    let mut arena = Arena::new(&field, Setup::default());
+    power(&mut arena, 100, 100);
+    let mut farthest: f64 = 0.0;
+    for _ in 0..60 {
+        arena.tick();
+    }
+    power(&mut arena, 0, 0);
+    for _ in 0..400 {
+        arena.tick();
+        farthest = farthest.max(arena.field().solids[0].at.x);
+    }
+    let ball = arena.field().solids[0].at;
+    // Its rim at the wall's face, and then back again.
+    assert!((farthest + 15.0 - 245.0).abs() < 1.5, "{farthest}");
+    assert!(ball.x < farthest - 20.0, "{ball:?}");
+}
+
+#[test]
+fn the_same_run_is_the_same_again() {
+    let run = || {
+        let mut field = field();
+        for y in [0.0, 20.0, 40.0, 60.0] {
+            field
+                .solids
+                .push(Solid::new(SolidKind::Cube, point(100.0, y)));
+        }
+        let mut arena = Arena::new(&field, Setup::default());
+        drive(&mut arena, 100, 70, 200);
+        (arena.robots()[0].pose(), arena.field().solids.clone())
+    };
+    assert_eq!(run(), run());
+}
+
+#[test]
+fn strange_worlds_do_no_harm() {
+    let mut field = field();
+    for size in [0.0, -5.0, 1e6, f64::NAN] {
+        let mut solid = Solid::new(SolidKind::Ball, point(60.0, 25.0));
+        solid.size = size;
+        solid.material.mass = 1e308;
+        solid.material.friction = -1.0;
+        field.solids.push(solid);
+    }
+    for end in [0.0, 1e6] {
+        field
+            .walls
+            .push(Wall::new(point(0.0, 0.0), point(end, 0.0)));
+    }
+    field.robots[0].material.mass = 0.0;
+    field.robots[0].wheels.mass = -1.0;
+    let mut arena = Arena::new(&field, Setup::default());
+    drive(&mut arena, 100, -100, 50);
+}

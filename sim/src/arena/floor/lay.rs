@@ -1,0 +1,158 @@
+//! A field onto the floor: its colour, pictures, drawn things and old traces, in the order in which they cover each other.
+//!
+//! Owns that order, and what is said of things that cannot be shown. Knows the plain data of a field and no physics.
+//!
+//! Two facts of the original: backgrounds are for people only, sensors do not see them; and straight lines, those of a
+//! hand too, go from whole pixels to whole pixels.
+
+use lang::problem::Problem;
+
+use super::colour::Tint;
+use super::outline::{self, Affine, Cap, Nib, Outline};
+use super::picture::Picture;
+use super::{Floor, Stroke, words};
+use crate::field::{Drawn, Field, Image, Pen, Shape};
+use crate::geometry::{Point, point};
+
+/// The floor of a field, and what is wrong with its pictures and colours.
+pub fn lay(field: &Field) -> (Floor, Vec<Problem>) {
+    let mut layer = Layer::default();
+    let background = &field.settings.background;
+    if !background.is_empty() {
+        layer.floor.background = layer.tint(background, "settings").rgb;
+    }
+    for image in field.images.iter().filter(|image| !image.is_background) {
+        layer.image(field, image);
+    }
+    for drawn in &field.drawn {
+        layer.drawn(drawn);
+    }
+    for old in &field.trace {
+        let rgb = layer.tint(&old.colour, "trace").rgb;
+        layer.floor.mark(Stroke {
+            begin: old.begin,
+            end: old.end,
+            rgb,
+        });
+    }
+    if layer.floor.is_full {
+        layer.warn("", words::too_much());
+    }
+    (layer.floor, layer.problems)
+}
+
+#[derive(Default)]
+struct Layer {
+    floor: Floor,
+    problems: Vec<Problem>,
+}
+
+/// A point of a straight line.
+fn whole(at: Point) -> Point {
+    point(at.x.trunc(), at.y.trunc())
+}
+
+impl Layer {
+    fn warn(&mut self, id: &str, words: lang::problem::Words) {
+        let mut problem = Problem::warning(words);
+        problem.place.object = Some(id.to_owned()).filter(|id| !id.is_empty());
+        // The first ones tell enough.
+        if self.problems.len() < crate::limits::FLOOR_PROBLEMS && !self.problems.contains(&problem)
+        {
+            self.problems.push(problem);
+        }
+    }
+
+    fn tint(&mut self, text: &str, id: &str) -> Tint {
+        if text.is_empty() {
+            return Tint::solid([0; 3]);
+        }
+        Tint::named(text).unwrap_or_else(|| {
+            self.warn(id, words::no_colour(text));
+            Tint::solid([0; 3])
+        })
+    }
+
+    fn image(&mut self, field: &Field, image: &Image) {
+        let Some(blob) = field.blobs.get(&image.image) else {
+            return self.warn(&image.id, words::no_picture(&image.image));
+        };
+        if blob.is_external {
+            return self.warn(&image.id, words::outside(&blob.path));
+        }
+        match Picture::read(&blob.path, &blob.text) {
+            Ok(picture) => {
+                for lack in &picture.lacks {
+                    self.warn(&image.id, words::lacks(lack));
+                }
+                // The original draws it into a rectangle of whole pixels.
+                let far = point(image.at.x + image.size.x, image.at.y + image.size.y);
+                let [left, right] = [image.at.x.min(far.x), image.at.x.max(far.x)].map(f64::round);
+                let [top, bottom] = [image.at.y.min(far.y), image.at.y.max(far.y)].map(f64::round);
+                let place = [right - left, 0.0, 0.0, bottom - top, left, top];
+                self.floor.add_picture(&picture, &Affine(place));
+            }
+            Err(why) => self.warn(&image.id, words::bad_picture(&image.image, &why)),
+        }
+    }
+
+    fn drawn(&mut self, drawn: &Drawn) {
+        match &drawn.shape {
+            Shape::Line(begin, end) => {
+                let path = outline::line(whole(*begin), whole(*end));
+                self.pen(path.as_ref(), drawn, &drawn.pen, Cap::Square);
+            }
+            Shape::Rectangle(one, other) => {
+                let path = outline::rectangle(*one, *other);
+                self.brush(path.as_ref(), drawn);
+                self.pen(path.as_ref(), drawn, &drawn.pen, Cap::Square);
+            }
+            Shape::Ellipse(one, other) => {
+                let path = outline::ellipse(*one, *other);
+                self.brush(path.as_ref(), drawn);
+                self.pen(path.as_ref(), drawn, &drawn.pen, Cap::Square);
+            }
+            Shape::Curve(begin, one, other, end) => {
+                let path = outline::curve([*begin, *one, *other, *end]);
+                self.brush(path.as_ref(), drawn);
+                self.pen(path.as_ref(), drawn, &drawn.pen, Cap::Round);
+            }
+            Shape::Stylus(strokes) => {
+                for stroke in strokes {
+                    let path = outline::line(whole(stroke.begin), whole(stroke.end));
+                    self.pen(path.as_ref(), drawn, &drawn.pen, Cap::Round);
+                }
+            }
+        }
+    }
+
+    fn brush(&mut self, path: Option<&usvg::tiny_skia_path::Path>, drawn: &Drawn) {
+        if drawn.pen.fill_style != "solid" {
+            return;
+        }
+        let tint = self.tint(&drawn.pen.fill, &drawn.id);
+        let inside = path
+            .and_then(|path| Outline::inside(path, &Affine::SAME, super::raster::Rule::EvenOdd));
+        if let Some(inside) = inside {
+            self.floor.add_area(inside, tint);
+        }
+    }
+
+    fn pen(
+        &mut self,
+        path: Option<&usvg::tiny_skia_path::Path>,
+        drawn: &Drawn,
+        pen: &Pen,
+        cap: Cap,
+    ) {
+        let nib = Nib {
+            width: pen.width,
+            style: &pen.style,
+            cap,
+        };
+        if let Some(line) = path.and_then(|path| Outline::drawn(path, nib)) {
+            let tint = self.tint(&pen.colour, &drawn.id);
+            self.floor.add_area(line, tint);
+        }
+    }
+}

@@ -1,0 +1,312 @@
+//! A robot in a world of TRIK Studio as the body of a virtual board: pixels become metres, down becomes up.
+//!
+//! Owns the clock between the steps of the board and the ticks of the arena, and what the arena's sensors look like at the
+//! connectors. Knows no physics: the arena has it.
+
+use lang::diagram::brick::{Brick, Command};
+use lang::diagram::ports::Port;
+use lang::diagram::stand_in::PIXELS_IN_CM;
+
+use super::battery::Battery;
+use super::two_wheels::sharp_gp2_raw;
+use super::{Body, Drive, Power, Senses};
+use crate::arena::{Arena, Setup, ranges};
+use crate::field::{Field, SensorKind};
+use crate::geometry::{Point, Pose, point};
+use crate::world::Colour;
+
+/// Pixels in a metre.
+const PIXELS_IN_M: f64 = PIXELS_IN_CM * 100.0;
+/// A tick of the arena in seconds.
+const TICK_S: f64 = 0.01;
+/// What lies on a table.
+const GRAVITY_MPS2: f64 = 9.81;
+/// What the converter gives for a touch sensor that is pressed, and one that is not.
+const TOUCH_RAW: [f64; 2] = [20.0, 1000.0];
+/// What it gives for white, and how much more for black.
+const LIGHT_RAW: [f64; 2] = [30.0, 993.0];
+
+/// The type and the name in configurations of what a kind of sensor is on an analog port.
+fn analog_type(kind: SensorKind) -> Option<(&'static str, &'static str)> {
+    match kind {
+        SensorKind::Infrared => Some(("sharpGP2", "infrared")),
+        SensorKind::Touch => Some(("touch", "touch")),
+        SensorKind::Light => Some(("light", "light")),
+        _ => None,
+    }
+}
+
+fn named(letter: char, index: usize) -> Option<Port> {
+    Port::named(&format!("{letter}{}", index + 1))
+}
+
+/// The robot of a field, with the port of each device in a configuration of trikfs.
+pub fn configuration(field: &Field) -> String {
+    let robot = field.robot().cloned().unwrap_or_default();
+    let mut text = String::from(
+        "-- What the world has plugged in.\nlocal trik = include 'trik.lua'\n\ntrikfs = trik.robot {\n",
+    );
+    let digit = |port: Option<Port>| port.and_then(|port| port.name().get(1..)).unwrap_or("");
+    let [left, right] = [robot.left, robot.right].map(digit);
+    for (side, number) in [("left", left), ("right", right)] {
+        if !number.is_empty() && (side == "left" || left != right) {
+            text += &format!(
+                "  {{ port = 'M{number}', type = 'motor100', name = '{side}', encoder = 'E{number}' }},\n  {{ port = 'E{number}', type = 'encoder95', name = '{side}' }},\n"
+            );
+        }
+    }
+    for index in 0..6 {
+        let sensor = named('A', index).and_then(|port| robot.sensor(port));
+        if let Some((kind, name)) = sensor.and_then(|sensor| analog_type(sensor.kind)) {
+            let number = index + 1;
+            text +=
+                &format!("  {{ port = 'A{number}', type = '{kind}', name = '{name}{number}' }},\n");
+        }
+    }
+    for index in 0..2 {
+        let sensor = named('D', index).and_then(|port| robot.sensor(port));
+        if sensor.is_some_and(|sensor| sensor.kind == SensorKind::Sonar) {
+            let number = index + 1;
+            text += &format!(
+                "  {{ port = 'D{number}', type = 'ultrasonic', name = 'sonar{number}' }},\n"
+            );
+        }
+    }
+    if robot
+        .sensors
+        .iter()
+        .any(|one| one.kind == SensorKind::Lidar)
+    {
+        text += "  { port = 'lidar' },\n";
+    }
+    if !left.is_empty() && !right.is_empty() && left != right {
+        text += &format!(
+            "  {{ port = 'odometry', left = 'E{left}', right = 'E{right}', wheel_diameter_mm = 56, track_mm = 154 }},\n"
+        );
+    }
+    text + "}\n"
+}
+
+/// A robot in a world of TRIK Studio.
+pub struct Studio {
+    arena: Arena,
+    /// Seconds that no tick has covered yet.
+    rest_s: f64,
+    battery: Battery,
+    senses: Senses,
+    velocity_mps: Point,
+    was_stuck: bool,
+}
+
+impl Studio {
+    /// The robot of a field, where the field has it.
+    pub fn new(field: &Field, seed: u64) -> Self {
+        let setup = Setup {
+            seed,
+            ..Setup::default()
+        };
+        let mut studio = Self {
+            arena: Arena::new(field, setup),
+            rest_s: 0.0,
+            battery: Battery::default(),
+            senses: Senses::default(),
+            velocity_mps: Point::default(),
+            was_stuck: false,
+        };
+        studio.senses.pose = studio.pose();
+        studio.look();
+        studio
+    }
+
+    fn pose(&self) -> Pose {
+        let robot = &self.arena.robots()[0];
+        let centre = robot.centre();
+        Pose::new(
+            centre.x / PIXELS_IN_M,
+            -centre.y / PIXELS_IN_M,
+            -robot.pose().degrees.to_radians(),
+        )
+    }
+
+    /// What the connectors carry after a tick.
+    fn look(&mut self) {
+        let before = self.senses.pose;
+        let pose = self.pose();
+        let moved = pose.at.from(before.at);
+        let velocity = point(moved.x / TICK_S, moved.y / TICK_S);
+        let gained = velocity.from(self.velocity_mps);
+        self.velocity_mps = velocity;
+        let ahead = Point::towards(pose.heading_rad);
+        let turned = (pose.heading_rad - before.heading_rad).to_degrees();
+        let mut analog = [None; 6];
+        for (index, place) in analog.iter_mut().enumerate() {
+            *place = self.analog(index);
+        }
+        let mut ultrasonic_m = [None; 3];
+        for (index, place) in ultrasonic_m.iter_mut().take(2).enumerate() {
+            let cm = named('D', index).and_then(|port| self.arena.robot(0).scalar(port));
+            *place = cm
+                .filter(|&cm| cm < ranges::SONAR.reach_cm)
+                .map(|cm| f64::from(cm) / 100.0);
+        }
+        let is_stuck = self.arena.robots()[0].is_stuck();
+        self.senses = Senses {
+            pose,
+            encoders_deg: self.shafts_deg(),
+            analog,
+            ultrasonic_m,
+            battery_v: self.battery.voltage_v(),
+            acceleration_mps2: [
+                gained.dot(ahead) / TICK_S,
+                ahead.cross(gained) / TICK_S,
+                GRAVITY_MPS2,
+            ],
+            rate_dps: [0.0, 0.0, turned / TICK_S],
+            bumps: self.senses.bumps + u32::from(is_stuck && !self.was_stuck),
+        };
+        self.was_stuck = is_stuck;
+    }
+
+    fn analog(&mut self, index: usize) -> Option<f64> {
+        let port = named('A', index)?;
+        let kind = self.arena.robots()[0].sensor(port)?.kind;
+        let reading = f64::from(self.arena.robot(0).scalar(port)?);
+        match kind {
+            SensorKind::Infrared => Some(sharp_gp2_raw(reading)),
+            SensorKind::Touch => Some(TOUCH_RAW[usize::from(reading == 0.0)]),
+            SensorKind::Light => Some(LIGHT_RAW[0] + LIGHT_RAW[1] * reading / 99.0),
+            _ => None,
+        }
+    }
+}
+
+impl Body for Studio {
+    fn step(&mut self, dt_s: f64, drive: &Drive) {
+        self.battery.step(dt_s, 0.0);
+        self.rest_s += dt_s;
+        // A thousandth of a second is no number of two digits, so a tick may come that much early.
+        while self.rest_s >= TICK_S - 1e-9 {
+            self.rest_s -= TICK_S;
+            for (index, power) in drive.motors.iter().enumerate() {
+                let percent = match power {
+                    Power::Duty(percent) => percent.round().clamp(-100.0, 100.0) as i32,
+                    Power::Brake | Power::Open | Power::Blocked => 0,
+                };
+                if let Some(port) = named('M', index) {
+                    self.arena.robot(0).tell(Command::Power { port, percent });
+                }
+            }
+            self.arena.tick();
+            self.look();
+        }
+    }
+
+    fn weaken_battery(&mut self, volts: f64) {
+        self.battery.sag_v = volts;
+    }
+
+    fn senses(&self) -> Senses {
+        Senses {
+            battery_v: self.battery.voltage_v(),
+            ..self.senses
+        }
+    }
+
+    fn shafts_deg(&self) -> [f64; 4] {
+        let robot = &self.arena.robots()[0];
+        std::array::from_fn(|index| named('E', index).map_or(0.0, |port| robot.encoder(port)))
+    }
+
+    fn has_lidar(&self) -> bool {
+        self.arena.robots()[0]
+            .sensor_of(SensorKind::Lidar)
+            .is_some()
+    }
+
+    fn range_m(&self, clockwise_rad: f64) -> Option<f64> {
+        let robot = &self.arena.robots()[0];
+        let (at, degrees) = robot.sensor_pose(robot.sensor_of(SensorKind::Lidar)?);
+        let px = ranges::ray(
+            self.arena.solids(),
+            at,
+            degrees + clockwise_rad.to_degrees(),
+        )?;
+        Some(px / PIXELS_IN_M)
+    }
+
+    fn has_infrared_camera(&self) -> bool {
+        false
+    }
+
+    fn pixel(&self, _right: f64, _down: f64) -> Option<Colour> {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::{Robot, Sensor, Wall};
+
+    fn field() -> Field {
+        let mut robot = Robot::default();
+        for (port, kind) in [("A1", SensorKind::Infrared), ("D1", SensorKind::Sonar)] {
+            let mut sensor = Sensor::new(Port::named(port).unwrap(), kind);
+            sensor.at = point(62.0, 25.0);
+            robot.sensors.push(sensor);
+        }
+        let mut field = Field::default();
+        field.robots.push(robot);
+        field
+            .walls
+            .push(Wall::new(point(200.0, -100.0), point(200.0, 100.0)));
+        field
+    }
+
+    fn full(percent: f64) -> Drive {
+        let mut drive = Drive::default();
+        drive.motors[2] = Power::Duty(percent);
+        drive.motors[3] = Power::Duty(percent);
+        drive
+    }
+
+    #[test]
+    fn a_second_straight_is_27_centimetres_and_the_wheels_say_so() {
+        let mut body = Studio::new(&Field::default(), 1);
+        let before = body.senses().pose;
+        for _ in 0..1000 {
+            body.step(0.001, &full(100.0));
+        }
+        let after = body.senses();
+        // 76.79 px in a second; the first tick only takes the speed.
+        let way = after.pose.at.x - before.at.x;
+        assert!((way - 0.2688).abs() < 0.004, "{way}");
+        assert_eq!(after.pose.at.y, before.at.y);
+        assert!((after.encoders_deg[2] - 550.0).abs() < 6.0);
+        assert_eq!(after.encoders_deg[0], 0.0);
+    }
+
+    #[test]
+    fn sensors_are_what_the_connectors_would_carry() {
+        let body = Studio::new(&field(), 1);
+        let senses = body.senses();
+        assert_eq!(senses.analog[0], Some(sharp_gp2_raw(47.0)));
+        assert_eq!(senses.analog[1], None);
+        assert_eq!(senses.ultrasonic_m, [Some(0.47), None, None]);
+        assert!(!body.has_lidar() && body.range_m(0.0).is_none());
+        assert!(senses.battery_v > 11.0);
+    }
+
+    #[test]
+    fn the_configuration_has_what_the_world_has() {
+        let text = configuration(&field());
+        for line in [
+            "{ port = 'M3', type = 'motor100', name = 'left', encoder = 'E3' },",
+            "{ port = 'A1', type = 'sharpGP2', name = 'infrared1' },",
+            "{ port = 'D1', type = 'ultrasonic', name = 'sonar1' },",
+        ] {
+            assert!(text.contains(line), "{line} in {text}");
+        }
+        assert!(!text.contains("A2") && !text.contains("lidar"));
+    }
+}
