@@ -3,8 +3,8 @@
 #
 # usage: fuzz/run.sh TARGET|all [SECONDS]
 #
-# SECONDS is 60 for each target. Without arguments: the names of all targets. Begins with fuzz/seeds/TARGET, with the
-# real files of ../shared/data where they are, and with what earlier runs have found, which stays in
+# SECONDS is 60 for each target. Without arguments: the names of all targets. Begins with fuzz/seeds/TARGET, for the
+# reader with small saves that lang/examples/fuzz_seeds.rs makes, and with what earlier runs have found, which stays in
 # target/fuzz/corpus/TARGET. Says at the end how many inputs were tried and how many edges of the program they reached.
 # An input that fails is kept in target/fuzz/failures; `fuzz/run.sh TARGET FILE` tries it again.
 set -euo pipefail
@@ -32,25 +32,32 @@ host=$(rustc -vV | sed -n 's/^host: //p')
 RUSTFLAGS=$passes CARGO_TARGET_DIR=target/fuzz cargo build --quiet --release --target "$host" --manifest-path fuzz/Cargo.toml
 program=$PWD/target/fuzz/$host/release/target
 
-# seeds TARGET: real files that are inputs of it.
+# seeds TARGET: what it begins with.
 seeds() {
     local to=target/fuzz/corpus/$1
     mkdir -p "$to"
     if [ -d "fuzz/seeds/$1" ]; then
         cp -n "fuzz/seeds/$1"/* "$to"
     fi
-    if [ "$1" = reader ] && [ -d ../shared/data ]; then
-        find ../shared/data -name '*.qrs' -size -100k -exec cp -n {} "$to" \;
+    if [ "$1" = reader ]; then
+        cargo run --quiet -p lang --example fuzz_seeds -- "$to"
     fi
 }
 
 fuzz() {
-    local name=$1 seconds=$2 log
+    local name=$1 seconds=$2 longest=200000 log dictionary=()
     log=target/fuzz/$name.log
     seeds "$name"
+    if [ -f "fuzz/$name.dict" ]; then
+        dictionary=("-dict=fuzz/$name.dict")
+    fi
+    if [ "$name" = reader ]; then
+        # Each input is read several times and written; what a save can have, few blocks have.
+        longest=10000
+    fi
     mkdir -p target/fuzz/failures
-    if ! TRIK_FUZZ_TARGET=$name "$program" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -max_len=200000 \
-        -print_final_stats=1 -artifact_prefix="target/fuzz/failures/$name-" "target/fuzz/corpus/$name" >"$log" 2>&1; then
+    if ! TRIK_FUZZ_TARGET=$name "$program" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 "-max_len=$longest" \
+        "${dictionary[@]}" -print_final_stats=1 -artifact_prefix="target/fuzz/failures/$name-" "target/fuzz/corpus/$name" >"$log" 2>&1; then
         tail -n 40 "$log" >&2
         printf '%s failed; all of it is in %s\n' "$name" "$log" >&2
         return 1

@@ -15,7 +15,8 @@ local families = {
   include 'trik/motors.lua', include 'trik/encoders.lua', include 'trik/analog.lua', include 'trik/distance.lua',
   include 'trik/servos.lua', include 'trik/imu.lua', include 'trik/onboard.lua', include 'trik/camera.lua',
   include 'trik/lidar.lua', include 'trik/ir_camera.lua', include 'trik/gamepad.lua', include 'trik/odometry.lua',
-  include 'trik/display.lua',
+  include 'trik/display.lua', include 'trik/raw.lua',
+  include 'trik/microphones.lua',
 }
 
 -- Names of all ports in order, and the family of each.

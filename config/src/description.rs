@@ -175,6 +175,8 @@ pub enum SourceDescription {
     Fake(FakeDescription),
     /// `i2c{ ... }`: a register of a device on an I2C bus.
     I2c(I2cDescription),
+    /// `i2c_bus{ ... }`: all registers of all devices on an I2C bus, chosen by the position in the file.
+    I2cBus(I2cBusDescription),
     /// `absent{ reason }`: something that this board does not have; opening it tells why.
     Absent(String),
     /// `replay{ ... }`: bytes recorded with their timing.
@@ -258,17 +260,31 @@ pub enum EvdevLayout {
     Bits64,
 }
 
-/// `evdev{ path = ..., axes = { 'ABS_X', ... } | codes... }`
+/// `evdev{ path = ..., axes = { 'ABS_X', ... } | codes... | events = true }`
 ///
 /// Each tuple holds, for every listed code in order, its newest value as a little-endian i32; one tuple per SYN_REPORT.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EvdevDescription {
     /// Device node, usually `/dev/input/eventN`; a FIFO or file of recorded events works as well.
     pub path: PathBuf,
-    /// Watched (type, code) pairs, in the order of the tuple.
+    /// Watched (type, code) pairs, in the order of the tuple. Empty: each event of the device is a tuple of its own,
+    /// [`EvdevDescription::EVENT_BYTES`] long.
     pub codes: Vec<(u16, u16)>,
     /// Size of one event.
     pub layout: EvdevLayout,
+}
+
+impl EvdevDescription {
+    /// Type and code (u16), value (i32), microseconds of the kernel's clock (i64); little-endian.
+    pub const EVENT_BYTES: usize = 16;
+
+    /// Bytes of one tuple.
+    pub fn tuple_size(&self) -> usize {
+        match self.codes.len() {
+            0 => Self::EVENT_BYTES,
+            codes => 4 * codes,
+        }
+    }
 }
 
 /// `fake{ data = '...', period_ms = 10, loop = true }`
@@ -314,6 +330,15 @@ pub struct I2cDescription {
     pub readable: bool,
     /// Read once after the bus was opened, then remembered.
     pub once: bool,
+}
+
+/// `i2c_bus{ path = '/dev/i2c-2', reserved = { 0x48 } }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct I2cBusDescription {
+    /// The bus: a node of i2c-dev, or the socket of a virtual bus.
+    pub path: PathBuf,
+    /// Addresses of devices that belong to other nodes or to drivers: nobody reaches them through this file.
+    pub reserved: Vec<u16>,
 }
 
 /// One entry of the global `setup`.

@@ -46,6 +46,7 @@ fn of_source(source: &mut SourceDescription, take: &mut dyn FnMut(&mut PathBuf))
         | SourceDescription::Fifo(path) => take(path),
         SourceDescription::Evdev(evdev) => take(&mut evdev.path),
         SourceDescription::I2c(i2c) => take(&mut i2c.path),
+        SourceDescription::I2cBus(bus) => take(&mut bus.path),
         SourceDescription::Iio(iio) => {
             take(&mut iio.devices);
             take(&mut iio.nodes);

@@ -299,6 +299,99 @@ class PwmCapture {
     dutyRaw() { return refuse('pwmCapture.dutyRaw', 'the driver tells no raw width of pulses; duty() gives percent'); }
 }
 
+// A device on a bus: bytes at the position of a register, as the tree has them.
+const WIDE = 2 ** 24, REGISTERS = 2 ** 16, BYTES_MAX = 8192;
+class I2c {
+    // Words go out as `high` says, but come in with the low byte first, as TRIK has it.
+    constructor(bus, address, wide, high) {
+        this._path = `i2c/bus${bus}/device`;
+        this._base = address * REGISTERS + (wide ? WIDE : 0);
+        this._high = high;
+        if (!native.isFile(this._path))
+            throw new RangeError(`there is no bus ${bus}: the tree has no i2c/bus${bus}`);
+    }
+    _place(register) {
+        const most = this._base >= WIDE ? 0xffff : 0xff;
+        if (!(register >= 0 && register <= most && Number.isInteger(register)))
+            throw new RangeError(`register ${register} is not 0 to ${most}`);
+        return this._base + register;
+    }
+    send(register, value, mode = 'b') {
+        const low = value & 255, high = value >> 8 & 255;
+        const word = this._high ? [high, low] : [low, high];
+        native.writeAt(this._path, this._place(Number(register)), mode === 'w' ? word : [low]);
+    }
+    read(register, mode = 'b') {
+        const bytes = this.readX(register, mode === 'w' ? 2 : 1);
+        return bytes[0] + (mode === 'w' ? bytes[1] * 256 : 0);
+    }
+    readX(register, count) {
+        if (!(count >= 1 && count <= BYTES_MAX && Number.isInteger(count)))
+            throw new RangeError(`${count} bytes are not 1 to ${BYTES_MAX}`);
+        return native.readAt(this._path, this._place(Number(register)), count);
+    }
+}
+const busNumber = (bus) => Math.trunc(Number(bus));
+const busAddress = (address) => {
+    if (!(address >= 3 && address <= 0x77 && Number.isInteger(address)))
+        throw new RangeError(`address ${address} is not 3 to 119 (0x77)`);
+    return address;
+};
+
+// The events of one input device, of one type of them, of one code of these.
+const EVENT_NUMBERS = 4;
+const NOT_NAME = /[^A-Za-z0-9_-]/g;
+class EventCode {
+    constructor() { this.on = new Signal(); }
+}
+class EventType {
+    constructor() {
+        this.on = new Signal();
+        this._codes = new Map();
+    }
+    code(code) {
+        code = Number(code);
+        if (!this._codes.has(code))
+            this._codes.set(code, new EventCode());
+        return this._codes.get(code);
+    }
+}
+class EventDevice {
+    constructor(path) {
+        this._types = new Map();
+        this.on = new Signal();
+        kit.onRecord(path, () => {}, ([kind, value, low, high]) => this._tell(kind & 0xffff, kind >>> 16, value,
+            high * 2 ** 32 + (low >>> 0)));
+        native.listen(path, EVENT_NUMBERS);
+    }
+    _tell(type, code, value, time) {
+        emit(this.on, type, code, value, time);
+        const types = this._types.get(type);
+        if (types !== undefined) {
+            emit(types.on, code, value, time);
+            const codes = types._codes.get(code);
+            if (codes !== undefined)
+                emit(codes.on, value, time);
+        }
+    }
+    onEvent(type) {
+        type = Number(type);
+        if (!this._types.has(type))
+            this._types.set(type, new EventType());
+        return this._types.get(type);
+    }
+}
+const eventDevices = new Map();
+const eventNode = (file) => `input/${text(file).replace(/.*\//, '').replace(NOT_NAME, '_')}`;
+
+class Sound extends Camera {
+    detect() {
+        if (!native.cameraDetect(this._name))
+            throw new Error('sound sensor: it does not run: was init() called before?');
+    }
+    volume(coefficient) { native.write('microphones/volume', `${Math.round(coefficient)}\n`); }
+}
+
 const marker = {
     _down: false,
     down(color = 'black') {
@@ -313,8 +406,6 @@ const marker = {
     setDown(on) { on ? marker.down() : marker.up(); },
 };
 const configurable = ['lineSensor', 'objectSensor', 'colorSensor'];
-const NO_BUS = 'raw transfers on a bus are not in the tree; describe the device in the robot file and read its node';
-const NO_EVENTS = 'raw input devices are not in the tree; keys and gamepad are brick.keys() and gamepad';
 kit.hold('brick', {
     motor: plugged(native.motor, (handle) => new Motor(handle)),
     sensor: plugged(native.sensor, (handle) => new Sensor(handle)),
@@ -328,7 +419,7 @@ kit.hold('brick', {
     lineSensor: camera('line', Detector),
     objectSensor: camera('object', Detector),
     colorSensor: camera('color', Colors),
-    soundSensor() { return refuse('brick.soundSensor', 'the microphones are not in the tree'); },
+    soundSensor: camera('sound', Sound),
     lidar() { return native.has('lidar') ? lidar : null; },
     irCamera() { return native.has('ir_camera') ? irCamera : null; },
     getStillImage() { return native.photo(...STILL); },
@@ -339,10 +430,21 @@ kit.hold('brick', {
             fifos.set(path, new Fifo(path));
         return fifos.get(path) ?? null;
     },
-    eventDevice() { return refuse('brick.eventDevice', NO_EVENTS); },
-    stopEventDevice() { return refuse('brick.stopEventDevice', NO_EVENTS); },
-    i2c() { return refuse('brick.i2c', NO_BUS); },
-    smBusI2c() { return refuse('brick.smBusI2c', NO_BUS); },
+    eventDevice(file) {
+        const node = eventNode(file);
+        if (!eventDevices.has(node) && native.has(node))
+            eventDevices.set(node, new EventDevice(`${node}/device`));
+        return eventDevices.get(node) ?? null;
+    },
+    stopEventDevice(file) {
+        const node = eventNode(file);
+        if (eventDevices.delete(node))
+            native.forget(`${node}/device`);
+    },
+    i2c(bus, address, registerBytes = 1) {
+        return new I2c(busNumber(bus), busAddress(Number(address)), Number(registerBytes) === 2, true);
+    },
+    smBusI2c(bus, address) { return new I2c(busNumber(bus), busAddress(Number(address)), false, false); },
     gamepad() { return globalThis.gamepad; },
     marker() { return native.has('marker') ? marker : null; },
     configure(name, type) {

@@ -127,11 +127,16 @@ impl Brick {
             .then(|| Vector::gyroscope(&self.tree))
     }
 
-    /// The camera as a sensor of `line`, `object` or `color`; None if there is none.
+    /// The camera as a sensor of `line`, `object` or `color`, or the microphones as one of `sound`; None if there is
+    /// none.
     pub fn camera(&self, sensor: &str) -> Option<Camera> {
-        let known = ["line", "object", "color"].contains(&sensor);
-        (known && self.tree.is_directory(&format!("camera/{sensor}")))
-            .then(|| Camera::new(&self.tree, sensor))
+        let directory = match sensor {
+            "line" | "object" | "color" => format!("camera/{sensor}"),
+            "sound" => "microphones".to_owned(),
+            _ => return None,
+        };
+        let is_there = self.tree.is_directory(&directory);
+        is_there.then(|| Camera::new(&self.tree, &directory))
     }
 
     /// The gamepad, connected or not.

@@ -6,6 +6,10 @@
 pub const PORT_NAME_BYTES: usize = 32;
 /// Bytes of one value of the tree: 360 distances of a lidar fit.
 pub const VALUE_BYTES: usize = 4096;
+/// How often processes outside of the program's group are looked for before the motors rest: they may start others.
+pub const FREEZE_ROUNDS: usize = 4;
+/// Bytes of one transfer on a bus: as many as i2c-dev takes.
+pub const TRANSFER_BYTES: usize = 8192;
 /// Memory of one engine of JavaScript; each thread of a program has one.
 pub const JS_MEMORY_BYTES: usize = 64 << 20;
 /// Depth of calls in JavaScript, as bytes of the stack.

@@ -68,10 +68,12 @@ fn read_for(path: &Path, newest: &watch::Sender<Newest>, reads: &Mutex<bool>) {
             Ok(file) => one(file),
             Err(error) => Err(io::Error::new(error.kind(), error.to_string())),
         };
-        let failed = match read {
+        // Who begins to watch from here on finds either that nobody reads, or what is sent below.
+        let mut reads = reads.lock().unwrap_or_else(PoisonError::into_inner);
+        match read {
             Err(error) => {
                 newest.send_replace(Some(Err(because(path, &error))));
-                true
+                *reads = false;
             }
             Ok(bytes) => {
                 let is_old = last
@@ -82,12 +84,10 @@ fn read_for(path: &Path, newest: &watch::Sender<Newest>, reads: &Mutex<bool>) {
                     last = Some((picture.clone(), Instant::now()));
                     newest.send_replace(Some(Ok(picture)));
                 }
-                false
+                *reads = newest.receiver_count() > 0;
             }
-        };
-        let mut reads = reads.lock().unwrap_or_else(PoisonError::into_inner);
-        if failed || newest.receiver_count() == 0 {
-            *reads = false;
+        }
+        if !*reads {
             return;
         }
         drop(reads);

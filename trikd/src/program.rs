@@ -19,7 +19,7 @@ use crate::feedback::Moment;
 use crate::protocol::news::{self, End};
 use crate::{limits, log};
 use child::{Child, Language, Said};
-use kill::{group, sweep};
+use kill::{freeze, group, sweep};
 use nix::sys::signal::Signal;
 use nix::unistd::Pid;
 use output::Meter;
@@ -360,7 +360,14 @@ impl Supervisor {
             group(current.child.pid, Signal::SIGSTOP);
         }
         // A tree that is slow is still on its way to rest; the program must not live so long.
-        let rested = self.daemon.rest.now(limits::REST_WAIT_MS).await;
+        let resting = self.daemon.rest.now(limits::REST_WAIT_MS);
+        let leader = self.current.as_ref().map(|current| current.child.pid);
+        // The thread of rest works while processes that have left the group are looked for.
+        let freezing = async { leader.is_some_and(|leader| freeze(Pid::this(), leader)) };
+        let (mut rested, wrote_on) = tokio::join!(resting, freezing);
+        if wrote_on {
+            rested = self.daemon.rest.now(limits::REST_WAIT_MS).await;
+        }
         let rest_us = began.elapsed().as_micros();
         let Some(mut current) = self.current.take() else {
             let last = match rested {

@@ -225,6 +225,15 @@ impl Node {
         self.with(|file| file.read_at(buffer, 0))
     }
 
+    /// Bytes from a position on, for files in which it means something: only mounted trees have such.
+    ///
+    /// # Errors
+    /// As [`Node::bytes`].
+    pub fn bytes_at(&self, buffer: &mut [u8], position: u64) -> io::Result<usize> {
+        self.mounted()?;
+        self.with(|file| file.read_at(buffer, position))
+    }
+
     /// The newest text without the newline.
     ///
     /// # Errors
@@ -273,8 +282,24 @@ impl Node {
         if let Some((answers, path)) = &self.answers {
             return answers.write(path, text);
         }
-        let written = self.with(|file| file.write_at(text.as_bytes(), 0))?;
-        if written == text.len() {
+        self.write_at(text.as_bytes(), 0)
+    }
+
+    fn mounted(&self) -> io::Result<()> {
+        match self.answers {
+            Some(_) => Err(io::ErrorKind::Unsupported.into()),
+            None => Ok(()),
+        }
+    }
+
+    /// Writes bytes at a position, as [`Node::bytes_at`] reads them.
+    ///
+    /// # Errors
+    /// As [`Node::write`].
+    pub fn write_at(&self, bytes: &[u8], position: u64) -> io::Result<()> {
+        self.mounted()?;
+        let written = self.with(|file| file.write_at(bytes, position))?;
+        if written == bytes.len() {
             Ok(())
         } else {
             Err(io::ErrorKind::WriteZero.into())

@@ -202,6 +202,7 @@ pub fn open(
             let register = i2c::Register::open(i2c, tuple_size, around.timeout_ms, &around.buses)?;
             Ok(Device::State(Box::new(register)))
         }
+        SourceDescription::I2cBus(_) => Err(i2c::devices::only_device()),
         SourceDescription::Absent(reason) => Err(Error::NoDevice(reason.clone())),
     }
 }
@@ -250,6 +251,7 @@ pub fn open_sink(
             let register = i2c::Register::open(i2c, 0, around.timeout_ms, &around.buses)?;
             Ok(Box::new(register))
         }
+        SourceDescription::I2cBus(_) => Err(i2c::devices::only_device()),
         SourceDescription::Absent(reason) => Err(Error::NoDevice(reason.clone())),
         SourceDescription::Evdev(_)
         | SourceDescription::Iio(_)
@@ -290,6 +292,7 @@ pub fn is_shared(source: &SourceDescription) -> Result<bool, Error> {
         | SourceDescription::Regulator(_)
         | SourceDescription::Program(_)
         | SourceDescription::I2c(_)
+        | SourceDescription::I2cBus(_)
         | SourceDescription::Absent(_)
         | SourceDescription::Pwm(_)
         | SourceDescription::Gpio(_) => false,
@@ -319,6 +322,7 @@ pub fn paths(source: &SourceDescription) -> Vec<&Path> {
         | SourceDescription::Fifo(path) => vec![path],
         SourceDescription::Evdev(evdev) => vec![&evdev.path],
         SourceDescription::I2c(i2c) => vec![&i2c.path],
+        SourceDescription::I2cBus(bus) => vec![&bus.path],
         SourceDescription::Replay(replay) => vec![&replay.path],
         SourceDescription::Iio(iio) => vec![&iio.devices],
         SourceDescription::Pwm(pwm) => vec![&pwm.chip],

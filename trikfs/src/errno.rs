@@ -40,6 +40,8 @@ pub enum Error {
     IsADirectory,
     /// Writing a sensor, or reading a file that can only be written.
     AccessDenied,
+    /// A device that cannot be reached from here, because others have it.
+    Reserved(String),
     /// Text or bytes that mean nothing here.
     Invalid(String),
     /// A number that does not fit its field.
@@ -118,7 +120,7 @@ impl Error {
             Self::NotFound => libc::ENOENT,
             Self::NotADirectory => libc::ENOTDIR,
             Self::IsADirectory => libc::EISDIR,
-            Self::AccessDenied => libc::EACCES,
+            Self::AccessDenied | Self::Reserved(_) => libc::EACCES,
             Self::Invalid(_) => libc::EINVAL,
             Self::OutOfRange(_) => libc::ERANGE,
             Self::NoDevice(_) => libc::ENODEV,
@@ -150,6 +152,7 @@ impl Error {
             | Self::NotADirectory
             | Self::IsADirectory
             | Self::AccessDenied
+            | Self::Reserved(_)
             | Self::Invalid(_)
             | Self::OutOfRange(_)
             | Self::WouldBlock
@@ -196,6 +199,7 @@ impl fmt::Display for Error {
             Self::IsADirectory => f.write_str("is a directory"),
             Self::AccessDenied => f.write_str("the file cannot be opened that way"),
             Self::Invalid(what)
+            | Self::Reserved(what)
             | Self::OutOfRange(what)
             | Self::NoDevice(what)
             | Self::TimedOut(what)

@@ -5,6 +5,7 @@
 pub mod config;
 pub mod control;
 pub mod device;
+pub mod devices;
 pub mod log;
 pub mod owner;
 pub mod ownership;

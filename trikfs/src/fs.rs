@@ -10,6 +10,7 @@ use crate::events::lock;
 use crate::files::config::ConfigFile;
 use crate::files::control::{PeriodFile, StopFile, TextFile, fault_line, status_lines};
 use crate::files::device::DeviceFile;
+use crate::files::devices::DevicesFile;
 use crate::files::log::LogFile;
 use crate::files::owner::OwnerFile;
 use crate::files::param::ParamFile;
@@ -23,6 +24,7 @@ use crate::transport::{
     StatFs, Transfer,
 };
 use crate::tree::{Kind, Tree};
+use config::description::SourceDescription;
 use std::sync::{Arc, Mutex};
 
 /// The tree in force, shared between the operations and the reloader.
@@ -167,6 +169,10 @@ impl Fs {
                 ))
             }
             Kind::Device(node) => {
+                if let SourceDescription::I2cBus(bus) = &node.description.source {
+                    let file = DevicesFile::open(node, bus, read, write)?;
+                    return Ok((file, Access::Direct, write));
+                }
                 let (file, access) = DeviceFile::open(node, read, write)?;
                 Ok((file, access, write))
             }

@@ -31,21 +31,8 @@ local function pictures_of(entry)
   }
 end
 
--- A file that is written: the text of a command from numbers.
-local function command(sensor, about, format, least, greatest, line)
-  local names = {}
-  for name in format:gmatch('%S+ (%w+)') do names[#names + 1] = name end
-  return {
-    about = about, src = 'trikfs:camera/' .. sensor .. '/text', format = format, mode = 0222,
-    converter = function() return false end,
-    write_converter = function(a_s, a, b_s, b)
-      local values = {}
-      for index, name in ipairs(names) do
-        values[index] = number.within(name, ba.i32(a, 4 * (index - 1)), least, greatest)
-      end
-      text.put(b, line .. (line == 'detect' and '' or ' ' .. table.concat(values, ' ')))
-    end,
-  }
+local function command(sensor, ...)
+  return text.command('camera/' .. sensor .. '/text', ...)
 end
 
 -- What all three have: their lines, and whether the picture is shown on the screen.

@@ -1,9 +1,9 @@
-//! Sources on a bus, and those that a board does not have: `i2c{...}` and `absent{...}`.
+//! Sources on a bus, and those that a board does not have: `i2c{...}`, `i2c_bus{...}` and `absent{...}`.
 //!
 //! Owns which transfers fit which sizes and registers. Opens nothing.
 
 use super::fields::Fields;
-use crate::description::{I2cDescription, I2cTransfer, SourceDescription};
+use crate::description::{I2cBusDescription, I2cDescription, I2cTransfer, SourceDescription};
 use crate::limits::{I2C_BLOCK_BYTES_MAX, I2C_RAW_BYTES_MAX};
 use crate::nearest::suggestion;
 use crate::problem::Problem;
@@ -88,6 +88,32 @@ impl<'a> Fields<'_, 'a> {
                 write_transfer,
                 readable,
                 once,
+            }))
+        })
+    }
+
+    /// `i2c_bus{ path, reserved }`
+    pub(super) fn i2c_bus(&mut self, table: &'a Table) -> Result<SourceDescription, Problem> {
+        self.inner(table, |fields| {
+            fields.only("i2c_bus", table, &["", "path", "reserved"])?;
+            let Some(path) = fields.get("path") else {
+                return Err(fields.problem("src", "i2c_bus: path is missing"));
+            };
+            let path = path_of(fields.absolute("path", path)?);
+            let mut reserved = Vec::new();
+            if let Some(value) = fields.get("reserved") {
+                let Some(list) = fields.table_of(value) else {
+                    return Err(fields.wrong_type("reserved", "a list of addresses", value));
+                };
+                for value in list.list() {
+                    let address =
+                        fields.whole_value("reserved", value, ADDRESS_MIN, ADDRESS_MAX)?;
+                    reserved.push(u16::try_from(address).unwrap_or(u16::MAX));
+                }
+            }
+            Ok(SourceDescription::I2cBus(I2cBusDescription {
+                path,
+                reserved,
             }))
         })
     }

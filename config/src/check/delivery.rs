@@ -35,6 +35,7 @@ impl Checker<'_> {
             | SourceDescription::Newest(_) => Delivery::State,
             SourceDescription::Path(_)
             | SourceDescription::Absent(_)
+            | SourceDescription::I2cBus(_)
             | SourceDescription::Program(_) => Delivery::Unknown,
             SourceDescription::Faulty(faulty) => self.delivery(&faulty.source),
             SourceDescription::Node(other) => self.delivery_of_node(other),

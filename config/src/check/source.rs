@@ -48,7 +48,8 @@ pub(super) fn is_read_only(source: &SourceDescription) -> bool {
         | SourceDescription::Absent(_)
         | SourceDescription::Program(_)
         | SourceDescription::Regulator(_)
-        | SourceDescription::I2c(_) => false,
+        | SourceDescription::I2c(_)
+        | SourceDescription::I2cBus(_) => false,
         SourceDescription::Pwm(_) => false,
         SourceDescription::Gpio(gpio) => gpio.direction == GpioDirection::In,
         SourceDescription::Lines(lines) => lines.input.is_none(),
@@ -142,10 +143,10 @@ impl<'a> Fields<'_, 'a> {
     /// Bytes of one tuple, if the source knows.
     pub(super) fn size_of(&mut self, source: &SourceDescription) -> Result<Option<usize>, Problem> {
         match source {
-            SourceDescription::Evdev(evdev) => Ok(Some(4 * evdev.codes.len())),
+            SourceDescription::Evdev(evdev) => Ok(Some(evdev.tuple_size())),
             SourceDescription::Iio(iio) => Ok(Some(iio.tuple_size())),
             SourceDescription::Pwm(_) => Ok(Some(4)),
-            SourceDescription::Gpio(_) => Ok(Some(1)),
+            SourceDescription::Gpio(_) | SourceDescription::I2cBus(_) => Ok(Some(1)),
             SourceDescription::Faulty(faulty) => self.size_of(&faulty.source),
             SourceDescription::I2c(i2c) => Ok(i2c_size(i2c.transfer)),
             SourceDescription::Regulator(regulator) => Ok(Some(regulator.feedback.tuple_size())),
@@ -204,6 +205,7 @@ impl<'a> Fields<'_, 'a> {
             b"program" => self.program(table),
             b"regulator" => self.regulator(table),
             b"i2c" => self.i2c(table),
+            b"i2c_bus" => self.i2c_bus(table),
             b"absent" => self.absent(table),
             _ => Err(self.problem("src", "src is of an unknown kind")),
         }
@@ -243,30 +245,13 @@ impl<'a> Fields<'_, 'a> {
     /// `evdev{ path = ..., axes = { 'ABS_X', { 3, 1 } }, layout = 'native' }`; `codes` is another word for `axes`.
     fn evdev(&mut self, table: &'a Table) -> Result<SourceDescription, Problem> {
         self.inner(table, |fields| {
-            fields.only("evdev", table, &["", "path", "axes", "codes", "layout"])?;
+            let keys = ["", "path", "axes", "codes", "events", "layout"];
+            fields.only("evdev", table, &keys)?;
             let Some(path) = fields.get("path") else {
                 return Err(fields.problem("src", "evdev: path is missing"));
             };
             let path = path_of(fields.absolute("path", path)?);
-            let (field, value) = match (fields.get("axes"), fields.get("codes")) {
-                (Some(_), Some(_)) => {
-                    return Err(
-                        fields.problem("src", "evdev: axes and codes are the same, give one")
-                    );
-                }
-                (Some(value), None) => ("axes", value),
-                (None, Some(value)) => ("codes", value),
-                (None, None) => {
-                    return Err(fields.problem(
-                        "src",
-                        "evdev: axes is missing, for example axes = { 'ABS_X' }",
-                    ));
-                }
-            };
-            let Some(list) = fields.table_of(value) else {
-                return Err(fields.wrong_type(field, "a list of event names", value));
-            };
-            let codes = fields.codes(field, list)?;
+            let codes = fields.watched()?;
             let layout = match fields.text("layout", 16)? {
                 None | Some("native") => EvdevLayout::Native,
                 Some("bits32") => EvdevLayout::Bits32,
@@ -284,6 +269,29 @@ impl<'a> Fields<'_, 'a> {
                 layout,
             }))
         })
+    }
+
+    /// Which codes of an input device make a tuple; none with `events = true`.
+    fn watched(&mut self) -> Result<Vec<(u16, u16)>, Problem> {
+        let refuse = |reason| Err(self.problem("src", reason));
+        let (field, value) = match (self.get("axes"), self.get("codes")) {
+            (Some(_), Some(_)) => return refuse("evdev: axes and codes are the same, give one"),
+            (Some(value), None) => ("axes", value),
+            (None, Some(value)) => ("codes", value),
+            (None, None) if self.boolean("events")? == Some(true) => return Ok(Vec::new()),
+            (None, None) => {
+                return refuse(
+                    "evdev: axes is missing, for example axes = { 'ABS_X' }; events = true gives every event",
+                );
+            }
+        };
+        if self.boolean("events")? == Some(true) {
+            return refuse("evdev: with events = true every event is a tuple, axes make no sense");
+        }
+        let Some(list) = self.table_of(value) else {
+            return Err(self.wrong_type(field, "a list of event names", value));
+        };
+        self.codes(field, list)
     }
 
     fn codes(&self, field: &str, list: &'a Table) -> Result<Vec<(u16, u16)>, Problem> {

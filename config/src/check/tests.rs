@@ -434,7 +434,7 @@ fn sources_that_cannot_be_are_refused() {
     );
     assert_eq!(
         source("evdev{ path = '/x' }"),
-        "robot.lua:2: x: evdev: axes is missing, for example axes = { 'ABS_X' }"
+        "robot.lua:2: x: evdev: axes is missing, for example axes = { 'ABS_X' }; events = true gives every event"
     );
     assert_eq!(
         source("evdev{ path = '/x', axes = {} }"),

@@ -207,8 +207,8 @@ unsafe extern "C-unwind" fn part(l: *mut lua::lua_State) -> c_int {
                 3
             }
             b"evdev" | b"fifo" | b"attribute" | b"fake" | b"replay" | b"faulty" | b"i2c"
-            | b"absent" | b"iio" | b"pwm" | b"gpio" | b"lines" | b"packets" | b"pictures"
-            | b"program" | b"regulator" => {
+            | b"i2c_bus" | b"absent" | b"iio" | b"pwm" | b"gpio" | b"lines" | b"packets"
+            | b"pictures" | b"program" | b"regulator" => {
                 push_maker(l, Part::Sources);
                 lua::lua_pushvalue(l, 1);
                 lua::lua_pushvalue(l, raw);

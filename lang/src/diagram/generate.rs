@@ -19,14 +19,12 @@ mod words;
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeSet;
-
 use super::lower::{World, lower};
 use super::project::Project;
 use super::structure::{Jumps, Manner};
 use crate::expr::value::Compat;
 use crate::problem::{Problem, Severity};
-use code::{Code, Kind, Statement};
+use code::{Code, Kind, Statement, What};
 use print::{Dialect, Printer};
 use routines::Abilities;
 use texts::Texts;
@@ -170,7 +168,11 @@ pub fn generate(
         .and_then(|main| program.diagrams.get(main as usize));
     let title = main.map_or("A diagram", |sheet| &sheet.name).to_owned();
     let title = format!("{title}: written from a diagram of TRIK Studio.");
-    let printer = Printer::new(dialect, &script, program, title);
+    let mut printer = Printer::new(dialect, &script, program, title.clone());
+    if language == Language::JavaScript && script.has_threads && !printer.shared().is_empty() {
+        let dialect = &dialects::javascript::turns::TURNS;
+        printer = Printer::new(dialect, &script, program, title);
+    }
     let mut notes: Vec<Problem> = lowered.problems;
     notes.retain(|problem| problem.severity != Severity::Error);
     let problems = refusals(&printer, language);
@@ -202,22 +204,39 @@ fn refusals(printer: &Printer<'_>, language: Language) -> Vec<Problem> {
             }
         }
     }
-    let missing = missing(printer);
-    for what in missing.iter().filter(|what| !may_be_left_out(what)) {
-        problems.push(Problem::error(words::cannot(what, language.name())));
-    }
+    let missing = missing(printer)
+        .into_iter()
+        .filter(|what| !may_be_left_out(*what));
+    told_once(&mut problems, missing, |what| {
+        Problem::error(words::cannot(what, language.name()))
+    });
     problems
 }
 
+/// One problem for each thing, though a program may say it in several ways.
+fn told_once(
+    problems: &mut Vec<Problem>,
+    things: impl Iterator<Item = What>,
+    tell: impl Fn(What) -> Problem,
+) {
+    for what in things {
+        let problem = tell(what);
+        if !problems.iter().any(|known| known.words == problem.words) {
+            problems.push(problem);
+        }
+    }
+}
+
 /// Things that a program uses and the language has no words for.
-fn missing(printer: &Printer<'_>) -> BTreeSet<String> {
-    let mut missing = BTreeSet::new();
+fn missing(printer: &Printer<'_>) -> Vec<What> {
+    let mut missing = Vec::new();
     for routine in &printer.script.routines {
         each_code(&routine.body, &mut |code| {
             if let Code::Do(what, _) = code
                 && (printer.dialect.row)(*what).text.is_empty()
+                && !missing.contains(what)
             {
-                missing.insert(format!("{what:?}"));
+                missing.push(*what);
             }
         });
     }
@@ -225,28 +244,31 @@ fn missing(printer: &Printer<'_>) -> BTreeSet<String> {
 }
 
 /// Whether a program is still one without this.
-fn may_be_left_out(what: &str) -> bool {
-    const DRAWING: [&str; 14] = [
-        "Redraw",
-        "Clear",
-        "PenColor",
-        "PenWidth",
-        "Background",
-        "Pixel",
-        "Line",
-        "Rectangle",
-        "Ellipse",
-        "Arc",
-        "MarkerDown",
-        "MarkerUp",
-        "StartVideo",
-        "StopVideo",
-    ];
-    DRAWING.contains(&what)
-        || what.ends_with("Smile")
-        || what.contains("Camera(")
-        || what == "Calibrate"
-        || what == "Finish"
+fn may_be_left_out(what: What) -> bool {
+    use What::*;
+    matches!(
+        what,
+        Redraw
+            | Clear
+            | PenColor
+            | PenWidth
+            | Background
+            | Pixel
+            | Line
+            | Rectangle
+            | Ellipse
+            | Arc
+            | Smile
+            | SadSmile
+            | MarkerDown
+            | MarkerUp
+            | StartCamera(_)
+            | StopCamera(_)
+            | StartVideo
+            | StopVideo
+            | Calibrate
+            | Finish
+    )
 }
 
 fn each_code(list: &[Statement], seen: &mut dyn FnMut(&Code)) {
@@ -288,9 +310,13 @@ fn remarks(printer: &Printer<'_>, language: Language) -> Vec<Problem> {
             Manner::States => remarks.push(Problem::warning(words::by_states(name))),
         }
     }
-    for what in missing(printer) {
-        remarks.push(Problem::warning(words::cannot(&what, language.name())));
-    }
+    // What is drawn is told by its block.
+    let missing = missing(printer)
+        .into_iter()
+        .filter(|what| !matches!(what, What::Redraw | What::Finish));
+    told_once(&mut remarks, missing, |what| {
+        Problem::warning(words::left_out(what, language.name()))
+    });
     if language == Language::JavaScript && printer.script.has_threads {
         let shared = printer.shared();
         if !shared.is_empty() {

@@ -4,6 +4,7 @@
 mod drawn;
 mod equal;
 mod host;
+mod names;
 mod syntax;
 
 use std::path::{Path, PathBuf};

@@ -84,3 +84,33 @@ fn c_is_compiled_without_warnings() {
     let flags = ["cc", "-Wall", "-Werror", "-pthread", "-fsyntax-only"];
     check("c", Language::C, &flags);
 }
+
+/// All at once, because the compiler takes seconds to begin.
+#[test]
+fn fsharp_is_taken_by_its_compiler() {
+    let Some(modules) = std::env::var_os("TRIK_FABLE") else {
+        println!("skipped fsharp: TRIK_FABLE names no node_modules with fable-standalone");
+        return;
+    };
+    let folder = crate::scratch("fsharp");
+    let here = crate::root().join("lang/tests/generate");
+    let mut command = Command::new("node");
+    command.arg(here.join("fsharp.cjs"));
+    command.arg(modules).arg(here.join("stub.fs"));
+    let mut count = 0;
+    let hurting = crate::names::projects();
+    for (at, (_, project)) in crate::projects("fsharp").iter().chain(&hurting).enumerate() {
+        if let Ok(generated) = generate(project, Language::FSharp, Options::default()) {
+            let path = folder.join(format!("{at}.fs"));
+            std::fs::write(&path, generated.text).unwrap();
+            command.arg(path);
+            count += 1;
+        }
+    }
+    let output = command.output().unwrap();
+    println!("{count} programs in F#");
+    assert!(count > 20, "{count}");
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && told.is_empty(), "{told}");
+    let _ = std::fs::remove_dir_all(&folder);
+}

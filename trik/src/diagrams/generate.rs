@@ -6,7 +6,10 @@ use super::output::Output;
 use super::telling::{self, Teller};
 use super::{REFUSED, Refusal, end, must_open, say};
 use crate::cli::GenArgs;
+use lang::diagram::check::check;
 use lang::diagram::generate::{self, Language, Options};
+use lang::diagram::lower::World;
+use lang::problem::Severity;
 use std::process::ExitCode;
 
 /// A language by its name; for the command line.
@@ -48,10 +51,14 @@ fn written(args: &GenArgs) -> Result<u8, Refusal> {
     let generated = generated.map_err(|mut problems| {
         teller.sort(&mut problems);
         let mut lines = teller.lines(&problems);
-        let file = telling::named(&args.file);
-        lines.push(format!(
-            "trik: no program was written: trik lint {file} tells all"
-        ));
+        // What a language lacks is nothing that is wrong with the diagram.
+        let found = check(&opened.project, World::Robot);
+        lines.push(if found.iter().any(|one| one.severity == Severity::Error) {
+            let file = telling::named(&args.file);
+            format!("trik: no program was written: trik lint {file} tells all")
+        } else {
+            "trik: no program was written".to_owned()
+        });
         Refusal {
             lines,
             code: REFUSED,

@@ -190,6 +190,30 @@ fn every_language_is_written_and_goto_only_where_it_is() {
         "{}",
         output.stderr
     );
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let tone = sketch.block("TrikPlayToneHz", &[]);
+    let clear = sketch.block("ClearScreen", &[]);
+    let end = sketch.block("FinalNode", &[]);
+    sketch.chain(&[start, tone, clear, end]);
+    board.file("tone.qrs", sketch.qrs().expect("a save"));
+    let output = trik(&board, &["gen", "--lang", "pascal", "tone.qrs"]);
+    assert_eq!(
+        (output.code(), &*output.stderr),
+        (
+            1,
+            "tone.qrs: error: Programs in PascalABC.NET cannot do what the block Play Tone does. Choose another language.\n\
+             trik: no program was written\n"
+        )
+    );
+    let output = trik(&board, &["gen", "--lang", "lua", "tone.qrs"]);
+    assert_eq!(
+        (output.code(), &*output.stderr),
+        (
+            0,
+            "tone.qrs: warning: the block Clear Screen is left out: programs in Lua cannot do it.\n"
+        )
+    );
 }
 
 #[test]
@@ -218,6 +242,11 @@ fn a_diagram_is_shown_as_sentences_and_as_a_picture() {
     );
     let part = trik(&board, &["show", "two.qrs", "--diagram", "pause"]);
     assert!(part.stdout.contains("1234") && !part.stdout.contains("Say"));
+    assert!(
+        part.stdout.starts_with("Subprogram pause:\n") && text.stdout.starts_with("Program:\n"),
+        "{}",
+        part.stdout
+    );
     let russian = trik(&board, &["show", "two.qrs", "--language", "ru"]);
     assert!(!russian.stdout.is_ascii());
     let picture = trik(&board, &["show", "two.qrs", "--svg", "two.svg"]);

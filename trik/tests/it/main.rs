@@ -23,6 +23,7 @@ mod hold;
 /// Programs that come over the network.
 mod programs;
 /// A running `trik up`.
+mod raw;
 mod rig;
 /// What is said to a person, and what is refused.
 mod words;

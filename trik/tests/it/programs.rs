@@ -30,7 +30,7 @@ impl Reachable {
         Some(Self::beside(&Arc::new(Home::new()?), &[]))
     }
 
-    fn beside(home: &Arc<Home>, words: &[&str]) -> Self {
+    pub fn beside(home: &Arc<Home>, words: &[&str]) -> Self {
         let ip = loopback();
         let mut all = vec!["--trikd-address", &ip];
         all.extend(words);
@@ -46,7 +46,7 @@ impl Reachable {
     }
 
     /// Writes a program and starts it.
-    fn spawn(&self, name: &str, text: impl AsRef<[u8]>) -> Running {
+    pub fn spawn(&self, name: &str, text: impl AsRef<[u8]>) -> Running {
         let file = self.robot.home.0.file(name, text);
         let file = file.to_str().expect("UTF-8");
         Running::new(&mut self.robot.home.command(&["run", file, "--robot", &self.ip]))
@@ -89,7 +89,7 @@ impl Reachable {
 }
 
 /// A `trik run` that is still there.
-struct Running {
+pub struct Running {
     child: Child,
     said: Arc<Mutex<String>>,
 }
@@ -120,18 +120,18 @@ impl Running {
     }
 
     /// Both outputs so far.
-    fn said(&self) -> String {
+    pub fn said(&self) -> String {
         self.said
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .clone()
     }
 
-    fn says(&self, text: &str) {
+    pub fn says(&self, text: &str) {
         eventually(text, || self.said().contains(text));
     }
 
-    fn code(&mut self) -> Option<i32> {
+    pub fn code(&mut self) -> Option<i32> {
         let mut code = None;
         eventually("the end of trik run", || {
             code = self.child.try_wait().expect("a child");

@@ -235,8 +235,8 @@ fn is_absent(error: &io::Error) -> bool {
 }
 
 impl Camera {
-    pub(super) fn new(tree: &Tree, sensor: &str) -> Self {
-        let node = |name: &str, access| tree.node(&format!("camera/{sensor}/{name}"), access);
+    pub(super) fn new(tree: &Tree, directory: &str) -> Self {
+        let node = |name: &str, access| tree.node(&format!("{directory}/{name}"), access);
         Self {
             value: node("value", Access::ReadNow),
             detect: node("detect", Access::Write),
@@ -309,7 +309,8 @@ impl Camera {
         self.hsv_write.write(&format!("{}\n", words.join(" ")))
     }
 
-    /// The newest numbers: line x, crossroads, mass; object x, y, size; colours cell by cell as 0xRRGGBB.
+    /// The newest numbers: line x, crossroads, mass; object x, y, size; sound angle, left, right; colours cell by cell
+    /// as 0xRRGGBB.
     ///
     /// # Errors
     /// Those of the tree; EAGAIN before the first picture.

@@ -114,6 +114,14 @@ impl Streams {
         Ok(())
     }
 
+    /// Closes a stream; what has come is forgotten.
+    pub fn forget(&self, path: &str) {
+        self.streams
+            .borrow_mut()
+            .retain(|stream| stream.path != path);
+        self.records.borrow_mut().retain(|(other, _)| other != path);
+    }
+
     /// All that has come from one stream, without waiting.
     pub fn drain(&self, path: &str) -> Vec<Record> {
         let mut records = self.records.borrow_mut();

@@ -56,6 +56,9 @@ pub trait Ground {
     /// All that has come from one stream, without waiting.
     fn drain(&self, path: &str) -> Vec<Record>;
 
+    /// Closes a stream, where streams are open.
+    fn forget(&self, _path: &str) {}
+
     /// The oldest record of any stream.
     fn next(&self) -> Option<(String, Record)>;
 
@@ -215,6 +218,10 @@ impl Ground for Mounted {
 
     fn drain(&self, path: &str) -> Vec<Record> {
         self.streams.drain(path)
+    }
+
+    fn forget(&self, path: &str) {
+        self.streams.forget(path);
     }
 
     fn next(&self) -> Option<(String, Record)> {

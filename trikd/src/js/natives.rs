@@ -107,6 +107,10 @@ fn events<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
         o.ground.listen(&o.brick, &path, numbers).is_ok()
     })?;
     let o = with();
+    put(native, "forget", move |path: String| {
+        o.ground.forget(&path);
+    })?;
+    let o = with();
     put(native, "drain", move |ctx: Ctx<'js>, path: String| {
         let all = Array::new(ctx.clone())?;
         for (index, record) in o.ground.drain(&path).into_iter().enumerate() {

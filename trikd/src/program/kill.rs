@@ -3,10 +3,11 @@
 //! This process is the subreaper of all programs: whoever loses its parent becomes our child, so what lives below us is
 //! what has to go. A program with a user of its own cannot even outrun the search: one kill(2) takes all of that user.
 
+use crate::limits;
 use nix::errno::Errno;
 use nix::sys::prctl;
 use nix::sys::signal::{Signal, kill, killpg};
-use nix::unistd::{Pid, Uid};
+use nix::unistd::{Pid, Uid, getpgid};
 use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::os::unix::fs::MetadataExt;
@@ -106,6 +107,24 @@ pub fn group(leader: Pid, signal: Signal) {
     let _ = killpg(leader, signal);
 }
 
+/// Stops everybody below a process who is not in a group that has been stopped, until nobody new is found; returns
+/// whether there was anybody. What they were about to write waits until they are dead.
+pub fn freeze(ancestor: Pid, stopped: Pid) -> bool {
+    let mut frozen = HashSet::new();
+    for _ in 0..limits::FREEZE_ROUNDS {
+        let before = frozen.len();
+        for pid in below(ancestor) {
+            if getpgid(Some(pid)) != Ok(stopped) && frozen.insert(pid) {
+                let _ = kill(pid, Signal::SIGSTOP);
+            }
+        }
+        if frozen.len() == before {
+            break;
+        }
+    }
+    !frozen.is_empty()
+}
+
 /// Kills everybody below a process once; returns how many there were.
 pub fn sweep(ancestor: Pid, spared: &[Pid]) -> usize {
     let mut found = below(ancestor);
@@ -134,6 +153,7 @@ pub fn own_user() -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::os::unix::process::CommandExt;
     use std::process::Command;
 
     #[test]
@@ -150,5 +170,35 @@ mod tests {
         assert_eq!(sweep(pid, &[]), 2);
         child.wait().unwrap();
         assert!(below(pid).is_empty());
+    }
+
+    #[test]
+    fn who_has_left_the_group_stands_still_too() {
+        let mut child = Command::new("sh")
+            .args(["-c", "setsid sh -c 'while :; do :; done' & wait"])
+            .process_group(0)
+            .spawn()
+            .unwrap();
+        let pid = Pid::from_raw(i32::try_from(child.id()).unwrap());
+        let stranger = || {
+            let all = below(pid);
+            all.into_iter().find(|one| getpgid(Some(*one)) != Ok(pid))
+        };
+        while stranger().is_none() {
+            std::thread::yield_now();
+        }
+        assert!(freeze(pid, pid));
+        let stranger = stranger().unwrap();
+        let stands = || {
+            let stat = fs::read_to_string(format!("/proc/{stranger}/stat")).unwrap();
+            stat.contains(") T ")
+        };
+        while !stands() {
+            std::thread::yield_now();
+        }
+        sweep(pid, &[]);
+        let _ = child.kill();
+        child.wait().unwrap();
+        assert!(!freeze(pid, pid));
     }
 }

@@ -15,6 +15,7 @@ import json
 import os
 import queue
 import random as _random
+import re
 import shutil
 import struct
 import subprocess
@@ -367,10 +368,10 @@ class Gyroscope:
 
 
 class Camera:
-    def __init__(self, name):
-        self._name = name
-        self._file = _File('camera/%s/value' % name, os.O_RDONLY | os.O_NONBLOCK)
-        self._colour = _File('camera/%s/hsv' % name, os.O_RDONLY | os.O_NONBLOCK)
+    def __init__(self, place):
+        self._place, self._name = place, place.rpartition('/')[2]
+        self._file = _File(place + '/value', os.O_RDONLY | os.O_NONBLOCK)
+        self._colour = _File(place + '/hsv', os.O_RDONLY | os.O_NONBLOCK)
         self._untold = None
 
     def init(self, show=False):
@@ -383,7 +384,7 @@ class Camera:
     def _write(self, name, text):
         """Whether the sensor has heard it: it runs a while after init()."""
         try:
-            _file('camera/%s/%s' % (self._name, name), os.O_WRONLY).write(text)
+            _file('%s/%s' % (self._place, name), os.O_WRONLY).write(text)
         except OSError as error:
             if error.errno != errno.ENODEV:
                 raise
@@ -541,20 +542,86 @@ class PwmCapture:
         return _file(self._directory + '/duty_cycle').number()
 
 
-# What the tree cannot do, and why.
-_ABSENT = {
-    'i2c': 'raw transfers on a bus are not in the tree; describe the device in the robot file and read its node',
-    'smBusI2c': 'raw transfers on a bus are not in the tree; describe the device in the robot file and read its node',
-    'eventDevice': 'raw input devices are not in the tree; keys and gamepad are brick.keys() and gamepad',
-    'stopEventDevice': 'raw input devices are not in the tree; keys and gamepad are brick.keys() and gamepad',
-    'soundSensor': 'the microphones are not in the tree',
-}
+class I2c:
+    """A device on a bus: bytes at the position of a register, as the tree has them."""
+
+    def __init__(self, bus, address, wide, order):
+        if not 3 <= address <= 0x77:
+            raise ValueError('address %s is not 3 to 119 (0x77)' % address)
+        self._file = _File('i2c/bus%d/device' % bus, os.O_RDWR)
+        self._base, self._most = (address << 16) + (wide << 24), 0xffff if wide else 0xff
+        # Words go out like this, but come in with the low byte first, as TRIK has it.
+        self._order = order
+
+    def _place(self, register):
+        if not 0 <= register <= self._most:
+            raise ValueError('register %s is not 0 to %d' % (register, self._most))
+        return self._base + register
+
+    def send(self, register, value, mode='b'):
+        bytes_ = (value & 0xffff).to_bytes(2, self._order) if mode == 'w' else bytes([value & 255])
+        place = self._place(register)
+        self._file._do(lambda fd: os.pwrite(fd, bytes_, place))
+
+    def read(self, register, mode='b'):
+        return int.from_bytes(bytes(self.readX(register, 2 if mode == 'w' else 1)), 'little')
+
+    def readX(self, register, count):
+        place = self._place(register)
+        return list(self._file._do(lambda fd: os.pread(fd, count, place)))
 
 
-def _refusing(name):
-    def refuse(*_, **__):
-        raise TypeError('brick.%s: %s' % (name, _ABSENT[name]))
-    return refuse
+class _Narrowed:
+    """Events of one type or of one code; `on` is their signal."""
+
+    def __init__(self):
+        self.on, self._inner = _Signal(), {}
+
+    def _get(self, number):
+        return self._inner.setdefault(int(number), _Narrowed())
+
+    code = _get
+
+
+class EventDevice(_Narrowed):
+    """The events of an input device: on(event, code, value, time), and less of it at each level below."""
+
+    onEvent = _Narrowed._get
+    _EVENT = struct.Struct('<HHiq')
+
+    def __init__(self, path):
+        super().__init__()
+        self._runs = True
+        os.close(os.open(os.path.join(_ROOT, path), os.O_RDONLY | os.O_CLOEXEC))
+        threading.Thread(target=self._read, args=(path,), daemon=True).start()
+
+    def _read(self, path):
+        for piece in _stream(path, self._EVENT.size * 64):
+            if not self._runs:
+                break
+            for event in self._EVENT.iter_unpack(piece[:len(piece) // self._EVENT.size * self._EVENT.size]):
+                _events.put((self, event))
+
+    def _call(self, event):
+        kind, code, value, time_us = event
+        if not self._runs:
+            return
+        self.on._call((kind, code, value, time_us))
+        kinds = self._inner.get(kind)
+        if kinds:
+            kinds.on._call((code, value, time_us))
+            codes = kinds._inner.get(code)
+            if codes:
+                codes.on._call((value, time_us))
+
+    def _stop(self):
+        # The thread that reads closes the file when it next has something, or ends with the program.
+        self._runs = False
+
+
+class SoundSensor(Camera):
+    def volume(self, coefficient):
+        self._write('volume', '%d\n' % round(coefficient))
 
 
 class Brick:
@@ -614,17 +681,45 @@ class Brick:
     def gyroscope(self):
         return Gyroscope() if _has('gyroscope') else None
 
-    def _camera(self, name):
-        return self._made.setdefault('camera/' + name, Camera(name)) if _has('camera/' + name) else None
+    def _camera(self, place, make=Camera):
+        return self._made.setdefault(place, make(place)) if _has(place) else None
 
     def lineSensor(self, port=None):
-        return self._camera('line')
+        return self._camera('camera/line')
 
     def objectSensor(self, port=None):
-        return self._camera('object')
+        return self._camera('camera/object')
 
     def colorSensor(self, port=None):
-        return self._camera('color')
+        return self._camera('camera/color')
+
+    def soundSensor(self, port=None):
+        return self._camera('microphones', SoundSensor)
+
+    def i2c(self, bus, address, regSize=1):
+        return I2c(bus, address, regSize == 2, 'big')
+
+    def smBusI2c(self, bus, address):
+        return I2c(bus, address, False, 'little')
+
+    def eventDevice(self, file):
+        path = self._eventPath(file)
+        if path not in self._made and _has(os.path.dirname(path)):
+            try:
+                self._made[path] = EventDevice(path)
+            except OSError as error:
+                if error.errno != errno.ENODEV:
+                    raise
+        return self._made.get(path)
+
+    def stopEventDevice(self, file):
+        device = self._made.pop(self._eventPath(file), None)
+        if device:
+            device._stop()
+
+    @staticmethod
+    def _eventPath(file):
+        return 'input/%s/device' % re.sub('[^A-Za-z0-9_-]', '_', str(file).rpartition('/')[2])
 
     def lidar(self):
         return _file('lidar/value').numbers()
@@ -633,8 +728,6 @@ class Brick:
         return gamepad
 
     def __getattr__(self, name):
-        if name in _ABSENT:
-            return _refusing(name)
         raise AttributeError('brick.%s: the tree of the robot has no file for it' % name)
 
     def marker(self):

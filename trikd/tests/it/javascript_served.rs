@@ -370,6 +370,9 @@ fn every_name_of_the_document_is_there() {
             ("lineSensor.", "brick.lineSensor(video1)."),
             ("objectSensor.", "brick.objectSensor(video1)."),
             ("colorSensor.", "brick.colorSensor(video1)."),
+            ("soundSensor.", "brick.soundSensor(video2)."),
+            ("i2c.", "brick.i2c(1, 0x33, 2)."),
+            ("eventDevice.", "brick.eventDevice('/dev/input/event0')."),
             ("lidar.", "brick.lidar()."),
             ("irCamera.", "brick.irCamera()."),
             ("fifo.", "brick.fifo('gamepad/text')."),
@@ -388,6 +391,14 @@ fn every_name_of_the_document_is_there() {
     }
     scratch.file("camera/object/value", "1 2 3\n");
     scratch.file("gamepad/text/value", "pad 1 up\n");
+    for file in [
+        "microphones/value",
+        "i2c/bus1/device",
+        "input/event0/value",
+        "input/event0/device",
+    ] {
+        scratch.file(file, "");
+    }
     let program = scratch.file("names.js", text);
     let output = run(scratch.path(), &program);
     let said = String::from_utf8_lossy(&output.stdout).into_owned()

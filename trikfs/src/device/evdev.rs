@@ -1,4 +1,4 @@
-//! Linux input devices decoded: the newest value of each watched code, one tuple per SYN_REPORT.
+//! Linux input devices decoded: the newest value of each watched code, one tuple per SYN_REPORT; or every event as it is.
 //!
 //! Owns the layout of `struct input_event` (linux/input.h: two time fields, u16 type, u16 code, s32 value) for
 //! 32- and 64-bit times and the rule for SYN_DROPPED: everything up to the next SYN_REPORT is thrown away. A real
@@ -95,6 +95,7 @@ impl Stream for Evdev {
 
 /// Events in, tuples out.
 struct Decoder {
+    /// None: every event is a tuple.
     codes: Vec<(u16, u16)>,
     event_size: usize,
     values: Vec<i32>,
@@ -130,12 +131,20 @@ impl Decoder {
             self.partial.extend_from_slice(&bytes[..taken]);
             bytes = &bytes[taken..];
             if self.partial.len() == self.event_size {
-                let tail = &self.partial[self.event_size - 8..];
+                let (time, tail) = self.partial.split_at(self.event_size - 8);
+                let time_us = time_us(time);
                 let kind = u16::from_ne_bytes([tail[0], tail[1]]);
                 let code = u16::from_ne_bytes([tail[2], tail[3]]);
                 let value = i32::from_ne_bytes([tail[4], tail[5], tail[6], tail[7]]);
                 self.partial.clear();
-                self.event(kind, code, value);
+                if self.codes.is_empty() {
+                    self.ready.extend_from_slice(&kind.to_le_bytes());
+                    self.ready.extend_from_slice(&code.to_le_bytes());
+                    self.ready.extend_from_slice(&value.to_le_bytes());
+                    self.ready.extend_from_slice(&time_us.to_le_bytes());
+                } else {
+                    self.event(kind, code, value);
+                }
             }
         }
     }
@@ -173,6 +182,18 @@ impl Decoder {
         self.ready.drain(..n);
         n
     }
+}
+
+/// Seconds and microseconds, each half of the bytes.
+fn time_us(time: &[u8]) -> i64 {
+    let (seconds, us) = time.split_at(time.len() / 2);
+    let number = |bytes: &[u8]| match bytes {
+        [a, b, c, d] => i32::from_ne_bytes([*a, *b, *c, *d]).into(),
+        _ => bytes.first_chunk().copied().map_or(0, i64::from_ne_bytes),
+    };
+    number(seconds)
+        .saturating_mul(1_000_000)
+        .saturating_add(number(us))
 }
 
 #[cfg(test)]
@@ -220,6 +241,36 @@ mod tests {
         for split in [1, 7, 16, 24, 1000] {
             assert_eq!(decode(EvdevLayout::Bits32, 8, split), expected);
             assert_eq!(decode(EvdevLayout::Bits64, 16, split), expected);
+        }
+    }
+
+    #[test]
+    fn every_event_can_be_a_tuple() {
+        let mut decoder = Decoder::new(&EvdevDescription {
+            path: "x".into(),
+            codes: Vec::new(),
+            layout: EvdevLayout::Bits32,
+        });
+        for (kind, code, value) in [(1, 28, 1), (0, 0, 0), (0, 3, 0), (3, 0, -5)] {
+            let mut bytes = event(0, kind, code, value);
+            bytes.splice(
+                0..0,
+                [7i32.to_ne_bytes(), 250_000i32.to_ne_bytes()].concat(),
+            );
+            decoder.feed(&bytes);
+        }
+        let mut out = [0; 128];
+        assert_eq!(decoder.take(&mut out), 64);
+        for (tuple, (kind, code, value)) in out.chunks(EvdevDescription::EVENT_BYTES).zip([
+            (1u16, 28u16, 1i32),
+            (0, 0, 0),
+            (0, 3, 0),
+            (3, 0, -5),
+        ]) {
+            assert_eq!(tuple[..2], kind.to_le_bytes());
+            assert_eq!(tuple[2..4], code.to_le_bytes());
+            assert_eq!(tuple[4..8], value.to_le_bytes());
+            assert_eq!(tuple[8..], 7_250_000i64.to_le_bytes());
         }
     }
 }

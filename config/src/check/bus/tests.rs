@@ -1,6 +1,6 @@
 //! Tests of registers and absent ports: defaults, sizes, every refusal with its words.
 
-use crate::description::{I2cDescription, I2cTransfer, SourceDescription};
+use crate::description::{I2cBusDescription, I2cDescription, I2cTransfer, SourceDescription};
 use crate::load::Loader;
 
 fn source(src: &str, more: &str) -> Result<(SourceDescription, usize, u16), String> {
@@ -152,4 +152,28 @@ fn an_absent_port_is_described_like_one_that_is_there() {
     );
     let expected = SourceDescription::Absent("no such port on this board".to_owned());
     assert_eq!(absent, Ok((expected, 1, 0o644)));
+}
+
+#[test]
+fn a_whole_bus_has_a_path_and_addresses_that_are_out_of_reach() {
+    let bus = "i2c_bus{ path = '/dev/i2c-2', reserved = { 0x48, 0x1c } }";
+    let expected = I2cBusDescription {
+        path: "/dev/i2c-2".into(),
+        reserved: vec![0x48, 0x1c],
+    };
+    assert_eq!(
+        source(bus, ""),
+        Ok((SourceDescription::I2cBus(expected), 1, 0o644))
+    );
+    for (bus, reason) in [
+        ("i2c_bus{}", "i2c_bus: path is missing"),
+        ("i2c_bus{ 'dev/i2c-2' }", "must begin with a slash"),
+        ("i2c_bus{ '/d', reserved = 0x48 }", "a list of addresses"),
+        ("i2c_bus{ '/d', reserved = { 2 } }", "reserved"),
+        ("i2c_bus{ '/d', reserved = { 72.5 } }", "reserved"),
+        ("i2c_bus{ '/d', reserve = {} }", "reserve"),
+    ] {
+        let refusal = refused(bus, "");
+        assert!(refusal.contains(reason), "{bus}: {refusal}");
+    }
 }

@@ -17,9 +17,12 @@ impl Printer<'_> {
     }
 
     fn block(&mut self, list: &[Statement], depth: usize, out: &mut String) {
-        let is_empty = list
-            .iter()
-            .all(|statement| matches!(statement, Statement::Comment(_)));
+        let is_empty = list.iter().all(|statement| match statement {
+            Statement::Comment(_) => true,
+            // What the language has no words for is left out.
+            Statement::Do(code) => self.code(code, 0).is_empty(),
+            _ => false,
+        });
         if is_empty && !self.dialect.syntax.empty.is_empty() {
             self.line(depth, self.dialect.syntax.empty, out);
         }

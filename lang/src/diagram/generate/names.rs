@@ -21,6 +21,10 @@ pub(super) struct Rules {
     pub(super) caseless: bool,
     /// Words that are taken.
     pub(super) reserved: &'static [&'static str],
+    /// More of them, with spaces between.
+    pub(super) taken: &'static str,
+    /// Whether names may begin with an underscore and a letter.
+    pub(super) underscores: bool,
 }
 
 /// Names that are in use.
@@ -37,6 +41,8 @@ impl Names {
             used: rules
                 .reserved
                 .iter()
+                .copied()
+                .chain(rules.taken.split_whitespace())
                 .map(|word| folded(word, rules))
                 .collect(),
         }
@@ -85,6 +91,10 @@ pub(super) fn plain(name: &str, rules: Rules) -> String {
         .is_none_or(|first| first.is_ascii_digit())
     {
         out.insert(0, '_');
+    }
+    let is_hidden = |rest: &str| !rest.starts_with(|first: char| first.is_ascii_digit());
+    if !rules.underscores && out.strip_prefix('_').is_some_and(is_hidden) {
+        out.insert(0, 'v');
     }
     out
 }

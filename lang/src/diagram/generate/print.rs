@@ -252,20 +252,13 @@ impl<'a> Printer<'a> {
     pub(super) fn comment(&self, text: &str) -> String {
         let text: String = text
             .chars()
-            .map(|letter| {
-                if letter.is_control() || "\u{2028}\u{2029}".contains(letter) {
-                    ' '
-                } else {
-                    letter
-                }
-            })
+            // What begins a line, or turns the direction of letters so that a reader sees another program.
+            .map(|letter| if is_hidden(letter) { ' ' } else { letter })
             // Nothing that ends a comment, or the line with it.
-            .filter(|&letter| letter != '\\')
+            .filter(|letter| !"\\{}".contains(*letter))
             .collect();
-        fill(
-            self.dialect.syntax.comment,
-            &[&text.replace("*/", "* /").replace(['{', '}'], "")],
-        )
+        let text = text.replace("*/", "* /").replace("/*", "/ *");
+        fill(self.dialect.syntax.comment, &[&text])
     }
 
     /// The body of a routine.
@@ -422,14 +415,21 @@ pub(super) fn quote(text: &str, unusual: fn(u32) -> String) -> String {
             '\n' => out.push_str("\\n"),
             '\r' => out.push_str("\\r"),
             '\t' => out.push_str("\\t"),
-            letter if letter.is_control() || ('\u{2028}'..='\u{202e}').contains(&letter) => {
-                out.push_str(&unusual(letter as u32));
-            }
+            letter if is_hidden(letter) => out.push_str(&unusual(letter as u32)),
             letter => out.push(letter),
         }
     }
     out.push('"');
     out
+}
+
+/// Whether a letter shows nothing where it stands, or changes how others are shown.
+fn is_hidden(letter: char) -> bool {
+    letter.is_control()
+        || matches!(
+            letter,
+            '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}'
+        )
 }
 
 /// A float that is surely one, with a point or an exponent.

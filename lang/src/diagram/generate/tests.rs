@@ -11,13 +11,17 @@ fn names_are_what_the_language_allows() {
         cyrillic: false,
         caseless: true,
         reserved: &["if"],
+        taken: "remainder",
+        underscores: false,
     };
     let mut names = Names::new(rules);
     assert_eq!(names.take("if"), "if_2");
     assert_eq!(names.take("IF"), "IF_3");
     assert_eq!(names.take("\u{414}\u{430} 1"), "Da_1");
     assert_eq!(names.take("7;\n--"), "_7____");
-    assert_eq!(names.take(""), "_");
+    assert_eq!(names.take(""), "v_");
+    assert_eq!(names.take("_Bool"), "v_Bool");
+    assert_eq!(names.take("remainder"), "remainder_2");
 }
 
 /// Blocks one after the other, from the beginning to the end.

@@ -1,5 +1,6 @@
 //! What is said when a diagram cannot be written in a language, in English and Russian.
 
+use super::code::What;
 use crate::problem::Words;
 
 pub(super) fn too_many_blocks(count: usize) -> Words {
@@ -150,20 +151,95 @@ pub(super) fn no_such_kind(name: &str, language: &str) -> Words {
     )
 }
 
-pub(super) fn cannot(what: &str, language: &str) -> Words {
+/// Something that a language cannot say at all.
+pub(super) fn cannot(what: What, language: &str) -> Words {
+    let (english, russian) = thing(what);
     Words::new(
-        format!("{language} has nothing for this: {what}. Choose another language."),
-        format!("В {language} этого нет: {what}. Выберите другой язык."),
+        format!("Programs in {language} cannot do what {english} does. Choose another language."),
+        format!(
+            "Программы на {language} не умеют того, что делает {russian}. Выберите другой язык."
+        ),
     )
 }
 
+/// Something that a program does without.
+pub(super) fn left_out(what: What, language: &str) -> Words {
+    let (english, russian) = thing(what);
+    Words::new(
+        format!("{english} is left out: programs in {language} cannot do it."),
+        format!("{russian} пропущен: программы на {language} этого не умеют."),
+    )
+}
+
+/// What a person knows it as: mostly the name of a block.
+fn thing(what: What) -> (String, String) {
+    let block = |english: &str, russian: &str| {
+        (
+            format!("the block {english}"),
+            format!("блок \"{russian}\""),
+        )
+    };
+    match what {
+        What::PlaySound => block("Play Sound", "Проиграть звук"),
+        What::PlayTone => block("Play Tone", "Проиграть тон"),
+        What::Say => block("Say", "Сказать"),
+        What::Led(_) => block("Led", "Светодиод"),
+        What::System => block("System Call", "Системная команда"),
+        What::Append => block("Write To File", "Записать в файл"),
+        What::Remove => block("Remove File", "Удалить файл"),
+        What::Calibrate => block("Calibrate gyroscope", "Калибровать гироскоп"),
+        What::StartCamera(_) => block("Initialize Videocamera", "Инициализировать камеру"),
+        What::StopCamera(_) => block("Stop Videocamera", "Выключить камеру"),
+        What::Detect(_) => block("Detect by Videocamera", "Запомнить цвет"),
+        What::StartVideo => block("Enable Video Streaming", "Включить видеотрансляцию"),
+        What::StopVideo => block("Disable Video Streaming", "Выключить видеотрансляцию"),
+        What::SendMail | What::SendMailToAll => block("Send message", "Отправить сообщение"),
+        What::Mail => block("Wait for Message", "Получить сообщение"),
+        What::JoinNetwork => block("Join Network", "Подключиться к сети"),
+        What::SendThread => block("Send Message To Thread", "Послать сообщение потоку"),
+        What::ReceiveThread | What::ReceiveThreadNow => block(
+            "Receive Message From Thread",
+            "Получить сообщение от потока",
+        ),
+        What::Clear => block("Clear Screen", "Очистить экран"),
+        What::PenColor => block("Painter Color", "Цвет кисти"),
+        What::PenWidth => block("Painter Width", "Толщина кисти"),
+        What::Background => block("Background Color", "Фон"),
+        What::Pixel => block("Draw Pixel", "Нарисовать точку"),
+        What::Line => block("Draw Line", "Нарисовать линию"),
+        What::Rectangle => block("Draw Rectangle", "Нарисовать прямоугольник"),
+        What::Ellipse => block("Draw Ellipse", "Нарисовать эллипс"),
+        What::Arc => block("Draw Arc", "Нарисовать дугу"),
+        What::Smile => block("Smile", "Улыбка"),
+        What::SadSmile => block("Sad Smile", "Грустная улыбка"),
+        What::MarkerDown => block("Marker Down", "Опустить маркер"),
+        What::MarkerUp => block("Marker Up", "Поднять маркер"),
+        What::Redraw => ("drawing".into(), "вывод на экран".into()),
+        What::StartThread | What::JoinThread | What::KillThread => {
+            ("threads".into(), "потоки".into())
+        }
+        What::Lidar => ("the lidar".into(), "лидар".into()),
+        What::ObjectSensor | What::ColorSensor | What::LineSensor => {
+            ("a sensor of the camera".into(), "датчик камеры".into())
+        }
+        What::PadButton
+        | What::PadX
+        | What::PadY
+        | What::PadPressed
+        | What::Wheel
+        | What::GamepadConnected => ("the gamepad".into(), "пульт".into()),
+        other => (format!("{other:?}"), format!("{other:?}")),
+    }
+}
+
+/// Why threads of JavaScript are not those of the controller.
 pub(super) fn shared_variables(names: &str) -> Words {
     Words::new(
         format!(
-            "Threads in JavaScript share no variables, but these are used by several: {names}. Send messages instead."
+            "Several threads use {names}, so the threads take turns in one engine, as generators: trikd runs that, the first runtimes of TRIK do not."
         ),
         format!(
-            "Потоки в JavaScript не имеют общих переменных, а эти нужны нескольким: {names}. Передавайте их сообщениями."
+            "Эти переменные нужны нескольким потокам: {names}. Поэтому потоки работают по очереди в одной среде, как генераторы: trikd это выполнит, первые среды ТРИК - нет."
         ),
     )
 }

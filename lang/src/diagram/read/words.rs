@@ -99,12 +99,26 @@ pub(super) fn invisible(block: &str) -> Words {
 }
 
 pub(super) fn orphans(blocks: usize, links: usize) -> Words {
+    let many = |count: usize, word: &str| match count {
+        0 => None,
+        1 => Some(format!("1 {word}")),
+        _ => Some(format!("{count} {word}s")),
+    };
+    let lost: Vec<String> = [many(blocks, "block"), many(links, "link")]
+        .into_iter()
+        .flatten()
+        .collect();
+    let (are, do_) = match blocks + links {
+        1 => ("is", "does"),
+        _ => ("are", "do"),
+    };
     Words::new(
         format!(
-            "{blocks} blocks and {links} links are in the save but in no diagram: they were deleted in the editor and do not run"
+            "{} {are} in the file but on no sheet, and {do_} not run: deleted in the editor, or lost by it",
+            lost.join(" and ")
         ),
         format!(
-            "блоков в сохранении, но не на диаграммах: {blocks}, связей: {links}; их удалили в редакторе, и они не выполняются"
+            "в файле, но не на диаграммах: блоков {blocks}, связей {links}; они не выполняются: их удалили в редакторе или он их потерял"
         ),
     )
 }

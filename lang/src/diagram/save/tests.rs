@@ -219,7 +219,7 @@ fn orphans_are_told_and_not_run() {
     assert_eq!(opened.problems.len(), 1);
     let told = opened.problems[0].to_string();
     assert!(
-        told.contains("1 blocks and 2 links are in the save but in no diagram"),
+        told.contains("1 block and 2 links are in the file but on no sheet"),
         "{told}"
     );
     let kinds: Vec<String> = opened

@@ -10,7 +10,7 @@ use super::{details, name};
 use crate::diagram::generate::plan::{Function, Owner, plan};
 use crate::diagram::lower::{World, lower};
 use crate::diagram::program::{Node, Op, Program};
-use crate::diagram::project::{Block, Project};
+use crate::diagram::project::{Block, Diagram, DiagramKind, Project};
 use crate::diagram::structure::{Jumps, structure};
 use crate::diagram::tree::{Condition, Tree};
 use crate::problem::{Problem, Tongue};
@@ -26,6 +26,7 @@ pub fn outline(project: &Project, tongue: Tongue) -> Result<String, Vec<Problem>
     let blocks = project.diagrams.iter().flat_map(|diagram| &diagram.blocks);
     let mut writer = Writer {
         program,
+        main: project.main.and_then(|main| project.diagrams.get(main)),
         blocks: blocks.map(|block| (block.id.as_str(), block)).collect(),
         tongue,
         function: None,
@@ -39,6 +40,8 @@ pub fn outline(project: &Project, tongue: Tongue) -> Result<String, Vec<Problem>
 
 struct Writer<'a> {
     program: &'a Program,
+    /// The diagram that is shown first; it may be a subprogram.
+    main: Option<&'a Diagram>,
     blocks: HashMap<&'a str, &'a Block>,
     tongue: Tongue,
     function: Option<&'a Function>,
@@ -54,14 +57,22 @@ impl<'a> Writer<'a> {
         let _ = writeln!(self.out, "{:width$}{text}", "", width = depth * 2);
     }
 
+    fn subprogram(&self, name: &str) -> String {
+        format!("{} {}", self.word(Word::Subprogram), super::shortened(name))
+    }
+
     fn function(&mut self, function: &'a Function) {
         self.function = Some(function);
         let title = match &function.owner {
-            Owner::Main => self.word(Word::Program).to_owned(),
+            Owner::Main => match self.main {
+                Some(sheet) if sheet.kind == DiagramKind::Subprogram => {
+                    self.subprogram(&sheet.name)
+                }
+                _ => self.word(Word::Program).to_owned(),
+            },
             Owner::Subprogram(diagram) => {
                 let sheet = self.program.diagrams.get(*diagram as usize);
-                let name = sheet.map_or("", |sheet| &sheet.name);
-                format!("{} {}", self.word(Word::Subprogram), super::shortened(name))
+                self.subprogram(sheet.map_or("", |sheet| &sheet.name))
             }
             Owner::Thread(name, _) => {
                 format!("{} {}", self.word(Word::Thread), super::shortened(name))

@@ -65,6 +65,8 @@ pub fn unreadable(ctx: &Ctx<'_>, brick: &Brick, place: &str, error: &io::Error) 
         format!(" ({fault})")
     } else if error.kind() == io::ErrorKind::NotFound && !root.join("status").exists() {
         format!(" (is a tree mounted at {}?)", root.display())
+    } else if error.kind() == io::ErrorKind::PermissionDenied {
+        " (the file log of the tree says why)".to_owned()
     } else {
         String::new()
     };
@@ -86,6 +88,7 @@ pub fn install<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()>
     onboard(native, own)?;
     cameras(native, own)?;
     gamepad(native, own)?;
+    files(native, own)?;
     tree(native, own)
 }
 
@@ -274,14 +277,18 @@ fn cameras<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
         let mut known = known.borrow_mut();
         if !known.contains_key(name) {
             let camera = o.brick.camera(name);
-            let camera = camera.ok_or_else(|| failed(ctx, "this robot has no camera"))?;
+            let camera = camera.ok_or_else(|| failed(ctx, "this robot has no such sensor"))?;
             known.insert(name.to_owned(), camera);
         }
         match work(&known[name]) {
             // There was no picture yet, or no answer.
             Err(error) if is_waiting(&error) => Ok(Vec::new()),
             done => {
-                done.map_err(|error| unreadable(ctx, &o.brick, &format!("camera/{name}"), &error))
+                let place = match name {
+                    "sound" => "microphones".to_owned(),
+                    _ => format!("camera/{name}"),
+                };
+                done.map_err(|error| unreadable(ctx, &o.brick, &place, &error))
             }
         }
     };
@@ -402,4 +409,41 @@ fn tree<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
             .stop()
             .map_err(|error| unreadable(&ctx, &o.brick, "stop", &error))
     })
+}
+
+/// Files that are written, and files in which positions mean something.
+fn files<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
+    let o = own.clone();
+    put(
+        native,
+        "write",
+        move |ctx: Ctx<'js>, path: String, text: String| {
+            let file = o.brick.tree().node(&path, Access::Write);
+            file.write(&text)
+                .map_err(|error| unreadable(&ctx, &o.brick, &path, &error))
+        },
+    )?;
+    let o = own.clone();
+    put(
+        native,
+        "readAt",
+        move |ctx: Ctx<'js>, path: String, position: f64, count: usize| {
+            let mut bytes = vec![0; count.min(limits::TRANSFER_BYTES)];
+            let file = o.brick.tree().node(&path, Access::Read);
+            let read = file.bytes_at(&mut bytes, position as u64);
+            let size = read.map_err(|error| unreadable(&ctx, &o.brick, &path, &error))?;
+            bytes.truncate(size);
+            Ok::<_, Error>(bytes)
+        },
+    )?;
+    let o = own.clone();
+    put(
+        native,
+        "writeAt",
+        move |ctx: Ctx<'js>, path: String, position: f64, bytes: Vec<u8>| {
+            let file = o.brick.tree().node(&path, Access::Write);
+            file.write_at(&bytes, position as u64)
+                .map_err(|error| unreadable(&ctx, &o.brick, &path, &error))
+        },
+    )
 }

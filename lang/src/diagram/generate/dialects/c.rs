@@ -4,6 +4,7 @@
 //! labels go to the standard output.
 
 mod helpers;
+mod taken;
 
 use super::super::code::{Kind, What};
 use super::super::names::Rules;
@@ -49,6 +50,8 @@ pub(in super::super) const C: Dialect = Dialect {
         cyrillic: false,
         caseless: false,
         reserved: RESERVED,
+        taken: taken::TAKEN,
+        underscores: false,
     },
     abilities: Abilities {
         jumps: Jumps::Goto,

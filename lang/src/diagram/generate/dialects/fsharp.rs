@@ -50,6 +50,8 @@ pub(in super::super) const FSHARP: Dialect = Dialect {
         cyrillic: true,
         caseless: false,
         reserved: RESERVED,
+        taken: "",
+        underscores: true,
     },
     abilities: Abilities {
         jumps: Jumps::Plain,
@@ -78,6 +80,7 @@ pub(in super::super) const FSHARP: Dialect = Dialect {
 };
 
 const RESERVED: &[&str] = &[
+    "_",
     "abstract",
     "and",
     "as",
@@ -193,6 +196,16 @@ const RESERVED: &[&str] = &[
     "sqrt",
     "round",
     "truncate",
+    "atomic",
+    "break",
+    "checked",
+    "constructor",
+    "continue",
+    "method",
+    "object",
+    "select",
+    "threads",
+    "volatile",
 ];
 
 fn row(what: What) -> Row {

@@ -2,6 +2,8 @@
 //!
 //! Owns words of one language. What they are called is in docs/user/javascript.md.
 
+pub(in super::super) mod turns;
+
 use super::super::code::{Camera, Light, Own, What};
 use super::super::names::Rules;
 use super::super::plan::Owner;
@@ -45,6 +47,8 @@ pub(in super::super) const JAVASCRIPT: Dialect = Dialect {
         cyrillic: true,
         caseless: false,
         reserved: RESERVED,
+        taken: "",
+        underscores: true,
     },
     abilities: Abilities {
         jumps: Jumps::Labelled,
@@ -502,8 +506,14 @@ var again = function(loop, times) {
 ];
 
 fn assemble(printer: &Printer<'_>) -> String {
+    assembled(printer, false)
+}
+
+/// The whole program. In one with turns each function is a generator.
+fn assembled(printer: &Printer<'_>, has_turns: bool) -> String {
     let script = printer.script;
     let mut functions = String::new();
+    let star = if has_turns { "*" } else { "" };
     for (index, routine) in script.routines.iter().enumerate().rev() {
         let name = &printer.functions[index];
         let parameters = routine
@@ -511,23 +521,29 @@ fn assemble(printer: &Printer<'_>) -> String {
             .iter()
             .map(|&number| printer.variables[number].as_str());
         let parameters = parameters.collect::<Vec<_>>().join(", ");
-        let said = match &routine.owner {
-            Owner::Main => String::new(),
-            Owner::Subprogram(_) => String::new(),
-            Owner::Thread(thread, _) => {
-                format!("{}\n", printer.comment(&format!("The thread {thread}.")))
-            }
-        };
-        functions.push_str(&format!("{said}var {name} = function({parameters}) {{\n"));
+        if let Owner::Thread(thread, _) = &routine.owner {
+            let comment = printer.comment(&format!("The thread {thread}."));
+            functions.push_str(&format!("{comment}\n"));
+        }
+        let is_inside = has_turns && routine.owner == Owner::Main;
+        let (star, depth) = if is_inside { ("", 2) } else { (star, 1) };
+        functions.push_str(&format!("var {name} = function{star}({parameters}) {{\n"));
         if routine.owner == Owner::Main {
             functions.push_str("    __interpretation_started_timestamp__ = script.time();\n");
+        }
+        if is_inside {
+            functions.push_str("    turns.run(function*() {\n");
         }
         let locals = printer.locals(routine, &[Own::Counter]);
         if !locals.is_empty() {
             let names: Vec<_> = locals.into_iter().map(|(name, _)| name).collect();
-            functions.push_str(&format!("    var {};\n", names.join(", ")));
+            let indent = "    ".repeat(depth);
+            functions.push_str(&format!("{indent}var {};\n", names.join(", ")));
         }
-        functions.push_str(&printer.body(routine, 1));
+        functions.push_str(&printer.body(routine, depth));
+        if is_inside {
+            functions.push_str("    });\n");
+        }
         functions.push_str("};\n\n");
     }
     let mut variables = String::new();

@@ -48,6 +48,8 @@ pub(in super::super) const LUA: Dialect = Dialect {
         cyrillic: false,
         caseless: false,
         reserved: RESERVED,
+        taken: "",
+        underscores: true,
     },
     abilities: Abilities {
         jumps: Jumps::Goto,

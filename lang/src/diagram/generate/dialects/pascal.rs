@@ -46,6 +46,8 @@ pub(in super::super) const PASCAL: Dialect = Dialect {
         cyrillic: true,
         caseless: true,
         reserved: RESERVED,
+        taken: "",
+        underscores: true,
     },
     abilities: Abilities {
         jumps: Jumps::Plain,

@@ -46,6 +46,8 @@ pub(in super::super) const PYTHON: Dialect = Dialect {
         cyrillic: true,
         caseless: false,
         reserved: RESERVED,
+        taken: "",
+        underscores: true,
     },
     abilities: Abilities {
         jumps: Jumps::Plain,
