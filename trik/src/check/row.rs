@@ -318,7 +318,7 @@ mod tests {
             many.say("log", &"x".repeat(limits::ROW_MESSAGE_CHARS_MAX * 2));
         }
         assert_eq!(many.messages.len(), limits::ROW_MESSAGES_MAX);
-        assert_eq!(many.more, 3 + limits::ROW_MESSAGES_MAX + 2);
+        assert_eq!(many.more, 3 + limits::ROW_MESSAGES_MAX + 3);
         assert!(many.write().len() < limits::ROW_BYTES_MAX);
     }
 }
