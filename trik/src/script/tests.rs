@@ -1,3 +1,5 @@
+//! Programs under a judge, on a stand-in for a robot: time, threads, ends, failures, files, events.
+
 use super::*;
 use lang::diagram::machine::{STEP_MS, Status};
 use lang::diagram::ports::Port;
