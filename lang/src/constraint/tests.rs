@@ -4,6 +4,7 @@ mod checking;
 mod reading;
 mod templates;
 mod values;
+mod verdicts;
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
