@@ -360,12 +360,10 @@ impl Supervisor {
             group(current.child.pid, Signal::SIGSTOP);
         }
         // A tree that is slow is still on its way to rest; the program must not live so long.
-        let resting = self.daemon.rest.now(limits::REST_WAIT_MS);
+        let mut rested = self.daemon.rest.now(limits::REST_WAIT_MS).await;
         let leader = self.current.as_ref().map(|current| current.child.pid);
-        // The thread of rest works while processes that have left the group are looked for.
-        let freezing = async { leader.is_some_and(|leader| freeze(Pid::this(), leader)) };
-        let (mut rested, wrote_on) = tokio::join!(resting, freezing);
-        if wrote_on {
+        // Processes that have left the group may have written since; from here on they stand still.
+        if leader.is_some_and(|leader| freeze(Pid::this(), leader)) {
             rested = self.daemon.rest.now(limits::REST_WAIT_MS).await;
         }
         let rest_us = began.elapsed().as_micros();
