@@ -3,6 +3,8 @@
 //! Owns the clock between the steps of the board and the ticks of the arena, and what the arena's sensors look like at the
 //! connectors. Knows no physics: the arena has it.
 
+use std::cell::Cell;
+
 use lang::diagram::brick::{Brick, Command};
 use lang::diagram::ports::Port;
 use lang::diagram::stand_in::PIXELS_IN_CM;
@@ -10,10 +12,11 @@ use lang::diagram::stand_in::PIXELS_IN_CM;
 use super::battery::Battery;
 use super::two_wheels::sharp_gp2_raw;
 use super::{Body, Drive, Power, Senses};
+use crate::arena::floor::{Window, sensors};
 use crate::arena::{Arena, Setup, ranges};
 use crate::field::{Field, SensorKind};
 use crate::geometry::{Point, Pose, point};
-use crate::world::Colour;
+use crate::world::{Colour, colour};
 
 /// Pixels in a metre.
 const PIXELS_IN_M: f64 = PIXELS_IN_CM * 100.0;
@@ -25,6 +28,8 @@ const GRAVITY_MPS2: f64 = 9.81;
 const TOUCH_RAW: [f64; 2] = [20.0, 1000.0];
 /// What it gives for white, and how much more for black.
 const LIGHT_RAW: [f64; 2] = [30.0, 993.0];
+/// How much of its picture the camera shows: as much as the line sensor of the original sees.
+const CAMERA_PART: f64 = 2.0;
 
 /// The type and the name in configurations of what a kind of sensor is on an analog port.
 fn analog_type(kind: SensorKind) -> Option<(&'static str, &'static str)> {
@@ -96,6 +101,10 @@ pub struct Studio {
     senses: Senses,
     velocity_mps: Point,
     was_stuck: bool,
+    /// The floor below the camera; without pixels where there is none.
+    seen: Window,
+    /// Whether anybody has looked since.
+    is_looked_at: Cell<bool>,
 }
 
 impl Studio {
@@ -112,6 +121,8 @@ impl Studio {
             senses: Senses::default(),
             velocity_mps: Point::default(),
             was_stuck: false,
+            seen: Window::default(),
+            is_looked_at: Cell::new(true),
         };
         studio.senses.pose = studio.pose();
         studio.look();
@@ -165,6 +176,21 @@ impl Studio {
             bumps: self.senses.bumps + u32::from(is_stuck && !self.was_stuck),
         };
         self.was_stuck = is_stuck;
+        // Pictures cost more than everything else here.
+        if self.is_looked_at.replace(false) {
+            let robot = &self.arena.robots()[0];
+            if let Some(camera) = robot.sensor_of(SensorKind::Camera) {
+                let (at, degrees) = robot.sensor_pose(camera);
+                let floor = self.arena.floor();
+                floor.look(
+                    at,
+                    degrees,
+                    sensors::CAMERA_SIDE,
+                    CAMERA_PART,
+                    &mut self.seen,
+                );
+            }
+        }
     }
 
     fn analog(&mut self, index: usize) -> Option<f64> {
@@ -238,8 +264,17 @@ impl Body for Studio {
         false
     }
 
-    fn pixel(&self, _right: f64, _down: f64) -> Option<Colour> {
-        None
+    /// Of the picture of the last tick.
+    fn pixel(&self, right: f64, down: f64) -> Option<Colour> {
+        self.is_looked_at.set(true);
+        let side = self.seen.side;
+        let index = |place: f64| {
+            let share = (place + 1.0) / 2.0;
+            ((share * side as f64) as usize).min(side.saturating_sub(1))
+        };
+        let pixel = self.seen.pixels.get(index(down) * side + index(right))?;
+        let [red, green, blue] = *pixel;
+        Some(colour(red, green, blue))
     }
 }
 
@@ -295,6 +330,25 @@ mod tests {
         assert_eq!(senses.ultrasonic_m, [Some(0.47), None, None]);
         assert!(!body.has_lidar() && body.range_m(0.0).is_none());
         assert!(senses.battery_v > 11.0);
+    }
+
+    #[test]
+    fn the_camera_sees_the_floor_before_it() {
+        let mut field = field();
+        let mut camera = Sensor::new(Port::named("video1").unwrap(), SensorKind::Camera);
+        camera.at = point(62.0, 25.0);
+        field.robots[0].sensors.push(camera);
+        let text = "<root version=\"20251219\"><settings/><world><colorFields><line begin=\"62:-50\" end=\"62:100\" \
+                    stroke=\"#ff000000\" stroke-width=\"6\"/></colorFields></world></root>";
+        let painted = Field::read(text).unwrap().field;
+        field.drawn = painted.drawn;
+        let body = Studio::new(&field, 1);
+        // The line lies across, in the middle of the picture.
+        assert_eq!(body.pixel(0.0, 0.0), Some(colour(0, 0, 0)));
+        assert_eq!(body.pixel(-0.9, 0.0), Some(colour(0, 0, 0)));
+        assert_eq!(body.pixel(0.0, -0.9), Some(colour(255, 255, 255)));
+        let blind = Studio::new(&Field::default(), 1);
+        assert_eq!(blind.pixel(0.0, 0.0), None);
     }
 
     #[test]

@@ -29,3 +29,4 @@ mod rig;
 mod scripts;
 /// What is said to a person, and what is refused.
 mod words;
+mod world;
