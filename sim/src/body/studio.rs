@@ -335,7 +335,7 @@ mod tests {
     #[test]
     fn the_camera_sees_the_floor_before_it() {
         let mut field = field();
-        let mut camera = Sensor::new(Port::named("video1").unwrap(), SensorKind::Camera);
+        let mut camera = Sensor::new(Port::named("A2").unwrap(), SensorKind::Camera);
         camera.at = point(62.0, 25.0);
         field.robots[0].sensors.push(camera);
         let text = "<root version=\"20251219\"><settings/><world><colorFields><line begin=\"62:-50\" end=\"62:100\" \
