@@ -30,7 +30,11 @@ const PROGRESS_EVERY: Duration = Duration::from_millis(200);
 
 /// Does it.
 pub(crate) fn check(args: &CheckArgs) -> ExitCode {
-    end(checked(args))
+    // What could not be told is no verdict: 1 is for tasks that were not accomplished.
+    end(checked(args).map_err(|refusal| Refusal {
+        code: UNREADABLE,
+        ..refusal
+    }))
 }
 
 fn checked(args: &CheckArgs) -> Result<u8, Refusal> {

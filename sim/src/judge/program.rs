@@ -22,6 +22,11 @@ pub trait Program {
 
     /// What went wrong in it so far, in order; it only grows.
     fn errors(&self) -> &[Problem];
+
+    /// Whether it was ended because it took too much real time, which says nothing of the task.
+    fn is_out_of_time(&self) -> bool {
+        false
+    }
 }
 
 /// A diagram as a program, with the oddities of the original's simulator.

@@ -103,7 +103,10 @@ pub fn judge(task: &Task, program: &mut dyn Program, settings: &Settings) -> Out
         let status = run.step(now, program, &mut arena);
         run.hear(now, program.errors());
         if let Status::Ended { with_errors, .. } = status {
-            run.ended(now, with_errors, &mut arena);
+            match program.is_out_of_time() {
+                true => run.verdict = Some(Verdict::Unknown),
+                false => run.ended(now, with_errors, &mut arena),
+            }
             break;
         }
         if now >= settings.longest_ms {

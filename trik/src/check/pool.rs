@@ -8,6 +8,7 @@ use super::row::Row;
 use crate::cli::CheckArgs;
 use crate::limits;
 use std::ffi::OsString;
+use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::process::{CommandExt, ExitStatusExt};
@@ -16,10 +17,12 @@ use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// This program, whatever has happened to its file since it was started.
 const SELF: &str = "/proc/self/exe";
+/// Where the mark of a process comes from.
+const RANDOM: &str = "/dev/urandom";
 /// How far a run may be ahead of the first one that is not done.
 const AHEAD_MAX: usize = 2_000;
 
@@ -172,26 +175,37 @@ fn done(
 /// A process that does runs. Dropping it kills it.
 struct Worker {
     child: Child,
+    /// What its lines begin with; programs that it runs do not know it, and their lines are passed over.
+    mark: String,
     stdin: Option<ChildStdin>,
     lines: Receiver<String>,
 }
 
 impl Worker {
     fn start(words: &[OsString]) -> io::Result<Self> {
+        let mut random = [0; 16];
+        File::open(RANDOM)?.read_exact(&mut random)?;
+        let mark = format!("{:032x} ", u128::from_ne_bytes(random));
         let mut child = Command::new(SELF)
             .arg0("trik")
             .args(words)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()?;
-        let (stdin, stdout) = (child.stdin.take(), child.stdout.take());
+        let (mut stdin, stdout) = (child.stdin.take(), child.stdout.take());
+        if let Some(stdin) = &mut stdin {
+            // Should it have died already, the first job finds out.
+            let _ = writeln!(stdin, "{mark}");
+        }
         let (send, lines) = sync_channel(1);
         thread::spawn(move || {
             let mut reader = stdout.map(BufReader::new);
             while let Some(reader) = reader.as_mut() {
-                let mut line = String::new();
+                let mut line = Vec::new();
                 let most = limits::ROW_BYTES_MAX as u64;
-                let read = reader.by_ref().take(most).read_line(&mut line);
+                let read = reader.by_ref().take(most).read_until(b'\n', &mut line);
+                // Whatever it is: only a line with the mark counts.
+                let line = String::from_utf8_lossy(&line).into_owned();
                 if !matches!(read, Ok(1..)) || send.send(line).is_err() {
                     return;
                 }
@@ -199,6 +213,7 @@ impl Worker {
         });
         Ok(Self {
             child,
+            mark,
             stdin,
             lines,
         })
@@ -216,20 +231,30 @@ impl Worker {
         if !matches!(written, Some(Ok(()))) {
             return Err(self.died());
         }
-        match self.lines.recv_timeout(patience) {
-            Ok(line) => Ok(line),
-            Err(RecvTimeoutError::Disconnected) => Err(self.died()),
-            Err(RecvTimeoutError::Timeout) => {
-                let seconds = patience.as_secs_f64();
-                Err(format!(
-                    "it hung for {seconds:.0} s of real time and was killed"
-                ))
+        let end = Instant::now() + patience;
+        loop {
+            let left = end.saturating_duration_since(Instant::now());
+            match self.lines.recv_timeout(left) {
+                Ok(line) => {
+                    if let Some(row) = line.strip_prefix(&*self.mark) {
+                        return Ok(row.to_owned());
+                    }
+                }
+                Err(RecvTimeoutError::Disconnected) => return Err(self.died()),
+                Err(RecvTimeoutError::Timeout) => {
+                    let seconds = patience.as_secs_f64();
+                    return Err(format!(
+                        "it hung for {seconds:.0} s of real time and was killed"
+                    ));
+                }
             }
         }
     }
 
     /// What has become of it.
     fn died(&mut self) -> String {
+        // One that only has closed its pipes would be waited for without end.
+        let _ = self.child.kill();
         let status = self.child.wait().unwrap_or(ExitStatus::from_raw(0));
         match status.signal() {
             Some(6) => "the process that ran it has crashed, perhaps for want of memory: --memory is its limit".to_owned(),

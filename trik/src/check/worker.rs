@@ -1,13 +1,14 @@
 //! The process that does runs for another one: jobs on standard input, a line of JSON for each on standard output.
 //!
-//! Owns its limit of memory and its end with its parent. A run that panics is told as one that could not be run.
+//! Owns its limit of memory and its end with its parent. A run that panics is told as one that could not be run. Programs in
+//! Python can find its standard output, so each line begins with a mark that only this process and its parent know.
 
 use super::jobs::Job;
 use super::pool::shown;
 use super::row::Row;
 use super::run;
 use crate::cli::CheckArgs;
-use nix::sys::prctl::set_pdeathsig;
+use nix::sys::prctl::{set_dumpable, set_pdeathsig};
 use nix::sys::resource::{Resource, rlim_t, setrlimit};
 use nix::sys::signal::Signal;
 use std::ffi::OsString;
@@ -25,12 +26,18 @@ const JOB_BYTES_MAX: u64 = 64 << 10;
 /// The pipes, and what the system says of limits.
 pub(super) fn serve(args: &CheckArgs) -> Result<(), String> {
     set_pdeathsig(Signal::SIGKILL).map_err(|error| format!("worker: {error}"))?;
+    // Programs that it starts have the same user, and look neither into its memory nor at its pipes.
+    set_dumpable(false).map_err(|error| format!("worker: {error}"))?;
     limit_memory(args).map_err(|error| format!("--memory: {error}"))?;
     let mut input = io::stdin().lock();
     let mut output = io::stdout().lock();
+    let mut mark = String::new();
+    let read = input.by_ref().take(JOB_BYTES_MAX).read_line(&mut mark);
+    read.map_err(|error| format!("jobs: {error}"))?;
+    let mark = mark.trim_end_matches('\n');
     while let Some(job) = next(&mut input).map_err(|error| format!("jobs: {error}"))? {
-        let mut line = guarded(&job, args).write();
-        line.push('\n');
+        // On a line of its own, whatever somebody else has begun.
+        let line = format!("\n{mark}{}\n", guarded(&job, args).write());
         let written = output.write_all(line.as_bytes());
         written
             .and_then(|()| output.flush())

@@ -59,6 +59,7 @@ pub struct Python {
     readings: Readings,
     errors: Vec<Problem>,
     ended: Option<u32>,
+    is_out_of_time: bool,
 }
 
 impl Python {
@@ -90,6 +91,7 @@ impl Python {
             readings: Readings::default(),
             errors: Vec::new(),
             ended: None,
+            is_out_of_time: false,
         })
     }
 
@@ -157,6 +159,7 @@ impl Python {
                     if [io::ErrorKind::WouldBlock, io::ErrorKind::TimedOut]
                         .contains(&error.kind()) =>
                 {
+                    self.is_out_of_time = true;
                     let seconds = self.longest.as_secs_f64();
                     self.fail(&format!(
                         "the program has taken {seconds} s of real time and does not wait"
@@ -438,6 +441,10 @@ impl Program for Python {
 
     fn errors(&self) -> &[Problem] {
         &self.errors
+    }
+
+    fn is_out_of_time(&self) -> bool {
+        self.is_out_of_time
     }
 }
 
