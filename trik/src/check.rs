@@ -54,10 +54,34 @@ fn checked(args: &CheckArgs) -> Result<u8, Refusal> {
     if let Some(results) = &results {
         results.look()?;
     }
+    look(&jobs, args)?;
     match &jobs[..] {
         [job] => one(job, args, results),
         _ => many(&jobs, args, results),
     }
+}
+
+/// Refuses files that are there before anything runs: afterwards a verdict would be lost with them.
+fn look(jobs: &[Job], args: &CheckArgs) -> Result<(), Refusal> {
+    let wanted = [
+        (&args.report, run::REPORT),
+        (&args.trajectory, run::TRAJECTORY),
+        (&args.svg, run::SVG),
+        (&args.html, run::HTML),
+    ];
+    for (path, ending) in wanted {
+        let Some(path) = path else { continue };
+        for job in jobs {
+            let path = place(path, job, ending, jobs.len() == 1);
+            let output = Output {
+                path: Some(&path),
+                force: args.force,
+                source: &job.solution,
+            };
+            output.look()?;
+        }
+    }
+    Ok(())
 }
 
 /// One run: its outputs are files and not directories.

@@ -53,10 +53,11 @@ pub fn configuration(field: &Field) -> String {
     );
     let digit = |port: Option<Port>| port.and_then(|port| port.name().get(1..)).unwrap_or("");
     let [left, right] = [robot.left, robot.right].map(digit);
+    // The motors of a world are linear; the table of a real motor would bend what they are told.
     for (side, number) in [("left", left), ("right", right)] {
         if !number.is_empty() && (side == "left" || left != right) {
             text += &format!(
-                "  {{ port = 'M{number}', type = 'motor100', name = '{side}', encoder = 'E{number}' }},\n  {{ port = 'E{number}', type = 'encoder95', name = '{side}' }},\n"
+                "  {{ port = 'M{number}', type = 'powerMotor', name = '{side}', encoder = 'E{number}' }},\n  {{ port = 'E{number}', type = 'encoder95', name = '{side}' }},\n"
             );
         }
     }
@@ -355,7 +356,7 @@ mod tests {
     fn the_configuration_has_what_the_world_has() {
         let text = configuration(&field());
         for line in [
-            "{ port = 'M3', type = 'motor100', name = 'left', encoder = 'E3' },",
+            "{ port = 'M3', type = 'powerMotor', name = 'left', encoder = 'E3' },",
             "{ port = 'A1', type = 'sharpGP2', name = 'infrared1' },",
             "{ port = 'D1', type = 'ultrasonic', name = 'sonar1' },",
         ] {

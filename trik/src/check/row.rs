@@ -98,14 +98,8 @@ impl Row {
         if self.verdict == Verdict::Broken {
             return None;
         }
-        // The time of success is no number of points.
-        let is_time = |text: &str| {
-            let marks = [
-                "The task was accomplished in ",
-                "\u{417}\u{430}\u{434}\u{430}\u{43d}\u{438}\u{435} \u{432}\u{44b}\u{43f}\u{43e}\u{43b}\u{43d}\u{435}\u{43d}\u{43e} \u{437}\u{430} ",
-            ];
-            marks.iter().any(|mark| text.starts_with(mark))
-        };
+        // Seconds of the run are no points: neither the time of success nor the limit that a run met.
+        let is_time = |text: &str| words::TIMES.iter().any(|mark| text.starts_with(mark));
         let texts = self.messages.iter().rev().map(|(_, text)| text);
         let texts = texts.filter(|text| !is_time(text));
         let mut numbers = texts.filter_map(|text| {
@@ -298,6 +292,11 @@ mod tests {
             "{line}"
         );
         assert_eq!(Row::read(&line), Some(row()));
+        for mark in words::TIMES {
+            let mut late = row();
+            late.say("error", &format!("{mark}600 s"));
+            assert_eq!(late.last_number(), Some(20), "{mark}");
+        }
         assert_eq!(Row::read("{}"), None);
         assert_eq!(Row::read("[1"), None);
     }

@@ -24,6 +24,12 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::time::Duration;
 
+/// Ends of the names of files, where each run has its own.
+pub(super) const REPORT: &str = ".json";
+pub(super) const TRAJECTORY: &str = ".trajectory.json";
+pub(super) const SVG: &str = ".svg";
+pub(super) const HTML: &str = ".html";
+
 /// Does a run and writes its files.
 pub(super) fn run(job: &Job, args: &CheckArgs) -> Row {
     let mut row = Row {
@@ -51,7 +57,7 @@ pub(super) fn run(job: &Job, args: &CheckArgs) -> Row {
                 .map(|path| (path, row.messages.clone()));
             if let Some((path, messages)) = report {
                 let text = judge::report::of_messages(&messages);
-                if let Err(why) = put(job, args, path, ".json", text.as_bytes()) {
+                if let Err(why) = put(job, args, path, REPORT, text.as_bytes()) {
                     row.say("error", &why);
                 }
             }
@@ -253,16 +259,14 @@ fn write(job: &Job, args: &CheckArgs, task: &Task, outcome: &Outcome) -> Result<
             wrong.push(why);
         }
     };
-    write(&args.report, ".json", &|| {
+    write(&args.report, REPORT, &|| {
         judge::report::write(&outcome.entries)
     });
-    write(&args.trajectory, ".trajectory.json", &|| {
-        outcome.trajectory.write()
-    });
-    write(&args.svg, ".svg", &|| {
+    write(&args.trajectory, TRAJECTORY, &|| outcome.trajectory.write());
+    write(&args.svg, SVG, &|| {
         judge::svg(&task.field, &outcome.trajectory)
     });
-    write(&args.html, ".html", &|| {
+    write(&args.html, HTML, &|| {
         let mut row = Row::broken(shown(&job.solution), None, String::new());
         tell(outcome, &mut row);
         let verdict = format!(
@@ -297,7 +301,13 @@ fn put(job: &Job, args: &CheckArgs, path: &Path, ending: &str, bytes: &[u8]) -> 
         force: args.force,
         source: &job.solution,
     };
-    output
-        .write(bytes)
-        .map_err(|refusal| refusal.lines.join("; "))
+    output.write(bytes).map_err(|refusal| {
+        let lines: Vec<&str> = refusal.lines.iter().map(|line| plain(line)).collect();
+        lines.join("; ")
+    })
+}
+
+/// A line without the name of the program, which begins what goes to a terminal.
+fn plain(line: &str) -> &str {
+    line.strip_prefix("trik: ").unwrap_or(line)
 }

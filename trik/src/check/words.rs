@@ -10,6 +10,16 @@ fn choose(tongue: Tongue, english: &'static str, russian: &'static str) -> &'sta
     }
 }
 
+/// How messages begin that tell seconds and not points: those of TRIK Studio for a success, those of the judge for limits.
+pub(super) const TIMES: [&str; 6] = [
+    "The task was accomplished in ",
+    "Задание выполнено за ",
+    "The program was stopped after ",
+    "Программа остановлена после ",
+    "The run took more than ",
+    "Запуск длился больше ",
+];
+
 /// How a run ended.
 pub(super) fn verdict(verdict: Verdict, tongue: Tongue) -> &'static str {
     match verdict {
