@@ -76,6 +76,8 @@ pub const CELLS_OF_THING: i64 = 256;
 pub const FIELD_NUMBER: f64 = 1e6;
 /// Walls, solids, drawn things, regions and the like of one field, strokes and sensors included.
 pub const FIELD_THINGS: usize = 20_000;
+/// Balls, skittles and cubes that realistic physics moves: 300 in a heap are slower than real time.
+pub const FIELD_PUSHED: usize = 200;
 /// Robots of one field; there is one for each kit.
 pub const FIELD_ROBOTS: usize = 16;
 /// Sensors of one robot.

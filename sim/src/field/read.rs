@@ -47,6 +47,7 @@ pub(super) fn read(text: &str) -> Result<Opened, Vec<Problem>> {
     reader.robots(&mut document);
     reader.constraints(&mut document);
     reader.bounds();
+    reader.pushed();
     let Reader {
         mut field,
         problems,
@@ -114,6 +115,15 @@ impl Reader {
         let mut settings = Settings::default();
         settings.visit(&mut self.codec(element, 1));
         self.field.settings = settings;
+    }
+
+    /// Realistic physics computes every touch of every two things in every tick.
+    fn pushed(&mut self) {
+        let count = self.field.solids.len();
+        if self.field.settings.realistic_physics && count > limits::FIELD_PUSHED {
+            let problem = Problem::error(words::too_many_pushed(count, limits::FIELD_PUSHED));
+            self.problems.push(problem);
+        }
     }
 
     fn world(&mut self, document: &mut Element<'static>) {

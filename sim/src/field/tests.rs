@@ -221,3 +221,19 @@ fn more_things_than_anybody_needs_are_refused_in_time() {
     ));
     assert!(told.contains("more than 20000"), "{told}");
 }
+
+#[test]
+fn heaps_that_realistic_physics_cannot_move_in_time_are_refused() {
+    let world = |count: usize, realistic: bool| {
+        let cubes: String = (0..count)
+            .map(|index| format!("<cube id=\"c{index}\" x=\"0\" y=\"0\"/>"))
+            .collect();
+        format!(
+            "<root version=\"20251219\"><world><cubes>{cubes}</cubes></world><settings realisticPhysics=\"{realistic}\"/></root>"
+        )
+    };
+    let told = refused(&world(201, true));
+    assert!(told.contains("201 balls, skittles and cubes"), "{told}");
+    assert!(Field::read(&world(200, true)).is_ok());
+    assert!(Field::read(&world(201, false)).is_ok());
+}

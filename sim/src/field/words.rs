@@ -52,6 +52,17 @@ pub(super) fn same_id(tag: &str, id: &str) -> Words {
     )
 }
 
+pub(super) fn too_many_pushed(count: usize, limit: usize) -> Words {
+    Words::new(
+        format!(
+            "there are {count} balls, skittles and cubes, and realistic physics moves at most {limit}; take some away, or switch realistic physics off"
+        ),
+        format!(
+            "мячей, кеглей и кубиков {count}, а реалистичная физика двигает не больше {limit}; уберите часть или выключите реалистичную физику"
+        ),
+    )
+}
+
 pub(super) fn too_many(limit: usize) -> Words {
     Words::new(
         format!("there are more than {limit} things on the field; nobody needs so many"),
