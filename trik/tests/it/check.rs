@@ -296,6 +296,24 @@ fn exit_codes_are_true() {
 }
 
 #[test]
+fn what_is_there_already_is_not_replaced_and_nothing_runs() {
+    let board = folder();
+    // A verdict beside a refusal would be lost.
+    for paths in [&["line.qrs"][..], &["line.qrs", "line.qrs"]] {
+        let place = if paths.len() == 1 { "p.svg" } else { "twice" };
+        let words = [&["check"], paths, &["--svg", place]].concat();
+        trik(&board, &words);
+        let refused = trik(&board, &words);
+        assert_eq!((refused.code(), &*refused.stdout), (2, ""), "{place}");
+        assert!(
+            refused.stderr.contains("is there already"),
+            "{}",
+            refused.stderr
+        );
+    }
+}
+
+#[test]
 fn reports_trajectories_pictures_and_pages_are_written_for_each_run() {
     let board = folder();
     let one = [
@@ -336,19 +354,6 @@ fn reports_trajectories_pictures_and_pages_are_written_for_each_run() {
             && format!("{}{}", refused.stdout, refused.stderr).contains("is there already")
     );
     assert_eq!(trik(&board, &[&one[..], &["--force"]].concat()).code(), 0);
-    // Nothing has run then: a verdict beside a refusal would be lost.
-    for paths in [&["line.qrs"][..], &["line.qrs", "line.qrs"]] {
-        let place = if paths.len() == 1 { "p.svg" } else { "twice" };
-        let words = [&["check"], paths, &["--svg", place]].concat();
-        trik(&board, &words);
-        let refused = trik(&board, &words);
-        assert_eq!((refused.code(), &*refused.stdout), (1, ""), "{place}");
-        assert!(
-            refused.stderr.contains("is there already"),
-            "{}",
-            refused.stderr
-        );
-    }
     // Several runs have a directory.
     let many = [
         "check",
