@@ -92,6 +92,8 @@ pub const FLOOR_PROBLEMS: usize = 50;
 pub const SCREEN_OBJECTS: usize = 20_000;
 /// Characters of a text on it, and of what a robot says.
 pub const SCREEN_TEXT: usize = 4096;
+/// Texts that a program printed in a run that are kept for people.
+pub const PRINTED_LINES: usize = 200;
 /// Bytes of pictures on the floor that a drawing of a run holds.
 pub const DRAWING_BYTES: usize = 8 << 20;
 /// Things on a display that one record tells.

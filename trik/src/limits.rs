@@ -86,6 +86,8 @@ pub const WORLD_BYTES_MAX: u64 = 32 << 20;
 pub const LOG_BYTES_MAX: u64 = 256 << 20;
 /// Bytes of what a worker says of one run.
 pub const ROW_BYTES_MAX: usize = 4 << 20;
+/// How often what a judged program has left behind is looked for and killed.
+pub const SWEEPS: usize = 100;
 /// Messages of one run that a line of results has.
 pub const ROW_MESSAGES_MAX: usize = 200;
 /// Characters of one of them.

@@ -234,6 +234,8 @@ pub struct Shown {
     pub screen: Screen,
     /// What it said or printed last.
     pub last_phrase: String,
+    /// The first [`limits::PRINTED_LINES`] texts that it printed.
+    pub printed: Vec<String>,
     /// Colour of its light.
     pub led: Colour,
     /// Milliseconds for which it still sounds.
@@ -245,6 +247,7 @@ impl Default for Shown {
         Self {
             screen: Screen::default(),
             last_phrase: String::new(),
+            printed: Vec::new(),
             led: WHITE,
             beep_ms: 0,
         }
@@ -260,6 +263,10 @@ impl Shown {
         match *command {
             Command::Say { text } | Command::Console { text } => {
                 self.last_phrase = text.chars().take(limits::SCREEN_TEXT).collect();
+                let is_printed = matches!(command, Command::Console { .. });
+                if is_printed && self.printed.len() < limits::PRINTED_LINES {
+                    self.printed.push(self.last_phrase.clone());
+                }
             }
             Command::Led { color: "off" } => self.led = GRAY,
             Command::Led { color } => self.led = named(color),

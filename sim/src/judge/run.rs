@@ -73,6 +73,8 @@ pub struct Outcome {
     pub entries: Vec<Entry>,
     /// What the rules have counted.
     pub total_score: Option<f64>,
+    /// What the program has printed: the first texts.
+    pub printed: Vec<String>,
     /// Where robots were; empty if it was not recorded.
     pub trajectory: Trajectory,
 }
@@ -121,7 +123,11 @@ pub fn judge(task: &Task, program: &mut dyn Program, settings: &Settings) -> Out
         now += STEP_MS;
     }
     program.stop(&mut arena.robot(0));
-    run.outcome(now)
+    let mut outcome = run.outcome(now);
+    outcome
+        .printed
+        .clone_from(&arena.robots()[0].shown().printed);
+    outcome
 }
 
 /// What changes while a run is judged.
@@ -262,6 +268,7 @@ impl<'a> Run<'a> {
                 _ => None,
             }),
             entries: self.entries,
+            printed: Vec::new(),
             trajectory: self.trajectory,
         }
     }

@@ -63,6 +63,8 @@ pub(super) struct Row {
     pub messages: Vec<(String, String)>,
     /// Messages that are left out.
     pub more: usize,
+    /// What the program printed.
+    pub printed: Vec<String>,
 }
 
 impl Row {
@@ -76,6 +78,7 @@ impl Row {
             total_score: None,
             messages: vec![("error".to_owned(), why)],
             more: 0,
+            printed: Vec::new(),
         }
     }
 
@@ -144,7 +147,12 @@ impl Row {
         }
         line.push_str("],\"more\":");
         line.push_str(&self.more.to_string());
-        line.push('}');
+        line.push_str(",\"printed\":[");
+        for (index, text) in self.printed.iter().enumerate() {
+            line.push_str(if index == 0 { "" } else { "," });
+            json::text(&mut line, text);
+        }
+        line.push_str("]}");
         line
     }
 
@@ -160,6 +168,10 @@ impl Row {
             let part = |name| one.get(name).and_then(Value::text).map(str::to_owned);
             Some((part("level")?, part("message")?))
         });
+        let Some(Value::List(printed)) = value.get("printed") else {
+            return None;
+        };
+        let printed = printed.iter().map(|one| one.text().map(str::to_owned));
         Some(Self {
             solution: text("solution")?.to_owned(),
             field: text("field").map(str::to_owned),
@@ -168,16 +180,22 @@ impl Row {
             total_score: number("total_score"),
             messages: messages.collect::<Option<_>>()?,
             more: number("more")? as usize,
+            printed: printed.collect::<Option<_>>()?,
         })
     }
 
     /// Lines for a person who runs one solution.
     pub fn lines(&self, tongue: Tongue) -> Vec<String> {
-        let mut lines: Vec<String> = self
-            .messages
-            .iter()
-            .map(|(level, text)| format!("{}: {}", words::level(level, tongue), harmless(text)))
+        let printed = self.printed.iter().flat_map(|text| text.lines());
+        let mut lines: Vec<String> = printed
+            .map(|text| format!("print: {}", harmless(text)))
             .collect();
+        let messages = self.messages.iter();
+        lines.extend(
+            messages.map(|(level, text)| {
+                format!("{}: {}", words::level(level, tongue), harmless(text))
+            }),
+        );
         if self.more > 0 {
             lines.push(words::more(self.more, tongue));
         }
@@ -280,6 +298,7 @@ mod tests {
                 ("info".into(), "The task was accomplished in 15 sec!".into()),
             ],
             more: 3,
+            printed: vec!["1 \"a\"\n2".into()],
         }
     }
 

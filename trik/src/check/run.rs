@@ -40,6 +40,7 @@ pub(super) fn run(job: &Job, args: &CheckArgs) -> Row {
         total_score: None,
         messages: Vec::new(),
         more: 0,
+        printed: Vec::new(),
     };
     match judged(job, args) {
         Ok((task, outcome)) => {
@@ -76,6 +77,7 @@ fn tell(outcome: &Outcome, row: &mut Row) {
     };
     row.ms = outcome.ms;
     row.total_score = outcome.total_score;
+    row.printed.clone_from(&outcome.printed);
     for entry in &outcome.entries {
         if entry.level != Level::Variables {
             row.say(judge::report::level(entry.level), &entry.text);

@@ -8,14 +8,19 @@ use super::pool::shown;
 use super::row::Row;
 use super::run;
 use crate::cli::CheckArgs;
+use crate::limits;
 use nix::sys::prctl::{set_dumpable, set_pdeathsig};
 use nix::sys::resource::{Resource, rlim_t, setrlimit};
 use nix::sys::signal::Signal;
+use nix::sys::wait::{WaitPidFlag, WaitStatus, waitpid};
+use nix::unistd::Pid;
 use std::ffi::OsString;
 use std::io::{self, BufRead, Read, Write};
 use std::os::unix::ffi::OsStringExt;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
+use std::time::Duration;
+use trikd::program::kill::{adopt_orphans, sweep};
 
 /// Bytes of three paths.
 const JOB_BYTES_MAX: u64 = 64 << 10;
@@ -28,6 +33,7 @@ pub(super) fn serve(args: &CheckArgs) -> Result<(), String> {
     set_pdeathsig(Signal::SIGKILL).map_err(|error| format!("worker: {error}"))?;
     // Programs that it starts have the same user, and look neither into its memory nor at its pipes.
     set_dumpable(false).map_err(|error| format!("worker: {error}"))?;
+    adopt_orphans()?;
     limit_memory(args).map_err(|error| format!("--memory: {error}"))?;
     let mut input = io::stdin().lock();
     let mut output = io::stdout().lock();
@@ -36,14 +42,32 @@ pub(super) fn serve(args: &CheckArgs) -> Result<(), String> {
     read.map_err(|error| format!("jobs: {error}"))?;
     let mark = mark.trim_end_matches('\n');
     while let Some(job) = next(&mut input).map_err(|error| format!("jobs: {error}"))? {
+        let row = guarded(&job, args);
+        sweep_all();
         // On a line of its own, whatever somebody else has begun.
-        let line = format!("\n{mark}{}\n", guarded(&job, args).write());
+        let line = format!("\n{mark}{}\n", row.write());
         let written = output.write_all(line.as_bytes());
         written
             .and_then(|()| output.flush())
             .map_err(|error| format!("results: {error}"))?;
     }
     Ok(())
+}
+
+/// Ends what a program in Python has started and left behind, wherever it has put itself: whoever loses its parent
+/// becomes a child of this process.
+fn sweep_all() {
+    for _ in 0..limits::SWEEPS {
+        // Without children, as after nearly all runs, this fails at once.
+        while waitpid(None, Some(WaitPidFlag::WNOHANG))
+            .is_ok_and(|one| one != WaitStatus::StillAlive)
+        {}
+        if waitpid(None, Some(WaitPidFlag::WNOHANG)).is_err() {
+            return;
+        }
+        sweep(Pid::this(), &[]);
+        std::thread::sleep(Duration::from_millis(1));
+    }
 }
 
 /// Holds this process to its memory, so that an overflow ends it and nobody else.

@@ -296,6 +296,52 @@ fn exit_codes_are_true() {
 }
 
 #[test]
+fn what_a_program_prints_is_shown_and_what_it_leaves_behind_is_ended() {
+    let board = folder();
+    let mark = format!("sleep 77{}", std::process::id());
+    board.file(
+        "left.py",
+        format!(
+            "import subprocess\nsubprocess.Popen('{mark}', shell=True, start_new_session=True)\nprint('a', 1)\nprint('b')\n"
+        ),
+    );
+    let output = trik(&board, &["check", "line.qrs", "--script", "left.py"]);
+    assert!(
+        output.stdout.starts_with("print: a 1\nprint: b\n"),
+        "{}{}",
+        output.stdout,
+        output.stderr
+    );
+    let lives = || {
+        let all = fs::read_dir("/proc").expect("/proc").flatten();
+        all.filter_map(|one| fs::read(one.path().join("cmdline")).ok())
+            .any(|words| {
+                String::from_utf8_lossy(&words)
+                    .replace('\0', " ")
+                    .contains(&mark)
+            })
+    };
+    assert!(!lives());
+    board.file("hello.js", "print('hello'); script.quit();");
+    let output = trik(
+        &board,
+        &[
+            "check",
+            "line.qrs",
+            "--script",
+            "hello.js",
+            "--results",
+            "-",
+        ],
+    );
+    assert!(
+        output.stdout.contains("\"printed\":[\"hello\"]"),
+        "{}",
+        output.stdout
+    );
+}
+
+#[test]
 fn what_is_there_already_is_not_replaced_and_nothing_runs() {
     let board = folder();
     // A verdict beside a refusal would be lost.

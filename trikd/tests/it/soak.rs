@@ -33,6 +33,9 @@ fn open_files(pid: u32) -> usize {
     std::fs::read_dir(format!("/proc/{pid}/fd")).map_or(0, Iterator::count)
 }
 
+/// How often a run tells of its memory.
+const PARTS: u32 = 10;
+
 const CONTROL: [&str; 14] = [
     "version",
     "configVersion",
@@ -159,11 +162,19 @@ fn random_clients_and_faults_leave_nothing_open_and_nobody_behind() {
     };
     settle(&mut open);
     let (files, memory) = (open_files(daemon), processes::resident_bytes(daemon));
-    let end = Instant::now() + Duration::from_secs(u64::from(number("TRIKD_SOAK_S", 5)));
+    let length = Duration::from_secs(u64::from(number("TRIKD_SOAK_S", 5)));
+    let end = Instant::now() + length;
     let mut count = 0;
-    while Instant::now() < end {
-        act(&mut random, &robot, &mut open);
-        count += 1;
+    // A long run tells whether memory goes on growing.
+    for part in (0..PARTS).rev() {
+        while Instant::now() + length * part / PARTS < end {
+            act(&mut random, &robot, &mut open);
+            count += 1;
+        }
+        println!(
+            "soak: {count} actions; resident {:?}",
+            processes::resident_bytes(daemon)
+        );
     }
     settle(&mut open);
     println!(
