@@ -87,6 +87,14 @@ pub trait Body: Send {
     /// Whether there is an infrared camera on bus 1; it looks where the other one looks.
     fn has_infrared_camera(&self) -> bool;
 
+    /// Does what a person orders the world itself, in words.
+    ///
+    /// # Errors
+    /// What is wrong with the words, for this person.
+    fn order(&mut self, _words: &str) -> Result<(), String> {
+        Err("this world takes no orders; one of `trik up --world` does".to_owned())
+    }
+
     /// What a camera sees: `right` and `down` from -1 to 1 across its picture. Nothing without a camera.
     fn pixel(&self, right: f64, down: f64) -> Option<Colour>;
 }

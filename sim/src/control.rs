@@ -1,15 +1,19 @@
 //! What people do to the controller from outside: a gamepad, and speech that somebody hears.
 //!
-//! Lines in `control/gamepad` go to the FIFO of the gamepad service as they are. The loudspeaker is what it would give
+//! Lines in `control/gamepad` go to the FIFO of the gamepad service as they are, and those in `control/world` to the world;
+//! what is wrong with one of these is in `control/world.error` until a good one comes. The loudspeaker is what it would give
 //! to an ear, in words: what `etc/trik/say` says, and in brackets the tones of `usr/lib/trikfs/tone` and the files of
 //! `usr/bin/aplay`.
 
-use crate::attributes::Attributes;
+use crate::attributes::{Attributes, appear};
 use crate::fifo::{In, Out};
 use crate::files::{Part, script};
 use crate::shared::Shared;
 use std::io;
 use std::os::fd::BorrowedFd;
+use std::path::PathBuf;
+
+const WORLD: &str = "control/world";
 
 /// Programs that are heard, and what is heard of their arguments.
 const SPEAKERS: [(&str, &str); 3] = [
@@ -33,6 +37,8 @@ pub struct Control {
     gamepad: In,
     gamepad_out: Out,
     say: In,
+    world: In,
+    root: PathBuf,
 }
 
 impl Control {
@@ -46,6 +52,8 @@ impl Control {
             gamepad: In::make(root.join("control/gamepad"))?,
             gamepad_out: Out::make(root.join("run/gamepad-service.out.fifo"))?,
             say: In::make(root.join("control/say"))?,
+            world: In::make(root.join(WORLD))?,
+            root: root.to_owned(),
         })
     }
 }
@@ -59,10 +67,18 @@ impl Part for Control {
         for words in self.say.lines() {
             shared.machine().say(words);
         }
+        for words in self.world.lines() {
+            let name = format!("{WORLD}.error");
+            // Who cannot be told has lost the folder of the board.
+            match shared.machine().order(&words) {
+                Ok(()) => drop(std::fs::remove_file(self.root.join(name))),
+                Err(reason) => drop(appear(&self.root, &name, &reason)),
+            }
+        }
         f64::INFINITY
     }
 
     fn inputs(&self) -> Vec<BorrowedFd<'_>> {
-        vec![self.gamepad.fd(), self.say.fd()]
+        vec![self.gamepad.fd(), self.say.fd(), self.world.fd()]
     }
 }

@@ -78,6 +78,10 @@ pub const FIELD_NUMBER: f64 = 1e6;
 pub const FIELD_THINGS: usize = 20_000;
 /// Balls, skittles and cubes that realistic physics moves: 300 in a heap are slower than real time.
 pub const FIELD_PUSHED: usize = 200;
+/// Bytes of a world model that a running world reads.
+pub const FIELD_BYTES: u64 = 32 << 20;
+/// Single steps of one order.
+pub const STEPS_ORDERED: u32 = 1000;
 /// Robots of one field; there is one for each kit.
 pub const FIELD_ROBOTS: usize = 16;
 /// Sensors of one robot.

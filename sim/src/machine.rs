@@ -129,6 +129,11 @@ impl Machine {
         self.said = words;
     }
 
+    /// Orders the world something, see [`Body::order`].
+    pub fn order(&mut self, words: &str) -> Result<(), String> {
+        self.body.order(words)
+    }
+
     /// Makes the steps that are due by now.
     pub fn advance(&mut self) {
         let due = self.began.elapsed().as_secs_f64() * self.speed / STEP_S;

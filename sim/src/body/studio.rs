@@ -4,6 +4,8 @@
 //! connectors. Knows no physics: the arena has it.
 
 use std::cell::Cell;
+use std::fs::File;
+use std::io::Read;
 
 use lang::diagram::brick::{Brick, Command};
 use lang::diagram::ports::Port;
@@ -13,9 +15,10 @@ use super::battery::Battery;
 use super::two_wheels::sharp_gp2_raw;
 use super::{Body, Drive, Power, Senses};
 use crate::arena::floor::{Window, sensors};
-use crate::arena::{Arena, Setup, ranges};
+use crate::arena::{Arena, Setup, Timeline, ranges};
 use crate::field::{Field, SensorKind};
 use crate::geometry::{Point, Pose, point};
+use crate::limits;
 use crate::world::{Colour, colour};
 
 /// Pixels in a metre.
@@ -96,8 +99,7 @@ pub fn configuration(field: &Field) -> String {
 /// A robot in a world of TRIK Studio.
 pub struct Studio {
     arena: Arena,
-    /// Seconds that no tick has covered yet.
-    rest_s: f64,
+    timeline: Timeline,
     battery: Battery,
     senses: Senses,
     velocity_mps: Point,
@@ -117,7 +119,7 @@ impl Studio {
         };
         let mut studio = Self {
             arena: Arena::new(field, setup),
-            rest_s: 0.0,
+            timeline: Timeline::new(1.0),
             battery: Battery::default(),
             senses: Senses::default(),
             velocity_mps: Point::default(),
@@ -194,6 +196,23 @@ impl Studio {
         }
     }
 
+    /// Another world around the robot, which stays where it is.
+    fn change(&mut self, to: &Field) {
+        self.arena.edit(|field| {
+            field.walls.clone_from(&to.walls);
+            field.solids.clone_from(&to.solids);
+            field.drawn.clone_from(&to.drawn);
+            field.images.clone_from(&to.images);
+            field.blobs.clone_from(&to.blobs);
+            field.regions.clone_from(&to.regions);
+            field
+                .settings
+                .background
+                .clone_from(&to.settings.background);
+        });
+        self.look();
+    }
+
     fn analog(&mut self, index: usize) -> Option<f64> {
         let port = named('A', index)?;
         let kind = self.arena.robots()[0].sensor(port)?.kind;
@@ -207,13 +226,25 @@ impl Studio {
     }
 }
 
+/// A world model in a file.
+fn read(file: &str) -> Result<Field, String> {
+    let mut text = String::new();
+    let opened = File::open(file).map_err(|error| format!("{file}: {error}"))?;
+    let read = opened.take(limits::FIELD_BYTES).read_to_string(&mut text);
+    read.map_err(|error| format!("{file}: {error}"))?;
+    let opened = Field::read(&text).map_err(|problems| {
+        let first = problems
+            .first()
+            .map_or_else(String::new, ToString::to_string);
+        format!("{file}: {first}")
+    })?;
+    Ok(opened.field)
+}
+
 impl Body for Studio {
     fn step(&mut self, dt_s: f64, drive: &Drive) {
         self.battery.step(dt_s, 0.0);
-        self.rest_s += dt_s;
-        // A thousandth of a second is no number of two digits, so a tick may come that much early.
-        while self.rest_s >= TICK_S - 1e-9 {
-            self.rest_s -= TICK_S;
+        for _ in 0..self.timeline.due(dt_s) {
             for (index, power) in drive.motors.iter().enumerate() {
                 let percent = match power {
                     Power::Duty(percent) => percent.round().clamp(-100.0, 100.0) as i32,
@@ -263,6 +294,43 @@ impl Body for Studio {
 
     fn has_infrared_camera(&self) -> bool {
         false
+    }
+
+    fn order(&mut self, words: &str) -> Result<(), String> {
+        const ORDERS: &str = "pause, go, step, step NUMBER, speed NUMBER or field FILE";
+        let words = words.trim();
+        let (order, rest) = words.split_once(' ').unwrap_or((words, ""));
+        let rest = rest.trim();
+        match (order, rest) {
+            ("pause", "") => self.timeline.pause(true),
+            ("go", "") => self.timeline.pause(false),
+            ("step", _) => {
+                let ticks: u32 = if rest.is_empty() {
+                    1
+                } else {
+                    rest.parse().unwrap_or(0)
+                };
+                if !(1..=limits::STEPS_ORDERED).contains(&ticks) {
+                    return Err(format!(
+                        "step takes 1 to {} ticks of 10 ms",
+                        limits::STEPS_ORDERED
+                    ));
+                }
+                self.timeline.pause(true);
+                (0..ticks).for_each(|_| self.timeline.step());
+            }
+            ("speed", _) => {
+                let (least, most) = (limits::MIN_SPEED, limits::MAX_SPEED);
+                let speed: f64 = rest.parse().unwrap_or(f64::NAN);
+                if !(least..=most).contains(&speed) {
+                    return Err(format!("speed takes {least} to {most}, not '{rest}'"));
+                }
+                self.timeline.set_speed(speed);
+            }
+            ("field", file) if !file.is_empty() => self.change(&read(file)?),
+            _ => return Err(format!("'{words}' is no order: there are {ORDERS}")),
+        }
+        Ok(())
     }
 
     /// Of the picture of the last tick.
@@ -350,6 +418,54 @@ mod tests {
         assert_eq!(body.pixel(0.0, -0.9), Some(colour(255, 255, 255)));
         let blind = Studio::new(&Field::default(), 1);
         assert_eq!(blind.pixel(0.0, 0.0), None);
+    }
+
+    #[test]
+    fn a_person_orders_time_and_walls() {
+        let mut body = Studio::new(&field(), 1);
+        let run = |body: &mut Studio| {
+            let before = body.senses().pose.at.x;
+            for _ in 0..500 {
+                body.step(0.001, &full(100.0));
+            }
+            body.senses().pose.at.x - before
+        };
+        let usual = run(&mut body);
+        assert!((usual - 0.134).abs() < 0.004, "{usual}");
+        body.order("pause").unwrap();
+        assert_eq!(run(&mut body), 0.0);
+        body.order("step 25").unwrap();
+        let stepped = run(&mut body);
+        assert!((stepped - usual / 2.0).abs() < 0.004, "{stepped}");
+        assert_eq!(run(&mut body), 0.0);
+        body.order("speed 0.5").unwrap();
+        body.order("go").unwrap();
+        let slow = run(&mut body);
+        assert!((slow - usual / 2.0).abs() < 0.004, "{slow}");
+        for words in [
+            "",
+            "fly",
+            "step 0",
+            "step 1e9",
+            "speed nan",
+            "speed 0",
+            "field",
+            "field /nowhere",
+        ] {
+            assert!(body.order(words).is_err(), "{words}");
+        }
+        // The wall is gone in another field.
+        let before = body.senses().analog[0];
+        assert!(before > Some(sharp_gp2_raw(47.0)));
+        let file = std::env::temp_dir().join(format!("trik-field-{}.xml", std::process::id()));
+        std::fs::write(
+            &file,
+            "<root version=\"20251219\"><settings/><world/></root>",
+        )
+        .unwrap();
+        body.order(&format!("field {}", file.display())).unwrap();
+        std::fs::remove_file(&file).unwrap();
+        assert_eq!(body.senses().analog[0], Some(sharp_gp2_raw(80.0)));
     }
 
     #[test]

@@ -53,6 +53,42 @@ fn a_world_of_trik_studio_is_driven_in_through_the_same_files() {
 }
 
 #[test]
+fn a_person_stops_the_time_of_a_world_and_changes_its_walls() {
+    let Some(home) = Home::new() else { return };
+    let home = Arc::new(home);
+    let world = home.0.file("world.xml", WORLD);
+    let empty = home.0.file(
+        "empty.xml",
+        "<root version=\"20251219\"><settings/><world/></root>",
+    );
+    let world = world.to_str().expect("UTF-8").to_owned();
+    let one = Reachable::beside(&home, &["--world", &world]);
+    let robot = &one.robot;
+    let control = robot.devices.join("control/world");
+    let order = |words: &str| std::fs::write(&control, format!("{words}\n")).expect("control");
+    let error = control.with_extension("error");
+    order("fly");
+    eventually("a complaint", || {
+        std::fs::read_to_string(&error).is_ok_and(|text| text.contains("'fly' is no order"))
+    });
+    order("pause");
+    eventually("a good order", || !error.exists());
+    let begun = robot.pose();
+    robot.drive(50, 50);
+    order("step 20");
+    eventually("twenty ticks", || robot.pose().away_from(&begun) > 0.01);
+    let there = robot.pose();
+    assert!(
+        there.away_from(&begun) < 0.06,
+        "{} m",
+        there.away_from(&begun)
+    );
+    robot.drive(0, 0);
+    order(&format!("field {}", empty.display()));
+    eventually("no wall", || robot.number("sensors/A1/value") > 79.0);
+}
+
+#[test]
 fn a_world_that_is_none_is_refused_before_anything_starts() {
     let Some(home) = Home::new() else { return };
     let broken = home.0.file("broken.xml", "<root><world>");
