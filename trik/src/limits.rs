@@ -88,6 +88,8 @@ pub const LOG_BYTES_MAX: u64 = 256 << 20;
 pub const ROW_BYTES_MAX: usize = 4 << 20;
 /// How often what a judged program has left behind is looked for and killed.
 pub const SWEEPS: usize = 100;
+/// Warnings of one world that are told.
+pub const ROW_WARNINGS_MAX: usize = 20;
 /// Messages of one run that a line of results has.
 pub const ROW_MESSAGES_MAX: usize = 200;
 /// Characters of one of them.

@@ -103,7 +103,9 @@ impl Row {
         }
         // Seconds of the run are no points: neither the time of success nor the limit that a run met.
         let is_time = |text: &str| words::TIMES.iter().any(|mark| text.starts_with(mark));
-        let texts = self.messages.iter().rev().map(|(_, text)| text);
+        let said = self.messages.iter().rev();
+        let texts = said.filter(|(level, _)| level != words::WARNING);
+        let texts = texts.map(|(_, text)| text);
         let texts = texts.filter(|text| !is_time(text));
         let mut numbers = texts.filter_map(|text| {
             let is_part = |c: char| c.is_ascii_digit() || matches!(c, '-' | '.');

@@ -43,7 +43,9 @@ pub(super) fn run(job: &Job, args: &CheckArgs) -> Row {
         printed: Vec::new(),
     };
     match judged(job, args) {
-        Ok((task, outcome)) => {
+        Ok((task, outcome, strange)) => {
+            let some = strange.iter().take(limits::ROW_WARNINGS_MAX);
+            some.for_each(|line| row.say(words::WARNING, line));
             tell(&outcome, &mut row);
             if let Err(lines) = write(job, args, &task, &outcome) {
                 row.verdict = Verdict::Broken;
@@ -87,7 +89,8 @@ fn tell(outcome: &Outcome, row: &mut Row) {
 
 type Lines = Vec<String>;
 
-fn judged(job: &Job, args: &CheckArgs) -> Result<(Task, Outcome), Lines> {
+/// The task, what came out, and what is strange in the world.
+fn judged(job: &Job, args: &CheckArgs) -> Result<(Task, Outcome, Lines), Lines> {
     let settings = settings(args).map_err(|why| vec![why])?;
     let mut solution = Solution::read(&job.solution, args)?;
     let field = match &job.field {
@@ -114,17 +117,18 @@ fn judged(job: &Job, args: &CheckArgs) -> Result<(Task, Outcome), Lines> {
         templates: Some(&project.templates),
     };
     let task = Task::read(texts).map_err(|problems| lines(place, &problems, args.language))?;
-    let (mut task, _) = task;
+    let (mut task, strange) = task;
+    let strange = lines(place, &strange, args.language);
     if let Some(log) = &args.log {
         let text = text(log, limits::LOG_BYTES_MAX).map_err(|why| vec![why])?;
         let trajectory = Trajectory::read(&text);
         let trajectory = trajectory.map_err(|why| vec![format!("{}: {why}", shown(log))])?;
         let outcome = judge::judge_recorded(&task, &trajectory, &settings);
-        return Ok((task, outcome));
+        return Ok((task, outcome, strange));
     }
     let mut program = solution.program(&mut task, args)?;
     let outcome = judge::judge(&task, &mut *program, &settings);
-    Ok((task, outcome))
+    Ok((task, outcome, strange))
 }
 
 fn settings(args: &CheckArgs) -> Result<Settings, String> {

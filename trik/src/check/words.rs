@@ -30,11 +30,15 @@ pub(super) fn verdict(verdict: Verdict, tongue: Tongue) -> &'static str {
     }
 }
 
+/// The level of what is strange in a world or in its rules.
+pub(super) const WARNING: &str = "warning";
+
 /// A level of a message.
 pub(super) fn level(name: &str, tongue: Tongue) -> &'static str {
     match name {
         "info" => choose(tongue, "info", "сообщение"),
         "log" => choose(tongue, "log", "журнал"),
+        WARNING => choose(tongue, "warning", "предупреждение"),
         _ => choose(tongue, "error", "ошибка"),
     }
 }
