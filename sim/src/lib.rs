@@ -2,7 +2,10 @@
 //!
 //! [`board::Board`] makes a directory with the devices of a controller below it, down to the bytes on its buses; whoever
 //! opens them cannot tell them from the real ones but by their kind of file. Behind the connectors is a
-//! [`body::Body`]. This crate knows no filesystem of ours and no configuration: the devices are the contract.
+//! [`body::Body`]. This crate knows no filesystem of ours: the devices are the contract.
+//!
+//! Beside it, without files: [`field`] is a world of TRIK Studio as it is saved, [`arena`] that world while it runs, and
+//! [`judge`] runs a program in it by the rules of its task.
 
 pub mod arena;
 mod attributes;
