@@ -7,6 +7,7 @@
 #![allow(clippy::result_large_err)]
 
 pub mod constraint;
+pub mod dcml;
 pub mod diagram;
 pub mod expr;
 pub mod fuzz;

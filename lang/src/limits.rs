@@ -97,3 +97,8 @@ pub const CONSTRAINT_ENTRIES_MAX: usize = 10_000;
 pub const CONSTRAINT_COMPLAINTS_MAX: usize = 100;
 /// Bytes of one message with its places filled.
 pub const CONSTRAINT_MESSAGE_BYTES: usize = 64 << 10;
+
+/// Bytes of a DCML document.
+pub const DCML_TEXT_MAX: usize = 32 << 20;
+/// How deep the tree of an expression of DCML may be: its nesting, and operators in a row.
+pub const DCML_DEPTH: usize = 500;
