@@ -7,6 +7,7 @@
 mod check;
 mod code;
 pub mod diagnostic;
+pub mod format;
 pub mod function;
 pub mod lexer;
 pub mod lines;
@@ -16,6 +17,7 @@ mod parser;
 pub mod syntax;
 pub mod system;
 pub mod tape;
+pub mod unit;
 
 use crate::limits::DCML_TEXT_MAX;
 use diagnostic::{Code, Diagnostic, Findings};
