@@ -102,3 +102,11 @@ pub const CONSTRAINT_MESSAGE_BYTES: usize = 64 << 10;
 pub const DCML_TEXT_MAX: usize = 32 << 20;
 /// How deep the tree of an expression of DCML may be: its nesting, and operators in a row.
 pub const DCML_DEPTH: usize = 500;
+/// Operations of one tape of a model, before those that nobody needs are gone.
+pub const DCML_OPERATIONS_MAX: usize = 1 << 20;
+/// Elements of a Jacobian of a model.
+pub const DCML_JACOBIAN_MAX: usize = 1 << 20;
+/// Steps of differentiation: operations that depend on an input, for all inputs together.
+pub const DCML_JACOBIAN_STEPS_MAX: usize = 1 << 24;
+/// Values that a batch of states keeps for each state at the same time.
+pub const DCML_BATCH_ROWS_MAX: usize = 1 << 16;
