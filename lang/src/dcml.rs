@@ -13,6 +13,7 @@ pub mod robot;
 pub mod run;
 #[cfg(test)]
 mod sketch;
+pub mod solve;
 pub mod syntax;
 pub mod system;
 pub mod tape;
