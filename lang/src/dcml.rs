@@ -7,13 +7,22 @@
 mod check;
 mod code;
 pub mod diagnostic;
+pub mod fold;
 pub mod format;
 pub mod function;
+pub mod jacobian;
 pub mod lexer;
 pub mod lines;
+pub mod lower;
 pub mod model;
+pub mod models;
 mod nearest;
 mod parser;
+pub mod robot;
+pub mod run;
+#[cfg(test)]
+mod sketch;
+pub mod solve;
 pub mod syntax;
 pub mod system;
 pub mod tape;
