@@ -14,6 +14,7 @@ pub mod jacobian;
 pub mod lexer;
 pub mod lines;
 pub mod lower;
+pub mod manual;
 pub mod model;
 pub mod models;
 mod nearest;
