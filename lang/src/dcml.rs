@@ -6,6 +6,7 @@
 
 pub mod function;
 pub mod model;
+pub mod plan;
 pub mod syntax;
 pub mod system;
 pub mod tape;
