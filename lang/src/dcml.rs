@@ -4,9 +4,16 @@
 //! or drives a robot sees a [`system::System`] only. The language is that of Guarnieri, Magri, Brugali and Gherardi, *A
 //! Domain Specific Language for Modeling Differential Constraints of Mobile Robots*.
 
+pub mod fold;
 pub mod function;
+pub mod jacobian;
+pub mod lower;
 pub mod model;
 pub mod plan;
+pub mod robot;
+pub mod run;
+#[cfg(test)]
+mod sketch;
 pub mod syntax;
 pub mod system;
 pub mod tape;

@@ -129,3 +129,11 @@ pub const PLAN_OBSTACLES_TEXT_MAX: usize = 128 << 20;
 pub const PLAN_COORDINATE_MAX: f64 = 1e9;
 /// Poses between two steps of a solver; a robot that moves further than so many resolutions is refused.
 pub const PLAN_SWEEP_STEPS_MAX: u32 = 100_000;
+/// Operations of one tape of a model, before those that nobody needs are gone.
+pub const DCML_OPERATIONS_MAX: usize = 1 << 20;
+/// Elements of a Jacobian of a model.
+pub const DCML_JACOBIAN_MAX: usize = 1 << 20;
+/// Steps of differentiation: operations that depend on an input, for all inputs together.
+pub const DCML_JACOBIAN_STEPS_MAX: usize = 1 << 24;
+/// Values that a batch of states keeps for each state at the same time.
+pub const DCML_BATCH_ROWS_MAX: usize = 1 << 16;
