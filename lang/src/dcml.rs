@@ -9,6 +9,7 @@ pub mod function;
 pub mod jacobian;
 pub mod lower;
 pub mod model;
+pub mod plan;
 pub mod robot;
 pub mod run;
 #[cfg(test)]
