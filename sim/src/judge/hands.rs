@@ -54,7 +54,9 @@ pub fn read(text: &str) -> Result<Vec<Deed>, String> {
 }
 
 fn ms(text: &str) -> Result<u32, String> {
-    let ms = text.parse::<f64>().map(|seconds| (seconds * 1000.0).round());
+    let ms = text
+        .parse::<f64>()
+        .map(|seconds| (seconds * 1000.0).round());
     match ms {
         Ok(ms) if (0.0..=f64::from(limits::RUN_MS_MAX)).contains(&ms) => Ok(ms as u32),
         _ => Err(format!(
@@ -109,14 +111,17 @@ pub(super) fn act(deeds: &mut &[Deed], now: u32, robot: &mut Robot) {
     {
         *deeds = rest;
         let mut gamepad = robot.gamepad().copied().unwrap_or_default();
+        gamepad.is_away = false;
         match deed.what {
             What::Key(code, is_down) => {
                 robot.press(code, is_down);
                 continue;
             }
             What::Connected(is_there) => {
-                robot.set_gamepad(is_there.then(Gamepad::default));
-                continue;
+                gamepad = Gamepad {
+                    is_away: !is_there,
+                    ..Gamepad::default()
+                };
             }
             What::Pad(pad, at) => {
                 gamepad.pads[pad] = at.map_or_else(Pad::default, |[x, y]| Pad {
@@ -137,6 +142,7 @@ mod tests {
     use super::*;
     use crate::arena::{Arena, Setup};
     use crate::field::Field;
+    use lang::diagram::brick::Brick;
 
     #[test]
     fn what_a_person_does_is_done_when_it_is_due() {
@@ -160,7 +166,14 @@ mod tests {
         assert_eq!((gamepad.pads[1], gamepad.wheel), (Pad::default(), -7));
         assert!(robot.is_pressed(28));
         act(&mut deeds, 9000, robot);
-        assert_eq!(robot.gamepad(), None);
+        assert!(robot.gamepad().unwrap().is_away);
+        let handle = &mut arena.robot(0);
+        for (port, value) in [
+            ("GamepadConnectionIndicatorPort", 0),
+            ("GamepadWheelPort", 0),
+        ] {
+            assert_eq!(handle.scalar(Port::named(port).unwrap()), Some(value));
+        }
         assert!(deeds.is_empty());
     }
 
@@ -173,7 +186,10 @@ mod tests {
             ("\n1 jump", "line 2: 'jump' is none of 'pad 1 X Y'"),
             ("1", "line 1: '' is none of"),
             ("1 pad 3 0 0", "line 1: '3' is no number from 1 to 2"),
-            ("1 pad 1 0 101", "line 1: '101' is no number from -100 to 100"),
+            (
+                "1 pad 1 0 101",
+                "line 1: '101' is no number from -100 to 100",
+            ),
             ("1 btn 1 sideways", "line 1: 'btn 1 sideways' is none of"),
             ("1 key Reset down", "line 1: there is no key 'Reset'"),
             ("2 wheel 1\n1 wheel 2", "line 2: time goes back"),

@@ -192,7 +192,13 @@ mod tests {
             format!(r#"{{"robotId":"{name}","timestamp":{ms},"x":{x},"y":10,"rotation":0}}"#)
         };
         let [a, b] = names;
-        let all = [one(a, 10, 0), one(b, 10, 0), one(a, 20, 5), one(b, 20, 220), one(a, 30, 9)];
+        let all = [
+            one(a, 10, 0),
+            one(b, 10, 0),
+            one(a, 20, 5),
+            one(b, 20, 220),
+            one(a, 30, 9),
+        ];
         Trajectory::read(&format!("[{}]", all.join(","))).unwrap()
     }
 

@@ -10,7 +10,7 @@ use super::recorder::Recorder;
 use super::task::Task;
 use super::trajectory::{Record, Trajectory};
 use super::words;
-use crate::arena::{Arena, Setup};
+use crate::arena::{Arena, Gamepad, Setup};
 use crate::limits;
 use lang::constraint::{Checker, Entry, Level, Value, Verdict as Decision};
 use lang::diagram::machine::{STEP_MS, Status};
@@ -45,8 +45,8 @@ pub struct Settings {
     pub seed: u64,
     /// What a person answers when a program asks, in order.
     pub answers: Vec<String>,
-    /// What a person does beside the robot, in order of time.
-    pub deeds: Vec<Deed>,
+    /// What a person with a gamepad does beside the robot, in order of time.
+    pub deeds: Option<Vec<Deed>>,
     /// Whether a trajectory is kept.
     pub is_recording: bool,
     /// Whether a picture of the display at the end is made.
@@ -62,7 +62,7 @@ impl Default for Settings {
             longest: Duration::from_secs(60),
             seed: 1,
             answers: Vec::new(),
-            deeds: Vec::new(),
+            deeds: None,
             is_recording: false,
             is_showing: false,
         }
@@ -101,7 +101,10 @@ pub fn judge(task: &Task, program: &mut dyn Program, settings: &Settings) -> Out
     };
     let mut arena = Arena::new(&task.field, setup);
     let mut run = Run::new(task, settings, &arena);
-    let mut deeds = &settings.deeds[..];
+    let mut deeds = settings.deeds.as_deref().unwrap_or_default();
+    if let (Some(_), Some(robot)) = (&settings.deeds, arena.robot_mut(0)) {
+        robot.set_gamepad(Some(Gamepad::default()));
+    }
     let began = Instant::now();
     let mut now = 0;
     loop {
@@ -267,7 +270,12 @@ impl<'a> Run<'a> {
     }
 
     pub fn outcome(self, now: u32, arena: &Arena) -> Outcome {
-        let display = || arena.robots().first().map(|robot| robot.shown().screen.png());
+        let display = || {
+            arena
+                .robots()
+                .first()
+                .map(|robot| robot.shown().screen.png())
+        };
         let score = self
             .checker
             .as_ref()

@@ -51,7 +51,9 @@ pub(super) fn nobody_known(names: &[String]) -> Words {
 /// A robot of a record is not in the world.
 pub(super) fn robot_unknown(name: &str) -> Words {
     Words::new(
-        format!("the record has a robot '{name}' that is not in this world; what it did is left out"),
+        format!(
+            "the record has a robot '{name}' that is not in this world; what it did is left out"
+        ),
         format!("в записи есть робот '{name}', которого нет в этом мире; его действия пропущены"),
     )
 }

@@ -85,7 +85,12 @@ fn solutions(args: &CheckArgs) -> Result<Vec<(PathBuf, PathBuf)>, String> {
     };
     let mut all = Vec::new();
     for path in &args.paths {
-        all.extend(below(path, endings, limits::FOLDERS_DEEP, limits::SOLUTIONS_MAX)?);
+        all.extend(below(
+            path,
+            endings,
+            limits::FOLDERS_DEEP,
+            limits::SOLUTIONS_MAX,
+        )?);
     }
     Ok(all)
 }

@@ -147,9 +147,11 @@ fn settings(args: &CheckArgs) -> Result<Settings, String> {
             .collect(),
     };
     let deeds = match &args.gamepad {
-        None => Vec::new(),
-        Some(path) => judge::hands::read(&text(path, limits::WORLD_BYTES_MAX)?)
-            .map_err(|why| format!("{}: {why}", shown(path)))?,
+        None => None,
+        Some(path) => {
+            let deeds = judge::hands::read(&text(path, limits::WORLD_BYTES_MAX)?);
+            Some(deeds.map_err(|why| format!("{}: {why}", shown(path)))?)
+        }
     };
     Ok(Settings {
         tongue: args.language,
@@ -224,7 +226,11 @@ impl Solution {
             };
             return script::open(*language, text, given).map_err(|why| vec![why]);
         }
-        let lowered = lower(&self.project, World::default());
+        let world = World::Simulated {
+            mailbox: false,
+            gamepad: args.gamepad.is_some(),
+        };
+        let lowered = lower(&self.project, world);
         let lowered = lowered.map_err(|problem| vec![problem.in_tongue(args.language)])?;
         task.plug_in(&self.project, &lowered.program);
         Ok(Box::new(Diagram::new(Rc::new(lowered.program))))

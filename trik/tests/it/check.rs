@@ -67,7 +67,7 @@ fn endless(world: &str) -> Vec<u8> {
 fn pad() -> Vec<u8> {
     let mut sketch = Sketch::new();
     let start = sketch.block("InitialNode", &[]);
-    let wait = sketch.block("TrikWaitPadPress", &[("PadPort", "1")]);
+    let wait = sketch.block("TrikWaitPadPress", &[("Pad", "1")]);
     let print = sketch.block("Function", &[("Body", "print(gamepadPad1[1])")]);
     let end = sketch.block("FinalNode", &[]);
     sketch.chain(&[start, wait, print, end]);
@@ -88,6 +88,15 @@ fn folder() -> Board {
     board.file("line.qrs", drive("3000", Some(&near)));
     board.file("short.qrs", drive("500", Some(&near)));
     board.file("pad.qrs", pad());
+    let checking = fs::read_to_string(root().join("docs/teacher/checking.md")).expect("a document");
+    let hands = checking
+        .split("```text\n")
+        .nth(1)
+        .and_then(|rest| rest.split("```").next());
+    board.file(
+        "hands.txt",
+        hands.expect("an example of what a person does"),
+    );
     board.file("fields/far.xml", world(300));
     board.file("fields/near.xml", near);
     board
@@ -410,10 +419,20 @@ fn reports_trajectories_pictures_and_pages_are_written_for_each_run() {
     let fields = ["check", "--log", "t.json", "--field", "fields"];
     let alone = trik(&board, &fields);
     assert_eq!(alone.code(), 1, "{}{}", alone.stdout, alone.stderr);
-    assert!(alone.stdout.contains("t.json    fields/near.xml  accomplished"), "{}", alone.stdout);
+    assert!(
+        alone
+            .stdout
+            .contains("t.json    fields/near.xml  accomplished"),
+        "{}",
+        alone.stdout
+    );
     let stranger = read("t.json").replacen("trikKitRobot", "stranger", 1);
+    fs::create_dir(board.path("strange")).expect("a folder");
     board.file("strange/t.json", stranger);
-    let told = trik(&board, &["check", "--log", "strange", "--field", "fields/near.xml"]);
+    let told = trik(
+        &board,
+        &["check", "--log", "strange", "--field", "fields/near.xml"],
+    );
     let why = "strange/t.json: the record has a robot 'stranger' that is not in this world";
     assert!(told.stdout.contains(why), "{}{}", told.stdout, told.stderr);
     for wrong in [&["--log", "t.json"][..], &["class", "--log", "t.json"]] {
