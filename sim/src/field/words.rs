@@ -45,6 +45,13 @@ pub(super) fn number(
     }
 }
 
+pub(super) fn no_settings() -> Words {
+    Words::new(
+        "the world has neither settings nor a version, so its numbers are centimetres, as TRIK Studio reads them since 2025; if they were meant as pixels, add <settings/> to its <root>",
+        "в мире нет ни settings, ни версии, поэтому числа в нём - сантиметры, как читает TRIK Studio с 2025 года; если это пиксели, добавьте <settings/> в <root>",
+    )
+}
+
 pub(super) fn same_id(tag: &str, id: &str) -> Words {
     Words::new(
         format!("a <{tag}> before has the id '{id}' too; this one is left out"),
