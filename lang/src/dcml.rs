@@ -17,10 +17,14 @@ pub mod model;
 mod nearest;
 mod parser;
 pub mod plan;
+pub mod models;
+mod nearest;
+mod parser;
 pub mod robot;
 pub mod run;
 #[cfg(test)]
 mod sketch;
+pub mod solve;
 pub mod syntax;
 pub mod system;
 pub mod tape;
