@@ -11,7 +11,7 @@ mod screen;
 pub(crate) mod tree;
 mod trikd;
 mod view;
-mod world;
+pub(crate) mod world;
 
 use crate::cli::UpArgs;
 use crate::limits;

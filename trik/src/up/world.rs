@@ -1,4 +1,4 @@
-//! A world of TRIK Studio for `trik up`: from a file to a field, a body and a configuration.
+//! A world of TRIK Studio for `trik up`, and for planners: from a file to a field, a body and a configuration.
 //!
 //! Owns which files have worlds and what is said when one has none. Knows no simulation.
 
@@ -16,7 +16,7 @@ const BYTES: u64 = 64 << 20;
 ///
 /// # Errors
 /// The file cannot be read, or there is no world in it.
-pub(super) fn read(path: &Path) -> Result<Field, String> {
+pub(crate) fn read(path: &Path) -> Result<Field, String> {
     let say = |problem: &dyn std::fmt::Display| format!("{}: {problem}", path.display());
     let mut bytes = Vec::new();
     std::fs::File::open(path)
