@@ -102,3 +102,13 @@ pub const CONSTRAINT_MESSAGE_BYTES: usize = 64 << 10;
 pub const DCML_TEXT_MAX: usize = 32 << 20;
 /// How deep the tree of an expression of DCML may be: its nesting, and operators in a row.
 pub const DCML_DEPTH: usize = 500;
+/// Words and signs of a document.
+pub const DCML_TOKENS: usize = 4_000_000;
+/// Errors of a document that are told, and as many warnings.
+pub const DCML_DIAGNOSTICS: usize = 200;
+/// Names among which the nearest to a mistyped one is looked for.
+pub const DCML_WORDS_COMPARED: usize = 2000;
+/// Bytes of a name that may be a mistyped one.
+pub const DCML_WORD_COMPARED_BYTES: usize = 64;
+/// Names of a loop, and bytes of a word, that a message shows.
+pub const DCML_SHOWN: usize = 40;
