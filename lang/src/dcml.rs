@@ -7,6 +7,7 @@
 mod check;
 mod code;
 pub mod diagnostic;
+pub mod editor;
 pub mod function;
 pub mod lexer;
 pub mod lines;

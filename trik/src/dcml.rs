@@ -6,6 +6,7 @@
 //! Exit codes: 0 done, 1 refused or failed, 2 a file that cannot be read, or a command line that was not understood.
 
 mod check;
+pub mod lsp;
 mod report;
 
 use crate::diagrams::{Refusal, UNREADABLE, end};
@@ -27,6 +28,11 @@ pub(crate) enum Dcml {
     /// Each error and warning is shown with its place, the line, and what to do. Exit status: 0 no errors, perhaps
     /// warnings; 1 errors; 2 a file cannot be read, or the command line was not understood.
     Check(CheckArgs),
+    /// Serve an editor: errors as you type, documentation, completion, rename and more.
+    ///
+    /// Speaks the Language Server Protocol on standard input and output, so an editor starts it. Exit status: 0 the editor
+    /// has said goodbye; 1 it was gone before.
+    Lsp,
 }
 
 /// What `trik dcml check` can be told.
@@ -44,6 +50,7 @@ pub(crate) struct CheckArgs {
 pub(crate) fn perform(command: &Dcml) -> ExitCode {
     end(match command {
         Dcml::Check(args) => check::check(args),
+        Dcml::Lsp => return lsp::serve(),
     })
 }
 
