@@ -7,20 +7,18 @@
 mod check;
 mod code;
 pub mod diagnostic;
-pub mod fold;
 pub mod editor;
+pub mod fold;
 pub mod function;
 pub mod jacobian;
 pub mod lexer;
 pub mod lines;
 pub mod lower;
 pub mod model;
-mod nearest;
-mod parser;
-pub mod plan;
 pub mod models;
 mod nearest;
 mod parser;
+pub mod plan;
 pub mod robot;
 pub mod run;
 #[cfg(test)]

@@ -162,8 +162,10 @@ fn robots_pass_through_each_other_in_ideal_physics_and_their_sensors_see_nobody(
         robots: vec![first],
         ..Field::default()
     };
-    let mut other = crate::field::Robot::default();
-    other.position = point(100.0, 0.0);
+    let other = crate::field::Robot {
+        position: point(100.0, 0.0),
+        ..crate::field::Robot::default()
+    };
     let setup = Setup {
         others: vec![other],
         ..Setup::default()

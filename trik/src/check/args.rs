@@ -21,6 +21,10 @@ pub(crate) struct CheckArgs {
     /// With --field: run each solution in its own world too.
     #[arg(long, requires = "field")]
     pub own: bool,
+    /// The save that pupils were given: what it locks is taken from it, with its rules, and the rest of the world is the
+    /// solution's own.
+    #[arg(long, value_name = "TASK.qrs", conflicts_with_all = ["field", "log"])]
+    pub task: Option<PathBuf>,
     /// A program in JavaScript or Python that drives the robot in place of the diagram.
     #[arg(long, value_name = "PROG.js|.py", conflicts_with = "log")]
     pub script: Option<PathBuf>,
@@ -94,6 +98,7 @@ impl CheckArgs {
         let mut words: Vec<OsString> = vec!["check".into(), "--worker".into()];
         let paths = [
             ("--script", &self.script),
+            ("--task", &self.task),
             ("--inputs", &self.inputs),
             ("--gamepad", &self.gamepad),
             ("--report", &self.report),

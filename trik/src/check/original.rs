@@ -185,6 +185,7 @@ pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         paths: vec![args.file.clone()],
         field: Vec::new(),
         own: false,
+        task: None,
         script: named(args.script_path).filter(|_| is_script),
         // A grader names files that are not there when there are no inputs.
         inputs: named(args.input).filter(|path| path.exists()),

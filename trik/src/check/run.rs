@@ -17,6 +17,7 @@ use lang::constraint::Level;
 use lang::diagram::lower::{World, lower};
 use lang::diagram::project::Project;
 use lang::problem::{Problem, Tongue};
+use sim::field::Locks;
 use sim::judge::{self, Caption, Diagram, Outcome, Program, Settings, Task, Texts, Trajectory};
 use std::fs::File;
 use std::io::Read;
@@ -123,6 +124,14 @@ fn judged(job: &Job, args: &CheckArgs) -> Result<(Task, Outcome, Lines), Lines> 
     let task = Task::read(texts).map_err(|problems| lines(place, &problems, args.language))?;
     let (mut task, strange) = task;
     let mut strange = lines(place, &strange, args.language);
+    if let Some(given) = &args.task {
+        let changed = hold(&mut task, given, args)?;
+        strange.extend(
+            changed
+                .into_iter()
+                .map(|why| format!("{}: {why}", shown(place))),
+        );
+    }
     if let Some(log) = &job.log {
         let text = text(log, limits::LOG_BYTES_MAX).map_err(|why| vec![why])?;
         let trajectory = Trajectory::read(&text);
@@ -136,6 +145,23 @@ fn judged(job: &Job, args: &CheckArgs) -> Result<(Task, Outcome, Lines), Lines> 
     let mut program = solution.program(&mut task, args)?;
     let outcome = judge::judge(&task, &mut *program, &settings);
     Ok((task, outcome, strange))
+}
+
+/// Puts what a given task locks into the world of a solution.
+fn hold(task: &mut Task, given: &Path, args: &CheckArgs) -> Result<Lines, Lines> {
+    let project = Solution::read(given, args)?.project;
+    let Some(world) = &project.world else {
+        return Err(vec![format!("{}: there is no world in it", shown(given))]);
+    };
+    let texts = Texts {
+        world,
+        blobs: project.blobs.as_deref(),
+        templates: Some(&project.templates),
+    };
+    let read = Task::read(texts).map_err(|problems| lines(given, &problems, args.language))?;
+    let changed = task.hold(&read.0, Locks::of(&project.meta));
+    let changed = changed.iter().map(|words| words.in_tongue(args.language));
+    Ok(changed.map(str::to_owned).collect())
 }
 
 fn settings(args: &CheckArgs) -> Result<Settings, String> {

@@ -37,6 +37,7 @@ fn world(finish: u32) -> String {
 /// A drive straight ahead, in a world; without rules if the world has none.
 fn drive(ms: &str, world: Option<&str>) -> Vec<u8> {
     let mut sketch = Sketch::new();
+    sketch.meta("twoDModelWorldReadOnly", "true");
     let start = sketch.block("InitialNode", &[]);
     let forward = sketch.block(
         "TrikV6EnginesForward",
@@ -87,6 +88,8 @@ fn folder() -> Board {
     board.file("class/damaged.qrs", b"PK\x03\x04 not a save");
     board.file("line.qrs", drive("3000", Some(&near)));
     board.file("short.qrs", drive("500", Some(&near)));
+    let moved = near.replace("400:", "60:");
+    board.file("moved.qrs", drive("3000", Some(&moved)));
     board.file("pad.qrs", pad());
     let checking = fs::read_to_string(root().join("docs/teacher/checking.md")).expect("a document");
     let hands = checking

@@ -132,10 +132,12 @@ fn a_ball_rolls_on_and_bounces_from_a_wall() {
 
 #[test]
 fn robots_push_each_other() {
-    let mut other = Robot::default();
-    // Another one stands with its wheels in the way, free to be pushed aside.
-    other.position = point(70.0, 20.0);
-    other.direction = 90.0;
+    // It stands across in the way.
+    let other = Robot {
+        position: point(70.0, 20.0),
+        direction: 90.0,
+        ..Robot::default()
+    };
     let setup = || Setup {
         others: vec![other.clone()],
         ..Setup::default()
