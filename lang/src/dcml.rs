@@ -7,6 +7,7 @@
 mod check;
 mod code;
 pub mod diagnostic;
+pub mod editor;
 pub mod fold;
 pub mod format;
 pub mod function;
@@ -19,6 +20,7 @@ pub mod model;
 pub mod models;
 mod nearest;
 mod parser;
+pub mod plan;
 pub mod robot;
 pub mod run;
 #[cfg(test)]
