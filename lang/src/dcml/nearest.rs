@@ -18,7 +18,17 @@ pub(super) fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) 
         if one.len().abs_diff(word.len()) * 2 > most {
             continue;
         }
-        let found = distance(&word, &one.chars().collect::<Vec<_>>());
+        let letters: Vec<char> = one.chars().collect();
+        let is_case = letters.len() == word.len()
+            && letters
+                .iter()
+                .zip(&word)
+                .all(|(a, b)| a.eq_ignore_ascii_case(b));
+        let found = if is_case {
+            1
+        } else {
+            distance(&word, &letters)
+        };
         // A word of one letter has nothing left of it after one edit, except its case.
         let enough = if word.len() == 1 {
             found < 2
@@ -68,6 +78,7 @@ mod tests {
         assert_eq!(nearest("thtea", known), Some("theta"));
         assert_eq!(nearest("u_rihgt", known), Some("u_right"));
         assert_eq!(nearest("l", known), Some("L"));
+        assert_eq!(nearest("THETA", known), Some("theta"));
         assert_eq!(nearest("q", known), None);
         assert_eq!(nearest("velocity", known), None);
         assert_eq!(nearest(&"u".repeat(1 << 20), known), None);

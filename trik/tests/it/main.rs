@@ -4,6 +4,8 @@
 
 /// Solutions of tasks, judged.
 mod check;
+/// Models of robots: what their document shows, files and exit codes.
+mod dcml;
 /// Diagrams shown, checked and translated, and run in three languages.
 mod diagrams;
 /// What documents show of a robot.
