@@ -8,6 +8,7 @@ mod check;
 mod code;
 pub mod diagnostic;
 pub mod fold;
+pub mod formulas;
 pub mod function;
 pub mod jacobian;
 pub mod lexer;

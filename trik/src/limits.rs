@@ -94,3 +94,9 @@ pub const ROW_WARNINGS_MAX: usize = 20;
 pub const ROW_MESSAGES_MAX: usize = 200;
 /// Characters of one of them.
 pub const ROW_MESSAGE_CHARS_MAX: usize = 2_000;
+/// Lines of a table of actions, and of one that a simulation writes.
+pub(crate) const DCML_ROWS_MAX: usize = 1_000_000;
+/// Bytes of a table of actions.
+pub(crate) const DCML_ACTIONS_BYTES_MAX: u64 = 64 << 20;
+/// Panels of the picture of a simulation.
+pub(crate) const DCML_PANELS_MAX: usize = 40;
