@@ -14,12 +14,10 @@ pub mod lexer;
 pub mod lines;
 pub mod lower;
 pub mod model;
-mod nearest;
-mod parser;
-pub mod plan;
 pub mod models;
 mod nearest;
 mod parser;
+pub mod plan;
 pub mod robot;
 pub mod run;
 #[cfg(test)]
