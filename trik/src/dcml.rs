@@ -6,6 +6,7 @@
 //! Exit codes: 0 done, 1 refused or failed, 2 a file that cannot be read, or a command line that was not understood.
 
 mod check;
+pub mod lsp;
 mod plan;
 mod report;
 
@@ -36,6 +37,11 @@ pub(crate) enum Dcml {
     ///
     /// Exit status: 0 a path was found; 1 none, and what was reached is told; 2 it could not be searched.
     Plan(Box<plan::PlanArgs>),
+    /// Serve an editor: errors as you type, documentation, completion, rename and more.
+    ///
+    /// Speaks the Language Server Protocol on standard input and output, so an editor starts it. Exit status: 0 the editor
+    /// has said goodbye; 1 it was gone before.
+    Lsp,
 }
 
 /// What `trik dcml check` can be told.
@@ -54,6 +60,7 @@ pub(crate) fn perform(command: &Dcml) -> ExitCode {
     end(match command {
         Dcml::Check(args) => check::check(args),
         Dcml::Plan(args) => plan::plan(args),
+        Dcml::Lsp => return lsp::serve(),
     })
 }
 

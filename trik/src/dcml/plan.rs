@@ -195,7 +195,7 @@ fn prepared(args: &PlanArgs) -> Result<u8, Refusal> {
 /// Obstacles, and with a world where its robot stands.
 fn surroundings(args: &PlanArgs) -> Result<(Obstacles, Option<field::Stand>), Refusal> {
     if let Some(path) = &args.world {
-        let field = crate::up::world::read(path).map_err(Refusal::new)?;
+        let (field, _) = crate::up::world::read(path).map_err(Refusal::new)?;
         let obstacles = field::obstacles(&field)
             .map_err(|why| Refusal::new(format!("{}: {why}", telling::named(path))))?;
         return Ok((obstacles, field::stand(&field)));
