@@ -9,6 +9,7 @@ mod code;
 pub mod diagnostic;
 pub mod fold;
 pub mod function;
+pub mod generate;
 pub mod jacobian;
 pub mod lexer;
 pub mod lines;

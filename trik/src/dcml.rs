@@ -6,6 +6,7 @@
 //! Exit codes: 0 done, 1 refused or failed, 2 a file that cannot be read, or a command line that was not understood.
 
 mod check;
+mod generate;
 mod report;
 
 use crate::diagrams::{Refusal, UNREADABLE, end};
@@ -27,6 +28,12 @@ pub(crate) enum Dcml {
     /// Each error and warning is shown with its place, the line, and what to do. Exit status: 0 no errors, perhaps
     /// warnings; 1 errors; 2 a file cannot be read, or the command line was not understood.
     Check(CheckArgs),
+    /// Write a model in another language: for programs, solvers, converters, papers.
+    ///
+    /// Names and documentation are those of the model; the header says which names are others in that language. Exit
+    /// status: 0 done; 1 the model has errors, is too large for that language, or OUT is there already; 2 the file
+    /// cannot be read, or the command line was not understood.
+    Gen(generate::GenArgs),
 }
 
 /// What `trik dcml check` can be told.
@@ -44,6 +51,7 @@ pub(crate) struct CheckArgs {
 pub(crate) fn perform(command: &Dcml) -> ExitCode {
     end(match command {
         Dcml::Check(args) => check::check(args),
+        Dcml::Gen(args) => generate::write(args),
     })
 }
 
@@ -57,7 +65,6 @@ pub(crate) struct Source {
 
 /// The text of one model and the model: the one of this name, or the only one of the file. What is wrong with the file is
 /// shown on standard error, warnings too; errors of another model are no hindrance.
-#[allow(dead_code, reason = "for commands of one model")]
 pub(crate) fn load(path: &Path, model: Option<&str>) -> Result<(String, Model), Refusal> {
     let source = read(path)?;
     let understood = understand(&source.text);
@@ -66,7 +73,6 @@ pub(crate) fn load(path: &Path, model: Option<&str>) -> Result<(String, Model), 
     Ok((source.text, model))
 }
 
-#[allow(dead_code, reason = "as above")]
 fn pick(file: &str, understood: Understood, wanted: Option<&str>) -> Result<Model, Refusal> {
     let Understood {
         document,
