@@ -6,6 +6,7 @@
 
 pub mod fold;
 pub mod function;
+pub mod generate;
 pub mod jacobian;
 pub mod lower;
 pub mod model;
