@@ -114,3 +114,13 @@ pub const DCML_BATCH_ROWS_MAX: usize = 1 << 16;
 pub const DCML_JAVA_VALUES: usize = 3000;
 /// The same in Lua, whose functions end at 65536 constants.
 pub const DCML_LUA_VALUES: usize = 30_000;
+/// Words and signs of a document.
+pub const DCML_TOKENS: usize = 4_000_000;
+/// Errors of a document that are told, and as many warnings.
+pub const DCML_DIAGNOSTICS: usize = 200;
+/// Names among which the nearest to a mistyped one is looked for.
+pub const DCML_WORDS_COMPARED: usize = 2000;
+/// Bytes of a name that may be a mistyped one.
+pub const DCML_WORD_COMPARED_BYTES: usize = 64;
+/// Names of a loop, and bytes of a word, that a message shows.
+pub const DCML_SHOWN: usize = 40;

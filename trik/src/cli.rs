@@ -5,6 +5,7 @@
 
 pub(crate) use crate::check::CheckArgs;
 use crate::check::original;
+use crate::dcml::{self, Dcml};
 use crate::remote::{self, Target};
 use crate::{check, diagrams, fault, limits, up};
 use clap::{Args, CommandFactory, Parser, Subcommand};
@@ -112,6 +113,12 @@ enum Command {
     /// Exit status: 0 all tasks were accomplished, or there were no rules and no errors; 1 one was not; 2 a solution could
     /// not be run or judged, or the command line was not understood.
     Check(Box<CheckArgs>),
+    /// Robots as equations: models in the Differential Constraints Modeling Language.
+    Dcml {
+        /// What to do.
+        #[command(subcommand)]
+        command: Dcml,
+    },
     /// Run as TRIK Studio's program 2D-model, with its options, for graders that call it.
     #[command(name = "2d-model", disable_help_flag = true)]
     Model {
@@ -377,6 +384,7 @@ fn perform(command: Command) -> Result<ExitCode, String> {
         Command::Show(args) => return Ok(diagrams::show(&args)),
         Command::Lint(args) => return Ok(diagrams::lint(&args)),
         Command::Check(args) => return Ok(check::check(&args)),
+        Command::Dcml { command } => return Ok(dcml::perform(&command)),
         Command::Model { arguments } => return Ok(original::model(arguments.into_iter())),
         Command::Patcher { arguments } => return Ok(original::patcher(arguments.into_iter())),
         Command::Send(args) => remote::send(&args),
