@@ -114,6 +114,10 @@ pub const DCML_BATCH_ROWS_MAX: usize = 1 << 16;
 pub const DCML_JAVA_VALUES: usize = 3000;
 /// The same in Lua, whose functions end at 65536 constants.
 pub const DCML_LUA_VALUES: usize = 30_000;
+/// Steps of one solution of a model.
+pub const DCML_STEPS_MAX: usize = 10_000_000;
+/// Events of one solution of a model.
+pub const DCML_EVENTS_MAX: usize = 100_000;
 /// Words and signs of a document.
 pub const DCML_TOKENS: usize = 4_000_000;
 /// Errors of a document that are told, and as many warnings.
