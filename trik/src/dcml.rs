@@ -9,6 +9,7 @@ mod check;
 pub mod lsp;
 mod plan;
 mod models;
+mod generate;
 mod report;
 mod sim;
 mod values;
@@ -54,6 +55,12 @@ pub(crate) enum Dcml {
     Sim(Box<SimArgs>),
     /// List the models that come with the program, or print one of them.
     Models(ModelsArgs),
+    /// Write a model in another language: for programs, solvers, converters, papers.
+    ///
+    /// Names and documentation are those of the model; the header says which names are others in that language. Exit
+    /// status: 0 done; 1 the model has errors, is too large for that language, or OUT is there already; 2 the file
+    /// cannot be read, or the command line was not understood.
+    Gen(generate::GenArgs),
 }
 
 /// What `trik dcml check` can be told.
@@ -163,6 +170,7 @@ pub(crate) fn perform(command: &Dcml) -> ExitCode {
         Dcml::Lsp => return lsp::serve(),
         Dcml::Sim(args) => sim::sim(args),
         Dcml::Models(args) => models::models(args),
+        Dcml::Gen(args) => generate::write(args),
     })
 }
 
@@ -176,7 +184,6 @@ pub(crate) struct Source {
 
 /// The text of one model and the model: the one of this name, or the only one of the file. What is wrong with the file is
 /// shown on standard error, warnings too; errors of another model are no hindrance.
-#[allow(dead_code, reason = "for commands of one model")]
 pub(crate) fn load(path: &Path, model: Option<&str>) -> Result<(String, Model), Refusal> {
     let source = read(path)?;
     let understood = understand(&source.text);
@@ -185,7 +192,6 @@ pub(crate) fn load(path: &Path, model: Option<&str>) -> Result<(String, Model), 
     Ok((source.text, model))
 }
 
-#[allow(dead_code, reason = "as above")]
 fn pick(file: &str, understood: Understood, wanted: Option<&str>) -> Result<Model, Refusal> {
     let Understood {
         document,
