@@ -4,24 +4,22 @@
 //! or drives a robot sees a [`system::System`] only. The language is that of Guarnieri, Magri, Brugali and Gherardi, *A
 //! Domain Specific Language for Modeling Differential Constraints of Mobile Robots*.
 
+mod check;
+mod code;
+pub mod diagnostic;
 pub mod fold;
 pub mod function;
 pub mod jacobian;
+pub mod lexer;
+pub mod lines;
 pub mod lower;
 pub mod model;
+mod nearest;
+mod parser;
 pub mod robot;
 pub mod run;
 #[cfg(test)]
 mod sketch;
-mod check;
-mod code;
-pub mod diagnostic;
-pub mod function;
-pub mod lexer;
-pub mod lines;
-pub mod model;
-mod nearest;
-mod parser;
 pub mod syntax;
 pub mod system;
 pub mod tape;
