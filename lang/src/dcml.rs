@@ -20,6 +20,16 @@ pub mod robot;
 pub mod run;
 #[cfg(test)]
 mod sketch;
+pub mod solve;
+mod check;
+mod code;
+pub mod diagnostic;
+pub mod function;
+pub mod lexer;
+pub mod lines;
+pub mod model;
+mod nearest;
+mod parser;
 pub mod syntax;
 pub mod system;
 pub mod tape;

@@ -110,6 +110,10 @@ pub const DCML_JACOBIAN_MAX: usize = 1 << 20;
 pub const DCML_JACOBIAN_STEPS_MAX: usize = 1 << 24;
 /// Values that a batch of states keeps for each state at the same time.
 pub const DCML_BATCH_ROWS_MAX: usize = 1 << 16;
+/// Steps of one solution of a model.
+pub const DCML_STEPS_MAX: usize = 10_000_000;
+/// Events of one solution of a model.
+pub const DCML_EVENTS_MAX: usize = 100_000;
 /// Words and signs of a document.
 pub const DCML_TOKENS: usize = 4_000_000;
 /// Errors of a document that are told, and as many warnings.
