@@ -57,6 +57,7 @@ pub(crate) struct Source {
 
 /// The text of one model and the model: the one of this name, or the only one of the file. What is wrong with the file is
 /// shown on standard error, warnings too; errors of another model are no hindrance.
+#[allow(dead_code, reason = "for commands of one model")]
 pub(crate) fn load(path: &Path, model: Option<&str>) -> Result<(String, Model), Refusal> {
     let source = read(path)?;
     let understood = understand(&source.text);
@@ -65,6 +66,7 @@ pub(crate) fn load(path: &Path, model: Option<&str>) -> Result<(String, Model), 
     Ok((source.text, model))
 }
 
+#[allow(dead_code, reason = "as above")]
 fn pick(file: &str, understood: Understood, wanted: Option<&str>) -> Result<Model, Refusal> {
     let Understood {
         document,

@@ -94,11 +94,17 @@ impl Parser<'_, '_> {
     /// Goes to the next comma or semicolon of this section.
     fn skip_in_section(&mut self) {
         self.damage.any = true;
-        while !matches!(
-            self.kind(),
-            TokenKind::Comma | TokenKind::Semicolon | TokenKind::Keyword(_) | TokenKind::EndOfText
-        ) && !(self.begins_line() && self.begins_statement())
-        {
+        loop {
+            let is_over = matches!(
+                self.kind(),
+                TokenKind::Comma
+                    | TokenKind::Semicolon
+                    | TokenKind::Keyword(_)
+                    | TokenKind::EndOfText
+            );
+            if is_over || (self.begins_line() && self.begins_statement()) {
+                return;
+            }
             self.bump();
         }
     }
