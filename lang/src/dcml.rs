@@ -7,6 +7,7 @@
 mod check;
 mod code;
 pub mod diagnostic;
+pub mod editor;
 pub mod fold;
 pub mod function;
 pub mod generate;
@@ -18,6 +19,7 @@ pub mod model;
 pub mod models;
 mod nearest;
 mod parser;
+pub mod plan;
 pub mod robot;
 pub mod run;
 #[cfg(test)]

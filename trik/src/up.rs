@@ -13,7 +13,7 @@ mod screen;
 pub(crate) mod tree;
 mod trikd;
 mod view;
-mod world;
+pub(crate) mod world;
 
 use crate::cli::UpArgs;
 use crate::limits;
@@ -28,7 +28,7 @@ use sim::board::{Board, Options};
 use sim::body::Body;
 use sim::body::rolling::Actuator;
 use sim::body::studio::{self, Studio};
-use sim::field::Field;
+use sim::field::{Field, Locks};
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::net::SocketAddr;
@@ -89,7 +89,7 @@ pub(crate) fn driven(text: &str) -> Result<(String, Actuator), String> {
 pub(crate) fn up(args: UpArgs) -> Result<(), String> {
     let world = args.world.as_deref().map(world::read).transpose()?;
     let made = match &world {
-        Some(field) => Made::world(field, args.seed),
+        Some((field, locks)) => Made::world(field, *locks, args.seed),
         None => Made::robot(&args)?,
     };
     let config = match (&args.config, &made.configuration) {
@@ -167,9 +167,9 @@ struct Made {
 
 impl Made {
     /// The robot of a world.
-    fn world(field: &Field, seed: u64) -> Self {
+    fn world(field: &Field, locks: Locks, seed: u64) -> Self {
         Self {
-            body: Box::new(Studio::new(field, seed)),
+            body: Box::new(Studio::new(field, seed).locked(locks)),
             configuration: Some(studio::configuration(field)),
         }
     }
