@@ -22,6 +22,8 @@ mod examples;
 mod faults;
 /// Speed that is held, heading and place.
 mod hold;
+/// Models in DCML: a body of their own, and nodes that follow it.
+mod models;
 /// Programs that come over the network.
 mod programs;
 /// A running `trik up`.
