@@ -6,7 +6,10 @@
 //! Exit codes: 0 done, 1 refused or failed, 2 a file that cannot be read, or a command line that was not understood.
 
 mod check;
+mod generate;
+pub mod lsp;
 mod models;
+mod plan;
 mod report;
 mod sim;
 mod values;
@@ -31,6 +34,19 @@ pub(crate) enum Dcml {
     /// Each error and warning is shown with its place, the line, and what to do. Exit status: 0 no errors, perhaps
     /// warnings; 1 errors; 2 a file cannot be read, or the command line was not understood.
     Check(CheckArgs),
+    /// Find a path for a robot from one place to another, among obstacles.
+    ///
+    /// Grows a tree of motions that the model can do until one ends in the goal: rrt ends with the first path, sst looks
+    /// for shorter ones until a limit. Nothing is jumped over, however thin. Writes the path as a table, which `trik dcml
+    /// sim --actions` follows, and a picture.
+    ///
+    /// Exit status: 0 a path was found; 1 none, and what was reached is told; 2 it could not be searched.
+    Plan(Box<plan::PlanArgs>),
+    /// Serve an editor: errors as you type, documentation, completion, rename and more.
+    ///
+    /// Speaks the Language Server Protocol on standard input and output, so an editor starts it. Exit status: 0 the editor
+    /// has said goodbye; 1 it was gone before.
+    Lsp,
     /// Run a model under actions for some time, and write what it does as a table or a picture.
     ///
     /// FILE is a file with a model, or the name of one that comes with the program. Exit status: 0 done; 1 refused, or the
@@ -39,6 +55,12 @@ pub(crate) enum Dcml {
     Sim(Box<SimArgs>),
     /// List the models that come with the program, or print one of them.
     Models(ModelsArgs),
+    /// Write a model in another language: for programs, solvers, converters, papers.
+    ///
+    /// Names and documentation are those of the model; the header says which names are others in that language. Exit
+    /// status: 0 done; 1 the model has errors, is too large for that language, or OUT is there already; 2 the file
+    /// cannot be read, or the command line was not understood.
+    Gen(generate::GenArgs),
 }
 
 /// What `trik dcml check` can be told.
@@ -144,8 +166,11 @@ pub(crate) struct ModelsArgs {
 pub(crate) fn perform(command: &Dcml) -> ExitCode {
     end(match command {
         Dcml::Check(args) => check::check(args),
+        Dcml::Plan(args) => plan::plan(args),
+        Dcml::Lsp => return lsp::serve(),
         Dcml::Sim(args) => sim::sim(args),
         Dcml::Models(args) => models::models(args),
+        Dcml::Gen(args) => generate::write(args),
     })
 }
 
@@ -159,7 +184,6 @@ pub(crate) struct Source {
 
 /// The text of one model and the model: the one of this name, or the only one of the file. What is wrong with the file is
 /// shown on standard error, warnings too; errors of another model are no hindrance.
-#[allow(dead_code, reason = "for commands of one model")]
 pub(crate) fn load(path: &Path, model: Option<&str>) -> Result<(String, Model), Refusal> {
     let source = read(path)?;
     let understood = understand(&source.text);
@@ -168,7 +192,6 @@ pub(crate) fn load(path: &Path, model: Option<&str>) -> Result<(String, Model), 
     Ok((source.text, model))
 }
 
-#[allow(dead_code, reason = "as above")]
 fn pick(file: &str, understood: Understood, wanted: Option<&str>) -> Result<Model, Refusal> {
     let Understood {
         document,

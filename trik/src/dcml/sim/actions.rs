@@ -1,6 +1,7 @@
 //! Where the actions of a simulation come from: formulas of time, or a table.
 //!
 //! Owns the form of the table: names in the first line, then rising times in s, each with what is done from then on.
+//! Columns of states are left out, so that tables of other commands can be given.
 
 use crate::dcml::{Source, report};
 use crate::diagrams::{REFUSED, Refusal, UNREADABLE};
@@ -37,7 +38,9 @@ impl Actions {
             From::Formulas(Box::new(formulas(text, &names)?))
         } else {
             let table = read(text)?;
-            let (times, rows) = table_of(&table, &names)
+            let others = robot.state_parts().iter().chain(robot.output_parts());
+            let others: Vec<&str> = others.map(|one| one.name.as_str()).collect();
+            let (times, rows) = table_of(&table, &names, &others)
                 .map_err(|(place, why)| Refusal::new(format!("{text}:{place}: {why}")))?;
             From::Table(times, rows)
         };
@@ -142,7 +145,7 @@ fn read(path: &str) -> Result<String, Refusal> {
 }
 
 /// Times and lines of actions in the order of the names; else `LINE:COLUMN` and what is wrong there.
-fn table_of(text: &str, names: &[&str]) -> Result<Rows, (String, String)> {
+fn table_of(text: &str, names: &[&str], others: &[&str]) -> Result<Rows, (String, String)> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut lines = (1..)
         .zip(text.lines())
@@ -154,7 +157,7 @@ fn table_of(text: &str, names: &[&str]) -> Result<Rows, (String, String)> {
         );
         ("1:1".to_owned(), why)
     })?;
-    let columns = columns(at, header, names)?;
+    let columns = columns(at, header, names, others)?;
     let (mut times, mut rows): Rows = (Vec::new(), Vec::new());
     for (at, line) in lines {
         if rows.len() >= limits::DCML_ROWS_MAX {
@@ -178,8 +181,9 @@ fn table_of(text: &str, names: &[&str]) -> Result<Rows, (String, String)> {
                 }
             };
             match column {
-                None => time = number,
-                Some(action) => row[*action] = number,
+                Meaning::Time => time = number,
+                Meaning::Action(action) => row[*action] = number,
+                Meaning::Other(_) => (),
             }
             count = place + 1;
         }
@@ -209,43 +213,51 @@ fn table_of(text: &str, names: &[&str]) -> Result<Rows, (String, String)> {
 
 type Rows = (Vec<f64>, Vec<Vec<f64>>);
 
-/// What each column is: time, or an action by its number.
+/// What a column is.
+#[derive(Clone, Copy, PartialEq)]
+enum Meaning {
+    Time,
+    /// By its number.
+    Action(usize),
+    /// A state or an output, which actions do not need.
+    Other(usize),
+}
+
+/// What each column is, all of them different.
 fn columns(
     at: usize,
     header: &str,
     names: &[&str],
-) -> Result<Vec<Option<usize>>, (String, String)> {
-    let mut columns: Vec<Option<usize>> = Vec::new();
+    others: &[&str],
+) -> Result<Vec<Meaning>, (String, String)> {
+    let mut columns: Vec<Meaning> = Vec::new();
     let all = || format!("the names are t,{}", names.join(","));
     for (column, cell) in cells(header) {
         let shown: String = cell.chars().take(40).collect();
-        let found = match names.iter().position(|one| *one == cell) {
-            Some(action) => Some(action),
-            None if cell == "t" => None,
-            None => {
-                return Err((
-                    format!("{at}:{column}"),
-                    format!("there is no action {shown:?}: {}", all()),
-                ));
+        let place = |all: &[&str]| all.iter().position(|one| *one == cell);
+        let found = match (place(names), place(others)) {
+            (Some(action), _) => Meaning::Action(action),
+            (None, _) if cell == "t" => Meaning::Time,
+            (None, Some(other)) => Meaning::Other(other),
+            (None, None) => {
+                let why = format!("there is no action {shown:?}: {}", all());
+                return Err((format!("{at}:{column}"), why));
             }
         };
         if columns.contains(&found) {
-            return Err((
-                format!("{at}:{column}"),
-                format!("{shown:?} is there twice"),
-            ));
+            let why = format!("{shown:?} is there twice");
+            return Err((format!("{at}:{column}"), why));
         }
         columns.push(found);
     }
-    let is_missing = |one: &Option<usize>| !columns.contains(one);
-    let wanted = [None].into_iter().chain((0..names.len()).map(Some));
-    match wanted.into_iter().find(is_missing) {
-        None => Ok(columns),
-        Some(one) => {
-            let name = one.and_then(|at| names.get(at)).copied().unwrap_or("t");
-            Err((format!("{at}:1"), format!("{name} is missing: {}", all())))
-        }
-    }
+    let is_missing = |one: &Meaning| !columns.contains(one);
+    let wanted = (0..names.len()).map(Meaning::Action);
+    let name = match wanted.chain([Meaning::Time]).find(is_missing) {
+        None => return Ok(columns),
+        Some(Meaning::Action(action)) => names.get(action).copied().unwrap_or_default(),
+        Some(_) => "t",
+    };
+    Err((format!("{at}:1"), format!("{name} is missing: {}", all())))
 }
 
 /// Cells of a line with their columns, counted from 1.
@@ -265,7 +277,7 @@ mod tests {
 
     #[test]
     fn tables_have_their_names_in_any_order() {
-        let found = table_of("b, t ,a\n1,0,2\n\n3,0.5,4\n", &["a", "b"]);
+        let found = table_of("b, t ,x,a\n1,0,9,2\n\n3,0.5,9,4\n", &["a", "b"], &["x"]);
         let expected = (vec![0.0, 0.5], vec![vec![2.0, 1.0], vec![4.0, 3.0]]);
         assert_eq!(found, Ok(expected));
     }
@@ -302,7 +314,7 @@ mod tests {
             ),
         ] {
             let expected = Err((place.to_owned(), why.to_owned()));
-            assert_eq!(table_of(text, &["a"]), expected, "{text:?}");
+            assert_eq!(table_of(text, &["a"], &["x"]), expected, "{text:?}");
         }
     }
 }
