@@ -23,6 +23,7 @@ use nix::sys::signalfd::{SfdFlags, SignalFd};
 use nix::unistd::getpid;
 use screen::Screen;
 use sim::board::{Board, Options};
+use sim::field::Field;
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::net::SocketAddr;
@@ -63,7 +64,12 @@ pub(crate) fn robot_name(text: &str) -> Result<String, String> {
 pub(crate) fn up(args: UpArgs) -> Result<(), String> {
     let world = args.world.as_deref().map(world::read).transpose()?;
     let config = match world {
-        Some(_) if args.config.is_none() => None,
+        Some(_) if args.config.is_none() => {
+            let include: Result<_, _> = args.include.iter().map(|dir| absolute(dir)).collect();
+            // The configuration of a world is made here, and includes this one.
+            shipped(Path::new("trik.lua"), include?)?;
+            None
+        }
         _ => Some(configuration(&args)?),
     };
     let robot = sim::robots::by_name(&args.robot)
@@ -112,6 +118,7 @@ pub(crate) fn up(args: UpArgs) -> Result<(), String> {
         } else {
             &args.robot
         },
+        world: world.as_ref().map(|(field, _)| field),
         speed: args.speed,
         place: &place,
         board: &board,
@@ -143,9 +150,16 @@ fn configuration(args: &UpArgs) -> Result<PathBuf, String> {
         None => {
             let include: Result<_, _> = args.include.iter().map(|dir| absolute(dir)).collect();
             let name = PathBuf::from(format!("robots/{}.lua", args.robot));
-            trikfs::cli::find_shipped(&name, include?)
+            shipped(&name, include?)
         }
     }
+}
+
+/// A file that comes with this program.
+fn shipped(name: &Path, include: Vec<PathBuf>) -> Result<PathBuf, String> {
+    trikfs::cli::find_shipped(name, include).map_err(|why| {
+        format!("{why}; --include names another directory: that of the source is config/lua")
+    })
 }
 
 /// The command line of trikfs.
@@ -204,6 +218,8 @@ enum Stage {
 struct Session<'a> {
     arguments: &'a [OsString],
     robot: &'a str,
+    /// The world of TRIK Studio around it.
+    world: Option<&'a Field>,
     speed: f64,
     place: &'a Place,
     board: &'a Board,
@@ -468,7 +484,7 @@ impl Session<'_> {
             "trik: the robot {} is ready on {root}{nodes}\n\nIn a second terminal:\n\n  cd {root}\n",
             self.robot
         );
-        for (command, meaning) in hints::of(self.robot) {
+        for (command, meaning) in hints::of(self.robot, self.world) {
             text.push_str(&format!("  {command:<54} # {meaning}\n"));
         }
         let board = self.place.board.display();

@@ -297,6 +297,105 @@ fn a_program_that_takes_too_much_real_time_is_not_failed_but_broken() {
 }
 
 #[test]
+fn a_single_call_that_never_returns_is_ended_and_reported() {
+    let board = Board::new();
+    board.file("far.xml", world(300));
+    board.file("call.js", "/(a+)+$/.test('a'.repeat(60) + 'b');");
+    board.file(
+        "search.js",
+        "var s = 'a'.repeat(20000000); while (true) s.indexOf('b' + s);",
+    );
+    for name in ["call.js", "search.js"] {
+        let words = "--field far.xml --wall-limit 1 --report r.json --force";
+        let words: Vec<&str> = ["check", name]
+            .into_iter()
+            .chain(words.split(' '))
+            .collect();
+        let output = trik(&board, &words);
+        assert_eq!(output.code(), 2, "{}{}", output.stdout, output.stderr);
+        let why = "The run took more than 1 s of real time";
+        assert!(output.stdout.contains(why), "{}", output.stdout);
+        let report = fs::read_to_string(board.path("r.json")).expect("a report");
+        assert!(report.contains(why), "{report}");
+    }
+}
+
+#[test]
+fn a_python_program_is_confined() {
+    let board = Board::new();
+    board.file("far.xml", world(300));
+    let program = "import os, resource
+print(os.readlink('/proc/self/ns/net'))
+for what in (resource.RLIMIT_NPROC, resource.RLIMIT_FSIZE, resource.RLIMIT_CPU, resource.RLIMIT_AS):
+    print(resource.getrlimit(what)[1] != resource.RLIM_INFINITY)
+print(open('/proc/self/status').read().split('NoNewPrivs:')[1].split()[0])
+";
+    board.file("a.py", program);
+    let output = trik(&board, &["check", "a.py", "--field", "far.xml"]);
+    let printed = output
+        .stdout
+        .lines()
+        .filter_map(|line| line.strip_prefix("print: "));
+    let printed: Vec<&str> = printed.collect();
+    assert_eq!(
+        printed[1..],
+        ["True", "True", "True", "True", "1"],
+        "{}",
+        output.stdout
+    );
+    let flag = if nix::unistd::Uid::effective().is_root() {
+        "-n"
+    } else {
+        "-Un"
+    };
+    let can_leave = Command::new("unshare").args([flag, "true"]).status();
+    let own = fs::read_link("/proc/self/ns/net").expect("a namespace");
+    if can_leave.is_ok_and(|status| status.success()) {
+        assert_ne!(printed[0], own.to_string_lossy());
+    } else {
+        println!("skipped the network of a_python_program_is_confined: no unshare");
+    }
+}
+
+#[test]
+fn what_was_left_out_or_mixed_up_is_told() {
+    let board = folder();
+    board.file("class/left.py", "print(1)");
+    board.file("stop.js", "script.wait(50);");
+    let cases: [(&[&str], &str); 5] = [
+        (
+            &["check", "class"],
+            "programs *.js and *.py are left out, 1 here",
+        ),
+        (
+            &["check", "fields/near.xml"],
+            "this is a world and no solution: run one in it with --field",
+        ),
+        (
+            &["check", "short.qrs", "--script", "stop.js"],
+            "\nstop.js: not accomplished",
+        ),
+        (
+            &["up", "--world", "nope.xml"],
+            "nope.xml: there is no such file\n",
+        ),
+        (
+            &["2d-model", "line.qrs", "--speed", "NaN"],
+            "not a whole number from 0 on",
+        ),
+    ];
+    for (words, said) in cases {
+        let output = trik(&board, words);
+        let all = format!("{}{}", output.stdout, output.stderr);
+        assert!(all.contains(said), "{words:?}: {all}");
+    }
+    let copy = board.path("copied");
+    fs::copy(TRIK, &copy).expect("a copy");
+    let output = tools::run(Command::new(&copy).arg("up").current_dir(board.dir()), b"");
+    assert!(output.stderr.contains("config/lua"), "{}", output.stderr);
+}
+
+#[test]
 fn exit_codes_are_true() {
     let board = folder();
     board.file(
