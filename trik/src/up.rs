@@ -64,22 +64,14 @@ pub(crate) fn robot_name(text: &str) -> Result<String, String> {
 pub(crate) fn up(args: UpArgs) -> Result<(), String> {
     let world = args.world.as_deref().map(world::read).transpose()?;
     let config = match world {
-        Some(_) if args.config.is_none() => {
-            let include: Result<_, _> = args.include.iter().map(|dir| absolute(dir)).collect();
-            // The configuration of a world is made here, and includes this one.
-            shipped(Path::new("trik.lua"), include?)?;
-            None
-        }
+        // The configuration of a world is made here, and includes this one.
+        Some(_) if args.config.is_none() => shipped(Path::new("trik.lua"), &args).map(|_| None)?,
         _ => Some(configuration(&args)?),
     };
     let robot = sim::robots::by_name(&args.robot)
         .ok_or_else(|| format!("there is no robot {}", args.robot))?;
     // Before the board has threads, so that these come to the main thread alone.
-    let mask: SigSet = SIGNALS.into_iter().collect();
-    let own = |error: nix::Error| format!("signals: {error}");
-    mask.thread_block().map_err(own)?;
-    let signals =
-        SignalFd::with_flags(&mask, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC).map_err(own)?;
+    let signals = signals().map_err(|error| format!("signals: {error}"))?;
     let mountpoint = args.mountpoint.as_deref().map(absolute).transpose()?;
     let mut place = Place::claim(&place::base()?, mountpoint.as_deref())?;
     let ev3dev = match &args.ev3dev {
@@ -142,22 +134,29 @@ pub(crate) fn up(args: UpArgs) -> Result<(), String> {
     end
 }
 
+/// The signals that end a robot, kept from all threads.
+fn signals() -> nix::Result<SignalFd> {
+    let mask: SigSet = SIGNALS.into_iter().collect();
+    mask.thread_block()?;
+    SignalFd::with_flags(&mask, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC)
+}
+
 /// What the tree is to be made of.
 fn configuration(args: &UpArgs) -> Result<PathBuf, String> {
     match &args.config {
         Some(path) if path.is_file() => absolute(path),
         Some(path) => Err(format!("{}: no such configuration", path.display())),
         None => {
-            let include: Result<_, _> = args.include.iter().map(|dir| absolute(dir)).collect();
             let name = PathBuf::from(format!("robots/{}.lua", args.robot));
-            shipped(&name, include?)
+            shipped(&name, args)
         }
     }
 }
 
 /// A file that comes with this program.
-fn shipped(name: &Path, include: Vec<PathBuf>) -> Result<PathBuf, String> {
-    trikfs::cli::find_shipped(name, include).map_err(|why| {
+fn shipped(name: &Path, args: &UpArgs) -> Result<PathBuf, String> {
+    let include: Result<_, _> = args.include.iter().map(|dir| absolute(dir)).collect();
+    trikfs::cli::find_shipped(name, include?).map_err(|why| {
         format!("{why}; --include names another directory: that of the source is config/lua")
     })
 }

@@ -175,8 +175,10 @@ fn parsed<T: Parser>(name: &str, arguments: impl Iterator<Item = OsString>) -> R
 }
 
 /// A path that was named; graders give an empty one for none.
-fn named(path: Option<OsString>) -> Option<PathBuf> {
-    path.filter(|path| !path.is_empty()).map(PathBuf::from)
+fn named(path: &Option<OsString>) -> Option<PathBuf> {
+    path.as_ref()
+        .filter(|path| !path.is_empty())
+        .map(PathBuf::from)
 }
 
 /// The language of messages is that of the system, as there.
@@ -212,20 +214,43 @@ pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    let input = named(args.input);
-    let is_input_there = input.as_deref().is_none_or(Path::exists);
-    let (script_path, input) = (named(args.script_path), input.filter(|path| path.exists()));
-    if script_path.is_some() && !is_script {
+    if named(&args.script_path).is_some() && !is_script {
         say(&["2D-model: --script-path is used only with --mode script".to_owned()]);
         return ExitCode::from(2);
     }
-    let check = CheckArgs {
-        paths: vec![args.file.clone()],
+    let job = Job {
+        solution: args.file.clone(),
+        field: None,
+        log: None,
+        name: PathBuf::new(),
+    };
+    let is_input_there = named(&args.input).is_none_or(|path| path.exists());
+    let check = wanted(args, is_script);
+    let row = pool::run_one(job, &check);
+    if !is_input_there {
+        // check-solution.sh names a file for each field, whether there is one or not: that is no error.
+        say(&[
+            "2D-model: warning: the file of --input is not there: nothing can be read".to_owned(),
+        ]);
+    }
+    say(&row.lines(check.language));
+    let has_error = row.messages.iter().any(|(level, _)| level == "error");
+    ExitCode::from(match row.verdict {
+        Verdict::Broken => 2,
+        Verdict::Failed => 1,
+        Verdict::Accomplished | Verdict::Ended => u8::from(has_error),
+    })
+}
+
+/// The same in the words of `trik check`.
+fn wanted(args: Model, is_script: bool) -> CheckArgs {
+    CheckArgs {
+        script: named(&args.script_path),
+        inputs: named(&args.input).filter(|path| path.exists()),
+        paths: vec![args.file],
         field: Vec::new(),
         own: false,
         task: None,
-        script: script_path,
-        inputs: input,
         gamepad: None,
         log: Vec::new(),
         report: args.report,
@@ -245,27 +270,7 @@ pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         worker: false,
         is_one: true,
         is_embedded: is_script,
-    };
-    let job = Job {
-        solution: args.file,
-        field: None,
-        log: None,
-        name: PathBuf::new(),
-    };
-    let row = pool::run_one(job, &check);
-    if !is_input_there {
-        // check-solution.sh names a file for each field, whether there is one or not: that is no error.
-        say(&[
-            "2D-model: warning: the file of --input is not there: nothing can be read".to_owned(),
-        ]);
     }
-    say(&row.lines(check.language));
-    let has_error = row.messages.iter().any(|(level, _)| level == "error");
-    ExitCode::from(match row.verdict {
-        Verdict::Broken => 2,
-        Verdict::Failed => 1,
-        Verdict::Accomplished | Verdict::Ended => u8::from(has_error),
-    })
 }
 
 /// Writes the diagram as a program; the exit code if that is all.
@@ -332,7 +337,7 @@ fn patched(args: &Patcher) -> Result<(), Refused> {
         };
         opened.save.set_world(&world).map_err(told)?;
     }
-    if let Some(path) = named(args.script.clone()) {
+    if let Some(path) = named(&args.script) {
         let code = text(&path, limits::WORLD_BYTES_MAX).map_err(because(1))?;
         let ending = path
             .extension()
