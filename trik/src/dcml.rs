@@ -6,10 +6,10 @@
 //! Exit codes: 0 done, 1 refused or failed, 2 a file that cannot be read, or a command line that was not understood.
 
 mod check;
-pub mod lsp;
-mod plan;
-mod models;
 mod generate;
+pub mod lsp;
+mod models;
+mod plan;
 mod report;
 mod sim;
 mod values;
