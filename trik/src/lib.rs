@@ -10,6 +10,7 @@ pub mod cli;
 mod dcml;
 mod diagrams;
 mod fault;
+pub mod fuzz;
 pub mod limits;
 pub mod place;
 mod remote;

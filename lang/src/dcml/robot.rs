@@ -116,6 +116,14 @@ impl System for Robot {
         }
     }
 
+    fn outputs(&self) -> usize {
+        self.outputs.len()
+    }
+
+    fn output(&mut self, state: &[f64], action: &[f64], outputs: &mut [f64]) {
+        Self::output(self, state, action, outputs);
+    }
+
     fn derivative(&mut self, state: &[f64], action: &[f64], derivative: &mut [f64]) {
         self.derivative.run(state, action, derivative);
     }
