@@ -154,11 +154,15 @@ fn ours(room: &mut impl Surroundings, method: Method, attempts: u32, seeds: u64)
 /// The program of OMPL and where its libraries are, if it can be built.
 fn ompl() -> Result<(PathBuf, PathBuf), String> {
     let root = std::env::var_os("OMPL_ROOT").map_or_else(|| PathBuf::from("/"), PathBuf::from);
-    let headers = ["usr/include/ompl-1.5", "usr/include/ompl-1.6", "usr/include"]
-        .map(|path| root.join(path))
-        .into_iter()
-        .find(|path| path.join("ompl/control/SimpleSetup.h").exists())
-        .ok_or("no headers of OMPL (libompl-dev)")?;
+    let headers = [
+        "usr/include/ompl-1.5",
+        "usr/include/ompl-1.6",
+        "usr/include",
+    ]
+    .map(|path| root.join(path))
+    .into_iter()
+    .find(|path| path.join("ompl/control/SimpleSetup.h").exists())
+    .ok_or("no headers of OMPL (libompl-dev)")?;
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/ompl/rrt.cpp");
     let program = std::env::temp_dir().join(format!("trik-ompl-rrt-{}", std::process::id()));
     let lib = root.join("usr/lib/x86_64-linux-gnu");
@@ -174,7 +178,11 @@ fn ompl() -> Result<(PathBuf, PathBuf), String> {
         .arg(&program)
         .arg("-L")
         .arg(&lib)
-        .args(["-Wl,--allow-shlib-undefined", "-lompl", "-lboost_serialization"])
+        .args([
+            "-Wl,--allow-shlib-undefined",
+            "-lompl",
+            "-lboost_serialization",
+        ])
         .output()
         .map_err(|error| format!("g++: {error}"))?;
     if built.status.success() {

@@ -10,6 +10,7 @@ pub mod diagnostic;
 pub mod editor;
 pub mod fold;
 pub mod format;
+pub mod formulas;
 pub mod function;
 pub mod jacobian;
 pub mod lexer;
