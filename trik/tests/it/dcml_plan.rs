@@ -165,9 +165,9 @@ fn the_labyrinth_of_trik_is_left() {
     }
     let board = board();
     fs::copy(&path, board.path("labyrinth.xml")).unwrap();
-    // Inside of its outer walls: from the upper left corner of them to the lower right one.
+    // Its numbers count as centimetres. From beside the walls to the finish on the other side.
     let words = format!(
-        "{DRIVE} --world labyrinth.xml --goal x=1.9,y=1.12 --goal-radius 0.15 --bounds x=-1.58..2.1,y=-0.7..1.4 --svg \
+        "{DRIVE} --world labyrinth.xml --goal x=5.25,y=3.25 --goal-radius 0.3 --bounds x=-4.5..6,y=-2..4 --svg \
          labyrinth.svg --json --iterations 300000"
     );
     let output = plan(&board, "Drive", &words);
