@@ -12,6 +12,7 @@ pub mod fold;
 pub mod format;
 pub mod formulas;
 pub mod function;
+pub mod generate;
 pub mod jacobian;
 pub mod lexer;
 pub mod lines;

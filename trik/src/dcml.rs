@@ -6,6 +6,7 @@
 //! Exit codes: 0 done, 1 refused or failed, 2 a file that cannot be read, or a command line that was not understood.
 
 mod check;
+mod generate;
 pub mod lsp;
 mod models;
 mod plan;
@@ -54,6 +55,12 @@ pub(crate) enum Dcml {
     Sim(Box<SimArgs>),
     /// List the models that come with the program, or print one of them.
     Models(ModelsArgs),
+    /// Write a model in another language: for programs, solvers, converters, papers.
+    ///
+    /// Names and documentation are those of the model; the header says which names are others in that language. Exit
+    /// status: 0 done; 1 the model has errors, is too large for that language, or OUT is there already; 2 the file
+    /// cannot be read, or the command line was not understood.
+    Gen(generate::GenArgs),
 }
 
 /// What `trik dcml check` can be told.
@@ -163,6 +170,7 @@ pub(crate) fn perform(command: &Dcml) -> ExitCode {
         Dcml::Lsp => return lsp::serve(),
         Dcml::Sim(args) => sim::sim(args),
         Dcml::Models(args) => models::models(args),
+        Dcml::Gen(args) => generate::write(args),
     })
 }
 

@@ -109,6 +109,9 @@ fn shifted(one: &Diagnostic, own: &std::ops::Range<usize>) -> Diagnostic {
         *span = shift(*span);
     }
     one.span = shift(one.span);
+    if one.code == Code::UndeclaredName {
+        one.hint = Some("a formula can use the time t, pi, e and the functions".into());
+    }
     one
 }
 

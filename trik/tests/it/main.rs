@@ -6,6 +6,8 @@
 mod check;
 /// Paths of robots that are models.
 mod dcml_plan;
+/// `trik dcml sim`: models under actions.
+mod dcml_sim;
 /// Diagrams shown, checked and translated, and run in three languages.
 mod diagrams;
 /// What documents show of a robot.
@@ -22,6 +24,8 @@ mod examples;
 mod faults;
 /// Speed that is held, heading and place.
 mod hold;
+/// Models in DCML: a body of their own, and nodes that follow it.
+mod models;
 /// Programs that come over the network.
 mod programs;
 /// A running `trik up`.

@@ -1,7 +1,7 @@
 //! Where the actions of a simulation come from: formulas of time, or a table.
 //!
 //! Owns the form of the table: names in the first line, then rising times in s, each with what is done from then on.
-//! Columns with the names of states and outputs, as a planner writes them, may be there and say nothing.
+//! Columns of states are left out, so that tables of other commands can be given.
 
 use crate::dcml::{Source, report};
 use crate::diagrams::{REFUSED, Refusal, UNREADABLE};
@@ -181,12 +181,9 @@ fn table_of(text: &str, names: &[&str], others: &[&str]) -> Result<Rows, (String
                 }
             };
             match column {
-                None => time = number,
-                Some(action) => {
-                    if let Some(slot) = row.get_mut(*action) {
-                        *slot = number;
-                    }
-                }
+                Meaning::Time => time = number,
+                Meaning::Action(action) => row[*action] = number,
+                Meaning::Other(_) => (),
             }
             count = place + 1;
         }
@@ -216,45 +213,51 @@ fn table_of(text: &str, names: &[&str], others: &[&str]) -> Result<Rows, (String
 
 type Rows = (Vec<f64>, Vec<Vec<f64>>);
 
-/// What each column is: time, or an action by its number; others have numbers behind those of actions.
+/// What a column is.
+#[derive(Clone, Copy, PartialEq)]
+enum Meaning {
+    Time,
+    /// By its number.
+    Action(usize),
+    /// A state or an output, which actions do not need.
+    Other(usize),
+}
+
+/// What each column is, all of them different.
 fn columns(
     at: usize,
     header: &str,
     names: &[&str],
     others: &[&str],
-) -> Result<Vec<Option<usize>>, (String, String)> {
-    let mut columns: Vec<Option<usize>> = Vec::new();
+) -> Result<Vec<Meaning>, (String, String)> {
+    let mut columns: Vec<Meaning> = Vec::new();
     let all = || format!("the names are t,{}", names.join(","));
     for (column, cell) in cells(header) {
         let shown: String = cell.chars().take(40).collect();
-        let known = names.iter().chain(others).position(|one| *one == cell);
-        let found = match known {
-            Some(action) => Some(action),
-            None if cell == "t" => None,
-            None => {
-                return Err((
-                    format!("{at}:{column}"),
-                    format!("there is no action {shown:?}: {}", all()),
-                ));
+        let place = |all: &[&str]| all.iter().position(|one| *one == cell);
+        let found = match (place(names), place(others)) {
+            (Some(action), _) => Meaning::Action(action),
+            (None, _) if cell == "t" => Meaning::Time,
+            (None, Some(other)) => Meaning::Other(other),
+            (None, None) => {
+                let why = format!("there is no action {shown:?}: {}", all());
+                return Err((format!("{at}:{column}"), why));
             }
         };
         if columns.contains(&found) {
-            return Err((
-                format!("{at}:{column}"),
-                format!("{shown:?} is there twice"),
-            ));
+            let why = format!("{shown:?} is there twice");
+            return Err((format!("{at}:{column}"), why));
         }
         columns.push(found);
     }
-    let is_missing = |one: &Option<usize>| !columns.contains(one);
-    let wanted = [None].into_iter().chain((0..names.len()).map(Some));
-    match wanted.into_iter().find(is_missing) {
-        None => Ok(columns),
-        Some(one) => {
-            let name = one.and_then(|at| names.get(at)).copied().unwrap_or("t");
-            Err((format!("{at}:1"), format!("{name} is missing: {}", all())))
-        }
-    }
+    let is_missing = |one: &Meaning| !columns.contains(one);
+    let wanted = (0..names.len()).map(Meaning::Action);
+    let name = match wanted.chain([Meaning::Time]).find(is_missing) {
+        None => return Ok(columns),
+        Some(Meaning::Action(action)) => names.get(action).copied().unwrap_or_default(),
+        Some(_) => "t",
+    };
+    Err((format!("{at}:1"), format!("{name} is missing: {}", all())))
 }
 
 /// Cells of a line with their columns, counted from 1.
@@ -274,11 +277,7 @@ mod tests {
 
     #[test]
     fn tables_have_their_names_in_any_order() {
-        let found = table_of(
-            "b, t ,x,a\n1,0,7,2\n\n3,0.5,8,4\n",
-            &["a", "b"],
-            &["x", "y"],
-        );
+        let found = table_of("b, t ,x,a\n1,0,9,2\n\n3,0.5,9,4\n", &["a", "b"], &["x"]);
         let expected = (vec![0.0, 0.5], vec![vec![2.0, 1.0], vec![4.0, 3.0]]);
         assert_eq!(found, Ok(expected));
     }
