@@ -4,6 +4,8 @@
 
 /// Solutions of tasks, judged.
 mod check;
+/// Models of robots: what their document shows, files and exit codes.
+mod dcml;
 /// Paths of robots that are models.
 mod dcml_plan;
 /// `trik dcml sim`: models under actions.
