@@ -30,6 +30,19 @@ pub(super) fn of(robot: &str) -> &'static [(&'static str, &'static str)] {
             ("echo 440 500 > sound/tone/value", "play a tone: Hz, ms"),
             ("echo > stop", "bring everything to rest"),
         ],
-        _ => &[("cat status", "what is there?")],
+        "bare" | "in the world" => &[("cat status", "what is there?")],
+        // A model in DCML.
+        _ => &[
+            (
+                "ls motors servos",
+                "what drives it, named after the actions?",
+            ),
+            (
+                "cat pose/value",
+                "where is it by its model, in metres and radians?",
+            ),
+            ("grep . pose/params/*", "which numbers has the model?"),
+            ("echo > stop", "bring everything to rest"),
+        ],
     }
 }
