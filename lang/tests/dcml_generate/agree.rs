@@ -14,7 +14,10 @@ const CASES: usize = 12;
 
 /// What is compared.
 pub fn all() -> Vec<Model> {
-    models::random(RANDOM)
+    let mut models = models::published();
+    models.extend(models::shipped());
+    models.extend(models::random(RANDOM));
+    models
 }
 
 /// How large the parts of a model are: states, actions, parameters, outputs.
@@ -95,6 +98,11 @@ fn compare(test: &str, models: &[Model], cases: &[Vec<Case>], printed: &str, has
     );
 }
 
+const C_MAIN: &str = "static double number(FILE *in) { char word[64]; if (fscanf(in, \"%63s\", word) != 1) abort(); return strtod(word, 0); }\n\
+         static void read(FILE *in, double *to, int n) { int i; for (i = 0; i < n; i++) to[i] = number(in); }\n\
+         static void show(const double *from, int n) { int i; for (i = 0; i < n; i++) printf(\"%.17g\\n\", from[i]); }\n\
+         int main(void) { FILE *in = fopen(\"cases.txt\", \"r\"); int c; if (!in) return 1;\n";
+
 #[test]
 fn c_agrees_as_c_and_as_cpp() {
     let test = "dcml-c";
@@ -137,12 +145,7 @@ fn c_agrees_as_c_and_as_cpp() {
             states * actions
         ));
     }
-    program.push_str(
-        "static double number(FILE *in) { char word[64]; if (fscanf(in, \"%63s\", word) != 1) abort(); return strtod(word, 0); }\n\
-         static void read(FILE *in, double *to, int n) { int i; for (i = 0; i < n; i++) to[i] = number(in); }\n\
-         static void show(const double *from, int n) { int i; for (i = 0; i < n; i++) printf(\"%.17g\\n\", from[i]); }\n\
-         int main(void) { FILE *in = fopen(\"cases.txt\", \"r\"); int c; if (!in) return 1;\n",
-    );
+    program.push_str(C_MAIN);
     program.push_str(&main);
     program.push_str("return 0; }\n");
     std::fs::write(folder.join("main.c"), &program).unwrap();
@@ -225,7 +228,7 @@ fn python_agrees_on_single_states_and_on_many_at_once() {
     };
     let (folder, models) = (scratch(test), all());
     let cases = write_cases(&folder, &models);
-    let mut program = "import numpy as np\nnumbers = iter(open('cases.txt'))\n\
+    let mut program = "import numpy as np\nwith open('cases.txt') as f: numbers = iter(f.read().split())\n\
         def read(n): return [float(next(numbers)) for _ in range(n)]\n\
         def show(a):\n for v in np.asarray(a).ravel(): print(repr(float(v)))\n\
         def check(m, has_outputs):\n s = [(read(len(m.STATES)), read(len(m.ACTIONS)), read(len(m.PARAMS))) for _ in range(CASES)]\n \
@@ -345,22 +348,29 @@ fn java_agrees_for_both_libraries() {
     for target in [Target::Java, Target::JavaHipparchus] {
         let folder = scratch(&format!("{test}-{}", target.name()));
         let cases = write_cases(&folder, &models);
+        std::fs::create_dir(folder.join("src")).unwrap();
         let mut main = String::new();
         for model in &models {
-            let name = &model.name;
-            std::fs::write(folder.join(format!("{name}.java")), text(model, target)).unwrap();
+            let simple = &model.name;
+            let path = folder.join("src").join(format!("{simple}.java"));
+            std::fs::write(path, text(model, target)).unwrap();
+            let name = match &model.package {
+                Some(package) => format!("{package}.{simple}"),
+                None => simple.clone(),
+            };
             let [states, actions, params, outputs] = sizes(model);
             let outputs = match outputs {
                 0 => String::new(),
-                _ => "double[] o = new double[m.OUTPUTS]; m.computeOutputs(x, o); show(o);"
-                    .to_owned(),
+                _ => format!(
+                    "double[] o = new double[{name}.OUTPUTS]; m.computeOutputs(x, o); show(o);"
+                ),
             };
             let derivative = match target {
                 Target::Java => "m.computeDerivatives(0.0, x, d);",
                 _ => "d = m.computeDerivatives(0.0, x);",
             };
             main.push_str(&format!(
-                "static void check{name}() throws Exception {{ {name} m = new {name}();\n\
+                "static void check{simple}() throws Exception {{ {name} m = new {name}();\n\
                  for (int c = 0; c < {CASES}; c++) {{ double[] x = read({states}); m.setAction(read({actions}));\n\
                  m.setParameters(read({params})); double[] d = new double[m.getDimension()]; {derivative} show(d); {outputs}\n\
                  double[][] j = new double[{states}][{states}]; m.computeStateJacobian(x, j); for (double[] row : j) show(row);\n\
@@ -383,29 +393,35 @@ fn java_agrees_for_both_libraries() {
              public static void main(String[] a) throws Exception {{ in = new BufferedReader(new FileReader(\"cases.txt\"));\n\
              {calls} System.out.print(out); }} }}\n"
         );
-        std::fs::write(folder.join("Main.java"), &program).unwrap();
+        std::fs::write(folder.join("src/Main.java"), &program).unwrap();
         if target == Target::JavaHipparchus {
-            std::fs::create_dir_all(folder.join("org/hipparchus/ode")).unwrap();
-            let path = folder.join("org/hipparchus/ode/OrdinaryDifferentialEquation.java");
+            let path = folder.join("src/OrdinaryDifferentialEquation.java");
             std::fs::write(path, HIPPARCHUS).unwrap();
         }
-        let path = format!("{COMMONS_MATH}:.");
-        let mut words = vec![
-            "javac",
-            "-Xlint:all,-static,-path",
-            "-Werror",
-            "-cp",
-            &path,
-            "Main.java",
-        ];
-        let names: Vec<String> = models
-            .iter()
-            .map(|one| format!("{}.java", one.name))
-            .collect();
-        words.extend(names.iter().map(String::as_str));
-        run(&folder, &words);
-        let printed = run(&folder, &["java", "-Xshare:auto", "-cp", &path, "Main"]);
+        compile_java(&folder);
+        let path = format!("{COMMONS_MATH}:out");
+        let printed = run(&folder, &["java", "-cp", &path, "Main"]);
         compare(test, &models, &cases, &printed, false);
         let _ = std::fs::remove_dir_all(&folder);
     }
+}
+
+/// Compiles all files in `src`.
+pub fn compile_java(folder: &Path) {
+    let all = std::fs::read_dir(folder.join("src")).unwrap();
+    let files: Vec<_> = all
+        .map(|one| one.unwrap().path().display().to_string())
+        .collect();
+    let lints = [
+        "-Xlint:all,-path",
+        "-Xdoclint:syntax,html",
+        "-Werror",
+        "-encoding",
+        "US-ASCII",
+    ];
+    let places = ["-sourcepath", "none", "-d", "out", "-cp", COMMONS_MATH];
+    let mut words = vec!["javac"];
+    words.extend(lints.iter().chain(&places));
+    words.extend(files.iter().map(String::as_str));
+    run(folder, &words);
 }

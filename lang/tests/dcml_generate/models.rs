@@ -7,6 +7,75 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
+/// The two published models, and one with everything that the language has beside them.
+pub const PUBLISHED: &str = "
+/**
+ * A robot with two driven wheels.
+ * Its place is the middle between them.
+ */
+BEGIN DifferentialDrive
+PACKAGE: robotics.models;
+ACTION: u_l, u_r;
+PARAM: L, r;
+CONFIG: x, y, theta;
+d(x) = r / 2 * (u_l + u_r) * cos(theta);
+d(y) = r / 2 * (u_l + u_r) * sin(theta);
+d(theta) = (r / L) * (u_r - u_l);
+END;
+BEGIN Bart
+PACKAGE: robotics.models;
+ACTION: left_f_s, right_f_s, left_r_s, right_r_s;
+PARAM : tt_wheel_half_axis, tt_wheel_radius, tt_steer_offset;
+CONFIG: x, y, theta, x_front, y_front, phi_front, x_rear, y_rear, phi_rear;
+VAR: k;
+k = tt_steer_offset / tt_wheel_half_axis;
+d(x_front) = (tt_wheel_radius/2) * (((cos(phi_front) - k * sin(phi_front)) * right_f_s) + ((cos(phi_front) + k * sin(phi_front)) * left_f_s));
+d(y_front) = (tt_wheel_radius/2) * (((sin(phi_front) + k * cos(phi_front)) * right_f_s) + ((sin(phi_front) - k * cos(phi_front)) * left_f_s));
+d(phi_front) = (tt_wheel_radius / (2 * tt_wheel_half_axis)) * (right_f_s - left_f_s);
+d(x_rear) = (tt_wheel_radius/2) * (((cos(phi_rear) - k * sin(phi_rear)) * right_r_s) + ((cos(phi_rear) + k * sin(phi_rear)) * left_r_s));
+d(y_rear) = (tt_wheel_radius/2) * (((sin(phi_rear) + k * cos(phi_rear)) * right_r_s) + ((sin(phi_rear) - k * cos(phi_rear)) * left_r_s));
+d(phi_rear) = (tt_wheel_radius / (2 * tt_wheel_half_axis)) * (right_r_s - left_r_s);
+x = (x_front + x_rear)/2;
+y = (y_front + y_rear)/2;
+theta = atan2((y_front-y_rear),(x_front-x_rear)) + (pi / 4);
+END;
+BEGIN Everything
+ACTION: push [N] in -2 .. 2, turn [rad/s];
+PARAM: mass [kg], drag;
+CONST: g = 9.81, soft = 0.125;
+CONFIG: theta [rad] in S1, v [m/s];
+VAR: slope, force;
+slope = sin(theta) * g;
+force = piecewise(v < 0, push * soft, v > 2, max(push, -1), push);
+d(theta) = turn + atan(v) * soft;
+d(v) = force / mass - slope - drag * v * abs(v) + sign(push) * floor(v) - pow(soft, 2);
+END;
+";
+
+/// The models of [`PUBLISHED`].
+pub fn published() -> Vec<Model> {
+    let understood = lang::dcml::understand(PUBLISHED);
+    let told: Vec<_> = understood
+        .diagnostics
+        .iter()
+        .map(|one| &one.message)
+        .collect();
+    assert_eq!(understood.models.len(), 3, "{told:?}");
+    understood.models
+}
+
+/// The models that are shipped, under names that no other has.
+pub fn shipped() -> Vec<Model> {
+    let mut models = Vec::new();
+    for lang::dcml::models::Shipped { name, text, .. } in lang::dcml::models::ALL {
+        let mut understood = lang::dcml::understand(text);
+        let mut model = understood.models.remove(0);
+        model.name = format!("Shipped_{}", name.replace('-', "_"));
+        models.push(model);
+    }
+    models
+}
+
 /// A symbol without anything.
 pub fn symbol(kind: Kind, name: &str) -> Symbol {
     Symbol {
@@ -89,7 +158,7 @@ fn expr(before: Vec<usize>) -> impl Strategy<Value = Expr> {
         let four = (two.clone(), two.clone());
         prop_oneof![
             1 => inner.prop_map(|value| Expr::Negative(Box::new(value))),
-            6 => (proptest::sample::select(&operators[..]), two.clone()).prop_map(|(operator, (left, right))| {
+            6 => (proptest::sample::select(operators.to_vec()), two.clone()).prop_map(|(operator, (left, right))| {
                 Expr::Binary(operator, Box::new(left), Box::new(right))
             }),
             4 => (proptest::sample::select(&Function::ALL[..]), two).prop_map(|(function, (x, y))| {
@@ -97,7 +166,7 @@ fn expr(before: Vec<usize>) -> impl Strategy<Value = Expr> {
                 arguments.truncate(function.arguments());
                 Expr::Call(function, arguments)
             }),
-            1 => (proptest::sample::select(&comparisons[..]), four).prop_map(|(comparison, ((left, right), (yes, no)))| {
+            1 => (proptest::sample::select(comparisons.to_vec()), four).prop_map(|(comparison, ((left, right), (yes, no)))| {
                 Expr::Piecewise(vec![(Condition { comparison, left, right }, yes)], Box::new(no))
             }),
         ]

@@ -48,6 +48,9 @@ pub fn run(folder: &Path, words: &[&str]) -> String {
         folder.display(),
         output.status,
         String::from_utf8_lossy(&output.stdout)
+            .chars()
+            .take(2000)
+            .collect::<String>()
     );
     String::from_utf8(output.stdout).unwrap()
 }

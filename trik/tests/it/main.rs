@@ -4,6 +4,8 @@
 
 /// Solutions of tasks, judged.
 mod check;
+/// Paths of robots that are models.
+mod dcml_plan;
 /// Diagrams shown, checked and translated, and run in three languages.
 mod diagrams;
 /// What documents show of a robot.

@@ -30,8 +30,8 @@ struct C {
 }
 
 impl Dialect for C {
-    fn number(&self, number: f64) -> String {
-        digits(number)
+    fn number(&self, number: f64) -> Text {
+        Text::number(digits(number))
     }
 
     fn input(&self, input: Input, name: &str) -> String {

@@ -11,7 +11,6 @@ use crate::dcml::function::Function;
 use crate::dcml::model::Symbol;
 use crate::dcml::syntax::Comparison;
 use crate::dcml::tape::{Input, ValueId};
-use std::f64::consts::PI;
 
 /// Whose interface the class implements.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -26,7 +25,7 @@ const TAKEN: &str = "abstract assert boolean break byte case catch char class co
     non open opens package permits private protected provides public record requires return sealed short static strictfp \
     super switch synchronized this throw throws to transient transitive try uses var void volatile when while with yield \
     true false null Math String Object Double System Override IllegalArgumentException FirstOrderDifferentialEquations \
-    OrdinaryDifferentialEquation org java javax t y yDot jacobian outputs parameters action values names expected what \
+    OrdinaryDifferentialEquation org java javax t state derivative jacobian outputs parameters action values names expected what \
     pow min max checkSize setParameters setAction getDimension computeDerivatives computeOutputs computeStateJacobian \
     computeActionJacobian STATES ACTIONS PARAMETERS OUTPUTS getClass hashCode equals clone toString notify notifyAll \
     wait finalize init";
@@ -38,11 +37,8 @@ const KEYWORDS: &str = "abstract assert boolean break byte case catch char class
 struct Java;
 
 impl Dialect for Java {
-    fn number(&self, number: f64) -> String {
-        if number == PI {
-            return "Math.PI".to_owned();
-        }
-        digits(number)
+    fn number(&self, number: f64) -> Text {
+        Text::of_pi(number, "Math.PI").unwrap_or_else(|| Text::number(digits(number)))
     }
 
     fn input(&self, _: Input, name: &str) -> String {
@@ -107,10 +103,7 @@ fn package(name: &str) -> String {
 pub(super) fn print(scene: &Scene<'_>, library: Library) -> String {
     let mut planner = Planner::new(scene, &[TAKEN]);
     let class = planner.take(&scene.model.name);
-    let element = |array: &str, at: usize| match array {
-        "state" => format!("y[{at}]"),
-        _ => format!("{array}[{at}]"),
-    };
+    let element = |array: &str, at: usize| format!("{array}[{at}]");
     let header = about::header(&planner, element, &|at, _| format!("parameters[{at}]"));
     let methods = methods(&mut planner, scene, library);
     let mut out = String::new();
@@ -250,30 +243,30 @@ fn methods(planner: &mut Planner<'_, '_>, scene: &Scene<'_>, library: Library) -
     let (states, actions) = (scene.states.len(), scene.actions.len());
     let mut out = String::new();
     let body = planner.body(&scene.derivative, &Java);
-    out.push_str("    /** The derivative of the state y. */\n    @Override\n");
+    out.push_str("    /** The derivative of the state. */\n    @Override\n");
     match library {
         Library::CommonsMath => {
             out.push_str(
-                "    public void computeDerivatives(double t, double[] y, double[] yDot) {\n        \
-                 checkSize(\"y\", y, STATES);\n        checkSize(\"yDot\", yDot, STATES);\n",
+                "    public void computeDerivatives(double t, double[] state, double[] derivative) {\n        \
+                 checkSize(\"state\", state, STATES);\n        checkSize(\"derivative\", derivative, STATES);\n",
             );
-            out.push_str(&lines(&body, "yDot", 0));
+            out.push_str(&lines(&body, "derivative", 0));
         }
         Library::Hipparchus => {
             out.push_str(
-                "    public double[] computeDerivatives(double t, double[] y) {\n        \
-                 checkSize(\"y\", y, STATES);\n        double[] yDot = new double[STATES];\n",
+                "    public double[] computeDerivatives(double t, double[] state) {\n        \
+                 checkSize(\"state\", state, STATES);\n        double[] derivative = new double[STATES];\n",
             );
-            out.push_str(&lines(&body, "yDot", 0));
-            out.push_str("        return yDot;\n");
+            out.push_str(&lines(&body, "derivative", 0));
+            out.push_str("        return derivative;\n");
         }
     }
     out.push_str("    }\n\n");
     if !scene.outputs.is_empty() {
         let body = planner.body(&scene.output_values, &Java);
         out.push_str(
-            "    /** What is computed from the state y and the action. */\n    \
-             public void computeOutputs(double[] y, double[] outputs) {\n        checkSize(\"y\", y, STATES);\n        \
+            "    /** What is computed from the state and the action. */\n    \
+             public void computeOutputs(double[] state, double[] outputs) {\n        checkSize(\"state\", state, STATES);\n        \
              checkSize(\"outputs\", outputs, OUTPUTS);\n",
         );
         out.push_str(&lines(&body, "outputs", 0));
@@ -283,7 +276,7 @@ fn methods(planner: &mut Planner<'_, '_>, scene: &Scene<'_>, library: Library) -
         let body = planner.body(roots, &Java);
         out.push_str(&format!(
             "    /** The derivatives by the {by}: a row for each derivative, a column for each {by}. */\n    \
-             public void {name}(double[] y, double[][] jacobian) {{\n        checkSize(\"y\", y, STATES);\n"
+             public void {name}(double[] state, double[][] jacobian) {{\n        checkSize(\"state\", state, STATES);\n"
         ));
         out.push_str(&lines(&body, "jacobian", columns.max(1)));
         out.push_str("    }\n\n");
@@ -309,7 +302,7 @@ fn lines(body: &Body, result: &str, columns: usize) -> String {
     let mut out = String::new();
     for (input, name) in &body.inputs {
         if let Input::State(at) = input {
-            out.push_str(&format!("        final double {name} = y[{at}];\n"));
+            out.push_str(&format!("        final double {name} = state[{at}];\n"));
         }
     }
     for (name, text) in &body.lines {

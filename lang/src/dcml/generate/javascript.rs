@@ -10,7 +10,6 @@ use crate::dcml::function::Function;
 use crate::dcml::model::Symbol;
 use crate::dcml::syntax::{Comparison, Domain};
 use crate::dcml::tape::{Input, ValueId};
-use std::f64::consts::PI;
 
 /// Words of JavaScript, and what is called here.
 const TAKEN: &str = "abstract arguments async await boolean break byte case catch char class const continue debugger \
@@ -24,12 +23,12 @@ const TAKEN: &str = "abstract arguments async await boolean break byte case catc
 struct JavaScript;
 
 impl Dialect for JavaScript {
-    fn number(&self, number: f64) -> String {
-        if number == PI {
-            return "Math.PI".to_owned();
+    fn number(&self, number: f64) -> Text {
+        if let Some(text) = Text::of_pi(number, "Math.PI") {
+            return text;
         }
         let digits = digits(number);
-        digits.strip_suffix(".0").unwrap_or(&digits).to_owned()
+        Text::number(digits.strip_suffix(".0").unwrap_or(&digits))
     }
 
     fn input(&self, _: Input, name: &str) -> String {

@@ -78,7 +78,7 @@ fn tight(text: Text, level: Level) -> String {
 }
 
 impl Dialect for Latex<'_> {
-    fn number(&self, number: f64) -> String {
+    fn number(&self, number: f64) -> Text {
         for (value, name) in [
             (PI, "\\pi"),
             (PI / 2.0, "\\tfrac{\\pi}{2}"),
@@ -86,19 +86,24 @@ impl Dialect for Latex<'_> {
             (E, "\\mathrm{e}"),
         ] {
             if number == value {
-                return name.to_owned();
+                return Text::whole(name);
             }
         }
         let digits = digits(number);
         let digits = digits.strip_suffix(".0").unwrap_or(&digits);
-        match digits.split_once('e') {
+        let text = match digits.split_once('e') {
             Some((digits, exponent)) => {
-                format!(
-                    "{{{} \\cdot 10^{{{exponent}}}}}",
-                    digits.trim_end_matches(".0")
-                )
+                format!("{} \\cdot 10^{{{exponent}}}", digits.trim_end_matches(".0"))
             }
             None => digits.to_owned(),
+        };
+        Text {
+            level: match (text.starts_with('-'), digits.contains('e')) {
+                (true, _) => Level::Sum,
+                (_, true) => Level::Product,
+                _ => Level::Whole,
+            },
+            ..Text::number(text)
         }
     }
 
@@ -200,17 +205,7 @@ impl Latex<'_> {
     /// An expression as it was written.
     fn expr(&self, expr: &Expr, planner: &Planner<'_, '_>) -> Text {
         match expr {
-            Expr::Number(number) => Text {
-                is_number: true,
-                ..Text::new(
-                    self.number(*number),
-                    if number.is_sign_negative() {
-                        Level::Sum
-                    } else {
-                        Level::Whole
-                    },
-                )
-            },
+            Expr::Number(number) => self.number(*number),
             Expr::Symbol(id) => {
                 let name = self.symbols.get(*id).map_or("", |one| planner.symbol(one));
                 Text::whole(self.set(name))
@@ -290,7 +285,7 @@ pub(super) fn print(scene: &Scene<'_>) -> String {
     let mut lines = Vec::new();
     for symbol in scene.model.of_kind(Kind::Const) {
         let name = dialect.set(planner.symbol(symbol));
-        lines.push(format!("  {name} &= {}", dialect.number(symbol.value)));
+        lines.push(format!("  {name} &= {}", dialect.number(symbol.value).text));
     }
     for equation in &scene.model.equations {
         let symbol = scene.model.symbols.get(equation.target);

@@ -11,7 +11,6 @@ use crate::dcml::function::Function;
 use crate::dcml::model::Symbol;
 use crate::dcml::syntax::{Comparison, Domain};
 use crate::dcml::tape::{Input, Operation, ValueId};
-use std::f64::consts::PI;
 
 const KEYWORDS: &str = "and break do else elseif end false for function goto if in local nil not or repeat return then \
     true until while";
@@ -28,16 +27,16 @@ struct Lua<'s, 'm> {
 }
 
 impl Dialect for Lua<'_, '_> {
-    fn number(&self, number: f64) -> String {
-        if number == PI {
-            return "math.pi".to_owned();
+    fn number(&self, number: f64) -> Text {
+        if let Some(text) = Text::of_pi(number, "math.pi") {
+            return text;
         }
         let digits = digits(number);
-        match digits.as_str() {
-            // Some versions keep one zero for both.
-            "-0.0" => "-1 / math.huge".to_owned(),
-            _ => digits.strip_suffix(".0").unwrap_or(&digits).to_owned(),
+        // Some versions keep one zero for both.
+        if digits == "-0.0" {
+            return Text::new("-1 / math.huge", Level::Product);
         }
+        Text::number(digits.strip_suffix(".0").unwrap_or(&digits))
     }
 
     fn input(&self, input: Input, name: &str) -> String {

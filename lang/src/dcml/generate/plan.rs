@@ -10,6 +10,7 @@ use crate::dcml::model::Symbol;
 use crate::dcml::syntax::{Comparison, Kind, Operator};
 use crate::dcml::tape::{Input, Operation, ValueId};
 use std::collections::{BTreeSet, HashMap, HashSet};
+use std::f64::consts::PI;
 
 /// How long a text may be that becomes a part of another one.
 const INLINE_MAX: usize = 100;
@@ -49,6 +50,31 @@ impl Text {
         }
     }
 
+    /// A number that is written down, with its sign.
+    pub fn number(text: impl Into<String>) -> Self {
+        let text = text.into();
+        Self {
+            level: if text.starts_with('-') {
+                Level::Sign
+            } else {
+                Level::Whole
+            },
+            text,
+            is_number: true,
+        }
+    }
+
+    /// A simple part of pi, by the name that pi has; what it computes has the bits of the number.
+    pub fn of_pi(number: f64, name: &str) -> Option<Self> {
+        let divided = |by: f64, text: &str| (number == PI / by).then(|| format!("{name} / {text}"));
+        if number == PI {
+            return Some(Self::whole(name));
+        }
+        let text = divided(2.0, "2.0").or_else(|| divided(4.0, "4.0"));
+        text.map(|text| Self::new(text, Level::Product))
+    }
+
+    /// A name or a call.
     pub fn whole(text: impl Into<String>) -> Self {
         Self::new(text, Level::Whole)
     }
@@ -66,7 +92,7 @@ impl Text {
 /// How a language writes an operation.
 pub(super) trait Dialect {
     /// A number that reads back to the same bits; never one that is not finite.
-    fn number(&self, number: f64) -> String;
+    fn number(&self, number: f64) -> Text;
 
     /// What comes from outside and has this name.
     fn input(&self, input: Input, name: &str) -> String;
@@ -243,14 +269,7 @@ impl<'s, 'm> Planner<'s, 'm> {
         // Whoever has no line of its own is used once, but for names and numbers, which are short.
         let of = |id: ValueId| texts.get(&id).cloned().unwrap_or_else(|| Text::whole("0"));
         match operation {
-            Operation::Constant(number) => {
-                let negative = number.is_sign_negative();
-                Text {
-                    text: dialect.number(number),
-                    level: if negative { Level::Sign } else { Level::Whole },
-                    is_number: true,
-                }
-            }
+            Operation::Constant(number) => dialect.number(number),
             Operation::Input(input) => {
                 let symbol = self.scene.input(input);
                 let name = symbol.map_or("", |one| self.symbol(one)).to_owned();

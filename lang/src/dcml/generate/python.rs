@@ -8,7 +8,6 @@ use super::plan::{Body, Dialect, Level, Planner, Text, digits, sign};
 use crate::dcml::function::Function;
 use crate::dcml::syntax::{Comparison, Domain, Operator};
 use crate::dcml::tape::{Input, ValueId};
-use std::f64::consts::PI;
 
 /// Words of Python, and what is called here.
 const TAKEN: &str = "False None True and as assert async await break class continue def del elif else except finally for \
@@ -19,11 +18,8 @@ const TAKEN: &str = "False None True and as assert async await break class conti
 struct Python;
 
 impl Dialect for Python {
-    fn number(&self, number: f64) -> String {
-        if number == PI {
-            return "np.pi".to_owned();
-        }
-        digits(number)
+    fn number(&self, number: f64) -> Text {
+        Text::of_pi(number, "np.pi").unwrap_or_else(|| Text::number(digits(number)))
     }
 
     fn input(&self, _: Input, name: &str) -> String {
@@ -68,7 +64,7 @@ impl Dialect for Python {
 struct Plain;
 
 impl Dialect for Plain {
-    fn number(&self, number: f64) -> String {
+    fn number(&self, number: f64) -> Text {
         Python.number(number)
     }
 
@@ -122,8 +118,10 @@ pub(super) fn print(scene: &Scene<'_>) -> String {
         ("PARAMS", &scene.params),
         ("OUTPUTS", &scene.outputs),
     ] {
-        let names: String = symbols.iter().map(|one| quoted(&one.name) + ", ").collect();
-        out.push_str(&format!("{name} = ({})\n", names.trim_end()));
+        let names: Vec<String> = symbols.iter().map(|one| quoted(&one.name)).collect();
+        // A tuple of one has a comma.
+        let comma = if names.len() == 1 { "," } else { "" };
+        out.push_str(&format!("{name} = ({}{comma})\n", names.join(", ")));
     }
     out.push_str("\n\n");
     out.push_str(GIVEN);
@@ -191,16 +189,17 @@ fn functions(planner: &mut Planner<'_, '_>, scene: &Scene<'_>, out: &mut String)
         "def step(state, action, params, dt):\n    \
          \"\"\"The state after dt seconds: one step of the classical method of Runge and Kutta, with the action held.\"\"\"\n    \
          state = _given(state, STATES, \"state\")\n    \
-         k1 = derivative(0.0, state, action, params)\n    \
-         k2 = derivative(0.0, state + dt / 2.0 * k1, action, params)\n    \
-         k3 = derivative(0.0, state + dt / 2.0 * k2, action, params)\n    \
-         k4 = derivative(0.0, state + dt * k3, action, params)\n    \
+         with np.errstate(all=\"ignore\"):\n        \
+         k1 = derivative(0.0, state, action, params)\n        \
+         k2 = derivative(0.0, state + dt / 2.0 * k1, action, params)\n        \
+         k3 = derivative(0.0, state + dt / 2.0 * k2, action, params)\n        \
+         k4 = derivative(0.0, state + dt * k3, action, params)\n        \
          state = state + dt / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)\n",
     );
     for (at, symbol) in scene.states.iter().enumerate() {
         if symbol.domain == Some(Domain::Circle) {
             out.push_str(&format!(
-                "    state[{at}] -= 2.0 * np.pi * np.ceil((state[{at}] - np.pi) / (2.0 * np.pi))\n"
+                "        state[{at}] -= 2.0 * np.pi * np.ceil((state[{at}] - np.pi) / (2.0 * np.pi))\n"
             ));
         }
     }

@@ -21,13 +21,13 @@ const ALLOWED: &str = "#[allow(dead_code, non_snake_case, clippy::all)]\n";
 struct Rust;
 
 impl Dialect for Rust {
-    fn number(&self, number: f64) -> String {
+    fn number(&self, number: f64) -> Text {
         for (times, name) in [(1.0, "PI"), (0.5, "FRAC_PI_2"), (0.25, "FRAC_PI_4")] {
             if number == PI * times {
-                return format!("core::f64::consts::{name}");
+                return Text::whole(format!("core::f64::consts::{name}"));
             }
         }
-        digits(number)
+        Text::number(digits(number))
     }
 
     fn input(&self, input: Input, name: &str) -> String {
