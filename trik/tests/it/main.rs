@@ -20,6 +20,8 @@ mod examples;
 mod faults;
 /// Speed that is held, heading and place.
 mod hold;
+/// What editors are told of models.
+mod lsp;
 /// Programs that come over the network.
 mod programs;
 /// A running `trik up`.
