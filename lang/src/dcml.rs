@@ -8,15 +8,28 @@ mod check;
 mod code;
 pub mod diagnostic;
 pub mod editor;
+pub mod fold;
+pub mod format;
 pub mod function;
+pub mod jacobian;
 pub mod lexer;
 pub mod lines;
+pub mod lower;
+pub mod manual;
 pub mod model;
+pub mod models;
 mod nearest;
 mod parser;
+pub mod plan;
+pub mod robot;
+pub mod run;
+#[cfg(test)]
+mod sketch;
+pub mod solve;
 pub mod syntax;
 pub mod system;
 pub mod tape;
+pub mod unit;
 
 use crate::limits::DCML_TEXT_MAX;
 use diagnostic::{Code, Diagnostic, Findings};

@@ -7,6 +7,7 @@
 //! or metres, which `settings` says.
 
 mod attributes;
+mod hold;
 mod items;
 mod read;
 mod visit;

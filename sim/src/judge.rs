@@ -3,6 +3,7 @@
 //! Owns the order of one tick, the limits of a run and what is told of it. Knows neither files nor processes: texts in,
 //! an outcome out. What a world does is in [`crate::arena`]; what a task demands is in `lang`.
 
+pub mod hands;
 pub mod json;
 pub mod picture;
 pub mod program;
@@ -17,7 +18,7 @@ mod words;
 
 pub use picture::{Caption, page, svg};
 pub use program::{Diagram, Program};
-pub use replay::judge_recorded;
+pub use replay::{judge_recorded, strange_in_record};
 pub use run::{Outcome, Settings, Verdict, judge};
 pub use task::{Task, Texts};
 pub use trajectory::Trajectory;

@@ -102,3 +102,5 @@ pub const PRINTED_LINES: usize = 200;
 pub const DRAWING_BYTES: usize = 8 << 20;
 /// Things on a display that one record tells.
 pub const OBJECTS_TOLD: usize = 200;
+/// Things that a person does beside the robot in one run.
+pub const DEEDS: usize = 100_000;

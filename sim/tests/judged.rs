@@ -19,10 +19,6 @@ const RANDOM: [&str; 2] = ["example-13._Switch_action", "example-15._Dance_in_a_
 
 /// Runs in which single pixels of the floor decide: the way there is the same, and then a little off.
 const PIXELS: [&str; 1] = ["example-4._AlongTheLine"];
-/// A world without version and settings: the real program of today reads it in centimetres, which its author cannot have
-/// meant, and here it is in pixels. The record is met with the unit that the real program took.
-const CENTIMETRES: &str = "randomizer-tasks";
-
 fn data() -> Option<PathBuf> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data"));
     path.is_dir().then(|| path.to_owned())
@@ -77,20 +73,13 @@ impl Oracle {
     }
 }
 
-fn run(data: &Path, oracle: &Oracle, seed: u64, unit_is_cm: bool) -> Outcome {
+fn run(data: &Path, oracle: &Oracle, seed: u64) -> Outcome {
     let mut project = read(&std::fs::read(data.join(&oracle.project)).unwrap())
         .unwrap()
         .project;
     if let Some(field) = &oracle.field {
         project.world = Some(std::fs::read_to_string(data.join(field)).unwrap());
         project.blobs = None;
-    }
-    if unit_is_cm {
-        let world = project.world.take().unwrap();
-        assert!(!world.contains("<settings"));
-        let end = world.rfind("</root>").unwrap();
-        let settings = "<settings sizeUnit=\"cm\"/>";
-        project.world = Some(format!("{}{settings}{}", &world[..end], &world[end..]));
     }
     let texts = Texts {
         world: project.world.as_deref().unwrap(),
@@ -211,13 +200,7 @@ fn every_recorded_run_has_its_verdict_messages_seconds_and_poses() {
             1..=1
         };
         let found = seeds
-            .map(|seed| {
-                differences(
-                    name,
-                    &oracle,
-                    &run(&data, &oracle, seed, name == CENTIMETRES),
-                )
-            })
+            .map(|seed| differences(name, &oracle, &run(&data, &oracle, seed)))
             .min_by_key(Vec::len)
             .unwrap();
         println!(
@@ -245,7 +228,7 @@ fn a_recorded_run_is_judged_as_the_run_itself_was() {
         "stepik-example17-at-start",
     ] {
         let oracle = Oracle::read(&data.join("oracle").join(format!("{name}.json")));
-        let outcome = run(&data, &oracle, 1, false);
+        let outcome = run(&data, &oracle, 1);
         let text = outcome.trajectory.write();
         let again = judge::Trajectory::read(&text).unwrap();
         let project = read(&std::fs::read(data.join(&oracle.project)).unwrap())

@@ -49,7 +49,7 @@ fn checked(args: &CheckArgs) -> Result<u8, Refusal> {
     let results = args.results.as_deref().map(|path| Output {
         path: Some(path),
         force: args.force,
-        source: &args.paths[0],
+        source: jobs.first().map_or(Path::new(""), Job::judged),
     });
     if let Some(results) = &results {
         results.look()?;
@@ -68,6 +68,7 @@ fn look(jobs: &[Job], args: &CheckArgs) -> Result<(), Refusal> {
         (&args.trajectory, run::TRAJECTORY),
         (&args.svg, run::SVG),
         (&args.html, run::HTML),
+        (&args.display, run::DISPLAY),
     ];
     for (path, ending) in wanted {
         let Some(path) = path else { continue };
@@ -76,7 +77,7 @@ fn look(jobs: &[Job], args: &CheckArgs) -> Result<(), Refusal> {
             let output = Output {
                 path: Some(&path),
                 force: args.force,
-                source: &job.solution,
+                source: job.judged(),
             };
             output.look()?;
         }
@@ -102,8 +103,9 @@ fn one(job: &Job, args: &CheckArgs, results: Option<Output<'_>>) -> Result<u8, R
 
 /// Many runs, in processes.
 fn many(jobs: &[Job], args: &CheckArgs, results: Option<Output<'_>>) -> Result<u8, Refusal> {
-    let folders = [&args.report, &args.trajectory, &args.svg, &args.html];
-    for folder in folders.into_iter().flatten() {
+    let outputs = [&args.report, &args.trajectory, &args.svg, &args.html];
+    let folders = outputs.into_iter().chain([&args.display]);
+    for folder in folders.flatten() {
         std::fs::create_dir_all(folder).map_err(|error| {
             let name = telling::named(folder);
             Refusal::new(format!(
@@ -150,7 +152,7 @@ impl<'a> Told<'a> {
         let names = |path: &Path| telling::named(path);
         let all: Vec<(String, Option<String>)> = jobs
             .iter()
-            .map(|job| (names(&job.solution), job.field.as_deref().map(names)))
+            .map(|job| (names(job.judged()), job.rules().map(names)))
             .collect();
         let widths = Widths::new(
             all.iter()

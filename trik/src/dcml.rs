@@ -7,6 +7,7 @@
 
 mod check;
 pub mod lsp;
+mod plan;
 mod report;
 
 use crate::diagrams::{Refusal, UNREADABLE, end};
@@ -28,6 +29,14 @@ pub(crate) enum Dcml {
     /// Each error and warning is shown with its place, the line, and what to do. Exit status: 0 no errors, perhaps
     /// warnings; 1 errors; 2 a file cannot be read, or the command line was not understood.
     Check(CheckArgs),
+    /// Find a path for a robot from one place to another, among obstacles.
+    ///
+    /// Grows a tree of motions that the model can do until one ends in the goal: rrt ends with the first path, sst looks
+    /// for shorter ones until a limit. Nothing is jumped over, however thin. Writes the path as a table, which `trik dcml
+    /// sim --actions` follows, and a picture.
+    ///
+    /// Exit status: 0 a path was found; 1 none, and what was reached is told; 2 it could not be searched.
+    Plan(Box<plan::PlanArgs>),
     /// Serve an editor: errors as you type, documentation, completion, rename and more.
     ///
     /// Speaks the Language Server Protocol on standard input and output, so an editor starts it. Exit status: 0 the editor
@@ -50,6 +59,7 @@ pub(crate) struct CheckArgs {
 pub(crate) fn perform(command: &Dcml) -> ExitCode {
     end(match command {
         Dcml::Check(args) => check::check(args),
+        Dcml::Plan(args) => plan::plan(args),
         Dcml::Lsp => return lsp::serve(),
     })
 }

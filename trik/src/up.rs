@@ -11,7 +11,7 @@ mod screen;
 pub(crate) mod tree;
 mod trikd;
 mod view;
-mod world;
+pub(crate) mod world;
 
 use crate::cli::UpArgs;
 use crate::limits;
@@ -94,11 +94,11 @@ pub(crate) fn up(args: UpArgs) -> Result<(), String> {
         ..Options::default()
     };
     let body = match &world {
-        Some(field) => world::body(field, args.seed),
+        Some((field, locks)) => world::body(field, *locks, args.seed),
         None => robot.body(),
     };
     let config = match (config, &world) {
-        (None, Some(field)) => world::configure(field, &place.world)?,
+        (None, Some((field, _))) => world::configure(field, &place.world)?,
         (config, _) => config.unwrap_or_default(),
     };
     let board = Board::start(&place.board, body, options)

@@ -5,6 +5,7 @@
 
 mod order;
 mod resolve;
+mod units;
 
 use super::diagnostic::{Code, Diagnostic, Findings};
 use super::function::Function;
@@ -86,6 +87,7 @@ impl<'a, 'f> Checker<'a, 'f> {
         self.missing_sections();
         self.missing_equations();
         let order = self.order(&targets, &uses);
+        self.units(&targets);
         self.unused();
         let equations = order.into_iter().filter_map(|at| {
             let text = &self.text.equations[at];

@@ -353,12 +353,16 @@ impl<'a> Parser<'a, '_> {
             ..ModelText::default()
         };
         let begin = self.bump().span;
+        let inside = self.doc_before();
         model.name = self.model_name(begin);
+        let behind = self.doc_behind();
+        model.doc = model.doc.or(inside).or(behind);
         loop {
             let from = self.at;
             match self.kind() {
                 TokenKind::Keyword(Keyword::End) => {
                     self.end(&model.name);
+                    self.doc_behind();
                     break;
                 }
                 TokenKind::EndOfText if self.is_cut => {
@@ -392,6 +396,8 @@ impl<'a> Parser<'a, '_> {
             if self.at == from {
                 self.bump();
             }
+            // Behind an equation it is nobody's.
+            self.doc_behind();
         }
         model.span = join(begin, self.before());
         let first = self.bad.partition_point(|at| *at < model.span.start);
@@ -660,6 +666,28 @@ impl<'a> Parser<'a, '_> {
             }
         }
         found
+    }
+
+    /// The first documentation behind the end of a statement or declaration: on the same line, where the next word is not.
+    /// What else stands there is passed.
+    fn doc_behind(&mut self) -> Option<Doc> {
+        let end = self.before().end;
+        let next = self.token();
+        let mut first = None;
+        while let Some(&(before, span)) = self.docs.get(self.next_doc) {
+            let has_break = |start, end| slice(self.text, Span { start, end }).contains('\n');
+            let is_last = next.kind == TokenKind::EndOfText;
+            let is_earlier = before < self.at;
+            let is_behind = before == self.at && !has_break(end, span.start);
+            if !is_earlier && !(is_behind && (is_last || has_break(span.end, next.span.start))) {
+                break;
+            }
+            self.next_doc += 1;
+            if first.is_none() && !is_earlier {
+                first = Some(self.doc(span));
+            }
+        }
+        first
     }
 
     fn doc(&self, span: Span) -> Doc {

@@ -73,6 +73,8 @@ pub enum Silent {
     Simulated,
     /// In the simulator, unless its mailbox is switched on.
     WithoutMailbox,
+    /// In the simulator, unless somebody has a gamepad there.
+    WithoutGamepad,
     /// On a real robot that the editor drives.
     Real,
     /// In both.

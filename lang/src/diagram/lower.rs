@@ -30,6 +30,8 @@ pub enum World {
     Simulated {
         /// Whether robots can send messages to each other there.
         mailbox: bool,
+        /// Whether somebody may have a gamepad there. The original's simulator knows of none.
+        gamepad: bool,
     },
     /// On a robot, or on a tree of files that stands for one.
     Robot,
@@ -37,7 +39,10 @@ pub enum World {
 
 impl Default for World {
     fn default() -> Self {
-        Self::Simulated { mailbox: false }
+        Self::Simulated {
+            mailbox: false,
+            gamepad: false,
+        }
     }
 }
 
@@ -273,7 +278,12 @@ impl<'a> Lowering<'a> {
             (Silent::Always, _) => true,
             (Silent::Real, world) => world == World::Robot,
             (Silent::Simulated, world) => world != World::Robot,
-            (Silent::WithoutMailbox, world) => world == World::Simulated { mailbox: false },
+            (Silent::WithoutMailbox, world) => {
+                matches!(world, World::Simulated { mailbox: false, .. })
+            }
+            (Silent::WithoutGamepad, world) => {
+                matches!(world, World::Simulated { gamepad: false, .. })
+            }
         };
         if silent {
             let next = links::single(at.diagram, at.block, at.base)?;

@@ -189,8 +189,11 @@ pub fn lowering(bytes: &[u8]) {
     };
     let project = project(bytes);
     let world = [
-        World::Simulated { mailbox: false },
-        World::Simulated { mailbox: true },
+        World::default(),
+        World::Simulated {
+            mailbox: true,
+            gamepad: true,
+        },
         World::Robot,
         World::Robot,
     ][usize::from(first & 3)];

@@ -35,7 +35,10 @@ const LACKING: [&str; 14] = [
 /// the encoders have been read anew; a text has no such moments. Their powers may be off by a little.
 const NEAR: [&str; 1] = ["21._Arc_movement"];
 const FAR: i32 = 10;
-const WORLD: World = World::Simulated { mailbox: false };
+const WORLD: World = World::Simulated {
+    mailbox: false,
+    gamepad: false,
+};
 
 /// What is plugged in and what it says; buttons are pressed now and then.
 fn robot(project: &Project) -> StandIn {

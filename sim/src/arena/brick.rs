@@ -92,7 +92,7 @@ impl Handle<'_> {
     fn gamepad(&self, port: Port) -> Option<i32> {
         let gamepad = self.arena.robots[self.index].gamepad();
         if port.name() == "GamepadConnectionIndicatorPort" {
-            return Some(i32::from(gamepad.is_some()));
+            return Some(i32::from(gamepad.is_some_and(|one| !one.is_away)));
         }
         let gamepad = gamepad?;
         let name = port.name();

@@ -46,6 +46,8 @@ pub struct Gamepad {
     pub wheel: i32,
     /// Which of the five buttons are pressed.
     pub buttons: [bool; 5],
+    /// Whether it has gone away; then nothing on it is touched.
+    pub is_away: bool,
 }
 
 /// The marker that draws behind a robot.

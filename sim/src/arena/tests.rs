@@ -151,6 +151,33 @@ fn robots_send_each_other_messages_and_have_numbers_of_their_own() {
     assert_eq!(arena.robot(2).mail(), None);
 }
 
+/// Only walls and things that can be pushed are solid there.
+#[test]
+fn robots_pass_through_each_other_in_ideal_physics_and_their_sensors_see_nobody() {
+    let mut first = crate::field::Robot::default();
+    let mut sonar = Sensor::new(port("D1"), SensorKind::Sonar);
+    sonar.at = point(62.0, 25.0);
+    first.sensors.push(sonar);
+    let field = Field {
+        robots: vec![first],
+        ..Field::default()
+    };
+    let other = crate::field::Robot {
+        position: point(100.0, 0.0),
+        ..crate::field::Robot::default()
+    };
+    let setup = Setup {
+        others: vec![other],
+        ..Setup::default()
+    };
+    let mut arena = Arena::new(&field, setup);
+    assert_eq!(arena.robot(0).scalar(port("D1")), Some(300));
+    drive(&mut arena, 100, 100, 100);
+    is_near(arena.robots()[0].pose().x, 76.7945);
+    is_near(arena.robots()[1].pose().x, 100.0);
+    assert!(!arena.robots()[0].is_stuck());
+}
+
 #[test]
 fn keys_and_gamepads_are_what_a_person_makes_of_them() {
     let mut arena = Arena::new(&Field::default(), Setup::default());

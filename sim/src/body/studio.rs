@@ -16,7 +16,7 @@ use super::two_wheels::sharp_gp2_raw;
 use super::{Body, Drive, Power, Senses};
 use crate::arena::floor::{Window, sensors};
 use crate::arena::{Arena, Setup, Timeline, ranges};
-use crate::field::{Field, SensorKind};
+use crate::field::{Field, Locks, SensorKind};
 use crate::geometry::{Point, Pose, point};
 use crate::limits;
 use crate::world::{Colour, colour};
@@ -108,6 +108,8 @@ pub struct Studio {
     seen: Window,
     /// Whether anybody has looked since.
     is_looked_at: Cell<bool>,
+    /// Whether a teacher has locked its walls.
+    is_locked: bool,
 }
 
 impl Studio {
@@ -126,10 +128,17 @@ impl Studio {
             was_stuck: false,
             seen: Window::default(),
             is_looked_at: Cell::new(true),
+            is_locked: false,
         };
         studio.senses.pose = studio.pose();
         studio.look();
         studio
+    }
+
+    /// The same, with what a teacher has locked: nobody puts other walls around the robot.
+    pub fn locked(mut self, locks: Locks) -> Self {
+        self.is_locked = locks.world;
+        self
     }
 
     fn pose(&self) -> Pose {
@@ -327,6 +336,9 @@ impl Body for Studio {
                 }
                 self.timeline.set_speed(speed);
             }
+            ("field", _) if self.is_locked => {
+                return Err("the project of this world locks it: its walls stay".to_owned());
+            }
             ("field", file) if !file.is_empty() => self.change(&read(file)?),
             _ => return Err(format!("'{words}' is no order: there are {ORDERS}")),
         }
@@ -454,6 +466,13 @@ mod tests {
         ] {
             assert!(body.order(words).is_err(), "{words}");
         }
+        let mut locked = Studio::new(&field(), 1).locked(Locks {
+            world: true,
+            ..Locks::default()
+        });
+        let refused = locked.order("field x.xml").unwrap_err();
+        assert!(refused.contains("locks it"), "{refused}");
+        locked.order("pause").unwrap();
         // The wall is gone in another field.
         let before = body.senses().analog[0];
         assert!(before > Some(sharp_gp2_raw(47.0)));

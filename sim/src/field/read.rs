@@ -72,9 +72,8 @@ struct Reader {
 impl Reader {
     fn new(document: &Element<'static>) -> Self {
         let version = document.attribute("version").map(str::to_owned);
-        // Since 2025 a text without settings is in centimetres; older ones, which have no version either, were not.
+        // Since 2025 the original reads a text without settings in centimetres, also one that is older and was not meant so.
         let unit = match document.child("settings") {
-            None if version.is_none() => Unit::Pixels,
             None => Unit::Centimetres,
             Some(settings) => match settings.attribute("sizeUnit") {
                 Some("cm") => Unit::Centimetres,
@@ -83,13 +82,15 @@ impl Reader {
                 _ => Unit::Pixels,
             },
         };
+        let is_old = version.is_none() && document.child("settings").is_none();
+        let problems = is_old.then(|| Problem::warning(words::no_settings()));
         Self {
             field: Field {
                 version,
                 unit,
                 ..Field::default()
             },
-            problems: Vec::new(),
+            problems: problems.into_iter().collect(),
             scale: unit.pixels(),
             ids: BTreeSet::new(),
             count: 0,

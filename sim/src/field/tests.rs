@@ -13,7 +13,7 @@ fn refused(text: &str) -> String {
 }
 
 #[test]
-fn units_are_those_of_the_settings_or_of_the_age() {
+fn units_are_those_of_the_settings_and_centimetres_without_them() {
     let wall = |head: &str, settings: &str| {
         let text = format!(
             "<root{head}><world><walls><wall begin=\"10:0\" end=\"20:0\" stroke-width=\"2\"/></walls></world>{settings}</root>"
@@ -22,7 +22,10 @@ fn units_are_those_of_the_settings_or_of_the_age() {
         (wall.end.x, wall.width)
     };
     let cm = 16.0 / 5.6;
-    assert_eq!(wall("", ""), (20.0, 2.0));
+    assert_eq!(wall("", ""), (20.0 * cm, 2.0 * cm));
+    let old = read("<root><world/></root>");
+    assert!(format!("{:?}", old.problems).contains("<settings/>"));
+    assert_eq!(read("<root><world/><settings/></root>").problems, []);
     assert_eq!(wall("", "<settings/>"), (20.0, 2.0));
     assert_eq!(wall(" version=\"20251219\"", ""), (20.0 * cm, 2.0 * cm));
     assert_eq!(
@@ -75,7 +78,7 @@ fn robots_stand_where_old_and_new_worlds_put_them() {
 #[test]
 fn things_are_where_their_centre_or_their_corner_is() {
     let field = read(
-        "<root><world><skittles><skittle id=\"a\" x=\"50\" y=\"-250\" markerX=\"10\"/><skittle id=\"b\" begin=\"250:300\"/></skittles>\
+        "<root><settings/><world><skittles><skittle id=\"a\" x=\"50\" y=\"-250\" markerX=\"10\"/><skittle id=\"b\" begin=\"250:300\"/></skittles>\
          <balls><ball id=\"a\" begin=\"250:300\"/></balls><cubes><cube begin=\"250:300\" rotation=\"90\" edgeSize=\"20\"/></cubes></world></root>",
     )
     .field;
@@ -164,7 +167,7 @@ fn a_field_that_was_made_here_can_be_read() {
 #[test]
 fn same_ids_are_left_out_but_things_without_one_are_not() {
     let opened = read(
-        "<root><world><walls><wall id=\"\"/><wall id=\"\"/><wall id=\"a\"/><wall id=\"a\"/></walls>\
+        "<root><settings/><world><walls><wall id=\"\"/><wall id=\"\"/><wall id=\"a\"/><wall id=\"a\"/></walls>\
          <regions><region id=\"x\" type=\"moon\"/><region id=\"y\" type=\"bound\" boundItem=\"nothing\"/></regions></world></root>",
     );
     assert_eq!(opened.field.walls.len(), 3);
@@ -177,7 +180,7 @@ fn same_ids_are_left_out_but_things_without_one_are_not() {
 #[test]
 fn pictures_are_found_by_their_ids_and_missed_by_name() {
     let mut field = read(
-        "<root><world><images><image id=\"i\" imageId=\"p\" rect=\"-10:-20:100:50\" position=\"5:6\" isBackground=\"true\"/>\
+        "<root><settings/><world><images><image id=\"i\" imageId=\"p\" rect=\"-10:-20:100:50\" position=\"5:6\" isBackground=\"true\"/>\
          <image id=\"j\" imageId=\"q\" rect=\"0:0:1:1\" position=\"0:0\"/></images></world></root>",
     )
     .field;
@@ -198,14 +201,16 @@ fn pictures_are_found_by_their_ids_and_missed_by_name() {
 fn numbers_that_no_field_has_are_refused_with_their_place() {
     for bad in ["NaN", "1e308", "inf", "-1e7"] {
         let told = refused(&format!(
-            "<root><world><walls><wall/><wall id=\"w2\" begin=\"0:{bad}\" end=\"1:1\"/></walls></world></root>"
+            "<root><settings/><world><walls><wall/><wall id=\"w2\" begin=\"0:{bad}\" end=\"1:1\"/></walls></world></root>"
         ));
         assert!(
             told.contains("<wall> number 2 (id w2)") && told.contains("begin"),
             "{told}"
         );
     }
-    let odd = read("<root><world><walls><wall begin=\"12,5:1\" end=\"5\"/></walls></world></root>");
+    let odd = read(
+        "<root><settings/><world><walls><wall begin=\"12,5:1\" end=\"5\"/></walls></world></root>",
+    );
     assert_eq!(odd.field.walls[0].begin, point(0.0, 1.0));
     assert_eq!(odd.problems.len(), 2, "{:?}", odd.problems);
     assert!(refused("<html/>").contains("no world model"));
@@ -217,7 +222,7 @@ fn numbers_that_no_field_has_are_refused_with_their_place() {
 fn more_things_than_anybody_needs_are_refused_in_time() {
     let walls = "<wall begin=\"0:0\" end=\"1:1\"/>".repeat(30_000);
     let told = refused(&format!(
-        "<root><world><walls>{walls}</walls></world></root>"
+        "<root><settings/><world><walls>{walls}</walls></world></root>"
     ));
     assert!(told.contains("more than 20000"), "{told}");
 }

@@ -45,6 +45,34 @@ pub(super) fn number(
     }
 }
 
+pub(super) fn no_settings() -> Words {
+    Words::new(
+        "the world has neither settings nor a version, so its numbers are centimetres, as TRIK Studio reads them since 2025; if they were meant as pixels, add <settings/> to its <root>",
+        "в мире нет ни settings, ни версии, поэтому числа в нём - сантиметры, как читает TRIK Studio с 2025 года; если это пиксели, добавьте <settings/> в <root>",
+    )
+}
+
+// Parts that are locked.
+pub(super) const WALLS: (&str, &str) = ("walls", "стены");
+pub(super) const THINGS: (&str, &str) = ("things", "предметы");
+pub(super) const DRAWINGS: (&str, &str) = ("drawings", "рисунки");
+pub(super) const PICTURES: (&str, &str) = ("pictures", "картинки");
+pub(super) const REGIONS: (&str, &str) = ("regions", "зоны");
+pub(super) const SETTINGS: (&str, &str) = ("settings of the simulation", "настройки симуляции");
+pub(super) const SENSORS: (&str, &str) = ("sensors", "датчики");
+pub(super) const START: (&str, &str) = ("start of the robot", "начальное положение робота");
+pub(super) const MOTORS: (&str, &str) = ("motors of the wheels", "моторы колёс");
+
+/// Such a part is not that of the task.
+pub(super) fn locked(english: &str, russian: &str) -> Words {
+    Words::new(
+        format!(
+            "the {english} are not those of the task, which locks them: those of the task are taken"
+        ),
+        format!("{russian} не такие, как в задании, где их менять нельзя: взято из задания"),
+    )
+}
+
 pub(super) fn same_id(tag: &str, id: &str) -> Words {
     Words::new(
         format!("a <{tag}> before has the id '{id}' too; this one is left out"),

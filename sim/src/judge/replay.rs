@@ -9,44 +9,59 @@ use super::task::Task;
 use super::trajectory::{Record, Trajectory};
 use super::words;
 use crate::arena::{Arena, Setup};
+use crate::field::{self, Field};
 use lang::diagram::brick::{Brick, Command};
 use lang::diagram::machine::STEP_MS;
 use lang::diagram::ports::Port;
 use lang::diagram::stand_in::Pose;
+use lang::problem::Words;
 use std::time::Instant;
 
-/// Judges a recorded run. Its last moment is the end of its program.
+/// Judges a recorded run: every robot of it that the world knows by its name. Its last moment is the end of its program.
 pub fn judge_recorded(task: &Task, trajectory: &Trajectory, settings: &Settings) -> Outcome {
     let mut field = task.field.clone();
     // What moved a robot is known; nothing is to be added to it.
-    field.settings = crate::field::Settings {
+    field.settings = field::Settings {
         background: field.settings.background,
-        ..crate::field::Settings::default()
+        ..field::Settings::default()
     };
-    let mut arena = Arena::new(&field, Setup::default());
+    let (others, cast) = cast(&field, trajectory);
+    let setup = Setup {
+        others,
+        ..Setup::default()
+    };
+    let mut arena = Arena::new(&field, setup);
     let mut run = Run::new(task, settings, &arena);
-    let has_poses = |record: &Record| matches!(record, Record::Pose { .. });
-    if !trajectory.records.iter().any(has_poses) {
-        run.fail(0, words::nothing_recorded());
+    let is_pose_of_ours = |record: &Record| match record {
+        Record::Pose { robot, .. } => cast[usize::from(*robot)].is_some(),
+        Record::Told { .. } => false,
+    };
+    if !trajectory.records.iter().any(is_pose_of_ours) {
+        let why = match cast.iter().any(Option::is_some) || cast.is_empty() {
+            true => words::nothing_recorded(),
+            false => words::nobody_known(&trajectory.robots),
+        };
+        run.fail(0, why);
         run.verdict = Some(Verdict::Unknown);
-        return run.outcome(0);
+        return run.outcome(0, &arena);
     }
-    let mut tracks: Vec<Track> = (0..arena.robots().len())
-        .map(|robot| Track::new(trajectory, robot as u16))
+    let mut tracks: Vec<(Track, usize)> = (0..)
+        .zip(&cast)
+        .filter_map(|(robot, index)| Some((Track::new(trajectory, robot), (*index)?)))
         .collect();
     let mut told = trajectory.records.iter().peekable();
     let end = trajectory.records.last().map_or(0, Record::ms);
     let began = Instant::now();
     let mut now = 0;
     loop {
-        for (index, track) in tracks.iter_mut().enumerate() {
-            track.put(now, &mut arena, index);
+        for (track, index) in &mut tracks {
+            track.put(now, &mut arena, *index);
         }
         while let Some(record) = told.next_if(|record| record.ms() <= now) {
             if let Record::Told { robot, told, .. } = record
-                && usize::from(*robot) < tracks.len()
+                && let Some(index) = cast[usize::from(*robot)]
             {
-                replay(&mut arena.robot(usize::from(*robot)), told);
+                replay(&mut arena.robot(index), told);
             }
         }
         run.record(now, &arena);
@@ -65,7 +80,49 @@ pub fn judge_recorded(task: &Task, trajectory: &Trajectory, settings: &Settings)
         now += STEP_MS;
         arena.tick();
     }
-    run.outcome(now)
+    run.outcome(now, &arena)
+}
+
+/// What of a record does not fit the world: robots that are not there, whose poses count for nothing, or that have
+/// another name.
+pub fn strange_in_record(task: &Task, trajectory: &Trajectory) -> Vec<Words> {
+    let (_, cast) = cast(&task.field, trajectory);
+    let own = first_name(&task.field);
+    let strange = trajectory.robots.iter().zip(&cast);
+    strange
+        .filter_map(|(name, index)| match index {
+            None => Some(words::robot_unknown(name)),
+            Some(0) if name != own => Some(words::robot_renamed(name, own)),
+            Some(_) => None,
+        })
+        .collect()
+}
+
+/// The name of the robot that an arena of this field begins with.
+fn first_name(field: &Field) -> &str {
+    let first = field.robot().or_else(|| field.robots.first());
+    first.map_or("", |robot| &robot.id)
+}
+
+/// Robots that stand beside the first one, and which robot of the arena plays each one of the record. A record of one
+/// robot is that of the first one, whatever it is called.
+fn cast(field: &Field, trajectory: &Trajectory) -> (Vec<field::Robot>, Vec<Option<usize>>) {
+    let own = first_name(field);
+    let mut others: Vec<field::Robot> = Vec::new();
+    let is_alone = trajectory.robots.len() == 1;
+    let mut cast = Vec::with_capacity(trajectory.robots.len());
+    for name in &trajectory.robots {
+        let found = field.robots.iter().find(|robot| robot.id == *name);
+        cast.push(match found {
+            _ if name == own || is_alone => Some(0),
+            Some(robot) => {
+                others.push(robot.clone());
+                Some(others.len())
+            }
+            None => None,
+        });
+    }
+    (others, cast)
 }
 
 /// Where one robot was.
@@ -105,5 +162,75 @@ impl Track {
         if let Some(port) = Port::named("M3") {
             arena.robot(index).tell(Command::Power { port, percent });
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Settings, Texts};
+    use super::*;
+
+    /// A floor with two robots, and a rule: the second one reaches the region.
+    fn task() -> Task {
+        let world = r#"<root version="20251219"><world><regions>
+<region id="there" type="rectangle" x="200" y="0" width="100" height="100"/></regions>
+<robot position="0:0" direction="0"/></world>
+<robots><robot id="trikKitRobot"/><robot id="second"/></robots>
+<settings/>
+<constraints><timelimit value="1000"/>
+<event settedUpInitially="true"><condition><inside objectId="robot2" regionId="there"/></condition>
+<trigger><success/></trigger></event></constraints></root>"#;
+        let texts = Texts {
+            world,
+            ..Texts::default()
+        };
+        Task::read(texts).unwrap().0
+    }
+
+    fn record(names: [&str; 2]) -> Trajectory {
+        let one = |name: &str, ms, x| {
+            format!(r#"{{"robotId":"{name}","timestamp":{ms},"x":{x},"y":10,"rotation":0}}"#)
+        };
+        let [a, b] = names;
+        let all = [
+            one(a, 10, 0),
+            one(b, 10, 0),
+            one(a, 20, 5),
+            one(b, 20, 220),
+            one(a, 30, 9),
+        ];
+        Trajectory::read(&format!("[{}]", all.join(","))).unwrap()
+    }
+
+    #[test]
+    fn every_robot_of_a_record_is_judged() {
+        let task = task();
+        let told = record(["trikKitRobot", "second"]);
+        let outcome = judge_recorded(&task, &told, &Settings::default());
+        assert_eq!((outcome.verdict, outcome.ms), (Verdict::Accomplished, 20));
+        assert_eq!(strange_in_record(&task, &told), []);
+        // The order in which they are met does not matter.
+        let told = record(["second", "trikKitRobot"]);
+        let outcome = judge_recorded(&task, &told, &Settings::default());
+        assert_eq!(outcome.verdict, Verdict::Failed);
+    }
+
+    #[test]
+    fn robots_that_the_world_does_not_know_are_told() {
+        let task = task();
+        let told = record(["trikKitRobot", "stranger"]);
+        let strange = strange_in_record(&task, &told);
+        assert!(strange[0].english.contains("'stranger'"), "{strange:?}");
+        assert_eq!(strange.len(), 1);
+        let none = record(["someone", "stranger"]);
+        let outcome = judge_recorded(&task, &none, &Settings::default());
+        assert_eq!(outcome.verdict, Verdict::Unknown);
+        assert!(outcome.entries[0].text.contains("'someone', 'stranger'"));
+        // One alone is the robot of the world, by another name.
+        let mut alone = record(["other", "other"]);
+        alone.robots.truncate(1);
+        assert_eq!(strange_in_record(&task, &alone).len(), 1);
+        let outcome = judge_recorded(&task, &alone, &Settings::default());
+        assert_ne!(outcome.verdict, Verdict::Unknown);
     }
 }

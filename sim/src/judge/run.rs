@@ -4,12 +4,13 @@
 //! program and settings give the same outcome; only the limit of real time can make a difference, and then there is no
 //! verdict.
 
+use super::hands::{self, Deed};
 use super::program::Program;
 use super::recorder::Recorder;
 use super::task::Task;
 use super::trajectory::{Record, Trajectory};
 use super::words;
-use crate::arena::{Arena, Setup};
+use crate::arena::{Arena, Gamepad, Setup};
 use crate::limits;
 use lang::constraint::{Checker, Entry, Level, Value, Verdict as Decision};
 use lang::diagram::machine::{STEP_MS, Status};
@@ -44,8 +45,12 @@ pub struct Settings {
     pub seed: u64,
     /// What a person answers when a program asks, in order.
     pub answers: Vec<String>,
+    /// What a person with a gamepad does beside the robot, in order of time.
+    pub deeds: Option<Vec<Deed>>,
     /// Whether a trajectory is kept.
     pub is_recording: bool,
+    /// Whether a picture of the display at the end is made.
+    pub is_showing: bool,
 }
 
 impl Default for Settings {
@@ -57,7 +62,9 @@ impl Default for Settings {
             longest: Duration::from_secs(60),
             seed: 1,
             answers: Vec::new(),
+            deeds: None,
             is_recording: false,
+            is_showing: false,
         }
     }
 }
@@ -77,6 +84,8 @@ pub struct Outcome {
     pub printed: Vec<String>,
     /// Where robots were; empty if it was not recorded.
     pub trajectory: Trajectory,
+    /// The display at the end, as a PNG file, if it was wanted.
+    pub display: Option<Vec<u8>>,
 }
 
 /// How often the clock is looked at, in ticks.
@@ -92,6 +101,10 @@ pub fn judge(task: &Task, program: &mut dyn Program, settings: &Settings) -> Out
     };
     let mut arena = Arena::new(&task.field, setup);
     let mut run = Run::new(task, settings, &arena);
+    let mut deeds = settings.deeds.as_deref().unwrap_or_default();
+    if let (Some(_), Some(robot)) = (&settings.deeds, arena.robot_mut(0)) {
+        robot.set_gamepad(Some(Gamepad::default()));
+    }
     let began = Instant::now();
     let mut now = 0;
     loop {
@@ -101,6 +114,9 @@ pub fn judge(task: &Task, program: &mut dyn Program, settings: &Settings) -> Out
             if run.look(now, &mut arena) {
                 break;
             }
+        }
+        if let Some(robot) = arena.robot_mut(0) {
+            hands::act(&mut deeds, now, robot);
         }
         let status = run.step(now, program, &mut arena);
         run.hear(now, program.errors());
@@ -122,8 +138,8 @@ pub fn judge(task: &Task, program: &mut dyn Program, settings: &Settings) -> Out
         }
         now += STEP_MS;
     }
+    let mut outcome = run.outcome(now, &arena);
     program.stop(&mut arena.robot(0));
-    let mut outcome = run.outcome(now);
     outcome
         .printed
         .clone_from(&arena.robots()[0].shown().printed);
@@ -253,7 +269,13 @@ impl<'a> Run<'a> {
         self.verdict = Some(Verdict::Failed);
     }
 
-    pub fn outcome(self, now: u32) -> Outcome {
+    pub fn outcome(self, now: u32, arena: &Arena) -> Outcome {
+        let display = || {
+            arena
+                .robots()
+                .first()
+                .map(|robot| robot.shown().screen.png())
+        };
         let score = self
             .checker
             .as_ref()
@@ -270,6 +292,7 @@ impl<'a> Run<'a> {
             entries: self.entries,
             printed: Vec::new(),
             trajectory: self.trajectory,
+            display: self.settings.is_showing.then(display).flatten(),
         }
     }
 }

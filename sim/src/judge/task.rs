@@ -10,7 +10,7 @@ use lang::diagram::devices::{self, Sensor};
 use lang::diagram::ports::Port;
 use lang::diagram::program::Program;
 use lang::diagram::project::Project;
-use lang::problem::Problem;
+use lang::problem::{Problem, Words};
 use lang::xml::{self, Element};
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -24,6 +24,8 @@ pub struct Task {
     pub rules: Option<Rc<Rules>>,
     /// Sensors that go onto ports that are empty.
     pub sensors: Vec<(Port, SensorKind)>,
+    /// What the task that was given out locks.
+    pub locks: Locks,
 }
 
 /// The texts of a task.
@@ -62,12 +64,24 @@ impl Task {
             field,
             rules,
             sensors: Vec::new(),
+            locks: Locks::default(),
         };
         Ok((task, problems))
     }
+
+    /// Puts what a given task locks into the world of a solution, with the rules of the task; what was changed there is
+    /// told.
+    pub fn hold(&mut self, given: &Self, locks: Locks) -> Vec<Words> {
+        self.locks = locks;
+        if given.rules.is_some() {
+            self.rules.clone_from(&given.rules);
+        }
+        self.field.hold(&given.field, locks)
+    }
+
     /// Gives the robot the sensors that a diagram waits for, on ports that are empty, unless a teacher has locked them.
     pub fn plug_in(&mut self, project: &Project, program: &Program) {
-        if Locks::of(&project.meta).sensors {
+        if self.locks.sensors || Locks::of(&project.meta).sensors {
             return;
         }
         let kinds = devices::needed(program).into_iter();

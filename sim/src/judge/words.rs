@@ -38,6 +38,34 @@ pub(super) fn nothing_recorded() -> Words {
     )
 }
 
+/// No robot of a record is in the world.
+pub(super) fn nobody_known(names: &[String]) -> Words {
+    let quoted: Vec<String> = names.iter().map(|name| format!("'{name}'")).collect();
+    let names = quoted.join(", ");
+    Words::new(
+        format!("The recorded trajectory is of {names}, and this world has none of them"),
+        format!("Записанная траектория принадлежит роботам {names}, а в этом мире таких нет"),
+    )
+}
+
+/// A robot of a record is not in the world.
+pub(super) fn robot_unknown(name: &str) -> Words {
+    Words::new(
+        format!(
+            "the record has a robot '{name}' that is not in this world; what it did is left out"
+        ),
+        format!("в записи есть робот '{name}', которого нет в этом мире; его действия пропущены"),
+    )
+}
+
+/// The only robot of a record has another name than that of the world.
+pub(super) fn robot_renamed(name: &str, own: &str) -> Words {
+    Words::new(
+        format!("the record is of a robot '{name}'; it is judged as '{own}' of this world"),
+        format!("запись принадлежит роботу '{name}'; он проверяется как '{own}' этого мира"),
+    )
+}
+
 /// Something is wrong with rules.
 pub(super) fn in_rules(words: &Words) -> Words {
     Words::new(

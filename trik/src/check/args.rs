@@ -12,7 +12,7 @@ use std::path::PathBuf;
 #[derive(Args, Clone, Debug)]
 pub(crate) struct CheckArgs {
     /// Solutions: diagrams NAME.qrs, programs NAME.js and NAME.py if a field is given, and directories of them.
-    #[arg(value_name = "FILE|DIR", required_unless_present = "worker")]
+    #[arg(value_name = "FILE|DIR", required_unless_present_any = ["worker", "log"])]
     pub paths: Vec<PathBuf>,
     /// A world with its rules in place of the solution's own: walls, robot, sensors and constraints are all replaced. May
     /// be given several times; a directory stands for all NAME.xml in it.
@@ -21,15 +21,23 @@ pub(crate) struct CheckArgs {
     /// With --field: run each solution in its own world too.
     #[arg(long, requires = "field")]
     pub own: bool,
+    /// The save that pupils were given: what it locks is taken from it, with its rules, and the rest of the world is the
+    /// solution's own.
+    #[arg(long, value_name = "TASK.qrs", conflicts_with_all = ["field", "log"])]
+    pub task: Option<PathBuf>,
     /// A program in JavaScript or Python that drives the robot in place of the diagram.
     #[arg(long, value_name = "PROG.js|.py", conflicts_with = "log")]
     pub script: Option<PathBuf>,
     /// Lines that the program is given when it asks: answers for Input blocks, and what programs with text read.
     #[arg(long, value_name = "FILE")]
     pub inputs: Option<PathBuf>,
-    /// Judge a recorded trajectory in place of running a program: a file that --trajectory or TRIK Studio has written.
-    #[arg(long, value_name = "T.json")]
-    pub log: Option<PathBuf>,
+    /// What a person does with the gamepad and the keys meanwhile: lines as "1.5 pad 1 30 -50", with seconds.
+    #[arg(long, value_name = "FILE", conflicts_with = "log")]
+    pub gamepad: Option<PathBuf>,
+    /// Judge a recorded trajectory in place of running a program: a file that --trajectory or TRIK Studio has written, by
+    /// the rules of FILE or of --field. May be given several times; a directory stands for all NAME.json in it.
+    #[arg(long, value_name = "T.json|DIR")]
+    pub log: Vec<PathBuf>,
     /// Write all messages as JSON, in the form of TRIK Studio. With several runs here and below: a directory, with a
     /// file for each run.
     #[arg(long, value_name = "OUT.json")]
@@ -43,6 +51,9 @@ pub(crate) struct CheckArgs {
     /// Write a page that shows the run, for any browser.
     #[arg(long, value_name = "OUT.html")]
     pub html: Option<PathBuf>,
+    /// Write what is on the robot's display at the end, as a picture.
+    #[arg(long, value_name = "OUT.png")]
+    pub display: Option<PathBuf>,
     /// Write a line of JSON for each run, in the order of the runs; - is standard output, in place of the table.
     #[arg(long, value_name = "OUT.jsonl")]
     pub results: Option<PathBuf>,
@@ -87,12 +98,14 @@ impl CheckArgs {
         let mut words: Vec<OsString> = vec!["check".into(), "--worker".into()];
         let paths = [
             ("--script", &self.script),
+            ("--task", &self.task),
             ("--inputs", &self.inputs),
-            ("--log", &self.log),
+            ("--gamepad", &self.gamepad),
             ("--report", &self.report),
             ("--trajectory", &self.trajectory),
             ("--svg", &self.svg),
             ("--html", &self.html),
+            ("--display", &self.display),
         ];
         for (name, path) in paths {
             if let Some(path) = path {

@@ -15,12 +15,28 @@ use std::path::{Path, PathBuf};
 /// One run to be done.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Job {
-    /// The solution.
+    /// The solution; a record alone stands here itself.
     pub solution: PathBuf,
     /// The world in place of its own.
     pub field: Option<PathBuf>,
+    /// A record that is judged in place of running the solution.
+    pub log: Option<PathBuf>,
     /// What files of this run are called, below a directory for results and without an ending.
     pub name: PathBuf,
+}
+
+impl Job {
+    /// What is judged, as people are told.
+    pub fn judged(&self) -> &Path {
+        self.log.as_deref().unwrap_or(&self.solution)
+    }
+
+    /// Where the rules come from, if not from what is judged.
+    pub fn rules(&self) -> Option<&Path> {
+        let save = self.log.as_deref().map(|_| &*self.solution);
+        let field = self.field.as_deref().or(save);
+        field.filter(|field| *field != self.judged())
+    }
 }
 
 /// All runs.
@@ -39,25 +55,70 @@ pub(super) fn jobs(args: &CheckArgs) -> Result<Vec<Job>, String> {
             return Err(format!("there are more than {} fields", limits::FIELDS_MAX));
         }
     }
+    let solutions = match args.log.is_empty() {
+        true => solutions(args)?,
+        false => return recorded(args, &fields),
+    };
+    let (mut all, mut names) = (Vec::new(), HashSet::new());
+    for (solution, name) in solutions {
+        for field in &fields {
+            all.push(Job {
+                solution: solution.clone(),
+                field: field.clone(),
+                log: None,
+                name: free(&name, field.as_deref(), fields.len() > 1, &mut names),
+            });
+        }
+        if all.len() > limits::SOLUTIONS_MAX {
+            let max = limits::SOLUTIONS_MAX;
+            return Err(format!("there are more than {max} runs to do"));
+        }
+    }
+    Ok(all)
+}
+
+/// All solutions, with their names from where they were looked for.
+fn solutions(args: &CheckArgs) -> Result<Vec<(PathBuf, PathBuf)>, String> {
     let endings: &[&str] = match args.field.is_empty() {
         true => &["qrs"],
         false => &["qrs", "js", "py"],
     };
-    let (mut all, mut names) = (Vec::new(), HashSet::new());
+    let mut all = Vec::new();
     for path in &args.paths {
-        for (solution, name) in below(path, endings, limits::FOLDERS_DEEP, limits::SOLUTIONS_MAX)? {
-            for field in &fields {
-                let job = Job {
-                    solution: solution.clone(),
-                    field: field.clone(),
-                    name: free(&name, field.as_deref(), fields.len() > 1, &mut names),
-                };
-                all.push(job);
-            }
-            if all.len() > limits::SOLUTIONS_MAX {
-                let max = limits::SOLUTIONS_MAX;
-                return Err(format!("there are more than {max} runs to do"));
-            }
+        all.extend(below(
+            path,
+            endings,
+            limits::FOLDERS_DEEP,
+            limits::SOLUTIONS_MAX,
+        )?);
+    }
+    Ok(all)
+}
+
+/// All records, each against the rules of each world.
+fn recorded(args: &CheckArgs, fields: &[Option<PathBuf>]) -> Result<Vec<Job>, String> {
+    let save = match &args.paths[..] {
+        [] if args.field.is_empty() => {
+            return Err("--log needs rules: --field WORLD.xml, or a save that has them".to_owned());
+        }
+        [] if args.own => return Err("--own needs a save, whose world it is".to_owned()),
+        [] => None,
+        [save] if !save.is_dir() => Some(save),
+        _ => return Err("with --log, name one save: that whose world has the rules".to_owned()),
+    };
+    let (mut all, mut names) = (Vec::new(), HashSet::new());
+    for path in &args.log {
+        for (log, name) in below(path, &["json"], limits::FOLDERS_DEEP, limits::SOLUTIONS_MAX)? {
+            all.extend(fields.iter().map(|field| Job {
+                solution: save.unwrap_or(&log).clone(),
+                field: field.clone(),
+                log: Some(log.clone()),
+                name: free(&name, field.as_deref(), fields.len() > 1, &mut names),
+            }));
+        }
+        if all.len() > limits::SOLUTIONS_MAX {
+            let max = limits::SOLUTIONS_MAX;
+            return Err(format!("there are more than {max} runs to do"));
         }
     }
     Ok(all)

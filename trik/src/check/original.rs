@@ -185,14 +185,17 @@ pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         paths: vec![args.file.clone()],
         field: Vec::new(),
         own: false,
+        task: None,
         script: named(args.script_path).filter(|_| is_script),
         // A grader names files that are not there when there are no inputs.
         inputs: named(args.input).filter(|path| path.exists()),
-        log: None,
+        gamepad: None,
+        log: Vec::new(),
         report: args.report,
         trajectory: args.trajectory,
         svg: None,
         html: None,
+        display: None,
         results: None,
         force: true,
         keep_going: false,
@@ -209,6 +212,7 @@ pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     let job = Job {
         solution: args.file,
         field: None,
+        log: None,
         name: PathBuf::new(),
     };
     let row = pool::run_one(job, &check);

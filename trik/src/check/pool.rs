@@ -12,7 +12,7 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::process::{CommandExt, ExitStatusExt};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
@@ -108,7 +108,7 @@ pub(super) fn run_one(job: Job, args: &CheckArgs) -> Row {
         found = Some(row);
         Ok(())
     });
-    found.unwrap_or_else(|| Row::broken(shown(&jobs[0].solution), None, "it was not run".into()))
+    found.unwrap_or_else(|| Row::broken(shown(jobs[0].judged()), None, "it was not run".into()))
 }
 
 fn in_order(
@@ -141,8 +141,7 @@ fn feed(jobs: &[Job], args: &CheckArgs, shared: &Shared, send: &SyncSender<(usiz
         let row = done(&mut worker, job, &words, patience).unwrap_or_else(|why| {
             // Whatever it was, the next run gets a fresh process.
             worker = None;
-            let field = job.field.as_deref().map(shown);
-            Row::broken(shown(&job.solution), field, why)
+            Row::broken(shown(job.judged()), job.rules().map(shown), why)
         });
         if send.send((index, row)).is_err() {
             return;
@@ -222,8 +221,9 @@ impl Worker {
     /// Has a run done.
     fn ask(&mut self, job: &Job, patience: Duration) -> Result<String, String> {
         let mut bytes = Vec::new();
-        let field = job.field.as_deref().unwrap_or(Path::new(""));
-        for path in [&*job.solution, field, &job.name] {
+        let path = |path: &'_ Option<PathBuf>| path.clone().unwrap_or_default();
+        let (field, log) = (path(&job.field), path(&job.log));
+        for path in [&job.solution, &field, &log, &job.name] {
             bytes.extend_from_slice(path.as_os_str().as_bytes());
             bytes.push(0);
         }

@@ -17,6 +17,7 @@ use lang::constraint::Level;
 use lang::diagram::lower::{World, lower};
 use lang::diagram::project::Project;
 use lang::problem::{Problem, Tongue};
+use sim::field::Locks;
 use sim::judge::{self, Caption, Diagram, Outcome, Program, Settings, Task, Texts, Trajectory};
 use std::fs::File;
 use std::io::Read;
@@ -29,12 +30,13 @@ pub(super) const REPORT: &str = ".json";
 pub(super) const TRAJECTORY: &str = ".trajectory.json";
 pub(super) const SVG: &str = ".svg";
 pub(super) const HTML: &str = ".html";
+pub(super) const DISPLAY: &str = ".png";
 
 /// Does a run and writes its files.
 pub(super) fn run(job: &Job, args: &CheckArgs) -> Row {
     let mut row = Row {
-        solution: shown(&job.solution),
-        field: job.field.as_deref().map(shown),
+        solution: shown(job.judged()),
+        field: job.rules().map(shown),
         verdict: Verdict::Broken,
         ms: 0,
         total_score: None,
@@ -92,7 +94,10 @@ type Lines = Vec<String>;
 /// The task, what came out, and what is strange in the world.
 fn judged(job: &Job, args: &CheckArgs) -> Result<(Task, Outcome, Lines), Lines> {
     let settings = settings(args).map_err(|why| vec![why])?;
-    let mut solution = Solution::read(&job.solution, args)?;
+    let mut solution = match &job.log {
+        Some(log) if *log == job.solution => Solution::default(),
+        _ => Solution::read(&job.solution, args)?,
+    };
     let field = match &job.field {
         None => None,
         Some(path) => Some(text(path, limits::WORLD_BYTES_MAX).map_err(|why| vec![why])?),
@@ -118,17 +123,45 @@ fn judged(job: &Job, args: &CheckArgs) -> Result<(Task, Outcome, Lines), Lines> 
     };
     let task = Task::read(texts).map_err(|problems| lines(place, &problems, args.language))?;
     let (mut task, strange) = task;
-    let strange = lines(place, &strange, args.language);
-    if let Some(log) = &args.log {
+    let mut strange = lines(place, &strange, args.language);
+    if let Some(given) = &args.task {
+        let changed = hold(&mut task, given, args)?;
+        strange.extend(
+            changed
+                .into_iter()
+                .map(|why| format!("{}: {why}", shown(place))),
+        );
+    }
+    if let Some(log) = &job.log {
         let text = text(log, limits::LOG_BYTES_MAX).map_err(|why| vec![why])?;
         let trajectory = Trajectory::read(&text);
         let trajectory = trajectory.map_err(|why| vec![format!("{}: {why}", shown(log))])?;
+        let names = judge::strange_in_record(&task, &trajectory);
+        let told = names.iter().map(|words| words.in_tongue(args.language));
+        strange.extend(told.map(|words| format!("{}: {words}", shown(log))));
         let outcome = judge::judge_recorded(&task, &trajectory, &settings);
         return Ok((task, outcome, strange));
     }
     let mut program = solution.program(&mut task, args)?;
     let outcome = judge::judge(&task, &mut *program, &settings);
     Ok((task, outcome, strange))
+}
+
+/// Puts what a given task locks into the world of a solution.
+fn hold(task: &mut Task, given: &Path, args: &CheckArgs) -> Result<Lines, Lines> {
+    let project = Solution::read(given, args)?.project;
+    let Some(world) = &project.world else {
+        return Err(vec![format!("{}: there is no world in it", shown(given))]);
+    };
+    let texts = Texts {
+        world,
+        blobs: project.blobs.as_deref(),
+        templates: Some(&project.templates),
+    };
+    let read = Task::read(texts).map_err(|problems| lines(given, &problems, args.language))?;
+    let changed = task.hold(&read.0, Locks::of(&project.meta));
+    let changed = changed.iter().map(|words| words.in_tongue(args.language));
+    Ok(changed.map(str::to_owned).collect())
 }
 
 fn settings(args: &CheckArgs) -> Result<Settings, String> {
@@ -139,6 +172,13 @@ fn settings(args: &CheckArgs) -> Result<Settings, String> {
             .map(str::to_owned)
             .collect(),
     };
+    let deeds = match &args.gamepad {
+        None => None,
+        Some(path) => {
+            let deeds = judge::hands::read(&text(path, limits::WORLD_BYTES_MAX)?);
+            Some(deeds.map_err(|why| format!("{}: {why}", shown(path)))?)
+        }
+    };
     Ok(Settings {
         tongue: args.language,
         keep_going: args.keep_going,
@@ -146,6 +186,8 @@ fn settings(args: &CheckArgs) -> Result<Settings, String> {
         longest: Duration::from_secs_f64(args.wall_limit),
         seed: u64::from(args.seed),
         answers,
+        deeds,
+        is_showing: args.display.is_some(),
         is_recording: [&args.trajectory, &args.svg, &args.html]
             .into_iter()
             .any(Option::is_some),
@@ -153,6 +195,7 @@ fn settings(args: &CheckArgs) -> Result<Settings, String> {
 }
 
 /// What is to be judged.
+#[derive(Default)]
 struct Solution {
     project: Project,
     script: Option<(Language, String)>,
@@ -209,7 +252,11 @@ impl Solution {
             };
             return script::open(*language, text, given).map_err(|why| vec![why]);
         }
-        let lowered = lower(&self.project, World::default());
+        let world = World::Simulated {
+            mailbox: false,
+            gamepad: args.gamepad.is_some(),
+        };
+        let lowered = lower(&self.project, world);
         let lowered = lowered.map_err(|problem| vec![problem.in_tongue(args.language)])?;
         task.plug_in(&self.project, &lowered.program);
         Ok(Box::new(Diagram::new(Rc::new(lowered.program))))
@@ -258,22 +305,27 @@ pub(super) fn text(path: &Path, max: u64) -> Result<String, String> {
 /// Writes the files of a run.
 fn write(job: &Job, args: &CheckArgs, task: &Task, outcome: &Outcome) -> Result<(), Lines> {
     let mut wrong = Vec::new();
-    let mut write = |path: &Option<std::path::PathBuf>, ending, make: &dyn Fn() -> String| {
+    let mut write = |path: &Option<std::path::PathBuf>, ending, make: &dyn Fn() -> Vec<u8>| {
         if let Some(path) = path
-            && let Err(why) = put(job, args, path, ending, make().as_bytes())
+            && let Err(why) = put(job, args, path, ending, &make())
         {
             wrong.push(why);
         }
     };
     write(&args.report, REPORT, &|| {
-        judge::report::write(&outcome.entries)
+        judge::report::write(&outcome.entries).into()
     });
-    write(&args.trajectory, TRAJECTORY, &|| outcome.trajectory.write());
+    write(&args.trajectory, TRAJECTORY, &|| {
+        outcome.trajectory.write().into()
+    });
     write(&args.svg, SVG, &|| {
-        judge::svg(&task.field, &outcome.trajectory)
+        judge::svg(&task.field, &outcome.trajectory).into()
+    });
+    write(&args.display, DISPLAY, &|| {
+        outcome.display.clone().unwrap_or_default()
     });
     write(&args.html, HTML, &|| {
-        let mut row = Row::broken(shown(&job.solution), None, String::new());
+        let mut row = Row::broken(shown(job.judged()), None, String::new());
         tell(outcome, &mut row);
         let verdict = format!(
             "{}, {}",
@@ -286,7 +338,8 @@ fn write(job: &Job, args: &CheckArgs, task: &Task, outcome: &Outcome) -> Result<
             is_good: row.verdict.code() == 0,
             tongue: args.language,
         };
-        judge::page(&task.field, &outcome.trajectory, &outcome.entries, caption)
+        let (poses, entries) = (&outcome.trajectory, &outcome.entries);
+        judge::page(&task.field, poses, entries, caption).into()
     });
     match wrong.is_empty() {
         true => Ok(()),
@@ -305,7 +358,7 @@ fn put(job: &Job, args: &CheckArgs, path: &Path, ending: &str, bytes: &[u8]) -> 
     let output = Output {
         path: Some(&path),
         force: args.force,
-        source: &job.solution,
+        source: job.judged(),
     };
     output.write(bytes).map_err(|refusal| {
         let lines: Vec<&str> = refusal.lines.iter().map(|line| plain(line)).collect();

@@ -22,7 +22,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 use trikd::program::kill::{adopt_orphans, sweep};
 
-/// Bytes of three paths.
+/// Bytes of one path.
 const JOB_BYTES_MAX: u64 = 64 << 10;
 
 /// Serves until there are no more jobs.
@@ -81,24 +81,25 @@ fn limit_memory(args: &CheckArgs) -> nix::Result<()> {
 /// Does a run; a panic in it is its result.
 fn guarded(job: &Job, args: &CheckArgs) -> Row {
     catch_unwind(AssertUnwindSafe(|| run::run(job, args))).unwrap_or_else(|_| {
-        let field = job.field.as_deref().map(shown);
+        let field = job.rules().map(shown);
         let why = "trik has a defect and cannot judge this: please report it with this file";
-        Row::broken(shown(&job.solution), field, why.to_owned())
+        Row::broken(shown(job.judged()), field, why.to_owned())
     })
 }
 
 fn next(input: &mut impl BufRead) -> io::Result<Option<Job>> {
-    let mut parts: [Vec<u8>; 3] = Default::default();
+    let mut parts: [Vec<u8>; 4] = Default::default();
     for part in &mut parts {
         input.by_ref().take(JOB_BYTES_MAX).read_until(0, part)?;
         if part.pop() != Some(0) {
             return Ok(None);
         }
     }
-    let [solution, field, name] = parts.map(|part| PathBuf::from(OsString::from_vec(part)));
+    let [solution, field, log, name] = parts.map(|part| PathBuf::from(OsString::from_vec(part)));
     Ok(Some(Job {
         solution,
         field: Some(field).filter(|field| !field.as_os_str().is_empty()),
+        log: Some(log).filter(|log| !log.as_os_str().is_empty()),
         name,
     }))
 }

@@ -1,4 +1,4 @@
-//! A world of TRIK Studio for `trik up`: from a file to a field, a body and a configuration.
+//! A world of TRIK Studio for `trik up`, and for planners: from a file to a field, a body and a configuration.
 //!
 //! Owns which files have worlds and what is said when one has none. Knows no simulation.
 
@@ -7,16 +7,16 @@ use std::path::{Path, PathBuf};
 
 use lang::problem::Problem;
 use sim::body::{Body, studio};
-use sim::field::Field;
+use sim::field::{Field, Locks};
 
 /// Bytes of a file that are read at most: more than any save may have.
 const BYTES: u64 = 64 << 20;
 
-/// The field of a world model, or of a project.
+/// The field of a world model, or of a project, and what the project locks.
 ///
 /// # Errors
 /// The file cannot be read, or there is no world in it.
-pub(super) fn read(path: &Path) -> Result<Field, String> {
+pub(crate) fn read(path: &Path) -> Result<(Field, Locks), String> {
     let say = |problem: &dyn std::fmt::Display| format!("{}: {problem}", path.display());
     let mut bytes = Vec::new();
     std::fs::File::open(path)
@@ -30,11 +30,13 @@ pub(super) fn read(path: &Path) -> Result<Field, String> {
         .iter()
         .find(|byte| !byte.is_ascii_whitespace() && ![0xef, 0xbb, 0xbf].contains(*byte))
         == Some(&b'<');
+    let mut locks = Locks::default();
     let (text, blobs) = if is_text {
         let text = String::from_utf8(bytes).map_err(|error| say(&error))?;
         (text, None)
     } else {
         let project = lang::diagram::read::read(&bytes).map_err(all)?.project;
+        locks = Locks::of(&project.meta);
         let none = "there is no world in this project; give a world model, FILE.xml";
         (project.world.ok_or_else(|| say(&none))?, project.blobs)
     };
@@ -44,12 +46,12 @@ pub(super) fn read(path: &Path) -> Result<Field, String> {
     for problem in &problems {
         eprintln!("trik: {}", say(problem));
     }
-    Ok(opened.field)
+    Ok((opened.field, locks))
 }
 
 /// The robot of a field as the board's.
-pub(super) fn body(field: &Field, seed: u64) -> Box<dyn Body> {
-    Box::new(studio::Studio::new(field, seed))
+pub(super) fn body(field: &Field, locks: Locks, seed: u64) -> Box<dyn Body> {
+    Box::new(studio::Studio::new(field, seed).locked(locks))
 }
 
 /// Writes the configuration of a field's robot into a file, and gives its name back.

@@ -37,6 +37,7 @@ fn world(finish: u32) -> String {
 /// A drive straight ahead, in a world; without rules if the world has none.
 fn drive(ms: &str, world: Option<&str>) -> Vec<u8> {
     let mut sketch = Sketch::new();
+    sketch.meta("twoDModelWorldReadOnly", "true");
     let start = sketch.block("InitialNode", &[]);
     let forward = sketch.block(
         "TrikV6EnginesForward",
@@ -63,6 +64,18 @@ fn endless(world: &str) -> Vec<u8> {
     sketch.qrs().expect("a save")
 }
 
+/// Waits for a finger on the left pad, and prints where it is.
+fn pad() -> Vec<u8> {
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let wait = sketch.block("TrikWaitPadPress", &[("Pad", "1")]);
+    let print = sketch.block("Function", &[("Body", "print(gamepadPad1[1])")]);
+    let end = sketch.block("FinalNode", &[]);
+    sketch.chain(&[start, wait, print, end]);
+    sketch.world("<root version=\"20251219\"><world/><settings/></root>");
+    sketch.qrs().expect("a save")
+}
+
 /// A folder with solutions of each kind and another field.
 fn folder() -> Board {
     let board = Board::new();
@@ -75,6 +88,18 @@ fn folder() -> Board {
     board.file("class/damaged.qrs", b"PK\x03\x04 not a save");
     board.file("line.qrs", drive("3000", Some(&near)));
     board.file("short.qrs", drive("500", Some(&near)));
+    let moved = near.replace("400:", "60:");
+    board.file("moved.qrs", drive("3000", Some(&moved)));
+    board.file("pad.qrs", pad());
+    let checking = fs::read_to_string(root().join("docs/teacher/checking.md")).expect("a document");
+    let hands = checking
+        .split("```text\n")
+        .nth(1)
+        .and_then(|rest| rest.split("```").next());
+    board.file(
+        "hands.txt",
+        hands.expect("an example of what a person does"),
+    );
     board.file("fields/far.xml", world(300));
     board.file("fields/near.xml", near);
     board
@@ -394,6 +419,30 @@ fn reports_trajectories_pictures_and_pages_are_written_for_each_run() {
     // The record is judged as the run was, and no file is replaced by mistake.
     let again = trik(&board, &["check", "line.qrs", "--log", "t.json"]);
     assert_eq!(again.code(), 0, "{}{}", again.stdout, again.stderr);
+    let fields = ["check", "--log", "t.json", "--field", "fields"];
+    let alone = trik(&board, &fields);
+    assert_eq!(alone.code(), 1, "{}{}", alone.stdout, alone.stderr);
+    assert!(
+        alone
+            .stdout
+            .contains("t.json    fields/near.xml  accomplished"),
+        "{}",
+        alone.stdout
+    );
+    let stranger = read("t.json").replacen("trikKitRobot", "stranger", 1);
+    fs::create_dir(board.path("strange")).expect("a folder");
+    board.file("strange/t.json", stranger);
+    let told = trik(
+        &board,
+        &["check", "--log", "strange", "--field", "fields/near.xml"],
+    );
+    let why = "strange/t.json: the record has a robot 'stranger' that is not in this world";
+    assert!(told.stdout.contains(why), "{}{}", told.stdout, told.stderr);
+    for wrong in [&["--log", "t.json"][..], &["class", "--log", "t.json"]] {
+        let refused = trik(&board, &[&["check"], wrong].concat());
+        assert_eq!(refused.code(), 2, "{wrong:?}");
+        assert!(refused.stderr.contains("rules"), "{}", refused.stderr);
+    }
     let refused = trik(&board, &one);
     assert!(
         refused.code() != 0

@@ -5,7 +5,7 @@
 
 use super::super::diagnostic::{Code, Diagnostic};
 use super::super::lexer::{Keyword, TokenKind, slice};
-use super::super::syntax::{Declaration, Doc, Domain, Kind, ModelText, Name, Node, Section, Span};
+use super::super::syntax::{Declaration, Domain, Kind, ModelText, Name, Node, Section, Span};
 use super::{Parser, join, shown};
 
 /// What follows a name.
@@ -19,6 +19,7 @@ impl Parser<'_, '_> {
     pub(super) fn section(&mut self, kind: Kind, model: &mut ModelText) {
         let doc = self.doc_before();
         let first = self.bump().span;
+        let doc = doc.or(self.doc_before());
         if self.take(TokenKind::Colon).is_none() {
             self.unexpected("`:`");
         }
@@ -82,12 +83,10 @@ impl Parser<'_, '_> {
         if !is_read {
             self.skip_in_section();
         }
-        let before = self.doc_before();
+        let inside = self.doc_before();
         let next = self.separator(kind);
-        let behind = before.or_else(|| self.doc_behind());
-        if one.doc.is_none() {
-            one.doc = behind;
-        }
+        let behind = self.doc_behind();
+        one.doc = one.doc.or(inside).or(behind);
         Some((Some(one), next.unwrap_or(Next::End)))
     }
 
@@ -165,21 +164,6 @@ impl Parser<'_, '_> {
         }
     }
 
-    /// Documentation behind a comma or semicolon, if it stands on the same line and the next name does not.
-    fn doc_behind(&mut self) -> Option<Doc> {
-        let &(before, span) = self.docs.get(self.next_doc)?;
-        let separator = self.before().end;
-        let has_break = |start: u32, end: u32| slice(self.text, Span { start, end }).contains('\n');
-        let next = self.token();
-        let is_behind = before == self.at
-            && !has_break(separator, span.start)
-            && (next.kind == TokenKind::EndOfText || has_break(span.end, next.span.start));
-        is_behind.then(|| {
-            self.next_doc += 1;
-            self.doc(span)
-        })
-    }
-
     /// `[m/s]`. Gives false where the rest of the declaration cannot be read.
     fn unit(&mut self, one: &mut Declaration) -> bool {
         let Some(open) = self.take(TokenKind::OpenBracket) else {
@@ -213,6 +197,15 @@ impl Parser<'_, '_> {
         };
         let text = slice(self.text, inside);
         let trimmed = text.trim();
+        if trimmed.contains(['\n', '\r']) || trimmed.contains("//") || trimmed.contains("/*") {
+            let found = Diagnostic::new(
+                Code::Unexpected,
+                open,
+                "a unit has one line and no comments",
+                "it begins here",
+            );
+            self.tell(found.hint("a unit is written `[m/s]`"));
+        }
         let skipped = text.len() - text.trim_start().len();
         let start = inside.start + u32::try_from(skipped).unwrap_or_default();
         let length = u32::try_from(trimmed.len()).unwrap_or_default();

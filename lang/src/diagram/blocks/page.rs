@@ -51,6 +51,9 @@ fn block(page: &mut String, row: &Row) {
         Silent::WithoutMailbox => {
             page.push_str("It is passed through in a simulator without a mailbox.\n");
         }
+        Silent::WithoutGamepad => {
+            page.push_str("It is passed through in a simulator without a gamepad.\n");
+        }
         Silent::Real => page.push_str("It is passed through on a real robot.\n"),
         Silent::Always => page.push_str("It is passed through when a diagram is run.\n"),
     }

@@ -147,53 +147,53 @@ pub(super) const ROWS: &[Row] = &[
         )
     },
     Row {
-        silent: Silent::Simulated,
+        silent: Silent::WithoutGamepad,
         ..row(
             "TrikWaitGamepadButton",
             "Wait Gamepad Button",
             Watch::PadButton,
             &[property("Button", "Button", Number, "1")],
-            "Waits until a button of the gamepad, 1 to 5, is pressed. It looks every 200 ms. In the simulator it does nothing.",
+            "Waits until a button of the gamepad, 1 to 5, is pressed. It looks every 200 ms.",
         )
     },
     Row {
-        silent: Silent::Simulated,
+        silent: Silent::WithoutGamepad,
         ..row(
             "TrikWaitPadPress",
             "Wait Pad Press",
             Watch::Pad,
             &[property("Pad", "Pad", Number, "1")],
-            "Waits until a pad of the gamepad is touched: 1 is the left one, 2 the right one. In the simulator it does nothing.",
+            "Waits until a pad of the gamepad is touched: 1 is the left one, 2 the right one.",
         )
     },
     Row {
-        silent: Silent::Simulated,
+        silent: Silent::WithoutGamepad,
         ..row(
             "TrikWaitGamepadWheel",
             "Wait for Gamepad Wheel",
             Watch::Wheel("Angle"),
             &[expression("Angle", "Angle", Whole, "0"), SIGN],
-            "Waits until the wheel of the gamepad, from -100 to 100, has passed a value. In the simulator it does nothing.",
+            "Waits until the wheel of the gamepad, from -100 to 100, has passed a value.",
         )
     },
     Row {
-        silent: Silent::Simulated,
+        silent: Silent::WithoutGamepad,
         ..row(
             "TrikWaitGamepadDisconnect",
             "Wait for Gamepad Disconnect",
             Watch::Disconnected,
             &[],
-            "Waits until the gamepad is gone. In the simulator it does nothing.",
+            "Waits until the gamepad is gone.",
         )
     },
     Row {
-        silent: Silent::Simulated,
+        silent: Silent::WithoutGamepad,
         ..row(
             "TrikWaitGamepadConnect",
             "Wait for Gamepad Connect",
             Watch::Connected,
             &[],
-            "Waits until a gamepad is there. In the simulator it does nothing.",
+            "Waits until a gamepad is there.",
         )
     },
 ];

@@ -131,6 +131,31 @@ fn a_ball_rolls_on_and_bounces_from_a_wall() {
 }
 
 #[test]
+fn robots_push_each_other() {
+    // It stands across in the way.
+    let other = Robot {
+        position: point(70.0, 20.0),
+        direction: 90.0,
+        ..Robot::default()
+    };
+    let setup = || Setup {
+        others: vec![other.clone()],
+        ..Setup::default()
+    };
+    let mut arena = Arena::new(&field(), setup());
+    drive(&mut arena, 100, 100, 200);
+    let [first, second] = [0, 1].map(|index| arena.robots()[index].pose());
+    let alone = {
+        let mut arena = Arena::new(&field(), Setup::default());
+        drive(&mut arena, 100, 100, 200);
+        arena.robots()[0].pose()
+    };
+    assert!(first.x < alone.x - 5.0, "{first:?} {alone:?}");
+    let apart = (first.x - second.x).hypot(first.y - second.y);
+    assert!(apart > 30.0, "{first:?} {second:?}");
+}
+
+#[test]
 fn the_same_run_is_the_same_again() {
     let run = || {
         let mut field = field();

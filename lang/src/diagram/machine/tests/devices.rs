@@ -318,7 +318,10 @@ fn random_numbers_lie_between_both_bounds() {
 
 #[test]
 fn mail_is_a_text_whatever_is_in_it() {
-    let world = World::Simulated { mailbox: true };
+    let world = World::Simulated {
+        mailbox: true,
+        gamepad: false,
+    };
     let sketch = chain(&[
         ("TrikWaitForMessage", &[("Variable", "m")]),
         (

@@ -1,0 +1,128 @@
+//! Many states at a time: each step for a block of them, in loops that a compiler makes wide.
+//!
+//! Owns the form of the data, a row for each part of the state, and the blocks.
+
+use super::{Program, Step};
+use crate::dcml::lower::Refused;
+use crate::dcml::tape::Input;
+use crate::limits;
+
+/// How many states a step does at a time.
+const LANES: usize = 64;
+
+type Row = Box<[f64; LANES]>;
+
+/// A program with registers for a block of states.
+#[derive(Clone, Debug)]
+pub struct Batch {
+    program: Program,
+    rows: Vec<Row>,
+    /// Where steps write, before it changes its place with a row.
+    spare: [Row; 2],
+}
+
+impl Batch {
+    /// For a program.
+    ///
+    /// # Errors
+    ///
+    /// [`Refused`] if it has more than [`limits::DCML_BATCH_ROWS_MAX`] registers.
+    pub fn new(program: Program) -> Result<Self, Refused> {
+        if program.registers > limits::DCML_BATCH_ROWS_MAX {
+            return Err(Refused::TooLarge(
+                "values at the same time",
+                limits::DCML_BATCH_ROWS_MAX,
+            ));
+        }
+        let empty = || Box::new([0.0; LANES]);
+        let mut rows: Vec<Row> = (0..program.registers).map(|_| empty()).collect();
+        for (row, constant) in rows.iter_mut().zip(&program.constants) {
+            row.fill(*constant);
+        }
+        Ok(Self {
+            program,
+            rows,
+            spare: [empty(), empty()],
+        })
+    }
+
+    /// How many results each state has.
+    pub fn results(&self) -> usize {
+        self.program.results()
+    }
+
+    /// Computes the results of `count` states. All three are rows of `count` numbers: one for each part of a state, of an
+    /// action, of the results. What is not given is not a number, and results without a place are dropped.
+    pub fn run(&mut self, count: usize, states: &[f64], actions: &[f64], results: &mut [f64]) {
+        let mut from = 0;
+        while from < count {
+            let lanes = LANES.min(count - from);
+            for (input, register) in &self.program.loads {
+                let (rows, at) = match *input {
+                    Input::State(at) => (states, at),
+                    Input::Action(at) => (actions, at),
+                    Input::Param(at) => (&[] as &[f64], at),
+                };
+                let begin = at as usize * count + from;
+                let row = &mut self.rows[*register as usize];
+                match rows.get(begin..begin + lanes) {
+                    Some(given) => row[..lanes].copy_from_slice(given),
+                    None => row.fill(f64::NAN),
+                }
+            }
+            for step in &self.program.steps {
+                perform(step, &mut self.rows, &mut self.spare);
+            }
+            for (at, register) in self.program.results.iter().enumerate() {
+                let begin = at * count + from;
+                if let Some(place) = results.get_mut(begin..begin + lanes) {
+                    place.copy_from_slice(&self.rows[*register as usize][..lanes]);
+                }
+            }
+            from += lanes;
+        }
+    }
+}
+
+fn perform(step: &Step, rows: &mut [Row], [spare, beside]: &mut [Row; 2]) {
+    match *step {
+        Step::Negative(to, x) => {
+            let x = &rows[x as usize];
+            for lane in 0..LANES {
+                spare[lane] = -x[lane];
+            }
+            std::mem::swap(spare, &mut rows[to as usize]);
+        }
+        Step::Binary(operator, to, [x, y]) => {
+            let (x, y) = (&rows[x as usize], &rows[y as usize]);
+            for lane in 0..LANES {
+                spare[lane] = operator.apply(x[lane], y[lane]);
+            }
+            std::mem::swap(spare, &mut rows[to as usize]);
+        }
+        Step::SinCos([sin, cos], x) => {
+            let x = &rows[x as usize];
+            for lane in 0..LANES {
+                (spare[lane], beside[lane]) = x[lane].sin_cos();
+            }
+            std::mem::swap(spare, &mut rows[sin as usize]);
+            std::mem::swap(beside, &mut rows[cos as usize]);
+        }
+        Step::Call(function, to, [x, y]) => {
+            let (x, y) = (&rows[x as usize], &rows[y as usize]);
+            for lane in 0..LANES {
+                spare[lane] = function.apply(x[lane], y[lane]);
+            }
+            std::mem::swap(spare, &mut rows[to as usize]);
+        }
+        Step::Select(comparison, to, [left, right, yes, no]) => {
+            let (left, right) = (&rows[left as usize], &rows[right as usize]);
+            let (yes, no) = (&rows[yes as usize], &rows[no as usize]);
+            for lane in 0..LANES {
+                let holds = comparison.holds(left[lane], right[lane]);
+                spare[lane] = if holds { yes[lane] } else { no[lane] };
+            }
+            std::mem::swap(spare, &mut rows[to as usize]);
+        }
+    }
+}
