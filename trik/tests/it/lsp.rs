@@ -67,7 +67,10 @@ impl Server {
     /// One that is ready for an editor with these capabilities.
     fn ready(capabilities: &Value) -> Self {
         let mut server = Self::start();
-        let answer = server.ask("initialize", &json!({"processId": null, "capabilities": capabilities}));
+        let answer = server.ask(
+            "initialize",
+            &json!({"processId": null, "capabilities": capabilities}),
+        );
         assert!(answer.get("result").is_some(), "{answer}");
         server.tell("initialized", &json!({}));
         server
@@ -83,7 +86,9 @@ impl Server {
 
     fn raw(&mut self, bytes: &[u8]) {
         let to = self.to.as_mut().expect("open");
-        to.write_all(bytes).and_then(|()| to.flush()).expect("it reads");
+        to.write_all(bytes)
+            .and_then(|()| to.flush())
+            .expect("it reads");
     }
 
     fn send(&mut self, message: &Value) {
@@ -135,7 +140,8 @@ impl Server {
     /// The diagnostics of a version.
     fn diagnostics(&mut self, version: i64) -> Value {
         let mut message = self.wait(|message| {
-            message["method"] == "textDocument/publishDiagnostics" && message["params"]["version"] == version
+            message["method"] == "textDocument/publishDiagnostics"
+                && message["params"]["version"] == version
         });
         message["params"]["diagnostics"].take()
     }
@@ -190,7 +196,9 @@ fn framed(message: &Value) -> Vec<u8> {
 /// The next message of a stream, whose frames must be as the protocol says.
 fn frame(from: &mut impl BufRead) -> Option<Value> {
     let mut header = String::new();
-    from.read_line(&mut header).ok().filter(|count| *count > 0)?;
+    from.read_line(&mut header)
+        .ok()
+        .filter(|count| *count > 0)?;
     let length = header.strip_prefix("Content-Length: ").expect("a header");
     let length: usize = length.trim_end_matches("\r\n").parse().expect("a number");
     let mut empty = String::new();
@@ -226,7 +234,12 @@ fn at(text: &str, word: &str, nth: usize) -> Value {
 fn place_of(text: &str, place: usize) -> Value {
     let before = &text[..place];
     let line = before.matches('\n').count();
-    let column = before.rsplit('\n').next().unwrap_or_default().encode_utf16().count();
+    let column = before
+        .rsplit('\n')
+        .next()
+        .unwrap_or_default()
+        .encode_utf16()
+        .count();
     json!({"line": line, "character": column})
 }
 
@@ -253,7 +266,11 @@ fn edited(text: &str, edits: &Value) -> String {
         .iter()
         .map(|edit| {
             let range = &edit["range"];
-            (byte(&range["start"]), byte(&range["end"]), edit["newText"].as_str().expect("a text"))
+            (
+                byte(&range["start"]),
+                byte(&range["end"]),
+                edit["newText"].as_str().expect("a text"),
+            )
         })
         .collect();
     all.sort_unstable();

@@ -42,12 +42,21 @@ fn a_document_of_thirty_megabytes_is_served_and_a_longer_one_is_refused() {
     let (mut server, told) = Server::with(&text, &modern());
     assert_eq!(told, json!([]));
     let end = json!({"line": 9, "character": 0});
-    server.change(2, &json!([{"range": {"start": end, "end": end}, "text": "nonsense\n"}]));
+    server.change(
+        2,
+        &json!([{"range": {"start": end, "end": end}, "text": "nonsense\n"}]),
+    );
     assert_ne!(server.diagnostics(2), json!([]));
     // Only what is wrong is known of a text of this length.
     let params = json!({"textDocument": {"uri": URI}});
-    assert_eq!(server.result("textDocument/semanticTokens/full", &params)["data"], json!([]));
-    server.change(3, &json!([{"range": {"start": end, "end": end}, "text": "x".repeat(3 << 20)}]));
+    assert_eq!(
+        server.result("textDocument/semanticTokens/full", &params)["data"],
+        json!([])
+    );
+    server.change(
+        3,
+        &json!([{"range": {"start": end, "end": end}, "text": "x".repeat(3 << 20)}]),
+    );
     let told = server.diagnostics(3);
     assert_eq!(told[0]["code"], "too-long", "{told}");
     server.change(4, &json!([{"text": DRIVE}]));

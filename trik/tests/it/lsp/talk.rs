@@ -12,12 +12,18 @@ fn an_editor_opens_changes_asks_and_says_goodbye() {
     assert_eq!(theta["position"]["character"], 12);
     let hover = server.result("textDocument/hover", &theta);
     let shown = hover["contents"]["value"].as_str().unwrap_or_default();
-    assert!(shown.contains("CONFIG theta in S1") && shown.contains("Heading \u{3b8}."), "{hover}");
+    assert!(
+        shown.contains("CONFIG theta in S1") && shown.contains("Heading \u{3b8}."),
+        "{hover}"
+    );
     assert_eq!(hover["contents"]["kind"], "markdown");
     assert_eq!(hover["range"]["start"], theta["position"]);
     let definition = server.result("textDocument/definition", &theta);
     let declared = place_of(DRIVE, DRIVE.find("theta").unwrap());
-    assert_eq!((&definition["range"]["start"], &definition["uri"]), (&declared, &json!(URI)));
+    assert_eq!(
+        (&definition["range"]["start"], &definition["uri"]),
+        (&declared, &json!(URI))
+    );
     for (with_declaration, count) in [(true, 4), (false, 3)] {
         let mut params = theta.clone();
         params["context"] = json!({"includeDeclaration": with_declaration});
@@ -25,7 +31,12 @@ fn an_editor_opens_changes_asks_and_says_goodbye() {
         assert_eq!(places.as_array().map(Vec::len), Some(count), "{places}");
     }
     let marks = server.result("textDocument/documentHighlight", &theta);
-    let kinds: Vec<&Value> = marks.as_array().unwrap().iter().map(|one| &one["kind"]).collect();
+    let kinds: Vec<&Value> = marks
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|one| &one["kind"])
+        .collect();
     assert_eq!(kinds, [3, 2, 2, 3]);
     let range = server.result("textDocument/prepareRename", &theta);
     assert_eq!(range["start"], theta["position"]);
@@ -34,11 +45,20 @@ fn an_editor_opens_changes_asks_and_says_goodbye() {
     let edit = server.result("textDocument/rename", &params);
     let changes = &edit["documentChanges"][0];
     assert_eq!(changes["textDocument"], json!({"uri": URI, "version": 1}));
-    assert_eq!(edited(DRIVE, &changes["edits"]), DRIVE.replace("theta", "heading"));
+    assert_eq!(
+        edited(DRIVE, &changes["edits"]),
+        DRIVE.replace("theta", "heading")
+    );
     params["newName"] = json!("sin");
     let refusal = server.ask("textDocument/rename", &params);
     assert_eq!(refusal["error"]["code"], -32803);
-    assert!(refusal["error"]["message"].as_str().unwrap().contains("`sin`"), "{refusal}");
+    assert!(
+        refusal["error"]["message"]
+            .as_str()
+            .unwrap()
+            .contains("`sin`"),
+        "{refusal}"
+    );
     assert_eq!(server.goodbye(), "");
 }
 
@@ -47,31 +67,66 @@ fn diagnostics_follow_each_change_with_code_place_and_other_places() {
     let (mut server, _) = Server::with(DRIVE, &modern());
     // Behind the comment of two and of four bytes: the name that is put in begins at unit 9.
     let place = json!({"line": 6, "character": 9});
-    server.change(2, &json!([{"range": {"start": place, "end": place}, "text": "x = thata; "}]));
+    server.change(
+        2,
+        &json!([{"range": {"start": place, "end": place}, "text": "x = thata; "}]),
+    );
     let told = server.diagnostics(2);
-    let codes: Vec<&str> = told.as_array().unwrap().iter().map(|one| one["code"].as_str().unwrap()).collect();
-    assert!(codes.contains(&"undeclared-name") && codes.contains(&"duplicate-equation"), "{told}");
+    let codes: Vec<&str> = told
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|one| one["code"].as_str().unwrap())
+        .collect();
+    assert!(
+        codes.contains(&"undeclared-name") && codes.contains(&"duplicate-equation"),
+        "{told}"
+    );
     for one in told.as_array().unwrap() {
-        assert_eq!((&one["source"], &one["severity"]), (&json!("dcml"), &json!(1)));
+        assert_eq!(
+            (&one["source"], &one["severity"]),
+            (&json!("dcml"), &json!(1))
+        );
         if one["code"] == "undeclared-name" {
-            let range = json!({"start": {"line": 6, "character": 13}, "end": {"line": 6, "character": 18}});
+            let range =
+                json!({"start": {"line": 6, "character": 13}, "end": {"line": 6, "character": 18}});
             assert_eq!(one["range"], range);
             assert!(one["message"].as_str().unwrap().contains("theta"), "{one}");
         } else {
-            assert_eq!(one["relatedInformation"][0]["location"]["uri"], URI, "{one}");
+            assert_eq!(
+                one["relatedInformation"][0]["location"]["uri"], URI,
+                "{one}"
+            );
         }
     }
     // What the editor offers as a fix makes it one error less.
     let range = json!({"start": {"line": 6, "character": 14}, "end": {"line": 6, "character": 14}});
-    let params = json!({"textDocument": {"uri": URI}, "range": range, "context": {"diagnostics": []}});
+    let params =
+        json!({"textDocument": {"uri": URI}, "range": range, "context": {"diagnostics": []}});
     let fixes = server.result("textDocument/codeAction", &params);
-    let fix = fixes.as_array().unwrap().iter().find(|one| one["title"] == "Change to `theta`");
+    let fix = fixes
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|one| one["title"] == "Change to `theta`");
     let fix = fix.unwrap_or_else(|| panic!("{fixes}"));
-    assert_eq!((&fix["kind"], &fix["isPreferred"]), (&json!("quickfix"), &json!(true)));
+    assert_eq!(
+        (&fix["kind"], &fix["isPreferred"]),
+        (&json!("quickfix"), &json!(true))
+    );
     let edit = &fix["edit"]["documentChanges"][0]["edits"][0];
-    server.change(3, &json!([{"range": edit["range"], "text": edit["newText"]}]));
+    server.change(
+        3,
+        &json!([{"range": edit["range"], "text": edit["newText"]}]),
+    );
     let told = server.diagnostics(3);
-    assert!(told.as_array().unwrap().iter().all(|one| one["code"] != "undeclared-name"), "{told}");
+    assert!(
+        told.as_array()
+            .unwrap()
+            .iter()
+            .all(|one| one["code"] != "undeclared-name"),
+        "{told}"
+    );
     // All of the text, and then closed: nothing is left of it.
     server.change(4, &json!([{"text": DRIVE}]));
     assert_eq!(server.diagnostics(4), json!([]));
@@ -99,18 +154,30 @@ fn what_is_offered_can_be_put_in() {
         found.next().unwrap_or_else(|| panic!("{label}: {offered}"))
     };
     assert_eq!(find("theta")["detail"], "configuration in S1");
-    assert_eq!(find("theta")["documentation"].as_str().map(str::trim), Some("Heading \u{3b8}."));
+    assert_eq!(
+        find("theta")["documentation"].as_str().map(str::trim),
+        Some("Heading \u{3b8}.")
+    );
     let cosine = find("cos");
-    assert_eq!((&cosine["insertTextFormat"], &cosine["kind"]), (&json!(2), &json!(3)));
+    assert_eq!(
+        (&cosine["insertTextFormat"], &cosine["kind"]),
+        (&json!(2), &json!(3))
+    );
     assert_eq!(cosine["textEdit"]["newText"], "cos(${1:x})$0");
     assert_eq!(cosine["textEdit"]["range"]["start"], params["position"]);
     let start = params["position"].clone();
-    server.change(2, &json!([{"range": {"start": start, "end": start}, "text": "atan2(1, "}]));
+    server.change(
+        2,
+        &json!([{"range": {"start": start, "end": start}, "text": "atan2(1, "}]),
+    );
     params["position"]["character"] = json!(start["character"].as_u64().unwrap() + 9);
     let help = server.result("textDocument/signatureHelp", &params);
     assert_eq!(help["activeParameter"], 1, "{help}");
     assert_eq!(help["signatures"][0]["label"], "atan2(y, x)");
-    assert_eq!(help["signatures"][0]["parameters"][1]["label"], json!([9, 10]));
+    assert_eq!(
+        help["signatures"][0]["parameters"][1]["label"],
+        json!([9, 10])
+    );
     server.goodbye();
 }
 
@@ -120,16 +187,26 @@ fn the_outline_folds_and_colours_of_a_document_are_told() {
     let document = json!({"textDocument": {"uri": URI}});
     let symbols = server.result("textDocument/documentSymbol", &document);
     assert_eq!(symbols[0]["name"], "Drive");
-    assert_eq!(symbols[0]["children"].as_array().map(Vec::len), Some(10), "{symbols}");
+    assert_eq!(
+        symbols[0]["children"].as_array().map(Vec::len),
+        Some(10),
+        "{symbols}"
+    );
     let folds = server.result("textDocument/foldingRange", &document);
     assert_eq!(folds, json!([{"startLine": 0, "endLine": 7}]));
     let tokens = server.result("textDocument/semanticTokens/full", &document);
-    let data: Vec<u64> = tokens["data"].as_array().unwrap().iter().map(|one| one.as_u64().unwrap()).collect();
+    let data: Vec<u64> = tokens["data"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|one| one.as_u64().unwrap())
+        .collect();
     assert_eq!(data.len() % 5, 0);
     // BEGIN is a keyword, Drive a class that is declared here, then the comment in units of UTF-16.
     assert_eq!(data[..15], [0, 0, 5, 0, 4, 0, 6, 5, 1, 1, 0, 6, 13, 9, 0]);
     let mut params = document.clone();
-    params["range"] = json!({"start": {"line": 4, "character": 0}, "end": {"line": 5, "character": 0}});
+    params["range"] =
+        json!({"start": {"line": 4, "character": 0}, "end": {"line": 5, "character": 0}});
     let part = server.result("textDocument/semanticTokens/range", &params);
     assert_eq!(part["data"][0], 4);
     assert_eq!(part["data"].as_array().map(Vec::len), Some(5 * 8));
@@ -140,7 +217,8 @@ fn the_outline_folds_and_colours_of_a_document_are_told() {
 fn a_document_is_formatted_by_edits() {
     let loose = DRIVE.replace("d(x) = ", "d( x )=");
     let (mut server, _) = Server::with(&loose, &modern());
-    let params = json!({"textDocument": {"uri": URI}, "options": {"tabSize": 2, "insertSpaces": true}});
+    let params =
+        json!({"textDocument": {"uri": URI}, "options": {"tabSize": 2, "insertSpaces": true}});
     let edits = server.result("textDocument/formatting", &params);
     let formatted = edited(&loose, &edits);
     assert!(formatted.contains("d(x) = r / 2"), "{formatted}");
@@ -162,12 +240,18 @@ fn an_old_editor_gets_plain_texts_lists_and_names() {
     let offered = server.result("textDocument/completion", &at(DRIVE, "cos", 0));
     for one in offered["items"].as_array().unwrap() {
         assert_eq!(one["insertTextFormat"], 1, "{one}");
-        assert!(!one["textEdit"]["newText"].as_str().unwrap().contains('$'), "{one}");
+        assert!(
+            !one["textEdit"]["newText"].as_str().unwrap().contains('$'),
+            "{one}"
+        );
     }
     let mut params = at(DRIVE, "theta", 0);
     params["newName"] = json!("heading");
     let edit = server.result("textDocument/rename", &params);
-    assert_eq!(edited(DRIVE, &edit["changes"][URI]), DRIVE.replace("theta", "heading"));
+    assert_eq!(
+        edited(DRIVE, &edit["changes"][URI]),
+        DRIVE.replace("theta", "heading")
+    );
     server.goodbye();
 }
 
@@ -182,7 +266,8 @@ fn columns_are_bytes_if_the_editor_counts_bytes() {
     assert_eq!(server.diagnostics(1), json!([]));
     let line = DRIVE.lines().nth(6).unwrap();
     let column = line.find("theta").unwrap();
-    let params = json!({"textDocument": {"uri": URI}, "position": {"line": 6, "character": column}});
+    let params =
+        json!({"textDocument": {"uri": URI}, "position": {"line": 6, "character": column}});
     let hover = server.result("textDocument/hover", &params);
     assert_eq!(hover["range"]["end"]["character"], column + 5);
     server.goodbye();
@@ -198,13 +283,25 @@ fn the_order_of_a_life_is_kept() {
     let begun = server.result("initialize", &json!({"capabilities": {}}));
     assert_eq!(begun["serverInfo"]["name"], "trik dcml lsp");
     assert_eq!(begun["capabilities"]["positionEncoding"], "utf-16");
-    assert_eq!(server.ask("initialize", &json!({}))["error"]["code"], -32600);
-    assert_eq!(server.ask("no/such/thing", &json!({}))["error"]["code"], -32601);
+    assert_eq!(
+        server.ask("initialize", &json!({}))["error"]["code"],
+        -32600
+    );
+    assert_eq!(
+        server.ask("no/such/thing", &json!({}))["error"]["code"],
+        -32601
+    );
     assert_eq!(server.ask("$/nosuch", &json!({}))["error"]["code"], -32601);
     server.tell("$/setTrace", &json!({"value": "off"}));
-    server.tell("workspace/didChangeConfiguration", &json!({"settings": null}));
+    server.tell(
+        "workspace/didChangeConfiguration",
+        &json!({"settings": null}),
+    );
     assert_eq!(server.result("shutdown", &Value::Null), Value::Null);
-    assert_eq!(server.ask("shutdown", &Value::Null)["error"]["code"], -32600);
+    assert_eq!(
+        server.ask("shutdown", &Value::Null)["error"]["code"],
+        -32600
+    );
     server.tell("exit", &Value::Null);
     assert!(server.kept.is_empty(), "{:?}", server.kept);
     assert_eq!(server.end(), (Some(0), String::new()));
