@@ -137,6 +137,10 @@ pub const DCML_JACOBIAN_MAX: usize = 1 << 20;
 pub const DCML_JACOBIAN_STEPS_MAX: usize = 1 << 24;
 /// Values that a batch of states keeps for each state at the same time.
 pub const DCML_BATCH_ROWS_MAX: usize = 1 << 16;
+/// Values and results of a model that is written in Java, whose methods end at 64 KiB.
+pub const DCML_JAVA_VALUES: usize = 3000;
+/// The same in Lua, whose functions end at 65536 constants.
+pub const DCML_LUA_VALUES: usize = 30_000;
 /// Steps of one solution of a model.
 pub const DCML_STEPS_MAX: usize = 10_000_000;
 /// Events of one solution of a model.

@@ -11,6 +11,7 @@ use crate::{check, diagrams, fault, limits, up};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use lang::diagram::generate::Language;
 use lang::problem::Tongue;
+use sim::body::rolling::Actuator;
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::net::IpAddr;
@@ -159,9 +160,23 @@ enum Command {
 /// What `trik up` can be told.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub(crate) struct UpArgs {
-    /// Which robot: its body in the simulator, and its configuration robots/NAME.lua.
-    #[arg(long, value_name = "NAME", default_value = up::DEFAULT_ROBOT, value_parser = up::robot_name)]
+    /// Which robot: its body in the simulator, and its configuration robots/NAME.lua; or a model of DCML that moves the
+    /// usual body, FILE.dcml or the name of a shipped one.
+    #[arg(long, value_name = "NAME|FILE.dcml", default_value = up::DEFAULT_ROBOT, value_parser = up::robot_name)]
     pub robot: String,
+    /// Which model, if the file has several.
+    #[arg(long, value_name = "NAME")]
+    pub model: Option<String>,
+    /// Numbers for the parameters of the model.
+    #[arg(long, value_name = "NAME=NUMBER", value_delimiter = ',', value_parser = up::number_of)]
+    pub params: Vec<(String, f64)>,
+    /// What drives the actions of the model: u_l=M3 is the speed of the motor in rad/s, steer=S1 the angle of the servo in
+    /// rad to the left, v=M3*0.028 so many times as much [default: what the model says of its actions].
+    #[arg(long, value_name = "ACTION=PORT", value_delimiter = ',', value_parser = up::driven)]
+    pub drive: Vec<(String, Actuator)>,
+    /// States of the model that do not begin with 0.
+    #[arg(long, value_name = "STATE=NUMBER", value_delimiter = ',', value_parser = up::number_of)]
+    pub start: Vec<(String, f64)>,
     /// A world of TRIK Studio in the place of the robot's own: FILE.xml, or a project FILE.qrs with a world in it. The robot
     /// stands where the world has it, and has the wheels and sensors that are plugged in there.
     #[arg(long, value_name = "FILE", conflicts_with = "robot")]

@@ -6,14 +6,19 @@
 //! Exit codes: 0 done, 1 refused or failed, 2 a file that cannot be read, or a command line that was not understood.
 
 mod check;
+mod generate;
 pub mod lsp;
+mod models;
 mod plan;
 mod report;
+mod sim;
+mod values;
 
 use crate::diagrams::{Refusal, UNREADABLE, end};
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 use lang::dcml::diagnostic::Severity;
 use lang::dcml::model::Model;
+use lang::dcml::models as shipped;
 use lang::dcml::{Understood, understand, understand_paper};
 use lang::limits::DCML_TEXT_MAX;
 use std::fs::File;
@@ -42,6 +47,20 @@ pub(crate) enum Dcml {
     /// Speaks the Language Server Protocol on standard input and output, so an editor starts it. Exit status: 0 the editor
     /// has said goodbye; 1 it was gone before.
     Lsp,
+    /// Run a model under actions for some time, and write what it does as a table or a picture.
+    ///
+    /// FILE is a file with a model, or the name of one that comes with the program. Exit status: 0 done; 1 refused, or the
+    /// solution ends before its time, and what there is of it is written; 2 a file cannot be read, or the command line was
+    /// not understood.
+    Sim(Box<SimArgs>),
+    /// List the models that come with the program, or print one of them.
+    Models(ModelsArgs),
+    /// Write a model in another language: for programs, solvers, converters, papers.
+    ///
+    /// Names and documentation are those of the model; the header says which names are others in that language. Exit
+    /// status: 0 done; 1 the model has errors, is too large for that language, or OUT is there already; 2 the file
+    /// cannot be read, or the command line was not understood.
+    Gen(generate::GenArgs),
 }
 
 /// What `trik dcml check` can be told.
@@ -55,12 +74,103 @@ pub(crate) struct CheckArgs {
     pub paper: bool,
 }
 
+/// What `trik dcml sim` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct SimArgs {
+    /// A file with a model, - for standard input, or the name of a model that comes with the program.
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// Which model, if the file has several.
+    #[arg(long, value_name = "NAME")]
+    pub model: Option<String>,
+    /// A number for each parameter: L=0.4,r=0.05.
+    #[arg(
+        long,
+        value_name = "NAME=NUMBER,...",
+        default_value = "",
+        hide_default_value = true
+    )]
+    pub params: String,
+    /// Where it starts; what is not named starts at 0.
+    #[arg(
+        long,
+        value_name = "NAME=NUMBER,...",
+        default_value = "",
+        hide_default_value = true,
+        allow_hyphen_values = true
+    )]
+    pub start: String,
+    /// Formulas of the time t for all actions, 'u_l = 2 + sin(t); u_r = 3', or a table: its first line has the names
+    /// t,u_l,u_r, each other one a time in s and what is done from then on.
+    #[arg(long, value_name = "FORMULAS|FILE.csv")]
+    pub actions: String,
+    /// For how many seconds.
+    #[arg(long = "t", value_name = "SECONDS")]
+    pub time: f64,
+    /// How it is solved.
+    #[arg(long, value_enum, default_value = "rk45")]
+    pub solver: Solver,
+    /// Size of the steps in s: a thousandth of the time if it is not said; for rk45 the largest one.
+    #[arg(long, value_name = "SECONDS")]
+    pub step: Option<f64>,
+    /// For rk45: the error of a step, as a part of each state.
+    #[arg(long, value_name = "PART", default_value_t = 1e-6)]
+    pub rtol: f64,
+    /// For rk45: and beside that, in the unit of the state.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1e-9)]
+    pub atol: f64,
+    /// Seconds between lines of the table: a two-hundredth of the time if it is not said.
+    #[arg(long, value_name = "SECONDS")]
+    pub every: Option<f64>,
+    /// What is written: csv is a table, svg a picture of the path and of everything over time.
+    #[arg(long, value_enum, default_value = "csv")]
+    pub out: Form,
+    /// A new file for it, instead of standard output.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Replace the file if it is there.
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// How a model is solved.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Solver {
+    /// Dormand-Prince, order 5, with steps as the errors allow.
+    Rk45,
+    /// Runge-Kutta, order 4.
+    Rk4,
+    /// Order 2.
+    Heun,
+    /// Order 1.
+    Euler,
+}
+
+/// What a simulation writes.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Form {
+    /// A table.
+    Csv,
+    /// A picture.
+    Svg,
+}
+
+/// What `trik dcml models` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct ModelsArgs {
+    /// The one to print.
+    pub name: Option<String>,
+}
+
 /// Does it.
 pub(crate) fn perform(command: &Dcml) -> ExitCode {
     end(match command {
         Dcml::Check(args) => check::check(args),
         Dcml::Plan(args) => plan::plan(args),
         Dcml::Lsp => return lsp::serve(),
+        Dcml::Sim(args) => sim::sim(args),
+        Dcml::Models(args) => models::models(args),
+        Dcml::Gen(args) => generate::write(args),
     })
 }
 
@@ -74,7 +184,6 @@ pub(crate) struct Source {
 
 /// The text of one model and the model: the one of this name, or the only one of the file. What is wrong with the file is
 /// shown on standard error, warnings too; errors of another model are no hindrance.
-#[allow(dead_code, reason = "for commands of one model")]
 pub(crate) fn load(path: &Path, model: Option<&str>) -> Result<(String, Model), Refusal> {
     let source = read(path)?;
     let understood = understand(&source.text);
@@ -83,7 +192,6 @@ pub(crate) fn load(path: &Path, model: Option<&str>) -> Result<(String, Model), 
     Ok((source.text, model))
 }
 
-#[allow(dead_code, reason = "as above")]
 fn pick(file: &str, understood: Understood, wanted: Option<&str>) -> Result<Model, Refusal> {
     let Understood {
         document,
@@ -122,7 +230,7 @@ fn pick(file: &str, understood: Understood, wanted: Option<&str>) -> Result<Mode
     }
 }
 
-/// The text of a file, or of standard input for `-`.
+/// The text of a file, of standard input for `-`, or of a model that comes with the program where there is no file.
 pub(crate) fn read(path: &Path) -> Result<Source, Refusal> {
     let is_input = path == Path::new("-");
     let name = if is_input {
@@ -139,6 +247,12 @@ pub(crate) fn read(path: &Path) -> Result<Source, Refusal> {
     } else {
         File::open(path).and_then(bytes)
     };
+    if let (Err(error), Some(model)) = (&bytes, shipped::named(&name))
+        && error.kind() == io::ErrorKind::NotFound
+    {
+        let text = model.text.to_owned();
+        return Ok(Source { name, text });
+    }
     let bytes = bytes.map_err(|error| {
         unreadable(match error.kind() {
             io::ErrorKind::NotFound => "there is no such file".to_owned(),

@@ -116,3 +116,9 @@ pub const LSP_DOCUMENTS: usize = 1000;
 pub const LSP_URI_BYTES: usize = 8 << 10;
 /// How often the server looks whether the editor is still there, while that says nothing.
 pub const LSP_PARENT_MS: u64 = 10_000;
+/// Lines of a table of actions, and of one that a simulation writes.
+pub(crate) const DCML_ROWS_MAX: usize = 1_000_000;
+/// Bytes of a table of actions.
+pub(crate) const DCML_ACTIONS_BYTES_MAX: u64 = 64 << 20;
+/// Panels of the picture of a simulation.
+pub(crate) const DCML_PANELS_MAX: usize = 40;

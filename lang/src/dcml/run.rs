@@ -4,6 +4,7 @@
 //! nothing. Many states at a time are `run/batch`'s part. Results are those of [`Tape::reference`] to the last bit.
 
 pub mod batch;
+mod trig;
 
 use super::fold::Builder;
 use super::function::Function;

@@ -48,7 +48,7 @@ pub struct Tape {
 }
 
 /// A model as tapes. States are what has derivatives, outputs the rest of the configuration.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lowered {
     /// One result for each state: its derivative.
     pub derivative: Tape,

@@ -1,8 +1,9 @@
-//! Steps of the solver: the classical method of Runge and Kutta of fourth order with a fixed step.
+//! Places that follow each other: a state moved one step on, with its outputs and its angles in order.
 //!
-//! Owns the buffers. Knows no obstacle: who calls looks at each place.
+//! Owns what a place is. The step itself is `solve`'s; knows no obstacle: who calls looks at each place.
 
 use super::obstacles::flat::wrapped;
+use crate::dcml::solve::propagate;
 use crate::dcml::system::System;
 
 /// A system that is moved step by step. Angles that the system wraps stay in (-pi, pi].
@@ -11,8 +12,7 @@ pub struct Propagator<'a, S: System + ?Sized> {
     step: f64,
     states: usize,
     wraps: Vec<bool>,
-    slopes: [Vec<f64>; 4],
-    between: Vec<f64>,
+    solver: propagate::Propagator,
 }
 
 impl<'a, S: System + ?Sized> Propagator<'a, S> {
@@ -23,8 +23,7 @@ impl<'a, S: System + ?Sized> Propagator<'a, S> {
             step,
             states,
             wraps: (0..states).map(|state| system.wraps(state)).collect(),
-            slopes: std::array::from_fn(|_| vec![0.0; states]),
-            between: vec![0.0; states],
+            solver: propagate::Propagator::new(),
             system,
         }
     }
@@ -51,19 +50,7 @@ impl<'a, S: System + ?Sized> Propagator<'a, S> {
     /// One step from a place under an action: `place` becomes the next one.
     pub fn advance(&mut self, place: &mut [f64], action: &[f64]) {
         let (state, _) = place.split_at_mut(self.states);
-        let step = self.step;
-        self.system.derivative(state, action, &mut self.slopes[0]);
-        for (stage, ahead) in [(1, step / 2.0), (2, step / 2.0), (3, step)] {
-            for (at, between) in self.between.iter_mut().enumerate() {
-                *between = state[at] + ahead * self.slopes[stage - 1][at];
-            }
-            self.system
-                .derivative(&self.between, action, &mut self.slopes[stage]);
-        }
-        let [a, b, c, d] = &self.slopes;
-        for (at, value) in state.iter_mut().enumerate() {
-            *value += step / 6.0 * (a[at] + 2.0 * (b[at] + c[at]) + d[at]);
-        }
+        self.solver.run(self.system, state, action, self.step, 1);
         self.finish(place, action);
     }
 

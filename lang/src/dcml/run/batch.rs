@@ -1,14 +1,18 @@
 //! Many states at a time: each step for a block of them, in loops that a compiler makes wide.
 //!
-//! Owns the form of the data, a row for each part of the state, and the blocks.
+//! Owns the form of the data, a row for each part of the state, and the blocks. Results are those of one state at a time,
+//! but for sines and cosines, which are within 1e-12.
 
+use super::trig::sin_cos;
 use super::{Program, Step};
+use crate::dcml::function::Function;
 use crate::dcml::lower::Refused;
+use crate::dcml::syntax::Operator;
 use crate::dcml::tape::Input;
 use crate::limits;
 
 /// How many states a step does at a time.
-const LANES: usize = 64;
+pub(super) const LANES: usize = 64;
 
 type Row = Box<[f64; LANES]>;
 
@@ -84,45 +88,71 @@ impl Batch {
     }
 }
 
+/// One step of a block. It writes into a spare row, which then changes its place with the one that it is for.
 fn perform(step: &Step, rows: &mut [Row], [spare, beside]: &mut [Row; 2]) {
-    match *step {
+    let row = |at: u32| &*rows[at as usize];
+    let to = match *step {
         Step::Negative(to, x) => {
-            let x = &rows[x as usize];
-            for lane in 0..LANES {
-                spare[lane] = -x[lane];
-            }
-            std::mem::swap(spare, &mut rows[to as usize]);
+            one(spare, row(x), |x| -x);
+            to
         }
         Step::Binary(operator, to, [x, y]) => {
-            let (x, y) = (&rows[x as usize], &rows[y as usize]);
-            for lane in 0..LANES {
-                spare[lane] = operator.apply(x[lane], y[lane]);
+            let (x, y) = (row(x), row(y));
+            match operator {
+                Operator::Add => two(spare, x, y, |x, y| x + y),
+                Operator::Subtract => two(spare, x, y, |x, y| x - y),
+                Operator::Multiply => two(spare, x, y, |x, y| x * y),
+                Operator::Divide => two(spare, x, y, |x, y| x / y),
             }
-            std::mem::swap(spare, &mut rows[to as usize]);
+            to
         }
         Step::SinCos([sin, cos], x) => {
-            let x = &rows[x as usize];
-            for lane in 0..LANES {
-                (spare[lane], beside[lane]) = x[lane].sin_cos();
-            }
-            std::mem::swap(spare, &mut rows[sin as usize]);
+            sin_cos(row(x), spare, beside);
             std::mem::swap(beside, &mut rows[cos as usize]);
+            sin
         }
         Step::Call(function, to, [x, y]) => {
-            let (x, y) = (&rows[x as usize], &rows[y as usize]);
-            for lane in 0..LANES {
-                spare[lane] = function.apply(x[lane], y[lane]);
-            }
-            std::mem::swap(spare, &mut rows[to as usize]);
+            call(function, spare, beside, row(x), row(y));
+            to
         }
         Step::Select(comparison, to, [left, right, yes, no]) => {
-            let (left, right) = (&rows[left as usize], &rows[right as usize]);
-            let (yes, no) = (&rows[yes as usize], &rows[no as usize]);
+            let (left, right, yes, no) = (row(left), row(right), row(yes), row(no));
             for lane in 0..LANES {
                 let holds = comparison.holds(left[lane], right[lane]);
                 spare[lane] = if holds { yes[lane] } else { no[lane] };
             }
-            std::mem::swap(spare, &mut rows[to as usize]);
+            to
         }
+    };
+    std::mem::swap(spare, &mut rows[to as usize]);
+}
+
+type Block = [f64; LANES];
+
+#[inline(always)]
+fn one(to: &mut Block, x: &Block, value: impl Fn(f64) -> f64) {
+    for lane in 0..LANES {
+        to[lane] = value(x[lane]);
+    }
+}
+
+#[inline(always)]
+fn two(to: &mut Block, x: &Block, y: &Block, value: impl Fn(f64, f64) -> f64) {
+    for lane in 0..LANES {
+        to[lane] = value(x[lane], y[lane]);
+    }
+}
+
+/// Functions; those that a processor has itself are made wide.
+fn call(function: Function, to: &mut Block, beside: &mut Block, x: &Block, y: &Block) {
+    match function {
+        Function::Sin => sin_cos(x, to, beside),
+        Function::Cos => sin_cos(x, beside, to),
+        Function::Sqrt => one(to, x, f64::sqrt),
+        Function::Abs => one(to, x, f64::abs),
+        Function::Sign => one(to, x, |x| Function::Sign.apply(x, x)),
+        Function::Min => two(to, x, y, f64::min),
+        Function::Max => two(to, x, y, f64::max),
+        _ => two(to, x, y, |x, y| function.apply(x, y)),
     }
 }
