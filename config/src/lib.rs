@@ -6,6 +6,7 @@
 //! Knows nothing of files that are mounted, and opens no device.
 
 mod check;
+mod dcml;
 pub mod description;
 mod device_root;
 mod evdev_codes;

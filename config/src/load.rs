@@ -3,6 +3,7 @@
 //! Owns the order of the steps and the limits of the first run. A failure at any step leaves nothing behind.
 
 use crate::check::check;
+use crate::dcml::{self, Named};
 use crate::description::Config;
 use crate::limits::{CONFIG_BYTES_MAX, INCLUDES_MAX, LOAD_MEMORY_BYTES, LOAD_TIME_MS};
 use crate::problem::Problem;
@@ -217,11 +218,51 @@ impl Run {
         if self.files.len() == INCLUDES_MAX {
             return Err(format!("more than {INCLUDES_MAX} files are included"));
         }
+        if let Some(model) = name.strip_prefix(dcml::PREFIX) {
+            let code = self.model(Named::of(model))?;
+            self.files.insert(name.to_vec(), Arc::clone(&code));
+            return Ok(code);
+        }
         let (shown, source) = self.search.include(name)?;
         self.salt ^= hash(&source).rotate_left(1);
         let code = self.compile(&shown, &source)?;
         self.files.insert(name.to_vec(), Arc::clone(&code));
         Ok(code)
+    }
+
+    /// Finds and translates a model in DCML.
+    fn model(&mut self, named: Named<'_>) -> Result<Code, String> {
+        let (shown, source, wanted, place) = match named {
+            Named::Text(text) => {
+                let place = self.texts.of_text(text).unwrap_or_default();
+                (
+                    "the text of the model".to_owned(),
+                    text.to_vec(),
+                    None,
+                    Some(place),
+                )
+            }
+            Named::File(name, wanted) => {
+                let (shown, source) = self.search.model(name)?;
+                (shown, source, wanted, None)
+            }
+        };
+        self.salt ^= hash(&source).rotate_left(2);
+        let text = lang::dcml::decode(source).map_err(|reason| format!("{shown}:{reason}"))?;
+        let wanted = wanted.map(String::from_utf8_lossy);
+        let lua = dcml::chunk(
+            &text,
+            wanted.as_deref(),
+            &shown,
+            |line, column| match &place {
+                // Lines of the configuration; columns are those of the text, which differ in its first line only.
+                Some(place) => {
+                    format!("{}:{}:{column}", place.file, place.line as usize + line - 1)
+                }
+                None => format!("{shown}:{line}:{column}"),
+            },
+        )?;
+        compile("=model", lua.as_bytes(), true)
     }
 }
 

@@ -27,7 +27,12 @@ impl Search {
     /// # Errors
     /// A name that leads outside, a file that is none, too large or unreadable, or nothing found.
     pub(crate) fn include(&self, name: &[u8]) -> Result<(String, Vec<u8>), String> {
-        let (path, ending) = self.inside(name, &["", ".lua"])?;
+        self.read(name, &["", ".lua"])
+    }
+
+    /// Reads a file inside one of the include folders.
+    fn read(&self, name: &[u8], endings: &[&str]) -> Result<(String, Vec<u8>), String> {
+        let (path, ending) = self.inside(name, endings)?;
         let shown = String::from_utf8_lossy(name);
         let mut source = Vec::new();
         let file =
@@ -40,6 +45,31 @@ impl Search {
             return Err(format!("'{shown}' has more than {CONFIG_BYTES_MAX} bytes"));
         }
         Ok((format!("{shown}{ending}"), source))
+    }
+
+    /// Reads a model in DCML: `name`, or `name.dcml`, beside the configuration and then in the folders for includes; then a
+    /// shipped model of that name. Gives the name that it has there and its bytes.
+    ///
+    /// # Errors
+    /// As `include`.
+    pub(crate) fn model(&self, name: &[u8]) -> Result<(String, Vec<u8>), String> {
+        let mut dirs: Vec<PathBuf> = self.base_dir.iter().cloned().collect();
+        dirs.extend_from_slice(&self.include_dirs);
+        let all = Self {
+            include_dirs: dirs,
+            ..Self::default()
+        };
+        match all.read(name, &["", ".dcml"]) {
+            Ok(found) => Ok(found),
+            Err(reason) => {
+                let name = String::from_utf8_lossy(name);
+                let shipped = name.strip_suffix(".dcml").unwrap_or(&name);
+                match lang::dcml::models::named(shipped) {
+                    Some(found) => Ok((shipped.to_owned(), found.text.as_bytes().to_vec())),
+                    None => Err(format!("model {reason}")),
+                }
+            }
+        }
     }
 
     /// The path of a recording: an absolute one as it is, any other like an include.

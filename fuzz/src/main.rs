@@ -8,11 +8,12 @@ use std::sync::LazyLock;
 
 type Target = fn(&[u8]);
 
-const TARGETS: [(&str, Target); 10] = [
+const TARGETS: [(&str, Target); 11] = [
     ("reader", lang::fuzz::reader),
     ("expression", lang::fuzz::expression),
     ("lowering", lang::fuzz::lowering),
     ("constraints", lang::fuzz::constraints),
+    ("dcml", lang::fuzz::dcml),
     ("field", sim::fuzz::field),
     ("frames", trikd::fuzz::fuzz_frames),
     ("messages", trikd::fuzz::fuzz_messages),

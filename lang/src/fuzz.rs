@@ -3,9 +3,11 @@
 //! Run by tests with mutated saves, and by anybody's fuzzer.
 
 mod constraints;
+mod dcml;
 mod diagrams;
 
 pub use constraints::constraints;
+pub use dcml::dcml;
 pub use diagrams::{lowering, project};
 
 use crate::diagram::archive::{self, Entry};

@@ -102,3 +102,68 @@ pub const CONSTRAINT_MESSAGE_BYTES: usize = 64 << 10;
 pub const DCML_TEXT_MAX: usize = 32 << 20;
 /// How deep the tree of an expression of DCML may be: its nesting, and operators in a row.
 pub const DCML_DEPTH: usize = 500;
+
+/// Axes of the metric of a planner.
+pub const PLAN_AXES_MAX: usize = 64;
+/// States, outputs and actions of a model that is planned for.
+pub const PLAN_NUMBERS_MAX: usize = 4096;
+/// Steps for which a planner holds an action.
+pub const PLAN_HOLD_MAX: u32 = 1_000_000;
+/// Samples of one search.
+pub const PLAN_ITERATIONS_MAX: u64 = 4_000_000_000;
+/// Places of one search.
+pub const PLAN_NODES_MAX: usize = 4_000_000;
+/// Numbers of all places of one search: 8 bytes each.
+pub const PLAN_MEMORY_NUMBERS: usize = 128 << 20;
+/// Samples between two reports of progress.
+pub const PLAN_REPORT_EVERY: u64 = 64;
+/// Poses of a goal that are looked at before it is refused.
+pub const PLAN_GOAL_TRIES: u32 = 4096;
+/// Obstacles of one plan.
+pub const PLAN_OBSTACLES_MAX: usize = 1_000_000;
+/// Corners of all obstacles of one plan.
+pub const PLAN_CORNERS_MAX: usize = 4_000_000;
+/// Bytes of a text with obstacles.
+pub const PLAN_OBSTACLES_TEXT_MAX: usize = 128 << 20;
+/// Coordinates of obstacles go so far from zero.
+pub const PLAN_COORDINATE_MAX: f64 = 1e9;
+/// Poses between two steps of a solver; a robot that moves further than so many resolutions is refused.
+pub const PLAN_SWEEP_STEPS_MAX: u32 = 100_000;
+/// Operations of one tape of a model, before those that nobody needs are gone.
+pub const DCML_OPERATIONS_MAX: usize = 1 << 20;
+/// Elements of a Jacobian of a model.
+pub const DCML_JACOBIAN_MAX: usize = 1 << 20;
+/// Steps of differentiation: operations that depend on an input, for all inputs together.
+pub const DCML_JACOBIAN_STEPS_MAX: usize = 1 << 24;
+/// Values that a batch of states keeps for each state at the same time.
+pub const DCML_BATCH_ROWS_MAX: usize = 1 << 16;
+/// Values and results of a model that is written in Java, whose methods end at 64 KiB.
+pub const DCML_JAVA_VALUES: usize = 3000;
+/// The same in Lua, whose functions end at 65536 constants.
+pub const DCML_LUA_VALUES: usize = 30_000;
+/// Steps of one solution of a model.
+pub const DCML_STEPS_MAX: usize = 10_000_000;
+/// Events of one solution of a model.
+pub const DCML_EVENTS_MAX: usize = 100_000;
+/// Words and signs of a document.
+pub const DCML_TOKENS: usize = 4_000_000;
+/// Errors of a document that are told, and as many warnings.
+pub const DCML_DIAGNOSTICS: usize = 200;
+/// Names among which the nearest to a mistyped one is looked for.
+pub const DCML_WORDS_COMPARED: usize = 2000;
+/// Bytes of a name that may be a mistyped one.
+pub const DCML_WORD_COMPARED_BYTES: usize = 64;
+/// Names of a loop, and bytes of a word, that a message shows.
+pub const DCML_SHOWN: usize = 40;
+/// Bytes of a document of which an editor learns more than what is wrong with it.
+pub const DCML_EDITOR_BYTES: usize = 8 << 20;
+/// Places, coloured words and entries of an outline that an editor gets at once.
+pub const DCML_EDITOR_PLACES: usize = 200_000;
+/// Words that are offered at once.
+pub const DCML_EDITOR_OFFERS: usize = 1000;
+/// Findings of one stretch for which edits are offered.
+pub const DCML_EDITOR_FIXES: usize = 50;
+/// Words in which the call is looked for whose arguments are written.
+pub const DCML_EDITOR_LOOK_BACK: usize = 10_000;
+/// Bytes of a documentation or an equation that are shown.
+pub const DCML_EDITOR_SHOWN_BYTES: usize = 2000;

@@ -6,6 +6,7 @@
 pub mod battery;
 pub mod bench;
 pub mod motor;
+pub mod rolling;
 pub mod studio;
 pub mod two_wheels;
 

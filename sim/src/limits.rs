@@ -2,6 +2,8 @@
 
 /// One step of the physics, in simulated time.
 pub const STEP_S: f64 = 0.001;
+/// How fast a servo turns, in radians per second: 60 degrees in 0.12 s.
+pub const SERVO_RAD_S: f64 = 8.7;
 /// Simulated time that one look at the clock makes up for; what is beyond it (a PC that slept) is left out.
 pub const MAX_CATCH_UP_S: f64 = 2.0;
 /// Fastest and slowest world, as factors of real time.

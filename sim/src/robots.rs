@@ -19,12 +19,15 @@
 //! | lidar | on top, 0 degrees is forward, clockwise | - |
 //!
 //! M1, M2, E1, E2, A2, A4, D3, S2 to S5 are empty. `two-wheels` starts on the free floor, `line-follower` on the line.
-//! `bare` has nothing in any port.
+//! `bare` has nothing in any port. A robot with a model of its own has the sensors of `two-wheels`, and in the other ports
+//! what drives the model.
 
 use crate::body::Body;
 use crate::body::bench::Bench;
+use crate::body::rolling::configuration::configuration;
+use crate::body::rolling::{Rolling, Said};
 use crate::body::two_wheels::TwoWheels;
-use crate::geometry::Pose;
+use crate::geometry::{Pose, point};
 use crate::world::World;
 
 /// What is plugged into one port.
@@ -88,6 +91,19 @@ const ROBOTS: [Robot; 3] = [
         start: None,
     },
 ];
+
+/// Where a robot with a model of its own begins: where `two-wheels` does.
+pub const MODEL_START: Pose = Pose {
+    at: point(0.8, 1.0),
+    heading_rad: 0.0,
+};
+
+/// The usual body in the room on the wheels of a model, and the configuration that goes with it. `text` is that of the
+/// model.
+pub fn modelled(rolling: Rolling, text: &str, said: &Said) -> (Box<dyn Body>, String) {
+    let lua = configuration(&rolling, text, said, &TWO_WHEELS);
+    (Box::new(TwoWheels::on(World::room(), rolling)), lua)
+}
 
 /// The names of all robots.
 pub fn names() -> impl Iterator<Item = &'static str> {

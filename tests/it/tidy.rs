@@ -390,7 +390,7 @@ fn every_path_that_a_document_names_exists() {
             for quoted in line.split('`').skip(1).step_by(2) {
                 let looks_like_ours = CRATES
                     .iter()
-                    .chain(&["docs", "cross", "examples", ".ci"])
+                    .chain(&["docs", "cross", "editors", "examples", ".ci"])
                     .any(|name| quoted.starts_with(&format!("{name}/")));
                 let is_plain = quoted
                     .chars()

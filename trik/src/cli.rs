@@ -5,11 +5,13 @@
 
 pub(crate) use crate::check::CheckArgs;
 use crate::check::original;
+use crate::dcml::{self, Dcml};
 use crate::remote::{self, Target};
 use crate::{check, diagrams, fault, limits, up};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use lang::diagram::generate::Language;
 use lang::problem::Tongue;
+use sim::body::rolling::Actuator;
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::net::IpAddr;
@@ -112,6 +114,12 @@ enum Command {
     /// Exit status: 0 all tasks were accomplished, or there were no rules and no errors; 1 one was not; 2 a solution could
     /// not be run or judged, or the command line was not understood.
     Check(Box<CheckArgs>),
+    /// Robots as equations: models in the Differential Constraints Modeling Language.
+    Dcml {
+        /// What to do.
+        #[command(subcommand)]
+        command: Dcml,
+    },
     /// Run as TRIK Studio's program 2D-model, with its options, for graders that call it.
     #[command(name = "2d-model", disable_help_flag = true)]
     Model {
@@ -152,9 +160,23 @@ enum Command {
 /// What `trik up` can be told.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub(crate) struct UpArgs {
-    /// Which robot: its body in the simulator, and its configuration robots/NAME.lua.
-    #[arg(long, value_name = "NAME", default_value = up::DEFAULT_ROBOT, value_parser = up::robot_name)]
+    /// Which robot: its body in the simulator, and its configuration robots/NAME.lua; or a model of DCML that moves the
+    /// usual body, FILE.dcml or the name of a shipped one.
+    #[arg(long, value_name = "NAME|FILE.dcml", default_value = up::DEFAULT_ROBOT, value_parser = up::robot_name)]
     pub robot: String,
+    /// Which model, if the file has several.
+    #[arg(long, value_name = "NAME")]
+    pub model: Option<String>,
+    /// Numbers for the parameters of the model.
+    #[arg(long, value_name = "NAME=NUMBER", value_delimiter = ',', value_parser = up::number_of)]
+    pub params: Vec<(String, f64)>,
+    /// What drives the actions of the model: u_l=M3 is the speed of the motor in rad/s, steer=S1 the angle of the servo in
+    /// rad to the left, v=M3*0.028 so many times as much [default: what the model says of its actions].
+    #[arg(long, value_name = "ACTION=PORT", value_delimiter = ',', value_parser = up::driven)]
+    pub drive: Vec<(String, Actuator)>,
+    /// States of the model that do not begin with 0.
+    #[arg(long, value_name = "STATE=NUMBER", value_delimiter = ',', value_parser = up::number_of)]
+    pub start: Vec<(String, f64)>,
     /// A world of TRIK Studio in the place of the robot's own: FILE.xml, or a project FILE.qrs with a world in it. The robot
     /// stands where the world has it, and has the wheels and sensors that are plugged in there.
     #[arg(long, value_name = "FILE", conflicts_with = "robot")]
@@ -377,6 +399,7 @@ fn perform(command: Command) -> Result<ExitCode, String> {
         Command::Show(args) => return Ok(diagrams::show(&args)),
         Command::Lint(args) => return Ok(diagrams::lint(&args)),
         Command::Check(args) => return Ok(check::check(&args)),
+        Command::Dcml { command } => return Ok(dcml::perform(&command)),
         Command::Model { arguments } => return Ok(original::model(arguments.into_iter())),
         Command::Patcher { arguments } => return Ok(original::patcher(arguments.into_iter())),
         Command::Send(args) => remote::send(&args),

@@ -2,13 +2,15 @@
 //!
 //! `cli` has the words, `up` starts the virtual board and the tree over it, `fault` breaks devices of a running board,
 //! `place` knows where the robots of a user are, `remote` brings programs to robots, `diagrams` shows, checks and translates
-//! diagrams without a robot, `check` runs and judges solutions of tasks, `script` runs programs with text for it. Nothing of
+//! diagrams without a robot, `dcml` does the same with models of robots, `check` runs and judges solutions of tasks, `script` runs programs with text for it. Nothing of
 //! this runs on the controller.
 
 mod check;
 pub mod cli;
+mod dcml;
 mod diagrams;
 mod fault;
+pub mod fuzz;
 pub mod limits;
 pub mod place;
 mod remote;

@@ -96,3 +96,31 @@ pub const ROW_WARNINGS_MAX: usize = 20;
 pub const ROW_MESSAGES_MAX: usize = 200;
 /// Characters of one of them.
 pub const ROW_MESSAGE_CHARS_MAX: usize = 2_000;
+/// Bytes of one header of a message of an editor.
+pub const LSP_HEADER_BYTES: usize = 4 << 10;
+/// Bytes of a message of an editor: the longest document, with each of its letters written as six.
+pub const LSP_MESSAGE_BYTES: u64 = 192 << 20;
+/// Values of a message of an editor: numbers, texts, lists. Ten thousand changes at once have less than two hundred thousand.
+pub const LSP_VALUES: usize = 1_000_000;
+/// Bytes of the name of a request.
+pub const LSP_ID_BYTES: usize = 256;
+/// Messages of an editor that wait.
+pub const LSP_WAITING: usize = 1000;
+/// Bytes of messages that wait before no more are read.
+pub const LSP_WAITING_BYTES: usize = 32 << 20;
+/// Bytes of an open document.
+pub const LSP_DOCUMENT_BYTES: usize = lang::limits::DCML_TEXT_MAX;
+/// Bytes of all open documents.
+pub const LSP_TEXT_BYTES: usize = 128 << 20;
+/// Documents that are open at once.
+pub const LSP_DOCUMENTS: usize = 1000;
+/// Bytes of the name of a document.
+pub const LSP_URI_BYTES: usize = 8 << 10;
+/// How often the server looks whether the editor is still there, while that says nothing.
+pub const LSP_PARENT_MS: u64 = 10_000;
+/// Lines of a table of actions, and of one that a simulation writes.
+pub(crate) const DCML_ROWS_MAX: usize = 1_000_000;
+/// Bytes of a table of actions.
+pub(crate) const DCML_ACTIONS_BYTES_MAX: u64 = 64 << 20;
+/// Panels of the picture of a simulation.
+pub(crate) const DCML_PANELS_MAX: usize = 40;

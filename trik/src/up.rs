@@ -2,16 +2,18 @@
 //!
 //! Owns the order of things: place, board, tree, and all three backwards, whatever ends them. Everything that happens
 //! is waited for in one poll(2) in the main thread. `tree` is the child, `companion` others beside it, of which there are
-//! `trikd` and `ev3dev`, `world` reads worlds of TRIK Studio, `view` says how the robot is, `screen` draws it, `hints` says what to try.
+//! `trikd` and `ev3dev`, `world` reads worlds of
+//! TRIK Studio, `model` makes a robot of a model, `view` says how the robot is, `screen` draws it, `hints` says what to try.
 
 mod companion;
 mod ev3dev;
 mod hints;
+mod model;
 mod screen;
 pub(crate) mod tree;
 mod trikd;
 mod view;
-mod world;
+pub(crate) mod world;
 
 use crate::cli::UpArgs;
 use crate::limits;
@@ -23,7 +25,10 @@ use nix::sys::signalfd::{SfdFlags, SignalFd};
 use nix::unistd::getpid;
 use screen::Screen;
 use sim::board::{Board, Options};
-use sim::field::Field;
+use sim::body::Body;
+use sim::body::rolling::Actuator;
+use sim::body::studio::{self, Studio};
+use sim::field::{Field, Locks};
 use std::ffi::OsString;
 use std::io::{self, Write};
 use std::net::SocketAddr;
@@ -46,15 +51,35 @@ const SIGNALS: [Signal; 5] = [
     Signal::SIGTSTP,
 ];
 
-/// The name of a robot that there is.
+/// The name of a robot that there is, or of a model.
 pub(crate) fn robot_name(text: &str) -> Result<String, String> {
     match sim::robots::by_name(text) {
         Some(_) => Ok(text.to_owned()),
+        None if model::is_named(text) => Ok(text.to_owned()),
         None => Err(format!(
-            "there is no such robot; there are {}",
-            sim::robots::names().collect::<Vec<_>>().join(", ")
+            "there is no such robot; there are {}, models FILE.dcml, and the shipped models {}",
+            sim::robots::names().collect::<Vec<_>>().join(", "),
+            model::shipped().collect::<Vec<_>>().join(", ")
         )),
     }
+}
+
+/// `NAME=NUMBER`
+pub(crate) fn number_of(text: &str) -> Result<(String, f64), String> {
+    let (name, number) = text.split_once('=').ok_or("write NAME=NUMBER")?;
+    let number = number
+        .trim()
+        .parse()
+        .ok()
+        .filter(|one: &f64| one.is_finite());
+    let number = number.ok_or_else(|| format!("'{text}': a number belongs behind ="))?;
+    Ok((name.trim().to_owned(), number))
+}
+
+/// `ACTION=PORT`
+pub(crate) fn driven(text: &str) -> Result<(String, Actuator), String> {
+    let (name, port) = text.split_once('=').ok_or("write ACTION=PORT")?;
+    Ok((name.trim().to_owned(), Actuator::read(port)?))
 }
 
 /// Runs a virtual robot until somebody stops it.
@@ -63,13 +88,15 @@ pub(crate) fn robot_name(text: &str) -> Result<String, String> {
 /// Why it does not run, or how it ended, empty if another process has told it.
 pub(crate) fn up(args: UpArgs) -> Result<(), String> {
     let world = args.world.as_deref().map(world::read).transpose()?;
-    let config = match world {
-        // The configuration of a world is made here, and includes this one.
-        Some(_) if args.config.is_none() => shipped(Path::new("trik.lua"), &args).map(|_| None)?,
+    let made = match &world {
+        Some((field, locks)) => Made::world(field, *locks, args.seed),
+        None => Made::robot(&args)?,
+    };
+    let config = match (&args.config, &made.configuration) {
+        // What is made here includes the shipped configuration.
+        (None, Some(_)) => shipped(Path::new("trik.lua"), &args).map(|_| None)?,
         _ => Some(configuration(&args)?),
     };
-    let robot = sim::robots::by_name(&args.robot)
-        .ok_or_else(|| format!("there is no robot {}", args.robot))?;
     // Before the board has threads, so that these come to the main thread alone.
     let signals = signals().map_err(|error| format!("signals: {error}"))?;
     let mountpoint = args.mountpoint.as_deref().map(absolute).transpose()?;
@@ -91,15 +118,11 @@ pub(crate) fn up(args: UpArgs) -> Result<(), String> {
         seed: args.seed,
         ..Options::default()
     };
-    let body = match &world {
-        Some((field, locks)) => world::body(field, *locks, args.seed),
-        None => robot.body(),
-    };
-    let config = match (config, &world) {
-        (None, Some((field, _))) => world::configure(field, &place.world)?,
+    let config = match (config, made.configuration) {
+        (None, Some(text)) => write(&text, &place.world)?,
         (config, _) => config.unwrap_or_default(),
     };
-    let board = Board::start(&place.board, body, options)
+    let board = Board::start(&place.board, made.body, options)
         .map_err(|error| format!("the virtual board in {}: {error}", place.board.display()))?;
     let arguments = arguments(&args, &config, &place);
     let tree = start(&arguments)?;
@@ -139,6 +162,49 @@ fn signals() -> nix::Result<SignalFd> {
     let mask: SigSet = SIGNALS.into_iter().collect();
     mask.thread_block()?;
     SignalFd::with_flags(&mask, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC)
+}
+
+/// A body, and the configuration that goes with it if it is in no file.
+struct Made {
+    body: Box<dyn Body>,
+    configuration: Option<String>,
+}
+
+impl Made {
+    /// The robot of a world.
+    fn world(field: &Field, locks: Locks, seed: u64) -> Self {
+        Self {
+            body: Box::new(Studio::new(field, seed).locked(locks)),
+            configuration: Some(studio::configuration(field)),
+        }
+    }
+
+    /// The robot of a name.
+    fn robot(args: &UpArgs) -> Result<Self, String> {
+        if let Some(robot) = sim::robots::by_name(&args.robot) {
+            if let Some(option) = model::stray(args) {
+                return Err(format!(
+                    "{option} is for a model: --robot FILE.dcml; '{}' has its own",
+                    args.robot
+                ));
+            }
+            return Ok(Self {
+                body: robot.body(),
+                configuration: None,
+            });
+        }
+        let (body, configuration) = model::robot(args)?;
+        Ok(Self {
+            body,
+            configuration: Some(configuration),
+        })
+    }
+}
+
+/// Writes a configuration into a file, and gives its name back.
+fn write(text: &str, into: &Path) -> Result<PathBuf, String> {
+    std::fs::write(into, text).map_err(|error| format!("{}: {error}", into.display()))?;
+    Ok(into.to_owned())
 }
 
 /// What the tree is to be made of.

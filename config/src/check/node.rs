@@ -17,7 +17,7 @@ use crate::vm::fingerprint::hash;
 use nix::unistd::{Group, User};
 
 /// All fields of a description.
-pub(super) const FIELDS: [&str; 25] = [
+pub(super) const FIELDS: [&str; 26] = [
     "about",
     "ages",
     "attributes",
@@ -25,6 +25,7 @@ pub(super) const FIELDS: [&str; 25] = [
     "converter",
     "format",
     "group",
+    "input_format",
     "input_tuple_size",
     "interval",
     "max_age_ms",
@@ -65,6 +66,7 @@ impl Fields<'_, '_> {
         let read = self.stages("converter")?.unwrap_or_default();
         let write = self.stages("write_converter")?;
         let mut layout = self.layout(input, &read)?;
+        self.check_input_format(&source, layout.input)?;
         if layout.format.is_none() && read.is_empty() {
             layout.format = self.joined_format(&source);
         }

@@ -177,6 +177,34 @@ impl<'a> Fields<'_, 'a> {
         })
     }
 
+    /// `input_format = 'i32 left, f32 right'`: what the converter takes several sources for. Other nodes say what they give;
+    /// of what has no format only the size can be compared.
+    pub(super) fn check_input_format(
+        &mut self,
+        source: &SourceDescription,
+        size: usize,
+    ) -> Result<(), Problem> {
+        let Some(text) = self.text("input_format", 64 << 10)? else {
+            return Ok(());
+        };
+        let wanted = Format::parse(text).map_err(|reason| self.problem("input_format", reason))?;
+        let kinds = |format: &Format| -> Vec<_> {
+            let all = format.fields().iter();
+            all.map(|field| (field.kind, field.big_endian)).collect()
+        };
+        let reason = match self.joined_format(source) {
+            Some(given) if kinds(&given) != kinds(&wanted) => {
+                format!("the converter takes '{wanted}', but the sources give '{given}'")
+            }
+            None if wanted.size() != size => format!(
+                "the converter takes '{wanted}', {} bytes, but the sources give {size}",
+                wanted.size()
+            ),
+            _ => return Ok(()),
+        };
+        Err(self.problem("src", reason))
+    }
+
     /// The format of nodes side by side without a converter: each number named after its source and itself.
     /// None if a source is no node with a format, or the names would not be unique words.
     pub(super) fn joined_format(&mut self, source: &SourceDescription) -> Option<Format> {

@@ -35,6 +35,8 @@ pub(crate) enum Part {
     Filter,
     /// What it finds the filters in.
     Filters,
+    /// The global `dcml`.
+    Dcml,
     /// Digests functions.
     Fingerprint,
 }
@@ -49,6 +51,7 @@ impl Part {
             Self::Table => include_str!("lua/table.lua"),
             Self::Coroutine => include_str!("lua/coroutine.lua"),
             Self::Sources => include_str!("lua/sources.lua"),
+            Self::Dcml => include_str!("lua/dcml.lua"),
             Self::Fingerprint => include_str!("lua/fingerprint.lua"),
             Self::Filter => include_str!("lua/filter.lua"),
             Self::Filters => include_str!("../../lua/filters.lua"),

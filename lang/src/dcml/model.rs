@@ -101,12 +101,15 @@ impl Model {
     }
 
     fn configs(&self, is_state: bool) -> impl Iterator<Item = &Symbol> {
-        let has_derivative = move |id: SymbolId| {
-            let mut all = self.equations.iter();
-            all.any(|one| one.target == id && one.is_derivative)
-        };
-        let all = self.symbols.iter().enumerate();
-        all.filter(move |(id, one)| one.kind == Kind::Config && has_derivative(*id) == is_state)
-            .map(|(_, one)| one)
+        // Once for all: there may be a great many of both.
+        let mut has_derivative = vec![false; self.symbols.len()];
+        for one in self.equations.iter().filter(|one| one.is_derivative) {
+            if let Some(has) = has_derivative.get_mut(one.target) {
+                *has = true;
+            }
+        }
+        let all = self.symbols.iter().zip(has_derivative);
+        all.filter(move |(one, has)| one.kind == Kind::Config && *has == is_state)
+            .map(|(one, _)| one)
     }
 }

@@ -51,6 +51,20 @@ pub struct ModelText {
     pub sections: Vec<Section>,
     /// In the order of the text.
     pub equations: Vec<EquationText>,
+    /// What of it could not be read.
+    pub damage: Damage,
+}
+
+/// What is missing in a tree because it could not be read, which is told already. Rules that would complain of what is
+/// missing are silent then.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub struct Damage {
+    /// Something was wrong with the text.
+    pub any: bool,
+    /// Declarations may be missing.
+    pub names: bool,
+    /// Equations may be missing.
+    pub equations: bool,
 }
 
 /// What a declared name is.

@@ -21,6 +21,14 @@ pub trait System {
         None
     }
 
+    /// How many numbers are computed from a state beside it, as the pose of a robot whose state is that of its wheels.
+    fn outputs(&self) -> usize {
+        0
+    }
+
+    /// Computes them. The slices are as long as [`Self::states`], [`Self::actions`] and [`Self::outputs`] say.
+    fn output(&mut self, _state: &[f64], _action: &[f64], _outputs: &mut [f64]) {}
+
     /// Computes f(x, u). The slices are as long as [`Self::states`], [`Self::actions`] and [`Self::states`] say.
     fn derivative(&mut self, state: &[f64], action: &[f64], derivative: &mut [f64]);
 }

@@ -4,6 +4,7 @@
 //! Knows no names: values have numbers, inputs have places.
 
 use super::function::Function;
+use super::lower::Refused;
 use super::syntax::{Comparison, Operator};
 
 /// The number of a value: the place of its operation in [`Tape::operations`].
@@ -47,7 +48,7 @@ pub struct Tape {
 }
 
 /// A model as tapes. States are what has derivatives, outputs the rest of the configuration.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Lowered {
     /// One result for each state: its derivative.
     pub derivative: Tape,
@@ -57,6 +58,39 @@ pub struct Lowered {
     pub state_jacobian: Tape,
     /// The Jacobian df/du, row after row: a result for each pair of derivative and action.
     pub action_jacobian: Tape,
+}
+
+impl Operation {
+    /// Tells each value that it needs; one may come twice.
+    pub fn each_operand(&self, mut told: impl FnMut(ValueId)) {
+        match *self {
+            Self::Constant(_) | Self::Input(_) => (),
+            Self::Negative(value) => told(value),
+            Self::Call(function, x, _) if function.arguments() == 1 => told(x),
+            Self::Binary(_, x, y) | Self::Call(_, x, y) => {
+                told(x);
+                told(y);
+            }
+            Self::Select(_, of) => of.into_iter().for_each(told),
+        }
+    }
+
+    /// The same operation with other operands.
+    pub fn with(&self, mut place: impl FnMut(ValueId) -> ValueId) -> Self {
+        match *self {
+            Self::Constant(_) | Self::Input(_) => *self,
+            Self::Negative(value) => Self::Negative(place(value)),
+            Self::Binary(operator, left, right) => {
+                Self::Binary(operator, place(left), place(right))
+            }
+            Self::Call(function, x, _) if function.arguments() == 1 => {
+                let x = place(x);
+                Self::Call(function, x, x)
+            }
+            Self::Call(function, x, y) => Self::Call(function, place(x), place(y)),
+            Self::Select(comparison, of) => Self::Select(comparison, of.map(place)),
+        }
+    }
 }
 
 impl Comparison {
@@ -84,6 +118,22 @@ impl Operator {
 }
 
 impl Tape {
+    /// Whether each operation needs only what stands before it, and each result is there.
+    ///
+    /// # Errors
+    ///
+    /// [`Refused::Malformed`] if not; what was lowered always is.
+    pub fn ordered(&self) -> Result<(), Refused> {
+        let mut is_right = true;
+        for (id, operation) in self.operations.iter().enumerate() {
+            operation.each_operand(|of| is_right &= (of as usize) < id);
+        }
+        let count = self.operations.len();
+        is_right &= self.results.iter().all(|id| (*id as usize) < count);
+        let wrong = || Refused::Malformed("a value is needed before it is there".into());
+        is_right.then_some(()).ok_or_else(wrong)
+    }
+
     /// What it means: the results, one operation after another. For tests and for whoever needs one value; `run` is the
     /// fast way. An input that is not given is not a number.
     pub fn reference(&self, state: &[f64], action: &[f64], params: &[f64]) -> Vec<f64> {

@@ -1,16 +1,21 @@
-//! A robot with two driven wheels, a castor and a ring of sensors: differential drive on a plane.
+//! A robot with a ring of sensors: two driven wheels and a castor, or whatever wheels a model of DCML has.
 //!
-//! Owns where its sensors sit and what they give; which port has what is the table of [`crate::robots`].
+//! Owns where its sensors sit and what they give; which port has what is the table of [`crate::robots`]. How it moves when
+//! its wheels turn is `rolling`'s part.
 
 use super::battery::Battery;
 use super::motor::Motor;
+use super::rolling::{Actuator, Port, Rolling, Said};
 use super::{Body, Drive, Senses};
 use crate::geometry::{Point, Pose, point};
 use crate::world::{Colour, World, colour};
+use lang::dcml::models;
 use std::f64::consts::FRAC_PI_2;
 
 const WHEEL_RADIUS_M: f64 = 0.028;
 const TRACK_M: f64 = 0.155;
+/// The shipped model that moves it.
+const MODEL: &str = "differential-drive";
 const RADIUS_M: f64 = 0.11;
 const GRAVITY_MPS2: f64 = 9.81;
 /// Indices of the ports: M3 and E3 left, M4 and E4 right.
@@ -39,41 +44,74 @@ const ACCELERATION_LAG_S: f64 = 0.01;
 /// The robot, its world, and how it moves.
 pub struct TwoWheels {
     world: World,
-    pose: Pose,
+    rolling: Rolling,
     motors: [Motor; 4],
     battery: Battery,
     touches: bool,
     /// Any side of it touches a wall, and how often that began.
     is_at_wall: bool,
     bumps: u32,
-    forward_mps: f64,
+    /// Forward and to the left.
+    velocity_mps: [f64; 2],
     rate_rad_s: f64,
     acceleration_mps2: [f64; 2],
 }
 
+/// The shipped model of a differential drive with the sizes and ports of this robot.
+///
+/// # Errors
+/// The model does not say what it should.
+pub fn two_wheels(start: Pose) -> Result<Rolling, String> {
+    let text = models::named(MODEL).map_or("", |found| found.text);
+    let model = lang::dcml::understand(text).models.pop();
+    let model = model.ok_or_else(|| format!("{MODEL} is no shipped model"))?;
+    let number = |name: &str, number: f64| (name.to_owned(), number);
+    let motor = |name: &str, index| {
+        let port = Port::Motor(index);
+        (name.to_owned(), Actuator { port, factor: 1.0 })
+    };
+    let said = Said {
+        params: vec![number("r", WHEEL_RADIUS_M), number("L", TRACK_M)],
+        drive: vec![motor("u_l", LEFT), motor("u_r", RIGHT)],
+        start: Vec::new(),
+    };
+    Rolling::new(&model, &said, start)
+}
+
 impl TwoWheels {
-    /// Stands still at `pose`.
+    /// Two wheels that stand still at `pose`.
+    ///
+    /// # Panics
+    /// The shipped model is not that of this robot, which a test excludes.
     pub fn new(world: World, pose: Pose) -> Self {
+        Self::on(world, two_wheels(pose).expect("the shipped model"))
+    }
+
+    /// Other wheels below the same body.
+    pub fn on(world: World, rolling: Rolling) -> Self {
         Self {
             world,
-            pose,
+            rolling,
             motors: [Motor::default(); 4],
             battery: Battery::default(),
             touches: false,
             is_at_wall: false,
             bumps: 0,
-            forward_mps: 0.0,
+            velocity_mps: [0.0; 2],
             rate_rad_s: 0.0,
             acceleration_mps2: [0.0; 2],
         }
     }
 
-    /// Moves along the arc of constant wheel speeds, and out of walls.
-    fn roll(&mut self, dt_s: f64, left_m: f64, right_m: f64) {
-        let before = self.pose;
-        let moved = roll(before, left_m, right_m);
+    /// Moves as the wheels do, and out of walls.
+    fn roll(&mut self, dt_s: f64, turned_rad: [f64; 4], servos_ns: [u32; 6]) {
+        let before = self.rolling.pose();
+        self.rolling.roll(dt_s, turned_rad, servos_ns);
+        let moved = self.rolling.pose();
         let (at, touched) = self.world.pushed_out(moved.at, RADIUS_M);
-        self.pose = Pose { at, ..moved };
+        if touched {
+            self.rolling.push(at);
+        }
         self.bumps += u32::from(touched && !self.is_at_wall);
         self.is_at_wall = touched;
         // The bumper is at the front: a wall behind does not press it.
@@ -82,14 +120,16 @@ impl TwoWheels {
         if dt_s <= 0.0 {
             return;
         }
-        let ahead = Point::towards(before.heading_rad);
-        let forward_mps = at.from(before.at).dot(ahead) / dt_s;
+        let ahead = Point::towards((before.heading_rad + moved.heading_rad) / 2.0);
+        let way = at.from(before.at);
+        let velocity_mps = [way.dot(ahead) / dt_s, ahead.cross(way) / dt_s];
         self.rate_rad_s = (moved.heading_rad - before.heading_rad) / dt_s;
+        let gained = |axis: usize| (velocity_mps[axis] - self.velocity_mps[axis]) / dt_s;
         let felt = [
-            (forward_mps - self.forward_mps) / dt_s,
-            forward_mps * self.rate_rad_s,
+            gained(0) - velocity_mps[1] * self.rate_rad_s,
+            gained(1) + velocity_mps[0] * self.rate_rad_s,
         ];
-        self.forward_mps = forward_mps;
+        self.velocity_mps = velocity_mps;
         let share = (dt_s / ACCELERATION_LAG_S).min(1.0);
         for (kept, new) in self.acceleration_mps2.iter_mut().zip(felt) {
             *kept += (new - *kept) * share;
@@ -98,9 +138,10 @@ impl TwoWheels {
 
     /// The echo that a sensor at this place of the body hears.
     fn echo(&self, forward: f64, left: f64, direction_rad: f64) -> Option<f64> {
-        let origin = self.pose.place(forward, left);
+        let origin = self.rolling.pose().place(forward, left);
         let ray = |part: i32| {
-            let angle = self.pose.heading_rad + direction_rad + BEAM_RAD * f64::from(part) / 2.0;
+            let angle =
+                self.rolling.pose().heading_rad + direction_rad + BEAM_RAD * f64::from(part) / 2.0;
             self.world.ray(origin, Point::towards(angle))
         };
         let nearest = (-2..=2).filter_map(ray).min_by(f64::total_cmp)?;
@@ -108,34 +149,15 @@ impl TwoWheels {
     }
 
     fn light(&self, left: f64) -> f64 {
-        let at = self.pose.place(LIGHT_AHEAD_M, left);
+        let at = self.rolling.pose().place(LIGHT_AHEAD_M, left);
         light_raw(self.world.darkness(at, LIGHT_SPOT_M))
     }
 
     fn sharp(&self) -> f64 {
-        let origin = self.pose.place(RADIUS_M, 0.0);
-        let ahead = Point::towards(self.pose.heading_rad);
+        let origin = self.rolling.pose().place(RADIUS_M, 0.0);
+        let ahead = Point::towards(self.rolling.pose().heading_rad);
         sharp_gp2_raw(self.world.ray(origin, ahead).unwrap_or(10.0) * 100.0)
     }
-}
-
-/// Where a body is after its wheels rolled so far: the arc of a circle.
-pub fn roll(from: Pose, left_m: f64, right_m: f64) -> Pose {
-    let turn = (right_m - left_m) / TRACK_M;
-    let way = (left_m + right_m) / 2.0;
-    let heading_rad = from.heading_rad + turn;
-    let at = if turn.abs() < 1e-9 {
-        let middle = Point::towards(from.heading_rad + turn / 2.0);
-        from.at.moved(middle, way)
-    } else {
-        let radius = way / turn;
-        let (start, end) = (from.heading_rad, heading_rad);
-        point(
-            from.at.x + radius * (end.sin() - start.sin()),
-            from.at.y - radius * (end.cos() - start.cos()),
-        )
-    };
-    Pose { at, heading_rad }
 }
 
 /// What TRIK's Sharp GP2 gives at a distance in centimetres: the inverse of `8697 / raw - 2`; nearer than 8 cm it falls.
@@ -155,16 +177,17 @@ fn light_raw(darkness: f64) -> f64 {
 impl Body for TwoWheels {
     fn step(&mut self, dt_s: f64, drive: &Drive) {
         let battery_v = self.battery.voltage_v();
-        let before = [self.motors[LEFT].angle_deg, self.motors[RIGHT].angle_deg];
-        let current = |motor: usize, wheels: &mut [Motor; 4]| {
-            wheels[motor].step(dt_s, drive.motors[motor], battery_v)
-        };
-        let taken = current(LEFT, &mut self.motors) + current(RIGHT, &mut self.motors);
-        self.battery.step(dt_s, taken);
-        let metres = |degrees: f64| degrees.to_radians() * WHEEL_RADIUS_M;
-        let left_m = metres(self.motors[LEFT].angle_deg - before[0]);
-        let right_m = metres(self.motors[RIGHT].angle_deg - before[1]);
-        self.roll(dt_s, left_m, right_m);
+        let mut turned_rad = [0.0; 4];
+        let mut taken_a = 0.0;
+        for (index, motor) in self.motors.iter_mut().enumerate() {
+            if self.rolling.has_motor(index) {
+                let before = motor.angle_deg;
+                taken_a += motor.step(dt_s, drive.motors[index], battery_v);
+                turned_rad[index] = (motor.angle_deg - before).to_radians();
+            }
+        }
+        self.battery.step(dt_s, taken_a);
+        self.roll(dt_s, turned_rad, drive.servos_ns);
     }
 
     fn weaken_battery(&mut self, volts: f64) {
@@ -174,7 +197,7 @@ impl Body for TwoWheels {
     fn senses(&self) -> Senses {
         let touch = if self.touches { 20.0 } else { 1000.0 };
         Senses {
-            pose: self.pose,
+            pose: self.rolling.pose(),
             encoders_deg: self.shafts_deg(),
             analog: [
                 Some(self.sharp()),
@@ -213,8 +236,8 @@ impl Body for TwoWheels {
     }
 
     fn range_m(&self, clockwise_rad: f64) -> Option<f64> {
-        let towards = Point::towards(self.pose.heading_rad - clockwise_rad);
-        let distance = self.world.ray(self.pose.at, towards)?;
+        let towards = Point::towards(self.rolling.pose().heading_rad - clockwise_rad);
+        let distance = self.world.ray(self.rolling.pose().at, towards)?;
         (distance <= LIDAR_MAX_M).then_some(distance)
     }
 
@@ -223,8 +246,12 @@ impl Body for TwoWheels {
         let below = down * CAMERA_HALF_HEIGHT_RAD.tan();
         let (sin, cos) = CAMERA_PITCH_RAD.sin_cos();
         let (ahead, sinks) = (cos - below * sin, sin + below * cos);
-        let origin = self.pose.place(CAMERA_AHEAD_M, 0.0);
-        let flat = self.pose.place(CAMERA_AHEAD_M + ahead, beside).from(origin);
+        let origin = self.rolling.pose().place(CAMERA_AHEAD_M, 0.0);
+        let flat = self
+            .rolling
+            .pose()
+            .place(CAMERA_AHEAD_M + ahead, beside)
+            .from(origin);
         let length = flat.length();
         let towards = point(flat.x / length, flat.y / length);
         // How much the ray sinks for each metre on the map.
@@ -287,17 +314,16 @@ mod tests {
     #[test]
     fn constant_wheel_speeds_make_an_arc() {
         let quarter = FRAC_PI_2;
-        let left = (1.0 - TRACK_M / 2.0) * quarter;
-        let right = (1.0 + TRACK_M / 2.0) * quarter;
-        let end = roll(Pose::default(), left, right);
-        assert!((end.at.x - 1.0).abs() < 1e-12 && (end.at.y - 1.0).abs() < 1e-12);
-        assert!((end.heading_rad - quarter).abs() < 1e-12);
-        // The same in a thousand steps.
-        let mut pose = Pose::default();
+        let mut turned_rad = [0.0; 4];
+        turned_rad[LEFT] = (1.0 - TRACK_M / 2.0) * quarter / WHEEL_RADIUS_M / 1000.0;
+        turned_rad[RIGHT] = (1.0 + TRACK_M / 2.0) * quarter / WHEEL_RADIUS_M / 1000.0;
+        let mut rolling = two_wheels(Pose::default()).unwrap();
         for _ in 0..1000 {
-            pose = roll(pose, left / 1000.0, right / 1000.0);
+            rolling.roll(0.001, turned_rad, [0; 6]);
         }
-        assert!(pose.at.from(end.at).length() < 1e-9);
+        let end = rolling.pose();
+        assert!((end.at.x - 1.0).abs() < 1e-9 && (end.at.y - 1.0).abs() < 1e-9);
+        assert!((end.heading_rad - quarter).abs() < 1e-9);
     }
 
     #[test]

@@ -39,7 +39,7 @@ impl Output<'_> {
         };
         let name = telling::named(path);
         if is_same(path, self.source) {
-            let why = format!("{name} is the diagram that is read: name another file");
+            let why = format!("{name} is the file that is read: name another one");
             return Err(Refusal::new(why));
         }
         if !self.force && path.symlink_metadata().is_ok() {

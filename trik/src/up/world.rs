@@ -1,12 +1,11 @@
-//! A world of TRIK Studio for `trik up`: from a file to a field, a body and a configuration.
+//! A world of TRIK Studio for `trik up`, and for planners: from a file to a field.
 //!
 //! Owns which files have worlds and what is said when one has none. Knows no simulation.
 
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use lang::problem::Problem;
-use sim::body::{Body, studio};
 use sim::field::{Field, Locks};
 
 /// Bytes of a file that are read at most: more than any save may have.
@@ -16,7 +15,7 @@ const BYTES: u64 = 64 << 20;
 ///
 /// # Errors
 /// The file cannot be read, or there is no world in it.
-pub(super) fn read(path: &Path) -> Result<(Field, Locks), String> {
+pub(crate) fn read(path: &Path) -> Result<(Field, Locks), String> {
     let say = |problem: &dyn std::fmt::Display| format!("{}: {problem}", path.display());
     let mut bytes = Vec::new();
     std::fs::File::open(path)
@@ -53,19 +52,4 @@ pub(super) fn read(path: &Path) -> Result<(Field, Locks), String> {
         eprintln!("trik: {}", say(problem));
     }
     Ok((opened.field, locks))
-}
-
-/// The robot of a field as the board's.
-pub(super) fn body(field: &Field, locks: Locks, seed: u64) -> Box<dyn Body> {
-    Box::new(studio::Studio::new(field, seed).locked(locks))
-}
-
-/// Writes the configuration of a field's robot into a file, and gives its name back.
-///
-/// # Errors
-/// It cannot be written.
-pub(super) fn configure(field: &Field, into: &Path) -> Result<PathBuf, String> {
-    std::fs::write(into, studio::configuration(field))
-        .map_err(|error| format!("{}: {error}", into.display()))?;
-    Ok(into.to_owned())
 }

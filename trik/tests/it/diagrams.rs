@@ -131,7 +131,7 @@ fn a_program_goes_to_standard_output_or_into_a_new_file_and_never_over_another()
         let words = ["gen", "--lang=c", "square.qrs", "-o", name, "--force"];
         let refused = trik(&board, &words);
         assert_eq!(refused.code(), 1);
-        assert!(refused.stderr.contains("is the diagram that is read"));
+        assert!(refused.stderr.contains("is the file that is read"));
     }
     assert_eq!(fs::read(board.path("square.qrs")).unwrap(), square());
     let nowhere = ["gen", "--lang=c", "square.qrs", "-o", "no/where.c"];

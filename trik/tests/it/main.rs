@@ -4,6 +4,8 @@
 
 /// Solutions of tasks, judged.
 mod check;
+/// Paths of robots that are models.
+mod dcml_plan;
 /// Diagrams shown, checked and translated, and run in three languages.
 mod diagrams;
 /// What documents show of a robot.
@@ -20,6 +22,8 @@ mod examples;
 mod faults;
 /// Speed that is held, heading and place.
 mod hold;
+/// Models in DCML: a body of their own, and nodes that follow it.
+mod models;
 /// Programs that come over the network.
 mod programs;
 /// A running `trik up`.

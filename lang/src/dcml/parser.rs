@@ -1,0 +1,759 @@
+//! Tokens to a tree, with recovery: one error for each statement that is wrong, and the rest is read as if it were right.
+//!
+//! Owns the grammar of documents, sections and equations; `expression` has that of expressions. Where a statement cannot be
+//! read it goes on behind its semicolon, or at what must be the beginning of the next one.
+
+mod expression;
+mod section;
+
+use super::diagnostic::{Code, Diagnostic, Findings};
+use super::lexer::{self, Keyword, Token, TokenKind, slice};
+use super::nearest::nearest;
+use super::syntax::{Damage, Doc, Document, EquationText, ExprText, ModelText, Name, Node, Span};
+use crate::limits::{DCML_SHOWN, DCML_TOKENS};
+use std::collections::HashSet;
+
+/// Reads a document. Where `paper` is set, what the published language does not have is an error.
+pub(super) fn parse(text: &str, paper: bool, findings: &mut Findings) -> Document {
+    let mut parser = Parser {
+        text,
+        tokens: Vec::new(),
+        docs: Vec::new(),
+        next_doc: 0,
+        at: 0,
+        findings,
+        foreign: HashSet::new(),
+        bad: Vec::new(),
+        damage: Damage::default(),
+        paper,
+        is_cut: false,
+    };
+    if parser.read_tokens() {
+        parser.document()
+    } else {
+        Document::default()
+    }
+}
+
+struct Parser<'a, 'f> {
+    text: &'a str,
+    /// Without comments; the last one is the end of the text.
+    tokens: Vec<Token>,
+    /// Documentation, each with the token before which it stands.
+    docs: Vec<(usize, Span)>,
+    next_doc: usize,
+    at: usize,
+    findings: &'f mut Findings,
+    /// Names with foreign letters that are told.
+    foreign: HashSet<&'a str>,
+    /// Where tokens were wrong.
+    bad: Vec<u32>,
+    damage: Damage,
+    paper: bool,
+    /// The text ends inside a comment.
+    is_cut: bool,
+}
+
+/// A text as it is shown in a message: not too long.
+pub(super) fn shown(text: &str) -> String {
+    let mut signs = text.chars();
+    let mut begin: String = signs.by_ref().take(DCML_SHOWN).collect();
+    if signs.next().is_some() {
+        begin.push_str("...");
+    }
+    begin
+}
+
+/// From the beginning of one to the end of another.
+fn join(first: Span, last: Span) -> Span {
+    Span {
+        start: first.start,
+        end: last.end.max(first.end),
+    }
+}
+
+impl<'a> Parser<'a, '_> {
+    /// All tokens; what is wrong with one is told here. Not if there are too many.
+    fn read_tokens(&mut self) -> bool {
+        for one in lexer::tokens(self.text) {
+            match one.kind {
+                TokenKind::DocComment => self.docs.push((self.tokens.len(), one.span)),
+                TokenKind::LineComment | TokenKind::BlockComment => {
+                    if self.paper {
+                        self.bad.push(one.span.start);
+                    }
+                    self.extension(one.span, "a comment that is no `/** documentation */`");
+                }
+                kind => {
+                    self.tell_bad(kind, one.span);
+                    if kind != TokenKind::OpenComment {
+                        self.tokens.push(one);
+                    }
+                }
+            }
+            if self.tokens.len() + self.docs.len() > DCML_TOKENS {
+                let message = format!("the document has more than {DCML_TOKENS} words and signs");
+                let found = Diagnostic::new(Code::TooLong, one.span, message, "this is too much");
+                self.findings
+                    .add(found.hint("put its models into several files"));
+                return false;
+            }
+        }
+        let end = u32::try_from(self.text.len()).unwrap_or(u32::MAX);
+        let span = Span { start: end, end };
+        let kind = TokenKind::EndOfText;
+        self.tokens.push(Token { kind, span });
+        true
+    }
+
+    fn tell_bad(&mut self, kind: TokenKind, span: Span) {
+        let word = slice(self.text, span);
+        let found = match kind {
+            TokenKind::Unknown => unknown_sign(word, span),
+            TokenKind::BadNumber => bad_number(word, span),
+            TokenKind::OpenComment => {
+                self.is_cut = true;
+                let start = Span {
+                    start: span.start,
+                    end: span.start + 2,
+                };
+                Diagnostic::new(
+                    Code::OpenComment,
+                    start,
+                    "this comment has no end",
+                    "it begins here",
+                )
+                .hint("end it with `*/`")
+            }
+            TokenKind::ForeignWord => {
+                self.bad.push(span.start);
+                if !self.foreign.insert(word) {
+                    return;
+                }
+                let message = format!("`{}` has letters that are not Latin", shown(word));
+                Diagnostic::new(Code::ForeignName, span, message, "not a name")
+                    .hint("names have Latin letters, digits and `_`: `theta`, `omega_1`")
+            }
+            _ => return,
+        };
+        self.bad.push(span.start);
+        self.findings.add(found);
+    }
+
+    fn extension(&mut self, span: Span, what: &str) {
+        if self.paper {
+            let message = format!("the published language does not have {what}");
+            let found = Diagnostic::new(Code::Extension, span, message, "an extension");
+            self.findings.add(found);
+            self.damage.any = true;
+        }
+    }
+
+    fn token(&self) -> Token {
+        // There is an end of the text, and nobody goes beyond it.
+        self.tokens[self.at]
+    }
+
+    fn kind(&self) -> TokenKind {
+        self.token().kind
+    }
+
+    fn kind_after(&self, count: usize) -> TokenKind {
+        let last = self.tokens.len() - 1;
+        self.tokens[(self.at + count).min(last)].kind
+    }
+
+    fn word(&self) -> &'a str {
+        slice(self.text, self.token().span)
+    }
+
+    /// The token before this one; at the beginning this one.
+    fn before(&self) -> Span {
+        self.tokens[self.at.saturating_sub(1)].span
+    }
+
+    fn bump(&mut self) -> Token {
+        let token = self.token();
+        if self.at + 1 < self.tokens.len() {
+            self.at += 1;
+        }
+        token
+    }
+
+    fn take(&mut self, kind: TokenKind) -> Option<Span> {
+        (self.kind() == kind).then(|| self.bump().span)
+    }
+
+    fn tell(&mut self, found: Diagnostic) {
+        self.damage.any = true;
+        self.findings.add(found);
+    }
+
+    /// Tells that something else should stand here, if the token itself is not told already.
+    fn unexpected(&mut self, expected: &str) {
+        let found = self.unexpected_here(expected);
+        self.damage.any = true;
+        if let Some(found) = found {
+            self.findings.add(found);
+        }
+    }
+
+    fn unexpected_here(&self, expected: &str) -> Option<Diagnostic> {
+        let span = self.token().span;
+        let what = match self.kind() {
+            TokenKind::Unknown | TokenKind::BadNumber => return None,
+            TokenKind::EndOfText => "the text ends".to_owned(),
+            _ => format!("`{}` stands", shown(self.word())),
+        };
+        let message = format!("{what} where {expected} should be");
+        let label = format!("{expected} expected");
+        Some(Diagnostic::new(
+            Code::Unexpected,
+            self.visible(span),
+            message,
+            label,
+        ))
+    }
+
+    /// A place that can be shown: the end of the text has nothing to point at, so it is what stands before it.
+    fn visible(&self, span: Span) -> Span {
+        if span.start < span.end {
+            span
+        } else {
+            self.before()
+        }
+    }
+
+    /// Whether a line ends between the token before this one and this one.
+    fn begins_line(&self) -> bool {
+        let gap = Span {
+            start: self.before().end,
+            end: self.token().span.start,
+        };
+        self.kind() == TokenKind::EndOfText || slice(self.text, gap).contains('\n')
+    }
+
+    /// Whether what stands here is surely the beginning of a statement.
+    fn begins_statement(&self) -> bool {
+        match self.kind() {
+            TokenKind::Keyword(_) | TokenKind::EndOfText => true,
+            TokenKind::Word | TokenKind::ForeignWord => {
+                let is_derivative = self.word() == "d"
+                    && self.kind_after(1) == TokenKind::Open
+                    && self.kind_after(3) == TokenKind::Close
+                    && self.kind_after(4) == TokenKind::Equals;
+                is_derivative || matches!(self.kind_after(1), TokenKind::Equals | TokenKind::Colon)
+            }
+            _ => false,
+        }
+    }
+
+    /// The semicolon at the end of a statement.
+    fn semicolon(&mut self) {
+        if self.take(TokenKind::Semicolon).is_some() {
+            return;
+        }
+        if self.begins_line() || self.begins_statement() {
+            let span = self.before();
+            let found = Diagnostic::new(
+                Code::MissingSemicolon,
+                span,
+                "`;` is missing behind this",
+                "no `;` here",
+            );
+            self.tell(found.hint("end each statement with `;`"));
+            if self.begins_statement() || self.kind() == TokenKind::Open {
+                return;
+            }
+        } else {
+            self.unexpected("`;`");
+        }
+        self.skip_statement();
+    }
+
+    /// Goes behind the next semicolon, or before what begins another statement.
+    fn skip_statement(&mut self) {
+        loop {
+            match self.kind() {
+                TokenKind::EndOfText | TokenKind::Keyword(_) => return,
+                TokenKind::Semicolon => {
+                    self.bump();
+                    return;
+                }
+                _ if self.begins_line() && self.begins_statement() => return,
+                _ => self.bump(),
+            };
+        }
+    }
+
+    fn document(&mut self) -> Document {
+        let mut document = Document::default();
+        loop {
+            match self.kind() {
+                TokenKind::EndOfText => break,
+                TokenKind::Keyword(Keyword::Begin) => {
+                    let model = self.model();
+                    document.models.push(model);
+                }
+                _ => self.outside(),
+            }
+        }
+        if document.models.is_empty() && self.findings.errors() == 0 {
+            let span = self.visible(self.token().span);
+            let found = Diagnostic::new(
+                Code::NoModel,
+                span,
+                "there is no model in this document",
+                "nothing here",
+            );
+            self.findings
+                .add(found.hint("a model begins with `BEGIN Name` and ends with `END;`"));
+        }
+        document
+    }
+
+    /// All that stands between models, told once.
+    fn outside(&mut self) {
+        let first = self.token().span;
+        let word = self.word();
+        if Keyword::named(&word.to_ascii_uppercase()) == Some(Keyword::Begin) {
+            let found = Diagnostic::new(
+                Code::OutsideModel,
+                first,
+                format!("`{word}` begins no model"),
+                "write `BEGIN`",
+            );
+            self.findings
+                .add(found.hint("reserved words have capital letters only"));
+            let model = self.model();
+            // Only its rules of meaning are of use.
+            let _ = model;
+            return;
+        }
+        while !matches!(
+            self.kind(),
+            TokenKind::EndOfText | TokenKind::Keyword(Keyword::Begin)
+        ) {
+            self.bump();
+        }
+        let found = Diagnostic::new(
+            Code::OutsideModel,
+            first,
+            "this stands in no model",
+            "outside of all models",
+        );
+        self.findings
+            .add(found.hint("a model begins with `BEGIN Name` and ends with `END;`"));
+    }
+
+    fn model(&mut self) -> ModelText {
+        self.damage = Damage::default();
+        let mut model = ModelText {
+            doc: self.doc_before(),
+            ..ModelText::default()
+        };
+        let begin = self.bump().span;
+        let inside = self.doc_before();
+        model.name = self.model_name(begin);
+        let behind = self.doc_behind();
+        model.doc = model.doc.or(inside).or(behind);
+        loop {
+            let from = self.at;
+            match self.kind() {
+                TokenKind::Keyword(Keyword::End) => {
+                    self.end(&model.name);
+                    self.doc_behind();
+                    break;
+                }
+                TokenKind::EndOfText if self.is_cut => {
+                    // The end is in the comment, and so is what else is missing.
+                    self.damage = Damage {
+                        any: true,
+                        names: true,
+                        equations: true,
+                    };
+                    break;
+                }
+                TokenKind::EndOfText | TokenKind::Keyword(Keyword::Begin) => {
+                    let message = format!("the model `{}` has no end", shown(&model.name.text));
+                    let found = Diagnostic::new(Code::MissingEnd, begin, message, "it begins here");
+                    self.tell(found.hint("end it with `END;`"));
+                    break;
+                }
+                TokenKind::Keyword(Keyword::Package) => self.package(&mut model),
+                TokenKind::Keyword(Keyword::Section(kind)) => self.section(kind, &mut model),
+                TokenKind::Word | TokenKind::ForeignWord => {
+                    if self.statement(&mut model) {
+                        break;
+                    }
+                }
+                _ => {
+                    self.unexpected("a section, an equation or `END;`");
+                    self.damage.equations = true;
+                    self.skip_statement();
+                }
+            }
+            if self.at == from {
+                self.bump();
+            }
+            // Behind an equation it is nobody's.
+            self.doc_behind();
+        }
+        model.span = join(begin, self.before());
+        let first = self.bad.partition_point(|at| *at < model.span.start);
+        let is_bad = self.bad.get(first).is_some_and(|at| *at < model.span.end);
+        self.damage.any |= is_bad;
+        model.damage = self.damage;
+        model
+    }
+
+    fn model_name(&mut self, begin: Span) -> Name {
+        match self.kind() {
+            TokenKind::Word | TokenKind::ForeignWord => {
+                let text = self.word().to_owned();
+                let span = self.bump().span;
+                // A semicolon behind the name is a common slip, and harmless.
+                if let Some(span) = self.take(TokenKind::Semicolon) {
+                    let found = Diagnostic::new(
+                        Code::Unexpected,
+                        span,
+                        "no `;` stands behind `BEGIN Name`",
+                        "remove it",
+                    );
+                    self.tell(found);
+                }
+                Name { text, span }
+            }
+            _ => {
+                let found = Diagnostic::new(
+                    Code::Unexpected,
+                    begin,
+                    "this model has no name",
+                    "a name expected behind it",
+                )
+                .hint("write `BEGIN Name`");
+                self.tell(found);
+                Name {
+                    text: String::new(),
+                    span: begin,
+                }
+            }
+        }
+    }
+
+    fn end(&mut self, name: &Name) {
+        let end = self.bump().span;
+        if self.take(TokenKind::Semicolon).is_some() {
+            return;
+        }
+        // `END Name;` is what other languages have.
+        let is_name = self.kind() == TokenKind::Word && self.word() == name.text;
+        if is_name && self.kind_after(1) == TokenKind::Semicolon {
+            let span = self.bump().span;
+            self.bump();
+            let found = Diagnostic::new(
+                Code::Unexpected,
+                span,
+                "no name stands behind `END`",
+                "remove it",
+            );
+            self.tell(found.hint("a model ends with `END;`"));
+            return;
+        }
+        let found = Diagnostic::new(
+            Code::MissingSemicolon,
+            end,
+            "`;` is missing behind `END`",
+            "no `;` here",
+        );
+        self.tell(found.hint("a model ends with `END;`"));
+    }
+
+    /// What begins with a word: an equation, or a section that is not spelled right. Whether it ends the model.
+    fn statement(&mut self, model: &mut ModelText) -> bool {
+        let word = self.word();
+        if word == "d" && self.kind_after(1) == TokenKind::Open {
+            self.equation(model, true);
+            return false;
+        }
+        match self.kind_after(1) {
+            TokenKind::Equals => self.equation(model, false),
+            TokenKind::Colon => self.unknown_section(model),
+            TokenKind::Open
+                if self.kind_after(3) == TokenKind::Close
+                    && self.kind_after(4) == TokenKind::Equals =>
+            {
+                let span = self.token().span;
+                let message = format!("`{}` of a name has no equation", shown(word));
+                let found = Diagnostic::new(Code::Unexpected, span, message, "write `d`");
+                self.tell(found.hint("a derivative is written `d(x) = ...;`"));
+                self.equation(model, true);
+            }
+            next => {
+                let keyword = Keyword::named(&word.to_ascii_uppercase());
+                if keyword == Some(Keyword::End) && next == TokenKind::Semicolon {
+                    let span = self.token().span;
+                    let found = Diagnostic::new(
+                        Code::Unexpected,
+                        span,
+                        format!("`{word}` ends no model"),
+                        "write `END`",
+                    );
+                    self.tell(found.hint("reserved words have capital letters only"));
+                    self.bump();
+                    self.bump();
+                    return true;
+                }
+                self.bump();
+                self.unexpected("`=`");
+                self.damage.equations = true;
+                self.skip_statement();
+            }
+        }
+        false
+    }
+
+    fn unknown_section(&mut self, model: &mut ModelText) {
+        let word = self.word();
+        let span = self.token().span;
+        let meant = nearest(word, Keyword::ALL.map(Keyword::text)).and_then(Keyword::named);
+        let message = format!("there is no section `{}`", shown(word));
+        let found = Diagnostic::new(Code::UnknownSection, span, message, "not a section");
+        match meant {
+            Some(Keyword::Section(kind)) => {
+                self.tell(found.hint(format!("did you mean `{}`?", kind.keyword())));
+                self.section(kind, model);
+            }
+            Some(Keyword::Package) => {
+                self.tell(found.hint("did you mean `PACKAGE`?"));
+                self.package(model);
+            }
+            _ => {
+                self.tell(found.hint("there are PACKAGE, ACTION, PARAM, CONST, CONFIG and VAR"));
+                self.damage.names = true;
+                self.bump();
+                self.bump();
+                self.skip_statement();
+            }
+        }
+    }
+
+    fn equation(&mut self, model: &mut ModelText, is_derivative: bool) {
+        let first = self.token().span;
+        let target = if is_derivative {
+            self.bump();
+            self.derivative_target()
+        } else {
+            self.name()
+        };
+        let Some(target) = target else {
+            self.damage.equations = true;
+            self.skip_statement();
+            return;
+        };
+        let value = if self.take(TokenKind::Equals).is_none() {
+            self.unexpected("`=`");
+            None
+        } else {
+            self.expression()
+        };
+        let value = match value {
+            Some(value) => {
+                self.semicolon();
+                value
+            }
+            None => {
+                self.damage.any = true;
+                self.skip_statement();
+                let span = target.span;
+                ExprText {
+                    span,
+                    node: Node::Broken,
+                }
+            }
+        };
+        let span = join(first, self.before());
+        model.equations.push(EquationText {
+            span,
+            target,
+            is_derivative,
+            value,
+        });
+    }
+
+    /// `(x)` behind `d`.
+    fn derivative_target(&mut self) -> Option<Name> {
+        self.bump();
+        let name = self.name()?;
+        if self.take(TokenKind::Close).is_none() {
+            self.unexpected("`)`");
+            return None;
+        }
+        Some(name)
+    }
+
+    /// A name; else tells that it is none.
+    fn name(&mut self) -> Option<Name> {
+        match self.kind() {
+            TokenKind::Word | TokenKind::ForeignWord => {
+                let text = self.word().to_owned();
+                let span = self.bump().span;
+                Some(Name { text, span })
+            }
+            TokenKind::Keyword(_) => {
+                let word = self.word();
+                let span = self.token().span;
+                let message = format!("`{word}` is a reserved word and no name");
+                let hint = format!(
+                    "choose another name, for example `{}`",
+                    word.to_ascii_lowercase()
+                );
+                let found =
+                    Diagnostic::new(Code::ReservedName, span, message, "reserved").hint(hint);
+                self.tell(found);
+                None
+            }
+            _ => {
+                self.unexpected("a name");
+                None
+            }
+        }
+    }
+
+    fn package(&mut self, model: &mut ModelText) {
+        let keyword = self.bump().span;
+        if self.take(TokenKind::Colon).is_none() {
+            self.unexpected("`:`");
+        }
+        let Some(mut name) = self.name() else {
+            self.skip_statement();
+            return;
+        };
+        while self.take(TokenKind::Dot).is_some() {
+            let Some(next) = self.name() else {
+                self.skip_statement();
+                return;
+            };
+            name.text.push('.');
+            name.text.push_str(&next.text);
+            name.span = join(name.span, next.span);
+        }
+        self.semicolon();
+        if let Some(first) = &model.package {
+            let found = Diagnostic::new(
+                Code::DuplicatePackage,
+                keyword,
+                "the model has a package already",
+                "a second one",
+            );
+            let found = found.note(first.span, "the first one is here");
+            self.tell(found);
+            return;
+        }
+        model.package = Some(name);
+    }
+
+    /// The documentation that stands directly before this token.
+    fn doc_before(&mut self) -> Option<Doc> {
+        let mut found = None;
+        while let Some(&(before, span)) = self.docs.get(self.next_doc) {
+            if before > self.at {
+                break;
+            }
+            self.next_doc += 1;
+            if before == self.at {
+                found = Some(self.doc(span));
+            }
+        }
+        found
+    }
+
+    /// The first documentation behind the end of a statement or declaration: on the same line, where the next word is not.
+    /// What else stands there is passed.
+    fn doc_behind(&mut self) -> Option<Doc> {
+        let end = self.before().end;
+        let next = self.token();
+        let mut first = None;
+        while let Some(&(before, span)) = self.docs.get(self.next_doc) {
+            let has_break = |start, end| slice(self.text, Span { start, end }).contains('\n');
+            let is_last = next.kind == TokenKind::EndOfText;
+            let is_earlier = before < self.at;
+            let is_behind = before == self.at && !has_break(end, span.start);
+            if !is_earlier && !(is_behind && (is_last || has_break(span.end, next.span.start))) {
+                break;
+            }
+            self.next_doc += 1;
+            if first.is_none() && !is_earlier {
+                first = Some(self.doc(span));
+            }
+        }
+        first
+    }
+
+    fn doc(&self, span: Span) -> Doc {
+        Doc {
+            text: plain(slice(self.text, span)),
+            span,
+        }
+    }
+}
+
+/// What a documentation comment says: without its signs, and the stars and spaces at the beginnings of lines.
+fn plain(comment: &str) -> String {
+    let inside = comment.strip_prefix("/**").unwrap_or(comment);
+    let inside = inside.strip_suffix("*/").unwrap_or(inside);
+    let mut lines: Vec<&str> = Vec::new();
+    for (at, line) in inside.lines().enumerate() {
+        let line = line.trim_end();
+        let trimmed = line.trim_start();
+        let star = trimmed.strip_prefix('*').filter(|_| at > 0);
+        lines.push(match star {
+            Some(rest) => rest.strip_prefix(' ').unwrap_or(rest),
+            None => trimmed,
+        });
+    }
+    lines.join("\n").trim_matches('\n').trim_end().to_owned()
+}
+
+fn unknown_sign(word: &str, span: Span) -> Diagnostic {
+    let first = word.chars().next().unwrap_or_default();
+    let name = match first {
+        sign if sign.is_control() || sign.is_whitespace() => format!("U+{:04X}", u32::from(sign)),
+        sign => format!("{sign} (U+{:04X})", u32::from(sign)),
+    };
+    let found = Diagnostic::new(
+        Code::UnknownSign,
+        span,
+        format!("the sign {name} means nothing here"),
+        "not of the language",
+    );
+    match first {
+        '\0' => found.hint("is this a text file?"),
+        '\u{2212}' | '\u{2013}' | '\u{2014}' => found.hint("write the minus sign `-`"),
+        '\u{d7}' | '\u{b7}' | '\u{22c5}' => found.hint("write `*`"),
+        sign if sign.is_whitespace() => found.hint("write a plain space"),
+        '{' | '}' => found.hint("write `(` and `)`"),
+        '#' => found.hint("a comment begins with `//`"),
+        '%' => found.hint(
+            "a comment begins with `//`; the remainder of a division is `a - b * floor(a / b)`",
+        ),
+        _ => found.hint("remove it"),
+    }
+}
+
+fn bad_number(word: &str, span: Span) -> Diagnostic {
+    let message = format!("`{}` is no number", shown(word));
+    let found = Diagnostic::new(Code::BadNumber, span, message, "not a number");
+    let digits = word.find(|sign: char| !(sign.is_ascii_digit() || sign == '.'));
+    let (number, rest) = word.split_at(digits.unwrap_or(word.len()));
+    let is_name = rest.starts_with(|sign: char| sign.is_ascii_alphabetic());
+    if is_name && !rest.contains('.') && number.parse::<f64>().is_ok() && word.len() < DCML_SHOWN {
+        return found.hint(format!(
+            "to multiply write `{number} * {rest}`; a name begins with a letter"
+        ));
+    }
+    found.hint("numbers are written `12`, `0.5` or `1.5e-3`")
+}
+
+#[cfg(test)]
+mod tests;

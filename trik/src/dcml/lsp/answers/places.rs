@@ -1,0 +1,124 @@
+//! Places in a document: where names stand, the outline, what can be folded.
+//!
+//! Owns their shapes.
+
+use super::super::params::range_json;
+use super::super::session::Client;
+use super::super::sheet::{Encoding, Sheet};
+use lang::dcml::editor::{Symbol, SymbolKind};
+use lang::dcml::syntax::{Kind, Span};
+use serde_json::{Value, json};
+
+fn location(uri: &str, sheet: &Sheet, span: Span, encoding: Encoding) -> Value {
+    json!({"uri": uri, "range": range_json(sheet, span, encoding)})
+}
+
+/// Where a name is declared.
+pub fn definition(uri: &str, sheet: &Sheet, offset: u32, encoding: Encoding) -> Value {
+    let found = sheet.reading().definition(offset);
+    found.map_or(Value::Null, |span| location(uri, sheet, span, encoding))
+}
+
+/// Where a name stands.
+pub fn references(
+    uri: &str,
+    sheet: &Sheet,
+    offset: u32,
+    with_declaration: bool,
+    encoding: Encoding,
+) -> Value {
+    let all = sheet.reading().references(offset).into_iter();
+    let wanted = all.filter(|(_, is_declaration)| with_declaration || !is_declaration);
+    wanted
+        .map(|(span, _)| location(uri, sheet, span, encoding))
+        .collect()
+}
+
+/// The same in one document, and whether the name gets its value there.
+pub fn highlights(sheet: &Sheet, offset: u32, encoding: Encoding) -> Value {
+    let writes = sheet.reading().writes(offset);
+    let all = sheet.reading().references(offset).into_iter();
+    all.map(|(span, _)| {
+        // 3 writes, 2 reads.
+        let kind = if writes.contains(&span) { 3 } else { 2 };
+        json!({"range": range_json(sheet, span, encoding), "kind": kind})
+    })
+    .collect()
+}
+
+/// The outline, as a tree or as a list.
+pub fn symbols(uri: &str, sheet: &Sheet, client: &Client) -> Value {
+    let symbols = sheet.reading().symbols();
+    if client.has_tree {
+        return symbols
+            .iter()
+            .map(|one| tree(sheet, one, client.encoding))
+            .collect();
+    }
+    let flat = |one: &Symbol, container: Option<&str>| {
+        let mut entry = json!({
+            "name": one.name,
+            "kind": number(one.kind),
+            "location": location(uri, sheet, one.span, client.encoding),
+        });
+        if let Some(container) = container {
+            entry["containerName"] = json!(container);
+        }
+        entry
+    };
+    let mut all = Vec::new();
+    for model in &symbols {
+        all.push(flat(model, None));
+        all.extend(model.inside.iter().map(|one| flat(one, Some(&model.name))));
+    }
+    Value::Array(all)
+}
+
+fn tree(sheet: &Sheet, one: &Symbol, encoding: Encoding) -> Value {
+    let children: Vec<Value> = one
+        .inside
+        .iter()
+        .map(|one| tree(sheet, one, encoding))
+        .collect();
+    json!({
+        "name": one.name,
+        "detail": one.detail,
+        "kind": number(one.kind),
+        "range": range_json(sheet, one.span, encoding),
+        "selectionRange": range_json(sheet, one.selection, encoding),
+        "children": children,
+    })
+}
+
+/// The protocol has no kinds for robots; these have pictures that tell them apart.
+fn number(kind: SymbolKind) -> u8 {
+    match kind {
+        // Class.
+        SymbolKind::Model => 5,
+        // Event, field, constant, property, variable.
+        SymbolKind::Name(Kind::Action) => 24,
+        SymbolKind::Name(Kind::Param) => 8,
+        SymbolKind::Name(Kind::Const) => 14,
+        SymbolKind::Name(Kind::Config) => 7,
+        SymbolKind::Name(Kind::Var) => 13,
+        // Operator.
+        SymbolKind::Equation => 25,
+    }
+}
+
+/// What can be folded, in whole lines.
+pub fn folds(sheet: &Sheet, encoding: Encoding) -> Value {
+    let reading = sheet.reading();
+    let all = reading.folds().into_iter().filter_map(|fold| {
+        let (from, to) = sheet.range(fold.span, encoding);
+        if from.line >= to.line {
+            return None;
+        }
+        let mut entry = json!({"startLine": from.line, "endLine": to.line});
+        if fold.is_comment {
+            entry["kind"] = json!("comment");
+        }
+        Some(entry)
+    });
+    all.collect()
+}

@@ -1,0 +1,203 @@
+//! Names with numbers on a command line: `x=1,y=2`, `u=-1..1`, `circle:0.1`.
+//!
+//! Owns the forms. What the names mean is known to whoever asks.
+
+use crate::diagrams::Refusal;
+use lang::dcml::plan::obstacles::Footprint;
+
+/// A name and what it was given.
+pub(crate) type Named<T> = (String, T);
+
+/// Names with numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Given(pub Vec<Named<f64>>);
+
+/// Names with ranges.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Ranges(pub Vec<Named<(f64, f64)>>);
+
+/// A footprint.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Footing(pub Footprint);
+
+/// Numbers beyond this are no place, angle or speed.
+const MOST: f64 = 1e9;
+
+fn number(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse::<f64>();
+    let number = number.map_err(|_| format!("{text:?} is no number"))?;
+    if number.abs() <= MOST {
+        Ok(number)
+    } else {
+        Err(format!("{text} is not from -{MOST:e} to {MOST:e}"))
+    }
+}
+
+/// A number above 0.
+pub(crate) fn positive(text: &str) -> Result<f64, String> {
+    let number = number(text)?;
+    if number > 0.0 {
+        Ok(number)
+    } else {
+        Err(format!("{text} is not above 0"))
+    }
+}
+
+/// `LOW..HIGH`
+pub(crate) fn range(text: &str) -> Result<(f64, f64), String> {
+    let (low, high) = text
+        .split_once("..")
+        .ok_or_else(|| format!("{text:?} is no range: write LOW..HIGH"))?;
+    let (low, high) = (number(low)?, number(high)?);
+    if low <= high {
+        Ok((low, high))
+    } else {
+        Err(format!("{low} is above {high}"))
+    }
+}
+
+fn named<T>(
+    text: &str,
+    value: impl Fn(&str) -> Result<T, String>,
+    form: &str,
+) -> Result<Vec<Named<T>>, String> {
+    let one = |part: &str| {
+        let (name, rest) = part
+            .split_once('=')
+            .ok_or_else(|| format!("{part:?}: write NAME={form}"))?;
+        Ok((name.trim().to_owned(), value(rest)?))
+    };
+    text.split(',')
+        .filter(|part| !part.trim().is_empty())
+        .map(one)
+        .collect()
+}
+
+/// `NAME=NUMBER,...`
+pub(crate) fn given(text: &str) -> Result<Given, String> {
+    named(text, number, "NUMBER").map(Given)
+}
+
+/// `NAME=LOW..HIGH,...`
+pub(crate) fn ranges(text: &str) -> Result<Ranges, String> {
+    named(text, range, "LOW..HIGH").map(Ranges)
+}
+
+/// `circle:RADIUS` or `polygon:X,Y,X,Y,...`
+pub(crate) fn footing(text: &str) -> Result<Footing, String> {
+    let (kind, rest) = text.split_once(':').unwrap_or((text, ""));
+    let numbers = rest
+        .split([',', ' ', ';'])
+        .filter(|part| !part.is_empty())
+        .map(number)
+        .collect::<Result<Vec<f64>, String>>();
+    let footprint = match (kind, numbers?.as_slice()) {
+        ("circle", &[radius]) => Footprint::circle(radius),
+        ("polygon", all) if all.len() >= 6 && all.len() % 2 == 0 => {
+            Footprint::polygon(all.chunks_exact(2).map(|one| [one[0], one[1]]).collect())
+        }
+        _ => Err("write circle:RADIUS, or polygon: and x, y of three corners or more".to_owned()),
+    };
+    footprint.map(Footing)
+}
+
+/// A number for each of these names, in their order.
+///
+/// # Errors
+/// One is missing, twice there, or no name.
+pub(crate) fn all(
+    names: &[&str],
+    given: &[Given],
+    kind: &str,
+    option: &str,
+) -> Result<Vec<f64>, Refusal> {
+    let listed = names.join(", ");
+    let mut values = vec![None; names.len()];
+    for (name, value) in given.iter().flat_map(|one| &one.0) {
+        let Some(at) = names.iter().position(|one| one == name) else {
+            return Err(Refusal::new(if names.is_empty() {
+                format!("{option}: the model has no {kind}s")
+            } else {
+                format!("{option}: there is no {kind} {name:?}; there are {listed}")
+            }));
+        };
+        if values[at].replace(*value).is_some() {
+            return Err(Refusal::new(format!("{option}: {name} is there twice")));
+        }
+    }
+    let missing: Vec<String> = names
+        .iter()
+        .zip(&values)
+        .filter(|(_, value)| value.is_none())
+        .map(|(name, _)| format!("{name}=..."))
+        .collect();
+    if missing.is_empty() {
+        Ok(values.into_iter().flatten().collect())
+    } else {
+        let missing = missing.join(",");
+        Err(Refusal::new(format!(
+            "the model needs numbers: {option} {missing}"
+        )))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_of_names_are_read() {
+        assert_eq!(
+            given("x=1, y=-2.5").unwrap().0,
+            [("x".to_owned(), 1.0), ("y".to_owned(), -2.5)]
+        );
+        assert_eq!(
+            ranges("u=-1..1").unwrap().0,
+            [("u".to_owned(), (-1.0, 1.0))]
+        );
+        assert_eq!(given("x").unwrap_err(), "\"x\": write NAME=NUMBER");
+        assert_eq!(given("x=y").unwrap_err(), "\"y\" is no number");
+        for bad in ["NaN", "inf", "1e308"] {
+            let told = given(&format!("x={bad}")).unwrap_err();
+            assert_eq!(told, format!("{bad} is not from -1e9 to 1e9"));
+        }
+        assert_eq!(ranges("u=1..-1").unwrap_err(), "1 is above -1");
+        assert_eq!(
+            ranges("u=1").unwrap_err(),
+            "\"1\" is no range: write LOW..HIGH"
+        );
+        assert_eq!(positive("0").unwrap_err(), "0 is not above 0");
+    }
+
+    #[test]
+    fn footprints_are_read() {
+        assert_eq!(footing("circle:0.1").unwrap().0.reach(), 0.1);
+        assert_eq!(footing("polygon:0,0 3,0 3,4").unwrap().0.reach(), 5.0);
+        for bad in ["circle", "circle:1,2", "polygon:0,0,1,1", "box:1"] {
+            assert!(footing(bad).unwrap_err().starts_with("write circle:"));
+        }
+        assert_eq!(footing("circle:-1").unwrap_err(), "-1 is no radius");
+    }
+
+    #[test]
+    fn what_is_missing_is_named() {
+        let refused = |text: &str| {
+            let refusal = all(
+                &["L", "r"],
+                &[given(text).unwrap()],
+                "parameter",
+                "--params",
+            );
+            refusal.err().unwrap().lines.join("\n")
+        };
+        assert_eq!(
+            refused("L=1"),
+            "trik: the model needs numbers: --params r=..."
+        );
+        assert_eq!(
+            refused("L=1,R=2"),
+            "trik: --params: there is no parameter \"R\"; there are L, r"
+        );
+        assert_eq!(refused("L=1,L=2"), "trik: --params: L is there twice");
+    }
+}

@@ -1,0 +1,308 @@
+//! Where the actions of a simulation come from: formulas of time, or a table.
+//!
+//! Owns the form of the table: names in the first line, then rising times in s, each with what is done from then on.
+
+use crate::dcml::{Source, report};
+use crate::diagrams::{REFUSED, Refusal, UNREADABLE};
+use crate::limits;
+use lang::dcml::formulas::{Formulas, Wrong};
+use lang::dcml::robot::Robot;
+use lang::dcml::syntax::Domain;
+use std::fs::File;
+use std::io::{self, Read};
+
+/// Actions at any time.
+#[derive(Clone)]
+pub(super) struct Actions {
+    from: From,
+    names: Vec<String>,
+    ranges: Vec<Option<(f64, f64)>>,
+    /// Which actions were held at an end of their range.
+    is_held: Vec<bool>,
+}
+
+#[derive(Clone)]
+enum From {
+    Formulas(Box<Formulas>),
+    /// Times, and a line of actions for each.
+    Table(Vec<f64>, Vec<Vec<f64>>),
+}
+
+impl Actions {
+    /// From what the option says: formulas have an equals sign, names of files have none.
+    pub fn new(text: &str, robot: &Robot) -> Result<Self, Refusal> {
+        let parts = robot.action_parts();
+        let names: Vec<&str> = parts.iter().map(|one| one.name.as_str()).collect();
+        let from = if text.contains('=') {
+            From::Formulas(Box::new(formulas(text, &names)?))
+        } else {
+            let table = read(text)?;
+            let (times, rows) = table_of(&table, &names)
+                .map_err(|(place, why)| Refusal::new(format!("{text}:{place}: {why}")))?;
+            From::Table(times, rows)
+        };
+        let range = |domain: Option<Domain>| match domain {
+            Some(Domain::Range(from, to)) => Some((from, to)),
+            _ => None,
+        };
+        Ok(Self {
+            from,
+            names: names.into_iter().map(str::to_owned).collect(),
+            ranges: parts.iter().map(|one| range(one.domain)).collect(),
+            is_held: vec![false; parts.len()],
+        })
+    }
+
+    /// Times at which they jump.
+    pub fn jumps(&self) -> &[f64] {
+        match &self.from {
+            From::Formulas(_) => &[],
+            From::Table(times, _) => times,
+        }
+    }
+
+    /// The actions at a time in s, within their ranges.
+    pub fn at(&mut self, time: f64, to: &mut [f64]) {
+        match &mut self.from {
+            From::Formulas(formulas) => formulas.at(time, to),
+            From::Table(times, rows) => {
+                let after = times.partition_point(|one| *one <= time);
+                if let Some(row) = rows.get(after.saturating_sub(1)) {
+                    to.copy_from_slice(row);
+                }
+            }
+        }
+        for ((one, range), is_held) in to.iter_mut().zip(&self.ranges).zip(&mut self.is_held) {
+            if let Some((least, most)) = *range
+                && (*one < least || *one > most)
+            {
+                *one = if *one < least { least } else { most };
+                *is_held = true;
+            }
+        }
+    }
+
+    /// A line for each action that was held at an end of its range.
+    pub fn held(&self) -> Vec<String> {
+        let all = self.names.iter().zip(&self.ranges).zip(&self.is_held);
+        all.filter_map(|((name, range), is_held)| {
+            let (least, most) = range.filter(|_| *is_held)?;
+            Some(format!(
+                "trik: {name} would leave its range {least} .. {most}, and was held at its end"
+            ))
+        })
+        .collect()
+    }
+}
+
+fn formulas(text: &str, names: &[&str]) -> Result<Formulas, Refusal> {
+    Formulas::new(text, names).map_err(|wrong| match wrong {
+        Wrong::Text(found) => {
+            let source = Source {
+                name: "--actions".into(),
+                text: text.to_owned(),
+            };
+            report::show(&source, &found);
+            Refusal {
+                lines: Vec::new(),
+                code: REFUSED,
+            }
+        }
+        Wrong::Missing(name) => Refusal::new(format!(
+            "--actions: there is no formula for {name}: add {name} = FORMULA"
+        )),
+        Wrong::Other(why) => Refusal::new(format!("--actions: {why}")),
+    })
+}
+
+fn read(path: &str) -> Result<String, Refusal> {
+    let unreadable = |why: String| Refusal {
+        lines: vec![format!("trik: {path}: {why}")],
+        code: UNREADABLE,
+    };
+    let mut bytes = Vec::new();
+    let most = limits::DCML_ACTIONS_BYTES_MAX;
+    let found = File::open(path).and_then(|file| file.take(most + 1).read_to_end(&mut bytes));
+    found.map_err(|error| {
+        unreadable(match error.kind() {
+            io::ErrorKind::NotFound => {
+                "there is no such table of actions; formulas are NAME = FORMULA".to_owned()
+            }
+            io::ErrorKind::IsADirectory => "this is a directory: name a table".to_owned(),
+            _ => format!("cannot be read: {error}"),
+        })
+    })?;
+    if bytes.len() as u64 > most {
+        return Err(unreadable(format!("longer than {} MiB", most >> 20)));
+    }
+    lang::dcml::decode(bytes).map_err(|why| Refusal {
+        lines: vec![format!("trik: {path}:{why}")],
+        code: UNREADABLE,
+    })
+}
+
+/// Times and lines of actions in the order of the names; else `LINE:COLUMN` and what is wrong there.
+fn table_of(text: &str, names: &[&str]) -> Result<Rows, (String, String)> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut lines = (1..)
+        .zip(text.lines())
+        .filter(|(_, line)| !line.trim().is_empty());
+    let (at, header) = lines.next().ok_or_else(|| {
+        let why = format!(
+            "the table is empty: its first line is t,{}",
+            names.join(",")
+        );
+        ("1:1".to_owned(), why)
+    })?;
+    let columns = columns(at, header, names)?;
+    let (mut times, mut rows): Rows = (Vec::new(), Vec::new());
+    for (at, line) in lines {
+        if rows.len() >= limits::DCML_ROWS_MAX {
+            return Err((
+                format!("{at}:1"),
+                format!("more than {} lines", limits::DCML_ROWS_MAX),
+            ));
+        }
+        let mut row = vec![0.0; names.len()];
+        let mut time = 0.0;
+        let mut count = 0;
+        for (cell, (column, place)) in cells(line).zip(columns.iter().zip(0..)) {
+            let shown: String = cell.1.chars().take(40).collect();
+            let number: f64 = match cell.1.parse() {
+                Ok(number) if f64::is_finite(number) => number,
+                _ => {
+                    return Err((
+                        format!("{at}:{}", cell.0),
+                        format!("{shown:?} is no number"),
+                    ));
+                }
+            };
+            match column {
+                None => time = number,
+                Some(action) => row[*action] = number,
+            }
+            count = place + 1;
+        }
+        let given = cells(line).count();
+        if given != columns.len() || count != columns.len() {
+            let why = format!(
+                "there are {given} numbers, but the first line has {} names",
+                columns.len()
+            );
+            return Err((format!("{at}:1"), why));
+        }
+        if times.last().is_some_and(|last| time <= *last) {
+            let why = format!("the time {time} s does not come after the one before it");
+            return Err((format!("{at}:1"), why));
+        }
+        times.push(time);
+        rows.push(row);
+    }
+    if rows.is_empty() {
+        return Err((
+            format!("{at}:1"),
+            "there are no lines under the names".into(),
+        ));
+    }
+    Ok((times, rows))
+}
+
+type Rows = (Vec<f64>, Vec<Vec<f64>>);
+
+/// What each column is: time, or an action by its number.
+fn columns(
+    at: usize,
+    header: &str,
+    names: &[&str],
+) -> Result<Vec<Option<usize>>, (String, String)> {
+    let mut columns: Vec<Option<usize>> = Vec::new();
+    let all = || format!("the names are t,{}", names.join(","));
+    for (column, cell) in cells(header) {
+        let shown: String = cell.chars().take(40).collect();
+        let found = match names.iter().position(|one| *one == cell) {
+            Some(action) => Some(action),
+            None if cell == "t" => None,
+            None => {
+                return Err((
+                    format!("{at}:{column}"),
+                    format!("there is no action {shown:?}: {}", all()),
+                ));
+            }
+        };
+        if columns.contains(&found) {
+            return Err((
+                format!("{at}:{column}"),
+                format!("{shown:?} is there twice"),
+            ));
+        }
+        columns.push(found);
+    }
+    let is_missing = |one: &Option<usize>| !columns.contains(one);
+    let wanted = [None].into_iter().chain((0..names.len()).map(Some));
+    match wanted.into_iter().find(is_missing) {
+        None => Ok(columns),
+        Some(one) => {
+            let name = one.and_then(|at| names.get(at)).copied().unwrap_or("t");
+            Err((format!("{at}:1"), format!("{name} is missing: {}", all())))
+        }
+    }
+}
+
+/// Cells of a line with their columns, counted from 1.
+fn cells(line: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut column = 1;
+    line.split(',').map(move |cell| {
+        let blanks = cell.chars().take_while(|sign| sign.is_whitespace()).count();
+        let place = column + blanks;
+        column += cell.chars().count() + 1;
+        (place, cell.trim())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_have_their_names_in_any_order() {
+        let found = table_of("b, t ,a\n1,0,2\n\n3,0.5,4\n", &["a", "b"]);
+        let expected = (vec![0.0, 0.5], vec![vec![2.0, 1.0], vec![4.0, 3.0]]);
+        assert_eq!(found, Ok(expected));
+    }
+
+    #[test]
+    fn what_is_wrong_has_its_place() {
+        for (text, place, why) in [
+            ("", "1:1", "the table is empty: its first line is t,a"),
+            (
+                "t,b\n",
+                "1:3",
+                "there is no action \"b\": the names are t,a",
+            ),
+            ("t\n", "1:1", "a is missing: the names are t,a"),
+            ("a\n", "1:1", "t is missing: the names are t,a"),
+            ("t,a,a\n", "1:5", "\"a\" is there twice"),
+            ("t,a\n", "1:1", "there are no lines under the names"),
+            ("t,a\n0, x\n", "2:4", "\"x\" is no number"),
+            ("t,a\n0,inf\n", "2:3", "\"inf\" is no number"),
+            (
+                "t,a\n0\n",
+                "2:1",
+                "there are 1 numbers, but the first line has 2 names",
+            ),
+            (
+                "t,a\n0,1,2\n",
+                "2:1",
+                "there are 3 numbers, but the first line has 2 names",
+            ),
+            (
+                "t,a\n0,1\n0,1\n",
+                "3:1",
+                "the time 0 s does not come after the one before it",
+            ),
+        ] {
+            let expected = Err((place.to_owned(), why.to_owned()));
+            assert_eq!(table_of(text, &["a"]), expected, "{text:?}");
+        }
+    }
+}

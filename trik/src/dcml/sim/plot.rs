@@ -1,0 +1,293 @@
+//! A solution as a picture: the path seen from above, and what changes with time.
+//!
+//! Owns the layout. Writes SVG as text, with names of the model escaped.
+
+use super::{Column, Table};
+use crate::limits;
+use std::fmt::Write as _;
+
+/// Size of the path's panel and of those below it, without their margins, in px.
+const PATH: (f64, f64) = (560.0, 400.0);
+const PANEL: (f64, f64) = (560.0, 90.0);
+const LEFT: f64 = 70.0;
+const TOP: f64 = 34.0;
+const RIGHT: f64 = 20.0;
+const BOTTOM: f64 = 36.0;
+
+/// A rectangle of the picture, and the numbers at its edges.
+struct Panel {
+    left: f64,
+    top: f64,
+    size: (f64, f64),
+    across: (f64, f64),
+    upwards: (f64, f64),
+}
+
+impl Panel {
+    fn point(&self, x: f64, y: f64) -> (f64, f64) {
+        let part = |number: f64, (from, to): (f64, f64)| (number - from) / (to - from);
+        (
+            self.left + part(x, self.across) * self.size.0,
+            self.top + (1.0 - part(y, self.upwards)) * self.size.1,
+        )
+    }
+
+    /// Frame, numbers at the edges, names of the axes.
+    fn frame(&self, out: &mut String, across: &str, upwards: &str) {
+        let (left, top, (width, height)) = (self.left, self.top, self.size);
+        for x in ticks(self.across) {
+            let (at, _) = self.point(x, 0.0);
+            let low = top + height;
+            let _ = writeln!(
+                out,
+                "<path class=\"g\" d=\"M{at:.1} {top}V{low}\"/>\
+                 <text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
+                low + 14.0,
+                short(x)
+            );
+        }
+        for y in ticks(self.upwards) {
+            let (_, at) = self.point(0.0, y);
+            let _ = writeln!(
+                out,
+                "<path class=\"g\" d=\"M{left} {at:.1}h{width}\"/>\
+                 <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
+                left - 5.0,
+                at + 4.0,
+                short(y)
+            );
+        }
+        let _ = writeln!(
+            out,
+            "<rect x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\" class=\"f\"/>\n\
+             <text x=\"{left}\" y=\"{:.1}\" font-weight=\"bold\">{upwards}</text>\n\
+             <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{across}</text>",
+            top - 7.0,
+            left + width,
+            top + height + 28.0
+        );
+    }
+
+    /// A line through points; angles are not drawn across where they wrap.
+    fn line(&self, out: &mut String, points: impl Iterator<Item = (f64, f64)>, is_circle: bool) {
+        out.push_str("<path class=\"l\" d=\"");
+        let mut last: Option<f64> = None;
+        for (x, y) in points {
+            let wraps =
+                last.is_some_and(|last| is_circle && (y - last).abs() > std::f64::consts::PI);
+            let sign = if last.is_none() || wraps { 'M' } else { 'L' };
+            let (at, down) = self.point(x, y);
+            let _ = write!(out, "{sign}{at:.2} {down:.2}");
+            last = Some(y);
+        }
+        out.push_str("\"/>\n");
+    }
+}
+
+/// The picture.
+pub(super) fn svg(title: &str, table: &Table) -> String {
+    let names = table.columns.iter().skip(1);
+    let shown = (table.columns.len() - 1).min(limits::DCML_PANELS_MAX);
+    let find = |name: &str| {
+        names
+            .clone()
+            .take(table.configs)
+            .position(|one| one.name == name)
+    };
+    let path = find("x")
+        .zip(find("y"))
+        .or((table.configs >= 2).then_some((0, 1)));
+    let mut out = String::new();
+    let mut top = TOP + 10.0;
+    if let Some((x, y)) = path {
+        let (x, y) = (x + 1, y + 1);
+        draw_path(&mut out, table, (x, y), top);
+        top += PATH.1 + BOTTOM + TOP;
+    }
+    for (at, column) in names.clone().enumerate().take(shown) {
+        let panel = Panel {
+            left: LEFT,
+            top,
+            size: PANEL,
+            across: range(table, 0),
+            upwards: range(table, at + 1),
+        };
+        let is_last = at + 1 == shown;
+        panel.frame(&mut out, if is_last { "t, s" } else { "" }, &label(column));
+        let points = table.rows.iter().map(|row| (row[0], row[at + 1]));
+        panel.line(&mut out, points, column.is_circle);
+        top += PANEL.1 + BOTTOM + 16.0;
+    }
+    let (width, height) = (LEFT + PATH.0 + RIGHT, top);
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
+         viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" font-size=\"12\">\n\
+         <title>{}</title>\n\
+         <style>.g{{stroke:#e8e8e8;fill:none}}.f{{stroke:#808080;fill:none}}\
+         .l{{stroke:#0057b8;stroke-width:1.6;fill:none}}</style>\n\
+         <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{out}</svg>\n",
+        escaped(title)
+    )
+}
+
+/// The path, as long to the side as upwards, with its begin and its end.
+fn draw_path(out: &mut String, table: &Table, (x, y): (usize, usize), top: f64) {
+    let (across, upwards) = (range(table, x), range(table, y));
+    let unit = ((across.1 - across.0) / PATH.0).max((upwards.1 - upwards.0) / PATH.1);
+    let around = |(from, to): (f64, f64), size: f64| {
+        let (middle, half) = (from / 2.0 + to / 2.0, unit * size / 2.0);
+        (middle - half, middle + half)
+    };
+    let panel = Panel {
+        left: LEFT,
+        top,
+        size: PATH,
+        across: around(across, PATH.0),
+        upwards: around(upwards, PATH.1),
+    };
+    let label = |at: usize| label(&table.columns[at]);
+    let upwards = format!("{} over {}", label(y), label(x));
+    panel.frame(out, &label(x), &upwards);
+    panel.line(out, table.rows.iter().map(|row| (row[x], row[y])), false);
+    let ends = [
+        (table.rows.first(), "#2e8b57"),
+        (table.rows.last(), "#c0392b"),
+    ];
+    for (row, colour) in ends {
+        if let Some(row) = row {
+            let (at, down) = panel.point(row[x], row[y]);
+            let _ = writeln!(
+                out,
+                "<circle cx=\"{at:.2}\" cy=\"{down:.2}\" r=\"4\" fill=\"{colour}\"/>"
+            );
+        }
+    }
+}
+
+/// Least and greatest number of a column with some air; never nothing, and never without an end.
+fn range(table: &Table, column: usize) -> (f64, f64) {
+    let numbers = || {
+        table
+            .rows
+            .iter()
+            .map(|row| row[column])
+            .filter(|one| one.is_finite())
+    };
+    let (from, to) = (
+        numbers().fold(f64::INFINITY, f64::min),
+        numbers().fold(f64::NEG_INFINITY, f64::max),
+    );
+    if from > to {
+        return (-1.0, 1.0);
+    }
+    // Halves, so that the widest range has a size.
+    let (middle, half) = (from / 2.0 + to / 2.0, to / 2.0 - from / 2.0);
+    let least = (middle.abs() * 1e-9).max(1e-6);
+    let air = if column == 0 { 1.0 } else { 1.05 };
+    let half = if half < least {
+        1.0_f64.max(least)
+    } else {
+        half * air
+    };
+    let end = f64::MAX / 4.0;
+    ((middle - half).max(-end), (middle + half).min(end))
+}
+
+/// Round numbers within a range, about five.
+fn ticks((from, to): (f64, f64)) -> Vec<f64> {
+    let rough = (to - from) / 5.0;
+    let power = 10.0_f64.powf(rough.log10().floor());
+    let step = [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .map(|one| one * power)
+        .find(|one| *one >= rough)
+        .unwrap_or(rough);
+    let first = (from / step).ceil();
+    let all = (0..20).map(|at| (first + f64::from(at)) * step);
+    all.take_while(|one| *one <= to).collect()
+}
+
+/// A number of an axis.
+fn short(number: f64) -> String {
+    if number != 0.0 && (number.abs() >= 1e6 || number.abs() < 1e-4) {
+        return format!("{number:.2e}");
+    }
+    let text = format!("{number:.6}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" {
+        "0".into()
+    } else {
+        text.into()
+    }
+}
+
+fn label(column: &Column) -> String {
+    let unit = column.unit.as_ref().map(|unit| format!(", {unit}"));
+    escaped(&format!("{}{}", column.name, unit.unwrap_or_default()))
+}
+
+/// Text between tags.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(names: &[&str], rows: Vec<Vec<f64>>) -> Table {
+        let column = |name: &&str| Column {
+            name: (*name).to_owned(),
+            unit: Some("<m>".into()),
+            is_circle: *name == "theta",
+        };
+        Table {
+            columns: names.iter().map(column).collect(),
+            configs: names.len() - 1,
+            rows,
+        }
+    }
+
+    #[test]
+    fn a_path_has_its_shape_and_angles_their_gaps() {
+        let rows = vec![
+            vec![0.0, 0.0, 0.0, 3.0],
+            vec![1.0, 1.0, 0.0, -3.0],
+            vec![2.0, 1.0, 1.0, -2.0],
+        ];
+        let svg = svg("A & B", &table(&["t", "x", "y", "theta"], rows));
+        assert!(svg.contains("<title>A &amp; B</title>"));
+        assert!(svg.contains("x, &lt;m&gt;"));
+        let lines: Vec<&str> = svg.split("class=\"l\" d=\"").skip(1).collect();
+        assert_eq!(lines.len(), 4, "the path and three panels");
+        let signs = |line: &str| -> String {
+            let path = line.split('"').next().unwrap_or_default();
+            path.chars().filter(|sign| sign.is_alphabetic()).collect()
+        };
+        assert_eq!(signs(lines[0]), "MLL");
+        assert_eq!(signs(lines[3]), "MML");
+    }
+
+    #[test]
+    fn strange_numbers_make_no_strange_picture() {
+        for rows in [
+            vec![vec![0.0, 1e308, -1e308], vec![1.0, -1e308, 1e308]],
+            vec![vec![0.0, 5.0, f64::NAN]],
+            vec![vec![0.0, 1e300, 1e-300], vec![1.0, 1e300, 2e-300]],
+        ] {
+            let svg = svg("Wide", &table(&["t", "x", "y"], rows));
+            let is_whole = !svg.contains("inf") && svg.len() < 20_000;
+            assert!(is_whole, "{svg}");
+        }
+    }
+
+    #[test]
+    fn axes_have_round_numbers() {
+        assert_eq!(ticks((0.0, 10.0)), [0.0, 2.0, 4.0, 6.0, 8.0, 10.0]);
+        assert_eq!(short(-0.5), "-0.5");
+        assert_eq!(short(0.0), "0");
+        assert_eq!(short(1.5e7), "1.50e7");
+    }
+}
