@@ -93,7 +93,7 @@ pub(crate) fn up(args: UpArgs) -> Result<(), String> {
         None => Made::robot(&args)?,
     };
     let config = match (&args.config, &made.configuration) {
-        // What is made here includes the shipped configuration.
+        // The configuration is made here, and includes this one.
         (None, Some(_)) => shipped(Path::new("trik.lua"), &args).map(|_| None)?,
         _ => Some(configuration(&args)?),
     };
@@ -157,13 +157,6 @@ pub(crate) fn up(args: UpArgs) -> Result<(), String> {
     end
 }
 
-/// The signals that end a robot, kept from all threads.
-fn signals() -> nix::Result<SignalFd> {
-    let mask: SigSet = SIGNALS.into_iter().collect();
-    mask.thread_block()?;
-    SignalFd::with_flags(&mask, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC)
-}
-
 /// A body, and the configuration that goes with it if it is in no file.
 struct Made {
     body: Box<dyn Body>,
@@ -205,6 +198,13 @@ impl Made {
 fn write(text: &str, into: &Path) -> Result<PathBuf, String> {
     std::fs::write(into, text).map_err(|error| format!("{}: {error}", into.display()))?;
     Ok(into.to_owned())
+}
+
+/// The signals that end a robot, kept from all threads.
+fn signals() -> nix::Result<SignalFd> {
+    let mask: SigSet = SIGNALS.into_iter().collect();
+    mask.thread_block()?;
+    SignalFd::with_flags(&mask, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC)
 }
 
 /// What the tree is to be made of.
