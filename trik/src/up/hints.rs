@@ -104,14 +104,14 @@ mod tests {
 
     #[test]
     fn hints_of_a_world_are_of_what_it_has() {
-        let mut robot = sim::field::Robot::default();
+        let mut robot = Box::new(sim::field::Robot::default());
         robot.left = Port::named("M1");
         for (port, kind) in [("A1", SensorKind::Light), ("D2", SensorKind::Sonar)] {
             let port = Port::named(port).unwrap();
             robot.sensors.push(sim::field::Sensor::new(port, kind));
         }
         let mut field = Field::default();
-        field.robots.push(robot);
+        field.robots.push(*robot);
         let hints = of("two-wheels", Some(&field));
         let commands: Vec<&str> = hints.iter().map(|(command, _)| &**command).collect();
         assert_eq!(
