@@ -1,4 +1,4 @@
-//! Solutions beside those of SciPy, which is asked now: by python3, and skipped without scipy; or by what DCML_PYTHON names,
+//! Solutions beside those of SciPy, which is asked now: by python3, and skipped without scipy; or by what TRIK_NUMPY_PYTHON names,
 //! which must have it.
 
 use lang::dcml::robot::Robot;
@@ -33,7 +33,7 @@ const CASES: [[f64; 6]; 4] = [
 
 #[test]
 fn a_car_with_a_trailer_ends_where_scipy_says() {
-    let named = std::env::var_os("DCML_PYTHON");
+    let named = std::env::var_os("TRIK_NUMPY_PYTHON");
     let python = named.clone().unwrap_or_else(|| "python3".into());
     let line = |case: &[f64; 6]| case.map(|one| one.to_string()).join(",");
     let mut command = Command::new(python);
@@ -51,7 +51,7 @@ fn a_car_with_a_trailer_ends_where_scipy_says() {
         },
     );
     if text.trim() == "missing" {
-        assert!(named.is_none(), "DCML_PYTHON has no scipy");
+        assert!(named.is_none(), "TRIK_NUMPY_PYTHON has no scipy");
         println!("skipped a_car_with_a_trailer_ends_where_scipy_says: no python3 with scipy");
         return;
     }
