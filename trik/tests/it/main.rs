@@ -26,6 +26,8 @@ mod examples;
 mod faults;
 /// Speed that is held, heading and place.
 mod hold;
+/// What editors are told of models.
+mod lsp;
 /// Models in DCML: a body of their own, and nodes that follow it.
 mod models;
 /// Programs that come over the network.
