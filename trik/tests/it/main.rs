@@ -5,6 +5,7 @@
 /// Solutions of tasks, judged.
 mod check;
 /// Paths of robots that are models.
+mod dcml_gen;
 mod dcml_plan;
 /// `trik dcml sim`: models under actions.
 mod dcml_sim;
