@@ -22,3 +22,4 @@ pub use replay::{judge_recorded, strange_in_record};
 pub use run::{Outcome, Settings, Verdict, judge};
 pub use task::{Task, Texts};
 pub use trajectory::Trajectory;
+pub use words::too_slow;

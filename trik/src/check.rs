@@ -15,7 +15,7 @@ mod words;
 mod worker;
 
 use crate::diagrams::output::{Output, standard};
-use crate::diagrams::{Refusal, UNREADABLE, end, telling};
+use crate::diagrams::{Refusal, UNREADABLE, end, say, telling};
 pub(crate) use args::CheckArgs;
 use jobs::Job;
 use lang::problem::Tongue;
@@ -49,12 +49,16 @@ fn checked(args: &CheckArgs) -> Result<u8, Refusal> {
     let results = args.results.as_deref().map(|path| Output {
         path: Some(path),
         force: args.force,
-        source: jobs.first().map_or(Path::new(""), Job::judged),
+        source: jobs.first().map_or(Path::new(""), |job| job.judged(args)),
     });
     if let Some(results) = &results {
         results.look()?;
     }
     look(&jobs, args)?;
+    let left_out = jobs::left_out(args);
+    if left_out > 0 {
+        say(&[words::left_out(left_out, args.language)]);
+    }
     match &jobs[..] {
         [job] => one(job, args, results),
         _ => many(&jobs, args, results),
@@ -77,7 +81,7 @@ fn look(jobs: &[Job], args: &CheckArgs) -> Result<(), Refusal> {
             let output = Output {
                 path: Some(&path),
                 force: args.force,
-                source: job.judged(),
+                source: job.judged(args),
             };
             output.look()?;
         }
@@ -152,7 +156,7 @@ impl<'a> Told<'a> {
         let names = |path: &Path| telling::named(path);
         let all: Vec<(String, Option<String>)> = jobs
             .iter()
-            .map(|job| (names(job.judged()), job.rules().map(names)))
+            .map(|job| (names(job.judged(args)), job.rules(args).map(names)))
             .collect();
         let widths = Widths::new(
             all.iter()

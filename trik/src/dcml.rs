@@ -6,6 +6,8 @@
 //! Exit codes: 0 done, 1 refused or failed, 2 a file that cannot be read, or a command line that was not understood.
 
 mod check;
+mod doc;
+mod fmt;
 mod generate;
 pub mod lsp;
 mod models;
@@ -34,6 +36,17 @@ pub(crate) enum Dcml {
     /// Each error and warning is shown with its place, the line, and what to do. Exit status: 0 no errors, perhaps
     /// warnings; 1 errors; 2 a file cannot be read, or the command line was not understood.
     Check(CheckArgs),
+    /// Bring models into the one layout: spaces, line ends, long lines.
+    ///
+    /// Files are changed in place, except standard input, which goes to standard output. Comments and the order of the
+    /// author stay. Exit status: 0 done; 1 a file cannot be understood, or --check found one that is not in the layout; 2 a
+    /// file cannot be read, or the command line was not understood.
+    Fmt(FmtArgs),
+    /// Write what models say of themselves as a page in Markdown, to standard output.
+    ///
+    /// Exit status: 0 done; 1 the text cannot be understood; 2 a file cannot be read, or the command line was not
+    /// understood.
+    Doc(DocArgs),
     /// Find a path for a robot from one place to another, among obstacles.
     ///
     /// Grows a tree of motions that the model can do until one ends in the goal: rrt ends with the first path, sst looks
@@ -72,6 +85,27 @@ pub(crate) struct CheckArgs {
     /// Refuse what the published language does not have: units, ranges, piecewise, comments with // and /* */.
     #[arg(long)]
     pub paper: bool,
+    /// Write a line of JSON for each error and warning to standard output instead, for programs.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What `trik dcml fmt` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct FmtArgs {
+    /// Files with models; - is standard input.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Change nothing, and name the files that would change.
+    #[arg(long)]
+    pub check: bool,
+}
+
+/// What `trik dcml doc` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct DocArgs {
+    /// A file with models; - is standard input.
+    pub file: PathBuf,
 }
 
 /// What `trik dcml sim` can be told.
@@ -166,6 +200,8 @@ pub(crate) struct ModelsArgs {
 pub(crate) fn perform(command: &Dcml) -> ExitCode {
     end(match command {
         Dcml::Check(args) => check::check(args),
+        Dcml::Fmt(args) => fmt::fmt(args),
+        Dcml::Doc(args) => doc::doc(args),
         Dcml::Plan(args) => plan::plan(args),
         Dcml::Lsp => return lsp::serve(),
         Dcml::Sim(args) => sim::sim(args),

@@ -72,8 +72,10 @@ pub const SCRIPT_EPOCH_MS: u64 = 1_767_225_600_000;
 pub const MODEL_SECONDS_MAX: f64 = 3600.0;
 /// Longest run that is judged, in seconds of real time.
 pub const WALL_SECONDS_MAX: f64 = 3600.0;
-/// What a worker gets beyond the time of a run, for reading files and writing pictures, in milliseconds.
+/// What a worker gets beyond the time of a run, for reading files, and again for writing pictures, in milliseconds.
 pub const WORKER_GRACE_MS: u32 = 5_000;
+/// What a run gets beyond its real time to end by itself before its worker is killed, in milliseconds.
+pub const RUN_GRACE_MS: u32 = 300;
 /// Solutions of one command.
 pub const SOLUTIONS_MAX: usize = 100_000;
 /// Fields of one command.

@@ -93,15 +93,12 @@ pub(crate) fn up(args: UpArgs) -> Result<(), String> {
         None => Made::robot(&args)?,
     };
     let config = match (&args.config, &made.configuration) {
-        (None, Some(_)) => None,
+        // The configuration is made here, and includes this one.
+        (None, Some(_)) => shipped(Path::new("trik.lua"), &args).map(|_| None)?,
         _ => Some(configuration(&args)?),
     };
     // Before the board has threads, so that these come to the main thread alone.
-    let mask: SigSet = SIGNALS.into_iter().collect();
-    let own = |error: nix::Error| format!("signals: {error}");
-    mask.thread_block().map_err(own)?;
-    let signals =
-        SignalFd::with_flags(&mask, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC).map_err(own)?;
+    let signals = signals().map_err(|error| format!("signals: {error}"))?;
     let mountpoint = args.mountpoint.as_deref().map(absolute).transpose()?;
     let mut place = Place::claim(&place::base()?, mountpoint.as_deref())?;
     let ev3dev = match &args.ev3dev {
@@ -136,6 +133,7 @@ pub(crate) fn up(args: UpArgs) -> Result<(), String> {
         } else {
             &args.robot
         },
+        world: world.as_ref().map(|(field, _)| field),
         speed: args.speed,
         place: &place,
         board: &board,
@@ -202,17 +200,31 @@ fn write(text: &str, into: &Path) -> Result<PathBuf, String> {
     Ok(into.to_owned())
 }
 
+/// The signals that end a robot, kept from all threads.
+fn signals() -> nix::Result<SignalFd> {
+    let mask: SigSet = SIGNALS.into_iter().collect();
+    mask.thread_block()?;
+    SignalFd::with_flags(&mask, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC)
+}
+
 /// What the tree is to be made of.
 fn configuration(args: &UpArgs) -> Result<PathBuf, String> {
     match &args.config {
         Some(path) if path.is_file() => absolute(path),
         Some(path) => Err(format!("{}: no such configuration", path.display())),
         None => {
-            let include: Result<_, _> = args.include.iter().map(|dir| absolute(dir)).collect();
             let name = PathBuf::from(format!("robots/{}.lua", args.robot));
-            trikfs::cli::find_shipped(&name, include?)
+            shipped(&name, args)
         }
     }
+}
+
+/// A file that comes with this program.
+fn shipped(name: &Path, args: &UpArgs) -> Result<PathBuf, String> {
+    let include: Result<_, _> = args.include.iter().map(|dir| absolute(dir)).collect();
+    trikfs::cli::find_shipped(name, include?).map_err(|why| {
+        format!("{why}; --include names another directory: that of the source is config/lua")
+    })
 }
 
 /// The command line of trikfs.
@@ -271,6 +283,8 @@ enum Stage {
 struct Session<'a> {
     arguments: &'a [OsString],
     robot: &'a str,
+    /// The world of TRIK Studio around it.
+    world: Option<&'a Field>,
     speed: f64,
     place: &'a Place,
     board: &'a Board,
@@ -535,7 +549,7 @@ impl Session<'_> {
             "trik: the robot {} is ready on {root}{nodes}\n\nIn a second terminal:\n\n  cd {root}\n",
             self.robot
         );
-        for (command, meaning) in hints::of(self.robot) {
+        for (command, meaning) in hints::of(self.robot, self.world) {
             text.push_str(&format!("  {command:<54} # {meaning}\n"));
         }
         let board = self.place.board.display();

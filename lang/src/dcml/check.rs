@@ -7,7 +7,7 @@ mod order;
 mod resolve;
 mod units;
 
-use super::diagnostic::{Code, Diagnostic, Findings};
+use super::diagnostic::{Code, Diagnostic, Findings, Severity};
 use super::function::Function;
 use super::model::{Equation, Expr, Model, Symbol, SymbolId};
 use super::nearest::nearest;
@@ -373,27 +373,23 @@ impl<'a, 'f> Checker<'a, 'f> {
             return;
         }
         for (symbol, equation) in self.symbols.iter().zip(&self.equation_of) {
-            let (what, hint) = match symbol.kind {
-                Kind::Config => (
-                    "",
-                    format!("write `d({0}) = ...;` or `{0} = ...;`", shown(&symbol.name)),
-                ),
-                Kind::Var => (
-                    "the variable ",
-                    format!("write `{} = ...;`", shown(&symbol.name)),
-                ),
-                _ => continue,
-            };
-            if equation.is_none() {
-                let message = format!("{what}`{}` has no equation", shown(&symbol.name));
-                let found = Diagnostic::new(
-                    Code::MissingEquation,
-                    symbol.span,
-                    message,
-                    "nothing gives its value",
-                );
-                self.findings.add(found.hint(hint));
+            let is_computed = matches!(symbol.kind, Kind::Config | Kind::Var);
+            if !is_computed || equation.is_some() || !self.findings.wants(Severity::Error) {
+                continue;
             }
+            let name = shown(&symbol.name);
+            let (what, hint) = match symbol.kind {
+                Kind::Config => ("", format!("write `d({name}) = ...;` or `{name} = ...;`")),
+                _ => ("the variable ", format!("write `{name} = ...;`")),
+            };
+            let message = format!("{what}`{name}` has no equation");
+            let found = Diagnostic::new(
+                Code::MissingEquation,
+                symbol.span,
+                message,
+                "nothing gives its value",
+            );
+            self.findings.add(found.hint(hint));
         }
     }
 
@@ -412,6 +408,9 @@ impl<'a, 'f> Checker<'a, 'f> {
                 Kind::Const => "the constant",
                 Kind::Var => "the variable",
             };
+            if !self.findings.wants(Severity::Warning) {
+                continue;
+            }
             let message = format!("{what} `{}` is not used", shown(&symbol.name));
             let found = Diagnostic::new(Code::Unused, symbol.span, message, "no equation has it");
             self.findings.add(found.hint("remove it, or use it"));

@@ -91,6 +91,17 @@ impl Findings {
         })
     }
 
+    /// Whether one would be kept; else it is counted, and need not be made.
+    pub(super) fn wants(&mut self, severity: Severity) -> bool {
+        let count = match severity {
+            Severity::Error => &mut self.errors,
+            Severity::Warning => &mut self.warnings,
+        };
+        let has_place = *count < DCML_DIAGNOSTICS;
+        *count += usize::from(!has_place);
+        has_place
+    }
+
     /// Adds a place to one that is kept, as long as there are few.
     pub(super) fn also(&mut self, at: Option<usize>, span: Span, text: &str) {
         if let Some(one) = at.and_then(|at| self.kept.get_mut(at))

@@ -5,20 +5,30 @@
 
 use crate::limits::{DCML_WORD_COMPARED_BYTES, DCML_WORDS_COMPARED};
 
-/// The nearest of `known` if it is near enough: at most a third of the word's letters are wrong, or one.
+/// The nearest of `known` if it is near enough: at most a third of the letters are wrong, or one.
 pub(super) fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     if word.len() > DCML_WORD_COMPARED_BYTES {
         return None;
     }
     let word: Vec<char> = word.chars().collect();
-    let most = (word.len() / 3).max(1) * 2;
+    let most = ((word.len() + 1) / 3).max(1) * 2;
     let mut best: Option<(usize, &str)> = None;
     for one in known.into_iter().take(DCML_WORDS_COMPARED) {
         // A letter that is there once more is one edit at least.
         if one.len().abs_diff(word.len()) * 2 > most {
             continue;
         }
-        let found = distance(&word, &one.chars().collect::<Vec<_>>());
+        let letters: Vec<char> = one.chars().collect();
+        let is_case = letters.len() == word.len()
+            && letters
+                .iter()
+                .zip(&word)
+                .all(|(a, b)| a.eq_ignore_ascii_case(b));
+        let found = if is_case {
+            1
+        } else {
+            distance(&word, &letters)
+        };
         // A word of one letter has nothing left of it after one edit, except its case.
         let enough = if word.len() == 1 {
             found < 2
@@ -66,8 +76,10 @@ mod tests {
         assert_eq!(nearest("thet", known), Some("theta"));
         assert_eq!(nearest("Theta", known), Some("theta"));
         assert_eq!(nearest("thtea", known), Some("theta"));
+        assert_eq!(nearest("tetha", known), Some("theta"));
         assert_eq!(nearest("u_rihgt", known), Some("u_right"));
         assert_eq!(nearest("l", known), Some("L"));
+        assert_eq!(nearest("THETA", known), Some("theta"));
         assert_eq!(nearest("q", known), None);
         assert_eq!(nearest("velocity", known), None);
         assert_eq!(nearest(&"u".repeat(1 << 20), known), None);

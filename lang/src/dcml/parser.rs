@@ -54,9 +54,10 @@ struct Parser<'a, 'f> {
     is_cut: bool,
 }
 
-/// A text as it is shown in a message: not too long.
+/// A text as it is shown in a message: one line that is not too long.
 pub(super) fn shown(text: &str) -> String {
-    let mut signs = text.chars();
+    let plain = |sign: char| if sign.is_control() { ' ' } else { sign };
+    let mut signs = text.chars().map(plain);
     let mut begin: String = signs.by_ref().take(DCML_SHOWN).collect();
     if signs.next().is_some() {
         begin.push_str("...");

@@ -141,3 +141,75 @@ d(x) = y; a = b + c; b = c * u; c = x; y = a; END;";
     };
     assert_eq!(model.symbols[id].name, "y");
 }
+
+/// Where the list begins in docs/dcml.md, and where it ends.
+const LIST: (&str, &str) = (
+    "<!-- errors: written by `TRIK_WRITE_DOCS=1 cargo test -p lang --lib dcml` -->\n",
+    "<!-- end of errors -->",
+);
+
+/// The list of all findings, as the documentation has it.
+fn list() -> String {
+    let mut out = String::new();
+    for &code in Code::ALL {
+        let severity = match code.severity() {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        };
+        out.push_str(
+            &format!("\n### {}\n\nAn {severity}: ", code.name()).replace("An warning", "A warning"),
+        );
+        out.push_str(&format!("{}\n", code.explanation()));
+        if !code.example().is_empty() {
+            // Documents are ASCII.
+            let example: String = code
+                .example()
+                .chars()
+                .map(|sign| match sign {
+                    sign if sign.is_ascii() => sign.to_string(),
+                    sign => sign.escape_unicode().to_string(),
+                })
+                .collect();
+            out.push_str(&format!("\n```dcml\n{example}```\n"));
+        }
+    }
+    out.push('\n');
+    out
+}
+
+#[test]
+fn the_list_of_errors_in_the_document_is_the_whole_one() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/dcml.md");
+    let document = std::fs::read_to_string(path).unwrap();
+    let (before, rest) = document.split_once(LIST.0).unwrap();
+    let (written, after) = rest.split_once(LIST.1).unwrap();
+    let made = list();
+    if std::env::var_os("TRIK_WRITE_DOCS").is_some() {
+        std::fs::write(path, format!("{before}{}{made}{}{after}", LIST.0, LIST.1)).unwrap();
+        return;
+    }
+    assert_eq!(written, made, "write it anew with TRIK_WRITE_DOCS=1");
+}
+
+#[test]
+fn the_document_has_all_functions_and_units() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/dcml.md");
+    let document = std::fs::read_to_string(path).unwrap();
+    for function in function::Function::ALL {
+        assert!(
+            document.contains(&format!("`{}(", function.name())),
+            "{}",
+            function.name()
+        );
+    }
+    let (_, units) = document.split_once("Units are those of the SI:").unwrap();
+    let words: Vec<&str> = units
+        .lines()
+        .next()
+        .unwrap_or_default()
+        .split([',', ';', ' ', '`', '.'])
+        .collect();
+    for unit in unit::Unit::names().filter(|unit| !["kg", "sr"].contains(unit)) {
+        assert!(words.contains(&unit), "{unit}");
+    }
+}

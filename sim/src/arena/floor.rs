@@ -10,6 +10,7 @@
 
 pub mod colour;
 pub mod fuzz;
+mod gradient;
 mod lay;
 pub mod outline;
 pub mod picture;
@@ -26,7 +27,9 @@ use std::sync::Arc;
 use screen::Pixels;
 
 use self::colour::Tint;
+use self::gradient::Gradient;
 use self::outline::{Affine, Bounds, Cap, Nib, Outline};
+use self::picture::Paint;
 use self::raster::Coverage;
 use crate::geometry::{Point, point};
 use crate::limits;
@@ -43,6 +46,8 @@ const SHIFT: f64 = 1.0 / 65536.0;
 enum Thing {
     /// A painted area.
     Area(Outline, Tint),
+    /// An area whose colour changes from place to place.
+    Shade(Outline, Box<Gradient>),
     /// Pixels, and what takes a place of the scene to one of them.
     Pixels(Arc<Pixels>, Affine, Bounds),
     /// What a marker has left; its outline is made when somebody looks, because there are very many.
@@ -52,7 +57,7 @@ enum Thing {
 impl Thing {
     fn bounds(&self) -> Bounds {
         match self {
-            Self::Area(outline, _) => outline.bounds(),
+            Self::Area(outline, _) | Self::Shade(outline, _) => outline.bounds(),
             Self::Pixels(_, _, bounds) => *bounds,
             Self::Mark(stroke) => {
                 let mut bounds = Bounds::NOTHING;
@@ -151,8 +156,11 @@ impl Floor {
                 if let Some(back) = to.inverse() {
                     self.add(Thing::Pixels(Arc::clone(pixels), back, bounds));
                 }
-            } else if let Some((outline, tint)) = layer.outline(place) {
-                self.add(Thing::Area(outline, tint));
+            } else if let Some((outline, paint)) = layer.outline(place) {
+                self.add(match paint {
+                    Paint::Plain(tint) => Thing::Area(outline, tint),
+                    Paint::Shade(gradient) => Thing::Shade(outline, gradient),
+                });
             }
         }
         self.count = self.things.len();
@@ -194,7 +202,7 @@ impl Floor {
         if !bounds.0.iter().all(|side| side.is_finite()) {
             return;
         }
-        if let Thing::Area(outline, _) = &thing {
+        if let Thing::Area(outline, _) | Thing::Shade(outline, _) = &thing {
             if self.steps + outline.len() > limits::FLOOR_STEPS {
                 self.is_full = true;
                 return;
@@ -284,13 +292,18 @@ impl Floor {
             match thing {
                 Thing::Area(outline, tint) => {
                     let (coverage, canvas) = (&mut self.coverage, &mut self.canvas);
-                    fill(outline, *tint, coverage, canvas, corner, size, ratio);
+                    fill(outline, |_, _| *tint, coverage, canvas, corner, size, ratio);
+                }
+                Thing::Shade(outline, gradient) => {
+                    let (coverage, canvas) = (&mut self.coverage, &mut self.canvas);
+                    let tint = |x, y| gradient.tint(x, y);
+                    fill(outline, tint, coverage, canvas, corner, size, ratio);
                 }
                 Thing::Mark(stroke) => {
                     if let Some(outline) = mark(stroke) {
                         let (coverage, canvas) = (&mut self.coverage, &mut self.canvas);
                         let tint = Tint::solid(stroke.rgb);
-                        fill(&outline, tint, coverage, canvas, corner, size, ratio);
+                        fill(&outline, |_, _| tint, coverage, canvas, corner, size, ratio);
                     }
                 }
                 Thing::Pixels(pixels, back, _) => {
@@ -319,10 +332,10 @@ fn mark(stroke: &Stroke) -> Option<Outline> {
     Outline::drawn(&outline::line(stroke.begin, stroke.end)?, nib)
 }
 
-/// Paints an area onto a square of `size` pixels.
+/// Paints an area onto a square of `size` pixels; `tint` says the colour of a place of the scene.
 fn fill(
     outline: &Outline,
-    tint: Tint,
+    tint: impl Fn(f64, f64) -> Tint,
     coverage: &mut Coverage,
     canvas: &mut [[u8; 3]],
     corner: Point,
@@ -332,6 +345,8 @@ fn fill(
     coverage.begin(size, size);
     outline.cover(coverage, corner.x, corner.y, ratio);
     coverage.pixels(outline.rule(), |x, y, level| {
+        let along = |index: usize| (index as f64 + 0.5) / ratio;
+        let tint = tint(corner.x + along(x), corner.y + along(y));
         colour::lay(&mut canvas[y * size + x], tint, level);
     });
 }

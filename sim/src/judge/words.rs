@@ -23,7 +23,7 @@ pub(super) fn too_long(seconds: f64) -> Words {
 }
 
 /// The run takes too much real time.
-pub(super) fn too_slow(seconds: f64) -> Words {
+pub fn too_slow(seconds: f64) -> Words {
     Words::new(
         format!("The run took more than {seconds} s of real time: --wall-limit allows more"),
         format!("Запуск длился больше {seconds} с реального времени: --wall-limit разрешит больше"),

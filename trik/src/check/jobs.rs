@@ -26,16 +26,17 @@ pub(super) struct Job {
 }
 
 impl Job {
-    /// What is judged, as people are told.
-    pub fn judged(&self) -> &Path {
-        self.log.as_deref().unwrap_or(&self.solution)
+    /// What is judged, as people are told: a record, a program in place of the diagram, or the solution.
+    pub fn judged<'a>(&'a self, args: &'a CheckArgs) -> &'a Path {
+        let other = self.log.as_deref().or(args.script.as_deref());
+        other.unwrap_or(&self.solution)
     }
 
     /// Where the rules come from, if not from what is judged.
-    pub fn rules(&self) -> Option<&Path> {
-        let save = self.log.as_deref().map(|_| &*self.solution);
-        let field = self.field.as_deref().or(save);
-        field.filter(|field| *field != self.judged())
+    pub fn rules(&self, args: &CheckArgs) -> Option<&Path> {
+        let is_own = self.judged(args) == self.solution;
+        let save = (!is_own).then_some(&*self.solution);
+        self.field.as_deref().or(save)
     }
 }
 
@@ -93,6 +94,20 @@ fn solutions(args: &CheckArgs) -> Result<Vec<(PathBuf, PathBuf)>, String> {
         )?);
     }
     Ok(all)
+}
+
+/// Programs in directories that have no world to run in, for a word about them.
+pub(super) fn left_out(args: &CheckArgs) -> usize {
+    if !args.field.is_empty() || !args.log.is_empty() || args.script.is_some() {
+        return 0;
+    }
+    let folders = args.paths.iter().filter(|path| path.is_dir());
+    let programs = folders.map(|path| {
+        let max = limits::SOLUTIONS_MAX;
+        let found = below(path, &["js", "py"], limits::FOLDERS_DEEP, max);
+        found.map_or(0, |found| found.len())
+    });
+    programs.sum()
 }
 
 /// All records, each against the rules of each world.

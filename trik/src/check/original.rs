@@ -21,6 +21,22 @@ use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+/// How Qt shows windows, in its own words.
+const PLATFORMS: [&str; 12] = [
+    "minimal",
+    "offscreen",
+    "xcb",
+    "wayland",
+    "wayland-egl",
+    "vnc",
+    "eglfs",
+    "linuxfb",
+    "minimalegl",
+    "vkkhrdisplay",
+    "windows",
+    "cocoa",
+];
+
 /// What `2D-model` can be told.
 #[derive(Parser, Debug)]
 #[command(
@@ -38,7 +54,7 @@ struct Model {
     #[arg(short, long)]
     background: bool,
     /// Needed there without a screen; does nothing here.
-    #[arg(long, value_name = "PLATFORM")]
+    #[arg(long, value_name = "PLATFORM", value_parser = platform)]
     platform: Option<String>,
     /// File for what the rules said (JSON).
     #[arg(short, long, value_name = "path-to-report")]
@@ -46,20 +62,20 @@ struct Model {
     /// File or FIFO for the trajectory (JSON); recorded with and without --console.
     #[arg(short, long, value_name = "path-to-trajectory")]
     trajectory: Option<PathBuf>,
-    /// Lines for programs that read.
+    /// Lines for programs that read. A file that is not there has none: graders name one for each field.
     #[arg(short, long, value_name = "path-to-input")]
     input: Option<OsString>,
     /// "diagram", or "script" for the program in JavaScript or Python.
     #[arg(short, long, default_value = "diagram")]
     mode: String,
     /// Speed; does nothing here.
-    #[arg(short, long, default_value = "0")]
-    speed: String,
+    #[arg(short, long, default_value = "0", value_parser = whole)]
+    speed: i32,
     /// Does nothing here: there is no window.
     #[arg(long)]
     close: bool,
     /// Does nothing here: there is no window.
-    #[arg(long)]
+    #[arg(long, alias = "close-on-succes")]
     close_on_success: bool,
     /// Does nothing here.
     #[arg(short, long)]
@@ -77,11 +93,11 @@ struct Model {
     #[arg(long, value_name = "script-path")]
     script_path: Option<OsString>,
     /// Only write the program.
-    #[arg(long)]
+    #[arg(long, requires = "generate_path")]
     only_generate: bool,
     /// Does nothing here.
-    #[arg(long, value_name = "ms", default_value = "0")]
-    delay_before_exit: String,
+    #[arg(long, value_name = "ms", default_value = "0", value_parser = whole)]
+    delay_before_exit: i32,
 }
 
 /// What `patcher` can be told.
@@ -111,6 +127,21 @@ struct Patcher {
     /// Puts the robot onto its start marker.
     #[arg(long = "rrp")]
     to_start: bool,
+}
+
+/// A number that means nothing here, but must be one.
+fn whole(text: &str) -> Result<i32, String> {
+    let number = text.parse().ok().filter(|number| *number >= 0);
+    number.ok_or_else(|| "not a whole number from 0 on".to_owned())
+}
+
+/// Platforms of Qt, perhaps with parameters behind a colon.
+fn platform(name: &str) -> Result<String, String> {
+    let known = PLATFORMS.contains(&name.split(':').next().unwrap_or_default());
+    let names = PLATFORMS.join(", ");
+    known
+        .then(|| name.to_owned())
+        .ok_or_else(|| format!("Qt has {names}; none of them is needed here"))
 }
 
 /// Whether a program's name is one of the original's, perhaps with the ending of its debug build.
@@ -144,8 +175,10 @@ fn parsed<T: Parser>(name: &str, arguments: impl Iterator<Item = OsString>) -> R
 }
 
 /// A path that was named; graders give an empty one for none.
-fn named(path: Option<OsString>) -> Option<PathBuf> {
-    path.filter(|path| !path.is_empty()).map(PathBuf::from)
+fn named(path: &Option<OsString>) -> Option<PathBuf> {
+    path.as_ref()
+        .filter(|path| !path.is_empty())
+        .map(PathBuf::from)
 }
 
 /// The language of messages is that of the system, as there.
@@ -181,14 +214,43 @@ pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    let check = CheckArgs {
-        paths: vec![args.file.clone()],
+    if named(&args.script_path).is_some() && !is_script {
+        say(&["2D-model: --script-path is used only with --mode script".to_owned()]);
+        return ExitCode::from(2);
+    }
+    let job = Job {
+        solution: args.file.clone(),
+        field: None,
+        log: None,
+        name: PathBuf::new(),
+    };
+    let is_input_there = named(&args.input).is_none_or(|path| path.exists());
+    let check = wanted(args, is_script);
+    let row = pool::run_one(job, &check);
+    if !is_input_there {
+        // check-solution.sh names a file for each field, whether there is one or not: that is no error.
+        say(&[
+            "2D-model: warning: the file of --input is not there: nothing can be read".to_owned(),
+        ]);
+    }
+    say(&row.lines(check.language));
+    let has_error = row.messages.iter().any(|(level, _)| level == "error");
+    ExitCode::from(match row.verdict {
+        Verdict::Broken => 2,
+        Verdict::Failed => 1,
+        Verdict::Accomplished | Verdict::Ended => u8::from(has_error),
+    })
+}
+
+/// The same in the words of `trik check`.
+fn wanted(args: Model, is_script: bool) -> CheckArgs {
+    CheckArgs {
+        script: named(&args.script_path),
+        inputs: named(&args.input).filter(|path| path.exists()),
+        paths: vec![args.file],
         field: Vec::new(),
         own: false,
         task: None,
-        script: named(args.script_path).filter(|_| is_script),
-        // A grader names files that are not there when there are no inputs.
-        inputs: named(args.input).filter(|path| path.exists()),
         gamepad: None,
         log: Vec::new(),
         report: args.report,
@@ -208,21 +270,7 @@ pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         worker: false,
         is_one: true,
         is_embedded: is_script,
-    };
-    let job = Job {
-        solution: args.file,
-        field: None,
-        log: None,
-        name: PathBuf::new(),
-    };
-    let row = pool::run_one(job, &check);
-    say(&row.lines(check.language));
-    let has_error = row.messages.iter().any(|(level, _)| level == "error");
-    ExitCode::from(match row.verdict {
-        Verdict::Broken => 2,
-        Verdict::Failed => 1,
-        Verdict::Accomplished | Verdict::Ended => u8::from(has_error),
-    })
+    }
 }
 
 /// Writes the diagram as a program; the exit code if that is all.
@@ -289,7 +337,7 @@ fn patched(args: &Patcher) -> Result<(), Refused> {
         };
         opened.save.set_world(&world).map_err(told)?;
     }
-    if let Some(path) = named(args.script.clone()) {
+    if let Some(path) = named(&args.script) {
         let code = text(&path, limits::WORLD_BYTES_MAX).map_err(because(1))?;
         let ending = path
             .extension()
@@ -366,5 +414,17 @@ mod tests {
         let args = Patcher::try_parse_from(super::words("patcher", words.into_iter())).unwrap();
         assert_eq!(args.field, Some("field.xml".into()));
         assert_eq!(args.script, Some("".into()));
+        for wrong in [
+            "--platform nope x.qrs",
+            "--speed NaN x.qrs",
+            "--speed -5 x.qrs",
+            "--delay-before-exit soon x.qrs",
+            "--only-generate x.qrs",
+            "--fly x.qrs",
+            "x.qrs y.qrs",
+        ] {
+            let words = super::words("2D-model", wrong.split(' ').map(OsString::from));
+            assert!(Model::try_parse_from(words).is_err(), "{wrong}");
+        }
     }
 }

@@ -5,8 +5,10 @@
 
 use super::jobs::Job;
 use super::row::Row;
+use super::{run, words, worker};
 use crate::cli::CheckArgs;
 use crate::limits;
+use sim::judge;
 use std::ffi::OsString;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
@@ -108,7 +110,8 @@ pub(super) fn run_one(job: Job, args: &CheckArgs) -> Row {
         found = Some(row);
         Ok(())
     });
-    found.unwrap_or_else(|| Row::broken(shown(jobs[0].judged()), None, "it was not run".into()))
+    found
+        .unwrap_or_else(|| Row::broken(shown(jobs[0].judged(&args)), None, "it was not run".into()))
 }
 
 fn in_order(
@@ -133,15 +136,15 @@ fn in_order(
 /// Takes runs for one process until there are none.
 fn feed(jobs: &[Job], args: &CheckArgs, shared: &Shared, send: &SyncSender<(usize, Row)>) {
     let words = args.for_worker();
-    let patience = Duration::from_secs_f64(args.wall_limit)
-        + Duration::from_millis(u64::from(limits::WORKER_GRACE_MS));
     let mut worker = None;
     while let Some(index) = shared.take(jobs.len()) {
         let job = &jobs[index];
-        let row = done(&mut worker, job, &words, patience).unwrap_or_else(|why| {
+        let row = done(&mut worker, job, &words, args).unwrap_or_else(|why| {
             // Whatever it was, the next run gets a fresh process.
             worker = None;
-            Row::broken(shown(job.judged()), job.rules().map(shown), why)
+            let mut row = Row::broken(shown(job.judged(args)), job.rules(args).map(shown), why);
+            run::report(job, args, &mut row);
+            row
         });
         if send.send((index, row)).is_err() {
             return;
@@ -158,7 +161,7 @@ fn done(
     worker: &mut Option<Worker>,
     job: &Job,
     words: &[OsString],
-    patience: Duration,
+    args: &CheckArgs,
 ) -> Result<Row, String> {
     let worker = match worker {
         Some(worker) => worker,
@@ -167,7 +170,7 @@ fn done(
             worker.insert(fresh)
         }
     };
-    let line = worker.ask(job, patience)?;
+    let line = worker.ask(job, args)?;
     Row::read(&line).ok_or_else(|| "the process that ran it said something strange".to_owned())
 }
 
@@ -219,7 +222,7 @@ impl Worker {
     }
 
     /// Has a run done.
-    fn ask(&mut self, job: &Job, patience: Duration) -> Result<String, String> {
+    fn ask(&mut self, job: &Job, args: &CheckArgs) -> Result<String, String> {
         let mut bytes = Vec::new();
         let path = |path: &'_ Option<PathBuf>| path.clone().unwrap_or_default();
         let (field, log) = (path(&job.field), path(&job.log));
@@ -231,21 +234,36 @@ impl Worker {
         if !matches!(written, Some(Ok(()))) {
             return Err(self.died());
         }
-        let end = Instant::now() + patience;
+        let limit = Duration::from_secs_f64(args.wall_limit);
+        let ms = |ms: u32| Duration::from_millis(u64::from(ms));
+        let mut end = Instant::now() + limit + ms(limits::WORKER_GRACE_MS);
+        let mut runs = false;
         loop {
             let left = end.saturating_duration_since(Instant::now());
             match self.lines.recv_timeout(left) {
                 Ok(line) => {
-                    if let Some(row) = line.strip_prefix(&*self.mark) {
-                        return Ok(row.to_owned());
+                    let Some(said) = line.strip_prefix(&*self.mark) else {
+                        continue;
+                    };
+                    match said.trim_end() {
+                        worker::RUNS => {
+                            end = Instant::now() + limit + ms(limits::RUN_GRACE_MS);
+                            runs = true;
+                        }
+                        worker::ENDED => {
+                            end = Instant::now() + ms(limits::WORKER_GRACE_MS);
+                            runs = false;
+                        }
+                        _ => return Ok(said.to_owned()),
                     }
                 }
                 Err(RecvTimeoutError::Disconnected) => return Err(self.died()),
                 Err(RecvTimeoutError::Timeout) => {
-                    let seconds = patience.as_secs_f64();
-                    return Err(format!(
-                        "it hung for {seconds:.0} s of real time and was killed"
-                    ));
+                    let why = match runs {
+                        true => judge::too_slow(args.wall_limit),
+                        false => words::hung(),
+                    };
+                    return Err(why.in_tongue(args.language).to_owned());
                 }
             }
         }

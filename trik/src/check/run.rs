@@ -32,11 +32,20 @@ pub(super) const SVG: &str = ".svg";
 pub(super) const HTML: &str = ".html";
 pub(super) const DISPLAY: &str = ".png";
 
-/// Does a run and writes its files.
-pub(super) fn run(job: &Job, args: &CheckArgs) -> Row {
+/// What a worker is doing, for whoever watches its time.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum Phase {
+    /// The program runs.
+    Runs,
+    /// It has ended; files are written.
+    Ended,
+}
+
+/// Does a run and writes its files; tells how far it is.
+pub(super) fn run(job: &Job, args: &CheckArgs, tell_phase: &mut dyn FnMut(Phase)) -> Row {
     let mut row = Row {
-        solution: shown(job.judged()),
-        field: job.rules().map(shown),
+        solution: shown(job.judged(args)),
+        field: job.rules(args).map(shown),
         verdict: Verdict::Broken,
         ms: 0,
         total_score: None,
@@ -44,7 +53,7 @@ pub(super) fn run(job: &Job, args: &CheckArgs) -> Row {
         more: 0,
         printed: Vec::new(),
     };
-    match judged(job, args) {
+    match judged(job, args, tell_phase) {
         Ok((task, outcome, strange)) => {
             let some = strange.iter().take(limits::ROW_WARNINGS_MAX);
             some.for_each(|line| row.say(words::WARNING, line));
@@ -56,19 +65,19 @@ pub(super) fn run(job: &Job, args: &CheckArgs) -> Row {
         }
         Err(lines) => {
             lines.iter().for_each(|line| row.say("error", line));
-            let report = args
-                .report
-                .as_deref()
-                .map(|path| (path, row.messages.clone()));
-            if let Some((path, messages)) = report {
-                let text = judge::report::of_messages(&messages);
-                if let Err(why) = put(job, args, path, REPORT, text.as_bytes()) {
-                    row.say("error", &why);
-                }
-            }
+            report(job, args, &mut row);
         }
     }
     row
+}
+
+/// Writes the report of a run that could not be.
+pub(super) fn report(job: &Job, args: &CheckArgs, row: &mut Row) {
+    let Some(path) = &args.report else { return };
+    let text = judge::report::of_messages(&row.messages);
+    if let Err(why) = put(job, args, path, REPORT, text.as_bytes()) {
+        row.say("error", &why);
+    }
 }
 
 /// What came out, as a row.
@@ -92,7 +101,11 @@ fn tell(outcome: &Outcome, row: &mut Row) {
 type Lines = Vec<String>;
 
 /// The task, what came out, and what is strange in the world.
-fn judged(job: &Job, args: &CheckArgs) -> Result<(Task, Outcome, Lines), Lines> {
+fn judged(
+    job: &Job,
+    args: &CheckArgs,
+    tell_phase: &mut dyn FnMut(Phase),
+) -> Result<(Task, Outcome, Lines), Lines> {
     let settings = settings(args).map_err(|why| vec![why])?;
     let mut solution = match &job.log {
         Some(log) if *log == job.solution => Solution::default(),
@@ -139,11 +152,16 @@ fn judged(job: &Job, args: &CheckArgs) -> Result<(Task, Outcome, Lines), Lines> 
         let names = judge::strange_in_record(&task, &trajectory);
         let told = names.iter().map(|words| words.in_tongue(args.language));
         strange.extend(told.map(|words| format!("{}: {words}", shown(log))));
+        tell_phase(Phase::Runs);
         let outcome = judge::judge_recorded(&task, &trajectory, &settings);
+        tell_phase(Phase::Ended);
         return Ok((task, outcome, strange));
     }
     let mut program = solution.program(&mut task, args)?;
+    tell_phase(Phase::Runs);
     let outcome = judge::judge(&task, &mut *program, &settings);
+    drop(program);
+    tell_phase(Phase::Ended);
     Ok((task, outcome, strange))
 }
 
@@ -205,6 +223,13 @@ struct Solution {
 
 impl Solution {
     fn read(path: &Path, args: &CheckArgs) -> Result<Self, Lines> {
+        if path.extension().is_some_and(|ending| ending == "xml") && path.is_file() {
+            return Err(vec![format!(
+                "{}: {}",
+                shown(path),
+                words::is_world(args.language)
+            )]);
+        }
         let script = args.script.as_deref();
         let own = Language::of(path);
         let (project, script) = match own {
@@ -291,6 +316,7 @@ pub(super) fn text(path: &Path, max: u64) -> Result<String, String> {
     let name = shown(path);
     let failed = |error: std::io::Error| match error.kind() {
         std::io::ErrorKind::NotFound => format!("{name}: there is no such file"),
+        std::io::ErrorKind::IsADirectory => format!("{name}: this is a directory: name a file"),
         _ => format!("{name} cannot be read: {error}"),
     };
     let mut bytes = Vec::new();
@@ -325,7 +351,7 @@ fn write(job: &Job, args: &CheckArgs, task: &Task, outcome: &Outcome) -> Result<
         outcome.display.clone().unwrap_or_default()
     });
     write(&args.html, HTML, &|| {
-        let mut row = Row::broken(shown(job.judged()), None, String::new());
+        let mut row = Row::broken(shown(job.judged(args)), None, String::new());
         tell(outcome, &mut row);
         let verdict = format!(
             "{}, {}",
@@ -358,7 +384,7 @@ fn put(job: &Job, args: &CheckArgs, path: &Path, ending: &str, bytes: &[u8]) -> 
     let output = Output {
         path: Some(&path),
         force: args.force,
-        source: job.judged(),
+        source: job.judged(args),
     };
     output.write(bytes).map_err(|refusal| {
         let lines: Vec<&str> = refusal.lines.iter().map(|line| plain(line)).collect();

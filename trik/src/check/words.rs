@@ -1,7 +1,7 @@
 //! What `trik check` says itself, in English and Russian.
 
 use super::row::Verdict;
-use lang::problem::Tongue;
+use lang::problem::{Tongue, Words};
 
 fn choose(tongue: Tongue, english: &'static str, russian: &'static str) -> &'static str {
     match tongue {
@@ -95,6 +95,35 @@ pub(super) fn summary(counts: [usize; 4], tongue: Tongue) -> String {
             )
         }
     }
+}
+
+/// Files took too long to be read or written.
+pub(super) fn hung() -> Words {
+    Words::new(
+        "reading or writing the files of this run took too much real time, and it was stopped",
+        "чтение или запись файлов этого запуска заняли слишком много времени, и он остановлен",
+    )
+}
+
+/// Programs in a directory were passed over.
+pub(super) fn left_out(count: usize, tongue: Tongue) -> String {
+    match tongue {
+        Tongue::English => format!(
+            "trik: programs *.js and *.py are left out, {count} here: they have no world of their own, --field gives them one"
+        ),
+        Tongue::Russian => format!(
+            "trik: программы *.js и *.py пропущены ({count}): у них нет своего мира, --field даст его"
+        ),
+    }
+}
+
+/// A world where a solution should be.
+pub(super) fn is_world(tongue: Tongue) -> &'static str {
+    choose(
+        tongue,
+        "this is a world and no solution: run one in it with --field",
+        "это мир, а не решение: запустите решение в нём с --field",
+    )
 }
 
 /// How far it is.

@@ -6,7 +6,7 @@
 use super::jobs::Job;
 use super::pool::shown;
 use super::row::Row;
-use super::run;
+use super::run::{self, Phase};
 use crate::cli::CheckArgs;
 use crate::limits;
 use nix::sys::prctl::{set_dumpable, set_pdeathsig};
@@ -22,6 +22,10 @@ use std::path::PathBuf;
 use std::time::Duration;
 use trikd::program::kill::{adopt_orphans, sweep};
 
+/// What is told when the program of a run begins, and when it has ended.
+pub(super) const RUNS: &str = "runs";
+/// See [`RUNS`].
+pub(super) const ENDED: &str = "ended";
 /// Bytes of one path.
 const JOB_BYTES_MAX: u64 = 64 << 10;
 
@@ -42,7 +46,15 @@ pub(super) fn serve(args: &CheckArgs) -> Result<(), String> {
     read.map_err(|error| format!("jobs: {error}"))?;
     let mark = mark.trim_end_matches('\n');
     while let Some(job) = next(&mut input).map_err(|error| format!("jobs: {error}"))? {
-        let row = guarded(&job, args);
+        let row = guarded(&job, args, &mut |phase| {
+            let word = match phase {
+                Phase::Runs => RUNS,
+                Phase::Ended => ENDED,
+            };
+            // Whoever does not listen any more has killed this process.
+            let _ = output.write_all(format!("\n{mark}{word}\n").as_bytes());
+            let _ = output.flush();
+        });
         sweep_all();
         // On a line of its own, whatever somebody else has begun.
         let line = format!("\n{mark}{}\n", row.write());
@@ -79,11 +91,11 @@ fn limit_memory(args: &CheckArgs) -> nix::Result<()> {
 }
 
 /// Does a run; a panic in it is its result.
-fn guarded(job: &Job, args: &CheckArgs) -> Row {
-    catch_unwind(AssertUnwindSafe(|| run::run(job, args))).unwrap_or_else(|_| {
-        let field = job.rules().map(shown);
+fn guarded(job: &Job, args: &CheckArgs, tell_phase: &mut dyn FnMut(Phase)) -> Row {
+    catch_unwind(AssertUnwindSafe(|| run::run(job, args, tell_phase))).unwrap_or_else(|_| {
+        let field = job.rules(args).map(shown);
         let why = "trik has a defect and cannot judge this: please report it with this file";
-        Row::broken(shown(job.judged()), field, why.to_owned())
+        Row::broken(shown(job.judged(args)), field, why.to_owned())
     })
 }
 

@@ -3,6 +3,7 @@
 //! Owns the verdict and its exit code.
 
 use super::{CheckArgs, read, report, understood};
+use crate::diagrams::output::standard;
 use crate::diagrams::{REFUSED, Refusal, UNREADABLE, say};
 use lang::dcml::diagnostic::Severity;
 
@@ -19,7 +20,11 @@ pub(super) fn check(args: &CheckArgs) -> Result<u8, Refusal> {
             }
         };
         let understood = understood(&source, args.paper);
-        report::show(&source, &understood.diagnostics);
+        if args.json {
+            standard(&report::json(&source, &understood.diagnostics))?;
+        } else {
+            report::show(&source, &understood.diagnostics);
+        }
         let is_wrong = |severity| {
             understood
                 .diagnostics

@@ -1,12 +1,13 @@
 //! Findings as people see them: place, line, what to do.
 //!
-//! Owns the look, in colours on a terminal. Lines that are too long for a screen are shown in part.
+//! Owns the look: colours and frames on a terminal, ASCII for files and programs; and lines of JSON. Lines that are too long for a screen are shown in part.
 
 use super::Source;
-use ariadne::{Color, Config, IndexType, Label, Report, ReportKind};
+use ariadne::{CharSet, Color, Config, IndexType, Label, Report, ReportKind};
 use lang::dcml::diagnostic::{Diagnostic, Severity};
 use lang::dcml::lines::Lines;
 use lang::dcml::syntax::Span;
+use sim::judge::json;
 use std::io::{self, IsTerminal, Write};
 use std::ops::Range;
 
@@ -15,15 +16,27 @@ const LINE_SHOWN: u32 = 400;
 /// Bytes of a longer one that are shown on each side of a place.
 const AROUND: usize = 60;
 
+/// What whoever looks can see.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Look {
+    Colours,
+    Frames,
+    Ascii,
+}
+
 /// Shows all findings of a text on standard error.
 pub(super) fn show(source: &Source, all: &[Diagnostic]) {
     let err = io::stderr();
-    let is_coloured = err.is_terminal() && std::env::var_os("NO_COLOR").is_none();
-    let _ = err.lock().write_all(&written(source, all, is_coloured));
+    let look = match err.is_terminal() {
+        true if std::env::var_os("NO_COLOR").is_some() => Look::Frames,
+        true => Look::Colours,
+        false => Look::Ascii,
+    };
+    let _ = err.lock().write_all(&written(source, all, look));
 }
 
 /// The same as text.
-pub(super) fn written(source: &Source, all: &[Diagnostic], is_coloured: bool) -> Vec<u8> {
+fn written(source: &Source, all: &[Diagnostic], look: Look) -> Vec<u8> {
     let mut out = Vec::new();
     if all.is_empty() {
         return out;
@@ -39,7 +52,7 @@ pub(super) fn written(source: &Source, all: &[Diagnostic], is_coloured: bool) ->
         let mut spans = one.notes.iter().map(|(span, _)| *span).chain([one.span]);
         if spans.all(is_short) {
             let text = text.get_or_insert_with(|| ariadne::Source::from(source.text.as_str()));
-            drawn(source, &lines, one, text, is_coloured, &mut out);
+            drawn(source, &lines, one, text, look, &mut out);
         } else {
             plain(source, &lines, one, &mut out);
         }
@@ -59,7 +72,7 @@ fn drawn<'a>(
     lines: &Lines<'_>,
     one: &Diagnostic,
     text: &ariadne::Source<&'a str>,
-    is_coloured: bool,
+    look: Look,
     out: &mut Vec<u8>,
 ) {
     let name = source.name.as_str();
@@ -68,7 +81,12 @@ fn drawn<'a>(
         Severity::Warning => (ReportKind::Warning, Color::Yellow),
     };
     let config = Config::default()
-        .with_color(is_coloured)
+        .with_color(look == Look::Colours)
+        .with_char_set(if look == Look::Ascii {
+            CharSet::Ascii
+        } else {
+            CharSet::Unicode
+        })
         .with_index_type(IndexType::Byte);
     let place = first_line(lines, one.span);
     let label = Label::new((name, place.clone()))
@@ -86,7 +104,48 @@ fn drawn<'a>(
     if let Some(hint) = &one.hint {
         report = report.with_help(hint);
     }
-    let _ = report.finish().write((name, text), out);
+    let mut drawn = Vec::new();
+    let _ = report.finish().write((name, text), &mut drawn);
+    if look == Look::Colours {
+        out.extend(drawn);
+        return;
+    }
+    for line in String::from_utf8_lossy(&drawn).lines() {
+        out.extend(line.trim_end().bytes());
+        out.push(b'\n');
+    }
+}
+
+/// A line for each finding, for programs.
+pub(super) fn json(source: &Source, all: &[Diagnostic]) -> Vec<u8> {
+    let lines = Lines::of(&source.text);
+    let mut out = String::new();
+    for one in all {
+        let (start, end) = (lines.place(one.span.start), lines.place(one.span.end));
+        out.push_str("{\"file\":");
+        json::text(&mut out, &source.name);
+        for (name, place) in [("", start), ("end_", end)] {
+            out.push_str(&format!(
+                ",\"{name}line\":{},\"{name}column\":{}",
+                place.line, place.column
+            ));
+        }
+        let severity = match one.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        };
+        for (name, text) in [
+            ("severity", severity),
+            ("code", one.code.name()),
+            ("message", &one.message),
+            ("hint", one.hint.as_deref().unwrap_or_default()),
+        ] {
+            out.push_str(&format!(",\"{name}\":"));
+            json::text(&mut out, text);
+        }
+        out.push_str("}\n");
+    }
+    out.into_bytes()
 }
 
 /// Without a frame, and a part of the line.

@@ -109,7 +109,7 @@ fn create(path: &Path, bytes: &[u8]) -> io::Result<()> {
 }
 
 /// Puts a new file into the place of another at one stroke, with its rights.
-fn replace(path: &Path, there: Option<&Metadata>, bytes: &[u8]) -> io::Result<()> {
+pub(crate) fn replace(path: &Path, there: Option<&Metadata>, bytes: &[u8]) -> io::Result<()> {
     // Behind a link is the file that is meant.
     let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let mut fresh = path.clone().into_os_string();

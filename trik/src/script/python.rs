@@ -1,7 +1,8 @@
 //! Python under a judge: a child process whose every question about the robot and time comes here.
 //!
 //! Owns the process, its time and its end. `virtual.py` is the other side: it runs one thread at a time and asks when all
-//! of them wait. What a program does beside its questions (its own files, the network) is not held back.
+//! of them wait. `virtual.py` also confines
+//! it: no network, few processes, short files. What its user may read and write it may too.
 
 use super::input::{GAMEPAD, Input, KEYS};
 use super::refresh::Readings;
@@ -124,7 +125,8 @@ impl Python {
         let mut channel = ours;
         channel.set_write_timeout(Some(self.longest))?;
         let program = format!("{}\n{}", self.file.display(), self.text);
-        let sent = [MODULE, &program, &self.seed.to_string()]
+        let seconds = self.longest.as_secs_f64().to_string();
+        let sent = [MODULE, &program, &self.seed.to_string(), &seconds]
             .iter()
             .try_for_each(|text| channel.write_all(&encode(text.as_bytes())));
         self.child = Some((child, channel));

@@ -2,9 +2,18 @@
 //!
 //! Owns the texts; a test runs each of them on its robot.
 
-/// Commands for the directory of the tree, with what they do.
-pub(super) fn of(robot: &str) -> &'static [(&'static str, &'static str)] {
-    match robot {
+use lang::diagram::ports::Port;
+use sim::field::{Field, SensorKind};
+
+/// A command for the directory of the tree, and what it does.
+type Hint = (String, &'static str);
+
+/// Commands for a robot, or for that of a world.
+pub(super) fn of(robot: &str, world: Option<&Field>) -> Vec<Hint> {
+    if let Some(field) = world {
+        return in_world(field);
+    }
+    let known: &[(&str, &str)] = match robot {
         "two-wheels" => &[
             ("cat sensors/D1/value", "how far is the wall, in cm?"),
             ("cat heading/value", "where does it look, in degrees?"),
@@ -30,6 +39,90 @@ pub(super) fn of(robot: &str) -> &'static [(&'static str, &'static str)] {
             ("echo 440 500 > sound/tone/value", "play a tone: Hz, ms"),
             ("echo > stop", "bring everything to rest"),
         ],
-        _ => &[("cat status", "what is there?")],
+        "bare" => &[("cat status", "what is there?")],
+        // A model in DCML.
+        _ => &[
+            (
+                "ls motors servos",
+                "what drives it, named after the actions?",
+            ),
+            (
+                "cat pose/value",
+                "where is it by its model, in metres and radians?",
+            ),
+            ("grep . pose/params/*", "which numbers has the model?"),
+            ("echo > stop", "bring everything to rest"),
+        ],
+    };
+    known
+        .iter()
+        .map(|&(command, meaning)| (command.to_owned(), meaning))
+        .collect()
+}
+
+/// Commands for what the robot of a world has.
+fn in_world(field: &Field) -> Vec<Hint> {
+    let robot = field.robot().cloned().unwrap_or_default();
+    let mut hints = Vec::new();
+    for sensor in &robot.sensors {
+        let Some(name) = sensor.port.map(Port::name) else {
+            continue;
+        };
+        let meaning = match (sensor.kind, name.as_bytes().first()) {
+            (SensorKind::Infrared, Some(b'A')) | (SensorKind::Sonar, Some(b'D')) => {
+                "how far is the wall, in cm?"
+            }
+            (SensorKind::Light, Some(b'A')) => "how dark is the floor, in percent?",
+            (SensorKind::Touch, Some(b'A')) => "is it pressed?",
+            _ => continue,
+        };
+        hints.push((format!("cat sensors/{name}/value"), meaning));
+    }
+    let wheels: Vec<&str> = [robot.left, robot.right]
+        .iter()
+        .filter_map(|wheel| wheel.map(Port::name))
+        .collect();
+    let drive: Vec<String> = wheels
+        .iter()
+        .map(|wheel| format!("echo 30 > motors/{wheel}/value"))
+        .collect();
+    if let Some(wheel) = wheels.first() {
+        hints.push((drive.join("; "), "drive, in percent"));
+        let encoder = wheel.replacen('M', "E", 1);
+        hints.push((
+            format!("cat encoders/{encoder}/value"),
+            "how far has the wheel turned?",
+        ));
+    }
+    hints.push(("echo > stop".to_owned(), "bring everything to rest"));
+    hints
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hints_of_a_world_are_of_what_it_has() {
+        let mut robot = Box::new(sim::field::Robot::default());
+        robot.left = Port::named("M1");
+        for (port, kind) in [("A1", SensorKind::Light), ("D2", SensorKind::Sonar)] {
+            let port = Port::named(port).unwrap();
+            robot.sensors.push(sim::field::Sensor::new(port, kind));
+        }
+        let mut field = Field::default();
+        field.robots.push(*robot);
+        let hints = of("two-wheels", Some(&field));
+        let commands: Vec<&str> = hints.iter().map(|(command, _)| &**command).collect();
+        assert_eq!(
+            commands,
+            [
+                "cat sensors/A1/value",
+                "cat sensors/D2/value",
+                "echo 30 > motors/M1/value; echo 30 > motors/M4/value",
+                "cat encoders/E1/value",
+                "echo > stop",
+            ]
+        );
     }
 }

@@ -20,7 +20,13 @@ pub(crate) fn read(path: &Path) -> Result<(Field, Locks), String> {
     let mut bytes = Vec::new();
     std::fs::File::open(path)
         .and_then(|file| file.take(BYTES).read_to_end(&mut bytes))
-        .map_err(|error| say(&error))?;
+        .map_err(|error| match error.kind() {
+            std::io::ErrorKind::NotFound => say(&"there is no such file"),
+            std::io::ErrorKind::IsADirectory => {
+                say(&"this is a directory: name a world or a project")
+            }
+            _ => say(&error),
+        })?;
     let all = |problems: Vec<Problem>| {
         let lines: Vec<String> = problems.iter().map(|one| say(one)).collect();
         lines.join("\n")

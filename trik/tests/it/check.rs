@@ -2,6 +2,8 @@
 //!
 //! Saves and worlds are made here.
 
+mod limits;
+
 use crate::diagrams::root;
 use crate::rig::TRIK;
 use harness::documents::examples;
@@ -230,72 +232,6 @@ fn what_cannot_be_written_is_no_verdict() {
 }
 
 /// Writes lines as if it were the process that runs it: of itself, of the next one, something binary and a half line.
-const FORGER: &str = r#"
-import os
-line = ('{"solution":"class/%s.py","field":"far.xml","verdict":"accomplished","ms":10,"total_score":100,'
-        '"last_number":null,"messages":[],"more":0}\n')
-try:
-    out = open("/proc/%d/fd/1" % os.getppid(), "wb", buffering=0)
-    for text in (line % "1", line % "2", "\n \n"):
-        out.write(text.encode())
-    out.write(b"\xff\xfe\n{half")
-except PermissionError:
-    pass
-"#;
-
-#[test]
-fn a_program_cannot_tell_its_own_verdict_or_that_of_others() {
-    let board = Board::new();
-    board.file("far.xml", world(300));
-    fs::create_dir(board.path("class")).expect("a folder");
-    board.file("class/1.py", FORGER);
-    board.file("class/2.py", "x = 1\n");
-    board.file("class/3.py", "x = 1\n");
-    let words = [
-        "check",
-        "class",
-        "--field",
-        "far.xml",
-        "--jobs",
-        "1",
-        "--results",
-        "-",
-    ];
-    let output = trik(&board, &words);
-    let lines: Vec<&str> = output.stdout.lines().collect();
-    assert_eq!(lines.len(), 3, "{}{}", output.stdout, output.stderr);
-    for (line, number) in lines.iter().zip(1..) {
-        let start = format!("{{\"solution\":\"class/{number}.py\"");
-        assert!(line.starts_with(&start), "{line}");
-        assert!(line.contains("\"verdict\":\"failed\""), "{line}");
-    }
-}
-
-#[test]
-fn a_program_that_takes_too_much_real_time_is_not_failed_but_broken() {
-    let board = Board::new();
-    board.file("far.xml", world(300));
-    board.file("slow.py", "sum(range(10 ** 12))");
-    let words = [
-        "check",
-        "slow.py",
-        "--field",
-        "far.xml",
-        "--wall-limit",
-        "1",
-        "--results",
-        "-",
-    ];
-    let output = trik(&board, &words);
-    assert_eq!(output.code(), 2, "{}{}", output.stdout, output.stderr);
-    assert!(
-        output.stdout.contains("\"verdict\":\"broken\""),
-        "{}",
-        output.stdout
-    );
-    assert!(output.stdout.contains("does not wait"), "{}", output.stdout);
-}
-
 #[test]
 fn exit_codes_are_true() {
     let board = folder();
@@ -419,30 +355,6 @@ fn reports_trajectories_pictures_and_pages_are_written_for_each_run() {
     // The record is judged as the run was, and no file is replaced by mistake.
     let again = trik(&board, &["check", "line.qrs", "--log", "t.json"]);
     assert_eq!(again.code(), 0, "{}{}", again.stdout, again.stderr);
-    let fields = ["check", "--log", "t.json", "--field", "fields"];
-    let alone = trik(&board, &fields);
-    assert_eq!(alone.code(), 1, "{}{}", alone.stdout, alone.stderr);
-    assert!(
-        alone
-            .stdout
-            .contains("t.json    fields/near.xml  accomplished"),
-        "{}",
-        alone.stdout
-    );
-    let stranger = read("t.json").replacen("trikKitRobot", "stranger", 1);
-    fs::create_dir(board.path("strange")).expect("a folder");
-    board.file("strange/t.json", stranger);
-    let told = trik(
-        &board,
-        &["check", "--log", "strange", "--field", "fields/near.xml"],
-    );
-    let why = "strange/t.json: the record has a robot 'stranger' that is not in this world";
-    assert!(told.stdout.contains(why), "{}{}", told.stdout, told.stderr);
-    for wrong in [&["--log", "t.json"][..], &["class", "--log", "t.json"]] {
-        let refused = trik(&board, &[&["check"], wrong].concat());
-        assert_eq!(refused.code(), 2, "{wrong:?}");
-        assert!(refused.stderr.contains("rules"), "{}", refused.stderr);
-    }
     let refused = trik(&board, &one);
     assert!(
         refused.code() != 0

@@ -4,8 +4,10 @@
 
 use crate::diagrams::root;
 use crate::rig::TRIK;
+use harness::documents::examples;
 use harness::{Board, Output, tools};
 use std::fs;
+use std::path::Path;
 use std::process::Command;
 
 const MODELS: &str = "
@@ -151,7 +153,7 @@ fn sst_finds_shorter_paths_the_longer_it_searches() {
         })
         .into();
     assert!(
-        durations[1] <= durations[0] && durations[1] < 15.0,
+        durations[1] < 0.9 * durations[0] && durations[1] < 20.0,
         "{durations:?}"
     );
 }
@@ -165,9 +167,9 @@ fn the_labyrinth_of_trik_is_left() {
     }
     let board = board();
     fs::copy(&path, board.path("labyrinth.xml")).unwrap();
-    // Inside of its outer walls: from the upper left corner of them to the lower right one.
+    // Its numbers count as centimetres. From beside the walls to the finish on the other side.
     let words = format!(
-        "{DRIVE} --world labyrinth.xml --goal x=1.9,y=1.12 --goal-radius 0.15 --bounds x=-1.58..2.1,y=-0.7..1.4 --svg \
+        "{DRIVE} --world labyrinth.xml --goal x=5.25,y=3.25 --goal-radius 0.3 --bounds x=-4.5..6,y=-2..4 --svg \
          labyrinth.svg --json --iterations 300000"
     );
     let output = plan(&board, "Drive", &words);
@@ -354,4 +356,30 @@ fn the_time_is_a_limit() {
         "{}",
         output.stdout
     );
+}
+
+#[test]
+fn what_the_document_says_of_planning_is_what_really_happens() {
+    let text = fs::read_to_string(root().join("docs/dcml.md")).expect("docs/dcml.md");
+    let section = text.split("\n## ").find(|one| one.starts_with("Planning"));
+    let board = Board::new();
+    let mut count = 0;
+    for example in examples(section.expect("a section")) {
+        if example.info != "sh check" {
+            continue;
+        }
+        for step in example.text.split("$ ").skip(1) {
+            let (script, expected) = step.split_once('\n').unwrap_or((step, ""));
+            let tools_dir = Path::new(TRIK).parent().expect("a directory").display();
+            let path = std::env::var("PATH").unwrap_or_default();
+            let mut command = tools::shell(format!("exec 2>&1\n{script}"));
+            command
+                .current_dir(board.dir())
+                .env("PATH", format!("{tools_dir}:{path}"));
+            let output = tools::run(&mut command, b"");
+            assert_eq!(output.stdout.trim_end(), expected.trim_end(), "$ {script}");
+            count += 1;
+        }
+    }
+    assert!(count >= 5, "only {count} examples");
 }

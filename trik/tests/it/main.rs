@@ -4,6 +4,8 @@
 
 /// Solutions of tasks, judged.
 mod check;
+/// Models of robots: what their document shows, files and exit codes.
+mod dcml;
 /// Paths of robots that are models.
 mod dcml_gen;
 mod dcml_plan;
@@ -25,6 +27,8 @@ mod examples;
 mod faults;
 /// Speed that is held, heading and place.
 mod hold;
+/// What editors are told of models.
+mod lsp;
 /// Models in DCML: a body of their own, and nodes that follow it.
 mod models;
 /// Programs that come over the network.

@@ -463,3 +463,23 @@ fn the_edit_between_two_texts_is_no_longer_than_it_must_be() {
         (Span { start: 4, end: 5 }, " = ")
     );
 }
+
+#[test]
+fn a_text_is_formatted_unless_it_cannot_be_read() {
+    let loose = DRIVE.replace("d(x) = v", "d( x )=v");
+    let reading = Reading::of(loose);
+    let edit = reading
+        .formatted()
+        .expect("it can be read")
+        .expect("it is loose");
+    let formatted = edited(&reading, &[edit]);
+    assert!(formatted.contains("d(x) = v * cos(theta);"), "{formatted}");
+    assert_eq!(Reading::of(formatted).formatted(), Ok(None));
+    let refusal = Reading::of("BEGIN M d(x) = (;".to_owned())
+        .formatted()
+        .expect_err("mistakes");
+    assert!(
+        refusal.starts_with("not while there are mistakes: "),
+        "{refusal}"
+    );
+}

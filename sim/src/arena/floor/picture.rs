@@ -8,6 +8,7 @@ use screen::Pixels;
 use usvg::tiny_skia_path as skia;
 
 use super::colour::Tint;
+use super::gradient::Gradient;
 use super::outline::{Affine, Outline};
 use super::raster::Rule;
 use crate::limits;
@@ -21,31 +22,45 @@ pub struct Picture {
     pub lacks: Vec<&'static str>,
 }
 
+/// What an area is painted with.
+#[derive(Clone, Debug)]
+pub enum Paint {
+    /// One colour.
+    Plain(Tint),
+    /// Colours from place to place.
+    Shade(Box<Gradient>),
+}
+
 /// A part of a picture.
 #[derive(Clone, Debug)]
 pub enum Layer {
-    /// An inside in one colour, and what takes it to the picture's square.
-    Filled(skia::Path, Rule, Tint, Affine),
+    /// An inside, and what takes it to the picture's square.
+    Filled(skia::Path, Rule, Paint, Affine),
     /// The same of a line, with the lengths of its dashes and gaps.
-    Drawn(skia::Path, Box<(skia::Stroke, Vec<f32>)>, Tint, Affine),
+    Drawn(skia::Path, Box<(skia::Stroke, Vec<f32>)>, Paint, Affine),
     /// Pixels, and what takes the place of a pixel to the picture's square.
     Pixels(std::sync::Arc<Pixels>, Affine),
 }
 
 impl Layer {
     /// Its outline where the square of the picture is at `place`; nothing for pixels.
-    pub fn outline(&self, place: &Affine) -> Option<(Outline, Tint)> {
-        match self {
-            Self::Filled(path, rule, tint, to) => {
-                Some((Outline::inside(path, &to.then(place), *rule)?, *tint))
+    pub fn outline(&self, place: &Affine) -> Option<(Outline, Paint)> {
+        let (outline, paint) = match self {
+            Self::Filled(path, rule, paint, to) => {
+                (Outline::inside(path, &to.then(place), *rule)?, paint)
             }
-            Self::Drawn(path, pen, tint, to) => {
+            Self::Drawn(path, pen, paint, to) => {
                 let (stroke, dashes) = &**pen;
                 let outline = Outline::along(path, &to.then(place), stroke, dashes)?;
-                Some((outline, *tint))
+                (outline, paint)
             }
-            Self::Pixels(..) => None,
-        }
+            Self::Pixels(..) => return None,
+        };
+        let paint = match paint {
+            Paint::Plain(tint) => Paint::Plain(*tint),
+            Paint::Shade(gradient) => Paint::Shade(gradient.at(place)?.into()),
+        };
+        Some((outline, paint))
     }
 }
 
@@ -130,22 +145,22 @@ impl Picture {
     fn add_path(&mut self, path: &usvg::Path, square: &Affine, opacity: f32) {
         let to = affine(path.abs_transform()).then(square);
         if let Some(fill) = path.fill()
-            && let Some(tint) = self.tint(fill.paint(), fill.opacity().get() * opacity)
+            && let Some(paint) = self.paint(fill.paint(), fill.opacity().get() * opacity, &to)
         {
             let rule = match fill.rule() {
                 usvg::FillRule::NonZero => Rule::NonZero,
                 usvg::FillRule::EvenOdd => Rule::EvenOdd,
             };
             self.layers
-                .push(Layer::Filled(path.data().clone(), rule, tint, to));
+                .push(Layer::Filled(path.data().clone(), rule, paint, to));
         }
         if let Some(stroke) = path.stroke()
-            && let Some(tint) = self.tint(stroke.paint(), stroke.opacity().get() * opacity)
+            && let Some(paint) = self.paint(stroke.paint(), stroke.opacity().get() * opacity, &to)
         {
             let dashes = stroke.dasharray().unwrap_or_default().to_vec();
             let stroke = Box::new((stroke.to_tiny_skia(), dashes));
             self.layers
-                .push(Layer::Drawn(path.data().clone(), stroke, tint, to));
+                .push(Layer::Drawn(path.data().clone(), stroke, paint, to));
         }
     }
 
@@ -180,43 +195,22 @@ impl Picture {
         }
     }
 
-    /// One colour for a paint; a gradient is shown in the mean of its colours.
-    fn tint(&mut self, paint: &usvg::Paint, opacity: f32) -> Option<Tint> {
-        let stops = match paint {
-            usvg::Paint::Color(colour) => {
-                return Some(Tint {
-                    rgb: [colour.red, colour.green, colour.blue],
-                    opacity: byte(opacity * 255.0),
-                });
+    /// What a paint of a path is, whose path goes to the picture's square by `to`.
+    fn paint(&mut self, paint: &usvg::Paint, opacity: f32, to: &Affine) -> Option<Paint> {
+        match paint {
+            usvg::Paint::Color(colour) => Some(Paint::Plain(Tint {
+                rgb: [colour.red, colour.green, colour.blue],
+                opacity: byte(opacity * 255.0),
+            })),
+            usvg::Paint::LinearGradient(_) | usvg::Paint::RadialGradient(_) => {
+                let gradient = Gradient::of(paint, opacity, to);
+                gradient.map(|gradient| Paint::Shade(gradient.into()))
             }
-            usvg::Paint::LinearGradient(gradient) => gradient.stops(),
-            usvg::Paint::RadialGradient(gradient) => gradient.stops(),
             usvg::Paint::Pattern(_) => {
                 self.lacks.push("a pattern");
-                return None;
+                None
             }
-        };
-        self.lacks
-            .push("a gradient, shown in the mean of its colours");
-        let count = stops.len() as f32;
-        let mean = |part: fn(usvg::Color) -> u8| {
-            byte(
-                stops
-                    .iter()
-                    .map(|stop| f32::from(part(stop.color())))
-                    .sum::<f32>()
-                    / count,
-            )
-        };
-        let glass = stops.iter().map(|stop| stop.opacity().get()).sum::<f32>() / count;
-        Some(Tint {
-            rgb: [
-                mean(|one| one.red),
-                mean(|one| one.green),
-                mean(|one| one.blue),
-            ],
-            opacity: byte(opacity * glass * 255.0),
-        })
+        }
     }
 }
 
@@ -281,8 +275,8 @@ mod tests {
             <image href='/etc/passwd' width='9' height='9'/></svg>";
         let picture = Picture::read("a.svg", text).unwrap();
         assert_eq!(picture.layers.len(), 2);
-        let (outline, tint) = picture.layers[0].outline(&Affine::SAME).unwrap();
-        assert_eq!(tint, Tint::solid([255, 0, 0]));
+        let (outline, paint) = picture.layers[0].outline(&Affine::SAME).unwrap();
+        assert!(matches!(paint, Paint::Plain(tint) if tint == Tint::solid([255, 0, 0])));
         let [left, top, right, bottom] = outline.bounds().0;
         assert_eq!((left, top), (0.0, 0.0));
         assert!((right - 0.5).abs() < 1e-6 && (bottom - 0.25).abs() < 1e-6);

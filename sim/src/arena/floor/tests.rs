@@ -92,6 +92,37 @@ fn pixels_of_pictures_are_seen_where_they_lie() {
 }
 
 #[test]
+fn gradients_of_pictures_are_seen_where_they_lie() {
+    let text = "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 10 10'><defs>\
+        <linearGradient id='g'><stop offset='0' stop-color='black'/><stop offset='1' stop-color='white'/></linearGradient>\
+        <radialGradient id='r'><stop offset='0' stop-color='red'/><stop offset='1' stop-color='blue'/></radialGradient>\
+        </defs><rect width='10' height='5' fill='url(#g)'/><circle cx='5' cy='7.5' r='2.5' fill='url(#r)'/></svg>";
+    let picture = picture::Picture::read("g.svg", text).unwrap();
+    assert!(picture.lacks.is_empty(), "{:?}", picture.lacks);
+    let mut floor = Floor::default();
+    floor.add_picture(&picture, &Affine([200.0, 0.0, 0.0, 200.0, 100.0, 0.0]));
+    let mut middle = |x: f64, y: f64| {
+        let window = seen(&mut floor, point(x, y), 0.0, 12, 1.0);
+        window.pixels[window.side * window.side / 2]
+    };
+    for (x, gray) in [(120.0, 25.5), (200.0, 127.5), (280.0, 229.5)] {
+        let seen = middle(x, 50.0);
+        assert!(
+            seen.iter()
+                .all(|part| (f64::from(*part) - gray).abs() < 2.0),
+            "{x}: {seen:?}"
+        );
+    }
+    let [red, _, blue] = middle(200.0, 150.0);
+    assert!(red > 245 && blue < 10, "{red} {blue}");
+    let [red, _, blue] = middle(225.0, 150.0);
+    assert!(
+        (120..136).contains(&red) && (120..136).contains(&blue),
+        "{red} {blue}"
+    );
+}
+
+#[test]
 fn places_that_are_none_are_white() {
     let mut floor = black_right_half();
     for place in [f64::NAN, f64::INFINITY, 1e308] {

@@ -69,6 +69,9 @@ fn words(line: &str) -> Result<Option<(&str, Vec<f64>)>, String> {
     let Some(first) = words.next() else {
         return Ok(None);
     };
+    if !KINDS.contains(&first) {
+        return Err(wanted(first, 0));
+    }
     let mut numbers = Vec::new();
     for word in words {
         let number = word.parse::<f64>();
