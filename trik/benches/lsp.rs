@@ -6,7 +6,7 @@
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader, Write};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::time::{Duration, Instant};
 
 const LINES: usize = 10_000;
@@ -60,32 +60,46 @@ fn receive(from: &mut impl BufRead) -> Value {
     serde_json::from_slice(&body).expect("JSON")
 }
 
-fn main() {
-    // `cargo test` starts benches too, with nothing to measure.
-    if std::env::args().any(|word| word == "--test") {
-        return;
+/// A server with its streams.
+struct Server {
+    process: Child,
+    to: ChildStdin,
+    from: BufReader<ChildStdout>,
+}
+
+impl Server {
+    fn start() -> Self {
+        let mut process = Command::new(env!("CARGO_BIN_EXE_trik"))
+            .args(["dcml", "lsp"])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("the server");
+        Self {
+            to: process.stdin.take().expect("its input"),
+            from: BufReader::new(process.stdout.take().expect("its output")),
+            process,
+        }
     }
-    let mut process = Command::new(env!("CARGO_BIN_EXE_trik"))
-        .args(["dcml", "lsp"])
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .expect("the server");
-    let mut to = process.stdin.take().expect("its input");
-    let mut from = BufReader::new(process.stdout.take().expect("its output"));
-    let request = |id: u32, method: &str, params: Value| json!({"jsonrpc": "2.0", "id": id, "method": method, "params": params});
-    let news =
-        |method: &str, params: Value| json!({"jsonrpc": "2.0", "method": method, "params": params});
-    send(
-        &mut to,
-        &request(0, "initialize", json!({"capabilities": {}})),
-    );
-    receive(&mut from);
-    let text = model();
-    let opened =
-        json!({"textDocument": {"uri": URI, "languageId": "dcml", "version": 0, "text": text}});
-    send(&mut to, &news("textDocument/didOpen", opened));
-    receive(&mut from);
+
+    fn tell(&mut self, method: &str, params: Value) {
+        let message = json!({"jsonrpc": "2.0", "method": method, "params": params});
+        send(&mut self.to, &message);
+    }
+
+    fn ask(&mut self, method: &str, params: Value) {
+        let message = json!({"jsonrpc": "2.0", "id": 1, "method": method, "params": params});
+        send(&mut self.to, &message);
+        let answer = receive(&mut self.from);
+        assert!(answer.get("result").is_some(), "{answer}");
+    }
+}
+
+fn ms(time: Duration) -> f64 {
+    time.as_secs_f64() * 1e3
+}
+
+fn changes(server: &mut Server, bytes: usize) {
     let mut worst = (Duration::ZERO, Duration::ZERO);
     let mut sum = Duration::ZERO;
     for version in 1..=CHANGES {
@@ -95,53 +109,50 @@ fn main() {
         let change = json!({"range": {"start": place, "end": place}, "text": put});
         let params =
             json!({"textDocument": {"uri": URI, "version": version}, "contentChanges": [change]});
-        let (begin, clock) = (used(&process), Instant::now());
-        send(&mut to, &news("textDocument/didChange", params));
-        let told = receive(&mut from);
-        let (took, waited) = (used(&process) - begin, clock.elapsed());
+        let (begin, clock) = (used(&server.process), Instant::now());
+        server.tell("textDocument/didChange", params);
+        let told = receive(&mut server.from);
+        let (took, waited) = (used(&server.process) - begin, clock.elapsed());
         assert_eq!(told["params"]["version"], version);
-        assert!(
-            !told["params"]["diagnostics"]
-                .as_array()
-                .expect("a list")
-                .is_empty()
-        );
+        let diagnostics = told["params"]["diagnostics"].as_array();
+        assert!(diagnostics.is_some_and(|all| !all.is_empty()));
         sum += took;
         worst = (worst.0.max(took), worst.1.max(waited));
     }
-    let ms = |time: Duration| time.as_secs_f64() * 1e3;
     let mean = ms(sum) / f64::from(CHANGES);
     println!(
-        "change of {LINES} lines ({} bytes): mean {mean:.1} ms, worst {:.1} ms of a processor ({:.1} ms by the clock); goal / mean {:.2}",
-        text.len(),
+        "change of {LINES} lines ({bytes} bytes): mean {mean:.1} ms, worst {:.1} ms of a processor ({:.1} ms by the clock); goal / mean {:.2}",
         ms(worst.0),
         ms(worst.1),
         GOAL_MS / mean
     );
-    let document =
-        json!({"textDocument": {"uri": URI}, "position": {"line": 5000, "character": 1}});
-    for (id, method) in [
+}
+
+fn main() {
+    // `cargo test` starts benches too, with nothing to measure.
+    if std::env::args().any(|word| word == "--test") {
+        return;
+    }
+    let mut server = Server::start();
+    server.ask("initialize", json!({"capabilities": {}}));
+    let text = model();
+    let document = json!({"uri": URI, "languageId": "dcml", "version": 0, "text": text});
+    server.tell("textDocument/didOpen", json!({"textDocument": document}));
+    receive(&mut server.from);
+    changes(&mut server, text.len());
+    let place = json!({"textDocument": {"uri": URI}, "position": {"line": 5000, "character": 1}});
+    for method in [
         "hover",
         "completion",
         "references",
         "semanticTokens/full",
         "documentSymbol",
-    ]
-    .iter()
-    .enumerate()
-    {
-        let begin = used(&process);
-        let id = u32::try_from(id + 1).expect("few");
-        send(
-            &mut to,
-            &request(id, &format!("textDocument/{method}"), document.clone()),
-        );
-        let answer = receive(&mut from);
-        assert!(answer.get("result").is_some(), "{answer}");
-        println!("{method}: {:.1} ms", ms(used(&process) - begin));
+    ] {
+        let begin = used(&server.process);
+        server.ask(&format!("textDocument/{method}"), place.clone());
+        println!("{method}: {:.1} ms", ms(used(&server.process) - begin));
     }
-    send(&mut to, &request(99, "shutdown", Value::Null));
-    receive(&mut from);
-    send(&mut to, &news("exit", Value::Null));
-    assert!(process.wait().expect("it ends").success());
+    server.ask("shutdown", Value::Null);
+    server.tell("exit", Value::Null);
+    assert!(server.process.wait().expect("it ends").success());
 }

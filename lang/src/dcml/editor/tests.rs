@@ -198,6 +198,7 @@ fn renaming_refuses_what_would_change_the_meaning() {
         ("a;", "no name"),
         ("\u{3b8}", "no name"),
         ("a/*", "no name"),
+        (&"a".repeat(300), "at most 250 letters"),
     ] {
         let refusal = reading.rename(theta, new).expect_err(new);
         assert!(refusal.contains(why), "{new}: {refusal}");

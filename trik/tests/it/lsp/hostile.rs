@@ -176,3 +176,16 @@ fn changes_of_any_place_are_put_in_as_editors_do() {
     );
     assert!(said.len() < 2000, "{said}");
 }
+
+#[test]
+fn talks_of_any_bytes_do_no_harm() {
+    let seeds: &[&[u8]] = &[
+        include_bytes!("../../../../fuzz/seeds/lsp/places"),
+        include_bytes!("../../../../fuzz/seeds/lsp/offers"),
+        include_bytes!("../../../../fuzz/seeds/lsp/whole"),
+        include_bytes!("../../../../fuzz/seeds/lsp/changes"),
+        include_bytes!("../../../../fuzz/seeds/lsp/bytes"),
+        include_bytes!("../../../../fuzz/seeds/lsp/early"),
+    ];
+    harness::fuzz::run("lsp", trik::fuzz::lsp, seeds);
+}

@@ -99,6 +99,22 @@ fn diagnostics_follow_each_change_with_code_place_and_other_places() {
             );
         }
     }
+    what_is_offered_mends(&mut server);
+    // All of the text, and then closed: nothing is left of it.
+    server.change(4, &json!([{"text": DRIVE}]));
+    assert_eq!(server.diagnostics(4), json!([]));
+    server.change(5, &json!([{"text": "BEGIN"}]));
+    assert_ne!(server.diagnostics(5), json!([]));
+    let closed = json!({"textDocument": {"uri": URI}});
+    server.tell("textDocument/didClose", &closed);
+    let last = server.wait(|message| message["method"] == "textDocument/publishDiagnostics");
+    assert_eq!(last["params"], json!({"uri": URI, "diagnostics": []}));
+    let gone = server.ask("textDocument/documentSymbol", &closed);
+    assert_eq!(gone["error"]["code"], -32602);
+    server.goodbye();
+}
+
+fn what_is_offered_mends(server: &mut Server) {
     // What the editor offers as a fix makes it one error less.
     let range = json!({"start": {"line": 6, "character": 14}, "end": {"line": 6, "character": 14}});
     let params =
@@ -127,18 +143,6 @@ fn diagnostics_follow_each_change_with_code_place_and_other_places() {
             .all(|one| one["code"] != "undeclared-name"),
         "{told}"
     );
-    // All of the text, and then closed: nothing is left of it.
-    server.change(4, &json!([{"text": DRIVE}]));
-    assert_eq!(server.diagnostics(4), json!([]));
-    server.change(5, &json!([{"text": "BEGIN"}]));
-    assert_ne!(server.diagnostics(5), json!([]));
-    let closed = json!({"textDocument": {"uri": URI}});
-    server.tell("textDocument/didClose", &closed);
-    let last = server.wait(|message| message["method"] == "textDocument/publishDiagnostics");
-    assert_eq!(last["params"], json!({"uri": URI, "diagnostics": []}));
-    let gone = server.ask("textDocument/documentSymbol", &closed);
-    assert_eq!(gone["error"]["code"], -32602);
-    server.goodbye();
 }
 
 #[test]
