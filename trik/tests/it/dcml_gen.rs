@@ -93,7 +93,7 @@ fn what_cannot_be_written_is_told() {
                 + ";"
         })
         .collect();
-    board.file("long.dcml", &format!("{long}; {more} END;"));
+    board.file("long.dcml", format!("{long}; {more} END;"));
     let output = generated(&board, &["--target", "java", "long.dcml"]);
     assert_eq!(output.code(), 1, "{}", output.stderr);
     assert!(

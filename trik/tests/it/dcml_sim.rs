@@ -214,6 +214,11 @@ fn what_cannot_be_simulated_is_told_with_its_place() {
         assert_eq!(output.code(), code, "{words:?}: {}", output.stderr);
         assert!(output.stderr.contains(told), "{words:?}: {}", output.stderr);
     }
+}
+
+#[test]
+fn a_parameter_without_a_number_is_asked_for() {
+    let board = Board::new();
     let missing = [
         "sim",
         "bicycle",
