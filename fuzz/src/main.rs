@@ -8,12 +8,13 @@ use std::sync::LazyLock;
 
 type Target = fn(&[u8]);
 
-const TARGETS: [(&str, Target); 11] = [
+const TARGETS: [(&str, Target); 12] = [
     ("reader", lang::fuzz::reader),
     ("expression", lang::fuzz::expression),
     ("lowering", lang::fuzz::lowering),
     ("constraints", lang::fuzz::constraints),
     ("dcml", lang::fuzz::dcml),
+    ("lsp", trik::fuzz::lsp),
     ("field", sim::fuzz::field),
     ("frames", trikd::fuzz::fuzz_frames),
     ("messages", trikd::fuzz::fuzz_messages),

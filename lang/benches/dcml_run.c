@@ -5,7 +5,7 @@
 #include <time.h>
 
 #define STATES 1024
-#define PASSES 200
+#define PASSES 4000
 #define PLACES 6
 
 struct drive { double l, r; };

@@ -1,6 +1,6 @@
 //! How fast models of DCML run, beside C by hand, SciPy and OMPL: one state at a time, many, and whole propagations.
 //!
-//! `cargo bench -p lang --bench dcml_run`. Needs `cc`; PYTHON names an interpreter that has scipy and ompl, and what it
+//! `cargo bench -p lang --bench dcml_run`. Needs `cc`; TRIK_NUMPY_PYTHON names an interpreter that has scipy and ompl, and what it
 //! does not have is left out. All figures are ratios of times of the processor in one run; above 1 we are faster.
 
 use lang::dcml::robot::Robot;
@@ -14,8 +14,9 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 const STATES: usize = 1024;
-const PASSES: u32 = 200;
-const ROUNDS: u32 = 5;
+/// So many that ticks of the clock of the processor do not matter.
+const PASSES: u32 = 4000;
+const ROUNDS: u32 = 3;
 
 type Times = BTreeMap<String, f64>;
 
@@ -141,7 +142,7 @@ fn main() {
         }
     }
     let _ = std::fs::remove_file(&program);
-    let python = std::env::var_os("PYTHON").unwrap_or_else(|| "python3".into());
+    let python = std::env::var_os("TRIK_NUMPY_PYTHON").unwrap_or_else(|| "python3".into());
     ask(
         &mut times,
         Command::new(python).arg(here.join("dcml_run_peers.py")),

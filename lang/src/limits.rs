@@ -165,5 +165,7 @@ pub const DCML_EDITOR_OFFERS: usize = 1000;
 pub const DCML_EDITOR_FIXES: usize = 50;
 /// Words in which the call is looked for whose arguments are written.
 pub const DCML_EDITOR_LOOK_BACK: usize = 10_000;
+/// Bytes of a name that an outline shows, and of one that is put in by an editor.
+pub const DCML_EDITOR_NAME_BYTES: usize = 250;
 /// Bytes of a documentation or an equation that are shown.
 pub const DCML_EDITOR_SHOWN_BYTES: usize = 2000;

@@ -250,7 +250,7 @@ fn a_great_many_names_are_no_hindrance() {
     let told = all.iter().find(|one| one.code == Code::AlgebraicLoop);
     let message = told.map_or("", |one| one.message.as_str());
     assert!(
-        message.contains("(99960 more) -> v99999") && message.len() < 1000,
+        message.contains("(99960 more) -> v0") && message.len() < 1000,
         "{message}"
     );
     // None of them is declared.
@@ -300,7 +300,7 @@ fn whatever_stands_in_a_document_is_understood_within_limits() {
             .all(|one| one.severity == Severity::Warning);
         assert_eq!(is_good, name != "wrong.dcml");
         lang::fuzz::dcml(&seed);
-        for _ in 0..1000 {
+        for _ in 0..400 {
             // Pieces of the seed put elsewhere, and bytes changed: much of it is still a model.
             let mut bytes = seed.clone();
             for _ in 0..=random(3) {

@@ -55,7 +55,7 @@ enum Command {
     /// configuration and programs that use it are those of a real robot. Says in one line when the tree can be used
     /// and what to try, then shows the robot until Ctrl-C, SIGTERM, SIGHUP or an unmount. Then it brings all actuators
     /// to rest, unmounts and leaves nothing behind. Several may run side by side.
-    Up(UpArgs),
+    Up(Box<UpArgs>),
     /// Run a program on a robot and show what it says.
     ///
     /// Sends the file, runs it, and ends when it has ended. What it prints goes to standard output, errors to standard
@@ -403,7 +403,7 @@ fn perform(command: Command) -> Result<ExitCode, String> {
         Command::Model { arguments } => return Ok(original::model(arguments.into_iter())),
         Command::Patcher { arguments } => return Ok(original::patcher(arguments.into_iter())),
         Command::Send(args) => remote::send(&args),
-        Command::Up(args) => up::up(args),
+        Command::Up(args) => up::up(*args),
         Command::Fault(args) => print(fault::fault(&args)?.as_bytes()),
         Command::Completions { shell } => print(&manual::completions(shell, Cli::command())),
         Command::Man { command } => print(&manual::page(command.as_deref(), Cli::command())?),

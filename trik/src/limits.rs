@@ -116,6 +116,10 @@ pub const LSP_TEXT_BYTES: usize = 128 << 20;
 pub const LSP_DOCUMENTS: usize = 1000;
 /// Bytes of the name of a document.
 pub const LSP_URI_BYTES: usize = 8 << 10;
+/// Bytes of places of a document in one answer, roughly.
+pub const LSP_ANSWER_BYTES: usize = 32 << 20;
+/// Bytes of documents of which all is kept that is known, beside the one that is edited.
+pub const LSP_READ_BYTES: usize = 4 << 20;
 /// How often the server looks whether the editor is still there, while that says nothing.
 pub const LSP_PARENT_MS: u64 = 10_000;
 /// Lines of a table of actions, and of one that a simulation writes.

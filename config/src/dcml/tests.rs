@@ -256,87 +256,91 @@ BEGIN C ACTION: u; CONFIG: x; d(x) = w; END;";
     );
 }
 
+/// Options of a node, and what is said of them.
+const WRONG: [(&str, &str); 13] = [
+    (
+        "start = {}",
+        "model must be a file, 'robot.dcml', or a text, not a nil",
+    ),
+    (
+        "DRIVE, wheel = 1",
+        "there is no option 'wheel'; there are actions, heading, model, params, poll_ms, start",
+    ),
+    ("DRIVE, params = 5", "params must be a table, not 5"),
+    (
+        "DRIVE, params = { L = 1 }",
+        "params: the model needs the number 'r'",
+    ),
+    (
+        "DRIVE, params = { L = 1, r = 'x' }",
+        "params.r must be a number, not 'x'",
+    ),
+    (
+        "DRIVE, params = { L = 1, r = 0/0 }",
+        "params.r must be a number, not nan",
+    ),
+    (
+        "DRIVE, params = { L = 1, r = 1, w = 1 }",
+        "params: the model has no parameter 'w'; it has L, r",
+    ),
+    (
+        "DRIVE, NUMBERS, start = { z = 1 }",
+        "start: the model has no state 'z'; it has x, y, theta",
+    ),
+    (
+        "DRIVE, NUMBERS",
+        "actions: nothing is said of 'u_l': name its node, u_l = 'd(encoders/E3)'",
+    ),
+    (
+        "DRIVE, NUMBERS, actions = { u_l = 1, u_r = 'left' }",
+        "actions.u_l must name a node, 'encoders/E3', or say how fast it changes, 'd(encoders/E3)', not 1",
+    ),
+    (
+        "DRIVE, NUMBERS, actions = { u_l = { 'left', typ = 'f32' }, u_r = 'left' }",
+        "actions.u_l has an unknown option 'typ'; there are scale, type",
+    ),
+    (
+        "DRIVE, NUMBERS, actions = { u_l = { 'left', type = 'i64' }, u_r = 'left' }",
+        "actions.u_l: type must be one of f32, f64, i16, i32, i8, u16, u32, u8, not 'i64'",
+    ),
+    (
+        "DRIVE, NUMBERS, actions = { u_l = 'left', u_r = 'left' }, heading = 'd(left)'",
+        "heading: it takes the place of theta, which must be a state, and is an angle",
+    ),
+];
+
+/// The shipped model with these options.
+fn refused_drive(options: &str) -> String {
+    let drive = options.replace("DRIVE", "model = 'differential-drive'");
+    refused(&drive.replace("NUMBERS", "params = { L = 1, r = 1 }"))
+}
+
 #[test]
 fn options_that_mean_nothing_are_told_with_what_there_is() {
-    let drive = "model = 'differential-drive'";
-    for (options, told) in [
-        (
-            format!("{WHEELS}"),
-            "model must be a file, 'robot.dcml', or a text, not a nil",
-        ),
-        (
-            format!("{drive}, {WHEELS}, wheel = 1"),
-            "there is no option 'wheel'; there are actions, heading, model, params, poll_ms, start",
-        ),
-        (
-            format!("{drive}, params = 5"),
-            "params must be a table, not 5",
-        ),
-        (
-            format!("{drive}, params = {{ L = 1 }}"),
-            "params: the model needs the number 'r'",
-        ),
-        (
-            format!("{drive}, params = {{ L = 1, r = 'x' }}"),
-            "params.r must be a number, not 'x'",
-        ),
-        (
-            format!("{drive}, params = {{ L = 1, r = 0/0 }}"),
-            "params.r must be a number, not nan",
-        ),
-        (
-            format!("{drive}, params = {{ L = 1, r = 1, w = 1 }}"),
-            "params: the model has no parameter 'w'; it has L, r",
-        ),
-        (
-            format!("{drive}, {WHEELS}, start = {{ z = 1 }}"),
-            "start: the model has no state 'z'; it has x, y, theta",
-        ),
-        (
-            format!("{drive}, params = {{ L = 1, r = 1 }}"),
-            "actions: nothing is said of 'u_l': name its node, u_l = 'd(encoders/E3)'",
-        ),
-        (
-            format!("{drive}, params = {{ L = 1, r = 1 }}, actions = {{ u_l = 1, u_r = 'left' }}"),
-            "actions.u_l must name a node, 'encoders/E3', or say how fast it changes, 'd(encoders/E3)', not 1",
-        ),
-        (
-            format!(
-                "{drive}, params = {{ L = 1, r = 1 }}, actions = {{ u_l = {{ 'left', typ = 'f32' }}, u_r = 'left' }}"
-            ),
-            "actions.u_l has an unknown option 'typ'; there are scale, type",
-        ),
-        (
-            format!(
-                "{drive}, params = {{ L = 1, r = 1 }}, actions = {{ u_l = {{ 'left', type = 'i64' }}, u_r = 'left' }}"
-            ),
-            "actions.u_l: type must be one of f32, f64, i16, i32, i8, u16, u32, u8, not 'i64'",
-        ),
-        (
-            format!("{drive}, {WHEELS}, heading = 'd(left)'"),
-            "heading: it takes the place of theta, which must be a state, and is an angle",
-        ),
-        ("model = '[[ ; ]]'".to_owned(), "robot.lua:3:"),
-    ] {
-        let said = refused(&options);
+    for (options, told) in WRONG {
+        let said = refused_drive(options);
         assert!(
             said.starts_with("robot.lua:3: ") && said.contains(told),
             "{options}\n{said}"
         );
     }
-    let said = refused(
-        "model = 'differential-drive', params = { L = 1, r = 1 }, actions = { u_l = 'left', u_r = 'none' }",
+}
+
+#[test]
+fn sources_that_are_not_there_or_circles_or_of_another_type_are_refused() {
+    let of = |right: &str| {
+        refused_drive(&format!(
+            "DRIVE, NUMBERS, actions = {{ u_l = 'left', u_r = {right} }}"
+        ))
+    };
+    assert!(
+        of("'none'").contains("pose: there is no node 'none'"),
+        "{}",
+        of("'none'")
     );
-    assert!(said.contains("pose") && said.contains("none"), "{said}");
-    let said = refused(
-        "model = 'differential-drive', params = { L = 1, r = 1 }, actions = { u_l = 'left', u_r = 'pose' }",
-    );
-    assert!(said.contains("pose"), "{said}");
-    let said = refused(
-        "model = 'differential-drive', params = { L = 1, r = 1 }, actions = { u_l = 'left', u_r = { 'right', type = 'f32' } }",
-    );
+    assert!(of("'pose'").contains("circle"), "{}", of("'pose'"));
     assert_eq!(
-        said,
+        of("{ 'right', type = 'f32' }"),
         "robot.lua:3: pose: the converter takes 'i32 u_l, f32 u_r, u32 interval_us', but the sources give 'i32 u_l, i32 u_r, u32 interval_us'"
     );
 }

@@ -192,14 +192,10 @@ unsafe extern "C-unwind" fn part(l: *mut lua::lua_State) -> c_int {
                 lua::lua_pushcfunction(l, filters);
                 3
             }
-            b"dcml" => {
-                push_maker(l, Part::Dcml);
-                lua::lua_pushvalue(l, raw);
-                lua::lua_pushcfunction(l, chunk);
-                3
-            }
-            b"include" | b"load" | b"loadstring" | b"print" | b"trikfs_log" | b"xpcall" => {
-                push_maker(l, Part::Rare);
+            name @ (b"dcml" | b"include" | b"load" | b"loadstring" | b"print" | b"trikfs_log"
+            | b"xpcall") => {
+                let is_model = name == b"dcml";
+                push_maker(l, if is_model { Part::Dcml } else { Part::Rare });
                 lua::lua_pushvalue(l, 1);
                 lua::lua_pushvalue(l, raw);
                 lua::lua_pushcfunction(l, log);

@@ -79,10 +79,24 @@ impl Reading {
     fn slice(&self, span: Span) -> &str {
         super::lexer::slice(&self.text, span)
     }
+
+    /// The edit that makes the text as the formatter wants it; nothing if it is so already.
+    ///
+    /// # Errors
+    /// Why it cannot be formatted: what cannot be read has no layout.
+    pub fn formatted(&self) -> Result<Option<Edit>, String> {
+        let wanted = super::format::format(&self.text).map_err(|found| {
+            let first = found.first().map(|one| one.message.as_str());
+            format!(
+                "not while there are mistakes: {}",
+                first.unwrap_or_default()
+            )
+        })?;
+        Ok(difference(&self.text, &wanted))
+    }
 }
 
 /// The smallest stretch to replace for one text to become another.
-#[cfg_attr(not(test), expect(dead_code))]
 fn difference(old: &str, new: &str) -> Option<Edit> {
     if old == new {
         return None;

@@ -162,12 +162,11 @@ impl<'a> Writer<'a> {
         self.alone(&item.before, indent);
         self.begin_line(indent, item.body.first());
         for (at, token) in item.body.iter().enumerate() {
-            let is_spaced = at > 0
-                && match item.body[at - 1].kind {
-                    TokenKind::Colon => true,
-                    TokenKind::Keyword(Keyword::Begin) => true,
-                    _ => false,
-                };
+            let before = at.checked_sub(1).map(|before| item.body[before].kind);
+            let is_spaced = matches!(
+                before,
+                Some(TokenKind::Colon | TokenKind::Keyword(Keyword::Begin))
+            );
             if is_spaced {
                 self.out.push(' ');
             }

@@ -9,13 +9,14 @@ use lang::dcml::syntax::Kind;
 use std::path::Path;
 
 const COMMONS_MATH: &str = "/usr/share/java/commons-math3.jar";
-const RANDOM: usize = 60;
+const RANDOM: usize = 40;
 const CASES: usize = 12;
 
 /// What is compared.
 pub fn all() -> Vec<Model> {
     let mut models = models::published();
     models.extend(models::shipped());
+    models.extend(crate::hostile::models());
     models.extend(models::random(RANDOM));
     models
 }
@@ -28,6 +29,15 @@ pub fn sizes(model: &Model) -> [usize; 4] {
         model.of_kind(Kind::Param).count(),
         model.outputs().count(),
     ]
+}
+
+/// What stands between two texts in another one.
+fn between<'t>(text: &'t str, start: &str, end: &str) -> &'t str {
+    let rest = text
+        .split_once(start)
+        .unwrap_or_else(|| panic!("no {start}"))
+        .1;
+    rest.split_once(end).unwrap_or_else(|| panic!("no {end}")).0
 }
 
 pub fn text(model: &Model, target: Target) -> String {
@@ -113,16 +123,14 @@ fn c_agrees_as_c_and_as_cpp() {
     let cases = write_cases(&folder, &models);
     let mut program = "#include <stdio.h>\n#include <stdlib.h>\n".to_owned();
     let mut main = String::new();
-    for model in &models {
-        let name = &model.name;
-        std::fs::write(folder.join(format!("{name}.h")), text(model, Target::C)).unwrap();
-        program.push_str(&format!("#include \"{name}.h\"\n"));
+    for (at, model) in models.iter().enumerate() {
+        let header = text(model, Target::C);
+        let name = between(&header, "#ifndef ", "_H\n");
+        std::fs::write(folder.join(format!("m{at}.h")), &header).unwrap();
+        program.push_str(&format!("#include \"m{at}.h\"\n"));
         let [states, actions, params, outputs] = sizes(model);
         let size = |count: usize| count.max(1);
-        let fields: String = model
-            .of_kind(Kind::Param)
-            .map(|one| format!("p.{} = number(in);", one.name))
-            .collect();
+        let fields = format!("read(in, (double *)&p, {params});");
         main.push_str(&format!(
             "for (c = 0; c < {CASES}; c++) {{ double x[{}], u[{}], out[{}]; {name}_params p;\n\
              read(in, x, {states}); read(in, u, {actions}); {fields}\n\
@@ -131,7 +139,6 @@ fn c_agrees_as_c_and_as_cpp() {
             size(actions),
             size(states * states.max(actions).max(outputs)),
         ));
-        assert!(params > 0);
         if outputs > 0 {
             main.push_str(&format!(
                 "{name}_outputs(x, u, &p, out); show(out, {outputs});\n"
@@ -183,18 +190,25 @@ fn rust_agrees() {
     let cases = write_cases(&folder, &models);
     let mut program = "#![deny(warnings)]\n".to_owned();
     let mut main = String::new();
-    for model in &models {
-        let name = model.name.to_lowercase();
-        std::fs::write(folder.join(format!("{name}.rs")), text(model, Target::Rust)).unwrap();
+    for (at, model) in models.iter().enumerate() {
+        let name = format!("m{at}");
+        let module = text(model, Target::Rust);
+        std::fs::write(folder.join(format!("{name}.rs")), &module).unwrap();
         program.push_str(&format!("mod {name};\n"));
         let outputs = match model.outputs().count() {
             0 => String::new(),
             _ => format!("show(&{name}::outputs(&x, &u, &p));"),
         };
-        let fields: String = model
-            .of_kind(Kind::Param)
-            .map(|one| format!("{}: number(),", one.name))
-            .collect();
+        let fields: String = between(
+            &module,
+            "pub struct Params {",
+            "
+}",
+        )
+        .lines()
+        .filter_map(|line| line.strip_prefix("    pub ")?.strip_suffix(": f64,"))
+        .map(|field| format!("{field}: number(),"))
+        .collect();
         main.push_str(&format!(
             "for _ in 0..{CASES} {{ let mut x = [(); {name}::STATES].map(|()| number());\n\
              let u = [(); {name}::ACTIONS].map(|()| number()); let p = {name}::Params {{ {fields} }};\n\
@@ -240,13 +254,10 @@ fn python_agrees_on_single_states_and_on_many_at_once() {
         .replace("CASES", &CASES.to_string())
         .replace("m.CASES", "m")
         .replace("DT", &DT.to_string());
-    for model in &models {
-        let name = &model.name;
-        std::fs::write(
-            folder.join(format!("{name}.py")),
-            text(model, Target::Python),
-        )
-        .unwrap();
+    for (at, model) in models.iter().enumerate() {
+        let name = format!("m{at}");
+        let path = folder.join(format!("{name}.py"));
+        std::fs::write(path, text(model, Target::Python)).unwrap();
         let has_outputs = if model.outputs().count() > 0 {
             "True"
         } else {
@@ -278,9 +289,10 @@ fn lua_agrees() {
         m.step(x, u, p, DT) show(x) end end\n"
         .replace("CASES", &CASES.to_string())
         .replace("DT", &DT.to_string());
-    for model in &models {
-        let name = &model.name;
-        std::fs::write(folder.join(format!("{name}.lua")), text(model, Target::Lua)).unwrap();
+    for (at, model) in models.iter().enumerate() {
+        let name = format!("m{at}");
+        let path = folder.join(format!("{name}.lua"));
+        std::fs::write(path, text(model, Target::Lua)).unwrap();
         program.push_str(&format!("check(require '{name}')\n"));
     }
     std::fs::write(folder.join("main.lua"), &program).unwrap();
@@ -312,13 +324,10 @@ fn javascript_agrees() {
         m.step(x, u, p, DT); show(x); } }\n"
         .replace("CASES", &CASES.to_string())
         .replace("DT", &DT.to_string());
-    for model in &models {
-        let name = &model.name;
-        std::fs::write(
-            folder.join(format!("{name}.js")),
-            text(model, Target::JavaScript),
-        )
-        .unwrap();
+    for (at, model) in models.iter().enumerate() {
+        let name = format!("m{at}");
+        let path = folder.join(format!("{name}.js"));
+        std::fs::write(path, text(model, Target::JavaScript)).unwrap();
         program.push_str(&format!("check(require('./{name}.js'));\n"));
     }
     program.push_str("require('fs').writeSync(1, out.join('\\n') + '\\n');\n");
@@ -350,14 +359,16 @@ fn java_agrees_for_both_libraries() {
         let cases = write_cases(&folder, &models);
         std::fs::create_dir(folder.join("src")).unwrap();
         let mut main = String::new();
-        for model in &models {
-            let simple = &model.name;
-            let path = folder.join("src").join(format!("{simple}.java"));
-            std::fs::write(path, text(model, target)).unwrap();
-            let name = match &model.package {
-                Some(package) => format!("{package}.{simple}"),
-                None => simple.clone(),
+        for (at, model) in models.iter().enumerate() {
+            let source = text(model, target);
+            let simple = between(&source, "public class ", " implements");
+            let name = match source.starts_with("package ") {
+                true => format!("{}.{simple}", between(&source, "package ", ";")),
+                false => simple.to_owned(),
             };
+            // The compiler wants the name of the class; several packages may have it.
+            std::fs::create_dir(folder.join(format!("src/{at}"))).unwrap();
+            std::fs::write(folder.join(format!("src/{at}/{simple}.java")), &source).unwrap();
             let [states, actions, params, outputs] = sizes(model);
             let outputs = match outputs {
                 0 => String::new(),
@@ -370,7 +381,7 @@ fn java_agrees_for_both_libraries() {
                 _ => "d = m.computeDerivatives(0.0, x);",
             };
             main.push_str(&format!(
-                "static void check{simple}() throws Exception {{ {name} m = new {name}();\n\
+                "static void check{at}() throws Exception {{ {name} m = new {name}();\n\
                  for (int c = 0; c < {CASES}; c++) {{ double[] x = read({states}); m.setAction(read({actions}));\n\
                  m.setParameters(read({params})); double[] d = new double[m.getDimension()]; {derivative} show(d); {outputs}\n\
                  double[][] j = new double[{states}][{states}]; m.computeStateJacobian(x, j); for (double[] row : j) show(row);\n\
@@ -379,9 +390,8 @@ fn java_agrees_for_both_libraries() {
                  }}\n"
             ));
         }
-        let calls: String = models
-            .iter()
-            .map(|one| format!("check{}();", one.name))
+        let calls: String = (0..models.len())
+            .map(|at| format!("check{at}();"))
             .collect();
         let program = format!(
             "import java.io.*;\npublic class Main {{\nstatic BufferedReader in; static StringBuilder out = new StringBuilder();\n\
@@ -407,11 +417,18 @@ fn java_agrees_for_both_libraries() {
 }
 
 /// Compiles all files in `src`.
-pub fn compile_java(folder: &Path) {
-    let all = std::fs::read_dir(folder.join("src")).unwrap();
-    let files: Vec<_> = all
-        .map(|one| one.unwrap().path().display().to_string())
-        .collect();
+fn compile_java(folder: &Path) {
+    let mut files = Vec::new();
+    let mut folders = vec![folder.join("src")];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            match path.is_dir() {
+                true => folders.push(path),
+                false => files.push(path.display().to_string()),
+            }
+        }
+    }
     let lints = [
         "-Xlint:all,-path",
         "-Xdoclint:syntax,html",
@@ -424,4 +441,30 @@ pub fn compile_java(folder: &Path) {
     words.extend(lints.iter().chain(&places));
     words.extend(files.iter().map(String::as_str));
     run(folder, &words);
+}
+
+#[test]
+fn latex_compiles() {
+    let test = "dcml-latex";
+    if !has(test, "pdflatex") {
+        return;
+    }
+    let folder = scratch(test);
+    let mut document =
+        "\\documentclass{article}\n\\usepackage{amsmath}\n\\begin{document}\n".to_owned();
+    for model in all() {
+        document.push_str(&text(&model, Target::Latex));
+    }
+    document.push_str("\\end{document}\n");
+    std::fs::write(folder.join("main.tex"), document).unwrap();
+    let words = [
+        "pdflatex",
+        "-interaction=nonstopmode",
+        "-halt-on-error",
+        "main.tex",
+    ];
+    let log = run(&folder, &words);
+    assert!(log.contains("Output written on main.pdf"), "{log}");
+    assert!(!log.contains("LaTeX Warning: Command"), "{log}");
+    let _ = std::fs::remove_dir_all(&folder);
 }

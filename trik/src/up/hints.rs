@@ -39,7 +39,20 @@ pub(super) fn of(robot: &str, world: Option<&Field>) -> Vec<Hint> {
             ("echo 440 500 > sound/tone/value", "play a tone: Hz, ms"),
             ("echo > stop", "bring everything to rest"),
         ],
-        _ => &[("cat status", "what is there?")],
+        "bare" => &[("cat status", "what is there?")],
+        // A model in DCML.
+        _ => &[
+            (
+                "ls motors servos",
+                "what drives it, named after the actions?",
+            ),
+            (
+                "cat pose/value",
+                "where is it by its model, in metres and radians?",
+            ),
+            ("grep . pose/params/*", "which numbers has the model?"),
+            ("echo > stop", "bring everything to rest"),
+        ],
     };
     known
         .iter()
@@ -91,16 +104,14 @@ mod tests {
 
     #[test]
     fn hints_of_a_world_are_of_what_it_has() {
-        let mut robot = sim::field::Robot {
-            left: Port::named("M1"),
-            ..sim::field::Robot::default()
-        };
+        let mut robot = Box::new(sim::field::Robot::default());
+        robot.left = Port::named("M1");
         for (port, kind) in [("A1", SensorKind::Light), ("D2", SensorKind::Sonar)] {
             let port = Port::named(port).unwrap();
             robot.sensors.push(sim::field::Sensor::new(port, kind));
         }
         let mut field = Field::default();
-        field.robots.push(robot);
+        field.robots.push(*robot);
         let hints = of("two-wheels", Some(&field));
         let commands: Vec<&str> = hints.iter().map(|(command, _)| &**command).collect();
         assert_eq!(

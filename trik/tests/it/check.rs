@@ -355,30 +355,6 @@ fn reports_trajectories_pictures_and_pages_are_written_for_each_run() {
     // The record is judged as the run was, and no file is replaced by mistake.
     let again = trik(&board, &["check", "line.qrs", "--log", "t.json"]);
     assert_eq!(again.code(), 0, "{}{}", again.stdout, again.stderr);
-    let fields = ["check", "--log", "t.json", "--field", "fields"];
-    let alone = trik(&board, &fields);
-    assert_eq!(alone.code(), 1, "{}{}", alone.stdout, alone.stderr);
-    assert!(
-        alone
-            .stdout
-            .contains("t.json    fields/near.xml  accomplished"),
-        "{}",
-        alone.stdout
-    );
-    let stranger = read("t.json").replacen("trikKitRobot", "stranger", 1);
-    fs::create_dir(board.path("strange")).expect("a folder");
-    board.file("strange/t.json", stranger);
-    let told = trik(
-        &board,
-        &["check", "--log", "strange", "--field", "fields/near.xml"],
-    );
-    let why = "strange/t.json: the record has a robot 'stranger' that is not in this world";
-    assert!(told.stdout.contains(why), "{}{}", told.stdout, told.stderr);
-    for wrong in [&["--log", "t.json"][..], &["class", "--log", "t.json"]] {
-        let refused = trik(&board, &[&["check"], wrong].concat());
-        assert_eq!(refused.code(), 2, "{wrong:?}");
-        assert!(refused.stderr.contains("rules"), "{}", refused.stderr);
-    }
     let refused = trik(&board, &one);
     assert!(
         refused.code() != 0

@@ -7,6 +7,7 @@ mod check;
 /// Models of robots: what their document shows, files and exit codes.
 mod dcml;
 /// Paths of robots that are models.
+mod dcml_gen;
 mod dcml_plan;
 /// `trik dcml sim`: models under actions.
 mod dcml_sim;
@@ -26,6 +27,8 @@ mod examples;
 mod faults;
 /// Speed that is held, heading and place.
 mod hold;
+/// What editors are told of models.
+mod lsp;
 /// Models in DCML: a body of their own, and nodes that follow it.
 mod models;
 /// Programs that come over the network.

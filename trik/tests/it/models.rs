@@ -96,8 +96,9 @@ fn a_node_follows_the_robot_by_a_model_in_one_line() {
     });
     eventually("encoders", || robot.errno("pose/value") == 0);
     assert_eq!(robot.numbers("pose/value"), [0.0; 3]);
-    drive_away(&robot, 0.25, &[("M3", "30"), ("M4", "45")]);
-    drive_away(&robot, 0.15, &[("M3", "45"), ("M4", "25")]);
+    // A circle of 0.23 m to the left, on which no wall is, however long it lasts; and back.
+    drive_away(&robot, 0.25, &[("M3", "20"), ("M4", "40")]);
+    drive_away(&robot, 0.1, &[("M3", "-20"), ("M4", "-40")]);
     // Encoders count whole degrees of a wheel: half a millimetre, and 0.18 degrees of the heading.
     is_there(&robot, "pose/value", 0.01, 1.5);
     // The gyroscope's heading has its noise and what was measured in whole degrees here.
@@ -132,7 +133,7 @@ fn four_wheels_with_rollers_go_to_the_side() {
     let words = ["--robot=mecanum.dcml", "--params=r=0.03,l=0.2"];
     let robot = Robot::start(Arc::new(home), &words);
     eventually("a place", || robot.errno("pose/value") == 0);
-    let to_the_left = [("M1", "-40"), ("M2", "40"), ("M3", "40"), ("M4", "-40")];
+    let to_the_left = [("M1", "-20"), ("M2", "20"), ("M3", "20"), ("M4", "-20")];
     drive_away(&robot, 0.2, &to_the_left);
     is_there(&robot, "pose/value", 0.02, 3.0);
     let pose = robot.pose();

@@ -182,3 +182,33 @@ fn a_circle_is_named_from_its_beginning() {
         "robot.lua:3: b: the node reads itself in a circle: b -> c -> d -> b"
     );
 }
+
+#[test]
+fn what_the_converter_takes_is_compared_with_what_the_sources_give() {
+    let node = |format: &str| {
+        format!(
+            "trikfs = {{ a = {{ src = '/dev/zero', format = '{format}', poll_ms = 10 }},
+b = {{ src = {{ x = 'newest:a', y = '/dev/zero' }}, input_tuple_size = {{ y = 2 }}, input_format = 'i32 x, u16 y', format = 'i32 z',
+  converter = function(a_s, a, b_s, b) end }},
+c = {{ src = {{ x = 'newest:a' }}, interval = true, input_format = 'f32 x, u32 us', format = 'i32 z',
+  converter = function(a_s, a, b_s, b) end }} }}"
+        )
+    };
+    let reason = |format: &str| {
+        let loader = crate::load::Loader::default();
+        let loaded = loader.load("robot.lua", None, node(format).as_bytes());
+        loaded
+            .err()
+            .map_or_else(String::new, |problem| problem.to_string())
+    };
+    assert_eq!(reason("f32 x"), "");
+    // A file has no format, so only the sizes are compared.
+    assert_eq!(
+        reason("f64 x"),
+        "robot.lua:2: b: the converter takes 'i32 x, u16 y', 6 bytes, but the sources give 10"
+    );
+    assert_eq!(
+        reason("i32 x"),
+        "robot.lua:4: c: the converter takes 'f32 x, u32 us', but the sources give 'i32 x, u32 interval_us'"
+    );
+}

@@ -2,7 +2,7 @@
 --
 -- Owns the options, what each source means and the integration: one classical Runge-Kutta step of the fourth order for at
 -- most STEP_S. The model is the module that a generator made of its text; chunk(name) gives its function, or nil and why.
-local raw, chunk = ...
+local _, raw, _, chunk = ...
 local error, ipairs, next, pairs, pcall = raw.error, raw.ipairs, raw.next, raw.pairs, raw.pcall
 local tostring, type = raw.tostring, raw.type
 

@@ -75,7 +75,7 @@ impl Reading {
             ),
             said: tree
                 .and_then(|tree| tree.doc.as_ref())
-                .map(|doc| shortened(&doc.text))
+                .map(|doc| shortened(&doc.text, DCML_EDITOR_SHOWN_BYTES))
                 .unwrap_or_default(),
             ..Hover::default()
         })
@@ -106,7 +106,7 @@ impl Reading {
             code: format!(
                 "{} {}{}",
                 declared.kind.keyword(),
-                shortened(meant.text),
+                shortened(meant.text, DCML_EDITOR_SHOWN_BYTES),
                 suffixes(declared.said)
             ),
             what: what.to_owned(),
@@ -114,10 +114,10 @@ impl Reading {
                 .said
                 .doc
                 .as_ref()
-                .map(|doc| shortened(&doc.text))
+                .map(|doc| shortened(&doc.text, DCML_EDITOR_SHOWN_BYTES))
                 .unwrap_or_default(),
             more: first
-                .map(|one| shortened(self.slice(one.span)))
+                .map(|one| shortened(self.slice(one.span), DCML_EDITOR_SHOWN_BYTES))
                 .unwrap_or_default(),
             ..Hover::default()
         })
@@ -129,7 +129,7 @@ pub(super) fn suffixes(said: &Declaration) -> String {
     let unit = said
         .unit
         .as_ref()
-        .map(|unit| format!(" [{}]", shortened(&unit.text)));
+        .map(|unit| format!(" [{}]", shortened(&unit.text, DCML_EDITOR_SHOWN_BYTES)));
     let domain = said.domain.map(|(domain, _)| match domain {
         Domain::Circle => " in S1".to_owned(),
         Domain::Range(from, to) => format!(" in {from} .. {to}"),
@@ -147,11 +147,11 @@ fn several(count: usize, what: &str) -> String {
 }
 
 /// A text as far as anybody reads it.
-pub(super) fn shortened(text: &str) -> String {
-    if text.len() <= DCML_EDITOR_SHOWN_BYTES {
+pub(super) fn shortened(text: &str, most: usize) -> String {
+    if text.len() <= most {
         return text.to_owned();
     }
-    let mut end = DCML_EDITOR_SHOWN_BYTES;
+    let mut end = most;
     while !text.is_char_boundary(end) {
         end -= 1;
     }

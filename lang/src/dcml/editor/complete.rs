@@ -9,7 +9,8 @@ use super::super::syntax::{Kind, Span};
 use super::about::{shortened, suffixes};
 use super::words::{Extent, Place, Role, Word};
 use super::{Reading, facts};
-use crate::limits::DCML_EDITOR_OFFERS;
+use crate::limits::{DCML_EDITOR_OFFERS, DCML_EDITOR_SHOWN_BYTES};
+use std::collections::HashSet;
 
 /// What an offer is.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -130,10 +131,15 @@ impl Reading {
     fn statements(&self, model: Option<&Extent>) -> Vec<Completion> {
         let mut all = Vec::new();
         if let Some(model) = model {
+            let equations = self
+                .tree(model)
+                .into_iter()
+                .flat_map(|tree| &tree.equations);
+            let given: HashSet<&str> = equations.map(|one| one.target.text.as_str()).collect();
             for one in self.declarations(model).take(DCML_EDITOR_OFFERS) {
                 let name = one.said.name.text.as_str();
                 let wants = matches!(one.kind, Kind::Config | Kind::Var);
-                if !wants || self.equations(model, name).next().is_some() {
+                if !wants || given.contains(name) {
                     continue;
                 }
                 if one.kind == Kind::Config {
@@ -224,7 +230,11 @@ impl Reading {
         let shown = wanted.take(DCML_EDITOR_OFFERS + 1);
         shown
             .map(|one| {
-                let said = one.said.doc.as_ref().map(|doc| shortened(&doc.text));
+                let said = one
+                    .said
+                    .doc
+                    .as_ref()
+                    .map(|doc| shortened(&doc.text, DCML_EDITOR_SHOWN_BYTES));
                 let detail = format!("{}{}", facts::kind(one.kind), suffixes(one.said));
                 let name = &one.said.name.text;
                 Completion::new(

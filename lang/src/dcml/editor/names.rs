@@ -99,7 +99,7 @@ impl Reading {
         found.unwrap_or_default()
     }
 
-    /// Places where the name at a place gets its value: declarations and left sides of equations.
+    /// Places where the name at a place gets its value, in the order of the text: declarations and left sides of equations.
     pub fn writes(&self, offset: u32) -> Vec<Span> {
         let Some(meant) = self.meant(offset) else {
             return Vec::new();
@@ -112,7 +112,9 @@ impl Reading {
             .into_iter()
             .filter(|(_, is_declared)| *is_declared);
         let targets = self.equations(model, meant.text).map(|one| one.target.span);
-        declared.map(|(span, _)| span).chain(targets).collect()
+        let mut all: Vec<Span> = declared.map(|(span, _)| span).chain(targets).collect();
+        all.sort_unstable();
+        all
     }
 
     fn occurrences(&self, meant: Meant<'_>) -> Vec<(Span, bool)> {

@@ -4,8 +4,9 @@
 
 use super::super::syntax::{Kind, Span};
 use super::Reading;
+use super::about::shortened;
 use super::words::{Extent, Role, Word};
-use crate::limits::DCML_EDITOR_PLACES;
+use crate::limits::{DCML_EDITOR_NAME_BYTES, DCML_EDITOR_PLACES};
 
 /// What an entry of the outline is.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -69,9 +70,12 @@ impl Reading {
                     break;
                 };
                 *left = next;
-                let unit = one.unit.as_ref().map(|unit| format!(" [{}]", unit.text));
+                let unit = one
+                    .unit
+                    .as_ref()
+                    .map(|unit| format!(" [{}]", shortened(&unit.text, DCML_EDITOR_NAME_BYTES)));
                 inside.push(Symbol {
-                    name: one.name.text.clone(),
+                    name: shortened(&one.name.text, DCML_EDITOR_NAME_BYTES),
                     detail: format!("{}{}", section.kind.keyword(), unit.unwrap_or_default()),
                     kind: SymbolKind::Name(section.kind),
                     span: one.name.span,
@@ -85,12 +89,12 @@ impl Reading {
                 break;
             };
             *left = next;
-            let name = &one.target.text;
+            let name = shortened(&one.target.text, DCML_EDITOR_NAME_BYTES);
             inside.push(Symbol {
                 name: if one.is_derivative {
                     format!("d({name})")
                 } else {
-                    name.clone()
+                    name
                 },
                 detail: String::new(),
                 kind: SymbolKind::Equation,
@@ -102,10 +106,13 @@ impl Reading {
         inside.retain(|one| is_within(one.selection, one.span) && is_within(one.span, model.span));
         inside.sort_by_key(|one| one.span.start);
         Some(Symbol {
-            name: if name.is_empty() { "BEGIN" } else { name }.to_owned(),
+            name: shortened(
+                if name.is_empty() { "BEGIN" } else { name },
+                DCML_EDITOR_NAME_BYTES,
+            ),
             detail: tree
                 .and_then(|tree| tree.package.as_ref())
-                .map(|package| package.text.clone())
+                .map(|package| shortened(&package.text, DCML_EDITOR_NAME_BYTES))
                 .unwrap_or_default(),
             kind: SymbolKind::Model,
             span: model.span,

@@ -7,7 +7,7 @@ use super::super::lexer::{self, Keyword, TokenKind};
 use super::super::syntax::Span;
 use super::words::{Role, Word};
 use super::{Edit, Reading};
-use crate::limits::DCML_EDITOR_PLACES;
+use crate::limits::{DCML_EDITOR_NAME_BYTES, DCML_EDITOR_PLACES};
 
 impl Reading {
     /// The name at a place, if it can be renamed.
@@ -96,6 +96,11 @@ impl Reading {
 
 /// Whether a word can be a name.
 fn is_name(word: &str) -> Result<(), String> {
+    if word.len() > DCML_EDITOR_NAME_BYTES {
+        return Err(format!(
+            "a name that is put in has at most {DCML_EDITOR_NAME_BYTES} letters"
+        ));
+    }
     if Keyword::named(word).is_some() {
         return Err(format!("`{word}` is a word of the language"));
     }

@@ -198,6 +198,7 @@ fn renaming_refuses_what_would_change_the_meaning() {
         ("a;", "no name"),
         ("\u{3b8}", "no name"),
         ("a/*", "no name"),
+        (&"a".repeat(300), "at most 250 letters"),
     ] {
         let refusal = reading.rename(theta, new).expect_err(new);
         assert!(refusal.contains(why), "{new}: {refusal}");
@@ -461,5 +462,25 @@ fn the_edit_between_two_texts_is_no_longer_than_it_must_be() {
     assert_eq!(
         (edit.span, edit.text.as_str()),
         (Span { start: 4, end: 5 }, " = ")
+    );
+}
+
+#[test]
+fn a_text_is_formatted_unless_it_cannot_be_read() {
+    let loose = DRIVE.replace("d(x) = v", "d( x )=v");
+    let reading = Reading::of(loose);
+    let edit = reading
+        .formatted()
+        .expect("it can be read")
+        .expect("it is loose");
+    let formatted = edited(&reading, &[edit]);
+    assert!(formatted.contains("d(x) = v * cos(theta);"), "{formatted}");
+    assert_eq!(Reading::of(formatted).formatted(), Ok(None));
+    let refusal = Reading::of("BEGIN M d(x) = (;".to_owned())
+        .formatted()
+        .expect_err("mistakes");
+    assert!(
+        refusal.starts_with("not while there are mistakes: "),
+        "{refusal}"
     );
 }

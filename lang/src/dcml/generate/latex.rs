@@ -111,6 +111,10 @@ impl Dialect for Latex<'_> {
         self.set(name)
     }
 
+    fn reference(&self, name: &str) -> String {
+        self.set(name)
+    }
+
     fn call(&self, function: Function, x: Text, y: Text) -> Text {
         let arguments = match function.arguments() {
             1 => in_parentheses(&x.text),

@@ -121,6 +121,11 @@ pub(super) trait Dialect {
         Text::new(format!("{} {sign} {right}", left.at_least(level)), level)
     }
 
+    /// A name of a line where its value is used.
+    fn reference(&self, name: &str) -> String {
+        name.to_owned()
+    }
+
     /// Whether values have no names but places, because the language has too few names.
     fn place(&self, _value: ValueId) -> Option<String> {
         None
@@ -239,7 +244,7 @@ impl<'s, 'm> Planner<'s, 'm> {
             let text = if self.stands_alone(id, *operation, count, is_short) {
                 let name = self.name(id, *operation, dialect);
                 body.lines.push((name.clone(), text.text));
-                Text::whole(name)
+                Text::whole(dialect.reference(&name))
             } else {
                 text
             };

@@ -11,7 +11,7 @@ use crate::dcml::tape::{Input, ValueId};
 
 /// Words of Python, and what is called here.
 const TAKEN: &str = "False None True and as assert async await break class continue def del elif else except finally for \
-    from global if import in is lambda nonlocal not or pass raise return try while with match case type print exec \
+    from global if import in is lambda nonlocal not or pass raise return try while with yield match case type print exec \
     np float len zip range hasattr ValueError NAME STATES ACTIONS PARAMS OUTPUTS WRAPS t state action params dt shape \
     values names result derivative outputs state_jacobian action_jacobian step wrapped arrays given k1 k2 k3 k4";
 

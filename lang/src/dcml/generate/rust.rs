@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 /// Words of Rust, names that are patterns, and what is called here.
 const TAKEN: &str = "abstract as async await become box break const continue crate do dyn else enum extern false final \
     fn for gen if impl in let loop macro match mod move mut override priv pub ref return self Self static struct super \
-    trait true try type typeof union unsafe unsized use virtual where while yield None Some Ok Err f64 math core std \
+    trait true try type typeof union unsized use virtual where while yield None Some Ok Err f64 math core std \
     STATES ACTIONS PARAMS OUTPUTS STATE_NAMES ACTION_NAMES PARAM_NAMES OUTPUT_NAMES Params from_array state action \
     params derivative outputs jacobian dt k1 k2 k3 k4 at step state_jacobian action_jacobian shifted";
 const ALLOWED: &str = "#[allow(dead_code, non_snake_case, clippy::all)]\n";
@@ -77,7 +77,7 @@ fn method(function: Function) -> &'static str {
 
 /// The whole module.
 pub(super) fn print(scene: &Scene<'_>) -> String {
-    let mut planner = Planner::new(scene, &[TAKEN]);
+    let mut planner = Planner::new(scene, &[TAKEN, "unsafe"]);
     let element = |array: &str, at: usize| format!("{array}[{at}]");
     let header = about::header(&planner, element, &|_, name| format!("params.{name}"));
     let functions = functions(&mut planner, scene);

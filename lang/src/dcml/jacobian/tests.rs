@@ -164,3 +164,42 @@ fn a_chain_of_many_inputs_ends_with_an_error_and_not_with_the_memory() -> Result
     assert!(matches!(lower(&model), Err(Refused::TooLarge(..))));
     Ok(())
 }
+
+/// Numbers of SymPy 1.14.0, with 17 digits.
+#[test]
+fn another_library_finds_the_same_slopes() -> Result<(), Refused> {
+    let code = lower(&sketch::bart())?;
+    let state = [1.0, 2.0, 0.7, 3.0, 4.0, -1.3];
+    let (action, params) = ([2.0, -3.0, 0.5, 4.0], [0.2, 0.1, 0.05]);
+    let compare = |tape: &Tape, columns: usize, expected: &[(usize, usize, f64)]| {
+        let mut rest = tape.reference(&state, &action, &params);
+        for (row, column, expected) in expected {
+            let found = std::mem::take(&mut rest[row * columns + column]);
+            assert!((found - expected).abs() < 1e-15, "{row} {column}: {found}");
+        }
+        assert!(rest.iter().all(|one| *one == 0.0), "{rest:?}");
+    };
+    let by_state = [
+        (0, 2, 0.080_013_521_067_165_08),
+        (1, 2, 0.002_021_496_088_131_269_5),
+        (3, 5, 0.205_097_517_966_542_72),
+        (4, 5, 0.102_342_907_052_534_36),
+    ];
+    compare(&code.state_jacobian, 6, &by_state);
+    let by_action = [
+        (0, 0, 0.046_294_830_454_695_56),
+        (0, 1, 0.030_189_388_273_753_28),
+        (1, 0, 0.022_650_357_020_828_447),
+        (1, 1, 0.041_771_411_702_940_66),
+        (2, 0, -0.25),
+        (2, 1, 0.25),
+        (3, 2, 0.001_330_464_113_514_458_3),
+        (3, 3, 0.025_419_418_748_944_28),
+        (4, 2, -0.051_521_644_628_666_99),
+        (4, 3, -0.044_834_173_913_052_306),
+        (5, 2, -0.25),
+        (5, 3, 0.25),
+    ];
+    compare(&code.action_jacobian, 4, &by_action);
+    Ok(())
+}

@@ -67,8 +67,7 @@ pub(super) fn sin_cos(angles: &[f64; LANES], sines: &mut [f64; LANES], cosines: 
         let changed = (own ^ other) & odd;
         *sine = f64::from_bits(own ^ changed ^ ((count & 2) << 62));
         *cosine = f64::from_bits(other ^ changed ^ ((count.wrapping_add(1) & 2) << 62));
-        // What is no number is far too.
-        is_far |= !(angle.abs() <= REACH);
+        is_far |= (angle.abs() > REACH) | angle.is_nan();
     }
     if is_far {
         far(angles, sines, cosines);

@@ -354,3 +354,88 @@ fn angles_are_shown_on_the_circle() {
     let tiny = wrapped(-PI - 1e-17);
     assert!(tiny > -PI && tiny <= PI);
 }
+
+/// Numbers of SciPy 1.17.1, solve_ivp with DOP853, rtol 1e-13 and atol 1e-14.
+#[test]
+fn another_library_gives_the_same() -> Result<(), Box<dyn std::error::Error>> {
+    let text = crate::dcml::models::named("trailer")
+        .ok_or("no trailer")?
+        .text;
+    let understood = crate::dcml::understand(text);
+    let mut robot = Robot::new(&understood.models[0], &[2.0, 3.0])?;
+    let mut given = |time: f64, to: &mut [f64]| {
+        to[0] = 1.0 + 0.5 * time.sin();
+        to[1] = 0.4 * (2.0 * time).cos();
+    };
+    let mut solver = Solver::new(Options::adaptive(1e-11, 1e-12), 4, 2)?;
+    solver.start(0.0, &[0.0, 0.0, 0.3, -1.0]);
+    for (time, expected) in [
+        (
+            2.5,
+            [
+                3.241_035_362_269_989,
+                0.957_782_129_132_259_7,
+                0.117_934_384_443_737_44,
+                -0.213_988_236_311_092_23,
+            ],
+        ),
+        (
+            10.0,
+            [
+                10.484_379_207_844_581,
+                2.854_006_070_801_813_3,
+                0.313_888_228_963_006_67,
+                0.201_255_716_804_703_97,
+            ],
+        ),
+    ] {
+        solver.run(&mut robot, &mut given, &mut course(time), |_| ())?;
+        for (found, expected) in solver.state().iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-9, "{:?}", solver.state());
+        }
+    }
+    Ok(())
+}
+
+/// An oscillator with sharp corners, and where it goes through zero: numbers of SciPy as above.
+#[test]
+fn another_library_finds_the_same_events() -> Result<(), Failure> {
+    let mut sharp = Plain(2, 0, |x: &[f64], _: &[f64], d: &mut [f64]| {
+        d[0] = x[1];
+        d[1] = 5.0 * (1.0 - x[0] * x[0]) * x[1] - x[0];
+    });
+    let mut value = |_: f64, state: &[f64]| state[0];
+    let mut events = [Event {
+        value: &mut value,
+        direction: Direction::Any,
+        is_terminal: false,
+    }];
+    let mut course = Course {
+        to: 20.0,
+        jumps: &[],
+        events: &mut events,
+    };
+    let mut solver = Solver::new(Options::adaptive(1e-11, 1e-12), 2, 0)?;
+    solver.start(0.0, &[2.0, 0.0]);
+    let found = solver.run(&mut sharp, &mut nothing, &mut course, |_| ())?;
+    let expected = [-1.601_296_879_542_836, 0.198_326_676_338_666_74];
+    for (found, expected) in solver.state().iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-8, "{:?}", solver.state());
+    }
+    let expected = [
+        5.122_878_795_047_989,
+        10.928_994_128_907_734,
+        16.735_109_462_767_493,
+    ];
+    assert_eq!(found.len(), 3);
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found.time - expected).abs() < 1e-8, "{found:?}");
+    }
+    // With the tolerances that it has, SciPy's RK45 takes 312 steps.
+    let mut solver = Solver::new(Options::adaptive(1e-6, 1e-9), 2, 0)?;
+    solver.start(0.0, &[2.0, 0.0]);
+    course.events = &mut [];
+    solver.run(&mut sharp, &mut nothing, &mut course, |_| ())?;
+    assert!((250..400).contains(&solver.steps()), "{}", solver.steps());
+    Ok(())
+}

@@ -74,6 +74,10 @@ pub fn answer(
         }
         "documentSymbol" => places::symbols(uri, sheet, client),
         "foldingRange" => places::folds(sheet, encoding),
+        "formatting" => {
+            let edit = reading.formatted().map_err(failed)?;
+            edits_json(sheet, edit.as_slice(), encoding)
+        }
         "codeAction" => offers::fixes(uri, sheet, span()?, params, client),
         "semanticTokens/full" => {
             let end = u32::try_from(reading.text().len()).unwrap_or(u32::MAX);

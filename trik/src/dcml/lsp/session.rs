@@ -110,6 +110,7 @@ impl Session {
 
     /// Tells the diagnostics of documents that have changed and will not at once change again.
     pub fn settle(&mut self, will_change: WillChange<'_>, out: &mut Vec<Value>) {
+        let mut last = None;
         for (uri, sheet) in &mut self.sheets {
             if sheet.is_new && !will_change(uri) {
                 sheet.is_new = false;
@@ -118,7 +119,11 @@ impl Session {
                     params["version"] = json!(version);
                 }
                 out.push(notification("textDocument/publishDiagnostics", params));
+                last = Some(uri.clone());
             }
+        }
+        if let Some(uri) = last {
+            self.rest_others(&uri);
         }
     }
 
@@ -146,6 +151,7 @@ impl Session {
                     return Err(Refusal::new(METHOD_NOT_FOUND, why));
                 };
                 let uri = params::document(params)?;
+                self.rest_others(uri);
                 let sheet = self.sheets.get(uri);
 
                 let sheet = sheet.ok_or_else(|| not_open(uri))?;
@@ -272,6 +278,17 @@ impl Session {
         }
         self.keep_within(uri);
         Ok(())
+    }
+
+    /// Lets go what is known of other documents if that is much.
+    fn rest_others(&mut self, uri: &str) {
+        let mut bytes = 0;
+        for (_, sheet) in self.sheets.iter_mut().filter(|(other, _)| *other != uri) {
+            bytes += if sheet.is_read() { sheet.bytes() } else { 0 };
+            if bytes > limits::LSP_READ_BYTES {
+                sheet.rest();
+            }
+        }
     }
 
     /// Forgets the text of a document if all together are too long.

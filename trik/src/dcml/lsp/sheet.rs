@@ -161,27 +161,33 @@ impl Sheet {
     }
 
     /// The parts of a stretch that stand on one line each, without the ends of lines.
-    pub fn by_lines(&self, span: Span) -> Vec<Span> {
+    pub fn by_lines(&self, span: Span) -> impl Iterator<Item = Span> {
         let (start, end) = (byte(span.start), byte(span.end).min(self.text.len_bytes()));
-        if start >= end {
-            return Vec::new();
-        }
-        let first = self.text.byte_to_line(start);
-        let last = self.text.byte_to_line(end);
-        let of_line = |line: usize| {
+        let lines = if start < end {
+            self.text.byte_to_line(start)..self.text.byte_to_line(end) + 1
+        } else {
+            0..0
+        };
+        lines.filter_map(move |line| {
             let line = self.line(line);
-            let (from, to) = (
-                self.text.char_to_byte(line.start),
-                self.text.char_to_byte(line.end),
-            );
-            let (from, to) = (from.max(start), to.min(end));
+            let from = self.text.char_to_byte(line.start).max(start);
+            let to = self.text.char_to_byte(line.end).min(end);
             let small = |at: usize| u32::try_from(at).unwrap_or(u32::MAX);
             (from < to).then(|| Span {
                 start: small(from),
                 end: small(to),
             })
-        };
-        (first..=last).filter_map(of_line).collect()
+        })
+    }
+
+    /// Lets go what is known of it; it is found out again when it is wanted.
+    pub fn rest(&mut self) {
+        self.reading = OnceCell::new();
+    }
+
+    /// Whether something is known of it that takes memory.
+    pub fn is_read(&self) -> bool {
+        self.reading.get().is_some()
     }
 
     /// The characters of a line without what ends it.
@@ -295,7 +301,6 @@ mod tests {
         let sheet = Sheet::new(text, None);
         let parts = sheet.by_lines(Span { start: 0, end: 12 });
         let parts: Vec<&str> = parts
-            .iter()
             .map(|one| &text[byte(one.start)..byte(one.end)])
             .collect();
         assert_eq!(parts, ["/* a", " b */"]);

@@ -1,4 +1,4 @@
-//! Programs that lie, never end or leave something behind; what is told of mistakes.
+//! Programs that lie, never end or leave something behind; what is told of mistakes; recorded runs.
 
 use super::{folder, trik, world};
 use crate::rig::TRIK;
@@ -169,4 +169,37 @@ fn what_was_left_out_or_mixed_up_is_told() {
     fs::copy(TRIK, &copy).expect("a copy");
     let output = tools::run(Command::new(&copy).arg("up").current_dir(board.dir()), b"");
     assert!(output.stderr.contains("config/lua"), "{}", output.stderr);
+}
+
+#[test]
+fn records_are_judged_without_a_save_and_strangers_in_them_are_told() {
+    let board = folder();
+    let made = trik(&board, &["check", "line.qrs", "--trajectory", "t.json"]);
+    assert_eq!(made.code(), 0, "{}{}", made.stdout, made.stderr);
+    let fields = ["check", "--log", "t.json", "--field", "fields"];
+    let alone = trik(&board, &fields);
+    assert_eq!(alone.code(), 1, "{}{}", alone.stdout, alone.stderr);
+    assert!(
+        alone
+            .stdout
+            .contains("t.json    fields/near.xml  accomplished"),
+        "{}",
+        alone.stdout
+    );
+    let stranger = fs::read_to_string(board.path("t.json"))
+        .expect("a record")
+        .replacen("trikKitRobot", "stranger", 1);
+    fs::create_dir(board.path("strange")).expect("a folder");
+    board.file("strange/t.json", stranger);
+    let told = trik(
+        &board,
+        &["check", "--log", "strange", "--field", "fields/near.xml"],
+    );
+    let why = "strange/t.json: the record has a robot 'stranger' that is not in this world";
+    assert!(told.stdout.contains(why), "{}{}", told.stdout, told.stderr);
+    for wrong in [&["--log", "t.json"][..], &["class", "--log", "t.json"]] {
+        let refused = trik(&board, &[&["check"], wrong].concat());
+        assert_eq!(refused.code(), 2, "{wrong:?}");
+        assert!(refused.stderr.contains("rules"), "{}", refused.stderr);
+    }
 }

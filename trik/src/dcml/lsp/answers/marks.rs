@@ -5,6 +5,7 @@
 use super::super::sheet::{Encoding, Sheet};
 use lang::dcml::editor::{Colour, Painted};
 use lang::dcml::syntax::Span;
+use lang::limits::DCML_EDITOR_PLACES;
 use serde_json::{Value, json};
 
 /// The names of the numbers.
@@ -36,9 +37,14 @@ pub fn tokens(sheet: &Sheet, stretch: Span, encoding: Encoding) -> Value {
     let mut data: Vec<Value> = Vec::new();
     let (mut line, mut unit) = (0, 0);
     for one in sheet.reading().colours(stretch) {
-        let parts = match one.colour {
-            Colour::Comment => sheet.by_lines(one.span),
-            _ => vec![one.span],
+        // Only comments have several lines; others are one part of one.
+        let parts = sheet
+            .by_lines(one.span)
+            .take(DCML_EDITOR_PLACES - data.len() / 5);
+        let whole = std::iter::once(one.span);
+        let parts: &mut dyn Iterator<Item = Span> = match one.colour {
+            Colour::Comment => &mut { parts },
+            _ => &mut { whole },
         };
         for part in parts {
             walk.to(part.start);
@@ -55,6 +61,9 @@ pub fn tokens(sheet: &Sheet, stretch: Span, encoding: Encoding) -> Value {
             ];
             data.extend(numbers.map(Value::from));
             (line, unit) = at;
+        }
+        if data.len() >= 5 * DCML_EDITOR_PLACES {
+            break;
         }
     }
     json!({ "data": data })

@@ -5,12 +5,18 @@
 use super::super::params::range_json;
 use super::super::session::Client;
 use super::super::sheet::{Encoding, Sheet};
+use crate::limits;
 use lang::dcml::editor::{Symbol, SymbolKind};
 use lang::dcml::syntax::{Kind, Span};
 use serde_json::{Value, json};
 
 fn location(uri: &str, sheet: &Sheet, span: Span, encoding: Encoding) -> Value {
     json!({"uri": uri, "range": range_json(sheet, span, encoding)})
+}
+
+/// How many places an answer has, each with the name of the document.
+fn most(uri: &str) -> usize {
+    limits::LSP_ANSWER_BYTES / (uri.len() + 200)
 }
 
 /// Where a name is declared.
@@ -30,6 +36,7 @@ pub fn references(
     let all = sheet.reading().references(offset).into_iter();
     let wanted = all.filter(|(_, is_declaration)| with_declaration || !is_declaration);
     wanted
+        .take(most(uri))
         .map(|(span, _)| location(uri, sheet, span, encoding))
         .collect()
 }
@@ -40,7 +47,11 @@ pub fn highlights(sheet: &Sheet, offset: u32, encoding: Encoding) -> Value {
     let all = sheet.reading().references(offset).into_iter();
     all.map(|(span, _)| {
         // 3 writes, 2 reads.
-        let kind = if writes.contains(&span) { 3 } else { 2 };
+        let kind = if writes.binary_search(&span).is_ok() {
+            3
+        } else {
+            2
+        };
         json!({"range": range_json(sheet, span, encoding), "kind": kind})
     })
     .collect()
@@ -71,6 +82,7 @@ pub fn symbols(uri: &str, sheet: &Sheet, client: &Client) -> Value {
         all.push(flat(model, None));
         all.extend(model.inside.iter().map(|one| flat(one, Some(&model.name))));
     }
+    all.truncate(most(uri));
     Value::Array(all)
 }
 
