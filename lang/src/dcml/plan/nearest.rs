@@ -53,6 +53,9 @@ struct Node {
     to: u32,
     /// The right child, 0 for a leaf.
     right: u32,
+    /// The least key in it: of equal distances the first point counts, so that nothing else of a heap of equal points
+    /// is looked at.
+    first: u32,
 }
 
 /// The best so far: squared distance, then key.
@@ -266,6 +269,11 @@ impl Tree {
             from: from as u32,
             to: (from + order.len()) as u32,
             right: 0,
+            first: order
+                .iter()
+                .map(|&at| cloud.keys[at as usize])
+                .min()
+                .unwrap_or(GONE),
         });
         let of = |at: u32, axis: usize| cloud.points[at as usize * size + axis];
         let (mut widest, mut width) = (0, -1.0);
@@ -313,10 +321,15 @@ impl Tree {
     }
 
     fn nearest(&self, of: &Nearest, node: usize, gap: f64, point: &[f64], best: &mut Best) {
-        if gap > best.square {
+        let Node {
+            from,
+            to,
+            right,
+            first,
+        } = self.nodes[node];
+        if gap > best.square || (gap == best.square && first > best.key) {
             return;
         }
-        let Node { from, to, right } = self.nodes[node];
         if right == 0 {
             self.cloud
                 .offer_range(of, from as usize, to as usize, point, best);
@@ -324,7 +337,8 @@ impl Tree {
         }
         let (left, right) = (node + 1, right as usize);
         let (left_gap, right_gap) = (self.gap(of, left, point), self.gap(of, right, point));
-        if left_gap <= right_gap {
+        let is_first = self.nodes[left].first < self.nodes[right].first;
+        if left_gap < right_gap || (left_gap == right_gap && is_first) {
             self.nearest(of, left, left_gap, point, best);
             self.nearest(of, right, right_gap, point, best);
         } else {
@@ -344,7 +358,9 @@ impl Tree {
         if self.gap(of, node, point) > most {
             return;
         }
-        let Node { from, to, right } = self.nodes[node];
+        let Node {
+            from, to, right, ..
+        } = self.nodes[node];
         if right == 0 {
             look(&self.cloud, from as usize, to as usize);
         } else {
