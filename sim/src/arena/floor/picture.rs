@@ -97,7 +97,10 @@ impl Picture {
             },
             ..usvg::Options::default()
         };
-        let tree = usvg::Tree::from_str(text, &options)
+        // usvg panics at some pictures inside that have strange sizes.
+        let read = std::panic::AssertUnwindSafe(|| usvg::Tree::from_str(text, &options));
+        let tree = std::panic::catch_unwind(read)
+            .map_err(|_| "the SVG cannot be read: a size in it is too strange".to_owned())?
             .map_err(|error| format!("the SVG cannot be read: {error}"))?;
         let size = tree.size();
         let square = Affine([
