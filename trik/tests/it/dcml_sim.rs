@@ -214,6 +214,11 @@ fn what_cannot_be_simulated_is_told_with_its_place() {
         assert_eq!(output.code(), code, "{words:?}: {}", output.stderr);
         assert!(output.stderr.contains(told), "{words:?}: {}", output.stderr);
     }
+}
+
+#[test]
+fn parameters_that_are_missing_are_named() {
+    let board = Board::new();
     let missing = [
         "sim",
         "bicycle",
