@@ -139,7 +139,7 @@ pub(crate) struct SimArgs {
     #[arg(long, value_name = "FORMULAS|FILE.csv")]
     pub actions: String,
     /// For how many seconds.
-    #[arg(long = "t", value_name = "SECONDS")]
+    #[arg(long = "t", value_name = "SECONDS", allow_negative_numbers = true)]
     pub time: f64,
     /// How it is solved.
     #[arg(long, value_enum, default_value = "rk45")]
