@@ -43,7 +43,7 @@ BEGIN Everything
 ACTION: push [N] in -2 .. 2, turn [rad/s];
 PARAM: mass [kg], drag;
 CONST: g = 9.81, soft = 0.125;
-CONFIG: theta [rad] in S1, v [m/s];
+CONFIG: theta [rad] in S1, v;
 VAR: slope, force;
 slope = sin(theta) * g;
 force = piecewise(v < 0, push * soft, v > 2, max(push, -1), push);

@@ -148,7 +148,7 @@ fn a_layout_is_written_in_place_and_checked_without_writing() {
     // A line that no screen can show is told in part.
     let told = sh(&board, "trik dcml check long.dcml");
     assert!(
-        told.contains("long.dcml:1:1638: not declared") && told.len() < 1000,
+        told.contains("long.dcml:1:1639: not declared") && told.len() < 1000,
         "{told}"
     );
 }

@@ -75,7 +75,8 @@ mod tests {
 
     const WORLD: &str = r#"<root version="20190819"><world><walls><wall id="w" begin="0:0" end="200:100"/></walls>
         <skittles><skittle id="s" x="100" y="-50" markerX="100" markerY="-50" rotation="0" startRotation="0"/></skittles>
-        </world><robots><robot id="trikKitRobot" position="75:-125" direction="90"/></robots></root>"#;
+        </world><robots><robot id="trikKitRobot" position="75:-125" direction="90"/></robots>
+        <settings sizeUnit="pixels"/></root>"#;
 
     #[test]
     fn pixels_become_metres_and_y_points_up() {
