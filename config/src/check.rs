@@ -424,6 +424,9 @@ impl<'a> Checker<'a> {
 
     /// The existing path that a wrong one was probably meant to be.
     fn nearest_node(&self, wrong: &str) -> String {
+        if let Some((alias, _)) = self.aliases.iter().find(|(one, _)| one.path == wrong) {
+            return format!(": it is a second name; write '{}'", alias.node);
+        }
         nearest(wrong, self.index.keys().map(String::as_str))
             .map_or_else(String::new, |n| format!(", did you mean '{n}'"))
     }

@@ -56,7 +56,7 @@ codes! {
     "The text has a sign that means nothing in the language.", model!("d(x) = k # u;");
     /// A name with letters that are not Latin.
     ForeignName, "foreign-name", Error,
-    "Names have Latin letters, digits and `_`.", model!("VAR: \u{3b8}; \u{3b8} = k * u; d(x) = \u{3b8};");
+    "Names have Latin letters, digits and `_`; the name of this example is a Greek letter.", model!("VAR: \u{3b8}; \u{3b8} = k * u; d(x) = \u{3b8};");
     /// A comment without an end.
     OpenComment, "open-comment", Error,
     "A comment that begins with `/*` ends with `*/`.", model!("d(x) = k * u; /* a comment");

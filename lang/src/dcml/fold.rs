@@ -42,6 +42,12 @@ impl Builder {
         }
     }
 
+    /// How a value comes about; not a number for a value that is not there.
+    pub fn operation(&self, id: ValueId) -> Operation {
+        let found = self.operations.get(id as usize);
+        found.copied().unwrap_or(Operation::Constant(f64::NAN))
+    }
+
     /// A number. Refused if it is not finite, or if there are too many operations.
     pub fn constant(&mut self, number: f64) -> Result<ValueId, Refused> {
         if !number.is_finite() {

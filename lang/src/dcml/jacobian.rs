@@ -2,8 +2,9 @@
 //!
 //! Owns the rule of each operation and the walk through what depends on an input. Where a function has a corner the
 //! derivative of one side is given: `abs` is level at zero, `min` and `max` follow their first argument where both are
-//! equal, `sign` and `floor` are level everywhere, and `piecewise` follows the branch that is taken. A factor that is
-//! zero by these rules makes a product zero whatever the other factor is.
+//! equal and the other one where one is not a number, `sign` and `floor` are level everywhere, and `piecewise` follows the
+//! branch that is taken. A factor that is zero by these rules makes a product or a quotient zero whatever the other one
+//! is: behind `max(x, 0)` a root is level where x is negative, though its own slope is infinite there.
 
 use super::fold::Builder;
 use super::function::Function;
@@ -230,8 +231,8 @@ impl<'a> Walk<'a> {
                 let below = self.builder.binary(Operator::Add, xx, yy)?;
                 self.over_value(above, below)
             }
-            Function::Min => self.either(Comparison::Greater, [x, y], dy, dx),
-            Function::Max => self.either(Comparison::Less, [x, y], dy, dx),
+            Function::Min => self.follow(Comparison::Greater, [x, y], dx, dy),
+            Function::Max => self.follow(Comparison::Less, [x, y], dx, dy),
             Function::Pow => {
                 let by_base = self.power_by_base(x, y, dx)?;
                 let by_exponent = self.power_by_exponent(x, itself, dy)?;
@@ -316,14 +317,79 @@ impl<'a> Walk<'a> {
     fn times(&mut self, x: Option<ValueId>, by: ValueId) -> Result<Option<ValueId>, Refused> {
         match x {
             Some(_) if self.builder.number(by) == Some(0.0) => Ok(None),
-            Some(x) => self.builder.binary(Operator::Multiply, by, x).map(Some),
+            Some(x) => self.scaled(Operator::Multiply, x, by).map(Some),
             None => Ok(None),
         }
     }
 
     fn over_value(&mut self, x: Option<ValueId>, by: ValueId) -> Result<Option<ValueId>, Refused> {
-        let over = |x| self.builder.binary(Operator::Divide, x, by);
-        x.map(over).transpose()
+        x.map(|x| self.scaled(Operator::Divide, x, by)).transpose()
+    }
+
+    /// A derivative times or over a value: where a branch of it is zero it stays zero, also beside what is infinite.
+    fn scaled(&mut self, operator: Operator, x: ValueId, by: ValueId) -> Result<ValueId, Refused> {
+        // Branches in branches are turned as deep as a person writes them.
+        self.scaled_within(operator, x, by, 4)
+    }
+
+    fn scaled_within(
+        &mut self,
+        operator: Operator,
+        x: ValueId,
+        by: ValueId,
+        depth: u32,
+    ) -> Result<ValueId, Refused> {
+        if self.builder.number(x) == Some(0.0) {
+            return Ok(x);
+        }
+        if depth > 0 && self.has_zero_branch(x, depth) {
+            match self.builder.operation(x) {
+                Operation::Select(comparison, [left, right, yes, no]) => {
+                    let yes = self.scaled_within(operator, yes, by, depth - 1)?;
+                    let no = self.scaled_within(operator, no, by, depth - 1)?;
+                    let select = Operation::Select(comparison, [left, right, yes, no]);
+                    return self.builder.value(select);
+                }
+                Operation::Negative(inner) => {
+                    let inner = self.scaled_within(operator, inner, by, depth - 1)?;
+                    return self.builder.negative(inner);
+                }
+                _ => {}
+            }
+        }
+        match operator {
+            Operator::Multiply => self.builder.binary(operator, by, x),
+            _ => self.builder.binary(operator, x, by),
+        }
+    }
+
+    fn has_zero_branch(&self, x: ValueId, depth: u32) -> bool {
+        match self.builder.operation(x) {
+            Operation::Constant(number) => number == 0.0,
+            Operation::Negative(inner) if depth > 0 => self.has_zero_branch(inner, depth - 1),
+            Operation::Select(_, [_, _, yes, no]) if depth > 0 => {
+                self.has_zero_branch(yes, depth - 1) || self.has_zero_branch(no, depth - 1)
+            }
+            _ => false,
+        }
+    }
+
+    /// The derivative of the lesser or greater of two: of the second where the comparison holds or the first is not a
+    /// number, else of the first.
+    fn follow(
+        &mut self,
+        second: Comparison,
+        [x, y]: [ValueId; 2],
+        dx: Option<ValueId>,
+        dy: Option<ValueId>,
+    ) -> Result<Option<ValueId>, Refused> {
+        let first = if self.builder.number(x).is_some() {
+            dx
+        } else {
+            // What is not a number does not equal itself.
+            self.either(Comparison::GreaterOrEqual, [x, x], dx, dy)?
+        };
+        self.either(second, [x, y], dy, first)
     }
 
     fn either(

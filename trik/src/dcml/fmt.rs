@@ -25,6 +25,13 @@ pub(super) fn fmt(args: &FmtArgs) -> Result<u8, Refusal> {
 }
 
 fn one(path: &Path, is_check: bool) -> Result<u8, Refusal> {
+    // A model that comes with the program is no file that could be changed.
+    if path != Path::new("-") && fs::symlink_metadata(path).is_err() {
+        return Err(Refusal {
+            lines: vec![format!("trik: {}: there is no such file", path.display())],
+            code: UNREADABLE,
+        });
+    }
     let source = read(path)?;
     let name = &source.name;
     let laid = match format(&source.text) {

@@ -156,8 +156,14 @@ fn prepared(args: &PlanArgs) -> Result<u8, Refusal> {
             source: &args.file,
         })
     });
+    let read = [&args.world, &args.obstacles];
+    let read: Vec<&Path> = read.into_iter().flatten().map(PathBuf::as_path).collect();
     for output in outputs.iter().flatten() {
         output.look()?;
+        output.spare(&read)?;
+    }
+    if let (Some(output), Some(picture)) = (&outputs[0], &args.svg) {
+        output.spare(&[picture])?;
     }
     let (_, model) = load(&args.file, args.model.as_deref())?;
     let names: Vec<&str> = model
@@ -234,7 +240,11 @@ fn searched(
                 selection: args.selection.unwrap_or(asked.size * 0.075),
                 pruning: args.pruning.unwrap_or(asked.size * 0.025),
             };
-            (method, 100_000)
+            let iterations = match args.time_limit {
+                Some(_) => u64::MAX,
+                None => 100_000,
+            };
+            (method, iterations)
         }
     };
     let options = Options {

@@ -17,6 +17,7 @@ use lang::dcml::solve::run::Course;
 use lang::dcml::solve::{Failure, Method, Options, Solver, wrapped};
 use lang::dcml::syntax::{Domain, Kind};
 use std::fmt::Write as _;
+use std::path::Path;
 
 /// Pieces of the time that are shown if nothing else is said.
 const SHOWN: f64 = 200.0;
@@ -31,6 +32,7 @@ pub(super) fn sim(args: &SimArgs) -> Result<u8, Refusal> {
         source: &args.file,
     };
     output.look()?;
+    output.spare(&[Path::new(&args.actions)])?;
     let (_, model) = load(&args.file, args.model.as_deref())?;
     let is_time = |time: f64| time.is_finite() && time > 0.0;
     if !is_time(args.time) {

@@ -49,6 +49,24 @@ impl Output<'_> {
         Ok(())
     }
 
+    /// Refuses to replace other files that are read, and files that are written beside it.
+    ///
+    /// # Errors
+    /// It is one of them.
+    pub fn spare(&self, others: &[&Path]) -> Result<(), Refusal> {
+        let Some(path) = self.file() else {
+            return Ok(());
+        };
+        let is_used = |other: &&&Path| path == **other || is_same(path, other);
+        match others.iter().find(is_used) {
+            Some(_) => Err(Refusal::new(format!(
+                "{} is needed for something else here: name another file",
+                telling::named(path)
+            ))),
+            None => Ok(()),
+        }
+    }
+
     /// Writes it. A reader of standard output that has seen enough is no failure.
     ///
     /// # Errors

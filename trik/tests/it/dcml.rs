@@ -145,6 +145,14 @@ fn a_layout_is_written_in_place_and_checked_without_writing() {
         told.contains("broken.dcml: not changed") && told.ends_with("1\nBEGIN M"),
         "{told}"
     );
+    // Models that come with the program are no files.
+    assert_eq!(
+        sh(
+            &board,
+            "trik dcml fmt bicycle; echo $?; ls bicycle 2>&1 | wc -l"
+        ),
+        "trik: bicycle: there is no such file\n2\n1\n"
+    );
     // A line that no screen can show is told in part.
     let told = sh(&board, "trik dcml check long.dcml");
     assert!(

@@ -217,6 +217,31 @@ fn what_cannot_be_simulated_is_told_with_its_place() {
 }
 
 #[test]
+fn a_table_with_outputs_that_are_no_numbers_is_given_as_it_is() {
+    let board = Board::new();
+    board.file(
+        "log.dcml",
+        "BEGIN L ACTION: u; CONFIG: x, o; d(x) = u; o = log(x - 0.5); END;",
+    );
+    let made = "sim log.dcml --actions u=1 --t 1 --every 0.25 -o table.csv";
+    let output = dcml(&board, &made.split(' ').collect::<Vec<_>>());
+    assert_eq!(output.code(), 0, "{}", output.stderr);
+    let words = "sim log.dcml --actions table.csv --t 1 --every 0.25";
+    let again = dcml(&board, &words.split(' ').collect::<Vec<_>>());
+    assert_eq!(again.code(), 0, "{}", again.stderr);
+    assert!(again.stdout.contains("NaN"), "{}", again.stdout);
+    // What is read is not replaced.
+    let over = format!("{words} -o table.csv --force");
+    let refused = dcml(&board, &over.split(' ').collect::<Vec<_>>());
+    assert_eq!(refused.code(), 1, "{}", refused.stderr);
+    assert!(
+        refused.stderr.contains("name another file"),
+        "{}",
+        refused.stderr
+    );
+}
+
+#[test]
 fn parameters_that_are_missing_are_named() {
     let board = Board::new();
     let missing = [

@@ -36,7 +36,8 @@ impl Dialect for Lua<'_, '_> {
         if digits == "-0.0" {
             return Text::new("-1 / math.huge", Level::Product);
         }
-        Text::number(digits.strip_suffix(".0").unwrap_or(&digits))
+        // With a point: since Lua 5.3 whole numbers without one wrap at 64 bits.
+        Text::number(&digits)
     }
 
     fn input(&self, input: Input, name: &str) -> String {
@@ -153,8 +154,11 @@ fn locals(planner: &Planner<'_, '_>) -> String {
                 "local function max(x, y) return (x > y or y ~= y) and x or y end\n".to_owned()
             }
             Function::Sign => {
-                "local function sign(x) return x > 0 and 1 or x < 0 and -1 or x + 0 end\n"
+                "local function sign(x) return x > 0 and 1.0 or x < 0 and -1.0 or x + 0.0 end\n"
                     .to_owned()
+            }
+            Function::Floor => {
+                "local function floor(x) return math.floor(x) + 0.0 end\n".to_owned()
             }
             _ => format!("local {name} = math.{name}\n"),
         });

@@ -125,6 +125,51 @@ fn slopes_at_corners_are_those_of_one_side() -> Result<(), Refused> {
     Ok(())
 }
 
+/// A root or an arc sine behind a guard is level outside of it, although its own slope is infinite at the edge.
+#[test]
+fn what_a_guard_keeps_constant_is_level() -> Result<(), Refused> {
+    let slope = |model: &Model, x: f64, u: f64| -> Result<f64, Refused> {
+        Ok(lower(model)?.state_jacobian.reference(&[x], &[u], &[])[0])
+    };
+    let root = with("root", |x, _| {
+        of(Function::Sqrt, &of_two(Function::Max, x, &number(0.0)))
+    });
+    assert_eq!(slope(&root, -1.0, 0.0)?, 0.0);
+    assert_eq!(slope(&root, 4.0, 0.0)?, 0.25);
+    let arc = with("arc", |x, _| {
+        let least = of_two(Function::Max, x, &number(-1.0));
+        of(Function::Acos, &of_two(Function::Min, &least, &number(1.0)))
+    });
+    for x in [-2.0, 2.0] {
+        assert_eq!(slope(&arc, x, 0.0)?, 0.0, "{x}");
+    }
+    assert_eq!(slope(&arc, 0.0, 0.0)?, -1.0);
+    Ok(())
+}
+
+#[test]
+fn beside_what_is_no_number_the_other_one_is_followed() -> Result<(), Refused> {
+    for function in [Function::Min, Function::Max] {
+        for is_first in [true, false] {
+            let model = with(function.name(), |x, u| {
+                let root = of(Function::Sqrt, u);
+                let twice = number(2.0) * x.clone();
+                if is_first {
+                    of_two(function, &root, &twice)
+                } else {
+                    of_two(function, &twice, &root)
+                }
+            });
+            let code = lower(&model)?;
+            let slope = code.state_jacobian.reference(&[3.0], &[-1.0], &[]);
+            assert_eq!(slope, [2.0], "{function:?} {is_first}");
+            let other = code.action_jacobian.reference(&[3.0], &[-1.0], &[]);
+            assert_eq!(other, [0.0], "{function:?} {is_first}");
+        }
+    }
+    Ok(())
+}
+
 #[test]
 fn what_does_not_depend_is_zero_and_nothing_more() -> Result<(), Refused> {
     let code = lower(&sketch::differential_drive())?;

@@ -112,7 +112,7 @@ fn formulas(text: &str, names: &[&str]) -> Result<Formulas, Refusal> {
             }
         }
         Wrong::Missing(name) => Refusal::new(format!(
-            "--actions: there is no formula for {name}: add {name} = FORMULA"
+            "--actions: there is no formula for {name}: add `; {name} = FORMULA`"
         )),
         Wrong::Other(why) => Refusal::new(format!("--actions: {why}")),
     })
@@ -170,6 +170,11 @@ fn table_of(text: &str, names: &[&str], others: &[&str]) -> Result<Rows, (String
         let mut time = 0.0;
         let mut count = 0;
         for (cell, (column, place)) in cells(line).zip(columns.iter().zip(0..)) {
+            count = place + 1;
+            // An output may be no number, which is no matter here.
+            if matches!(column, Meaning::Other(_)) {
+                continue;
+            }
             let shown: String = cell.1.chars().take(40).collect();
             let number: f64 = match cell.1.parse() {
                 Ok(number) if f64::is_finite(number) => number,
@@ -185,7 +190,6 @@ fn table_of(text: &str, names: &[&str], others: &[&str]) -> Result<Rows, (String
                 Meaning::Action(action) => row[*action] = number,
                 Meaning::Other(_) => (),
             }
-            count = place + 1;
         }
         let given = cells(line).count();
         if given != columns.len() || count != columns.len() {

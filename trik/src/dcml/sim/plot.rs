@@ -68,11 +68,15 @@ impl Panel {
         );
     }
 
-    /// A line through points; angles are not drawn across where they wrap.
+    /// A line through points; angles are not drawn across where they wrap, nor anything across what is no number.
     fn line(&self, out: &mut String, points: impl Iterator<Item = (f64, f64)>, is_circle: bool) {
         out.push_str("<path class=\"l\" d=\"");
         let mut last: Option<f64> = None;
         for (x, y) in points {
+            if !(x.is_finite() && y.is_finite()) {
+                last = None;
+                continue;
+            }
             let wraps =
                 last.is_some_and(|last| is_circle && (y - last).abs() > std::f64::consts::PI);
             let sign = if last.is_none() || wraps { 'M' } else { 'L' };
@@ -154,7 +158,7 @@ fn draw_path(out: &mut String, table: &Table, (x, y): (usize, usize), top: f64) 
         (table.rows.last(), "#c0392b"),
     ];
     for (row, colour) in ends {
-        if let Some(row) = row {
+        if let Some(row) = row.filter(|row| row[x].is_finite() && row[y].is_finite()) {
             let (at, down) = panel.point(row[x], row[y]);
             let _ = writeln!(
                 out,
@@ -275,10 +279,11 @@ mod tests {
         for rows in [
             vec![vec![0.0, 1e308, -1e308], vec![1.0, -1e308, 1e308]],
             vec![vec![0.0, 5.0, f64::NAN]],
+            vec![vec![0.0, 5.0, f64::INFINITY], vec![1.0, 5.0, 1.0]],
             vec![vec![0.0, 1e300, 1e-300], vec![1.0, 1e300, 2e-300]],
         ] {
             let svg = svg("Wide", &table(&["t", "x", "y"], rows));
-            let is_whole = !svg.contains("inf") && svg.len() < 20_000;
+            let is_whole = !svg.contains("inf") && !svg.contains("NaN") && svg.len() < 20_000;
             assert!(is_whole, "{svg}");
         }
     }
