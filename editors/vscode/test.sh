@@ -6,12 +6,11 @@
 #
 # TRIK is the program that serves; without it that part is left out, by name. Needs npm and what it fetches.
 set -euo pipefail
-cd "$(dirname "$0")"
-
 trik=${1:-}
 if [ -n "$trik" ]; then
     trik=$(realpath "$trik")
 fi
+cd "$(dirname "$0")"
 copy=$(mktemp -d)
 trap 'rm -rf "$copy"' EXIT
 # What is written here, and nothing that lies about.
