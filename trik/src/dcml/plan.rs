@@ -6,13 +6,13 @@
 
 mod ask;
 mod field;
+mod forms;
 mod picture;
 mod told;
-mod values;
 
 use self::ask::Asked;
-use self::values::{Footing, Given, Ranges};
-use super::load;
+use self::forms::{Footing, Given, Ranges};
+use super::{load, values};
 use crate::diagrams::output::Output;
 use crate::diagrams::{Refusal, UNREADABLE, telling};
 use clap::{Args, ValueEnum};
@@ -42,19 +42,19 @@ pub(crate) struct PlanArgs {
     #[arg(long, value_name = "NAME")]
     pub model: Option<String>,
     /// Its parameters, all of them: L=0.2,r=0.03.
-    #[arg(long, value_name = "NAME=NUMBER,...", value_parser = values::given)]
+    #[arg(long, value_name = "NAME=NUMBER,...", value_parser = forms::given)]
     pub params: Vec<Given>,
     /// The state where it starts; what is not named is 0, or with --world where the robot of the world stands.
-    #[arg(long, value_name = "NAME=NUMBER,...", value_parser = values::given)]
+    #[arg(long, value_name = "NAME=NUMBER,...", value_parser = forms::given)]
     pub start: Vec<Given>,
     /// Where it is to go: x=3,y=2 and perhaps theta=0. States and outputs may be named.
-    #[arg(long, required = true, value_name = "NAME=NUMBER,...", value_parser = values::given)]
+    #[arg(long, required = true, value_name = "NAME=NUMBER,...", value_parser = forms::given)]
     pub goal: Vec<Given>,
     /// How near to the goal is near enough, in the unit of x and y.
-    #[arg(long, value_name = "R", default_value_t = 0.1, value_parser = values::positive)]
+    #[arg(long, value_name = "R", default_value_t = 0.1, value_parser = forms::positive)]
     pub goal_radius: f64,
     /// The same for angles that the goal names, in radians.
-    #[arg(long, value_name = "RADIANS", default_value_t = 0.2, value_parser = values::positive)]
+    #[arg(long, value_name = "RADIANS", default_value_t = 0.2, value_parser = forms::positive)]
     pub goal_angle: f64,
     /// Which states or outputs say where it is [default: x, y and theta, in capitals too].
     #[arg(long, value_name = "X,Y[,HEADING]", value_delimiter = ',')]
@@ -63,13 +63,13 @@ pub(crate) struct PlanArgs {
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub angles: Vec<String>,
     /// Where states may be: x=0..3,y=0..2 [default: as the model says; for x and y around start, goal and obstacles].
-    #[arg(long, value_name = "NAME=LOW..HIGH,...", value_parser = values::ranges)]
+    #[arg(long, value_name = "NAME=LOW..HIGH,...", value_parser = forms::ranges)]
     pub bounds: Vec<Ranges>,
     /// Where actions may be: u=-1..1 [default: as the model says].
-    #[arg(long, value_name = "NAME=LOW..HIGH,...", value_parser = values::ranges)]
+    #[arg(long, value_name = "NAME=LOW..HIGH,...", value_parser = forms::ranges)]
     pub actions: Vec<Ranges>,
     /// How much a difference of 1 counts in distances [default: 1 for x and y, less for others].
-    #[arg(long, value_name = "NAME=NUMBER,...", value_parser = values::given)]
+    #[arg(long, value_name = "NAME=NUMBER,...", value_parser = forms::given)]
     pub weights: Vec<Given>,
     /// Obstacles: a world of TRIK Studio, FILE.xml or a project FILE.qrs. In metres, x to the right and y up, so y has the
     /// other sign than there.
@@ -80,10 +80,10 @@ pub(crate) struct PlanArgs {
     pub obstacles: Option<PathBuf>,
     /// What it covers: circle:RADIUS or polygon:X,Y,X,Y,..., convex, seen from its position [default: circle:0.1; with
     /// --world the robot of TRIK].
-    #[arg(long, value_name = "SHAPE", value_parser = values::footing)]
+    #[arg(long, value_name = "SHAPE", value_parser = forms::footing)]
     pub footprint: Option<Footing>,
     /// Obstacles are looked at so closely; half of it is kept as a distance from them.
-    #[arg(long, value_name = "LENGTH", default_value_t = 0.01, value_parser = values::positive)]
+    #[arg(long, value_name = "LENGTH", default_value_t = 0.01, value_parser = forms::positive)]
     pub resolution: f64,
     /// Which planner.
     #[arg(long, value_enum, default_value_t = Planner::Rrt)]
@@ -92,16 +92,16 @@ pub(crate) struct PlanArgs {
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u64,
     /// Seconds after which the search ends [default: 60 without --iterations].
-    #[arg(long, value_name = "SECONDS", value_parser = values::positive)]
+    #[arg(long, value_name = "SECONDS", value_parser = forms::positive, allow_negative_numbers = true)]
     pub time_limit: Option<f64>,
     /// Samples after which it ends [default: 1000000; sst: 100000].
     #[arg(long, value_name = "NUMBER")]
     pub iterations: Option<u64>,
     /// Seconds of one step of the solver.
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.05, value_parser = values::positive)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.05, value_parser = forms::positive)]
     pub step: f64,
     /// How long an action is held, in seconds.
-    #[arg(long, value_name = "LOW..HIGH", default_value = "0.1..1", value_parser = values::range)]
+    #[arg(long, value_name = "LOW..HIGH", default_value = "0.1..1", value_parser = forms::range)]
     pub hold: (f64, f64),
     /// How often the goal is aimed at, from 0 to 1.
     #[arg(long, value_name = "SHARE", default_value_t = 0.05)]
@@ -111,10 +111,10 @@ pub(crate) struct PlanArgs {
     pub attempts: u32,
     /// Of sst: the radius within which it goes on from the place that is reached soonest [default: by the size of the
     /// space].
-    #[arg(long, value_name = "R", value_parser = values::positive)]
+    #[arg(long, value_name = "R", value_parser = forms::positive)]
     pub selection: Option<f64>,
     /// Of sst: the radius within which it keeps one place [default: by the size of the space].
-    #[arg(long, value_name = "R", value_parser = values::positive)]
+    #[arg(long, value_name = "R", value_parser = forms::positive)]
     pub pruning: Option<f64>,
     /// Write the path here, - is standard output: a line for each step with time, actions, states, outputs.
     #[arg(short, long, value_name = "PATH.csv")]
@@ -170,7 +170,10 @@ fn prepared(args: &PlanArgs) -> Result<u8, Refusal> {
         .of_kind(Kind::Param)
         .map(|one| one.name.as_str())
         .collect();
-    let params = values::all(&names, &args.params, "parameter", "--params")?;
+    let given = args.params.iter().flat_map(|one| &one.0);
+    let given = given.map(|(name, number)| (name.as_str(), *number));
+    let params = values::in_order("--params", &names, given)?;
+    let params = values::complete("--params", &names, params)?;
     let mut robot = Robot::new(&model, &params)
         .map_err(|refused| Refusal::new(format!("{}: {refused}", model.name)))?;
     let (obstacles, stands) = surroundings(args)?;

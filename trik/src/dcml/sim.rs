@@ -128,7 +128,9 @@ impl Simulation {
     fn new(args: &SimArgs, model: &Model) -> Result<Self, Refusal> {
         let names =
             |kind| -> Vec<&str> { model.of_kind(kind).map(|one| one.name.as_str()).collect() };
-        let params = values::all_values("--params", &args.params, &names(Kind::Param))?;
+        let names = names(Kind::Param);
+        let params = values::values("--params", &args.params, &names)?;
+        let params = values::complete("--params", &names, params)?;
         let refused = |why: String| Refusal::new(format!("{}: {why}", args.file.display()));
         let robot = Robot::new(model, &params).map_err(|why| refused(why.to_string()))?;
         let actions = Actions::new(&args.actions, &robot)?;

@@ -5,13 +5,12 @@
 mod limits;
 
 use crate::diagrams::root;
+use crate::documents::transcripts;
 use crate::rig::TRIK;
-use harness::documents::examples;
 use harness::{Board, Output, tools};
 use lang::diagram::read;
 use lang::diagram::sketch::Sketch;
 use std::fs;
-use std::path::Path;
 use std::process::Command;
 
 /// A floor with a finish at a distance, and rules: reach it within 10 s.
@@ -120,28 +119,9 @@ fn what_documents_say_of_checking_is_what_really_happens() {
         "docs/teacher/grading.md",
     ] {
         let text = fs::read_to_string(root().join(document)).expect(document);
-        let board = folder();
-        for example in examples(&text) {
-            if example.info != "sh check" {
-                continue;
-            }
-            for step in example.text.split("$ ").skip(1) {
-                let (script, expected) = step.split_once('\n').unwrap_or((step, ""));
-                let tools_dir = Path::new(TRIK).parent().expect("a directory").display();
-                let path = std::env::var("PATH").unwrap_or_default();
-                let mut command = tools::shell(format!("exec 2>&1\n{script}"));
-                command
-                    .current_dir(board.dir())
-                    .env("PATH", format!("{tools_dir}:{path}"));
-                let output = tools::run(&mut command, b"");
-                let place = format!("{document}:{}: $ {script}", example.line);
-                let (said, wanted) = (output.stdout.trim_end(), expected.trim_end());
-                if said != wanted {
-                    complaints.push(format!("{place}\nsaid:\n{said}\nnot:\n{wanted}\n"));
-                }
-                count += 1;
-            }
-        }
+        let (steps, wrong) = transcripts(&folder(), document, &text, "sh check");
+        count += steps;
+        complaints.extend(wrong);
     }
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
     assert!(count > 8, "only {count} examples");

@@ -1,11 +1,9 @@
 //! `trik dcml gen` as people use it: the text, files that are not overwritten, refusals.
 
-use crate::diagrams::root;
+use crate::documents::section_of_dcml_holds;
 use crate::rig::TRIK;
-use harness::documents::examples;
 use harness::{Board, Output, tools};
 use std::fs;
-use std::path::Path;
 use std::process::Command;
 
 const TWO: &str = "BEGIN A ACTION: u; CONFIG: x; d(x) = u; END;\nBEGIN B ACTION: u; CONFIG: x; d(x) = 2 * u; END;\n";
@@ -109,28 +107,5 @@ fn what_cannot_be_written_is_told() {
 
 #[test]
 fn what_the_document_says_of_other_languages_is_what_really_happens() {
-    let text = fs::read_to_string(root().join("docs/dcml.md")).expect("docs/dcml.md");
-    let section = text
-        .split("\n## ")
-        .find(|one| one.starts_with("Other languages"));
-    let board = Board::new();
-    let mut count = 0;
-    for example in examples(section.expect("a section")) {
-        if example.info != "sh check" {
-            continue;
-        }
-        for step in example.text.split("$ ").skip(1) {
-            let (script, expected) = step.split_once('\n').unwrap_or((step, ""));
-            let tools_dir = Path::new(TRIK).parent().expect("a directory").display();
-            let path = std::env::var("PATH").unwrap_or_default();
-            let mut command = tools::shell(format!("exec 2>&1\n{script}"));
-            command
-                .current_dir(board.dir())
-                .env("PATH", format!("{tools_dir}:{path}"));
-            let output = tools::run(&mut command, b"");
-            assert_eq!(output.stdout.trim_end(), expected.trim_end(), "$ {script}");
-            count += 1;
-        }
-    }
-    assert!(count >= 1, "only {count} examples");
+    section_of_dcml_holds("Other languages", 1);
 }

@@ -1,11 +1,9 @@
 //! `trik dcml sim` and `trik dcml models` as people use them: tables, pictures, refusals with their places.
 
-use crate::diagrams::root;
+use crate::documents::section_of_dcml_holds;
 use crate::rig::TRIK;
-use harness::documents::examples;
 use harness::{Board, Output, tools};
 use std::fs;
-use std::path::Path;
 use std::process::Command;
 
 fn dcml(board: &Board, words: &[&str]) -> Output {
@@ -255,7 +253,9 @@ fn parameters_that_are_missing_are_named() {
     let output = dcml(&board, &missing);
     assert_eq!(output.code(), 1);
     assert!(
-        output.stderr.contains("give numbers for L: L=NUMBER"),
+        output
+            .stderr
+            .contains("the model needs numbers: --params L=..."),
         "{}",
         output.stderr
     );
@@ -314,28 +314,5 @@ fn shipped_models_are_listed_and_printed_and_are_files_for_other_commands() {
 
 #[test]
 fn what_the_document_says_of_simulation_is_what_really_happens() {
-    let text = fs::read_to_string(root().join("docs/dcml.md")).expect("docs/dcml.md");
-    let section = text
-        .split("\n## ")
-        .find(|one| one.starts_with("Simulation"));
-    let board = Board::new();
-    let mut count = 0;
-    for example in examples(section.expect("a section")) {
-        if example.info != "sh check" {
-            continue;
-        }
-        for step in example.text.split("$ ").skip(1) {
-            let (script, expected) = step.split_once('\n').unwrap_or((step, ""));
-            let tools_dir = Path::new(TRIK).parent().expect("a directory").display();
-            let path = std::env::var("PATH").unwrap_or_default();
-            let mut command = tools::shell(format!("exec 2>&1\n{script}"));
-            command
-                .current_dir(board.dir())
-                .env("PATH", format!("{tools_dir}:{path}"));
-            let output = tools::run(&mut command, b"");
-            assert_eq!(output.stdout.trim_end(), expected.trim_end(), "$ {script}");
-            count += 1;
-        }
-    }
-    assert!(count >= 3, "only {count} examples");
+    section_of_dcml_holds("Simulation", 3);
 }

@@ -4,8 +4,8 @@
 
 mod together;
 
+use crate::documents::transcripts;
 use crate::rig::TRIK;
-use harness::documents::examples;
 use harness::{Board, Output, tools};
 use lang::diagram::read;
 use lang::diagram::sketch::Sketch;
@@ -81,25 +81,9 @@ fn what_documents_say_of_diagrams_is_what_really_happens() {
         let Ok(text) = fs::read_to_string(root().join(document)) else {
             continue;
         };
-        let board = folder();
-        for example in examples(&text) {
-            if example.info != "sh diagrams" {
-                continue;
-            }
-            for step in example.text.split("$ ").skip(1) {
-                let (script, expected) = step.split_once('\n').unwrap_or((step, ""));
-                let tools_dir = Path::new(TRIK).parent().expect("a directory").display();
-                let path = std::env::var("PATH").unwrap_or_default();
-                let mut command = tools::shell(format!("exec 2>&1\n{script}"));
-                command
-                    .current_dir(board.dir())
-                    .env("PATH", format!("{tools_dir}:{path}"));
-                let output = tools::run(&mut command, b"");
-                let place = format!("{document}:{}: $ {script}", example.line);
-                assert_eq!(output.stdout.trim_end(), expected.trim_end(), "{place}");
-                count += 1;
-            }
-        }
+        let (steps, wrong) = transcripts(&folder(), document, &text, "sh diagrams");
+        assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+        count += steps;
     }
     assert!(count > 5, "only {count} examples");
 }

@@ -4,7 +4,7 @@
 
 use super::PlanArgs;
 use super::field::Stand;
-use super::values::{Given, Named, Ranges};
+use super::forms::{Given, Named, Ranges};
 use crate::diagrams::Refusal;
 use lang::dcml::plan::obstacles::{Footprint, Obstacles};
 use lang::dcml::plan::room::Parts;

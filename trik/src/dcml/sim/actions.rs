@@ -34,6 +34,10 @@ impl Actions {
     pub fn new(text: &str, robot: &Robot) -> Result<Self, Refusal> {
         let parts = robot.action_parts();
         let names: Vec<&str> = parts.iter().map(|one| one.name.as_str()).collect();
+        if text.trim().is_empty() {
+            let why = "--actions: give NAME = FORMULA for each action, or a file with a table";
+            return Err(Refusal::new(why));
+        }
         let from = if text.contains('=') {
             From::Formulas(Box::new(formulas(text, &names)?))
         } else {

@@ -2,7 +2,6 @@
 //!
 //! Owns the forms. What the names mean is known to whoever asks.
 
-use crate::diagrams::Refusal;
 use lang::dcml::plan::obstacles::Footprint;
 
 /// A name and what it was given.
@@ -101,46 +100,6 @@ pub(crate) fn footing(text: &str) -> Result<Footing, String> {
     footprint.map(Footing)
 }
 
-/// A number for each of these names, in their order.
-///
-/// # Errors
-/// One is missing, twice there, or no name.
-pub(crate) fn all(
-    names: &[&str],
-    given: &[Given],
-    kind: &str,
-    option: &str,
-) -> Result<Vec<f64>, Refusal> {
-    let listed = names.join(", ");
-    let mut values = vec![None; names.len()];
-    for (name, value) in given.iter().flat_map(|one| &one.0) {
-        let Some(at) = names.iter().position(|one| one == name) else {
-            return Err(Refusal::new(if names.is_empty() {
-                format!("{option}: the model has no {kind}s")
-            } else {
-                format!("{option}: there is no {kind} {name:?}; there are {listed}")
-            }));
-        };
-        if values[at].replace(*value).is_some() {
-            return Err(Refusal::new(format!("{option}: {name} is there twice")));
-        }
-    }
-    let missing: Vec<String> = names
-        .iter()
-        .zip(&values)
-        .filter(|(_, value)| value.is_none())
-        .map(|(name, _)| format!("{name}=..."))
-        .collect();
-    if missing.is_empty() {
-        Ok(values.into_iter().flatten().collect())
-    } else {
-        let missing = missing.join(",");
-        Err(Refusal::new(format!(
-            "the model needs numbers: {option} {missing}"
-        )))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -177,27 +136,5 @@ mod tests {
             assert!(footing(bad).unwrap_err().starts_with("write circle:"));
         }
         assert_eq!(footing("circle:-1").unwrap_err(), "-1 is no radius");
-    }
-
-    #[test]
-    fn what_is_missing_is_named() {
-        let refused = |text: &str| {
-            let refusal = all(
-                &["L", "r"],
-                &[given(text).unwrap()],
-                "parameter",
-                "--params",
-            );
-            refusal.err().unwrap().lines.join("\n")
-        };
-        assert_eq!(
-            refused("L=1"),
-            "trik: the model needs numbers: --params r=..."
-        );
-        assert_eq!(
-            refused("L=1,R=2"),
-            "trik: --params: there is no parameter \"R\"; there are L, r"
-        );
-        assert_eq!(refused("L=1,L=2"), "trik: --params: L is there twice");
     }
 }
