@@ -1,4 +1,4 @@
-//! Models for the tests: the published ones, random ones, and the ways to build them.
+//! Models for the tests: one with everything, the shipped ones, random ones, and the ways to build them.
 
 use lang::dcml::function::Function;
 use lang::dcml::model::{Condition, Equation, Expr, Model, Symbol};
@@ -7,38 +7,12 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
-/// The two published models, and one with everything that the language has beside them.
-pub const PUBLISHED: &str = "
+/// What the language has beside the published models, in one model with documentation.
+const EVERYTHING: &str = "
 /**
- * A robot with two driven wheels.
- * Its place is the middle between them.
+ * A cart that is pushed on a slope.
+ * It has all parts.
  */
-BEGIN DifferentialDrive
-PACKAGE: robotics.models;
-ACTION: u_l, u_r;
-PARAM: L, r;
-CONFIG: x, y, theta;
-d(x) = r / 2 * (u_l + u_r) * cos(theta);
-d(y) = r / 2 * (u_l + u_r) * sin(theta);
-d(theta) = (r / L) * (u_r - u_l);
-END;
-BEGIN Bart
-PACKAGE: robotics.models;
-ACTION: left_f_s, right_f_s, left_r_s, right_r_s;
-PARAM : tt_wheel_half_axis, tt_wheel_radius, tt_steer_offset;
-CONFIG: x, y, theta, x_front, y_front, phi_front, x_rear, y_rear, phi_rear;
-VAR: k;
-k = tt_steer_offset / tt_wheel_half_axis;
-d(x_front) = (tt_wheel_radius/2) * (((cos(phi_front) - k * sin(phi_front)) * right_f_s) + ((cos(phi_front) + k * sin(phi_front)) * left_f_s));
-d(y_front) = (tt_wheel_radius/2) * (((sin(phi_front) + k * cos(phi_front)) * right_f_s) + ((sin(phi_front) - k * cos(phi_front)) * left_f_s));
-d(phi_front) = (tt_wheel_radius / (2 * tt_wheel_half_axis)) * (right_f_s - left_f_s);
-d(x_rear) = (tt_wheel_radius/2) * (((cos(phi_rear) - k * sin(phi_rear)) * right_r_s) + ((cos(phi_rear) + k * sin(phi_rear)) * left_r_s));
-d(y_rear) = (tt_wheel_radius/2) * (((sin(phi_rear) + k * cos(phi_rear)) * right_r_s) + ((sin(phi_rear) - k * cos(phi_rear)) * left_r_s));
-d(phi_rear) = (tt_wheel_radius / (2 * tt_wheel_half_axis)) * (right_r_s - left_r_s);
-x = (x_front + x_rear)/2;
-y = (y_front + y_rear)/2;
-theta = atan2((y_front-y_rear),(x_front-x_rear)) + (pi / 4);
-END;
 BEGIN Everything
 ACTION: push [N] in -2 .. 2, turn [rad/s];
 PARAM: mass [kg], drag;
@@ -52,28 +26,24 @@ d(v) = force / mass - slope - drag * v * abs(v) + sign(push) * floor(v) - pow(so
 END;
 ";
 
-/// The models of [`PUBLISHED`].
-pub fn published() -> Vec<Model> {
-    let understood = lang::dcml::understand(PUBLISHED);
-    let told: Vec<_> = understood
-        .diagnostics
-        .iter()
-        .map(|one| &one.message)
-        .collect();
-    assert_eq!(understood.models.len(), 3, "{told:?}");
-    understood.models
+/// The only model of a text.
+fn only(text: &str) -> Model {
+    let mut understood = lang::dcml::understand(text);
+    let told = understood.diagnostics.iter().map(|one| &one.message);
+    let told: Vec<_> = told.collect();
+    assert_eq!(understood.models.len(), 1, "{told:?}");
+    understood.models.remove(0)
 }
 
-/// The models that are shipped, under names that no other has.
+/// The model with everything.
+pub fn everything() -> Model {
+    only(EVERYTHING)
+}
+
+/// The models that are shipped, the published ones among them.
 pub fn shipped() -> Vec<Model> {
-    let mut models = Vec::new();
-    for lang::dcml::models::Shipped { name, text, .. } in lang::dcml::models::ALL {
-        let mut understood = lang::dcml::understand(text);
-        let mut model = understood.models.remove(0);
-        model.name = format!("Shipped_{}", name.replace('-', "_"));
-        models.push(model);
-    }
-    models
+    let all = lang::dcml::models::ALL.iter();
+    all.map(|one| only(one.text)).collect()
 }
 
 /// A symbol without anything.
