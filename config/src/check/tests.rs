@@ -397,6 +397,18 @@ fn sources_that_make_their_own_bytes_are_read() {
 }
 
 #[test]
+fn a_second_name_is_no_source_and_its_node_is_named() {
+    let told = refused_program(
+        "trikfs = { e1 = { src = '/dev/o', input_tuple_size = 4 }, left = { alias = 'e1' },
+            x = { src = 'trikfs:left' } }",
+    );
+    assert!(
+        told.ends_with("x: there is no node 'left': it is a second name; write 'e1'"),
+        "{told}"
+    );
+}
+
+#[test]
 fn sources_that_cannot_be_are_refused() {
     let source = |text: &str| refused(&format!("src = {text}, input_tuple_size = 4"));
     assert_eq!(

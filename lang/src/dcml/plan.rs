@@ -202,6 +202,8 @@ pub enum Refusal {
     Start,
     /// No place of the goal is free.
     Goal,
+    /// Whatever is done at the start, what comes of it is no number.
+    NoNumbers,
 }
 
 impl fmt::Display for Refusal {
@@ -214,6 +216,9 @@ impl fmt::Display for Refusal {
                 "the start is not free: it is out of bounds, in an obstacle or too near to one"
             }
             Self::Goal => "no place in the goal is free: it is out of bounds or in an obstacle",
+            Self::NoNumbers => {
+                "at the start the model gives no finite numbers: check parameters and start"
+            }
         })
     }
 }
@@ -242,10 +247,28 @@ where
     if !is_inside || !surroundings.allows(&place) {
         return Err(Refusal::Start);
     }
+    if !moves_from(&mut propagator, &place, &problem.actions) {
+        return Err(Refusal::NoNumbers);
+    }
     if !space::goal_is_inside(problem) || !surroundings.allows_goal(problem) {
         return Err(Refusal::Goal);
     }
     Ok(Search::new(propagator, surroundings, problem, options, &place).run(report))
+}
+
+/// Whether any of the least, middle and greatest actions leads from a place to one that is a place.
+fn moves_from<S: System + ?Sized>(
+    propagator: &mut Propagator<'_, S>,
+    place: &[f64],
+    ranges: &[(f64, f64)],
+) -> bool {
+    [0.0, 0.5, 1.0].into_iter().any(|share| {
+        let within = |(low, high): &(f64, f64)| low + share * (high - low);
+        let action: Vec<f64> = ranges.iter().map(within).collect();
+        let mut next = place.to_vec();
+        propagator.advance(&mut next, &action);
+        next.iter().all(|number| number.is_finite())
+    })
 }
 
 fn check<S: System + ?Sized>(system: &S, problem: &Problem) -> Result<(), Refusal> {

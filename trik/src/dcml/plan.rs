@@ -21,7 +21,7 @@ use lang::dcml::plan::room::Room;
 use lang::dcml::plan::{Counts, Method, Options, Outcome, plan as search};
 use lang::dcml::robot::Robot;
 use lang::dcml::syntax::Kind;
-use lang::limits::PLAN_OBSTACLES_TEXT_MAX;
+use lang::limits::{PLAN_ITERATIONS_MAX, PLAN_OBSTACLES_TEXT_MAX};
 use std::fs::File;
 use std::io::{self, IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};
@@ -236,18 +236,19 @@ fn searched(
     begun: Instant,
 ) -> Result<Outcome, Refusal> {
     let default = Options::default();
+    // A limit of time is the only one then.
+    let iterations = |number: u64| match args.time_limit {
+        Some(_) => PLAN_ITERATIONS_MAX,
+        None => number,
+    };
     let (method, iterations) = match args.planner {
-        Planner::Rrt => (Method::Rrt, default.iterations),
+        Planner::Rrt => (Method::Rrt, iterations(default.iterations)),
         Planner::Sst => {
             let method = Method::Sst {
                 selection: args.selection.unwrap_or(asked.size * 0.075),
                 pruning: args.pruning.unwrap_or(asked.size * 0.025),
             };
-            let iterations = match args.time_limit {
-                Some(_) => u64::MAX,
-                None => 100_000,
-            };
-            (method, iterations)
+            (method, iterations(100_000))
         }
     };
     let options = Options {

@@ -358,6 +358,37 @@ fn the_time_is_a_limit() {
 }
 
 #[test]
+fn sst_ends_with_its_time_and_not_with_its_samples() {
+    let board = board();
+    let words = "--start X=1,Y=1 --goal X=3,Y=2 --planner sst --time-limit 0.3 --json";
+    let output = plan(&board, "Car", words);
+    assert!(
+        output.stdout.contains("\"ended\":\"time\""),
+        "{}{}",
+        output.stdout,
+        output.stderr
+    );
+}
+
+#[test]
+fn a_model_without_numbers_at_the_start_is_refused() {
+    let board = board();
+    board.file(
+        "root.dcml",
+        "BEGIN R ACTION: u in -1 .. 1; CONFIG: x in -9 .. 9, y in -9 .. 9; d(x) = sqrt(-1 - u * u); d(y) = u; END;",
+    );
+    let words = ["dcml", "plan", "root.dcml", "--goal", "x=1"];
+    let mut command = Command::new(TRIK);
+    let output = tools::run(command.args(words).current_dir(board.dir()), b"");
+    assert_eq!(output.code(), 2, "{}", output.stderr);
+    assert!(
+        output.stderr.contains("gives no finite numbers"),
+        "{}",
+        output.stderr
+    );
+}
+
+#[test]
 fn what_the_document_says_of_planning_is_what_really_happens() {
     section_of_dcml_holds("Planning", 5);
 }

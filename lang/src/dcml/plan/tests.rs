@@ -512,13 +512,15 @@ fn what_means_nothing_is_refused() {
 
 #[test]
 fn a_system_that_runs_away_is_a_collision() {
+    // Each motion has two steps at least, and the second one ends nowhere.
     let mut wild = Robot {
         states: 3,
         actions: 2,
         slope: |x, u, d| {
-            d[0] = 1.0 / (x[0] - x[0]);
-            d[1] = (u[0] * 1e3).exp();
-            d[2] = 1e308 * u[1];
+            let is_far = x[0] > 0.56;
+            d[0] = if is_far { 1.0 / (x[0] - x[0]) } else { 1.0 };
+            d[1] = if is_far { (u[0] * 1e3).exp() } else { 0.0 };
+            d[2] = if is_far { 1e308 * u[1] } else { 0.0 };
         },
     };
     let options = Options {
@@ -526,8 +528,21 @@ fn a_system_that_runs_away_is_a_collision() {
         ..Options::default()
     };
     let outcome = search(&mut wild, &gap(), &disc(), &across(), &options);
-    assert_eq!((outcome.path, outcome.counts.nodes), (None, 1));
+    assert_eq!(outcome.path, None);
+    assert!(outcome.counts.propagations >= 500);
     assert_eq!(outcome.counts.collisions, outcome.counts.propagations);
+}
+
+#[test]
+fn a_system_that_has_no_numbers_at_the_start_is_refused() {
+    let mut wild = Robot {
+        states: 3,
+        actions: 2,
+        slope: |x, _, d| d.fill(1.0 / (x[0] - x[0])),
+    };
+    let options = Options::default();
+    let told = plan(&mut wild, &mut Anywhere, &across(), &options, &mut |_| true);
+    assert_eq!(told.unwrap_err(), Refusal::NoNumbers);
 }
 
 #[test]
