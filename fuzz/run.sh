@@ -4,7 +4,7 @@
 # usage: fuzz/run.sh TARGET|all [SECONDS]
 #
 # SECONDS is 60 for each target. Without arguments: the names of all targets. Begins with fuzz/seeds/TARGET, for the
-# reader with small saves that lang/examples/fuzz_seeds.rs makes, and with what earlier runs have found, which stays in
+# reader with small saves that lang/diagram/examples/fuzz_seeds.rs makes, and with what earlier runs have found, which stays in
 # target/fuzz/corpus/TARGET. Says at the end how many inputs were tried and how many edges of the program they reached.
 # An input that fails is kept in target/fuzz/failures; `fuzz/run.sh TARGET FILE` tries it again.
 set -euo pipefail
@@ -40,7 +40,7 @@ seeds() {
         cp -n "fuzz/seeds/$1"/* "$to"
     fi
     if [ "$1" = reader ]; then
-        cargo run --quiet -p lang --example fuzz_seeds -- "$to"
+        cargo run --quiet -p lang-diagram --example fuzz_seeds -- "$to"
     fi
 }
 

@@ -3,11 +3,11 @@
 //! Owns what a name means (a file, a shipped model, a text in the configuration itself) and how what is wrong with a text
 //! is told. The language is `lang`'s; the global `dcml` makes a node of what the chunk gives.
 
-use lang::dcml::diagnostic::{Diagnostic, Severity};
-use lang::dcml::generate::{Options, Target, generate};
-use lang::dcml::lines::Lines;
-use lang::dcml::model::Model;
-use lang::dcml::syntax::{Domain, Kind};
+use lang_dcml::diagnostic::{Diagnostic, Severity};
+use lang_dcml::generate::{Options, Target, generate};
+use lang_dcml::lines::Lines;
+use lang_dcml::model::Model;
+use lang_dcml::syntax::{Domain, Kind};
 use std::fmt::Write;
 
 /// What stands before the name of a model where the global `dcml` asks for a chunk.
@@ -51,7 +51,7 @@ pub(crate) fn chunk(
     shown: &str,
     place: impl Fn(usize, usize) -> String,
 ) -> Result<String, String> {
-    let understood = lang::dcml::understand(text);
+    let understood = lang_dcml::understand(text);
     // Errors of another model are no hindrance.
     let is_good =
         wanted.is_some_and(|wanted| understood.models.iter().any(|one| one.name == wanted));

@@ -248,7 +248,7 @@ impl Run {
             }
         };
         self.salt ^= hash(&source).rotate_left(2);
-        let text = lang::dcml::decode(source).map_err(|reason| format!("{shown}:{reason}"))?;
+        let text = lang_dcml::decode(source).map_err(|reason| format!("{shown}:{reason}"))?;
         let wanted = wanted.map(String::from_utf8_lossy);
         let lua = dcml::chunk(
             &text,

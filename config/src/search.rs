@@ -64,7 +64,7 @@ impl Search {
             Err(reason) => {
                 let name = String::from_utf8_lossy(name);
                 let shipped = name.strip_suffix(".dcml").unwrap_or(&name);
-                match lang::dcml::models::named(shipped) {
+                match lang_dcml::models::named(shipped) {
                     Some(found) => Ok((shipped.to_owned(), found.text.as_bytes().to_vec())),
                     None => Err(format!("model {reason}")),
                 }

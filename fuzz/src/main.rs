@@ -9,11 +9,11 @@ use std::sync::LazyLock;
 type Target = fn(&[u8]);
 
 const TARGETS: [(&str, Target); 12] = [
-    ("reader", lang::fuzz::reader),
-    ("expression", lang::fuzz::expression),
-    ("lowering", lang::fuzz::lowering),
-    ("constraints", lang::fuzz::constraints),
-    ("dcml", lang::fuzz::dcml),
+    ("reader", lang_diagram::fuzz::reader),
+    ("expression", lang_expr::fuzz::expression),
+    ("lowering", lang_diagram::fuzz::lowering),
+    ("constraints", lang_constraint::fuzz::constraints),
+    ("dcml", lang_dcml::fuzz::dcml),
     ("lsp", trik::fuzz::lsp),
     ("field", sim::fuzz::field),
     ("frames", trikd::fuzz::fuzz_frames),

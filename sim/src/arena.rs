@@ -27,11 +27,11 @@ use std::collections::VecDeque;
 
 use self::dynamics::Dynamics;
 
-use lang::diagram::devices;
-use lang::diagram::machine::STEP_MS;
-use lang::diagram::ports::Port;
-use lang::diagram::program::Program;
-use lang::diagram::stand_in::{Motion, motion};
+use lang_diagram::devices;
+use lang_diagram::machine::STEP_MS;
+use lang_diagram::ports::Port;
+use lang_diagram::program::Program;
+use lang_diagram::stand_in::{Motion, motion};
 
 use crate::field::{self, Field, SensorKind};
 use crate::limits;

@@ -22,8 +22,8 @@ pub use read::Opened;
 
 use std::collections::BTreeMap;
 
-use lang::problem::Problem;
-use lang::xml::Element;
+use lang_text::problem::Problem;
+use lang_text::xml::Element;
 
 /// A field with everything on it.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -2,8 +2,8 @@
 //!
 //! Run by tests, and by anybody's fuzzer.
 
-use lang::diagram::brick::{Brick, Command};
-use lang::diagram::ports::{Port, Sort};
+use lang_diagram::brick::{Brick, Command};
+use lang_diagram::ports::{Port, Sort};
 
 use crate::arena::{Arena, Setup};
 use crate::field::Field;

@@ -5,11 +5,11 @@
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use lang::diagram::lower::{World, lower};
-use lang::diagram::machine::trace::Deaf;
-use lang::diagram::machine::{Machine, Options, STEP_MS};
-use lang::diagram::read::read;
-use lang::diagram::stand_in::Pose;
+use lang_diagram::lower::{World, lower};
+use lang_diagram::machine::trace::Deaf;
+use lang_diagram::machine::{Machine, Options, STEP_MS};
+use lang_diagram::read::read;
+use lang_diagram::stand_in::Pose;
 use sim::arena::screen::{Form, Object, hex};
 use sim::arena::{Arena, Setup};
 use sim::field::Field;
@@ -164,7 +164,7 @@ fn a_black_line_ends_a_wait_for_light() {
     run(&mut arena, &mut machine, 200, |_, _| {});
     assert_eq!(
         machine.step(210, &mut arena.robot(0), &mut Deaf),
-        lang::diagram::machine::Status::Ended {
+        lang_diagram::machine::Status::Ended {
             at: 30,
             with_errors: false
         }
@@ -189,9 +189,9 @@ fn the_camera_keeps_a_robot_on_its_line() {
             way += f64::hypot(pose.x - x, pose.y - y);
         }
         let mut line = Vec::new();
-        let port = lang::diagram::ports::Port::named("LineSensorPort").unwrap();
+        let port = lang_diagram::ports::Port::named("LineSensorPort").unwrap();
         if now % 100 == 0
-            && lang::diagram::brick::Brick::vector(&mut arena.robot(0), port, &mut line)
+            && lang_diagram::brick::Brick::vector(&mut arena.robot(0), port, &mut line)
         {
             seen += u32::from(line[2] > 0);
         }

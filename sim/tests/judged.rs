@@ -8,9 +8,9 @@ use sim::judge::{self, Diagram, Outcome, Settings, Task, Texts, Verdict};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use lang::constraint::Level;
-use lang::diagram::lower::{World, lower};
-use lang::diagram::read::read;
+use lang_constraint::Level;
+use lang_diagram::lower::{World, lower};
+use lang_diagram::read::read;
 
 /// Recorded poses every 100 ms have six decimals; the brief of the project allows a millionth.
 const NEAR: f64 = 1e-6;

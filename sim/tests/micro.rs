@@ -13,8 +13,8 @@
 
 use std::rc::Rc;
 
-use lang::diagram::lower::{World, lower};
-use lang::diagram::sketch::Sketch;
+use lang_diagram::lower::{World, lower};
+use lang_diagram::sketch::Sketch;
 use sim::judge::{self, Diagram, Outcome, Settings, Task, Texts, Verdict};
 
 type Step<'a> = (&'a str, &'a [(&'a str, &'a str)]);

@@ -5,11 +5,11 @@
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use lang::diagram::lower::{World, lower};
-use lang::diagram::machine::trace::Deaf;
-use lang::diagram::machine::{Machine, Options, STEP_MS, Status};
-use lang::diagram::read::read;
-use lang::diagram::stand_in::Pose;
+use lang_diagram::lower::{World, lower};
+use lang_diagram::machine::trace::Deaf;
+use lang_diagram::machine::{Machine, Options, STEP_MS, Status};
+use lang_diagram::read::read;
+use lang_diagram::stand_in::Pose;
 use sim::arena::{Arena, Setup};
 use sim::field::Field;
 

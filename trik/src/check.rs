@@ -18,7 +18,7 @@ use crate::diagrams::output::{Output, standard};
 use crate::diagrams::{Refusal, UNREADABLE, end, say, telling};
 pub(crate) use args::CheckArgs;
 use jobs::Job;
-use lang::problem::Tongue;
+use lang_text::problem::Tongue;
 use row::{Row, Verdict, Widths};
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};

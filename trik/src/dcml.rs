@@ -18,11 +18,11 @@ mod values;
 
 use crate::diagrams::{Refusal, UNREADABLE, end};
 use clap::{Args, Subcommand, ValueEnum};
-use lang::dcml::diagnostic::Severity;
-use lang::dcml::model::Model;
-use lang::dcml::models as shipped;
-use lang::dcml::{Understood, understand, understand_paper};
-use lang::limits::DCML_TEXT_MAX;
+use lang_dcml::diagnostic::Severity;
+use lang_dcml::limits::DCML_TEXT_MAX;
+use lang_dcml::model::Model;
+use lang_dcml::models as shipped;
+use lang_dcml::{Understood, understand, understand_paper};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -304,7 +304,7 @@ pub(crate) fn read(path: &Path) -> Result<Source, Refusal> {
             "longer than {mib} MiB, which no model is"
         )));
     }
-    match lang::dcml::decode(bytes) {
+    match lang_dcml::decode(bytes) {
         Ok(text) => Ok(Source { name, text }),
         Err(why) => Err(Refusal {
             lines: vec![format!("trik: {name}:{why}")],

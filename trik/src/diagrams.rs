@@ -11,9 +11,9 @@ pub(crate) mod telling;
 mod words;
 
 pub(crate) use generate::{generate, language};
-use lang::diagram::read::{self, Opened};
-use lang::limits::SAVE_BYTES;
-use lang::problem::{Problem, Tongue};
+use lang_diagram::limits::SAVE_BYTES;
+use lang_diagram::read::{self, Opened};
+use lang_text::problem::{Problem, Tongue};
 pub(crate) use lint::lint;
 pub(crate) use show::show;
 use std::fs::File;

@@ -109,7 +109,7 @@ pub const LSP_WAITING: usize = 1000;
 /// Bytes of messages that wait before no more are read.
 pub const LSP_WAITING_BYTES: usize = 32 << 20;
 /// Bytes of an open document.
-pub const LSP_DOCUMENT_BYTES: usize = lang::limits::DCML_TEXT_MAX;
+pub const LSP_DOCUMENT_BYTES: usize = lang_dcml::limits::DCML_TEXT_MAX;
 /// Bytes of all open documents.
 pub const LSP_TEXT_BYTES: usize = 128 << 20;
 /// Documents that are open at once.

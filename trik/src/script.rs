@@ -16,8 +16,8 @@ mod tree;
 pub use javascript::JavaScript;
 pub use python::Python;
 
-use lang::diagram::brick::Command;
-use lang::problem::{Place, Position, Problem, Words};
+use lang_diagram::brick::Command;
+use lang_text::problem::{Place, Position, Problem, Words};
 use std::path::{Component, Path};
 use trikd::js::read_text;
 

@@ -11,11 +11,11 @@ use crate::brick::Brick;
 use crate::engine::{Engine, Outcome, Start};
 use crate::host::{Host, Incoming};
 use crate::{limits, settings};
-use lang::diagram::lower::{World, lower};
-use lang::diagram::machine::{Machine, Options, STEP_MS, Status};
-use lang::diagram::read;
-use lang::expr::Compat;
-use lang::problem::{Problem, Severity, Tongue};
+use lang_diagram::lower::{World, lower};
+use lang_diagram::machine::{Machine, Options, STEP_MS, Status};
+use lang_diagram::read;
+use lang_expr::Compat;
+use lang_text::problem::{Problem, Severity, Tongue};
 use nix::poll::{PollFd, PollFlags, ppoll};
 use nix::sys::time::TimeSpec;
 use robot::Robot;
@@ -107,7 +107,7 @@ impl Diagram {
 /// A file that is no longer than a save may be.
 fn read_save(path: &Path) -> Result<Vec<u8>, String> {
     let failed = |error: io::Error| format!("cannot be read: {error}");
-    let limit = lang::limits::SAVE_BYTES as u64;
+    let limit = lang_diagram::limits::SAVE_BYTES as u64;
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(failed)?;
     file.take(limit + 1)

@@ -2,8 +2,8 @@
 //!
 //! Owns which command goes to which part and which sensor answers for which port. Knows no programs.
 
-use lang::diagram::brick::{Answer, Brick, Command, Question};
-use lang::diagram::ports::{Port, Sort};
+use lang_diagram::brick::{Answer, Brick, Command, Question};
+use lang_diagram::ports::{Port, Sort};
 
 use super::floor::sensors;
 use super::ranges;

@@ -14,8 +14,8 @@ use rapier2d_f64::prelude::{
     Vector,
 };
 
-use lang::diagram::machine::STEP_MS;
-use lang::diagram::stand_in::{Motion, PIXELS_IN_CM, Pose, rim_speed};
+use lang_diagram::machine::STEP_MS;
+use lang_diagram::stand_in::{Motion, PIXELS_IN_CM, Pose, rim_speed};
 
 use super::robot::Robot;
 use super::solids;

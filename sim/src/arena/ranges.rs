@@ -3,7 +3,7 @@
 //! Owns the shapes of their beams, which are those of the original: a slice of a pie whose arc is the original's curve and
 //! whose length is a whole number of centimetres. Knows no noise.
 
-use lang::diagram::stand_in::PIXELS_IN_CM;
+use lang_diagram::stand_in::PIXELS_IN_CM;
 
 use super::outline::{Bounds, KAPPA, Outline, parts_of, quarter_at, quarter_slope};
 use super::solids::Solids;

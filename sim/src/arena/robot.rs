@@ -4,9 +4,9 @@
 
 use std::collections::VecDeque;
 
-use lang::diagram::machine::STEP_MS;
-use lang::diagram::ports::{Port, Sort};
-use lang::diagram::stand_in::{Motion, Pose, wheel_turn};
+use lang_diagram::machine::STEP_MS;
+use lang_diagram::ports::{Port, Sort};
+use lang_diagram::stand_in::{Motion, Pose, wheel_turn};
 
 use super::floor::sensors::noise;
 use super::outline::Outline;

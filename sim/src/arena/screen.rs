@@ -3,7 +3,7 @@
 //! Owns the list as the original's checker and its records have it: an ellipse by its centre and half axes, an arc by the
 //! rectangle around it, a text replaced by the next one at its place. Knows no robot; pixels are those of crate `screen`.
 
-use lang::diagram::brick::{Command, Figure};
+use lang_diagram::brick::{Command, Figure};
 use screen::colour::{BLACK, Colour, WHITE, colour};
 use screen::drawing::{Drawing, Outline};
 

@@ -1,7 +1,7 @@
 //! The arena against small programs that were run in the original, and against hostile worlds.
 
-use lang::diagram::brick::{Brick, Command};
-use lang::diagram::ports::Port;
+use lang_diagram::brick::{Brick, Command};
+use lang_diagram::ports::Port;
 
 use super::*;
 use crate::field::{Sensor, Wall};

@@ -2,7 +2,7 @@
 //!
 //! Owns the count of ticks that are due. Knows no world and no clock: both times come from the caller.
 
-use lang::diagram::machine::STEP_MS;
+use lang_diagram::machine::STEP_MS;
 
 use crate::limits;
 

@@ -7,11 +7,11 @@ pub mod configuration;
 
 use crate::geometry::{Point, Pose};
 use crate::limits::{SERVO_RAD_S, STEP_S};
-use lang::dcml::model::{Model, Symbol};
-use lang::dcml::robot::Robot;
-use lang::dcml::solve::{Method, Options, Solver};
-use lang::dcml::syntax::Kind;
-use lang::dcml::system::System;
+use lang_dcml::model::{Model, Symbol};
+use lang_dcml::robot::Robot;
+use lang_dcml::solve::{Method, Options, Solver};
+use lang_dcml::syntax::Kind;
+use lang_dcml::system::System;
 use std::f64::consts::FRAC_PI_2;
 
 /// Pulses of a servo of TRIK, in nanoseconds: a quarter of a turn to the right, ahead, and a quarter to the left.

@@ -7,9 +7,9 @@ use std::cell::Cell;
 use std::fs::File;
 use std::io::Read;
 
-use lang::diagram::brick::{Brick, Command};
-use lang::diagram::ports::Port;
-use lang::diagram::stand_in::PIXELS_IN_CM;
+use lang_diagram::brick::{Brick, Command};
+use lang_diagram::ports::Port;
+use lang_diagram::stand_in::PIXELS_IN_CM;
 
 use super::battery::Battery;
 use super::two_wheels::sharp_gp2_raw;

@@ -9,7 +9,7 @@ use super::rolling::{Actuator, Port, Rolling, Said};
 use super::{Body, Drive, Senses};
 use crate::geometry::{Point, Pose, point};
 use crate::world::{Colour, World, colour};
-use lang::dcml::models;
+use lang_dcml::models;
 use std::f64::consts::FRAC_PI_2;
 
 const WHEEL_RADIUS_M: f64 = 0.028;
@@ -63,7 +63,7 @@ pub struct TwoWheels {
 /// The model does not say what it should.
 pub fn two_wheels(start: Pose) -> Result<Rolling, String> {
     let text = models::named(MODEL).map_or("", |found| found.text);
-    let model = lang::dcml::understand(text).models.pop();
+    let model = lang_dcml::understand(text).models.pop();
     let model = model.ok_or_else(|| format!("{MODEL} is no shipped model"))?;
     let number = |name: &str, number: f64| (name.to_owned(), number);
     let motor = |name: &str, index| {

@@ -3,8 +3,8 @@
 //! Owns numbers, points, truths and units, and what is wrong with them. Knows no tags.
 //! A thing visits its attributes once, with a [`Codec`] that reads or writes: so both are the same list.
 
-use lang::problem::{Problem, Severity, keep};
-use lang::xml::Element;
+use lang_text::problem::{Problem, Severity, keep};
+use lang_text::xml::Element;
 
 use super::items::{Material, Pen};
 use super::words;

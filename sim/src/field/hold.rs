@@ -5,8 +5,8 @@
 
 use std::fmt::Debug;
 
-use lang::problem::Words;
-use lang::xml::Element;
+use lang_text::problem::Words;
+use lang_text::xml::Element;
 
 use super::words;
 use super::{Field, Locks, Shape};

@@ -2,9 +2,9 @@
 //!
 //! Owns the types and the original's defaults. Knows no text and no physics.
 
-use lang::diagram::ports::Port;
-use lang::diagram::stand_in::PIXELS_IN_CM;
-use lang::xml::Element;
+use lang_diagram::ports::Port;
+use lang_diagram::stand_in::PIXELS_IN_CM;
+use lang_text::xml::Element;
 
 use crate::geometry::{Point, point};
 

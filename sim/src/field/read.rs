@@ -4,9 +4,9 @@
 
 use std::collections::BTreeSet;
 
-use lang::diagram::ports::{Kit, Port, Way as PortWay};
-use lang::problem::{Problem, Severity, keep};
-use lang::xml::{self, Element, Node};
+use lang_diagram::ports::{Kit, Port, Way as PortWay};
+use lang_text::problem::{Problem, Severity, keep};
+use lang_text::xml::{self, Element, Node};
 
 use super::attributes::{Codec, Way};
 use super::items::{

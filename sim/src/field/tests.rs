@@ -144,7 +144,7 @@ fn a_field_that_was_made_here_can_be_read() {
         start: Some(Start::new(point(32.0, 33.0), 15.0)),
         ..Robot::default()
     };
-    let port = lang::diagram::ports::Port::named("D1").unwrap();
+    let port = lang_diagram::ports::Port::named("D1").unwrap();
     robot.sensors.push(Sensor::new(port, SensorKind::Sonar));
     field.robots.push(robot);
     field

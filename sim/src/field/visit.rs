@@ -2,8 +2,8 @@
 //!
 //! Owns the lists, each of which serves for reading and writing. Knows no containers.
 
-use lang::diagram::ports::Way as PortWay;
-use lang::xml::Element;
+use lang_diagram::ports::Way as PortWay;
+use lang_text::xml::Element;
 
 use super::attributes::Codec;
 use super::items::{
@@ -269,12 +269,12 @@ impl Robot {
         let default = Self::default().material;
         codec.material(&mut self.material, default);
         let Some(at) = codec.element.nodes.iter().position(
-            |node| matches!(node, lang::xml::Node::Element(one) if one.name == "startPosition"),
+            |node| matches!(node, lang_text::xml::Node::Element(one) if one.name == "startPosition"),
         ) else {
             return;
         };
         let mut node = codec.element.nodes.remove(at);
-        if let lang::xml::Node::Element(element) = &mut node {
+        if let lang_text::xml::Node::Element(element) = &mut node {
             let mut start = self.start.clone().unwrap_or_default();
             let mut inner = codec.inside(element);
             let half = ROBOT_SIZE / 2.0;

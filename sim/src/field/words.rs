@@ -1,6 +1,6 @@
 //! What can be wrong with a world model, in words.
 
-use lang::problem::{Severity, Words};
+use lang_text::problem::{Severity, Words};
 
 pub(super) fn no_world() -> Words {
     Words::new(

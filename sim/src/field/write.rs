@@ -2,7 +2,7 @@
 //!
 //! Owns where things stand in the text. What was read is changed only where a value is another one now.
 
-use lang::xml::{self, Element, Node};
+use lang_text::xml::{self, Element, Node};
 
 use super::Field;
 use super::attributes::{Codec, Way};
@@ -166,9 +166,9 @@ fn robot_devices(robot: &Robot, element: &mut Element<'static>, scale: f64) {
     for (side, motor) in sides {
         let there = wheels
             .attribute(side)
-            .and_then(|text| super::read::port(text, lang::diagram::ports::Way::Out));
+            .and_then(|text| super::read::port(text, lang_diagram::ports::Way::Out));
         if there != motor || wheels.attribute(side).is_none() {
-            let name = motor.map_or("None", lang::diagram::ports::Port::name);
+            let name = motor.map_or("None", lang_diagram::ports::Port::name);
             wheels.set(side, &format!("{name}###output######"));
         }
     }

@@ -5,7 +5,7 @@
 
 use crate::arena::{Gamepad, Pad, Robot};
 use crate::limits;
-use lang::diagram::ports::{Port, Sort};
+use lang_diagram::ports::{Port, Sort};
 
 /// One thing that a person does.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -142,7 +142,7 @@ mod tests {
     use super::*;
     use crate::arena::{Arena, Setup};
     use crate::field::Field;
-    use lang::diagram::brick::Brick;
+    use lang_diagram::brick::Brick;
 
     #[test]
     fn what_a_person_does_is_done_when_it_is_due() {

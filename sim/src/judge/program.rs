@@ -3,11 +3,11 @@
 //! Owns the border between the judge and whatever runs. Model time moves only between steps, so a program is as
 //! repeatable as its steps are.
 
-use lang::diagram::brick::Brick;
-use lang::diagram::machine::trace::Deaf;
-use lang::diagram::machine::{Machine, Options, Status};
-use lang::diagram::program::Program as Lowered;
-use lang::problem::Problem;
+use lang_diagram::brick::Brick;
+use lang_diagram::machine::trace::Deaf;
+use lang_diagram::machine::{Machine, Options, Status};
+use lang_diagram::program::Program as Lowered;
+use lang_text::problem::Problem;
 use std::rc::Rc;
 
 /// A program under judgement.

@@ -8,8 +8,8 @@ use super::trajectory::{Record, Told, Trajectory};
 use crate::arena::screen::{Form, Object, Shown, hex};
 use crate::arena::{Arena, Handle};
 use crate::limits;
-use lang::diagram::brick::{Answer, Brick, Command, Figure, Question};
-use lang::diagram::ports::Port;
+use lang_diagram::brick::{Answer, Brick, Command, Figure, Question};
+use lang_diagram::ports::Port;
 
 /// A robot whose commands are recorded.
 pub(super) struct Recorder<'a> {

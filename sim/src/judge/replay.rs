@@ -10,11 +10,11 @@ use super::trajectory::{Record, Trajectory};
 use super::words;
 use crate::arena::{Arena, Setup};
 use crate::field::{self, Field};
-use lang::diagram::brick::{Brick, Command};
-use lang::diagram::machine::STEP_MS;
-use lang::diagram::ports::Port;
-use lang::diagram::stand_in::Pose;
-use lang::problem::Words;
+use lang_diagram::brick::{Brick, Command};
+use lang_diagram::machine::STEP_MS;
+use lang_diagram::ports::Port;
+use lang_diagram::stand_in::Pose;
+use lang_text::problem::Words;
 use std::time::Instant;
 
 /// Judges a recorded run: every robot of it that the world knows by its name. Its last moment is the end of its program.

@@ -3,7 +3,7 @@
 //! Owns that form: a list of levels and messages, and the variables of the rules as they are.
 
 use super::json;
-use lang::constraint::{Entry, Level};
+use lang_constraint::{Entry, Level};
 
 /// The name of a level in reports.
 pub fn level(level: Level) -> &'static str {

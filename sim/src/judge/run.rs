@@ -12,9 +12,9 @@ use super::trajectory::{Record, Trajectory};
 use super::words;
 use crate::arena::{Arena, Gamepad, Setup};
 use crate::limits;
-use lang::constraint::{Checker, Entry, Level, Value, Verdict as Decision};
-use lang::diagram::machine::{STEP_MS, Status};
-use lang::problem::{Problem, Tongue};
+use lang_constraint::{Checker, Entry, Level, Value, Verdict as Decision};
+use lang_diagram::machine::{STEP_MS, Status};
+use lang_text::problem::{Problem, Tongue};
 use std::time::{Duration, Instant};
 
 /// How a run ended.
@@ -260,7 +260,7 @@ impl<'a> Run<'a> {
     }
 
     /// Ends it as failed, for a reason of the judge's own.
-    pub fn fail(&mut self, now: u32, why: lang::problem::Words) {
+    pub fn fail(&mut self, now: u32, why: lang_text::problem::Words) {
         self.entries.push(Entry {
             level: Level::Error,
             at_ms: u64::from(now),

@@ -8,9 +8,9 @@
 mod places;
 mod shown;
 
-use lang::constraint::{Missing, Object, ObjectPoint, Rect, Scene, Unfit, Value};
-use lang::diagram::brick::Brick;
-use lang::diagram::ports::{Kit, Port, Sort, Way};
+use lang_constraint::{Missing, Object, ObjectPoint, Rect, Scene, Unfit, Value};
+use lang_diagram::brick::Brick;
+use lang_diagram::ports::{Kit, Port, Sort, Way};
 
 use crate::arena::{Arena, Robot, screen};
 use crate::field::{Material, Pen, SensorKind, Shape, SolidKind};

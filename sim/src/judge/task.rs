@@ -5,13 +5,13 @@
 
 use super::words;
 use crate::field::{Field, Locks, SensorKind};
-use lang::constraint::{Rules, read_with_templates};
-use lang::diagram::devices::{self, Sensor};
-use lang::diagram::ports::Port;
-use lang::diagram::program::Program;
-use lang::diagram::project::Project;
-use lang::problem::{Problem, Words};
-use lang::xml::{self, Element};
+use lang_constraint::{Rules, read_with_templates};
+use lang_diagram::devices::{self, Sensor};
+use lang_diagram::ports::Port;
+use lang_diagram::program::Program;
+use lang_diagram::project::Project;
+use lang_text::problem::{Problem, Words};
+use lang_text::xml::{self, Element};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 

@@ -1,6 +1,6 @@
 //! What the judge says itself, in English and Russian.
 
-use lang::problem::{Tongue, Words};
+use lang_text::problem::{Tongue, Words};
 
 /// Names of what can be moved on a page: time, speed.
 pub(super) fn page(tongue: Tongue) -> [&'static str; 2] {

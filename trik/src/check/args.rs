@@ -4,7 +4,7 @@
 
 use crate::{diagrams, limits};
 use clap::Args;
-use lang::problem::Tongue;
+use lang_text::problem::Tongue;
 use std::ffi::OsString;
 use std::path::PathBuf;
 

@@ -14,8 +14,8 @@ use crate::diagrams::output::Output;
 use crate::diagrams::{self, must_open, say};
 use crate::limits;
 use clap::Parser;
-use lang::diagram::generate::Language;
-use lang::problem::Tongue;
+use lang_diagram::generate::Language;
+use lang_text::problem::Tongue;
 use sim::field::Field;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
@@ -325,7 +325,7 @@ fn patched(args: &Patcher) -> Result<(), Refused> {
         return Err(because(2)("use only one of -f, -w and --wp".to_owned()));
     }
     let mut opened = must_open(&args.file, tongue).map_err(|refusal| (refusal.lines, 1))?;
-    let told = |problem: lang::problem::Problem| because(1)(problem.in_tongue(tongue));
+    let told = |problem: lang_text::problem::Problem| because(1)(problem.in_tongue(tongue));
     if let Some(path) = fields.into_iter().flatten().next() {
         let world = text(path, limits::WORLD_BYTES_MAX).map_err(because(1))?;
         let world = match &args.field {

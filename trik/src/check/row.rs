@@ -5,7 +5,7 @@
 use super::words;
 use crate::diagrams::telling::harmless;
 use crate::limits;
-use lang::problem::Tongue;
+use lang_text::problem::Tongue;
 use sim::judge::json::{self, Value};
 
 /// How a run ended.

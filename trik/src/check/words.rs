@@ -1,7 +1,7 @@
 //! What `trik check` says itself, in English and Russian.
 
 use super::row::Verdict;
-use lang::problem::{Tongue, Words};
+use lang_text::problem::{Tongue, Words};
 
 fn choose(tongue: Tongue, english: &'static str, russian: &'static str) -> &'static str {
     match tongue {

@@ -5,7 +5,7 @@
 use super::{CheckArgs, read, report, understood};
 use crate::diagrams::output::standard;
 use crate::diagrams::{REFUSED, Refusal, UNREADABLE, say};
-use lang::dcml::diagnostic::Severity;
+use lang_dcml::diagnostic::Severity;
 
 /// Checks all files; the worst of them is the exit code.
 pub(super) fn check(args: &CheckArgs) -> Result<u8, Refusal> {

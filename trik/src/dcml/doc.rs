@@ -5,7 +5,7 @@
 use super::{DocArgs, read, report};
 use crate::diagrams::Refusal;
 use crate::diagrams::output::standard;
-use lang::dcml::manual;
+use lang_dcml::manual;
 
 /// Writes the page of a file.
 pub(super) fn doc(args: &DocArgs) -> Result<u8, Refusal> {

@@ -5,7 +5,7 @@
 use super::{FmtArgs, read, report};
 use crate::diagrams::output::{replace, standard};
 use crate::diagrams::{REFUSED, Refusal, UNREADABLE, say};
-use lang::dcml::format::format;
+use lang_dcml::format::format;
 use std::fs;
 use std::path::Path;
 

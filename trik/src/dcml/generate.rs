@@ -6,7 +6,7 @@ use super::load;
 use crate::diagrams::Refusal;
 use crate::diagrams::output::Output;
 use clap::Args;
-use lang::dcml::generate::{Options, Target, generate};
+use lang_dcml::generate::{Options, Target, generate};
 use std::path::PathBuf;
 
 /// What `trik dcml gen` can be told.

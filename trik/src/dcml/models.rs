@@ -5,7 +5,7 @@
 use super::ModelsArgs;
 use crate::diagrams::Refusal;
 use crate::diagrams::output::standard;
-use lang::dcml::models::{ALL, named};
+use lang_dcml::models::{ALL, named};
 
 /// Lists them, or prints one.
 pub(super) fn models(args: &ModelsArgs) -> Result<u8, Refusal> {

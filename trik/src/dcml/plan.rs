@@ -1,7 +1,7 @@
 //! `trik dcml plan`: a path of a robot from one place to another, among obstacles.
 //!
 //! Owns the words, the clock and the exit code: 0 a path, 1 none, 2 the search could not begin. How it is searched is known
-//! to `lang::dcml::plan` alone; `ask` makes its question, `field` its obstacles from a world, `told` and `picture` show
+//! to `lang_plan` alone; `ask` makes its question, `field` its obstacles from a world, `told` and `picture` show
 //! the answer.
 
 mod ask;
@@ -16,12 +16,12 @@ use super::{load, values};
 use crate::diagrams::output::Output;
 use crate::diagrams::{Refusal, UNREADABLE, telling};
 use clap::{Args, ValueEnum};
-use lang::dcml::plan::obstacles::{Obstacles, text};
-use lang::dcml::plan::room::Room;
-use lang::dcml::plan::{Counts, Method, Options, Outcome, plan as search};
-use lang::dcml::robot::Robot;
-use lang::dcml::syntax::Kind;
-use lang::limits::{PLAN_ITERATIONS_MAX, PLAN_OBSTACLES_TEXT_MAX};
+use lang_dcml::robot::Robot;
+use lang_dcml::syntax::Kind;
+use lang_plan::limits::{PLAN_ITERATIONS_MAX, PLAN_OBSTACLES_TEXT_MAX};
+use lang_plan::obstacles::{Obstacles, text};
+use lang_plan::room::Room;
+use lang_plan::{Counts, Method, Options, Outcome, plan as search};
 use std::fs::File;
 use std::io::{self, IsTerminal, Read, Write};
 use std::path::{Path, PathBuf};

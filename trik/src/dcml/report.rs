@@ -4,9 +4,9 @@
 
 use super::Source;
 use ariadne::{CharSet, Color, Config, IndexType, Label, Report, ReportKind};
-use lang::dcml::diagnostic::{Diagnostic, Severity};
-use lang::dcml::lines::Lines;
-use lang::dcml::syntax::Span;
+use lang_dcml::diagnostic::{Diagnostic, Severity};
+use lang_dcml::lines::Lines;
+use lang_dcml::syntax::Span;
 use sim::judge::json;
 use std::io::{self, IsTerminal, Write};
 use std::ops::Range;

@@ -11,11 +11,11 @@ use crate::diagrams::output::Output;
 use crate::diagrams::{Refusal, say};
 use crate::limits;
 use actions::Actions;
-use lang::dcml::model::Model;
-use lang::dcml::robot::{Part, Robot};
-use lang::dcml::solve::run::Course;
-use lang::dcml::solve::{Failure, Method, Options, Solver, wrapped};
-use lang::dcml::syntax::{Domain, Kind};
+use lang_dcml::model::Model;
+use lang_dcml::robot::{Part, Robot};
+use lang_dcml::solve::run::Course;
+use lang_dcml::solve::{Failure, Method, Options, Solver, wrapped};
+use lang_dcml::syntax::{Domain, Kind};
 use std::fmt::Write as _;
 use std::path::Path;
 

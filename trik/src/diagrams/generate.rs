@@ -6,10 +6,10 @@ use super::output::Output;
 use super::telling::{self, Teller};
 use super::{REFUSED, Refusal, end, must_open, say};
 use crate::cli::GenArgs;
-use lang::diagram::check::check;
-use lang::diagram::generate::{self, Language, Options};
-use lang::diagram::lower::World;
-use lang::problem::Severity;
+use lang_diagram::check::check;
+use lang_diagram::generate::{self, Language, Options};
+use lang_diagram::lower::World;
+use lang_text::problem::Severity;
 use std::process::ExitCode;
 
 /// A language by its name; for the command line.

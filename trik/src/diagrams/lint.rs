@@ -6,10 +6,10 @@ use super::output::{Output, standard};
 use super::telling::{Count, Teller, named};
 use super::{REFUSED, Refusal, UNREADABLE, Unreadable, end, open, words};
 use crate::cli::LintArgs;
-use lang::diagram::check::check;
-use lang::diagram::lower::World;
-use lang::diagram::read::Opened;
-use lang::problem::{Problem, Tongue};
+use lang_diagram::check::check;
+use lang_diagram::lower::World;
+use lang_diagram::read::Opened;
+use lang_text::problem::{Problem, Tongue};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -59,7 +59,7 @@ fn unread(file: &Path, why: Unreadable, count: &mut Count, tongue: Tongue) -> St
     let lines = match why {
         Unreadable::File(why) => {
             count.errors += 1;
-            let error = words::severity(lang::problem::Severity::Error, tongue);
+            let error = words::severity(lang_text::problem::Severity::Error, tongue);
             vec![format!("{}: {error}: {why}", named(file))]
         }
         Unreadable::Save(mut problems) => {

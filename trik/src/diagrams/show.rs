@@ -6,8 +6,8 @@ use super::output::{Output, standard};
 use super::telling::{Teller, harmless};
 use super::{REFUSED, Refusal, end, must_open};
 use crate::cli::ShowArgs;
-use lang::diagram::project::Project;
-use lang::diagram::show::{outline::outline, picture::picture};
+use lang_diagram::project::Project;
+use lang_diagram::show::{outline::outline, picture::picture};
 use std::process::ExitCode;
 
 /// Names of diagrams that a message lists.

@@ -4,9 +4,9 @@
 //! obey some of their characters.
 
 use super::words;
-use lang::diagram::blocks::{self, Row, words::russian};
-use lang::diagram::project::{Block, Project};
-use lang::problem::{Problem, Severity, Tongue};
+use lang_diagram::blocks::{self, Row, words::russian};
+use lang_diagram::project::{Block, Project};
+use lang_text::problem::{Problem, Severity, Tongue};
 use std::cmp::Reverse;
 use std::collections::HashMap;
 use std::path::Path;
@@ -157,9 +157,9 @@ pub(crate) fn harmless(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use lang::diagram::check::check;
-    use lang::diagram::lower::World;
-    use lang::diagram::sketch::Sketch;
+    use lang_diagram::check::check;
+    use lang_diagram::lower::World;
+    use lang_diagram::sketch::Sketch;
 
     #[test]
     fn names_that_a_terminal_would_obey_are_shown_and_not_obeyed() {

@@ -1,7 +1,7 @@
 //! What `trik lint` says itself, in English and Russian.
 
 use super::telling::Count;
-use lang::problem::{Severity, Tongue};
+use lang_text::problem::{Severity, Tongue};
 
 /// How bad a problem is.
 pub(super) fn severity(severity: Severity, tongue: Tongue) -> &'static str {

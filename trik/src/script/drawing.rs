@@ -2,7 +2,7 @@
 //!
 //! Pure: one line in, at most one command out. What orders there are is in `screen::order`.
 
-use lang::diagram::brick::{Command, Figure};
+use lang_diagram::brick::{Command, Figure};
 
 /// Height of letters that nobody has chosen.
 const LETTERS: i32 = 20;

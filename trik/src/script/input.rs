@@ -3,8 +3,8 @@
 //! Owns what has changed since the last look: records of `keys/device`, lines of `gamepad/text/device`. Knows no threads.
 
 use super::tree::keys;
-use lang::diagram::brick::Brick;
-use lang::diagram::ports::Port;
+use lang_diagram::brick::Brick;
+use lang_diagram::ports::Port;
 use trikd::js::events::Record;
 
 /// Presses of the keys, seven numbers in the order of the tree.

@@ -3,8 +3,8 @@
 //! Owns what was read last. A program with text and the diagram that it was written from see the same numbers then; an
 //! encoder that was just cleared is read anew.
 
-use lang::diagram::brick::{Answer, Brick, Command, Question};
-use lang::diagram::ports::Port;
+use lang_diagram::brick::{Answer, Brick, Command, Question};
+use lang_diagram::ports::Port;
 use std::collections::BTreeMap;
 
 /// How often readings are renewed, in milliseconds of model time.

@@ -8,7 +8,7 @@ use super::input::Input;
 use super::tree::Tree;
 use super::{beside, drawing, mailbox};
 use crate::limits;
-use lang::diagram::brick::{Brick, Command};
+use lang_diagram::brick::{Brick, Command};
 use std::cell::{Cell, RefCell};
 use std::collections::{BTreeSet, VecDeque};
 use std::fmt;

@@ -1,9 +1,9 @@
 //! Programs under a judge, on a stand-in for a robot: time, threads, ends, failures, files, events.
 
 use super::*;
-use lang::diagram::machine::{STEP_MS, Status};
-use lang::diagram::ports::Port;
-use lang::diagram::stand_in::{Placing, StandIn};
+use lang_diagram::machine::{STEP_MS, Status};
+use lang_diagram::ports::Port;
+use lang_diagram::stand_in::{Placing, StandIn};
 use sim::judge::Program;
 use std::path::Path;
 use std::time::Duration;

@@ -4,8 +4,8 @@
 //! this one as well. Knows no language and no order of time: the robot is handed in with each question.
 
 use crate::limits;
-use lang::diagram::brick::{Brick, Command};
-use lang::diagram::ports::{Kit, Port, Sort, Way};
+use lang_diagram::brick::{Brick, Command};
+use lang_diagram::ports::{Kit, Port, Sort, Way};
 use std::collections::BTreeMap;
 use std::io;
 

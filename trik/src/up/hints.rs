@@ -2,7 +2,7 @@
 //!
 //! Owns the texts; a test runs each of them on its robot.
 
-use lang::diagram::ports::Port;
+use lang_diagram::ports::Port;
 use sim::field::{Field, SensorKind};
 
 /// A command for the directory of the tree, and what it does.

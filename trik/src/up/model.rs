@@ -3,7 +3,7 @@
 //! Owns what `--robot` takes beside names of robots. What a model means is `lang`'s part, how it moves `sim`'s.
 
 use crate::cli::UpArgs;
-use lang::dcml::models;
+use lang_dcml::models;
 use sim::body::Body;
 use sim::body::rolling::{Rolling, Said};
 use sim::robots;
@@ -56,7 +56,7 @@ pub(super) fn robot(args: &UpArgs) -> Result<(Box<dyn Body>, String), String> {
 
 /// The text of one model of a document.
 fn one<'t>(text: &'t str, name: &str) -> &'t str {
-    let document = lang::dcml::understand(text).document;
+    let document = lang_dcml::understand(text).document;
     let found = document.models.iter().find(|one| one.name.text == name);
     let span = found.map(|one| one.span.start as usize..one.span.end as usize);
     span.and_then(|span| text.get(span)).unwrap_or(text)

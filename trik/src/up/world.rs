@@ -5,7 +5,7 @@
 use std::io::Read;
 use std::path::Path;
 
-use lang::problem::Problem;
+use lang_text::problem::Problem;
 use sim::field::{Field, Locks};
 
 /// Bytes of a file that are read at most: more than any save may have.
@@ -40,7 +40,7 @@ pub(crate) fn read(path: &Path) -> Result<(Field, Locks), String> {
         let text = String::from_utf8(bytes).map_err(|error| say(&error))?;
         (text, None)
     } else {
-        let project = lang::diagram::read::read(&bytes).map_err(all)?.project;
+        let project = lang_diagram::read::read(&bytes).map_err(all)?.project;
         locks = Locks::of(&project.meta);
         let none = "there is no world in this project; give a world model, FILE.xml";
         (project.world.ok_or_else(|| say(&none))?, project.blobs)

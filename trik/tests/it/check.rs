@@ -8,8 +8,8 @@ use crate::diagrams::root;
 use crate::documents::transcripts;
 use crate::rig::TRIK;
 use harness::{Board, Output, tools};
-use lang::diagram::read;
-use lang::diagram::sketch::Sketch;
+use lang_diagram::read;
+use lang_diagram::sketch::Sketch;
 use std::fs;
 use std::process::Command;
 

@@ -7,7 +7,7 @@ mod pretended;
 
 use crate::rig::{Home, Robot, loopback};
 use harness::{Output, eventually, processes};
-use lang::diagram::sketch::Sketch;
+use lang_diagram::sketch::Sketch;
 use nix::sys::signal::Signal;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{TcpListener, TcpStream};

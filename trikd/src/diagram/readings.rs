@@ -5,7 +5,7 @@
 use crate::brick::Brick;
 use crate::brick::sensors::{Camera, Encoder, Gamepad, KEYS, Keys, NOT_PRESSED, Sensor, Vector};
 use crate::limits;
-use lang::diagram::ports::{Port, Sort};
+use lang_diagram::ports::{Port, Sort};
 use std::collections::HashMap;
 use std::io;
 use std::time::{Duration, Instant};

@@ -5,11 +5,11 @@
 
 use crate::host::Host;
 use crate::limits;
-use lang::diagram::machine::Machine;
-use lang::diagram::machine::trace::Trace;
-use lang::diagram::program::Node;
-use lang::expr::Value;
-use lang::problem::{Problem, Tongue};
+use lang_diagram::machine::Machine;
+use lang_diagram::machine::trace::Trace;
+use lang_diagram::program::Node;
+use lang_expr::Value;
+use lang_text::problem::{Problem, Tongue};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::io;
@@ -88,7 +88,7 @@ impl Trace for Watch {
     }
 
     fn trap(&mut self, _now: u32, problem: &Problem) {
-        if self.errors.len() < lang::limits::PROBLEMS {
+        if self.errors.len() < lang_text::limits::PROBLEMS {
             self.errors.push(problem.in_tongue(self.tongue));
         }
     }

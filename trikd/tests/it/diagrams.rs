@@ -2,7 +2,7 @@
 
 use crate::rig::{Client, Robot, robot};
 use harness::eventually;
-use lang::diagram::sketch::Sketch;
+use lang_diagram::sketch::Sketch;
 use std::io::{BufRead, BufReader, Write};
 use std::net::TcpStream;
 

@@ -1,7 +1,7 @@
 //! Realistic physics against the few numbers that the original gave, and in strange worlds.
 
-use lang::diagram::brick::{Brick, Command};
-use lang::diagram::ports::Port;
+use lang_diagram::brick::{Brick, Command};
+use lang_diagram::ports::Port;
 
 use crate::arena::{Arena, Setup};
 use crate::field::{Field, Robot, Solid, SolidKind, Wall};

@@ -5,7 +5,7 @@
 //! Two facts of the original: backgrounds are for people only, sensors do not see them; and straight lines, those of a
 //! hand too, go from whole pixels to whole pixels.
 
-use lang::problem::Problem;
+use lang_text::problem::Problem;
 
 use super::colour::Tint;
 use super::outline::{self, Affine, Cap, Nib, Outline};
@@ -53,7 +53,7 @@ fn whole(at: Point) -> Point {
 }
 
 impl Layer {
-    fn warn(&mut self, id: &str, words: lang::problem::Words) {
+    fn warn(&mut self, id: &str, words: lang_text::problem::Words) {
         let mut problem = Problem::warning(words);
         problem.place.object = Some(id.to_owned()).filter(|id| !id.is_empty());
         // The first ones tell enough.

@@ -186,7 +186,7 @@ fn many_dashes_are_one_line() {
 /// A robot with a light sensor behind it and a camera ahead of it, on an empty field.
 fn robot_with_sensors(is_noisy: bool) -> crate::arena::Arena {
     use crate::field::{Field, Robot, Sensor, SensorKind};
-    use lang::diagram::ports::Port;
+    use lang_diagram::ports::Port;
     let mut robot = Robot::default();
     let mut light = Sensor::new(Port::named("A1").unwrap(), SensorKind::Light);
     light.at = point(-20.0, 25.0);
@@ -204,8 +204,8 @@ fn robot_with_sensors(is_noisy: bool) -> crate::arena::Arena {
 
 #[test]
 fn sensors_see_what_a_marker_has_left() {
-    use lang::diagram::brick::{Brick, Command};
-    use lang::diagram::ports::Port;
+    use lang_diagram::brick::{Brick, Command};
+    use lang_diagram::ports::Port;
     let mut arena = robot_with_sensors(false);
     let port = |name| Port::named(name).unwrap();
     assert_eq!(arena.robot(0).scalar(port("A1")), Some(0));
@@ -245,7 +245,7 @@ fn sensors_see_what_a_marker_has_left() {
     arena
         .robot_mut(0)
         .unwrap()
-        .put(lang::diagram::stand_in::Pose::default());
+        .put(lang_diagram::stand_in::Pose::default());
     arena.robot(0).tell(Command::Detect { mode: "line" });
     line.clear();
     arena.robot(0).vector(port("ColorSensorPort"), &mut line);
@@ -254,8 +254,8 @@ fn sensors_see_what_a_marker_has_left() {
 
 #[test]
 fn noise_is_the_same_for_the_same_seed() {
-    use lang::diagram::brick::Brick;
-    use lang::diagram::ports::Port;
+    use lang_diagram::brick::Brick;
+    use lang_diagram::ports::Port;
     let readings = || {
         let mut arena = robot_with_sensors(true);
         (0..50)

@@ -1,6 +1,6 @@
 //! What can be wrong with pictures and colours on a floor, in words.
 
-use lang::problem::Words;
+use lang_text::problem::Words;
 
 pub(super) fn no_colour(text: &str) -> Words {
     let text: String = text.chars().take(40).collect();

@@ -9,7 +9,7 @@ PARAM: L; CONFIG: x, y, theta;
 d(x) = v * cos(theta); d(y) = v * sin(theta); d(theta) = v / L * tan(steer); END;";
 
 fn model(text: &str) -> Model {
-    let mut understood = lang::dcml::understand(text);
+    let mut understood = lang_dcml::understand(text);
     let found = understood.models.pop();
     found.unwrap_or_else(|| panic!("{:?}", understood.diagnostics))
 }

@@ -10,8 +10,8 @@ use crate::judge::json;
 use crate::judge::trajectory::Trajectory;
 use crate::judge::words;
 use crate::limits;
-use lang::constraint::{Entry, Level};
-use lang::problem::Tongue;
+use lang_constraint::{Entry, Level};
+use lang_text::problem::Tongue;
 use std::fmt::Write as _;
 
 /// The frame.

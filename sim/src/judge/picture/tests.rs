@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::judge::trajectory::Told;
-use lang::constraint::{Entry, Level};
-use lang::problem::Tongue;
+use lang_constraint::{Entry, Level};
+use lang_text::problem::Tongue;
 
 const WORLD: &str = r##"<root version="20251219">
 <settings backgroundColor="#ff00ff00"/>

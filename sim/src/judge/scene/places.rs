@@ -4,7 +4,7 @@
 //! side is not; an outline that touches a side from within is in it. A robot's outline is its square without sensors; a
 //! device that has no body, as a display, has that of its robot, and its place is the robot's corner.
 
-use lang::constraint::{ObjectPoint, Point as Whole, Rect, Unfit};
+use lang_constraint::{ObjectPoint, Point as Whole, Rect, Unfit};
 
 use super::Thing;
 use crate::arena::floor::MARKER_WIDTH;

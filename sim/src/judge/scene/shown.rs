@@ -2,7 +2,7 @@
 //!
 //! Owns the names of properties, which are those of the original.
 
-use lang::constraint::{Point, Rect, Value};
+use lang_constraint::{Point, Rect, Value};
 
 use crate::arena::screen::{Form, Object, Screen, hex};
 

@@ -1,9 +1,9 @@
 //! Names, properties, types and places of everything that rules can ask for.
 
-use lang::constraint::{Missing, Object, ObjectPoint, Rect, Scene, Unfit, Value};
-use lang::diagram::brick::{Brick, Command, Figure};
-use lang::diagram::ports::Port;
-use lang::diagram::stand_in::Pose;
+use lang_constraint::{Missing, Object, ObjectPoint, Rect, Scene, Unfit, Value};
+use lang_diagram::brick::{Brick, Command, Figure};
+use lang_diagram::ports::Port;
+use lang_diagram::stand_in::Pose;
 
 use crate::arena::{Arena, Setup};
 use crate::field::{

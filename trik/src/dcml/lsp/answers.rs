@@ -10,9 +10,9 @@ use super::message::{FAILED, METHOD_NOT_FOUND, Refusal};
 use super::params::{self, range_json};
 use super::session::Client;
 use super::sheet::{Encoding, Sheet};
-use lang::dcml::diagnostic::{Code, Diagnostic, Severity};
-use lang::dcml::editor::Edit;
-use lang::dcml::syntax::Span;
+use lang_dcml::diagnostic::{Code, Diagnostic, Severity};
+use lang_dcml::syntax::Span;
+use lang_editor::Edit;
 use serde_json::{Value, json};
 
 /// What a method is about.

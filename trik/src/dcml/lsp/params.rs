@@ -4,7 +4,7 @@
 
 use super::message::{INVALID_PARAMS, Refusal};
 use super::sheet::{Change, Encoding, Position, Sheet};
-use lang::dcml::syntax::Span;
+use lang_dcml::syntax::Span;
 use serde_json::{Value, json};
 
 /// What is said of a part that is missing or wrong.

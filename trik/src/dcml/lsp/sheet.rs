@@ -4,8 +4,8 @@
 //! whole characters. Knows nothing of messages.
 
 use crate::limits;
-use lang::dcml::editor::Reading;
-use lang::dcml::syntax::Span;
+use lang_dcml::syntax::Span;
+use lang_editor::Reading;
 use ropey::Rope;
 use std::cell::OnceCell;
 use std::ops::Range;

@@ -6,11 +6,11 @@ use super::PlanArgs;
 use super::field::Stand;
 use super::forms::{Given, Named, Ranges};
 use crate::diagrams::Refusal;
-use lang::dcml::plan::obstacles::{Footprint, Obstacles};
-use lang::dcml::plan::room::Parts;
-use lang::dcml::plan::{Axis, Goal, Problem};
-use lang::dcml::robot::{Part, Robot};
-use lang::dcml::syntax::Domain;
+use lang_dcml::robot::{Part, Robot};
+use lang_dcml::syntax::Domain;
+use lang_plan::obstacles::{Footprint, Obstacles};
+use lang_plan::room::Parts;
+use lang_plan::{Axis, Goal, Problem};
 use std::f64::consts::PI;
 
 /// Radius of a robot of which nothing is said.

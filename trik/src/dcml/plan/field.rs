@@ -2,8 +2,8 @@
 //!
 //! Owns the change of units: a world is in pixels with y down and degrees clockwise.
 
-use lang::dcml::plan::obstacles::flat::{Point, sine_and_cosine, wrapped};
-use lang::dcml::plan::obstacles::{Footprint, Obstacles, Pose, Shape};
+use lang_plan::obstacles::flat::{Point, sine_and_cosine, wrapped};
+use lang_plan::obstacles::{Footprint, Obstacles, Pose, Shape};
 use sim::field::{Field, ROBOT_SIZE, Solid, SolidKind, Unit};
 
 /// The robot of a world.

@@ -2,7 +2,7 @@
 //!
 //! Owns the forms. What the names mean is known to whoever asks.
 
-use lang::dcml::plan::obstacles::Footprint;
+use lang_plan::obstacles::Footprint;
 
 /// A name and what it was given.
 pub(crate) type Named<T> = (String, T);

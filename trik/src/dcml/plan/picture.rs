@@ -3,11 +3,11 @@
 //! Owns the look. x goes to the right and y up, as in the model.
 
 use super::ask::Asked;
-use lang::dcml::plan::obstacles::flat::Point;
-use lang::dcml::plan::obstacles::{Obstacles, Shape};
-use lang::dcml::plan::{Outcome, Propagator};
-use lang::dcml::robot::Robot;
-use lang::dcml::system::System;
+use lang_dcml::robot::Robot;
+use lang_dcml::system::System;
+use lang_plan::obstacles::flat::Point;
+use lang_plan::obstacles::{Obstacles, Shape};
+use lang_plan::{Outcome, Propagator};
 use std::fmt::Write;
 
 /// Pixels of the longer side.

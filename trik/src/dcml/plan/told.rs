@@ -4,8 +4,8 @@
 //! the next, so the last line only says where it ends.
 
 use super::ask::Asked;
-use lang::dcml::plan::{Counts, End, Outcome, Path};
-use lang::dcml::robot::Robot;
+use lang_dcml::robot::Robot;
+use lang_plan::{Counts, End, Outcome, Path};
 use std::fmt::Write;
 
 /// The path, step by step.

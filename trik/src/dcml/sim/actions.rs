@@ -6,9 +6,9 @@
 use crate::dcml::{Source, report};
 use crate::diagrams::{REFUSED, Refusal, UNREADABLE};
 use crate::limits;
-use lang::dcml::formulas::{Formulas, Wrong};
-use lang::dcml::robot::Robot;
-use lang::dcml::syntax::Domain;
+use lang_dcml::formulas::{Formulas, Wrong};
+use lang_dcml::robot::Robot;
+use lang_dcml::syntax::Domain;
 use std::fs::File;
 use std::io::{self, Read};
 
@@ -142,7 +142,7 @@ fn read(path: &str) -> Result<String, Refusal> {
     if bytes.len() as u64 > most {
         return Err(unreadable(format!("longer than {} MiB", most >> 20)));
     }
-    lang::dcml::decode(bytes).map_err(|why| Refusal {
+    lang_dcml::decode(bytes).map_err(|why| Refusal {
         lines: vec![format!("trik: {path}:{why}")],
         code: UNREADABLE,
     })

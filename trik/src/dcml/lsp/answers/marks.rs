@@ -3,9 +3,9 @@
 //! Owns that form and the names of colours.
 
 use super::super::sheet::{Encoding, Sheet};
-use lang::dcml::editor::{Colour, Painted};
-use lang::dcml::syntax::Span;
-use lang::limits::DCML_EDITOR_PLACES;
+use lang_dcml::syntax::Span;
+use lang_editor::limits::DCML_EDITOR_PLACES;
+use lang_editor::{Colour, Painted};
 use serde_json::{Value, json};
 
 /// The names of the numbers.

@@ -6,8 +6,8 @@ use super::super::params::range_json;
 use super::super::session::Client;
 use super::super::sheet::Sheet;
 use super::workspace_edit;
-use lang::dcml::editor::{Completion, Hover, Item};
-use lang::dcml::syntax::{Kind, Span};
+use lang_dcml::syntax::{Kind, Span};
+use lang_editor::{Completion, Hover, Item};
 use serde_json::{Value, json};
 
 /// What is shown of a word.

@@ -6,8 +6,8 @@ use super::super::params::range_json;
 use super::super::session::Client;
 use super::super::sheet::{Encoding, Sheet};
 use crate::limits;
-use lang::dcml::editor::{Symbol, SymbolKind};
-use lang::dcml::syntax::{Kind, Span};
+use lang_dcml::syntax::{Kind, Span};
+use lang_editor::{Symbol, SymbolKind};
 use serde_json::{Value, json};
 
 fn location(uri: &str, sheet: &Sheet, span: Span, encoding: Encoding) -> Value {

@@ -1,0 +1,32 @@
+//! The language in which a field says what a task is: constraints, events, conditions and triggers of TRIK Studio.
+//!
+//! Owns the border: [`read()`] makes [`Rules`] of the element `constraints`, a [`Checker`] holds one run against them, and a
+//! [`Scene`] is what it sees of a world. Knows no world: whoever simulates or replays one implements [`Scene`].
+//!
+//! Semantics are those of the original, to the order in which events are checked: by id, descending, as its sort by
+//! UTF-16 does; an event without an id has a random one in braces there, and stands here where a brace stands, among its
+//! like in the order of the text. `init` has the empty id, and so comes last.
+
+// Problems are rare, and their size costs nothing where none is.
+#![allow(clippy::result_large_err)]
+
+mod check;
+mod expand;
+pub mod fuzz;
+mod library;
+pub mod limits;
+mod operand;
+mod read;
+mod rules;
+mod scene;
+mod value;
+mod words;
+
+pub use check::{Checker, Entry, Level, Verdict};
+pub use read::{read, read_with_templates};
+pub use rules::Rules;
+pub use scene::{Missing, Object, ObjectPoint, Scene, Unfit};
+pub use value::{Point, Rect, Value};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,18 @@
+//! Every limit of this crate: how far rules of tasks may grow.
+
+/// How deep tags of constraints may nest, with templates put in.
+pub const CONSTRAINT_DEPTH_MAX: usize = 64;
+/// Tags of constraints, with templates put in.
+pub const CONSTRAINT_TAGS_MAX: usize = 100_000;
+/// Events and constraints of one field.
+pub const CONSTRAINT_EVENTS_MAX: usize = 10_000;
+/// Bytes of all templates, each as often as it is put in.
+pub const TEMPLATE_TEXT_MAX: usize = 4 << 20;
+/// How deep templates may use templates.
+pub const TEMPLATE_DEPTH_MAX: usize = 32;
+/// Entries of one report that are no verdict.
+pub const CONSTRAINT_ENTRIES_MAX: usize = 10_000;
+/// Different errors of rules that are remembered, and errors of one event that are told.
+pub const CONSTRAINT_COMPLAINTS_MAX: usize = 100;
+/// Bytes of one message with its places filled.
+pub const CONSTRAINT_MESSAGE_BYTES: usize = 64 << 10;

@@ -1,0 +1,9 @@
+//! Arbitrary bytes as diagrams: nothing but time and memory within limits may go.
+//!
+//! Run by tests with mutated saves, and by any fuzzer.
+
+mod lowering;
+mod saves;
+
+pub use lowering::{lowering, project};
+pub use saves::reader;

@@ -1,0 +1,454 @@
+//! Statements as lines of a language, by the tables of its dialect.
+//!
+//! Owns brackets, indentation and names. Knows no language: all words come from the dialect.
+
+use super::code::{Code, Kind, Own, Statement, What};
+use super::lines::find_named;
+use super::names::{Names, Rules};
+use super::plan::Owner;
+use super::routines::{Abilities, Routine, Script};
+use crate::program::Program;
+
+/// How one thing is said. `$1` and so on stand for operands.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row {
+    pub(super) text: &'static str,
+    /// How strongly the whole binds; [`ATOM`] for calls and names.
+    pub(super) binds: u8,
+    /// How strongly the first and the second operand must bind.
+    pub(super) needs: [u8; 2],
+}
+
+/// Binds like a name.
+pub(super) const ATOM: u8 = u8::MAX;
+
+/// What a sum asks of its operands, in all dialects: more needs brackets around a negative number.
+const SUM: u8 = 12;
+
+/// A call, or anything else that keeps its operands apart.
+pub(super) const fn call(text: &'static str) -> Row {
+    Row {
+        text,
+        binds: ATOM,
+        needs: [0, 0],
+    }
+}
+
+/// An operator between operands that associates to the left.
+pub(super) const fn infix(text: &'static str, binds: u8) -> Row {
+    Row {
+        text,
+        binds,
+        needs: [binds, binds + 1],
+    }
+}
+
+/// An operator whose operands must both bind more strongly, as comparisons.
+pub(super) const fn apart(text: &'static str, binds: u8) -> Row {
+    Row {
+        text,
+        binds,
+        needs: [binds + 1, binds + 1],
+    }
+}
+
+/// An operator before its operand.
+pub(super) const fn prefix(text: &'static str, binds: u8) -> Row {
+    Row {
+        text,
+        binds,
+        needs: [binds + 1, 0],
+    }
+}
+
+/// An operand before brackets or a point.
+pub(super) const fn postfix(text: &'static str) -> Row {
+    Row {
+        text,
+        binds: ATOM,
+        needs: [ATOM, 0],
+    }
+}
+
+/// Nothing: the language has no words for it.
+pub(super) const NONE: Row = call("");
+
+/// How statements look.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Syntax {
+    pub(super) indent: &'static str,
+    pub(super) comment: &'static str,
+    /// An expression as a statement.
+    pub(super) statement: &'static str,
+    pub(super) set: &'static str,
+    pub(super) if_: &'static str,
+    pub(super) else_if: &'static str,
+    pub(super) else_: &'static str,
+    pub(super) end: &'static str,
+    pub(super) forever: &'static str,
+    pub(super) while_: &'static str,
+    /// Head and foot; without them a loop that is left at its foot.
+    pub(super) do_while: Option<(&'static str, &'static str)>,
+    /// How often, the variable that counts, and a place for how often.
+    pub(super) repeat: &'static str,
+    /// The same if how often is a plain number.
+    pub(super) repeat_plain: &'static str,
+    pub(super) end_loop: &'static str,
+    pub(super) break_: &'static str,
+    pub(super) continue_: &'static str,
+    pub(super) break_to: &'static str,
+    pub(super) continue_to: &'static str,
+    /// At the foot of a loop, for languages where going on is a jump there.
+    pub(super) continue_label: &'static str,
+    /// Before a loop that is named by a break.
+    pub(super) name_loop: &'static str,
+    pub(super) return_: &'static str,
+    pub(super) goto: &'static str,
+    pub(super) label: &'static str,
+    /// A body without statements.
+    pub(super) empty: &'static str,
+    pub(super) call: &'static str,
+}
+
+/// A language.
+pub(super) struct Dialect {
+    pub(super) row: fn(What) -> Row,
+    pub(super) syntax: Syntax,
+    pub(super) rules: Rules,
+    pub(super) abilities: Abilities,
+    pub(super) quote: fn(&str) -> String,
+    pub(super) float: fn(f64) -> String,
+    pub(super) port: fn(&str) -> String,
+    pub(super) truths: [&'static str; 2],
+    pub(super) nil: &'static str,
+    /// Around the elements of a table.
+    pub(super) list: fn(&[String]) -> String,
+    /// A variable of the program.
+    pub(super) variable: &'static str,
+    /// A function of the program as a value.
+    pub(super) function: &'static str,
+    /// What helpers are called and how they are written; a helper may use those before it.
+    pub(super) helpers: &'static [(&'static str, &'static str)],
+    /// Kinds that variables must have: the language wants to know them.
+    pub(super) is_typed: bool,
+    /// Puts everything together.
+    pub(super) assemble: fn(&Printer<'_>) -> String,
+}
+
+/// Prints one program.
+pub(super) struct Printer<'a> {
+    pub(super) dialect: &'a Dialect,
+    pub(super) script: &'a Script,
+    pub(super) program: &'a Program,
+    /// What the file says of itself.
+    pub(super) title: String,
+    pub(super) variables: Vec<String>,
+    pub(super) functions: Vec<String>,
+    /// Of the routine that is printed.
+    parameters: Vec<usize>,
+    /// Loops that are named by breaks and continues from inside of other loops.
+    pub(super) named: Vec<usize>,
+    pub(super) around: Vec<usize>,
+}
+
+/// Puts operands in their places.
+pub(super) fn fill(template: &str, operands: &[&str]) -> String {
+    let mut out = String::with_capacity(template.len() + 16);
+    let mut rest = template;
+    while let Some(at) = rest.find('$') {
+        out.push_str(&rest[..at]);
+        let digit = rest[at + 1..]
+            .chars()
+            .next()
+            .and_then(|digit| digit.to_digit(10));
+        match digit.and_then(|digit| operands.get((digit as usize).wrapping_sub(1))) {
+            Some(operand) => {
+                out.push_str(operand);
+                rest = &rest[at + 2..];
+            }
+            None => {
+                out.push('$');
+                rest = &rest[at + 1..];
+            }
+        }
+    }
+    out.push_str(rest);
+    out
+}
+
+impl<'a> Printer<'a> {
+    pub(super) fn new(
+        dialect: &'a Dialect,
+        script: &'a Script,
+        program: &'a Program,
+        title: String,
+    ) -> Self {
+        let mut names = Names::new(dialect.rules);
+        for (name, _) in dialect.helpers {
+            names.take(name);
+        }
+        let functions = script.routines.iter().map(|routine| match &routine.owner {
+            Owner::Main => names.take("main"),
+            Owner::Thread(name, _) => names.take(&format!("TASK_{name}")),
+            Owner::Subprogram(diagram) => {
+                let sheet = program.diagrams.get(*diagram as usize);
+                names.take(sheet.map_or("subprogram", |sheet| &sheet.name))
+            }
+        });
+        let functions: Vec<String> = functions.collect();
+        let all = script.variables.all.iter();
+        let variables = all.map(|variable| names.take(&variable.name)).collect();
+        Self {
+            dialect,
+            script,
+            program,
+            title,
+            variables,
+            functions,
+            parameters: Vec::new(),
+            named: Vec::new(),
+            around: Vec::new(),
+        }
+    }
+
+    /// The whole program.
+    pub(super) fn print(&self) -> String {
+        let text = (self.dialect.assemble)(self);
+        let mut out = String::with_capacity(text.len());
+        // One end of line everywhere, no spaces before it, no two empty lines.
+        let mut empty = 0;
+        for line in text.lines() {
+            let line = line.trim_end();
+            empty = if line.is_empty() { empty + 1 } else { 0 };
+            if empty <= 1 {
+                out.push_str(line);
+                out.push('\n');
+            }
+        }
+        out
+    }
+
+    /// The helpers that a text uses, in order.
+    pub(super) fn helpers(&self, text: &str) -> String {
+        let mut used = vec![false; self.dialect.helpers.len()];
+        let mut needs = text.to_owned();
+        for (index, (name, body)) in self.dialect.helpers.iter().enumerate().rev() {
+            if has_word(&needs, name) {
+                used[index] = true;
+                needs.push_str(body);
+            }
+        }
+        let mut out = String::new();
+        for (used, (_, body)) in used.into_iter().zip(self.dialect.helpers) {
+            if used {
+                out.push_str(body.trim_matches('\n'));
+                out.push_str("\n\n");
+            }
+        }
+        out
+    }
+
+    /// A comment in one line.
+    pub(super) fn comment(&self, text: &str) -> String {
+        let text: String = text
+            .chars()
+            // What begins a line, or turns the direction of letters so that a reader sees another program.
+            .map(|letter| if is_hidden(letter) { ' ' } else { letter })
+            // Nothing that ends a comment, or the line with it.
+            .filter(|letter| !"\\{}".contains(*letter))
+            .collect();
+        let text = text.replace("*/", "* /").replace("/*", "/ *");
+        fill(self.dialect.syntax.comment, &[&text])
+    }
+
+    /// The body of a routine.
+    pub(super) fn body(&self, routine: &Routine, depth: usize) -> String {
+        let mut named = Vec::new();
+        find_named(&routine.body, &mut Vec::new(), &mut named);
+        let mut inner = Printer {
+            dialect: self.dialect,
+            script: self.script,
+            program: self.program,
+            title: String::new(),
+            variables: self.variables.clone(),
+            functions: self.functions.clone(),
+            parameters: routine.parameters.clone(),
+            named,
+            around: Vec::new(),
+        };
+        let mut out = String::new();
+        inner.list(&routine.body, depth, &mut out);
+        out
+    }
+
+    /// Whether a variable is seen by more than the function whose parameter it is, or is none.
+    pub(super) fn is_global(&self, number: usize) -> bool {
+        let routines = &self.script.routines;
+        self.script.variables.all[number].kind.is_some()
+            && !routines
+                .iter()
+                .any(|routine| routine.parameters.contains(&number))
+    }
+
+    /// How many counters loops share.
+    pub(super) fn counters(&self) -> i64 {
+        let mut count = 0;
+        for routine in &self.script.routines {
+            super::each_code(&routine.body, &mut |code| {
+                if let Code::Do(What::Again, operands) = code
+                    && let Some(Code::Int(number)) = operands.first()
+                {
+                    count = count.max(number + 1);
+                }
+            });
+        }
+        count
+    }
+
+    /// Names of variables that several threads use and at least one sets.
+    pub(super) fn shared(&self) -> Vec<&str> {
+        let all = self.script.variables.all.iter().enumerate();
+        let shared = all.filter(|(number, _)| {
+            let mut users = 0;
+            let mut setters = 0;
+            for routine in &self.script.routines {
+                users += usize::from(uses(&routine.body, *number));
+                setters += usize::from(routine.assigned.contains(number));
+            }
+            users > 1 && setters > 0
+        });
+        shared.map(|(_, variable)| &*variable.name).collect()
+    }
+
+    /// Names and kinds of the generator's variables of a routine, but for those of these uses.
+    pub(super) fn locals(&self, routine: &Routine, without: &[Own]) -> Vec<(String, Kind)> {
+        let all = routine
+            .locals
+            .iter()
+            .filter(|(_, (own, _))| !without.contains(own));
+        all.map(|((_, number), (own, kind))| (own_name(*own, *number), kind.clone()))
+            .collect()
+    }
+
+    /// An expression that binds at least so strongly.
+    pub(super) fn code(&self, code: &Code, least: u8) -> String {
+        let dialect = self.dialect;
+        match code {
+            Code::Int(number) if *number < 0 && least >= SUM => format!("({number})"),
+            Code::Int(number) => number.to_string(),
+            Code::Float(number) => {
+                let text = (dialect.float)(*number);
+                if text.starts_with('-') && least >= SUM {
+                    format!("({text})")
+                } else {
+                    text
+                }
+            }
+            Code::Bool(truth) => dialect.truths[usize::from(*truth)].to_owned(),
+            Code::Text(text) => (dialect.quote)(text),
+            Code::Nil => dialect.nil.to_owned(),
+            Code::Port(name) => (dialect.port)(name),
+            Code::Variable(number) => {
+                let name = &self.variables[*number];
+                if self.parameters.contains(number) {
+                    name.clone()
+                } else {
+                    fill(dialect.variable, &[name])
+                }
+            }
+            Code::Own(own, number) => own_name(*own, *number),
+            Code::Function(number) => {
+                let name = &self.functions[*number];
+                fill(dialect.function, &[name])
+            }
+            Code::List(parts) => {
+                let parts: Vec<_> = parts.iter().map(|part| self.code(part, 0)).collect();
+                (dialect.list)(&parts)
+            }
+            // Nothing needs to be said: the operand stands for itself.
+            Code::Do(what, operands)
+                if (dialect.row)(*what).text == "$1" && operands.len() == 1 =>
+            {
+                self.code(&operands[0], least)
+            }
+            Code::Do(what, operands) => {
+                let row = (dialect.row)(*what);
+                let said = operands.iter().enumerate().map(|(index, operand)| {
+                    self.code(operand, row.needs.get(index).copied().unwrap_or(0))
+                });
+                let said: Vec<String> = said.collect();
+                let said: Vec<&str> = said.iter().map(String::as_str).collect();
+                let text = fill(row.text, &said);
+                if row.binds < least {
+                    format!("({text})")
+                } else {
+                    text
+                }
+            }
+        }
+    }
+}
+
+/// The name of a variable of the generator.
+pub(super) fn own_name(own: Own, number: usize) -> String {
+    format!("__{}{}", super::steps::own_name(own), number + 1)
+}
+
+/// Whether a text has this name as a whole word.
+pub(super) fn has_word(text: &str, word: &str) -> bool {
+    let is_part = |letter: char| letter.is_alphanumeric() || letter == '_';
+    text.match_indices(word).any(|(at, _)| {
+        let before = text[..at].chars().next_back();
+        let behind = text[at + word.len()..].chars().next();
+        !before.is_some_and(is_part) && !behind.is_some_and(is_part)
+    })
+}
+
+/// A text in double quotes with escapes that JavaScript, Python, C and Lua share; what is not plain ASCII stands as it
+/// is, but for what ends lines.
+pub(super) fn quote(text: &str, unusual: fn(u32) -> String) -> String {
+    let mut out = String::from("\"");
+    for letter in text.chars() {
+        match letter {
+            '"' => out.push_str("\\\""),
+            '\\' => out.push_str("\\\\"),
+            '\n' => out.push_str("\\n"),
+            '\r' => out.push_str("\\r"),
+            '\t' => out.push_str("\\t"),
+            letter if is_hidden(letter) => out.push_str(&unusual(letter as u32)),
+            letter => out.push(letter),
+        }
+    }
+    out.push('"');
+    out
+}
+
+/// Whether a letter shows nothing where it stands, or changes how others are shown.
+fn is_hidden(letter: char) -> bool {
+    letter.is_control()
+        || matches!(
+            letter,
+            '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}'
+        )
+}
+
+/// A float that is surely one, with a point or an exponent.
+pub(super) fn float(number: f64) -> String {
+    let text = if number.abs() >= 1e16 || (number != 0.0 && number.abs() < 1e-5) {
+        format!("{number:e}")
+    } else {
+        number.to_string()
+    };
+    if text.contains(['.', 'e']) {
+        text
+    } else {
+        format!("{text}.0")
+    }
+}
+
+/// Whether a variable stands in a list.
+fn uses(list: &[Statement], number: usize) -> bool {
+    let mut found = false;
+    super::each_code(list, &mut |code| found |= *code == Code::Variable(number));
+    found
+}

@@ -1,0 +1,474 @@
+//! Functions of a program as statements: the structured graph of each with what its blocks say.
+//!
+//! Owns parameters of subprograms, loops with counters, and what is kept where. Knows no language.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::build::{Variables, truth, whole};
+use super::code::{Code, Kind, Own, Statement, What};
+use super::plan::{Function, Owner, Plan};
+use super::texts::Texts;
+use crate::program::{Node, Op, Program};
+use crate::structure::{Jumps, Manner, Structured, structure};
+use crate::tree::{Condition, Tree};
+use lang_text::problem::Problem;
+
+/// One function, ready to be printed.
+#[derive(Clone, Debug)]
+pub(super) struct Routine {
+    pub(super) owner: Owner,
+    /// Variables of the program that are parameters here.
+    pub(super) parameters: Vec<usize>,
+    /// Variables of the generator.
+    pub(super) locals: BTreeMap<(u8, usize), (Own, Kind)>,
+    pub(super) body: Vec<Statement>,
+    pub(super) manner: Manner,
+    /// Variables of the program that get values here.
+    pub(super) assigned: BTreeSet<usize>,
+}
+
+/// Everything that is printed.
+#[derive(Clone, Debug)]
+pub(super) struct Script {
+    pub(super) routines: Vec<Routine>,
+    pub(super) variables: Variables,
+    pub(super) has_threads: bool,
+}
+
+/// What the target language can do.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Abilities {
+    pub(super) jumps: Jumps,
+    /// Whether a loop can be left and a function ended anywhere.
+    pub(super) leaves: bool,
+}
+
+pub(super) struct Lowerer<'a> {
+    pub(super) program: &'a Program,
+    pub(super) plan: &'a Plan,
+    pub(super) texts: Texts<'a>,
+    /// How often the block of a loop stands in the whole program.
+    loops: BTreeMap<Node, usize>,
+    /// Whether threads are ended from outside.
+    kills: bool,
+    counters: BTreeMap<Node, usize>,
+    /// Of the present routine.
+    pub(super) function: usize,
+    pub(super) locals: BTreeMap<(u8, usize), (Own, Kind)>,
+    pub(super) problems: Vec<Problem>,
+}
+
+/// The routines of a program.
+pub(super) fn routines(
+    program: &Program,
+    plan: &Plan,
+    texts: Texts<'_>,
+    abilities: Abilities,
+) -> Result<Script, Vec<Problem>> {
+    let structured: Vec<Structured> = plan
+        .functions
+        .iter()
+        .map(|function| arranged(function, abilities))
+        .collect();
+    let mut lowerer = Lowerer {
+        program,
+        plan,
+        texts,
+        loops: BTreeMap::new(),
+        kills: program.ops.iter().any(|op| matches!(op, Op::Kill { .. })),
+        counters: BTreeMap::new(),
+        function: 0,
+        locals: BTreeMap::new(),
+        problems: Vec::new(),
+    };
+    for (function, structured) in plan.functions.iter().zip(&structured) {
+        lowerer.count_loops(function, &structured.body);
+    }
+    let mut routines = Vec::new();
+    for (index, structured) in structured.iter().enumerate() {
+        lowerer.function = index;
+        lowerer.locals.clear();
+        let body = lowerer.list(&structured.body);
+        let owner = plan.functions[index].owner.clone();
+        let parameters = match owner {
+            Owner::Subprogram(diagram) => lowerer.parameters(diagram),
+            _ => Vec::new(),
+        };
+        let mut assigned = BTreeSet::new();
+        assigns(&body, &mut assigned);
+        routines.push(Routine {
+            owner,
+            parameters,
+            locals: std::mem::take(&mut lowerer.locals),
+            body,
+            manner: structured.manner,
+            assigned,
+        });
+    }
+    if !lowerer.problems.is_empty() {
+        return Err(lowerer.problems);
+    }
+    Ok(Script {
+        routines,
+        variables: lowerer.texts.variables,
+        has_threads: plan.has_threads(),
+    })
+}
+
+/// The structured graph; without breaks and returns if the language has none.
+fn arranged(function: &Function, abilities: Abilities) -> Structured {
+    let structured = structure(&function.graph, abilities.jumps);
+    if abilities.leaves || is_calm(&structured.body, true) {
+        structured
+    } else {
+        crate::structure::by_states(&function.graph)
+    }
+}
+
+/// Whether nothing is left but at its end.
+fn is_calm(list: &[Tree], at_end: bool) -> bool {
+    list.iter().enumerate().all(|(place, tree)| {
+        let at_end = at_end && place + 1 == list.len();
+        match tree {
+            Tree::Break(_) | Tree::Continue(_) | Tree::Goto(_) | Tree::Label(_) => false,
+            Tree::End(_) => at_end,
+            Tree::If { .. } | Tree::Switch { .. } | Tree::Choice { .. } => {
+                tree.parts().into_iter().all(|part| is_calm(part, at_end))
+            }
+            _ => tree.parts().into_iter().all(|part| is_calm(part, false)),
+        }
+    })
+}
+
+/// Variables that get values in a list.
+fn assigns(list: &[Statement], found: &mut BTreeSet<usize>) {
+    for statement in list {
+        match statement {
+            Statement::Set(Code::Variable(variable), _) => {
+                found.insert(*variable);
+            }
+            Statement::Do(Code::Do(What::Put, operands)) => {
+                if let Some(Code::Variable(variable)) = operands.first() {
+                    found.insert(*variable);
+                }
+            }
+            _ => statement
+                .parts()
+                .into_iter()
+                .for_each(|part| assigns(part, found)),
+        }
+    }
+}
+
+impl Statement {
+    /// The lists inside.
+    pub(super) fn parts(&self) -> Vec<&[Statement]> {
+        match self {
+            Self::If(_, yes, no) => vec![yes, no],
+            Self::Switch {
+                branches, other, ..
+            } => {
+                let branches = branches.iter().map(|(_, body)| &body[..]);
+                branches.chain([&other[..]]).collect()
+            }
+            Self::Choice { arms, .. } => arms.iter().map(|(_, body)| &body[..]).collect(),
+            Self::Loop { body, .. }
+            | Self::While { body, .. }
+            | Self::DoWhile { body, .. }
+            | Self::Repeat { body, .. } => vec![body],
+            _ => Vec::new(),
+        }
+    }
+}
+
+impl Lowerer<'_> {
+    pub(super) fn node(&self, block: usize) -> Option<Node> {
+        self.plan.functions[self.function].nodes.get(block).copied()
+    }
+
+    fn count_loops(&mut self, function: &Function, list: &[Tree]) {
+        for tree in list {
+            let when = match tree {
+                Tree::If { when, .. } | Tree::While { when, .. } | Tree::DoWhile { when, .. } => {
+                    Some(when)
+                }
+                _ => None,
+            };
+            if let Some(when) = when {
+                when.tests(&mut |block| {
+                    if let Some(&node) = function.nodes.get(block) {
+                        *self.loops.entry(node).or_default() += 1;
+                    }
+                });
+            }
+            for part in tree.parts() {
+                self.count_loops(function, part);
+            }
+        }
+    }
+
+    pub(super) fn list(&mut self, list: &[Tree]) -> Vec<Statement> {
+        let mut out = Vec::new();
+        for tree in list {
+            self.tree(tree, &mut out);
+        }
+        out
+    }
+
+    fn tree(&mut self, tree: &Tree, out: &mut Vec<Statement>) {
+        match tree {
+            Tree::Step(block) => {
+                if let Some(node) = self.node(*block) {
+                    self.step(node, out);
+                }
+            }
+            Tree::If { when, yes, no } => {
+                let when = self.condition(when);
+                let (yes, no) = (self.list(yes), self.list(no));
+                if !(yes.is_empty() && no.is_empty()) || when.is_fickle() || is_counting(&when) {
+                    out.push(Statement::If(when, yes, no));
+                }
+            }
+            Tree::Switch { on, branches } => self.switch(*on, branches, out),
+            Tree::Loop { label, body } => {
+                let (label, body) = (*label, self.list(body));
+                out.push(Statement::Loop { label, body });
+            }
+            Tree::While { label, when, body } => {
+                if let Some(times) = self.clean_loop(*label, when, body) {
+                    let statement = Statement::Repeat {
+                        label: *label,
+                        counter: *label,
+                        times,
+                        body: self.list(body),
+                    };
+                    self.local(Own::Counter, *label, Kind::Int);
+                    out.push(statement);
+                    return;
+                }
+                let when = self.condition(when);
+                let (label, body) = (*label, self.list(body));
+                out.push(Statement::While { label, when, body });
+            }
+            Tree::DoWhile { label, body, when } => {
+                let (label, body) = (*label, self.list(body));
+                let when = self.condition(when);
+                out.push(Statement::DoWhile { label, body, when });
+            }
+            Tree::Break(label) => out.push(Statement::Break(*label)),
+            Tree::Continue(label) => out.push(Statement::Continue(*label)),
+            Tree::End(_) => {
+                let owner = &self.plan.functions[self.function].owner;
+                if *owner == Owner::Main && !self.plan.has_threads() {
+                    out.push(Statement::Do(Code::does(What::Finish, [])));
+                }
+                out.push(Statement::Return);
+            }
+            Tree::Set { variable, value } => {
+                self.local(Own::State, *variable, Kind::Int);
+                let value = Code::Int(i64::try_from(*value).unwrap_or(0));
+                out.push(Statement::Set(Code::Own(Own::State, *variable), value));
+            }
+            Tree::Choice { variable, arms } => {
+                self.local(Own::State, *variable, Kind::Int);
+                let arms = arms.iter().map(|(value, body)| (*value, self.list(body)));
+                let arms = arms.collect();
+                let on = Code::Own(Own::State, *variable);
+                out.push(Statement::Choice { on, arms });
+            }
+            Tree::Goto(label) => out.push(Statement::Goto(*label)),
+            Tree::Label(label) => out.push(Statement::Label(*label)),
+        }
+    }
+
+    /// A variable of the generator in the present routine.
+    pub(super) fn local(&mut self, own: Own, number: usize, kind: Kind) -> Code {
+        self.locals.insert((own as u8, number), (own, kind));
+        Code::Own(own, number)
+    }
+
+    /// A new place for a value.
+    pub(super) fn place(&mut self, kind: Kind) -> Code {
+        let used = self.locals.values().filter(|(own, _)| *own == Own::Value);
+        let number = used.count();
+        self.local(Own::Value, number, kind)
+    }
+
+    fn condition(&mut self, when: &Condition) -> Code {
+        match when {
+            Condition::Test(block) => self.test(*block),
+            Condition::Not(inner) => {
+                let inner = self.condition(inner);
+                self.negated(inner)
+            }
+            Condition::And(left, right) => {
+                let left = self.condition(left);
+                Code::does(What::And, [left, self.condition(right)])
+            }
+            Condition::Or(left, right) => {
+                let left = self.condition(left);
+                Code::does(What::Or, [left, self.condition(right)])
+            }
+        }
+    }
+
+    fn test(&mut self, block: usize) -> Code {
+        let Some(node) = self.node(block) else {
+            return Code::Bool(false);
+        };
+        match self.program.ops[node as usize] {
+            Op::If { source, .. } => truth(self.value(node, source)),
+            Op::Loop { source, .. } => {
+                let times = whole(self.value(node, source));
+                let new = self.counters.len();
+                let counter = *self.counters.entry(node).or_insert(new);
+                let counter = Code::Int(i64::try_from(counter).unwrap_or(0));
+                Code::does(What::Again, [counter, times])
+            }
+            _ => Code::Bool(false),
+        }
+    }
+
+    fn negated(&self, code: Code) -> Code {
+        let Code::Do(what, operands) = code else {
+            return Code::does(What::Not, [code]);
+        };
+        let is_whole = operands.iter().all(|operand| self.is_whole(operand));
+        let opposite = match what {
+            What::Not => return operands.into_iter().next().unwrap_or(Code::Bool(true)),
+            What::Equal => What::NotEqual,
+            What::NotEqual => What::Equal,
+            What::EqualText => What::NotEqualText,
+            What::NotEqualText => What::EqualText,
+            What::Less if is_whole => What::GreaterEqual,
+            What::Greater if is_whole => What::LessEqual,
+            What::LessEqual if is_whole => What::Greater,
+            What::GreaterEqual if is_whole => What::Less,
+            _ => return Code::does(What::Not, [Code::Do(what, operands)]),
+        };
+        Code::Do(opposite, operands)
+    }
+
+    /// Whether a number is surely whole, so that its comparisons have opposites.
+    fn is_whole(&self, code: &Code) -> bool {
+        use What::{
+            Add, AtPlain, DivideWhole, Encoder, Modulo, Multiply, Random, Sensor, Subtract, Time,
+            WholeOfAny, WholeOfBool, WholeOfFloat,
+        };
+        match code {
+            Code::Int(_) => true,
+            Code::Variable(number) => self.texts.variables.all[*number].kind == Some(Kind::Int),
+            Code::Do(Add | Subtract | Multiply, parts) => {
+                parts.iter().all(|part| self.is_whole(part))
+            }
+            Code::Do(what, _) => matches!(
+                what,
+                AtPlain
+                    | DivideWhole
+                    | Encoder
+                    | Modulo
+                    | Random
+                    | Sensor
+                    | Time
+                    | WholeOfAny
+                    | WholeOfBool
+                    | WholeOfFloat
+            ),
+            _ => false,
+        }
+    }
+
+    /// How often a counted loop runs, if nobody can see its counter half way.
+    fn clean_loop(&mut self, label: usize, when: &Condition, body: &[Tree]) -> Option<Code> {
+        let Condition::Test(block) = when else {
+            return None;
+        };
+        let node = self.node(*block)?;
+        let Op::Loop { source, .. } = self.program.ops[node as usize] else {
+            return None;
+        };
+        let function = &self.plan.functions[self.function];
+        let (is_main, is_safe) = match &function.owner {
+            Owner::Main => (true, true),
+            Owner::Subprogram(diagram) => {
+                let is_once = function.threads.len() == 1 && !self.plan.reenters(*diagram);
+                (false, is_once && !self.kills)
+            }
+            Owner::Thread(..) => (false, !self.kills),
+        };
+        let stays = |tree: &Tree| {
+            let mut inner = Vec::new();
+            stays_inside(tree, is_main, label, &mut inner)
+        };
+        let is_clean = is_safe && self.loops.get(&node) == Some(&1) && body.iter().all(stays);
+        is_clean.then(|| whole(self.value(node, source)))
+    }
+
+    fn switch(
+        &mut self,
+        on: usize,
+        branches: &[(Vec<usize>, Vec<Tree>)],
+        out: &mut Vec<Statement>,
+    ) {
+        let Some(node) = self.node(on) else {
+            return;
+        };
+        let Op::Switch { switch } = self.program.ops[node as usize] else {
+            return;
+        };
+        let switch = &self.program.switches[switch as usize];
+        let on = super::build::text(self.value(node, switch.source));
+        let mut other = Vec::new();
+        let mut named = Vec::new();
+        for (ways, body) in branches {
+            let body = self.list(body);
+            let guards: Vec<_> = ways
+                .iter()
+                .filter_map(|&way| switch.branches.get(way))
+                .map(|(guard, _)| (**guard).into())
+                .collect();
+            if ways.contains(&switch.branches.len()) {
+                // Guards that lead where all others lead need no branch.
+                other = body;
+            } else {
+                named.push((guards, body));
+            }
+        }
+        out.push(Statement::Switch {
+            on,
+            branches: named,
+            other,
+        });
+    }
+}
+
+fn is_counting(code: &Code) -> bool {
+    code.has(&mut |part| matches!(part, Code::Do(What::Again, _)))
+}
+
+/// Whether control stays in the loop that a statement is in until its head is reached again.
+fn stays_inside(tree: &Tree, may_end: bool, own: usize, inner: &mut Vec<usize>) -> bool {
+    match tree {
+        Tree::End(_) => may_end,
+        Tree::Goto(_) => false,
+        Tree::Break(label) => inner.contains(label),
+        Tree::Continue(label) => *label == own || inner.contains(label),
+        Tree::Loop { label, .. } | Tree::While { label, .. } | Tree::DoWhile { label, .. } => {
+            inner.push(*label);
+            let parts = tree.parts();
+            let stays = parts
+                .into_iter()
+                .flatten()
+                .all(|part| stays_inside(part, may_end, own, inner));
+            inner.pop();
+            stays
+        }
+        _ => {
+            let parts = tree.parts();
+            parts
+                .into_iter()
+                .flatten()
+                .all(|part| stays_inside(part, may_end, own, inner))
+        }
+    }
+}

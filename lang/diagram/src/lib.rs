@@ -1,0 +1,29 @@
+//! Diagrams: a save as a graph of blocks, and what can be done with it.
+
+// Problems are rare, and their size costs nothing where none is.
+#![allow(clippy::result_large_err)]
+
+pub mod archive;
+pub mod blocks;
+pub mod brick;
+pub mod check;
+pub mod convert;
+pub mod devices;
+pub mod fuzz;
+pub mod generate;
+pub mod limits;
+pub mod lower;
+pub mod machine;
+pub mod objects;
+pub mod ports;
+pub mod program;
+pub mod project;
+pub mod read;
+pub mod save;
+pub mod show;
+pub mod sketch;
+pub mod stand_in;
+pub mod structure;
+pub mod tree;
+pub mod version;
+mod words;

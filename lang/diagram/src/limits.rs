@@ -1,0 +1,46 @@
+//! Every limit of this crate: how far diagrams, their saves, programs and texts may grow.
+
+/// Bytes of a save as it comes, in any container.
+pub const SAVE_BYTES: usize = 32 << 20;
+/// Bytes of all entries of a save, unpacked.
+pub const SAVE_UNPACKED_BYTES: usize = 48 << 20;
+/// Bytes of one unpacked entry: the largest real ones are embedded images.
+pub const ENTRY_BYTES: usize = 24 << 20;
+/// Entries of a save; the largest real one has 1500. What a zip without extensions can count.
+pub const ENTRIES: usize = 65_535;
+/// Bytes of an entry's name.
+pub const ENTRY_NAME_BYTES: usize = 1024;
+/// Objects that all lists of a save may name together; an object is named about four times.
+pub const REFERENCES: usize = 300_000;
+/// Blocks of a project that is run.
+pub const NODES_MAX: usize = 2_000_000;
+/// Threads that live at the same time, as in the original.
+pub const THREADS_MAX: usize = 100;
+/// Calls of subprograms that have not returned, as in the original.
+pub const STACK_MAX: usize = 4000;
+/// Messages that wait for one thread.
+pub const MESSAGES_MAX: usize = 10_000;
+/// Names of threads that one fork remembers.
+pub const FORK_NAMES_MAX: usize = 10_000;
+/// How many diamonds one condition of a generated program may stand for.
+pub const CONDITION_TESTS_MAX: usize = 8;
+/// How many statements a structured program may have for each block, because of copies.
+pub const COPIES_PER_BLOCK: usize = 2;
+/// And beside that.
+pub const COPIES_FREE: usize = 64;
+/// How deep branches and loops of a structured program may nest.
+pub const NESTING_MAX: usize = 40;
+/// How deep its loops may nest; Python allows 20.
+pub const LOOPS_NESTING_MAX: usize = 12;
+/// How deep branches of one state nest in a program over states.
+pub const STATES_NESTING_MAX: usize = 6;
+/// Blocks of a project that is written as text.
+pub const GENERATED_BLOCKS_MAX: usize = 20_000;
+/// Functions of a program that is written as text.
+pub const GENERATED_FUNCTIONS_MAX: usize = 1000;
+/// How deep an expression may nest that is written as text.
+pub const GENERATED_DEPTH_MAX: usize = 100;
+/// Blocks of one picture.
+pub const PICTURE_BLOCKS_MAX: usize = 5000;
+/// Corners of one link in a picture.
+pub const PICTURE_CORNERS_MAX: usize = 64;

@@ -1,0 +1,527 @@
+//! A project to a program: blocks to operations, links to targets, properties to texts and expressions.
+//!
+//! Owns the tables of the program and what is wrong with the project as far as one block with its links shows it. Knows
+//! no expressions: it only keeps their texts. What the original says when the flow reaches a bad block is told here at
+//! once, and the machine tells it then.
+
+mod links;
+mod properties;
+
+use std::collections::HashMap;
+use std::rc::Rc;
+
+use super::blocks::{self, Act, Copied, Does, Row, Silent, foreign};
+use super::devices;
+use super::ports::{Kit, Port, Way};
+use super::program::{
+    Action, Argument, ArgumentKind, Assignment, Axis, Call, Message, NOWHERE, Node, Op, Program,
+    Sheet, Sign, Source, Spot, Text, Watching,
+};
+use super::project::{Block, Diagram, DiagramKind, Project};
+use super::words;
+use crate::limits;
+use lang_text::problem::{Place, Problem, Words};
+use properties::text;
+
+/// Where a program runs: some blocks do nothing in some places.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum World {
+    /// In a simulator.
+    Simulated {
+        /// Whether robots can send messages to each other there.
+        mailbox: bool,
+        /// Whether somebody may have a gamepad there. The original's simulator knows of none.
+        gamepad: bool,
+    },
+    /// On a robot, or on a tree of files that stands for one.
+    Robot,
+}
+
+impl Default for World {
+    fn default() -> Self {
+        Self::Simulated {
+            mailbox: false,
+            gamepad: false,
+        }
+    }
+}
+
+/// A program, and all that is wrong with it.
+#[derive(Clone, Debug)]
+pub struct Lowered {
+    /// Ready to run: faulty blocks tell their fault when they are reached.
+    pub program: Program,
+    /// Everything that can be told without running it, but for expressions.
+    pub problems: Vec<Problem>,
+}
+
+/// Makes a project ready to run.
+///
+/// # Errors
+/// The project has more blocks than [`limits::NODES_MAX`].
+pub fn lower(project: &Project, world: World) -> Result<Lowered, Problem> {
+    let nodes: usize = project
+        .diagrams
+        .iter()
+        .map(|diagram| diagram.blocks.len())
+        .sum();
+    if nodes > limits::NODES_MAX {
+        let words = words::too_large(nodes, limits::NODES_MAX);
+        return Err(Problem::error(words));
+    }
+    let mut lowering = Lowering::new(project, world);
+    for (index, diagram) in project.diagrams.iter().enumerate() {
+        lowering.diagram(index as u32, diagram);
+    }
+    if project.main.is_none() {
+        lowering.problems.push(Problem::error(words::no_main()));
+    }
+    let mut lowered = lowering.finish(project);
+    if world != World::Robot
+        && let Some(problem) = devices::mismatch(project, &lowered.program)
+    {
+        lowered.problems.push(problem.clone());
+        lowered.program.refusal = Some(problem);
+    }
+    Ok(lowered)
+}
+
+/// Tables that grow.
+struct Lowering<'a> {
+    world: World,
+    kit: Kit,
+    rows: HashMap<&'static str, &'static Row>,
+    /// Diagrams by their logical ids.
+    called: HashMap<&'a str, u32>,
+    ops: Vec<Op>,
+    spots: Vec<Spot>,
+    entries: Vec<Option<Node>>,
+    sources: Vec<Text>,
+    faults: Vec<Problem>,
+    problems: Vec<Problem>,
+    switches: Vec<super::program::Switch>,
+    forks: Vec<super::program::Fork>,
+    joins: Vec<super::program::Join>,
+    calls: Vec<Call>,
+    messages: Vec<Message>,
+    assignments: Vec<Assignment>,
+    actions: Vec<Action>,
+    watches: Vec<Watching>,
+    loops: u32,
+    /// Where a node begins: of the present diagram.
+    base: Node,
+}
+
+/// One block with what is needed to look around.
+#[derive(Clone, Copy)]
+struct At<'a> {
+    diagram: &'a Diagram,
+    block: &'a Block,
+    row: &'static Row,
+    base: Node,
+}
+
+impl<'a> Lowering<'a> {
+    fn new(project: &'a Project, world: World) -> Self {
+        let mut called = HashMap::new();
+        for (index, diagram) in project.diagrams.iter().enumerate() {
+            called
+                .entry(diagram.logical.as_str())
+                .or_insert(index as u32);
+        }
+        let kit = project.meta.get("lastKitId");
+        Self {
+            world,
+            kit: kit.and_then(|id| Kit::of_id(id)).unwrap_or_default(),
+            rows: blocks::table().map(|row| (row.kind, row)).collect(),
+            called,
+            ops: Vec::new(),
+            spots: Vec::new(),
+            entries: Vec::new(),
+            sources: Vec::new(),
+            faults: Vec::new(),
+            problems: Vec::new(),
+            switches: Vec::new(),
+            forks: Vec::new(),
+            joins: Vec::new(),
+            calls: Vec::new(),
+            messages: Vec::new(),
+            assignments: Vec::new(),
+            actions: Vec::new(),
+            watches: Vec::new(),
+            loops: 0,
+            base: 0,
+        }
+    }
+
+    fn finish(self, project: &Project) -> Lowered {
+        let sheets = project.diagrams.iter().map(|diagram| Sheet {
+            id: diagram.id.as_str().into(),
+            name: diagram.name.as_str().into(),
+        });
+        let program = Program {
+            ops: self.ops.into(),
+            spots: self.spots.into(),
+            entries: self.entries.into(),
+            diagrams: sheets.collect(),
+            main: project.main.map(|main| main as u32),
+            sources: self.sources.into(),
+            faults: self.faults.into(),
+            switches: self.switches.into(),
+            forks: self.forks.into(),
+            joins: self.joins.into(),
+            calls: self.calls.into(),
+            messages: self.messages.into(),
+            assignments: self.assignments.into(),
+            actions: self.actions.into(),
+            watches: self.watches.into(),
+            refusal: None,
+            loops: self.loops,
+            kit: self.kit,
+        };
+        Lowered {
+            program,
+            problems: self.problems,
+        }
+    }
+
+    fn diagram(&mut self, index: u32, diagram: &'a Diagram) {
+        self.base = self.ops.len() as Node;
+        let starts = |block: &&Block| block.kind == "InitialNode";
+        let first = diagram.blocks.iter().position(|block| starts(&block));
+        self.entries
+            .push(first.map(|first| self.base + first as Node));
+        let place = Place {
+            diagram: Some(diagram.name.clone()),
+            object: Some(diagram.id.clone()),
+            ..Place::default()
+        };
+        let is_used = diagram.kind == DiagramKind::Main || !diagram.blocks.is_empty();
+        if first.is_none() && is_used {
+            let problem = Problem::warning(words::no_entry());
+            self.problems.push(Problem { place, ..problem });
+        } else if diagram.blocks.iter().filter(starts).count() > 1 {
+            let problem = Problem::warning(words::several_entries());
+            self.problems.push(Problem { place, ..problem });
+        }
+        for block in &diagram.blocks {
+            self.block(index, diagram, block);
+        }
+    }
+
+    fn block(&mut self, index: u32, diagram: &'a Diagram, block: &'a Block) {
+        let row = self.rows.get(block.kind.as_str()).copied();
+        self.spots.push(Spot {
+            id: block.id.as_str().into(),
+            diagram: index,
+            row,
+        });
+        let before = self.problems.len();
+        let base = self.base;
+        let made = match row {
+            Some(row) => self.known(At {
+                diagram,
+                block,
+                row,
+                base,
+            }),
+            None => {
+                let words = match foreign::find(&block.kind) {
+                    Some((kit, name)) => words::foreign_block(name, kit.name()),
+                    None => words::unknown_block(&block.kind),
+                };
+                self.problems.push(Problem::warning(words));
+                links::single(diagram, block, base).map(|next| Op::Pass { next })
+            }
+        };
+        let place = Place {
+            diagram: Some(diagram.name.clone()),
+            object: Some(block.id.clone()),
+            block: Some(row.map_or_else(|| block.kind.clone(), |row| row.shown.to_owned())),
+            ..Place::default()
+        };
+        let op = made.unwrap_or_else(|words| {
+            let mut problem = Problem::error(words);
+            problem.place = place.clone();
+            self.faults.push(problem.clone());
+            self.problems.push(problem);
+            Op::Fault {
+                fault: self.faults.len() as u32 - 1,
+            }
+        });
+        for problem in &mut self.problems[before..] {
+            let property = problem.place.property.take();
+            problem.place = Place {
+                property,
+                ..place.clone()
+            };
+        }
+        self.ops.push(op);
+    }
+
+    /// A warning at the present block.
+    fn warn(&mut self, words: Words, property: Option<&str>) {
+        let mut problem = Problem::warning(words);
+        problem.place.property = property.map(str::to_owned);
+        self.problems.push(problem);
+    }
+
+    fn known(&mut self, at: At<'a>) -> Result<Op, Words> {
+        if !at.row.is_of(self.kit) {
+            self.warn(words::other_kit(at.row.kind), None);
+            let next = links::single(at.diagram, at.block, at.base)?;
+            return Ok(Op::Pass { next });
+        }
+        self.look_at_properties(at);
+        let silent = match (at.row.silent, self.world) {
+            (Silent::Never, _) => false,
+            (Silent::Always, _) => true,
+            (Silent::Real, world) => world == World::Robot,
+            (Silent::Simulated, world) => world != World::Robot,
+            (Silent::WithoutMailbox, world) => {
+                matches!(world, World::Simulated { mailbox: false, .. })
+            }
+            (Silent::WithoutGamepad, world) => {
+                matches!(world, World::Simulated { gamepad: false, .. })
+            }
+        };
+        if silent {
+            let next = links::single(at.diagram, at.block, at.base)?;
+            return Ok(Op::Pass { next });
+        }
+        match at.row.does {
+            Does::End => Ok(Op::End),
+            Does::Comment if at.block.incoming.is_empty() => Ok(Op::End),
+            Does::Comment => Err(words::comment_in_flow()),
+            Does::If | Does::Loop | Does::While | Does::Switch | Does::Fork | Does::Join => {
+                self.branching(at)
+            }
+            Does::Ask => {
+                let (next, cancel) = links::question(at)?;
+                Ok(Op::Ask {
+                    assignment: self.assignment(at),
+                    next,
+                    cancel,
+                })
+            }
+            _ => {
+                let next = links::single(at.diagram, at.block, at.base)?;
+                self.straight(at, next)
+            }
+        }
+    }
+
+    fn branching(&mut self, at: At<'a>) -> Result<Op, Words> {
+        match at.row.does {
+            Does::If => {
+                let (yes, no) = links::two_branches(at)?;
+                let source = self.expression(at, "Condition");
+                Ok(Op::If { source, yes, no })
+            }
+            Does::While => {
+                let (body, next) = self.loop_links(at)?;
+                let source = self.expression(at, "Condition");
+                Ok(Op::If {
+                    source,
+                    yes: body,
+                    no: next,
+                })
+            }
+            Does::Loop => {
+                let (body, next) = self.loop_links(at)?;
+                let source = self.expression(at, "Iterations");
+                self.loops += 1;
+                Ok(Op::Loop {
+                    source,
+                    body,
+                    next,
+                    counter: self.loops - 1,
+                })
+            }
+            Does::Switch => self.switch(at),
+            Does::Fork => {
+                let branches = links::threads(at)?;
+                self.forks.push(super::program::Fork {
+                    branches: branches.into(),
+                });
+                Ok(Op::Fork {
+                    fork: self.forks.len() as u32 - 1,
+                })
+            }
+            _ => {
+                let next = links::single(at.diagram, at.block, at.base)?;
+                let guard = at.block.outgoing.first();
+                let guard = guard.and_then(|&link| at.diagram.links.get(link));
+                let survivor = guard.map_or("", |link| link.guard.as_str());
+                if survivor.is_empty() {
+                    return Err(words::join_needs_name());
+                }
+                self.joins.push(super::program::Join {
+                    survivor: survivor.into(),
+                    incoming: at.block.incoming.len() as u32,
+                });
+                Ok(Op::Join {
+                    join: self.joins.len() as u32 - 1,
+                    next,
+                })
+            }
+        }
+    }
+
+    fn switch(&mut self, at: At<'a>) -> Result<Op, Words> {
+        let (mut exact, other) = links::many_branches(at)?;
+        exact.sort();
+        let lower = |(guard, to): &(Box<str>, Node)| (guard.to_lowercase().into(), *to);
+        let mut branches: Vec<(Box<str>, Node)> = exact.iter().map(lower).collect();
+        for ((written, _), (lower, _)) in exact.iter().zip(&branches) {
+            if written != lower {
+                self.warn(words::never_matches(written), None);
+            }
+        }
+        branches.sort();
+        let source = self.expression(at, "Expression");
+        self.switches.push(super::program::Switch {
+            source,
+            branches: branches.into(),
+            exact: exact.into(),
+            other,
+        });
+        Ok(Op::Switch {
+            switch: self.switches.len() as u32 - 1,
+        })
+    }
+
+    fn loop_links(&mut self, at: At<'a>) -> Result<(Node, Node), Words> {
+        let found = links::body_and_exit(at)?;
+        for guard in found.ignored {
+            self.warn(words::ignored_link(&guard), None);
+        }
+        Ok((found.body, found.exit))
+    }
+
+    fn straight(&mut self, at: At<'a>, next: Node) -> Result<Op, Words> {
+        Ok(match at.row.does {
+            Does::Statements => Op::Run {
+                source: self.expression(at, "Body"),
+                next,
+            },
+            Does::Assign => Op::Run {
+                source: self.spliced(at),
+                next,
+            },
+            Does::Timer => Op::Timer {
+                source: self.expression(at, "Delay"),
+                next,
+            },
+            Does::Random => Op::Random {
+                assignment: self.assignment(at),
+                next,
+            },
+            Does::AnyButton => Op::AnyButton {
+                assignment: self.assignment(at),
+                next,
+            },
+            Does::Mail => Op::Mail {
+                assignment: self.assignment(at),
+                next,
+            },
+            Does::Copy(copied) => Op::Copy {
+                assignment: self.copied(at, copied),
+                copied,
+                next,
+            },
+            Does::Receive => {
+                if text(at, "Variable").is_empty() {
+                    return Err(words::nothing_to_receive_into());
+                }
+                Op::Receive {
+                    assignment: self.assignment(at),
+                    next,
+                }
+            }
+            Does::Kill => {
+                let message = self.message(at, false);
+                if text(at, "Thread").is_empty() {
+                    return Err(words::nobody_to_kill());
+                }
+                Op::Kill { message, next }
+            }
+            Does::Send => {
+                if text(at, "Thread").is_empty() {
+                    return Err(words::nobody_to_send_to());
+                }
+                Op::Send {
+                    message: self.message(at, true),
+                    next,
+                }
+            }
+            Does::Call => Op::Call {
+                call: self.call(at)?,
+                next,
+            },
+            Does::Act(act) => Op::Act {
+                action: self.action(at, act),
+                next,
+            },
+            Does::Watch(watch) => Op::Watch {
+                watch: self.watch(at, watch),
+                next,
+            },
+            _ => Op::Pass { next },
+        })
+    }
+
+    fn message(&mut self, at: At<'a>, has_text: bool) -> u32 {
+        let source = if has_text {
+            self.expression(at, "Message")
+        } else {
+            NOWHERE
+        };
+        self.messages.push(Message {
+            thread: text(at, "Thread").into(),
+            source,
+        });
+        self.messages.len() as u32 - 1
+    }
+
+    fn call(&mut self, at: At<'a>) -> Result<u32, Words> {
+        let name = at.block.name.as_str();
+        if !name
+            .chars()
+            .any(|letter| letter.is_alphabetic() || letter == '_')
+        {
+            return Err(words::bad_name(name));
+        }
+        let logical = at.block.calls.as_deref();
+        let diagram = logical.and_then(|id| self.called.get(id).copied());
+        if diagram.is_none() {
+            self.warn(words::no_such_subprogram(), None);
+        }
+        let arguments = at.block.arguments.iter().map(|argument| {
+            let (kind, wanted) = match argument.kind.as_str() {
+                "bool" => (ArgumentKind::Truth, blocks::Type::Truth),
+                "int" => (ArgumentKind::Whole, blocks::Type::Whole),
+                "float" => (ArgumentKind::Number, blocks::Type::Number),
+                _ => (ArgumentKind::Text, blocks::Type::Text),
+            };
+            self.sources.push(Text {
+                text: argument.value.as_str().into(),
+                wanted,
+                property: "",
+            });
+            Argument {
+                name: argument.name.as_str().into(),
+                kind,
+                source: self.sources.len() as Source - 1,
+            }
+        });
+        let arguments = arguments.collect();
+        self.calls.push(Call { diagram, arguments });
+        Ok(self.calls.len() as u32 - 1)
+    }
+}
+
+/// A name that threads are compared by.
+fn name(text: &str) -> Rc<str> {
+    text.into()
+}

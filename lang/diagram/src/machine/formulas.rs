@@ -1,0 +1,144 @@
+//! Expressions of a running program: each text compiled once, all names, all values.
+//!
+//! Owns the border to the language of expressions. Knows no blocks: a problem has no place but the one in its text.
+
+use crate::blocks::Type;
+use crate::program::{Program, Source as Index};
+use lang_expr::reserved::SENSORS;
+use lang_expr::{Compat, Names, Outside, Slot, Source, Store, Value, Wanted};
+use lang_text::problem::Problem;
+
+/// All expressions with their names and values.
+#[derive(Debug)]
+pub(super) struct Formulas {
+    sources: Vec<Source>,
+    names: Names,
+    store: Store,
+    /// Slots that were written, while they are told.
+    scratch: Vec<Slot>,
+}
+
+impl Formulas {
+    pub fn new(program: &Program, compat: Compat) -> Self {
+        let sources = program.sources.iter();
+        Self {
+            sources: sources
+                .map(|text| Source::new(&text.text, wanted(text.wanted)))
+                .collect(),
+            names: Names::new(program.kit, compat),
+            store: Store::default(),
+            scratch: Vec::new(),
+        }
+    }
+
+    /// Which sensor variables the texts may name.
+    pub fn sensors(&self) -> impl Iterator<Item = usize> {
+        let named = |name: &str| {
+            self.sources
+                .iter()
+                .any(|source| source.text().contains(name))
+        };
+        (0..SENSORS.len()).filter(move |&index| named(SENSORS[index].name))
+    }
+
+    fn ready(&mut self, index: Index) -> Result<&Source, Vec<Problem>> {
+        let Some(source) = self.sources.get_mut(index as usize) else {
+            return Err(Vec::new());
+        };
+        lang_expr::analyse(source, &mut self.names)?;
+        Ok(source)
+    }
+
+    /// The value of a text.
+    pub fn evaluate(
+        &mut self,
+        index: Index,
+        outside: &mut dyn Outside,
+    ) -> Result<Value, Vec<Problem>> {
+        self.ready(index)?;
+        let source = &self.sources[index as usize];
+        lang_expr::evaluate(source, &self.names, &mut self.store, outside)
+    }
+
+    /// The truth of a text.
+    pub fn truth(&mut self, index: Index, outside: &mut dyn Outside) -> Result<bool, Vec<Problem>> {
+        self.ready(index)?;
+        let source = &self.sources[index as usize];
+        lang_expr::evaluate_bool(source, &self.names, &mut self.store, outside)
+    }
+
+    /// The whole number of a text.
+    pub fn whole(&mut self, index: Index, outside: &mut dyn Outside) -> Result<i32, Vec<Problem>> {
+        self.ready(index)?;
+        let source = &self.sources[index as usize];
+        lang_expr::evaluate_int(source, &self.names, &mut self.store, outside)
+    }
+
+    /// Runs a statement that a block has put together.
+    pub fn run_text(
+        &mut self,
+        statement: &str,
+        outside: &mut dyn Outside,
+    ) -> Result<(), Vec<Problem>> {
+        let mut source = Source::new(statement, Wanted::Statements);
+        lang_expr::analyse(&mut source, &mut self.names)?;
+        lang_expr::evaluate(&source, &self.names, &mut self.store, outside)?;
+        Ok(())
+    }
+
+    /// Tells each variable that was written since the last time.
+    pub fn changed(&mut self, mut tell: impl FnMut(&str, &Value)) {
+        self.scratch.extend(self.store.written());
+        for &slot in &self.scratch {
+            if let Some(value) = self.store.get(slot) {
+                tell(self.names.name(slot), value);
+            }
+        }
+        self.scratch.clear();
+    }
+
+    /// The slot of a name, which becomes a variable.
+    pub fn slot(&mut self, name: &str) -> Option<Slot> {
+        self.names.slot(name)
+    }
+
+    /// A variable that gets this value from outside.
+    pub fn assign(&mut self, name: &str, value: &Value) -> Option<Slot> {
+        self.names.declare(name, value)
+    }
+
+    pub fn value(&self, slot: Slot) -> Option<Value> {
+        self.store.get(slot).cloned()
+    }
+
+    /// Sets a value or takes it away.
+    pub fn put(&mut self, slot: Slot, value: Option<Value>) {
+        match value {
+            // One value in the place of another one that was there before: the limit was kept then.
+            Some(value) => drop(self.store.set(slot, value)),
+            None => drop(self.store.remove(slot)),
+        }
+    }
+
+    pub fn get(&self, name: &str) -> Option<Value> {
+        self.value(self.names.find(name)?)
+    }
+
+    pub fn variables(&self) -> impl Iterator<Item = (&str, &Value)> {
+        self.names
+            .variables()
+            .filter_map(|(slot, name, _)| Some((name, self.store.get(slot)?)))
+    }
+}
+
+/// What an expression is asked for.
+pub(crate) fn wanted(of: Type) -> Wanted {
+    match of {
+        Type::Statements => Wanted::Statements,
+        Type::Truth => Wanted::Bool,
+        Type::Whole => Wanted::Int,
+        Type::Number => Wanted::Float,
+        Type::Text | Type::Printed => Wanted::Text,
+        Type::List => Wanted::List,
+    }
+}

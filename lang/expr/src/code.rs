@@ -1,0 +1,276 @@
+//! The tree of a text for the machine: one operation for each node, names as slots, literals as values.
+//!
+//! Made anew when types change, because a few constructs are only allowed for known types. Knows no values of
+//! variables.
+
+use super::analyse::Analysis;
+use super::escape;
+use super::literal;
+use super::names::{Kind, Slot};
+use super::reserved::{Function, SensorIndex};
+use super::tree::{Binary, Id, Node, Unary};
+use super::types::Type;
+use super::value::{Compat, Value};
+use super::words::What;
+use crate::limits;
+use lang_text::problem::Position;
+
+/// What has elements.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Base {
+    Variable(Slot),
+    Sensor(SensorIndex),
+    /// A text or a number: it has none.
+    Constant,
+}
+
+/// One operation; operands are operations by index.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Op {
+    Nil,
+    Bool(bool),
+    Int(i32),
+    Float(f64),
+    /// Index into the constants.
+    Constant(u32),
+    Variable(Slot),
+    Sensor(SensorIndex),
+    Minus(Id),
+    /// Through a 32-bit float.
+    MinusNarrow(Id),
+    Not(Id),
+    TextLength(Id),
+    Length(Id),
+    BitNot(Id),
+    Binary(Binary, Id, Id),
+    /// What has elements, one index.
+    Element(Base, Id),
+    /// What has elements, several indices in the operands.
+    Elements(Base, Span),
+    Call(Function, Span),
+    /// Pairs of key (or itself, if there is none) and value in the operands.
+    Table(Span),
+    Block(Span),
+    Assign(Slot, Id),
+    /// Base, indices and, behind them in the operands, the value.
+    AssignElement(Base, Span),
+    /// Index into the faults: told when it runs.
+    Broken(u32),
+}
+
+/// Some operands.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Span {
+    pub(super) from: u32,
+    pub(super) count: u32,
+}
+
+/// A text for the machine.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Code {
+    pub(super) ops: Vec<Op>,
+    pub(super) places: Vec<Position>,
+    pub(super) operands: Vec<Id>,
+    pub(super) constants: Vec<Value>,
+    pub(super) faults: Vec<What>,
+    pub(super) root: Id,
+}
+
+impl Code {
+    pub(super) fn operands(&self, span: Span) -> &[Id] {
+        let from = span.from as usize;
+        self.operands
+            .get(from..from + span.count as usize)
+            .unwrap_or_default()
+    }
+}
+
+/// Compiles what an analysis found good.
+pub(super) fn compile(analysis: &Analysis<'_>) -> Code {
+    let mut compiler = Compiler {
+        analysis,
+        code: Code::default(),
+        is_fixed: analysis.names.compat() == Compat::Fixed,
+    };
+    for (id, node) in (0..).zip(&analysis.tree.nodes) {
+        let op = compiler.op(id, node);
+        compiler.code.ops.push(op);
+    }
+    let mut code = compiler.code;
+    code.places.clone_from(&analysis.tree.places);
+    code.root = analysis.tree.root.unwrap_or_default();
+    code
+}
+
+struct Compiler<'a> {
+    analysis: &'a Analysis<'a>,
+    code: Code,
+    is_fixed: bool,
+}
+
+impl Compiler<'_> {
+    fn constant(&mut self, value: Value) -> Op {
+        match value {
+            Value::Nil => Op::Nil,
+            Value::Bool(truth) => Op::Bool(truth),
+            Value::Int(number) => Op::Int(number),
+            Value::Float(number) => Op::Float(number),
+            value => {
+                self.code.constants.push(value);
+                Op::Constant(index(self.code.constants.len() - 1))
+            }
+        }
+    }
+
+    fn broken(&mut self, what: What) -> Op {
+        self.code.faults.push(what);
+        Op::Broken(index(self.code.faults.len() - 1))
+    }
+
+    fn span(&mut self, ids: impl IntoIterator<Item = Id>) -> Span {
+        let from = index(self.code.operands.len());
+        self.code.operands.extend(ids);
+        Span {
+            from,
+            count: index(self.code.operands.len()) - from,
+        }
+    }
+
+    fn op(&mut self, id: Id, node: &Node) -> Op {
+        let compat = self.analysis.names.compat();
+        match node {
+            Node::Nil => Op::Nil,
+            Node::Bool(truth) => Op::Bool(*truth),
+            Node::Int(text) => self.constant(literal::whole(text, compat)),
+            Node::Float(text) => Op::Float(literal::float(text, compat)),
+            Node::Text(text) => self.constant(Value::Text(text.clone())),
+            Node::RawText(text) if self.is_fixed => {
+                self.constant(Value::text(escape::unquote(text)))
+            }
+            Node::RawText(text) => self.constant(Value::Text(text.clone())),
+            Node::Name(name) => self.name(name),
+            Node::Unary(operator, operand) => self.unary(*operator, *operand),
+            Node::Binary(operator, left, right) => Op::Binary(*operator, *left, *right),
+            Node::Index { .. } => match self.path(id) {
+                Ok((base, path)) if path.len() == 1 => Op::Element(base, path[0]),
+                Ok((base, path)) => Op::Elements(base, self.span(path)),
+                Err(what) => self.broken(what),
+            },
+            Node::Call {
+                function,
+                arguments,
+            } => match self.analysis.tree.node(*function) {
+                Node::Name(name) => match self.kind(name) {
+                    Some((_, Kind::Function(function))) => {
+                        Op::Call(function, self.span(arguments.iter().copied()))
+                    }
+                    _ => self.broken(What::UnknownFunction),
+                },
+                _ => self.broken(What::IndirectCall),
+            },
+            Node::Method { .. } => self.broken(What::NotInterpreted),
+            Node::Table { fields, .. } => self.table(fields),
+            Node::Assign { target, value } => self.assign(*target, *value),
+            Node::Block(statements) => Op::Block(self.span(statements.iter().copied())),
+        }
+    }
+
+    fn kind(&self, name: &str) -> Option<(Slot, Kind)> {
+        let slot = self.analysis.names.find(name)?;
+        Some((slot, self.analysis.names.kind(slot)?.clone()))
+    }
+
+    fn name(&mut self, name: &str) -> Op {
+        match self.kind(name) {
+            Some((slot, Kind::Variable)) => Op::Variable(slot),
+            Some((_, Kind::Sensor(sensor))) => Op::Sensor(sensor),
+            Some((_, Kind::Constant(value))) => self.constant(value),
+            // The function's own name in a call: never run.
+            Some((_, Kind::Function(_))) | None => Op::Nil,
+        }
+    }
+
+    fn unary(&self, operator: Unary, operand: Id) -> Op {
+        match operator {
+            Unary::Minus if self.is_fixed => Op::Minus(operand),
+            Unary::Minus => Op::MinusNarrow(operand),
+            Unary::Not => Op::Not(operand),
+            Unary::Length if self.is_fixed => Op::Length(operand),
+            Unary::Length if self.analysis.type_of(operand) == Type::Text => {
+                Op::TextLength(operand)
+            }
+            Unary::Length => Op::Nil,
+            Unary::BitNot => Op::BitNot(operand),
+        }
+    }
+
+    fn is_number(&self, id: Id) -> bool {
+        self.is_fixed || matches!(self.analysis.type_of(id), Type::Int | Type::Float)
+    }
+
+    /// What an index expression belongs to, and its indices from the first.
+    fn path(&self, id: Id) -> Result<(Base, Vec<Id>), What> {
+        let mut path = Vec::new();
+        let mut at = id;
+        loop {
+            match self.analysis.tree.node(at) {
+                Node::Index { table, index } => {
+                    if path.len() >= usize::from(limits::LIST_DEPTH_MAX) {
+                        return Err(What::ValueTooDeep);
+                    }
+                    path.push(*index);
+                    at = *table;
+                }
+                Node::Name(name) => {
+                    if !path.iter().all(|&index| self.is_number(index)) {
+                        return Err(What::IndexNotNumber);
+                    }
+                    path.reverse();
+                    let base = match self.kind(name) {
+                        Some((slot, Kind::Variable)) => Base::Variable(slot),
+                        Some((_, Kind::Sensor(sensor))) => Base::Sensor(sensor),
+                        _ => Base::Constant,
+                    };
+                    return Ok((base, path));
+                }
+                _ => return Err(What::IndexOfValue),
+            }
+        }
+    }
+
+    fn table(&mut self, fields: &[super::tree::Field]) -> Op {
+        for field in fields {
+            if let Some(key) = field.key
+                && !self.is_number(key)
+            {
+                return self.broken(What::KeyNotNumber);
+            }
+        }
+        let pairs = fields
+            .iter()
+            .flat_map(|field| [field.key.unwrap_or(field.value), field.value]);
+        Op::Table(self.span(pairs))
+    }
+
+    fn assign(&mut self, target: Id, value: Id) -> Op {
+        match self.analysis.tree.node(target) {
+            Node::Name(name) => match self.kind(name) {
+                Some((slot, Kind::Variable)) => Op::Assign(slot, value),
+                _ => self.broken(What::ReadOnly(name.to_string())),
+            },
+            Node::Index { .. } => match self.path(target) {
+                Ok((Base::Variable(slot), path)) => {
+                    let span = self.span(path.into_iter().chain([value]));
+                    Op::AssignElement(Base::Variable(slot), span)
+                }
+                Ok(_) => self.broken(What::ReadOnly(String::new())),
+                Err(what) => self.broken(what),
+            },
+            _ => self.broken(What::NotInterpreted),
+        }
+    }
+}
+
+fn index(position: usize) -> u32 {
+    u32::try_from(position).unwrap_or(u32::MAX)
+}

@@ -1,0 +1,256 @@
+//! The language of expressions: text in the properties of blocks, Lua in its looks, with TRIK Studio's own meanings.
+//!
+//! A [`Source`] is one text, read once; [`analyse`] infers types with what all texts of the project have taught
+//! [`Names`], and compiles; [`evaluate`] runs it on the project's [`Store`]. Docs for users: docs/user/expressions.md.
+//! Knows no blocks, no diagrams and no robot: the robot is the trait [`Outside`].
+
+// Problems are rare, and their size costs nothing where none is.
+#![allow(clippy::result_large_err)]
+
+mod analyse;
+mod call;
+mod code;
+mod escape;
+pub mod fuzz;
+mod lexer;
+pub mod limits;
+pub mod literal;
+pub mod names;
+pub mod parser;
+pub mod reserved;
+mod run;
+pub mod store;
+pub mod tree;
+pub mod types;
+pub mod value;
+pub mod words;
+
+pub use escape::{escape, unescape};
+pub use names::{Kind, Names, Slot};
+pub use reserved::Kit;
+pub use run::Outside;
+pub use store::Store;
+pub use types::Type;
+pub use value::{Compat, Value};
+
+use analyse::{Analysis, PartType};
+use code::Code;
+use lang_text::problem::{Problem, Severity};
+use run::Run;
+use std::rc::Rc;
+use tree::{Id, Tree};
+use words::{Fault, What};
+
+/// What a block asks an expression for.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub enum Wanted {
+    /// Nothing: statements are run for what they do.
+    Statements,
+    /// A truth.
+    Bool,
+    /// A whole number.
+    Int,
+    /// A number.
+    Float,
+    /// A text.
+    Text,
+    /// A list of texts, as of ports.
+    List,
+    /// Whatever it is.
+    #[default]
+    Any,
+}
+
+/// One text: its tree, what is known of its types, and its code. Belongs to the [`Names`] it was first analysed with.
+#[derive(Clone, Debug)]
+pub struct Source {
+    text: Rc<str>,
+    wanted: Wanted,
+    tree: Tree,
+    unreadable: Vec<Fault>,
+    parts: Vec<PartType>,
+    /// The number of this reading; 0: it has to be read anew.
+    reading: u32,
+    good_at: Option<u32>,
+    faults: Vec<Fault>,
+    code: Code,
+}
+
+impl Source {
+    /// Reads a text. What is wrong with it is told by [`analyse`].
+    pub fn new(text: &str, wanted: Wanted) -> Self {
+        let (tree, unreadable) = parser::parse(text);
+        Self {
+            text: text.into(),
+            wanted,
+            tree,
+            unreadable,
+            parts: Vec::new(),
+            reading: 0,
+            good_at: None,
+            faults: Vec::new(),
+            code: Code::default(),
+        }
+    }
+
+    /// The text.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// What it is asked for.
+    pub fn wanted(&self) -> Wanted {
+        self.wanted
+    }
+
+    /// The tree; without a root if the text cannot be read.
+    pub fn tree(&self) -> &Tree {
+        &self.tree
+    }
+
+    /// All that the last analysis found, warnings too.
+    pub fn faults(&self) -> &[Fault] {
+        &self.faults
+    }
+
+    /// The warnings of the last analysis.
+    pub fn warnings(&self) -> Vec<Problem> {
+        self.faults
+            .iter()
+            .filter(|fault| fault.what.severity() == Severity::Warning)
+            .map(Fault::problem)
+            .collect()
+    }
+
+    /// The settled type of a part after a good analysis, or [`Type::Any`].
+    pub fn type_of(&self, part: Id, names: &Names) -> Type {
+        let possible = match self.parts.get(part as usize) {
+            Some(PartType::Same(other)) => self.parts.get(*other as usize),
+            other => other,
+        };
+        let possible = match possible {
+            Some(PartType::Own(possible)) => *possible,
+            Some(PartType::Shared(variable)) => names.types.get(*variable),
+            _ => return Type::Any,
+        };
+        if possible.is_settled() {
+            possible.first()
+        } else {
+            Type::Any
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
+
+fn problems(faults: &[Fault]) -> Vec<Problem> {
+    faults.iter().map(Fault::problem).collect()
+}
+
+/// Infers the types of a text and prepares it for [`evaluate`]; cheap when no type has changed since the last time.
+///
+/// Errors come in the real program's order; texts with errors teach their types all the same, as there.
+pub fn analyse(source: &mut Source, names: &mut Names) -> Result<(), Vec<Problem>> {
+    if source.good_at == Some(names.epoch()) {
+        return Ok(());
+    }
+    source.good_at = None;
+    if !source.unreadable.is_empty() {
+        source.faults.clone_from(&source.unreadable);
+        return Err(problems(&source.faults));
+    }
+    if source.reading == 0 {
+        source.reading = names.reading();
+        source.parts.clear();
+    }
+    let mut analysis = Analysis::new(&source.tree, &mut source.parts, names, source.reading);
+    analysis.run();
+    let faults = std::mem::take(&mut analysis.faults);
+    let is_good = faults
+        .iter()
+        .all(|fault| fault.what.severity() != Severity::Error);
+    if is_good {
+        source.code = code::compile(&analysis);
+        source.good_at = Some(names.epoch());
+    } else {
+        // As in the real program, which reads a text with errors anew each time.
+        source.reading = 0;
+    }
+    source.faults = faults;
+    if is_good {
+        Ok(())
+    } else {
+        Err(problems(&source.faults))
+    }
+}
+
+/// Runs a text that was analysed and gives the value that was wanted. Variables that were set before an error stay set.
+pub fn evaluate(
+    source: &Source,
+    names: &Names,
+    store: &mut Store,
+    outside: &mut dyn Outside,
+) -> Result<Value, Vec<Problem>> {
+    run(source, names, store, outside, |run, root| {
+        match source.wanted {
+            Wanted::Statements | Wanted::Any => run.value(root),
+            Wanted::Bool => Value::Bool(run.truth(root)),
+            Wanted::Int => Value::Int(run.whole(root)),
+            Wanted::Float => Value::Float(run.number(root)),
+            Wanted::Text => Value::Text(run.value(root).to_text()),
+            Wanted::List => {
+                let texts = run.value(root).to_texts();
+                let items = texts.into_iter().map(Value::Text).collect();
+                Value::List(Rc::new(value::List::new(items).unwrap_or_default()))
+            }
+        }
+    })
+}
+
+/// Runs a text for a truth; takes no memory for numbers.
+pub fn evaluate_bool(
+    source: &Source,
+    names: &Names,
+    store: &mut Store,
+    outside: &mut dyn Outside,
+) -> Result<bool, Vec<Problem>> {
+    run(source, names, store, outside, |run, root| run.truth(root))
+}
+
+/// Runs a text for a whole number; takes no memory for numbers.
+pub fn evaluate_int(
+    source: &Source,
+    names: &Names,
+    store: &mut Store,
+    outside: &mut dyn Outside,
+) -> Result<i32, Vec<Problem>> {
+    run(source, names, store, outside, |run, root| run.whole(root))
+}
+
+fn run<T>(
+    source: &Source,
+    names: &Names,
+    store: &mut Store,
+    outside: &mut dyn Outside,
+    job: impl FnOnce(&mut Run<'_>, Id) -> T,
+) -> Result<T, Vec<Problem>> {
+    if source.good_at.is_none() {
+        let not_analysed = Fault::new(
+            What::NotAnalysed,
+            lang_text::problem::Position { line: 1, column: 1 },
+        );
+        return Err(if source.faults.is_empty() {
+            vec![not_analysed.problem()]
+        } else {
+            problems(&source.faults)
+        });
+    }
+    let mut run = Run::new(&source.code, names, store, outside);
+    let value = job(&mut run, source.code.root);
+    if run.faults.is_empty() {
+        Ok(value)
+    } else {
+        Err(problems(&run.faults))
+    }
+}
