@@ -27,7 +27,7 @@ use crate::writer::Writer;
 use config::description::{NodeDescription, Pace, SourceDescription};
 use config::format::Format;
 use config::problem::Problem;
-use config::program::Direction;
+use converter::Direction;
 use fault::Trouble;
 use std::collections::BTreeSet;
 use std::path::PathBuf;

@@ -13,7 +13,7 @@ use crate::events::lock;
 use crate::newest::Newest;
 use crate::node::Node;
 use crate::writer::Writer;
-use config::program::Direction;
+use converter::Direction;
 use std::sync::{Arc, Mutex};
 
 /// The regulator of one node.

@@ -8,7 +8,7 @@ use crate::errno::Error;
 use crate::events::lock;
 use crate::limits;
 use crate::node::Node;
-use config::program::Direction;
+use converter::Direction;
 use std::sync::{Arc, Mutex};
 
 /// One consumer's view of a state.

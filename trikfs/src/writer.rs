@@ -7,7 +7,7 @@ use crate::device::Sink;
 use crate::errno::Error;
 use crate::events::lock;
 use crate::node::Node;
-use config::program::Direction;
+use converter::Direction;
 use std::sync::{Arc, Mutex};
 
 /// One program's way to a device.

@@ -8,7 +8,7 @@ use crate::errno::Error;
 use crate::events::lock;
 use crate::guardian::actions::RestAction;
 use config::description::SourceDescription;
-use config::program::Direction;
+use converter::Direction;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
