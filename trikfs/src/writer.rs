@@ -127,3 +127,9 @@ impl Writer {
         self.partial.len()
     }
 }
+
+impl Sink for Writer {
+    fn write(&mut self, tuple: &[u8], waits: bool) -> Result<(), Error> {
+        self.write_whole(tuple, waits)
+    }
+}

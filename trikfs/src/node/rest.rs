@@ -104,7 +104,7 @@ impl Node {
         }
         match sink {
             SourceDescription::Node(path) => {
-                let other = self.around.links.iter().find(|(name, _)| name == path);
+                let other = self.links.iter().find(|(name, _)| name == path);
                 other.map_or(Ok(None), |(_, other)| other.action_of(&converted))
             }
             _ if !device::takes_bytes(sink) => Ok(None),
