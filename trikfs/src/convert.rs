@@ -28,6 +28,8 @@ pub struct Recipe {
     generation: AtomicU32,
     memory_kb: u32,
     budget_us: u32,
+    /// Bytes of a tuple that passes unchanged, for a description without stages.
+    tuple_size: usize,
     read: Vec<Plan>,
     write: Option<Vec<Plan>>,
     lua: Mutex<Option<Arc<StatePool>>>,
@@ -75,6 +77,7 @@ impl Recipe {
             generation: AtomicU32::new(0),
             memory_kb: description.memory_kb,
             budget_us: description.budget_us,
+            tuple_size: description.input_tuple_size,
             read: plans(&description.converter, Direction::Read)?,
             write: description
                 .write_converter
@@ -92,7 +95,7 @@ impl Recipe {
         }
     }
 
-    /// A private pipeline for one open file. `sizes`: bytes before and after an empty chain.
+    /// A private pipeline for one open file.
     pub fn open(&self, log: &LogSink) -> Result<Pipeline, Error> {
         let pool = lock(&self.lua).clone();
         let generation = self.generation.load(Ordering::Acquire);
@@ -108,11 +111,14 @@ impl Recipe {
                 Some(vm)
             }
         };
+        let unchanged = Chain::Unchanged {
+            tuple_size: self.tuple_size,
+        };
         let mut pipeline = Pipeline {
             vm,
             pool,
             generation,
-            read: Chain::default(),
+            read: unchanged,
             write: None,
         };
         pipeline.read = self.chain(
@@ -198,7 +204,10 @@ impl Recipe {
         params: &Params,
         log: &LogSink,
     ) -> Result<(), Error> {
-        for (plan, stage) in plans.iter().zip(&mut chain.stages) {
+        let Chain::Stages(stages) = chain else {
+            return Ok(());
+        };
+        for (plan, stage) in plans.iter().zip(stages) {
             if let Some(library) = &plan.library {
                 let info = self.open_info(plan, direction, params, log);
                 stage.code = Code::Native(library.open(&info).map_err(Error::Converter)?);
@@ -232,7 +241,11 @@ impl Recipe {
         mut vm: Option<&mut Vm>,
         log: &LogSink,
     ) -> Result<Chain, Error> {
-        let mut chain = Chain::default();
+        if plans.is_empty() {
+            let tuple_size = self.tuple_size;
+            return Ok(Chain::Unchanged { tuple_size });
+        }
+        let mut stages = Vec::with_capacity(plans.len());
         for (position, plan) in plans.iter().enumerate() {
             let (input_size, output_size) = (plan.input_size, plan.output_size);
             let code = if let Some(library) = &plan.library {
@@ -250,13 +263,13 @@ impl Recipe {
                         .map_err(Error::Converter)?,
                 )
             };
-            chain.stages.push(Stage {
+            stages.push(Stage {
                 code,
                 input_size,
                 between: vec![0; output_size],
             });
         }
-        Ok(chain)
+        Ok(Chain::Stages(stages))
     }
 }
 
@@ -324,9 +337,12 @@ impl Drop for Pipeline {
     }
 }
 
-#[derive(Default)]
-struct Chain {
-    stages: Vec<Stage>,
+/// One direction.
+enum Chain {
+    /// There are no stages: tuples pass as they are.
+    Unchanged { tuple_size: usize },
+    /// Each tuple passes all, in this order; there is at least one.
+    Stages(Vec<Stage>),
 }
 
 struct Stage {
@@ -365,19 +381,21 @@ impl Pipeline {
 
 impl Chain {
     fn convert(&mut self, vm: Option<&mut Vm>, input: &[u8], output: &mut [u8]) -> Batch {
-        match self.stages.as_mut_slice() {
-            [] => {
-                // Without stages both sizes are equal; the caller counts in tuples of its own.
+        match self {
+            Self::Unchanged { tuple_size } => {
                 let n = input.len().min(output.len());
                 output[..n].copy_from_slice(&input[..n]);
+                let tuples = n / *tuple_size;
                 Batch {
-                    consumed: usize::MAX,
-                    produced: usize::MAX,
+                    consumed: tuples,
+                    produced: tuples,
                     fault: None,
                 }
             }
-            [only] => only.convert_many(vm, input, output),
-            stages => convert_through(stages, vm, input, output),
+            Self::Stages(stages) => match stages.as_mut_slice() {
+                [only] => only.convert_many(vm, input, output),
+                stages => convert_through(stages, vm, input, output),
+            },
         }
     }
 }

@@ -7,10 +7,9 @@
 use crate::convert::shared::Cache;
 use crate::engine::Engine;
 use crate::errno::Error;
-use crate::files::control::rest_all;
 use crate::fs::{Forest, Fs, OpenFiles};
 use crate::guardian::ledger::Ledger;
-use crate::node::Node;
+use crate::node::{Node, rest_all};
 use crate::reload::{Reloader, Setup};
 use crate::sample_bus::Readers;
 use crate::transport::Operations;
@@ -150,7 +149,7 @@ pub fn run(options: Options) -> Result<(), String> {
 /// Readers of shared memory see the end, whoever still holds a node.
 fn leave_bus(engine: &Engine, nodes: &[Arc<Node>]) {
     for node in nodes {
-        node.newest.leave_bus();
+        node.sampling.newest.leave_bus();
     }
     engine.samples.close();
 }

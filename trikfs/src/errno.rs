@@ -3,6 +3,8 @@
 //! Nothing else in this crate chooses an errno for an outcome of its own; a device's own errno passes through here.
 
 use std::fmt;
+use std::io;
+use std::path::Path;
 
 /// Who has to act.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -58,6 +60,15 @@ pub enum Error {
     NotRunning(String),
     /// The device failed with an errno of its own.
     Device(i32, String),
+    /// An earlier operation has been in the device or the converter for so long that it will hardly return.
+    Quarantined {
+        /// How long.
+        for_ms: u32,
+    },
+    /// More operations want the device than may wait for it.
+    Crowded(String),
+    /// What the device gives has not the form that it must have.
+    Malformed(String),
     /// The device answers, and what it says is no measurement: a converter has seen that.
     Measurement(String),
     /// The converter failed.
@@ -106,12 +117,47 @@ impl Error {
         }
     }
 
-    /// The same for a converter on the way from the device: there is no caller who could have written better.
+    /// A fault of a converter on the way from the device: there is no caller who could have written better.
     pub fn of_reading(self) -> Self {
         match self {
             Self::Invalid(text) | Self::OutOfRange(text) => Self::Converter(text),
             other => other,
         }
+    }
+
+    /// An I/O error of the device at this path.
+    pub fn of_device(path: &Path, error: &io::Error) -> Self {
+        let what = path.display().to_string();
+        match error.raw_os_error() {
+            Some(libc::ENOENT | libc::ENODEV | libc::ENXIO | libc::ENOTDIR) | None => {
+                Self::NoDevice(format!("{what}: {error}"))
+            }
+            Some(libc::EACCES | libc::EPERM | libc::EROFS) => Self::AccessDenied,
+            Some(errno) => Self::Device(errno, what),
+        }
+    }
+
+    /// An error of the system in something that a device needs, such as epoll.
+    pub fn of_system(what: impl Into<String>, error: &io::Error) -> Self {
+        Self::Device(error.raw_os_error().unwrap_or(libc::EIO), what.into())
+    }
+
+    /// What a device fails with that has this errno.
+    pub fn of_number(what: String, errno: i32) -> Self {
+        match errno {
+            libc::ENODEV | libc::ENXIO => Self::NoDevice(what),
+            errno => Self::Device(errno, what),
+        }
+    }
+
+    /// Nobody acknowledges at an address of a bus.
+    pub fn no_answer(what: String) -> Self {
+        Self::Device(libc::EREMOTEIO, what)
+    }
+
+    /// An answer that is against the protocol.
+    pub fn against_protocol(what: String) -> Self {
+        Self::Device(libc::EPROTO, what)
     }
 
     /// The number that the program sees.
@@ -129,6 +175,9 @@ impl Error {
             Self::Busy(_) => libc::EBUSY,
             Self::NotRunning(_) => libc::ENODEV,
             Self::Device(errno, _) => device_errno(*errno),
+            Self::Quarantined { .. } => libc::EIO,
+            Self::Crowded(_) => libc::EBUSY,
+            Self::Malformed(_) => libc::EIO,
             Self::Measurement(_) => libc::EIO,
             Self::Converter(_) => libc::EIO,
             Self::Stale => libc::ESTALE,
@@ -143,6 +192,16 @@ impl Error {
             Self::BufferTooSmall => libc::ERANGE,
             Self::Internal(_) => libc::EIO,
         }
+    }
+
+    /// The device has too much to do at the moment: trying again later may help.
+    pub fn is_busy_device(&self) -> bool {
+        matches!(self, Self::Crowded(_) | Self::Device(libc::EBUSY, _))
+    }
+
+    /// The device is not there, as the program sees it: it may come back.
+    pub fn is_gone(&self) -> bool {
+        self.errno() == libc::ENODEV
     }
 
     /// Who has to act.
@@ -168,9 +227,13 @@ impl Error {
             | Self::Unsupported
             | Self::NoAttribute
             | Self::BufferTooSmall => Blame::Caller,
-            Self::NoDevice(_) | Self::TimedOut(_) | Self::Device(..) | Self::Measurement(_) => {
-                Blame::Device
-            }
+            Self::NoDevice(_)
+            | Self::TimedOut(_)
+            | Self::Device(..)
+            | Self::Quarantined { .. }
+            | Self::Crowded(_)
+            | Self::Malformed(_)
+            | Self::Measurement(_) => Blame::Device,
             Self::Converter(_) => Blame::Converter,
             Self::Internal(_) => Blame::Ours,
         }
@@ -191,6 +254,11 @@ fn device_errno(errno: i32) -> i32 {
     }
 }
 
+/// A text with what the system says to a number.
+fn with_number(f: &mut fmt::Formatter<'_>, what: &str, errno: i32) -> fmt::Result {
+    write!(f, "{what}: {}", std::io::Error::from_raw_os_error(errno))
+}
+
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -209,9 +277,14 @@ impl fmt::Display for Error {
             | Self::Converter(what)
             | Self::Internal(what) => f.write_str(what),
             Self::WouldBlock => f.write_str("no sample yet"),
-            Self::Device(errno, what) => {
-                write!(f, "{what}: {}", std::io::Error::from_raw_os_error(*errno))
+            Self::Device(errno, what) => with_number(f, what, *errno),
+            Self::Quarantined { for_ms } => {
+                let what =
+                    format!("quarantined: an earlier operation has not returned for {for_ms} ms");
+                with_number(f, &what, libc::EIO)
             }
+            Self::Crowded(what) => with_number(f, what, libc::EBUSY),
+            Self::Malformed(what) => with_number(f, what, libc::EIO),
             Self::Stale => f.write_str("the node was changed or removed since the file was opened"),
             Self::TooManyOpen => f.write_str("too many open files"),
             Self::NoBuffers => f.write_str("a queue is full"),

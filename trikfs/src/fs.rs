@@ -185,7 +185,7 @@ impl Fs {
                 Ok((file, access, is_owned))
             }
             Kind::Owner(node) if !write => {
-                let lease = node.lease.clone();
+                let lease = node.driving.lease.clone();
                 let file = Arc::new(TextFile::new(move || lease.line()));
                 Ok((file, Access::Direct, false))
             }
@@ -194,7 +194,7 @@ impl Fs {
                 Ok((file, Access::Direct, true))
             }
             Kind::Period(node) => {
-                if write && node.period_ms() == 0 {
+                if write && node.sampling.period_ms() == 0 {
                     return Err(Error::AccessDenied);
                 }
                 Ok((Arc::new(PeriodFile::new(node)), Access::Direct, false))
@@ -351,6 +351,7 @@ impl Operations for Fs {
         }
         let stamp = self
             .node_of(ino)?
+            .sampling
             .newest
             .stamp()
             .ok_or(Error::NoAttribute)?;
@@ -361,7 +362,7 @@ impl Operations for Fs {
         let mut names = Vec::new();
         if self
             .node_of(ino)
-            .is_ok_and(|node| node.newest.stamp().is_some())
+            .is_ok_and(|node| node.sampling.newest.stamp().is_some())
         {
             names.extend_from_slice(TIME_ATTRIBUTE);
             names.push(0);

@@ -87,7 +87,7 @@ impl Hub {
         let queue = Queue {
             is_over: inner.is_over,
             bytes: node
-                .and_then(|node| node.answer().tuple())
+                .and_then(|node| node.source.answer().tuple())
                 .unwrap_or_default()
                 .into(),
             ..Queue::default()
@@ -126,10 +126,7 @@ impl Hub {
             let me: Weak<dyn Ready> = self.me.clone();
             match node.engine.poller.watch(fd, me) {
                 Ok(watch) => inner.watch = watch,
-                Err(error) => node.report(&Error::Device(
-                    error.raw_os_error().unwrap_or(libc::EIO),
-                    "epoll".to_owned(),
-                )),
+                Err(error) => node.report(&Error::of_system("epoll", &error)),
             }
         }
         if let Some(at) = at {
@@ -195,7 +192,9 @@ impl Hub {
                 let whole = *raw_len / self.tuple_size * self.tuple_size;
                 if whole > 0 {
                     let source = &node.description.source;
-                    node.answer().note(source, &raw[..whole], self.tuple_size);
+                    node.source
+                        .answer()
+                        .note(source, &raw[..whole], self.tuple_size);
                     self.each(|subscription| subscription.push(&raw[..whole]));
                     raw.copy_within(whole..*raw_len, 0);
                     *raw_len -= whole;
@@ -211,10 +210,8 @@ impl Hub {
             Ok(Got::End) => {
                 let again = stream.begins_anew();
                 if std::mem::take(raw_len) > 0 {
-                    node.report(&Error::Device(
-                        libc::EIO,
-                        "the source ended inside a tuple".to_owned(),
-                    ));
+                    let what = "the source ended inside a tuple".to_owned();
+                    node.report(&Error::Malformed(what));
                 }
                 inner.is_over = !again;
                 self.each(|subscription| subscription.end(!again));

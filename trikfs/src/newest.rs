@@ -182,7 +182,7 @@ impl Newest {
                 _ => Ok(false),
             };
         }
-        let _inside = node.enter()?;
+        let _inside = node.quarantine.enter()?;
         let mut work = lock_patiently(&self.work);
         let was_closed = matches!(work.source, Source::Closed);
         work.open(&node)?;
@@ -217,7 +217,7 @@ impl Newest {
             return Err(Error::Stale);
         }
         if node.description.pace == Pace::OnRead {
-            let _inside = node.enter()?;
+            let _inside = node.quarantine.enter()?;
             self.sample(&node);
         }
         Ok(())
@@ -352,7 +352,7 @@ impl Newest {
             return self.fail(error);
         }
         let outcome = work.take(node, |tuple| self.publish(node, tuple));
-        if matches!(&outcome, Err(error) if error.errno() == libc::ENODEV) || node.is_retired() {
+        if matches!(&outcome, Err(error) if error.is_gone()) || node.is_retired() {
             work.source = Source::Closed;
         }
         drop(work);
@@ -395,7 +395,7 @@ impl Newest {
         node.stats.samples.add(1);
         self.page.fill(node, tuple);
         self.tell();
-        if let Some(regulation) = node.regulation() {
+        if let Some(regulation) = node.driving.regulation() {
             regulation.step(node, tuple);
         }
     }
@@ -406,7 +406,7 @@ impl Newest {
             if is_new {
                 self.page.drop(&node);
             }
-            if let Some(regulation) = node.regulation() {
+            if let Some(regulation) = node.driving.regulation() {
                 regulation.fail(&node, &error);
             }
         }

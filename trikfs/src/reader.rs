@@ -150,8 +150,7 @@ impl Reader {
         let is_new = watch.is_none();
         if is_new && let Some(fd) = stream.fd() {
             let watched = self.node.engine.poller.watch(fd, self.on_ready.clone());
-            let failed = |error: std::io::Error| error.raw_os_error().unwrap_or(libc::EIO);
-            *watch = watched.map_err(|error| Error::Device(failed(error), "epoll".to_owned()))?;
+            *watch = watched.map_err(|error| Error::of_system("epoll", &error))?;
         }
         if let Some(at) = at {
             self.schedule(&mut inner, at);
@@ -232,10 +231,8 @@ impl Reader {
                 Ok(Got::End) => {
                     // A torn tuple is never converted.
                     if std::mem::take(&mut inner.raw_len) > 0 {
-                        self.node.report(&Error::Device(
-                            libc::EIO,
-                            "the source ended inside a tuple".to_owned(),
-                        ));
+                        let what = "the source ended inside a tuple".to_owned();
+                        self.node.report(&Error::Malformed(what));
                     }
                     return Ok(Got::End);
                 }
@@ -243,7 +240,7 @@ impl Reader {
                 Err(error) => {
                     inner.raw_len = 0;
                     self.node.report(&error);
-                    if matches!(inner.origin, Origin::Own(_)) && error.errno() == libc::ENODEV {
+                    if matches!(inner.origin, Origin::Own(_)) && error.is_gone() {
                         inner.watch = None;
                         inner.origin = Origin::Lost;
                     }
@@ -268,27 +265,27 @@ impl Reader {
         let mut fault = None;
         if direct > 0 {
             let input = &inner.raw[..tuples * input_size];
-            let (taken, produced, failed) = self.node.convert(
+            let batch = self.node.convert(
                 &mut pipeline,
                 Direction::Read,
                 input,
                 &mut out[..direct * output_size],
             );
-            consumed = taken;
-            made = produced * output_size;
-            fault = failed;
+            consumed = batch.consumed;
+            made = batch.produced * output_size;
+            fault = batch.fault;
         }
         if fault.is_none() && consumed < tuples && made < out.len() {
             // The buffer ends inside this tuple.
             let input = &inner.raw[consumed * input_size..tuples * input_size];
             inner.rest.clear();
             inner.rest.resize(output_size, 0);
-            let (taken, produced, failed) =
-                self.node
-                    .convert(&mut pipeline, Direction::Read, input, &mut inner.rest);
-            consumed += taken;
-            fault = failed;
-            inner.rest.truncate(produced * output_size);
+            let batch = self
+                .node
+                .convert(&mut pipeline, Direction::Read, input, &mut inner.rest);
+            consumed += batch.consumed;
+            fault = batch.fault;
+            inner.rest.truncate(batch.produced * output_size);
             inner.rest_at = 0;
             made += inner.take_rest(&mut out[made..]);
         }

@@ -63,7 +63,7 @@ impl Regulation {
     /// feedback, the law or the driven node; then nothing is held, and what was held before came to rest.
     pub fn order(&self, node: &Arc<Node>, target: &[u8]) -> Result<(), Error> {
         let mut slot = lock(&self.order);
-        let measured = node.newest.latch().sample(newest::too_old(node));
+        let measured = node.sampling.newest.latch().sample(newest::too_old(node));
         let turn = self.actuator.take_turn();
         let before = match slot.as_mut() {
             Some(order) if self.is_mine(order, node) => {
@@ -116,7 +116,7 @@ impl Regulation {
             writer: self.actuator.open_writer(None)?,
             before: None,
             writes: self.writes(),
-            generation: node.lease_generation(),
+            generation: node.driving.lease_generation(),
             input: Vec::with_capacity(input),
             output: vec![0; output],
         })
@@ -124,7 +124,7 @@ impl Regulation {
 
     /// False when somebody drives the actuator directly, or has taken the lease.
     fn is_mine(&self, order: &Order, node: &Node) -> bool {
-        order.writes == self.writes() && order.generation == node.lease_generation()
+        order.writes == self.writes() && order.generation == node.driving.lease_generation()
     }
 
     /// Nothing is held any more; the driven node stays as it is.
@@ -200,12 +200,12 @@ impl Regulation {
                 });
             }
         }
-        self.actuator.lose(&why);
+        self.actuator.driving.lose(&why);
     }
 
     /// Why the driven node came to rest, until it is driven again.
     pub fn lost(&self) -> Option<Error> {
-        self.actuator.lost()
+        self.actuator.driving.lost()
     }
 
     /// Writes to what is driven in the end: an alias and its target are one.
@@ -232,15 +232,14 @@ impl Order {
         self.input.extend_from_slice(measured);
         self.input.extend_from_slice(&interval_us.to_le_bytes());
         let mut law = lock(&self.law);
-        let (_, produced, fault) =
-            node.convert(&mut law, Direction::Write, &self.input, &mut self.output);
+        let batch = node.convert(&mut law, Direction::Write, &self.input, &mut self.output);
         drop(law);
-        if let Some(error) = fault {
+        if let Some(error) = batch.fault {
             return Err(error);
         }
-        if produced > 0 {
+        if batch.produced > 0 {
             self.writer.write_whole(&self.output, true)?;
         }
-        Ok(produced > 0)
+        Ok(batch.produced > 0)
     }
 }

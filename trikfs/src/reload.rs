@@ -9,13 +9,12 @@ use crate::convert::shared::Cache;
 use crate::convert::{Recipe, Workshop};
 use crate::engine::Engine;
 use crate::events::lock;
-use crate::files::control::rest_all;
 use crate::fs::{Forest, OpenFiles};
 use crate::guardian::actions::RestAction;
 use crate::guardian::ledger::Ledger;
 use crate::lease::Lease;
 use crate::limits;
-use crate::node::{Node, directory_of};
+use crate::node::{Node, directory_of, rest_all};
 use crate::setup::SetupRunner;
 use crate::tree::{Owner, Tree};
 use config::description::{Alias, Config, NodeDescription, SourceDescription, StageKind};
@@ -220,7 +219,12 @@ impl Reloader {
             leases: before
                 .nodes()
                 .iter()
-                .map(|node| (node.lease.path().to_owned(), node.lease.clone()))
+                .map(|node| {
+                    (
+                        node.driving.lease.path().to_owned(),
+                        node.driving.lease.clone(),
+                    )
+                })
                 .collect(),
             kept: Vec::new(),
         };
@@ -237,7 +241,7 @@ impl Reloader {
         self.setup_runner.run(&loaded.config.setup);
         for node in &kept {
             if let Some(pool) = &pool {
-                node.recipe().move_to(pool);
+                node.recipe.move_to(pool);
             }
         }
         let aliases = &loaded.config.aliases;
@@ -313,7 +317,7 @@ impl Reloader {
             setup.engine.log.line(&line);
         }
         for node in &new {
-            node.newest.start();
+            node.sampling.newest.start();
         }
         if let Some(old_pool) = old_pool {
             old_pool.retire();
@@ -335,14 +339,14 @@ impl Reloader {
 fn set_actuators(nodes: &[Arc<Node>]) {
     let mut actuators: HashMap<&str, Vec<Weak<Node>>> = HashMap::new();
     for node in nodes {
-        let of_directory = actuators.entry(node.lease.path()).or_default();
+        let of_directory = actuators.entry(node.driving.lease.path()).or_default();
         if node.description.rest.is_some() {
             of_directory.push(Arc::downgrade(node));
         }
     }
     for node in nodes {
-        if let Some(of_directory) = actuators.remove(node.lease.path()) {
-            node.lease.set_actuators(of_directory);
+        if let Some(of_directory) = actuators.remove(node.driving.lease.path()) {
+            node.driving.lease.set_actuators(of_directory);
         }
     }
 }
@@ -445,7 +449,7 @@ impl Builder<'_> {
         if let Some(&old) = self.before.get(path)
             && old.fingerprint == fingerprint
             && old.is_attribute == is_attribute
-            && Arc::ptr_eq(&old.lease, &lease)
+            && Arc::ptr_eq(&old.driving.lease, &lease)
         {
             self.kept.push(old.clone());
             self.made.insert(path.to_owned(), old.clone());

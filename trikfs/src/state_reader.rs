@@ -48,17 +48,19 @@ impl StateReader {
         for _ in 0..limits::CONSUMED_TUPLES_MAX {
             match self.device.whole_tuple(&mut self.raw) {
                 // The clock asks again soon, and whoever reads waits for that.
-                Err(Error::WouldBlock) if self.node.newest.is_in_background() => return Ok(false),
+                Err(Error::WouldBlock) if self.node.sampling.newest.is_in_background() => {
+                    return Ok(false);
+                }
                 sampled => sampled.map_err(|error| self.failed(error))?,
             }
             let mut pipeline = lock(&self.pipeline);
-            let (_, produced, fault) =
-                self.node
-                    .convert(&mut pipeline, Direction::Read, &self.raw, tuple);
-            if let Some(error) = fault {
+            let batch = self
+                .node
+                .convert(&mut pipeline, Direction::Read, &self.raw, tuple);
+            if let Some(error) = batch.fault {
                 return Err(error);
             }
-            if produced > 0 {
+            if batch.produced > 0 {
                 self.node.read_back(&self.raw, tuple);
                 return Ok(true);
             }
@@ -125,23 +127,23 @@ impl StateReader {
             };
             let input = &self.raw[..tuples * input_size];
             let mut pipeline = lock(&self.pipeline);
-            let (consumed, produced, fault) =
-                self.node
-                    .convert(&mut pipeline, Direction::Read, input, target);
+            let batch = self
+                .node
+                .convert(&mut pipeline, Direction::Read, input, target);
             drop(pipeline);
-            self.next_tuple += consumed as u64;
-            if produced > 0 {
+            self.next_tuple += batch.consumed as u64;
+            if batch.produced > 0 {
                 if tuples == 1 {
                     self.node.read_back(input, &mut target[..output_size]);
                 }
                 if whole > 0 {
-                    return Ok(produced * output_size);
+                    return Ok(batch.produced * output_size);
                 }
                 one.drain(..skip);
                 self.rest = one;
                 return Ok(self.take_rest(out));
             }
-            if let Some(error) = fault {
+            if let Some(error) = batch.fault {
                 return Err(error);
             }
         }

@@ -115,7 +115,7 @@ impl Tree {
             leased: nodes
                 .iter()
                 .filter(|node| node.description.rest.is_some())
-                .map(|node| node.lease.path().to_owned())
+                .map(|node| node.driving.lease.path().to_owned())
                 .collect(),
         };
         let root = Entry {
@@ -272,7 +272,7 @@ impl Tree {
                     0o444
                 }
             }
-            Kind::Owner(node) => attr.mode = 0o444 | node.lease.write_mode(),
+            Kind::Owner(node) => attr.mode = 0o444 | node.driving.lease.write_mode(),
             Kind::Param(..) => attr.mode = 0o644,
             Kind::Device(node) => {
                 attr.mode = node.description.mode;
@@ -291,7 +291,7 @@ impl Tree {
     }
 
     fn value_attr(&self, node: &Node, view: View, attr: &mut Attr) {
-        let stamp = node.newest.stamp();
+        let stamp = node.sampling.newest.stamp();
         attr.mode = node.description.mode;
         attr.modified = stamp.map_or(self.made, Stamp::system_time);
         attr.attr_ttl = SHORT;
@@ -422,9 +422,9 @@ impl Builder<'_> {
 
     /// Whether a node's directory shows a lease: there is something to rest, and a link can be written.
     fn has_owner(&self, node: &Node) -> bool {
-        let is_link = node.lease.path() != node.directory();
+        let is_link = node.driving.lease.path() != node.directory();
         let is_written = node.description.mode & 0o222 != 0;
-        self.leased.contains(node.lease.path()) && (is_written || !is_link)
+        self.leased.contains(node.driving.lease.path()) && (is_written || !is_link)
     }
 
     fn add_node_files(&mut self, at: u64, node: &Arc<Node>) {

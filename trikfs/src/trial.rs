@@ -124,7 +124,6 @@ pub fn convert(
     let batch = pipeline.convert(direction, input, output);
     match batch.fault {
         Some(fault) => Err(fault),
-        // An empty chain counts in tuples of nobody.
         None if batch.produced > 0 => Ok(Conversion::Produced),
         None => Ok(Conversion::Consumed),
     }

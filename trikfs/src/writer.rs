@@ -94,30 +94,30 @@ impl Writer {
                 tuple.len()
             )));
         }
-        let (sink, pipeline) = match (&mut self.way, self.node.regulation()) {
+        let (sink, pipeline) = match (&mut self.way, self.node.driving.regulation()) {
             (Way::Device { sink, pipeline }, _) => (sink, pipeline),
             (Way::Regulation, Some(regulation)) => return regulation.order(&self.node, tuple),
             (Way::Regulation, None) => {
                 return Err(Error::Internal("an order without a regulator".to_owned()));
             }
         };
-        let (_, produced, fault) = self.node.convert(
+        let batch = self.node.convert(
             &mut lock(pipeline),
             Direction::Write,
             tuple,
             &mut self.output,
         );
-        if let Some(error) = fault {
+        if let Some(error) = batch.fault {
             return Err(error);
         }
-        if produced > 0 {
+        if batch.produced > 0 {
             sink.write(&self.output, waits).inspect_err(|error| {
                 if *error != Error::WouldBlock {
                     self.node.report(error);
                 }
             })?;
             self.node.sent(tuple, &self.output);
-            self.node.count_write();
+            self.node.driving.count_write();
         }
         Ok(())
     }

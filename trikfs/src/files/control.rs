@@ -6,11 +6,9 @@ use super::OpenFile;
 use crate::bytes::copy_at;
 use crate::errno::Error;
 use crate::events::lock;
-use crate::limits;
-use crate::node::Node;
+use crate::node::{Node, rest_all};
 use crate::text;
 use crate::transport::{Outcome, Transfer};
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
 
 /// A text that is made anew at each read from its beginning.
@@ -55,7 +53,7 @@ impl PeriodFile {
         let shown = node.clone();
         Self {
             node: node.clone(),
-            text: TextFile::new(move || format!("{}\n", shown.period_ms())),
+            text: TextFile::new(move || format!("{}\n", shown.sampling.period_ms())),
         }
     }
 }
@@ -72,7 +70,7 @@ impl OpenFile for PeriodFile {
             .map_err(|_| Error::Invalid("poll_ms is a whole number of ms".to_owned()))?;
         let period_ms = u32::try_from(number)
             .map_err(|_| Error::OutOfRange("poll_ms is at least 1".to_owned()))?;
-        self.node.set_period_ms(period_ms)?;
+        self.node.sampling.set_period_ms(period_ms)?;
         Ok(Outcome::Done(data.len()))
     }
 }
@@ -98,37 +96,6 @@ impl OpenFile for StopFile {
     }
 }
 
-/// Brings every actuator to rest, slow ones beside each other: one that hangs keeps one thread. All are tried; the
-/// first failure is returned.
-pub fn rest_all(nodes: &[Arc<Node>]) -> Result<(), Error> {
-    let has_rest = |node: &&Arc<Node>| node.description.rest.is_some();
-    let actuators: Vec<_> = nodes.iter().filter(has_rest).collect();
-    let threads = actuators.len().min(limits::REST_THREADS_MAX);
-    let next = AtomicUsize::new(0);
-    let failures = Mutex::new(Vec::new());
-    // First nobody may drive them any more.
-    for regulation in nodes.iter().filter_map(|node| node.regulation()) {
-        regulation.release();
-    }
-    let work = || {
-        while let Some(node) = actuators.get(next.fetch_add(1, Ordering::Relaxed)) {
-            if let Err(error) = node.rest() {
-                node.report(&error);
-                lock(&failures).push(error);
-            }
-        }
-    };
-    std::thread::scope(|scope| {
-        for _ in 1..threads {
-            // Without further threads it takes longer.
-            let _ = std::thread::Builder::new().spawn_scoped(scope, work);
-        }
-        work();
-    });
-    let first = lock(&failures).first().cloned();
-    first.map_or(Ok(()), Err)
-}
-
 /// The lines of `status` after the first: name, state, rate and fault of each node.
 pub fn status_lines(nodes: &[Arc<Node>]) -> String {
     let mut out = String::new();
@@ -137,14 +104,14 @@ pub fn status_lines(nodes: &[Arc<Node>]) -> String {
         let state = match (&fault, node.description.pace) {
             (Some(_), _) => "fault",
             (None, config::description::Pace::OnRead) => "ready",
-            (None, _) if node.newest.stamp().is_some() => "sampled",
+            (None, _) if node.sampling.newest.stamp().is_some() => "sampled",
             (None, _) => "waiting",
         };
         let why = fault.map_or_else(|| "-".to_owned(), |error| fault_line(&error));
         out.push_str(&format!(
             "{} {state} {:.1}Hz {why}\n",
             node.path(),
-            node.rate_hz()
+            node.sampling.rate_hz(node.stats.samples.get())
         ));
     }
     out

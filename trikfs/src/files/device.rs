@@ -150,7 +150,7 @@ impl OpenFile for DeviceFile {
         if self.node.is_retired() {
             return Err(Error::Stale);
         }
-        let _inside = self.node.enter()?;
+        let _inside = self.node.quarantine.enter()?;
         match self.source.get() {
             None => Err(Error::AccessDenied),
             Some(Source::Stream(reader)) => self.read_stream(reader, request, out),
@@ -166,7 +166,7 @@ impl OpenFile for DeviceFile {
         let Some(writer) = self.writer.get() else {
             return Err(Error::AccessDenied);
         };
-        let _inside = self.node.enter()?;
+        let _inside = self.node.quarantine.enter()?;
         let _admitted = self.ownership.admit(&self.node, request.caller)?;
         let turn = self.node.take_turn();
         let taken = lock_patiently(writer).write(data, !request.nonblocking)?;
@@ -186,7 +186,7 @@ impl OpenFile for DeviceFile {
             None => {}
             Some(Source::State(_)) => now |= READABLE,
             Some(Source::Stream(reader)) => {
-                let _inside = self.node.enter()?;
+                let _inside = self.node.quarantine.enter()?;
                 reader.arm()?;
                 if reader.is_ready() {
                     now |= READABLE;
@@ -201,7 +201,7 @@ impl OpenFile for DeviceFile {
 
     fn flush(&self, _id: RequestId, caller: Caller) -> Result<Outcome, Error> {
         self.ownership.closed(&self.node, caller);
-        let _inside = self.node.enter()?;
+        let _inside = self.node.quarantine.enter()?;
         let incomplete = self
             .writer
             .get()
@@ -236,7 +236,7 @@ impl Ready for DeviceFile {
             }
             return;
         };
-        let Ok(_inside) = self.node.enter() else {
+        let Ok(_inside) = self.node.quarantine.enter() else {
             // Too many are inside: look again when they had time to come out.
             reader.retry_later();
             return;

@@ -45,7 +45,7 @@ impl OpenFile for DevicesFile {
         if self.node.is_retired() {
             return Err(Error::Stale);
         }
-        let _inside = self.node.enter()?;
+        let _inside = self.node.quarantine.enter()?;
         let size = out.len().min(limits::READ_BYTES);
         self.reported(self.devices.read(request.offset, &mut out[..size]))?;
         self.node.stats.reads.add(1);
@@ -56,7 +56,7 @@ impl OpenFile for DevicesFile {
         if self.node.is_retired() {
             return Err(Error::Stale);
         }
-        let _inside = self.node.enter()?;
+        let _inside = self.node.quarantine.enter()?;
         let _admitted = self.ownership.admit(&self.node, request.caller)?;
         self.reported(self.devices.write(request.offset, data))?;
         self.node.stats.writes.add(1);

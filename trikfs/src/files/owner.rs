@@ -31,7 +31,7 @@ impl OwnerFile {
         }
         let file = Arc::new(Self {
             node: node.clone(),
-            lease: node.lease.clone(),
+            lease: node.driving.lease.clone(),
             claim: OnceLock::new(),
             reads,
             shown: Mutex::default(),

@@ -47,12 +47,12 @@ impl Ownership {
     /// Asks every lease that a write to the node touches. Keep the result until the device has the bytes.
     pub fn admit<'a>(&self, node: &'a Node, caller: Caller) -> Result<Admission<'a>, Error> {
         let mut admission = Admission {
-            leases: &node.leases,
-            generations: Vec::with_capacity(node.leases.len()),
+            leases: &node.driving.leases,
+            generations: Vec::with_capacity(node.driving.leases.len()),
         };
         let mut admitted = lock(&self.admitted);
         let known = admitted.as_ref().filter(|last| last.thread == caller.pid);
-        for (index, lease) in node.leases.iter().enumerate() {
+        for (index, lease) in node.driving.leases.iter().enumerate() {
             let known = known.and_then(|last| last.generations.get(index).copied());
             let admitted = lease.admit(caller.pid, known);
             let admitted = admitted.inspect_err(|error| node.report(error))?;
@@ -81,7 +81,7 @@ impl Ownership {
         let generation = lock(&self.admitted)
             .as_ref()
             .and_then(|last| last.generations.first().copied());
-        if generation == Some(node.lease.generation())
+        if generation == Some(node.driving.lease.generation())
             && let Err(error) = node.rest()
         {
             node.report(&error);

@@ -23,7 +23,7 @@ impl ParamFile {
     pub fn new(node: &Arc<Node>, name: &Arc<str>) -> Self {
         let (shown, key) = (node.clone(), name.clone());
         let make = move || {
-            let value = shown.recipe().param(&key);
+            let value = shown.recipe.param(&key);
             value.map_or_else(String::new, |value| format!("{value}\n"))
         };
         Self {
@@ -81,10 +81,10 @@ impl OpenFile for ParamFile {
         let name = &self.name;
         let value = self.number(data);
         let value = value.inspect_err(|error| self.node.report(error))?;
-        let _inside = self.node.enter()?;
+        let _inside = self.node.quarantine.enter()?;
         // It changes what writes mean.
         let _admitted = Ownership::default().admit(&self.node, request.caller)?;
-        let changed = self.node.recipe().set_param(name, value);
+        let changed = self.node.recipe.set_param(name, value);
         if let Err(error) = &changed {
             self.node.engine.log.line(&format!(
                 "{}: params/{name} stays as it is: {error}",

@@ -66,13 +66,13 @@ impl ValueFile {
         write: bool,
     ) -> Result<(Arc<Self>, Access), Error> {
         node.check_access(read, write)?;
-        let always_ready = read && node.newest.join()?;
+        let always_ready = read && node.sampling.newest.join()?;
         let writer = if write {
             match node.open_writer(None) {
                 Ok(writer) => Some(Mutex::new(writer)),
                 Err(error) => {
                     if read {
-                        node.newest.leave();
+                        node.sampling.newest.leave();
                     }
                     return Err(error);
                 }
@@ -80,9 +80,10 @@ impl ValueFile {
         } else {
             None
         };
-        let is_cached = view == View::Bytes && read && !write && node.newest.can_cache(ino);
+        let is_cached =
+            view == View::Bytes && read && !write && node.sampling.newest.can_cache(ino);
         if is_cached {
-            node.newest.count_cached(true);
+            node.sampling.newest.count_cached(true);
         }
         let file = Arc::new_cyclic(|me| Self {
             node: node.clone(),
@@ -117,9 +118,9 @@ impl ValueFile {
             seen,
             ..
         } = shown;
-        let got = self.node.newest.get(tuple);
+        let got = self.node.sampling.newest.get(tuple);
         if got.is_err() {
-            *seen = self.node.newest.events();
+            *seen = self.node.sampling.newest.events();
         }
         let Some(events) = got? else { return Ok(false) };
         *seen = events;
@@ -183,7 +184,7 @@ impl OpenFile for ValueFile {
             return Ok(Outcome::Done(n));
         }
         // Taking a sample may answer other reads of this file: not with its lock held.
-        self.node.newest.refresh()?;
+        self.node.sampling.newest.refresh()?;
         let mut shown = lock(&self.shown);
         if self.show(&mut shown)? {
             self.node.stats.reads.add(1);
@@ -197,7 +198,7 @@ impl OpenFile for ValueFile {
         drop(shown);
         self.engine.park(request.id);
         let me: Weak<dyn Waiter> = self.me.clone();
-        self.node.newest.wait(request.id, me);
+        self.node.sampling.newest.wait(request.id, me);
         Ok(Outcome::Wait)
     }
 
@@ -207,7 +208,7 @@ impl OpenFile for ValueFile {
         };
         let tuple = self.tuple_of(data);
         let tuple = tuple.inspect_err(|error| self.node.report(error))?;
-        let _inside = self.node.enter()?;
+        let _inside = self.node.quarantine.enter()?;
         let _admitted = self.ownership.admit(&self.node, request.caller)?;
         let turn = self.node.take_turn();
         lock_patiently(writer).write_whole(&tuple, !request.nonblocking)?;
@@ -222,9 +223,9 @@ impl OpenFile for ValueFile {
         let is_first = self.poll.set(handle).is_ok();
         if is_first {
             let me: Weak<dyn Ready> = self.me.clone();
-            self.node.newest.watch(me);
+            self.node.sampling.newest.watch(me);
             if self.cached && !self.is_polled.swap(true, Ordering::SeqCst) {
-                self.node.newest.count_polled(true);
+                self.node.sampling.newest.count_polled(true);
             }
         }
         let mut now = 0;
@@ -234,7 +235,8 @@ impl OpenFile for ValueFile {
         if self.node.is_retired() {
             return Ok((events & now) | libc::POLLERR as u32);
         }
-        if self.reads && (self.always_ready || self.node.newest.events() != lock(&self.shown).seen)
+        if self.reads
+            && (self.always_ready || self.node.sampling.newest.events() != lock(&self.shown).seen)
         {
             now |= READABLE | libc::POLLPRI as u32;
         }
@@ -249,13 +251,13 @@ impl OpenFile for ValueFile {
     fn release(&self) {
         self.ownership.released(&self.node);
         if self.cached {
-            self.node.newest.count_cached(false);
+            self.node.sampling.newest.count_cached(false);
             if self.is_polled.load(Ordering::SeqCst) {
-                self.node.newest.count_polled(false);
+                self.node.sampling.newest.count_polled(false);
             }
         }
         if self.reads {
-            self.node.newest.leave();
+            self.node.sampling.newest.leave();
         }
     }
 

@@ -17,7 +17,7 @@ pub fn too_old(node: &Node) -> Option<Duration> {
     let ms = match (description.max_age_ms, description.pace) {
         (Some(ms), _) => u64::from(ms),
         (None, Pace::Every { .. }) => {
-            (u64::from(node.period_ms()) * 2).max(description.timeout_ms.into())
+            (u64::from(node.sampling.period_ms()) * 2).max(description.timeout_ms.into())
         }
         (None, Pace::OnEvent | Pace::OnRead) => return None,
     };
@@ -45,8 +45,8 @@ impl Due for Sampling {
         if node.is_retired() {
             return None;
         }
-        node.newest.sample(&node);
-        let period = Duration::from_millis(node.period_ms().into());
+        node.sampling.newest.sample(&node);
+        let period = Duration::from_millis(node.sampling.period_ms().into());
         let origin = node.engine.schedule.origin();
         Some(next_on_grid(origin, period, Instant::now()))
     }
@@ -62,7 +62,7 @@ impl Due for Renewal {
     fn due(&self) -> Option<Instant> {
         let node = self.node.upgrade()?;
         if !node.is_retired() {
-            node.newest.sample(&node);
+            node.sampling.newest.sample(&node);
         }
         // Whoever waited may have given up.
         let _ = self.done.try_send(());
@@ -75,7 +75,7 @@ impl Due for Renewal {
 /// hangs.
 pub fn renew(node: &Arc<Node>) {
     let by_clock = matches!(node.description.pace, Pace::Every { .. });
-    if !by_clock || node.regulation().is_some() || node.is_retired() {
+    if !by_clock || node.driving.regulation().is_some() || node.is_retired() {
         return;
     }
     let (done, sampled) = sync_channel(1);
@@ -98,12 +98,13 @@ impl Due for Ageing {
         let node = self.node.upgrade()?;
         let limit = too_old(&node)?;
         let age = node
+            .sampling
             .newest
             .stamp()
             .map_or(limit, |stamp| Duration::from_nanos(stamp.age_ns()));
         if age >= limit {
-            if node.newest.page.drop_filled(&node) {
-                node.newest.tell();
+            if node.sampling.newest.page.drop_filled(&node) {
+                node.sampling.newest.tell();
             }
             return Some(Instant::now() + limit);
         }
@@ -123,7 +124,7 @@ impl Due for Listening {
             return None;
         }
         let is_open = {
-            let mut work = lock(&node.newest.work);
+            let mut work = lock(&node.sampling.newest.work);
             let opened = if matches!(work.source, Source::Closed) {
                 work.open(&node).map(|()| true)
             } else {
@@ -132,13 +133,13 @@ impl Due for Listening {
             drop(work);
             match opened {
                 Ok(true) => {
-                    node.newest.arm(&node);
-                    node.newest.ready();
+                    node.sampling.newest.arm(&node);
+                    node.sampling.newest.ready();
                     true
                 }
                 Ok(false) => true,
                 Err(error) => {
-                    node.newest.fail(error);
+                    node.sampling.newest.fail(error);
                     false
                 }
             }

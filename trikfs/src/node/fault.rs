@@ -71,6 +71,6 @@ impl Node {
     /// The present fault.
     pub fn fault(&self) -> Option<Error> {
         let fault = lock(&self.trouble.fault).clone();
-        fault.or_else(|| self.lost())
+        fault.or_else(|| self.driving.lost())
     }
 }

@@ -47,23 +47,23 @@ impl LinkedNode for Node {
         if self.is_retired() {
             return Err(Error::Stale);
         }
-        match self.newest.join() {
+        match self.sampling.newest.join() {
             Ok(_) => Ok(()),
-            Err(Error::NoDevice(_)) if self.newest.is_in_background() => Ok(()),
+            Err(Error::NoDevice(_)) if self.sampling.newest.is_in_background() => Ok(()),
             Err(error) => Err(error),
         }
     }
 
     fn leave_newest(&self) {
-        self.newest.leave();
+        self.sampling.newest.leave();
     }
 
     fn refresh_newest(&self) -> Result<(), Error> {
-        self.newest.refresh()
+        self.sampling.newest.refresh()
     }
 
     fn latch(&self) -> &Latch {
-        self.newest.latch()
+        self.sampling.newest.latch()
     }
 
     fn too_old(&self) -> Option<Duration> {
@@ -71,7 +71,7 @@ impl LinkedNode for Node {
     }
 
     fn add_buses(&self, buses: &mut BTreeSet<PathBuf>) {
-        device::add_buses(&self.description.source, &self.around, buses);
+        device::add_buses(&self.description.source, &self.source.around, buses);
     }
 }
 

@@ -7,9 +7,11 @@ use crate::device;
 use crate::errno::Error;
 use crate::events::lock;
 use crate::guardian::actions::RestAction;
+use crate::limits;
 use config::description::SourceDescription;
 use converter::Direction;
-use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 /// Between two attempts to bring an actuator to rest whose device is busy.
@@ -30,7 +32,7 @@ impl Node {
     /// Brings the actuator to rest now. One that this board does not have rests already; a bus that has too many to
     /// serve at the moment is asked again until the node's time limit.
     pub fn rest(self: &Arc<Self>) -> Result<(), Error> {
-        if let Some(regulation) = self.regulation() {
+        if let Some(regulation) = self.driving.regulation() {
             return regulation.rest();
         }
         let Some(tuple) = self.rest_tuple()? else {
@@ -46,7 +48,7 @@ impl Node {
                 writer.write_whole(&tuple, true)
             });
             match outcome {
-                Err(Error::Device(libc::EBUSY, _)) if Instant::now() < deadline => {
+                Err(error) if error.is_busy_device() && Instant::now() < deadline => {
                     std::thread::sleep(PAUSE);
                 }
                 outcome => {
@@ -57,22 +59,9 @@ impl Node {
         }
     }
 
-    /// A regulator that drove this node had to give up: `fault` says why until somebody drives the node again.
-    pub fn lose(&self, error: &Error) {
-        *lock(&self.lost) = Some(error.clone());
-    }
-
-    /// Why the regulator of this node, or the one that drives it, gave up.
-    pub fn lost(&self) -> Option<Error> {
-        match self.regulation() {
-            Some(regulation) => regulation.lost(),
-            None => lock(&self.lost).clone(),
-        }
-    }
-
     /// What the guardian has to do if this process is no longer there; nothing if there is no device to rest.
     pub fn rest_action(self: &Arc<Self>) -> Result<Option<RestAction>, Error> {
-        if self.regulation().is_some() {
+        if self.driving.regulation().is_some() {
             // What it drives has a rest of its own.
             return Ok(None);
         }
@@ -86,16 +75,16 @@ impl Node {
     fn action_of(self: &Arc<Self>, tuple: &[u8]) -> Result<Option<RestAction>, Error> {
         let mut converted = vec![0; self.device_tuple_size()];
         let pipeline = self.open_pipeline()?;
-        let (_, produced, fault) = self.convert(
+        let batch = self.convert(
             &mut lock(&pipeline),
             Direction::Write,
             tuple,
             &mut converted,
         );
-        if let Some(error) = fault {
+        if let Some(error) = batch.fault {
             return Err(error);
         }
-        if produced == 0 {
+        if batch.produced == 0 {
             return Ok(None);
         }
         let mut sink = &self.description.source;
@@ -115,4 +104,35 @@ impl Node {
             })),
         }
     }
+}
+
+/// Brings every actuator to rest, slow ones beside each other: one that hangs keeps one thread. All are tried; the
+/// first failure is returned.
+pub fn rest_all(nodes: &[Arc<Node>]) -> Result<(), Error> {
+    let has_rest = |node: &&Arc<Node>| node.description.rest.is_some();
+    let actuators: Vec<_> = nodes.iter().filter(has_rest).collect();
+    let threads = actuators.len().min(limits::REST_THREADS_MAX);
+    let next = AtomicUsize::new(0);
+    let failures = Mutex::new(Vec::new());
+    // First nobody may drive them any more.
+    for regulation in nodes.iter().filter_map(|node| node.driving.regulation()) {
+        regulation.release();
+    }
+    let work = || {
+        while let Some(node) = actuators.get(next.fetch_add(1, Ordering::Relaxed)) {
+            if let Err(error) = node.rest() {
+                node.report(&error);
+                lock(&failures).push(error);
+            }
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..threads {
+            // Without further threads it takes longer.
+            let _ = std::thread::Builder::new().spawn_scoped(scope, work);
+        }
+        work();
+    });
+    let first = lock(&failures).first().cloned();
+    first.map_or(Ok(()), Err)
 }

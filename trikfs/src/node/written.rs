@@ -24,16 +24,16 @@ struct Sent {
 impl Node {
     /// Notes what was written last, for writes of single numbers.
     pub fn wrote(&self, tuple: Vec<u8>) {
-        *lock(&self.written.last) = Some(tuple);
+        *lock(&self.driving.written.last) = Some(tuple);
     }
 
     /// What was written last, or else the newest sample if it has the shape of what is written.
     pub fn last_tuple(&self) -> Option<Vec<u8>> {
-        if let Some(tuple) = lock(&self.written.last).clone() {
+        if let Some(tuple) = lock(&self.driving.written.last).clone() {
             return Some(tuple);
         }
         let mut tuple = Vec::new();
-        let newest = self.newest.get(&mut tuple).ok().flatten();
+        let newest = self.sampling.newest.get(&mut tuple).ok().flatten();
         newest
             .filter(|_| self.description.output_tuple_size == self.description.written_tuple_size())
             .map(|_| tuple)
@@ -51,7 +51,7 @@ impl Node {
     /// The device has the bytes that a written tuple became.
     pub fn sent(&self, written: &[u8], to_device: &[u8]) {
         if self.description.read_back {
-            *lock(&self.written.sent) = Some(Sent {
+            *lock(&self.driving.written.sent) = Some(Sent {
                 written: written.to_vec(),
                 to_device: to_device.to_vec(),
             });
@@ -60,7 +60,7 @@ impl Node {
 
     /// From now on the device's answer counts.
     pub fn forget_sent(&self) {
-        *lock(&self.written.sent) = None;
+        *lock(&self.driving.written.sent) = None;
     }
 
     /// Replaces a converted tuple by the written one if the device gave the bytes that the write sent.
@@ -68,7 +68,7 @@ impl Node {
         if !self.description.read_back {
             return;
         }
-        let mut sent = lock(&self.written.sent);
+        let mut sent = lock(&self.driving.written.sent);
         let is_other = |sent: &Sent| sent.to_device != from_device;
         if sent.as_ref().is_some_and(is_other) {
             *sent = None;
