@@ -68,7 +68,7 @@ pub trait State: Send {
                     "the source gave {n} of the {} bytes of a tuple",
                     tuple.len()
                 );
-                return Err(Error::Device(libc::EIO, what));
+                return Err(Error::Malformed(what));
             }
             tuple[n..].fill(0);
         }
@@ -479,12 +479,5 @@ pub(crate) fn is_same_file(file: &std::fs::File, path: &Path) -> bool {
 
 /// An I/O error of a device, with the path in its text.
 pub(crate) fn device_error(path: &Path, error: &std::io::Error) -> Error {
-    let what = path.display().to_string();
-    match error.raw_os_error() {
-        Some(libc::ENOENT | libc::ENODEV | libc::ENXIO | libc::ENOTDIR) | None => {
-            Error::NoDevice(format!("{what}: {error}"))
-        }
-        Some(libc::EACCES | libc::EPERM | libc::EROFS) => Error::AccessDenied,
-        Some(errno) => Error::Device(errno, what),
-    }
+    Error::of_device(path, error)
 }

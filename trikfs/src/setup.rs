@@ -131,7 +131,7 @@ impl SetupRunner {
                 let to = SourceDescription::Path(path.clone());
                 match self.send(&to, bytes, action.timeout_ms) {
                     // Somebody has done it before us, a boot script usually.
-                    Err(Error::Device(libc::EBUSY, _)) if exports => Outcome::Done,
+                    Err(error) if exports && error.is_busy_device() => Outcome::Done,
                     result => outcome_of(result),
                 }
             }

@@ -51,13 +51,7 @@ impl Plan {
         if self.count != 0 && since >= self.count {
             return None;
         }
-        Some((self.errno != 0).then(|| {
-            let what = "faulty source".to_owned();
-            match self.errno {
-                libc::ENODEV | libc::ENXIO => Error::NoDevice(what),
-                errno => Error::Device(errno, what),
-            }
-        }))
+        Some((self.errno != 0).then(|| Error::of_number("faulty source".to_owned(), self.errno)))
     }
 
     fn limit(&self, len: usize) -> usize {

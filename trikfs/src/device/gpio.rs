@@ -64,7 +64,7 @@ impl State for Gpio {
             let level = sysfs::read_number::<u8>(&self.value)?;
             if level > 1 {
                 let what = format!("{}: {level} is no level", self.value.display());
-                return Err(Error::Device(libc::EIO, what));
+                return Err(Error::Malformed(what));
             }
             self.current = [level];
         }

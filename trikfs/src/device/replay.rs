@@ -39,12 +39,7 @@ impl Replay {
         let mut text = String::new();
         let limit = limits::RECORDING_BYTES_MAX as u64;
         let read = file.take(limit + 1).read_to_string(&mut text);
-        read.map_err(|error| {
-            Error::Device(
-                error.raw_os_error().unwrap_or(libc::EIO),
-                path.display().to_string(),
-            )
-        })?;
+        read.map_err(|error| Error::of_system(path.display().to_string(), &error))?;
         if text.len() as u64 > limit {
             return Err(Error::NoDevice(format!(
                 "{}: a recording may have {limit} bytes",

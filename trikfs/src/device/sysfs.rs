@@ -38,7 +38,7 @@ pub(super) fn read_number<T: FromStr>(path: &Path) -> Result<T, Error> {
             "{}: '{shown}' is no number that can be there",
             path.display()
         );
-        Error::Device(libc::EIO, what)
+        Error::Malformed(what)
     })
 }
 

@@ -47,7 +47,7 @@ impl Programs {
             }
         });
         if let Err(error) = started {
-            return Err(Error::Device(libc::EAGAIN, format!("no thread: {error}")));
+            return Err(Error::of_system(format!("no thread: {error}"), &error));
         }
         all.push(Told {
             command: command.clone(),

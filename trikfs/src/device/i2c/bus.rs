@@ -217,10 +217,9 @@ impl Bus {
                 "{path} was busy with other transfers for {} ms",
                 timeout.as_millis()
             )),
-            Refusal::TooMany(number) => Error::Device(
-                libc::EBUSY,
-                format!("{path}: {number} transfers wait for it"),
-            ),
+            Refusal::TooMany(number) => {
+                Error::Crowded(format!("{path}: {number} transfers wait for it"))
+            }
         }
     }
 
@@ -228,10 +227,9 @@ impl Bus {
         let path = self.path.display();
         match failure {
             // Drivers differ in what they call a missing acknowledge.
-            Failure::Errno(libc::ENXIO | libc::EREMOTEIO) => Error::Device(
-                libc::EREMOTEIO,
-                format!("no answer from 0x{address:02x} on {path}"),
-            ),
+            Failure::Errno(libc::ENXIO | libc::EREMOTEIO) => {
+                Error::no_answer(format!("no answer from 0x{address:02x} on {path}"))
+            }
             Failure::Silent | Failure::Errno(libc::ETIMEDOUT) => Error::TimedOut(format!(
                 "0x{address:02x} on {path} did not answer within {} ms",
                 timeout.as_millis()
@@ -246,7 +244,7 @@ impl Bus {
             Failure::Lost => {
                 Error::NoDevice(format!("{path}: the bus was closed inside a transfer"))
             }
-            Failure::Garbage(what) => Error::Device(libc::EPROTO, format!("{path}: {what}")),
+            Failure::Garbage(what) => Error::against_protocol(format!("{path}: {what}")),
         }
     }
 

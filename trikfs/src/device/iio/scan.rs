@@ -116,13 +116,13 @@ impl Scan {
             let Some(element) = Element::parse(&text) else {
                 let shown: String = text.chars().take(32).flat_map(char::escape_debug).collect();
                 let what = format!("{}: the type '{shown}' is not known", path.display());
-                return Err(Error::Device(libc::EIO, what));
+                return Err(Error::Malformed(what));
             };
             elements.push((index, name.to_owned(), element));
         }
         elements.sort_by(|a, b| (a.0, &a.1).cmp(&(b.0, &b.1)));
         Self::new(&elements, channels)
-            .map_err(|reason| Error::Device(libc::EIO, format!("{}: {reason}", folder.display())))
+            .map_err(|reason| Error::Malformed(format!("{}: {reason}", folder.display())))
     }
 
     /// Finds the place of each channel among the elements, which are in the order of their indices.
