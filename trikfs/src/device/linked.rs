@@ -3,19 +3,42 @@
 //! Owns the bridge only: converted tuples of the other node come out here as raw ones, and readiness becomes
 //! that of an eventfd, so that a linked stream looks like any other to whoever waits for it.
 
-use super::{Device, Got, Sink, State, Stream};
+use super::{Device, Got, Kind, Sink, State, Stream, Surroundings};
 use crate::errno::Error;
 use crate::events::Ready;
 use crate::node::{Feed, Node};
 use crate::reader::Reader;
 use crate::state_reader::StateReader;
 use crate::writer::Writer;
+use config::description::LinkDescription;
 use nix::sys::eventfd::{EfdFlags, EventFd};
+use std::collections::BTreeSet;
 use std::os::fd::{AsFd, BorrowedFd};
+use std::path::PathBuf;
 use std::sync::Arc;
 
+impl Kind for LinkDescription {
+    fn open(&self, _tuple_size: usize, around: &Surroundings) -> Result<Device, Error> {
+        open(around.link(&self.path)?)
+    }
+
+    fn open_sink(&self, around: &Surroundings) -> Result<Box<dyn Sink>, Error> {
+        Ok(Box::new(LinkedSink::open(around.link(&self.path)?)?))
+    }
+
+    fn is_shared(&self) -> Result<bool, Error> {
+        Ok(false)
+    }
+
+    fn add_buses(&self, around: &Surroundings, buses: &mut BTreeSet<PathBuf>) {
+        if let Ok(node) = around.link(&self.path) {
+            node.add_buses(buses);
+        }
+    }
+}
+
 /// Opens the other node as this node's source.
-pub fn open(other: &Arc<Node>) -> Result<Device, Error> {
+fn open(other: &Arc<Node>) -> Result<Device, Error> {
     if other.is_retired() {
         return Err(Error::Stale);
     }
