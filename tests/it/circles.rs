@@ -9,7 +9,7 @@ use std::path::Path;
 
 /// The largest circle that a crate may have. Lower a number with the circle; never raise one.
 const LARGEST: [(&str, usize); 17] = [
-    ("config", 7),
+    ("config", 4),
     ("converter", 1),
     ("ev3dev", 2),
     ("filters", 1),
@@ -25,7 +25,7 @@ const LARGEST: [(&str, usize); 17] = [
     ("sim", 8),
     ("trik", 38),
     ("trikd", 11),
-    ("trikfs", 41),
+    ("trikfs", 20),
 ];
 
 /// The way to a module from the root of its crate.
