@@ -3,18 +3,46 @@
 //! Owns the way to a board and the files in which it finds its faults; what may be asked for is the board's table, and
 //! what a fault does is the board's business.
 
-use crate::cli::FaultArgs;
+use crate::output::standard;
 use crate::place::{self, Running};
+use crate::refusal::Refusal;
+use clap::Args;
 use sim::faults::{Faults, devices};
 use std::fs;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// Does it, and gives what is to be printed.
+/// What `trik fault` can be told.
+#[derive(Args, Clone, Debug, PartialEq, Eq)]
+pub(crate) struct FaultArgs {
+    /// The robot that is mounted there; needed when several run.
+    #[arg(long, value_name = "MOUNTPOINT")]
+    pub at: Option<PathBuf>,
+    /// Print the devices, the kinds of faults, and the faults in force.
+    #[arg(long, conflicts_with_all = ["device", "kind", "clear"])]
+    pub list: bool,
+    /// Mend the device.
+    #[arg(long, requires = "device", conflicts_with = "kind")]
+    pub clear: bool,
+    /// The device, for example msp430, A1, D1, gyroscope; see --list.
+    #[arg(required_unless_present = "list")]
+    pub device: Option<String>,
+    /// What happens to it, with its numbers, for example: unplug; nack 0.5; slow 20.
+    #[arg(required_unless_present_any = ["list", "clear"], num_args = 1.., allow_negative_numbers = true)]
+    pub kind: Vec<String>,
+}
+
+/// Does it, and prints what was asked for.
 ///
 /// # Errors
 /// No such robot, device or kind.
-pub(crate) fn fault(args: &FaultArgs) -> Result<String, String> {
+pub(crate) fn run(args: &FaultArgs) -> Result<u8, Refusal> {
+    standard(fault(args)?.as_bytes())?;
+    Ok(0)
+}
+
+/// Does it, and gives what is to be printed.
+fn fault(args: &FaultArgs) -> Result<String, String> {
     let base = place::base()?;
     let all = place::running(&base).map_err(|error| format!("{}: {error}", base.display()));
     // Looking makes the directory; nobody needs it if no robot does.

@@ -5,6 +5,7 @@
 //! `trikd` and `ev3dev`, `world` reads worlds of
 //! TRIK Studio, `model` makes a robot of a model, `view` says how the robot is, `screen` draws it, `hints` says what to try.
 
+pub(crate) mod args;
 mod companion;
 mod ev3dev;
 mod hints;
@@ -15,10 +16,11 @@ mod trikd;
 mod view;
 pub(crate) mod world;
 
-use crate::cli::UpArgs;
 use crate::limits;
 use crate::place::{self, Place};
-use companion::Companion;
+use crate::refusal::Refusal;
+use args::{UpArgs, absolute};
+use companion::{Companion, after};
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::signal::{SigSet, Signal, kill};
 use nix::sys::signalfd::{SfdFlags, SignalFd};
@@ -26,7 +28,6 @@ use nix::unistd::getpid;
 use screen::Screen;
 use sim::board::{Board, Options};
 use sim::body::Body;
-use sim::body::rolling::Actuator;
 use sim::body::studio::{self, Studio};
 use sim::field::{Field, Locks};
 use std::ffi::OsString;
@@ -39,9 +40,6 @@ use std::time::{Duration, Instant};
 use tree::Tree;
 use trikd::Trikd;
 
-/// The robot of whoever names none.
-pub(crate) const DEFAULT_ROBOT: &str = "two-wheels";
-
 /// What ends `trik up` in order; a stop of the terminal is for the view.
 const SIGNALS: [Signal; 5] = [
     Signal::SIGTERM,
@@ -51,48 +49,22 @@ const SIGNALS: [Signal; 5] = [
     Signal::SIGTSTP,
 ];
 
-/// The name of a robot that there is, or of a model.
-pub(crate) fn robot_name(text: &str) -> Result<String, String> {
-    match sim::robots::by_name(text) {
-        Some(_) => Ok(text.to_owned()),
-        None if model::is_named(text) => Ok(text.to_owned()),
-        None => Err(format!(
-            "there is no such robot; there are {}, models FILE.dcml, and the shipped models {}",
-            sim::robots::names().collect::<Vec<_>>().join(", "),
-            model::shipped().collect::<Vec<_>>().join(", ")
-        )),
-    }
-}
-
-/// `NAME=NUMBER`
-pub(crate) fn number_of(text: &str) -> Result<(String, f64), String> {
-    let (name, number) = text.split_once('=').ok_or("write NAME=NUMBER")?;
-    let number = number
-        .trim()
-        .parse()
-        .ok()
-        .filter(|one: &f64| one.is_finite());
-    let number = number.ok_or_else(|| format!("'{text}': a number belongs behind ="))?;
-    Ok((name.trim().to_owned(), number))
-}
-
-/// `ACTION=PORT`
-pub(crate) fn driven(text: &str) -> Result<(String, Actuator), String> {
-    let (name, port) = text.split_once('=').ok_or("write ACTION=PORT")?;
-    Ok((name.trim().to_owned(), Actuator::read(port)?))
-}
-
 /// Runs a virtual robot until somebody stops it.
 ///
 /// # Errors
-/// Why it does not run, or how it ended, empty if another process has told it.
-pub(crate) fn up(args: UpArgs) -> Result<(), String> {
+/// Why it does not run, or how it ended.
+pub(crate) fn run(args: UpArgs) -> Result<u8, Refusal> {
+    simulate(args)?;
+    Ok(0)
+}
+
+fn simulate(args: UpArgs) -> Result<(), String> {
     let world = args.world.as_deref().map(world::read).transpose()?;
-    let made = match &world {
-        Some((field, locks)) => Made::world(field, *locks, args.seed),
-        None => Made::robot(&args)?,
+    let platform = match &world {
+        Some((field, locks)) => Platform::world(field, *locks, args.seed),
+        None => Platform::robot(&args)?,
     };
-    let config = match (&args.config, &made.configuration) {
+    let config = match (&args.config, &platform.configuration) {
         // The configuration is made here, and includes this one.
         (None, Some(_)) => shipped(Path::new("trik.lua"), &args).map(|_| None)?,
         _ => Some(configuration(&args)?),
@@ -118,11 +90,11 @@ pub(crate) fn up(args: UpArgs) -> Result<(), String> {
         seed: args.seed,
         ..Options::default()
     };
-    let config = match (config, made.configuration) {
+    let config = match (config, platform.configuration) {
         (None, Some(text)) => write(&text, &place.world)?,
         (config, _) => config.unwrap_or_default(),
     };
-    let board = Board::start(&place.board, made.body, options)
+    let board = Board::start(&place.board, platform.body, options)
         .map_err(|error| format!("the virtual board in {}: {error}", place.board.display()))?;
     let arguments = arguments(&args, &config, &place);
     let tree = start(&arguments)?;
@@ -157,13 +129,13 @@ pub(crate) fn up(args: UpArgs) -> Result<(), String> {
     end
 }
 
-/// A body, and the configuration that goes with it if it is in no file.
-struct Made {
+/// What a virtual robot stands on: a body, and the configuration that goes with it if it is in no file.
+struct Platform {
     body: Box<dyn Body>,
     configuration: Option<String>,
 }
 
-impl Made {
+impl Platform {
     /// The robot of a world.
     fn world(field: &Field, locks: Locks, seed: u64) -> Self {
         Self {
@@ -254,16 +226,8 @@ fn arguments(args: &UpArgs, config: &Path, place: &Place) -> Vec<OsString> {
     list
 }
 
-fn absolute(path: &Path) -> Result<PathBuf, String> {
-    std::path::absolute(path).map_err(|error| format!("{}: {error}", path.display()))
-}
-
 fn start(arguments: &[OsString]) -> Result<Tree, String> {
     Tree::start("trikfs", arguments).map_err(|error| format!("starting the tree: {error}"))
-}
-
-fn after(ms: u32) -> Instant {
-    Instant::now() + Duration::from_millis(ms.into())
 }
 
 /// How far things are.

@@ -3,9 +3,9 @@
 //! Owns the order (as it was said, directories by name) and the names of files that a run writes. Opens nothing but
 //! directories; links to directories are not followed.
 
-use crate::cli::CheckArgs;
-use crate::diagrams::telling::named;
+use super::args::CheckArgs;
 use crate::limits;
+use crate::terminal::named;
 use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::fs;
@@ -38,6 +38,21 @@ impl Job {
         let save = (!is_own).then_some(&*self.solution);
         self.field.as_deref().or(save)
     }
+
+    /// Where a file of this run goes: the file itself if it is the only run, or else one in a directory.
+    pub fn place(&self, wanted: &Path, ending: &str, is_one: bool) -> PathBuf {
+        if is_one {
+            return wanted.to_owned();
+        }
+        let mut name = self.name.clone().into_os_string();
+        name.push(ending);
+        wanted.join(name)
+    }
+}
+
+/// A path as a row has it.
+pub(super) fn shown(path: &Path) -> String {
+    path.to_string_lossy().into_owned()
 }
 
 /// All runs.

@@ -3,10 +3,11 @@
 //! Owns the processes. A run that crashes, eats its memory or hangs takes only its process with it: another one is started
 //! and does the rest. Results come in the order of the runs; whoever is far ahead waits, so memory is bounded.
 
-use super::jobs::Job;
+use super::args::CheckArgs;
+use super::jobs::{Job, shown};
 use super::row::Row;
-use super::{run, words, worker};
-use crate::cli::CheckArgs;
+use super::run::report;
+use super::{words, worker};
 use crate::limits;
 use sim::judge;
 use std::ffi::OsString;
@@ -14,7 +15,7 @@ use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::process::{CommandExt, ExitStatusExt};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
@@ -143,18 +144,13 @@ fn feed(jobs: &[Job], args: &CheckArgs, shared: &Shared, send: &SyncSender<(usiz
             // Whatever it was, the next run gets a fresh process.
             worker = None;
             let mut row = Row::broken(shown(job.judged(args)), job.rules(args).map(shown), why);
-            run::report(job, args, &mut row);
+            report(job, args, &mut row);
             row
         });
         if send.send((index, row)).is_err() {
             return;
         }
     }
-}
-
-/// A path as a row has it.
-pub(super) fn shown(path: &Path) -> String {
-    path.to_string_lossy().into_owned()
 }
 
 fn done(

@@ -3,16 +3,14 @@
 //! Owns what of a solution and a field is taken: a field replaces the whole world of a project. What becomes of it is known
 //! in `sim`.
 
-use super::jobs::Job;
-use super::place;
-use super::pool::shown;
+use super::args::CheckArgs;
+use super::jobs::{Job, shown};
 use super::row::{Row, Verdict};
 use super::script::{self, Given, Language};
 use super::words;
-use crate::cli::CheckArgs;
-use crate::diagrams::output::Output;
-use crate::diagrams::{Unreadable, open};
+use crate::diagrams::save::{Unreadable, open};
 use crate::limits;
+use crate::output::Output;
 use lang_constraint::Level;
 use lang_diagram::lower::{World, lower};
 use lang_diagram::project::Project;
@@ -57,7 +55,7 @@ pub(super) fn run(job: &Job, args: &CheckArgs, tell_phase: &mut dyn FnMut(Phase)
         Ok((task, outcome, strange)) => {
             let some = strange.iter().take(limits::ROW_WARNINGS_MAX);
             some.for_each(|line| row.say(words::WARNING, line));
-            tell(&outcome, &mut row);
+            fill(&outcome, &mut row);
             if let Err(lines) = write(job, args, &task, &outcome) {
                 row.verdict = Verdict::Broken;
                 lines.iter().for_each(|line| row.say("error", line));
@@ -81,7 +79,7 @@ pub(super) fn report(job: &Job, args: &CheckArgs, row: &mut Row) {
 }
 
 /// What came out, as a row.
-fn tell(outcome: &Outcome, row: &mut Row) {
+fn fill(outcome: &Outcome, row: &mut Row) {
     row.verdict = match outcome.verdict {
         judge::Verdict::Accomplished => Verdict::Accomplished,
         judge::Verdict::Ended => Verdict::Ended,
@@ -352,7 +350,7 @@ fn write(job: &Job, args: &CheckArgs, task: &Task, outcome: &Outcome) -> Result<
     });
     write(&args.html, HTML, &|| {
         let mut row = Row::broken(shown(job.judged(args)), None, String::new());
-        tell(outcome, &mut row);
+        fill(outcome, &mut row);
         let verdict = format!(
             "{}, {}",
             words::verdict(row.verdict, args.language),
@@ -376,7 +374,7 @@ fn write(job: &Job, args: &CheckArgs, task: &Task, outcome: &Outcome) -> Result<
 /// Writes one file of a run.
 fn put(job: &Job, args: &CheckArgs, path: &Path, ending: &str, bytes: &[u8]) -> Result<(), String> {
     let is_one = args.is_one;
-    let path = place(path, job, ending, is_one);
+    let path = job.place(path, ending, is_one);
     if let (false, Some(folder)) = (is_one, path.parent()) {
         let made = std::fs::create_dir_all(folder);
         made.map_err(|error| format!("{} cannot be made: {error}", shown(folder)))?;

@@ -3,11 +3,10 @@
 //! Owns its limit of memory and its end with its parent. A run that panics is told as one that could not be run. Programs in
 //! Python can find its standard output, so each line begins with a mark that only this process and its parent know.
 
-use super::jobs::Job;
-use super::pool::shown;
+use super::args::CheckArgs;
+use super::jobs::{Job, shown};
 use super::row::Row;
 use super::run::{self, Phase};
-use crate::cli::CheckArgs;
 use crate::limits;
 use nix::sys::prctl::{set_dumpable, set_pdeathsig};
 use nix::sys::resource::{Resource, rlim_t, setrlimit};

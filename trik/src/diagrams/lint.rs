@@ -2,23 +2,43 @@
 //!
 //! Owns the order of files, the summary and the exit code. What is wrong is found in `lang`.
 
-use super::output::{Output, standard};
-use super::telling::{Count, Teller, named};
-use super::{REFUSED, Refusal, UNREADABLE, Unreadable, end, open, words};
-use crate::cli::LintArgs;
+use super::save::{Unreadable, open};
+use super::telling::{Count, Teller};
+use super::words;
+use crate::language;
+use crate::output::{Output, standard};
+use crate::refusal::{REFUSED, Refusal, UNREADABLE};
+use crate::terminal::named;
+use clap::Args;
 use lang_diagram::check::check;
 use lang_diagram::lower::World;
 use lang_diagram::read::Opened;
 use lang_text::problem::{Problem, Tongue};
-use std::path::Path;
-use std::process::ExitCode;
+use std::path::{Path, PathBuf};
 
-/// Does it.
-pub(crate) fn lint(args: &LintArgs) -> ExitCode {
-    end(linted(args))
+/// What `trik lint` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct LintArgs {
+    /// Diagrams, files NAME.qrs.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Language of messages: en or ru.
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::tongue)]
+    pub language: Tongue,
+    /// Write the diagram into this new file, with blocks and links put back that are in the file but on no sheet, and
+    /// look at that. For one FILE.
+    #[arg(long, value_name = "OUT.qrs")]
+    pub recover: Option<PathBuf>,
+    /// Replace OUT.qrs if it is there already.
+    #[arg(long, requires = "recover")]
+    pub force: bool,
 }
 
-fn linted(args: &LintArgs) -> Result<u8, Refusal> {
+/// Finds and tells everything.
+///
+/// # Errors
+/// What was found could not be told, or what was put back could not be written.
+pub(crate) fn run(args: &LintArgs) -> Result<u8, Refusal> {
     let mut count = Count::default();
     let mut unreadable = 0;
     for file in &args.files {
@@ -92,7 +112,7 @@ fn recover(opened: &mut Opened, file: &Path, out: &Path, args: &LintArgs) -> Res
         force: args.force,
         source: file,
     };
-    output.look()?;
+    output.refuse_present()?;
     let recovered = opened.save.recover_orphans();
     let told = match recovered {
         0 => words::nothing_to_recover(args.language).to_owned(),

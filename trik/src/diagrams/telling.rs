@@ -1,18 +1,15 @@
 //! Problems of a diagram as lines for a person: file, how bad, diagram, block with its place, property, words.
 //!
-//! Owns the order of problems and what a terminal may be shown. Names in a save come from anywhere: a terminal would
-//! obey some of their characters.
+//! Owns the order of problems and the form of a line.
 
 use super::words;
+use crate::terminal::{harmless, named};
 use lang_diagram::blocks::{self, Row, words::russian};
 use lang_diagram::project::{Block, Project};
 use lang_text::problem::{Problem, Severity, Tongue};
 use std::cmp::Reverse;
 use std::collections::HashMap;
 use std::path::Path;
-
-/// Characters of a name or a message that are shown.
-const SHOWN_CHARS_MAX: usize = 400;
 
 /// How many problems of each kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -131,46 +128,12 @@ impl<'a> Teller<'a> {
     }
 }
 
-/// A path for people.
-pub(crate) fn named(path: &Path) -> String {
-    harmless(&path.to_string_lossy())
-}
-
-/// One line that no terminal obeys: without control characters and those that turn the direction of writing.
-pub(crate) fn harmless(text: &str) -> String {
-    let is_turn = |c: char| matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    let mut shown = String::new();
-    for (count, c) in text.trim_end().chars().enumerate() {
-        if count == SHOWN_CHARS_MAX {
-            shown.push_str("...");
-            break;
-        }
-        match c {
-            '\n' | '\r' | '\t' => shown.push(' '),
-            c if c.is_control() || is_turn(c) => shown.push('\u{fffd}'),
-            c => shown.push(c),
-        }
-    }
-    shown
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use lang_diagram::check::check;
     use lang_diagram::lower::World;
     use lang_diagram::sketch::Sketch;
-
-    #[test]
-    fn names_that_a_terminal_would_obey_are_shown_and_not_obeyed() {
-        assert_eq!(
-            harmless("a\x1b[2Jb\nc\u{202e}d"),
-            "a\u{fffd}[2Jb c\u{fffd}d"
-        );
-        let long = harmless(&"x".repeat(10_000));
-        assert_eq!(long.len(), SHOWN_CHARS_MAX + 3);
-        assert_eq!(harmless("ends\n"), "ends");
-    }
 
     #[test]
     fn problems_stand_at_their_blocks_the_worst_first_and_once() {

@@ -2,21 +2,46 @@
 //!
 //! Owns a thread for each robot, the lines about their progress and the table at the end.
 
-use super::link::Message;
+use super::link::{Message, ms};
+use super::output::{harmless, say};
 use super::run::percent;
-use super::{Target, Upload, harmless, ms, start, tell};
-use crate::cli::{FleetArgs, SendArgs};
+use super::target::{Target, target, the_one};
+use super::upload::{Upload, start};
 use crate::limits;
+use crate::refusal::Refusal;
+use clap::Args;
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
-use std::process::ExitCode;
+use std::path::PathBuf;
 use std::time::Instant;
 use trikd::program::rest::is_explained;
+
+/// What `trik stop` and `trik status` can be told.
+#[derive(Args, Clone, Debug, PartialEq, Eq)]
+pub(crate) struct FleetArgs {
+    /// Names or addresses of robots [default: the virtual robot that runs on this computer, or else 127.0.0.1].
+    #[arg(long, value_name = "HOST[:PORT]", value_parser = target, value_delimiter = ',')]
+    pub robot: Vec<Target>,
+}
+
+/// What `trik send` can be told.
+#[derive(Args, Clone, Debug, PartialEq, Eq)]
+pub(crate) struct SendArgs {
+    /// Programs, and files that they need.
+    #[arg(required = true)]
+    pub files: Vec<PathBuf>,
+    /// Names or addresses of robots [default: the virtual robot that runs on this computer, or else 127.0.0.1].
+    #[arg(long, value_name = "HOST[:PORT]", value_parser = target, value_delimiter = ',')]
+    pub robot: Vec<Target>,
+    /// Run this program when all files are there.
+    #[arg(long, value_name = "NAME")]
+    pub run: Option<String>,
+}
 
 /// Those that were named, each once; else the one that is meant without a name.
 fn fleet(named: &[Target]) -> Result<Vec<Target>, String> {
     if named.is_empty() {
-        return Ok(vec![super::the_one()?]);
+        return Ok(vec![the_one()?]);
     }
     let mut all: Vec<Target> = Vec::new();
     for target in named {
@@ -88,7 +113,7 @@ fn ask(target: &Target, request: Option<&[u8]>) -> Result<Answer, String> {
 
 /// Ends the programs of robots and brings all that moves to rest. The exit code: 0 all rest, 1 one does not say so,
 /// 2 one could not be told.
-pub(crate) fn stop(args: &FleetArgs) -> ExitCode {
+pub(crate) fn stop(args: &FleetArgs) -> u8 {
     ask_all(args, |target| {
         let answer = ask(target, Some(b"stop"))?;
         let failure = answer.errors.iter().find(|text| is_explained(text));
@@ -110,7 +135,7 @@ pub(crate) fn stop(args: &FleetArgs) -> ExitCode {
 }
 
 /// Shows what runs on robots. The exit code: 0 all have told, 2 one could not be asked.
-pub(crate) fn status(args: &FleetArgs) -> ExitCode {
+pub(crate) fn status(args: &FleetArgs) -> u8 {
     ask_all(args, |target| match ask(target, None)?.status {
         Some(text) => Ok((
             0,
@@ -125,15 +150,12 @@ pub(crate) fn status(args: &FleetArgs) -> ExitCode {
 }
 
 /// Prints what each says, and gives the greatest of the codes.
-fn ask_all(
-    args: &FleetArgs,
-    work: impl Fn(&Target) -> Result<(u8, String), String> + Sync,
-) -> ExitCode {
+fn ask_all(args: &FleetArgs, work: impl Fn(&Target) -> Result<(u8, String), String> + Sync) -> u8 {
     let all = match fleet(&args.robot) {
         Ok(all) => all,
         Err(reason) => {
-            tell(&reason);
-            return ExitCode::from(2);
+            say(&reason);
+            return 2;
         }
     };
     let mut worst = 0;
@@ -145,13 +167,13 @@ fn ask_all(
                 code
             }
             Err(reason) => {
-                tell(&reason);
+                say(&reason);
                 2
             }
         };
         worst = worst.max(code);
     }
-    ExitCode::from(worst)
+    worst
 }
 
 /// How it went with one robot.
@@ -160,19 +182,22 @@ struct Sent {
     result: Result<String, String>,
 }
 
-/// Sends files to robots and perhaps runs one of them. The exit code: 0 all have got everything, 1 one has not.
-pub(crate) fn send(args: &SendArgs) -> Result<(), String> {
+/// Sends files to robots and perhaps runs one of them.
+///
+/// # Errors
+/// A file cannot be sent, or a robot has not got everything.
+pub(crate) fn send(args: &SendArgs) -> Result<u8, Refusal> {
     let files = read(args)?;
     let all = fleet(&args.robot)?;
     let results = each(&all, |target| send_to(target, &files, args.run.as_deref()));
     let _ = io::stdout().write_all(table(&all, &results, files.len()).as_bytes());
     let failed = results.iter().filter(|sent| sent.result.is_err()).count();
     match failed {
-        0 => Ok(()),
-        _ => Err(format!(
+        0 => Ok(0),
+        _ => Err(Refusal::new(format!(
             "{failed} of {} robots have not got everything",
             all.len()
-        )),
+        ))),
     }
 }
 
@@ -243,7 +268,6 @@ fn table(all: &[Target], results: &[Sent], files: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::remote::target;
 
     #[test]
     fn a_robot_that_is_named_twice_is_one() {

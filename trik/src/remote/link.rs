@@ -2,7 +2,6 @@
 //!
 //! Owns the socket and both buffers. The frames themselves are those of trikd; what to ask is not known here.
 
-use super::ms;
 use crate::limits;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::io::{self, Read, Write};
@@ -10,6 +9,11 @@ use std::net::{SocketAddr, TcpStream};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::time::{Duration, Instant};
 use trikd::protocol::frame::{Decoder, encode};
+
+/// A duration of `limits`.
+pub(super) fn ms(ms: u32) -> Duration {
+    Duration::from_millis(ms.into())
+}
 
 /// Something that a robot says.
 #[derive(Clone, Debug, PartialEq, Eq)]

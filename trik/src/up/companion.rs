@@ -4,13 +4,12 @@
 //! Owns its start, its words and its end. Knows no device; `tree` is how such a process is started, `ev3dev` and `trikd`
 //! say which ones there are.
 
-use super::after;
 use super::tree::Tree;
 use crate::limits;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::ffi::OsString;
 use std::os::fd::BorrowedFd;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// A process that is wanted.
 pub(super) struct Companion {
@@ -149,11 +148,15 @@ impl Companion {
     }
 }
 
+/// When so much time is over.
+pub(super) fn after(ms: u32) -> Instant {
+    Instant::now() + Duration::from_millis(ms.into())
+}
+
 /// Waits until there is something to hear, at most that long.
 fn wait(fd: Option<BorrowedFd<'_>>, until: Instant) {
     let Some(fd) = fd else { return };
-    let left =
-        until.saturating_duration_since(Instant::now()) + std::time::Duration::from_millis(1);
+    let left = until.saturating_duration_since(Instant::now()) + Duration::from_millis(1);
     let patience = left.try_into().unwrap_or(PollTimeout::MAX);
     // A signal is looked at by the one who calls.
     let _ = poll(&mut [PollFd::new(fd, PollFlags::POLLIN)], patience);

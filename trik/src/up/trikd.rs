@@ -4,8 +4,8 @@
 //! machine alone unless somebody names other addresses, because whoever reaches it runs programs with the rights of the
 //! person who started the robot.
 
+use super::args::{UpArgs, absolute};
 use super::companion::Companion;
-use crate::cli::UpArgs;
 use crate::place::Place;
 use nix::unistd::{User, geteuid};
 use std::ffi::{OsStr, OsString};
@@ -39,7 +39,7 @@ impl Trikd {
             named => named.to_vec(),
         };
         let scripts = match &args.scripts {
-            Some(path) => super::absolute(path)?,
+            Some(path) => absolute(path)?,
             None => place.trikd.join("scripts"),
         };
         let mut list: Vec<OsString> = vec!["serve".into()];
