@@ -42,12 +42,12 @@ pub(crate) fn run(args: &CheckArgs) -> Result<u8, Refusal> {
 
 fn checked(args: &CheckArgs) -> Result<u8, Refusal> {
     if args.worker {
-        worker::serve(args).map_err(Refusal::new)?;
+        worker::serve(args)?;
         return Ok(0);
     }
     let jobs = jobs::jobs(args).map_err(|why| Refusal {
-        lines: vec![format!("trik: {why}")],
         code: UNREADABLE,
+        ..Refusal::from(why)
     })?;
     let results = args.results.as_deref().map(|path| Output {
         path: Some(path),
@@ -121,17 +121,7 @@ fn many(jobs: &[Job], args: &CheckArgs, results: Option<Output<'_>>) -> Result<u
         })?;
     }
     let mut report = Report::new(jobs, args, results)?;
-    let mut failure = None;
-    let done = pool::run(jobs, args, |index, row| {
-        report.add(index, &row).map_err(|refusal| {
-            failure = Some(refusal);
-            String::new()
-        })
-    });
-    if let Some(refusal) = failure {
-        return Err(refusal);
-    }
-    done.map_err(Refusal::new)?;
+    pool::run(jobs, args, |index, row| report.add(index, &row))?;
     report.finish()
 }
 

@@ -209,7 +209,8 @@ fn run(command: Command) -> Result<u8, Refusal> {
             standard(&manual::completions(shell, Cli::command())).map(|()| 0)
         }
         Command::Man { command } => {
-            standard(&manual::page(command.as_deref(), Cli::command())?).map(|()| 0)
+            standard(&manual::page(command.as_deref(), Cli::command()).map_err(Refusal::new)?)
+                .map(|()| 0)
         }
         Command::Tree {
             parent,

@@ -2,14 +2,15 @@
 //!
 //! Owns the short names. What is said in each language is known where it is said.
 
+use crate::error::Error;
 use lang_text::problem::Tongue;
 
 /// The language of messages by its short name.
-pub(crate) fn tongue(name: &str) -> Result<Tongue, String> {
+pub(crate) fn tongue(name: &str) -> Result<Tongue, Error> {
     match name {
         "en" => Ok(Tongue::English),
         "ru" => Ok(Tongue::Russian),
-        _ => Err("there are en and ru".to_owned()),
+        _ => Err(Error::Refused("there are en and ru".to_owned())),
     }
 }
 

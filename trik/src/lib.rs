@@ -3,13 +3,14 @@
 //! `cli` lists the commands. `up` starts the virtual board and the tree over it, `fault` breaks devices of a running board,
 //! `place` knows where the robots of a user are, `remote` brings programs to robots, `diagrams` shows, checks and translates
 //! diagrams without a robot, `dcml` does the same with models of robots, `check` runs and judges solutions of tasks,
-//! `script` runs programs with text for it. All of them stand on `refusal`, `output`, `terminal` and `language`, which
-//! know no command. Nothing of this runs on the controller.
+//! `script` runs programs with text for it. All of them stand on `error`, `refusal`, `output`, `terminal` and
+//! `language`, which know no command. Nothing of this runs on the controller.
 
 mod check;
 pub mod cli;
 mod dcml;
 mod diagrams;
+pub mod error;
 mod fault;
 pub mod fuzz;
 mod language;

@@ -2,6 +2,7 @@
 //!
 //! Owns the codes that commands share, and the way to standard error. Knows no command.
 
+use crate::error::Error;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
@@ -44,15 +45,19 @@ pub(crate) fn say(lines: &[String]) {
     }
 }
 
-impl From<String> for Refusal {
-    /// Of an empty reason another process has told.
-    fn from(reason: String) -> Self {
-        if reason.is_empty() {
-            return Self {
+impl From<Error> for Refusal {
+    fn from(error: Error) -> Self {
+        match error {
+            Error::Reported => Self {
                 lines: Vec::new(),
                 code: REFUSED,
-            };
+            },
+            Error::Refused(_)
+            | Error::File { .. }
+            | Error::System { .. }
+            | Error::Unreachable(_)
+            | Error::Robot(_)
+            | Error::Process(_) => Self::new(error.to_string()),
         }
-        Self::new(reason)
     }
 }

@@ -16,6 +16,7 @@ mod trikd;
 mod view;
 pub(crate) mod world;
 
+use crate::error::Error;
 use crate::limits;
 use crate::place::{self, Place};
 use crate::refusal::Refusal;
@@ -58,7 +59,7 @@ pub(crate) fn run(args: UpArgs) -> Result<u8, Refusal> {
     Ok(0)
 }
 
-fn simulate(args: UpArgs) -> Result<(), String> {
+fn simulate(args: UpArgs) -> Result<(), Error> {
     let world = args.world.as_deref().map(world::read).transpose()?;
     let platform = match &world {
         Some((field, locks)) => Platform::world(field, *locks, args.seed),
@@ -70,7 +71,7 @@ fn simulate(args: UpArgs) -> Result<(), String> {
         _ => Some(configuration(&args)?),
     };
     // Before the board has threads, so that these come to the main thread alone.
-    let signals = signals().map_err(|error| format!("signals: {error}"))?;
+    let signals = signals().map_err(|error| Error::system("signals", error))?;
     let mountpoint = args.mountpoint.as_deref().map(absolute).transpose()?;
     let mut place = Place::claim(&place::base()?, mountpoint.as_deref())?;
     let ev3dev = match &args.ev3dev {
@@ -94,8 +95,10 @@ fn simulate(args: UpArgs) -> Result<(), String> {
         (None, Some(text)) => write(&text, &place.world)?,
         (config, _) => config.unwrap_or_default(),
     };
-    let board = Board::start(&place.board, platform.body, options)
-        .map_err(|error| format!("the virtual board in {}: {error}", place.board.display()))?;
+    let board = Board::start(&place.board, platform.body, options).map_err(|error| {
+        let what = format!("the virtual board in {}", place.board.display());
+        Error::system(what, error)
+    })?;
     let arguments = arguments(&args, &config, &place);
     let tree = start(&arguments)?;
     let mut session = Session {
@@ -145,13 +148,13 @@ impl Platform {
     }
 
     /// The robot of a name.
-    fn robot(args: &UpArgs) -> Result<Self, String> {
+    fn robot(args: &UpArgs) -> Result<Self, Error> {
         if let Some(robot) = sim::robots::by_name(&args.robot) {
             if let Some(option) = model::stray(args) {
-                return Err(format!(
+                return Err(Error::Refused(format!(
                     "{option} is for a model: --robot FILE.dcml; '{}' has its own",
                     args.robot
-                ));
+                )));
             }
             return Ok(Self {
                 body: robot.body(),
@@ -167,8 +170,8 @@ impl Platform {
 }
 
 /// Writes a configuration into a file, and gives its name back.
-fn write(text: &str, into: &Path) -> Result<PathBuf, String> {
-    std::fs::write(into, text).map_err(|error| format!("{}: {error}", into.display()))?;
+fn write(text: &str, into: &Path) -> Result<PathBuf, Error> {
+    std::fs::write(into, text).map_err(|error| Error::file(into, error))?;
     Ok(into.to_owned())
 }
 
@@ -180,10 +183,10 @@ fn signals() -> nix::Result<SignalFd> {
 }
 
 /// What the tree is to be made of.
-fn configuration(args: &UpArgs) -> Result<PathBuf, String> {
+fn configuration(args: &UpArgs) -> Result<PathBuf, Error> {
     match &args.config {
         Some(path) if path.is_file() => absolute(path),
-        Some(path) => Err(format!("{}: no such configuration", path.display())),
+        Some(path) => Err(Error::file(path, "no such configuration")),
         None => {
             let name = PathBuf::from(format!("robots/{}.lua", args.robot));
             shipped(&name, args)
@@ -192,10 +195,12 @@ fn configuration(args: &UpArgs) -> Result<PathBuf, String> {
 }
 
 /// A file that comes with this program.
-fn shipped(name: &Path, args: &UpArgs) -> Result<PathBuf, String> {
-    let include: Result<_, _> = args.include.iter().map(|dir| absolute(dir)).collect();
+fn shipped(name: &Path, args: &UpArgs) -> Result<PathBuf, Error> {
+    let include: Result<_, Error> = args.include.iter().map(|dir| absolute(dir)).collect();
     trikfs::cli::find_shipped(name, include?).map_err(|why| {
-        format!("{why}; --include names another directory: that of the source is config/lua")
+        Error::Refused(format!(
+            "{why}; --include names another directory: that of the source is config/lua"
+        ))
     })
 }
 
@@ -226,8 +231,8 @@ fn arguments(args: &UpArgs, config: &Path, place: &Place) -> Vec<OsString> {
     list
 }
 
-fn start(arguments: &[OsString]) -> Result<Tree, String> {
-    Tree::start("trikfs", arguments).map_err(|error| format!("starting the tree: {error}"))
+fn start(arguments: &[OsString]) -> Result<Tree, Error> {
+    Tree::start("trikfs", arguments).map_err(|error| Error::system("starting the tree", error))
 }
 
 /// How far things are.
@@ -261,7 +266,7 @@ struct Session<'a> {
     /// Where trikd takes programs, as other commands were told.
     address: Option<SocketAddr>,
     /// What went wrong beside the tree.
-    failure: Option<String>,
+    failure: Option<Error>,
     stage: Stage,
     /// By a signal.
     was_asked: bool,
@@ -271,10 +276,11 @@ struct Session<'a> {
 }
 
 impl Session<'_> {
-    fn run(&mut self) -> Result<(), String> {
+    fn run(&mut self) -> Result<(), Error> {
         let mut status = None;
         loop {
-            self.wait().map_err(|error| format!("waiting: {error}"))?;
+            self.wait()
+                .map_err(|error| Error::system("waiting", error))?;
             self.hear_signals();
             self.hear_tree();
             self.hear_companions();
@@ -283,7 +289,7 @@ impl Session<'_> {
                 status = Some(
                     self.tree
                         .wait()
-                        .map_err(|error| format!("the tree: {error}"))?,
+                        .map_err(|error| Error::system("the tree", error))?,
                 );
                 self.stage = Stage::Orphaned(after(limits::ORPHAN_MS));
             }
@@ -477,7 +483,7 @@ impl Session<'_> {
     }
 
     /// What an init system does for a real robot.
-    fn start_again(&mut self, status: ExitStatus) -> Result<(), String> {
+    fn start_again(&mut self, status: ExitStatus) -> Result<(), Error> {
         self.restarts += 1;
         self.note(&format!(
             "trik: the guardian of the tree was ended by {status}; starting it again"
@@ -544,14 +550,16 @@ impl Session<'_> {
     }
 
     /// What the end of the guardian means.
-    fn judge(&self, status: ExitStatus) -> Result<(), String> {
+    fn judge(&self, status: ExitStatus) -> Result<(), Error> {
         match status.code() {
             Some(0) => Ok(()),
             // It has said why.
-            Some(_) if !self.was_ready => Err(String::new()),
+            Some(_) if !self.was_ready => Err(Error::Reported),
             _ if self.was_asked => Ok(()),
-            Some(code) => Err(format!("the tree ended with status {code}")),
-            None => Err(format!("the guardian of the tree was ended by {status}")),
+            Some(code) => Err(Error::Process(format!("the tree ended with status {code}"))),
+            None => Err(Error::Process(format!(
+                "the guardian of the tree was ended by {status}"
+            ))),
         }
     }
 }

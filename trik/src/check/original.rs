@@ -319,7 +319,8 @@ fn patched(args: &Patcher) -> Result<(), Refused> {
     let mut opened = must_open(&args.file, tongue).map_err(|refusal| (refusal.lines, 1))?;
     let told = |problem: lang_text::problem::Problem| because(1)(problem.in_tongue(tongue));
     if let Some(path) = fields.into_iter().flatten().next() {
-        let world = text(path, limits::WORLD_BYTES_MAX).map_err(because(1))?;
+        let world =
+            text(path, limits::WORLD_BYTES_MAX).map_err(|why| because(1)(why.to_string()))?;
         let world = match &args.field {
             Some(_) => world,
             None => {
@@ -330,7 +331,8 @@ fn patched(args: &Patcher) -> Result<(), Refused> {
         opened.save.set_world(&world).map_err(told)?;
     }
     if let Some(path) = named(&args.script) {
-        let code = text(&path, limits::WORLD_BYTES_MAX).map_err(because(1))?;
+        let code =
+            text(&path, limits::WORLD_BYTES_MAX).map_err(|why| because(1)(why.to_string()))?;
         let ending = path
             .extension()
             .and_then(OsStr::to_str)

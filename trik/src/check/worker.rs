@@ -7,6 +7,7 @@ use super::args::CheckArgs;
 use super::jobs::{Job, shown};
 use super::row::Row;
 use super::run::{self, Phase};
+use crate::error::Error;
 use crate::limits;
 use nix::sys::prctl::{set_dumpable, set_pdeathsig};
 use nix::sys::resource::{Resource, rlim_t, setrlimit};
@@ -32,19 +33,19 @@ const JOB_BYTES_MAX: u64 = 64 << 10;
 ///
 /// # Errors
 /// The pipes, and what the system says of limits.
-pub(super) fn serve(args: &CheckArgs) -> Result<(), String> {
-    set_pdeathsig(Signal::SIGKILL).map_err(|error| format!("worker: {error}"))?;
+pub(super) fn serve(args: &CheckArgs) -> Result<(), Error> {
+    set_pdeathsig(Signal::SIGKILL).map_err(|error| Error::system("worker", error))?;
     // Programs that it starts have the same user, and look neither into its memory nor at its pipes.
-    set_dumpable(false).map_err(|error| format!("worker: {error}"))?;
-    adopt_orphans()?;
-    limit_memory(args).map_err(|error| format!("--memory: {error}"))?;
+    set_dumpable(false).map_err(|error| Error::system("worker", error))?;
+    adopt_orphans().map_err(|why| Error::Refused(why.to_string()))?;
+    limit_memory(args).map_err(|error| Error::system("--memory", error))?;
     let mut input = io::stdin().lock();
     let mut output = io::stdout().lock();
     let mut mark = String::new();
     let read = input.by_ref().take(JOB_BYTES_MAX).read_line(&mut mark);
-    read.map_err(|error| format!("jobs: {error}"))?;
+    read.map_err(|error| Error::system("jobs", error))?;
     let mark = mark.trim_end_matches('\n');
-    while let Some(job) = next(&mut input).map_err(|error| format!("jobs: {error}"))? {
+    while let Some(job) = next(&mut input).map_err(|error| Error::system("jobs", error))? {
         let row = guarded(&job, args, &mut |phase| {
             let word = match phase {
                 Phase::Runs => RUNS,
@@ -60,7 +61,7 @@ pub(super) fn serve(args: &CheckArgs) -> Result<(), String> {
         let written = output.write_all(line.as_bytes());
         written
             .and_then(|()| output.flush())
-            .map_err(|error| format!("results: {error}"))?;
+            .map_err(|error| Error::system("results", error))?;
     }
     Ok(())
 }

@@ -15,6 +15,7 @@ use self::args::{PlanArgs, Planner};
 use self::ask::Asked;
 use super::load::load;
 use super::values;
+use crate::error::Error;
 use crate::output::{Output, standard};
 use crate::refusal::{Refusal, UNREADABLE};
 use crate::terminal::named;
@@ -99,7 +100,7 @@ fn prepared(args: &PlanArgs) -> Result<u8, Refusal> {
 /// Obstacles, and with a world where its robot stands.
 fn surroundings(args: &PlanArgs) -> Result<(Obstacles, Option<field::Stand>), Refusal> {
     if let Some(path) = &args.world {
-        let (field, _) = crate::up::world::read(path).map_err(Refusal::new)?;
+        let (field, _) = crate::up::world::read(path)?;
         let obstacles = field::obstacles(&field)
             .map_err(|why| Refusal::new(format!("{}: {why}", named(path))))?;
         return Ok((obstacles, field::stand(&field)));
@@ -107,20 +108,19 @@ fn surroundings(args: &PlanArgs) -> Result<(Obstacles, Option<field::Stand>), Re
     let Some(path) = &args.obstacles else {
         return Ok((Obstacles::default(), None));
     };
-    let told = |why: String| Refusal::new(format!("{}: {why}", named(path)));
-    let obstacles = read(path)
-        .and_then(|text| text::read(&text))
-        .map_err(told)?;
+    let obstacles =
+        text::read(&read(path)?).map_err(|why| Refusal::new(format!("{}: {why}", named(path))))?;
     Ok((obstacles, None))
 }
 
-fn read(path: &Path) -> Result<String, String> {
+fn read(path: &Path) -> Result<String, Error> {
+    let refused = |why: String| Error::Refused(format!("{}: {why}", named(path)));
     let mut bytes = Vec::new();
     let limit = PLAN_OBSTACLES_TEXT_MAX as u64 + 1;
     File::open(path)
         .and_then(|file| file.take(limit).read_to_end(&mut bytes))
-        .map_err(|error| error.to_string())?;
-    String::from_utf8(bytes).map_err(|_| "is no text in UTF-8".to_owned())
+        .map_err(|error| refused(error.to_string()))?;
+    String::from_utf8(bytes).map_err(|_| refused("is no text in UTF-8".to_owned()))
 }
 
 fn searched(

@@ -7,6 +7,7 @@ use super::output::{harmless, say};
 use super::run::percent;
 use super::target::{Target, target, the_one};
 use super::upload::{Upload, start};
+use crate::error::Error;
 use crate::limits;
 use crate::refusal::Refusal;
 use clap::Args;
@@ -39,7 +40,7 @@ pub(crate) struct SendArgs {
 }
 
 /// Those that were named, each once; else the one that is meant without a name.
-fn fleet(named: &[Target]) -> Result<Vec<Target>, String> {
+fn fleet(named: &[Target]) -> Result<Vec<Target>, Error> {
     if named.is_empty() {
         return Ok(vec![the_one()?]);
     }
@@ -51,7 +52,9 @@ fn fleet(named: &[Target]) -> Result<Vec<Target>, String> {
     }
     let most = limits::FLEET_MAX;
     match all.len() {
-        count if count > most => Err(format!("{count} robots: at most {most} at once")),
+        count if count > most => Err(Error::Refused(format!(
+            "{count} robots: at most {most} at once"
+        ))),
         _ => Ok(all),
     }
 }
@@ -83,7 +86,7 @@ struct Answer {
     status: Option<String>,
 }
 
-fn ask(target: &Target, request: Option<&[u8]>) -> Result<Answer, String> {
+fn ask(target: &Target, request: Option<&[u8]>) -> Result<Answer, Error> {
     let mut link = target.connect()?;
     if let Some(request) = request {
         link.ask(&[request]);
@@ -143,18 +146,18 @@ pub(crate) fn status(args: &FleetArgs) -> u8 {
                 .map(|line| format!("{target}: {line}\n"))
                 .collect(),
         )),
-        None => Err(format!(
+        None => Err(Error::Robot(format!(
             "{target} does not know the question: its software is older than trikd"
-        )),
+        ))),
     })
 }
 
 /// Prints what each says, and gives the greatest of the codes.
-fn ask_all(args: &FleetArgs, work: impl Fn(&Target) -> Result<(u8, String), String> + Sync) -> u8 {
+fn ask_all(args: &FleetArgs, work: impl Fn(&Target) -> Result<(u8, String), Error> + Sync) -> u8 {
     let all = match fleet(&args.robot) {
         Ok(all) => all,
-        Err(reason) => {
-            say(&reason);
+        Err(error) => {
+            say(&error.to_string());
             return 2;
         }
     };
@@ -166,8 +169,8 @@ fn ask_all(args: &FleetArgs, work: impl Fn(&Target) -> Result<(u8, String), Stri
                 let _ = io::stdout().write_all(harmless(&text).as_bytes());
                 code
             }
-            Err(reason) => {
-                say(&reason);
+            Err(error) => {
+                say(&error.to_string());
                 2
             }
         };
@@ -179,7 +182,7 @@ fn ask_all(args: &FleetArgs, work: impl Fn(&Target) -> Result<(u8, String), Stri
 /// How it went with one robot.
 struct Sent {
     count: usize,
-    result: Result<String, String>,
+    result: Result<String, Error>,
 }
 
 /// Sends files to robots and perhaps runs one of them.
@@ -201,7 +204,7 @@ pub(crate) fn send(args: &SendArgs) -> Result<u8, Refusal> {
     }
 }
 
-fn read(args: &SendArgs) -> Result<Vec<Upload>, String> {
+fn read(args: &SendArgs) -> Result<Vec<Upload>, Error> {
     let files: Vec<_> = args
         .files
         .iter()
@@ -209,10 +212,10 @@ fn read(args: &SendArgs) -> Result<Vec<Upload>, String> {
         .collect::<Result<_, _>>()?;
     for (index, file) in files.iter().enumerate() {
         if files[..index].iter().any(|other| other.name == file.name) {
-            return Err(format!(
+            return Err(Error::Refused(format!(
                 "two files are called {}: on a robot all are in one folder",
                 file.name
-            ));
+            )));
         }
     }
     Ok(files)
@@ -257,7 +260,7 @@ fn table(all: &[Target], results: &[Sent], files: usize) -> String {
         let files = format!("{} of {files}", sent.count);
         let result = match &sent.result {
             Ok(done) => harmless(done),
-            Err(why) => format!("FAILED: {}", harmless(why).replace('\n', " ")),
+            Err(why) => format!("FAILED: {}", harmless(&why.to_string()).replace('\n', " ")),
         };
         // Writing to a text cannot fail.
         let _ = writeln!(text, "{name:<width$}  {files:<8}  {result}");
@@ -286,7 +289,7 @@ mod tests {
             .collect();
         assert_eq!(
             fleet(&many),
-            Err("65 robots: at most 64 at once".to_owned())
+            Err(Error::Refused("65 robots: at most 64 at once".to_owned()))
         );
     }
 
@@ -303,7 +306,7 @@ mod tests {
             },
             Sent {
                 count: 0,
-                result: Err("it\nburns".to_owned()),
+                result: Err(Error::Robot("it\nburns".to_owned())),
             },
         ];
         assert_eq!(

@@ -2,6 +2,7 @@
 //!
 //! Owns the socket and both buffers. The frames themselves are those of trikd; what to ask is not known here.
 
+use crate::error::Error;
 use crate::limits;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::io::{self, Read, Write};
@@ -137,14 +138,14 @@ impl Link {
         pause: Duration,
         also: Option<BorrowedFd<'_>>,
         listens: bool,
-    ) -> Result<(), String> {
+    ) -> Result<(), Error> {
         if let Some(why) = &self.lost {
             let name = &self.name;
             // What it said last is the better reason.
-            return Err(match &self.told {
+            return Err(Error::Unreachable(match &self.told {
                 Some(told) => format!("{name} has closed the connection: {told}"),
                 None => format!("the connection to {name} is lost: {why}"),
-            });
+            }));
         }
         if self.unsent() == 0 && self.sent.elapsed() >= ms(limits::KEEPALIVE_MS) {
             let frame = encode(b"keepalive");
@@ -158,7 +159,7 @@ impl Link {
         let pause: PollTimeout = pause.try_into().unwrap_or(PollTimeout::MAX);
         match poll(&mut watched, pause) {
             Ok(_) | Err(nix::Error::EINTR) => {}
-            Err(error) => return Err(format!("waiting for {}: {error}", self.name)),
+            Err(error) => return Err(Error::system(format!("waiting for {}", self.name), error)),
         }
         drop(watched);
         self.write();
@@ -232,7 +233,7 @@ mod tests {
         (robot, link)
     }
 
-    fn heard(link: &mut Link) -> Result<Message, String> {
+    fn heard(link: &mut Link) -> Result<Message, Error> {
         loop {
             if let Some(message) = link.next() {
                 return Ok(message);
@@ -281,7 +282,7 @@ mod tests {
         assert_eq!(heard(&mut link), Ok(Message::Error("e".to_owned())));
         let why = heard(&mut link).expect_err("the end");
         assert_eq!(
-            why,
+            why.to_string(),
             "the connection to robby is lost: the robot has closed it"
         );
     }
@@ -290,7 +291,7 @@ mod tests {
     fn what_is_no_robot_is_told_from_one() {
         let (mut robot, mut link) = pair();
         robot.write_all(&[b'x'; 5000]).expect("sent");
-        let why = heard(&mut link).expect_err("the end");
+        let why = heard(&mut link).expect_err("the end").to_string();
         assert!(why.contains("does not speak as robots do"), "{why}");
     }
 }

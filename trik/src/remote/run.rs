@@ -6,6 +6,7 @@ use super::link::{Link, Message, ms};
 use super::output::{Output, harmless, say};
 use super::target::{Target, target, the_one};
 use super::upload::{Upload, start};
+use crate::error::Error;
 use crate::limits;
 use clap::Args;
 use nix::sys::signal::{SigSet, Signal};
@@ -35,13 +36,13 @@ const COULD_NOT: u8 = 2;
 /// Runs a program on a robot until it ends. The exit code: 0 it has ended, 1 it has failed or was stopped, 2 it could not
 /// be run, or nobody knows how it ended.
 pub(crate) fn run(args: &RunArgs) -> u8 {
-    follow(args).unwrap_or_else(|reason| {
-        say(&reason);
+    follow(args).unwrap_or_else(|error| {
+        say(&error.to_string());
         COULD_NOT
     })
 }
 
-fn follow(args: &RunArgs) -> Result<u8, String> {
+fn follow(args: &RunArgs) -> Result<u8, Error> {
     let upload = Upload::read(&args.file)?;
     let target = match &args.robot {
         Some(target) => target.clone(),
@@ -56,7 +57,7 @@ fn follow(args: &RunArgs) -> Result<u8, String> {
     let mask: SigSet = [Signal::SIGINT, Signal::SIGTERM, Signal::SIGHUP]
         .into_iter()
         .collect();
-    let own = |error: nix::Error| format!("signals: {error}");
+    let own = |error: nix::Error| Error::system("signals", error);
     mask.thread_block().map_err(own)?;
     let flags = SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC;
     let signals = SignalFd::with_flags(&mask, flags).map_err(own)?;
@@ -90,7 +91,7 @@ struct Session {
 }
 
 impl Session {
-    fn run(&mut self) -> Result<u8, String> {
+    fn run(&mut self) -> Result<u8, Error> {
         loop {
             while self.output.has_room()
                 && let Some(message) = self.link.next()
@@ -120,17 +121,17 @@ impl Session {
                 self.stop();
             }
             if self.stopping.is_some_and(|until| Instant::now() >= until) {
-                return Err(format!(
+                return Err(Error::Robot(format!(
                     "{} does not say that {} has stopped: look at the robot",
                     self.link.name(),
                     self.name
-                ));
+                )));
             }
             self.turn()?;
         }
     }
 
-    fn turn(&mut self) -> Result<(), String> {
+    fn turn(&mut self) -> Result<(), Error> {
         let listens = self.output.has_room();
         let pause = ms(if listens {
             limits::TURN_MS
@@ -139,10 +140,10 @@ impl Session {
         });
         let turned = self.link.turn(pause, Some(self.signals.as_fd()), listens);
         turned.map_err(|why| {
-            format!(
+            Error::Unreachable(format!(
                 "{why}; {} may still run: trik stop ends it, once the robot can be reached",
                 self.name
-            )
+            ))
         })
     }
 

@@ -3,6 +3,7 @@
 //! Owns the forms of names, and what is said of a robot that cannot be reached. `link` is the connection.
 
 use super::link::Link;
+use crate::error::Error;
 use crate::limits;
 use crate::place::{self, Running};
 use std::fmt;
@@ -39,23 +40,27 @@ impl From<SocketAddr> for Target {
 }
 
 /// `HOST`, `HOST:PORT`, `[IPv6]:PORT` or a plain IPv6 address.
-pub(crate) fn target(text: &str) -> Result<Target, String> {
+pub(crate) fn target(text: &str) -> Result<Target, Error> {
     if let Ok(address) = text.parse::<SocketAddr>() {
         return Ok(address.into());
     }
-    if text.parse::<IpAddr>().is_ok() {
-        return Ok(SocketAddr::new(text.parse().map_err(|_| text.to_owned())?, PORT).into());
+    if let Ok(address) = text.parse::<IpAddr>() {
+        return Ok(SocketAddr::new(address, PORT).into());
     }
     let (host, port) = match text.split_once(':') {
         None => (text, PORT),
         Some((host, port)) => match port.parse() {
             Ok(port) if port > 0 => (host, port),
-            _ => return Err(format!("'{port}' is no port: a number from 1 to 65535")),
+            _ => {
+                let why = format!("'{port}' is no port: a number from 1 to 65535");
+                return Err(Error::Refused(why));
+            }
         },
     };
     let fits = |c: char| c.is_alphanumeric() || "-._".contains(c);
     if host.is_empty() || host.len() > limits::HOST_BYTES_MAX || !host.chars().all(fits) {
-        return Err("no address: the name or the IP of a robot, such as 192.168.77.1".to_owned());
+        let why = "no address: the name or the IP of a robot, such as 192.168.77.1";
+        return Err(Error::Refused(why.to_owned()));
     }
     Ok(Target {
         host: host.to_owned(),
@@ -64,15 +69,15 @@ pub(crate) fn target(text: &str) -> Result<Target, String> {
 }
 
 /// The robot of whoever names none: the virtual one that runs here, or what listens on this machine.
-pub(super) fn the_one() -> Result<Target, String> {
+pub(super) fn the_one() -> Result<Target, Error> {
     let base = place::base()?;
-    let all = place::running(&base).map_err(|error| format!("{}: {error}", base.display()));
+    let all = place::running(&base).map_err(|error| Error::file(&base, error));
     // Looking makes the directory; nobody needs it if no robot does.
     let _ = std::fs::remove_dir(&base);
     choose(&all?)
 }
 
-fn choose(all: &[Running]) -> Result<Target, String> {
+fn choose(all: &[Running]) -> Result<Target, Error> {
     let reachable: Vec<_> = all
         .iter()
         .filter_map(|robot| Some((Target::from(robot.trikd?), robot)))
@@ -80,19 +85,19 @@ fn choose(all: &[Running]) -> Result<Target, String> {
     match (&reachable[..], all) {
         ([(one, _)], _) => Ok(one.clone()),
         ([], []) => Ok(SocketAddr::new(Ipv4Addr::LOCALHOST.into(), PORT).into()),
-        ([], [robot, ..]) => Err(format!(
+        ([], [robot, ..]) => Err(Error::Refused(format!(
             "the virtual robot at {} has no trikd, which takes programs: it told why when it started, or was started with --no-trikd",
             robot.mountpoint.display()
-        )),
+        ))),
         (several, _) => {
             let list: Vec<_> = several
                 .iter()
                 .map(|(target, robot)| format!("{target} ({})", robot.mountpoint.display()))
                 .collect();
-            Err(format!(
+            Err(Error::Refused(format!(
                 "several robots run: say which with --robot: {}",
                 list.join(", ")
-            ))
+            )))
         }
     }
 }
@@ -102,7 +107,7 @@ impl Target {
     ///
     /// # Errors
     /// A sentence with what to do.
-    pub(super) fn connect(&self) -> Result<Link, String> {
+    pub(super) fn connect(&self) -> Result<Link, Error> {
         let found = (self.host.as_str(), self.port).to_socket_addrs();
         let addresses: Vec<_> = match found {
             Ok(found) => found.take(limits::ADDRESSES_MAX).collect(),
@@ -118,7 +123,7 @@ impl Target {
                 Err(error) => why = self.explain(&error),
             }
         }
-        Err(why)
+        Err(Error::Unreachable(why))
     }
 
     fn explain(&self, error: &std::io::Error) -> String {
@@ -180,6 +185,7 @@ mod tests {
         assert!(
             target("trik:99999")
                 .unwrap_err()
+                .to_string()
                 .contains("'99999' is no port")
         );
     }
@@ -191,7 +197,11 @@ mod tests {
             board: "/none".into(),
             trikd: trikd.map(|text| text.parse().expect("an address")),
         };
-        let chosen = |all: &[Running]| choose(all).map(|target| target.to_string());
+        let chosen = |all: &[Running]| {
+            choose(all)
+                .map(|target| target.to_string())
+                .map_err(|error| error.to_string())
+        };
         assert_eq!(chosen(&[]).as_deref(), Ok("127.0.0.1"));
         let one = robot("/a", Some("127.0.0.2:8888"));
         assert_eq!(

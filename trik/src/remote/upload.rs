@@ -3,6 +3,7 @@
 //! Owns which files are sent, and what a robot answers to them. `link` is the connection.
 
 use super::link::{Link, Message, ms};
+use crate::error::Error;
 use crate::limits;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::os::fd::BorrowedFd;
@@ -23,14 +24,14 @@ impl Upload {
     ///
     /// # Errors
     /// It cannot be read, is too long, or its name is none for a robot.
-    pub(super) fn read(path: &Path) -> Result<Self, String> {
-        let shown = path.display();
-        let bad = |why: String| format!("{shown}: {why}");
+    pub(super) fn read(path: &Path) -> Result<Self, Error> {
+        let bad = |why: String| Error::file(path, why);
         let name = path.file_name().and_then(|name| name.to_str());
         let name =
             name.ok_or_else(|| bad("its name is no text that a robot understands".to_owned()))?;
         // The same rule as on the robot, and a colon would end the name on the way.
-        trikd::scripts::locate(Path::new("/"), name.as_bytes())?;
+        trikd::scripts::locate(Path::new("/"), name.as_bytes())
+            .map_err(|why| Error::Refused(why.to_string()))?;
         if name.contains(':') {
             return Err(bad(
                 "a program with ':' in its name cannot be sent".to_owned()
@@ -61,7 +62,7 @@ impl Upload {
         &self,
         link: &mut Link,
         mut report: impl FnMut(usize, usize),
-    ) -> Result<(), String> {
+    ) -> Result<(), Error> {
         let head = format!("file:{}:", self.name);
         link.ask(&[head.as_bytes(), &self.content]);
         // Answered in order, so behind the answer the file is kept or refused.
@@ -75,7 +76,8 @@ impl Upload {
                     Message::Version => return Ok(()),
                     Message::Error(text) if self.is_refused(&text) => {
                         let robot = link.name();
-                        return Err(format!("{robot} refuses {}: {text}", self.name));
+                        let why = format!("{robot} refuses {}: {text}", self.name);
+                        return Err(Error::Robot(why));
                     }
                     Message::Error(text) => link.remember(&text),
                     _ => {}
@@ -84,11 +86,11 @@ impl Upload {
             if moved.0 != link.unsent() {
                 moved = (link.unsent(), Instant::now());
             } else if moved.1.elapsed() >= ms(limits::ANSWER_MS) {
-                return Err(format!(
+                return Err(Error::Robot(format!(
                     "{} has not answered for {} s: is it a robot?",
                     link.name(),
                     limits::ANSWER_MS / 1000
-                ));
+                )));
             }
             link.turn(ms(limits::TURN_MS), None, true)?;
         }
@@ -110,7 +112,7 @@ pub(super) fn start(
     link: &mut Link,
     name: &str,
     also: Option<BorrowedFd<'_>>,
-) -> Result<(), String> {
+) -> Result<(), Error> {
     link.ask(&[b"run:", name.as_bytes()]);
     link.ask(&[b"status"]);
     let deadline = Instant::now() + ms(limits::ANSWER_MS);
@@ -128,17 +130,18 @@ pub(super) fn start(
                     let why = errors
                         .pop()
                         .unwrap_or_else(|| "it does not say why".to_owned());
-                    return Err(format!("{} does not run {name}: {why}", link.name()));
+                    let why = format!("{} does not run {name}: {why}", link.name());
+                    return Err(Error::Robot(why));
                 }
                 _ => {}
             }
             errors.drain(..errors.len().saturating_sub(1));
         }
         if Instant::now() >= deadline {
-            return Err(format!(
+            return Err(Error::Robot(format!(
                 "{} does not say that {name} has started: if its software is older than trikd, the program may run, and trik stop ends it",
                 link.name()
-            ));
+            )));
         }
         link.turn(ms(limits::TURN_MS), also, true)?;
         let mut there = also.map(|fd| PollFd::new(fd, PollFlags::POLLIN));
@@ -164,16 +167,22 @@ mod tests {
             if name != "none.js" {
                 std::fs::write(dir.join(name), "x").expect(name);
             }
-            let refusal = Upload::read(&dir.join(name)).unwrap_err();
+            let refusal = Upload::read(&dir.join(name)).unwrap_err().to_string();
             assert!(refusal.contains(why), "{name}: {refusal}");
         }
-        assert!(Upload::read(&dir).unwrap_err().contains("not a file"));
+        assert!(
+            Upload::read(&dir)
+                .unwrap_err()
+                .to_string()
+                .contains("not a file")
+        );
         assert!(Upload::read(Path::new("/")).is_err());
         let large = std::fs::File::create(dir.join("large")).expect("a file");
         large.set_len(limits::UPLOAD_BYTES_MAX + 1).expect("a hole");
         assert!(
             Upload::read(&dir.join("large"))
                 .unwrap_err()
+                .to_string()
                 .contains("longer than 256 MiB")
         );
         std::fs::remove_dir_all(dir).expect("removed");

@@ -2,6 +2,7 @@
 //!
 //! Owns the options and the forms of their values. Knows nothing of what they do.
 
+use crate::error::Error;
 use crate::limits;
 use clap::Args;
 use lang_dcml::models;
@@ -131,6 +132,6 @@ fn speed(text: &str) -> Result<f64, String> {
 }
 
 /// A path of the command line, whatever directory this process goes to.
-pub(super) fn absolute(path: &Path) -> Result<PathBuf, String> {
-    std::path::absolute(path).map_err(|error| format!("{}: {error}", path.display()))
+pub(super) fn absolute(path: &Path) -> Result<PathBuf, Error> {
+    std::path::absolute(path).map_err(|error| Error::file(path, error))
 }

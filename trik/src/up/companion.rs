@@ -5,6 +5,7 @@
 //! say which ones there are.
 
 use super::tree::Tree;
+use crate::error::Error;
 use crate::limits;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::ffi::OsString;
@@ -48,9 +49,9 @@ impl Companion {
     ///
     /// # Errors
     /// Why it does not run.
-    pub(super) fn start(&mut self) -> Result<(), String> {
+    pub(super) fn start(&mut self) -> Result<(), Error> {
         let what = self.what;
-        let failed = |error: std::io::Error| format!("{what}: {error}");
+        let failed = |error: std::io::Error| Error::system(what, error);
         let mut process = Tree::start(self.program, &self.arguments).map_err(failed)?;
         let deadline = after(limits::START_MS);
         loop {
@@ -67,7 +68,7 @@ impl Companion {
                 }
                 wait_for_end(&mut process);
                 let reason = process.complaints.hear().join("\n");
-                return Err(format!("{what} does not run: {reason}"));
+                return Err(Error::Process(format!("{what} does not run: {reason}")));
             }
             wait(process.said.fd(), deadline);
         }

@@ -3,6 +3,7 @@
 //! Owns what `--robot` takes beside names of robots. What a model means is `lang`'s part, how it moves `sim`'s.
 
 use super::args::UpArgs;
+use crate::error::Error;
 use sim::body::Body;
 use sim::body::rolling::{Rolling, Said};
 use sim::robots;
@@ -23,19 +24,19 @@ pub(super) fn stray(args: &UpArgs) -> Option<&'static str> {
 ///
 /// # Errors
 /// Why there is none, for the person; what is wrong with the text has been told.
-pub(super) fn robot(args: &UpArgs) -> Result<(Box<dyn Body>, String), String> {
+pub(super) fn robot(args: &UpArgs) -> Result<(Box<dyn Body>, String), Error> {
     let loaded = crate::dcml::load::load(args.robot.as_ref(), args.model.as_deref());
     let (text, model) = loaded.map_err(|refusal| {
         let lines: Vec<&str> = refusal.lines.iter().map(String::as_str).collect();
         let text = lines.join("\n");
-        text.strip_prefix("trik: ").unwrap_or(&text).to_owned()
+        Error::Refused(text.strip_prefix("trik: ").unwrap_or(&text).to_owned())
     })?;
     let said = Said {
         params: args.params.clone(),
         drive: args.drive.clone(),
         start: args.start.clone(),
     };
-    let about = |reason: String| format!("{}: {reason}", args.robot);
+    let about = |reason| Error::file(args.robot.as_ref(), reason);
     let rolling = Rolling::new(&model, &said, robots::MODEL_START).map_err(about)?;
     Ok(robots::modelled(rolling, one(&text, &model.name), &said))
 }
