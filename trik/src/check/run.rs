@@ -41,7 +41,7 @@ pub(super) enum Phase {
 }
 
 /// Does a run and writes its files; tells how far it is.
-pub(super) fn run(job: &Job, args: &CheckArgs, tell_phase: &mut dyn FnMut(Phase)) -> Row {
+pub(super) fn run(job: &Job, args: &CheckArgs, report_phase: &mut dyn FnMut(Phase)) -> Row {
     let mut row = Row {
         solution: shown(job.judged(args)),
         field: job.rules(args).map(shown),
@@ -52,7 +52,7 @@ pub(super) fn run(job: &Job, args: &CheckArgs, tell_phase: &mut dyn FnMut(Phase)
         more: 0,
         printed: Vec::new(),
     };
-    match judged(job, args, tell_phase) {
+    match judged(job, args, report_phase) {
         Ok((task, outcome, strange)) => {
             let some = strange.iter().take(limits::ROW_WARNINGS_MAX);
             some.for_each(|line| row.say(words::WARNING, line));
@@ -108,7 +108,7 @@ fn line(error: Error) -> Lines {
 fn judged(
     job: &Job,
     args: &CheckArgs,
-    tell_phase: &mut dyn FnMut(Phase),
+    report_phase: &mut dyn FnMut(Phase),
 ) -> Result<(Task, Outcome, Lines), Lines> {
     let settings = settings(args).map_err(line)?;
     let mut solution = match &job.log {
@@ -156,16 +156,16 @@ fn judged(
         let names = judge::strange_in_record(&task, &trajectory);
         let told = names.iter().map(|words| words.in_tongue(args.language));
         strange.extend(told.map(|words| format!("{}: {words}", shown(log))));
-        tell_phase(Phase::Runs);
+        report_phase(Phase::Runs);
         let outcome = judge::judge_recorded(&task, &trajectory, &settings);
-        tell_phase(Phase::Ended);
+        report_phase(Phase::Ended);
         return Ok((task, outcome, strange));
     }
     let mut program = solution.program(&mut task, args)?;
-    tell_phase(Phase::Runs);
+    report_phase(Phase::Runs);
     let outcome = judge::judge(&task, &mut *program, &settings);
     drop(program);
-    tell_phase(Phase::Ended);
+    report_phase(Phase::Ended);
     Ok((task, outcome, strange))
 }
 

@@ -91,8 +91,8 @@ fn limit_memory(args: &CheckArgs) -> nix::Result<()> {
 }
 
 /// Does a run; a panic in it is its result.
-fn guarded(job: &Job, args: &CheckArgs, tell_phase: &mut dyn FnMut(Phase)) -> Row {
-    catch_unwind(AssertUnwindSafe(|| run::run(job, args, tell_phase))).unwrap_or_else(|_| {
+fn guarded(job: &Job, args: &CheckArgs, report_phase: &mut dyn FnMut(Phase)) -> Row {
+    catch_unwind(AssertUnwindSafe(|| run::run(job, args, report_phase))).unwrap_or_else(|_| {
         let field = job.rules(args).map(shown);
         let why = "trik has a defect and cannot judge this: please report it with this file";
         Row::broken(shown(job.judged(args)), field, why.to_owned())

@@ -4,11 +4,11 @@
 //! protocol; what a person may want to know goes to standard error.
 
 pub mod answers;
+pub mod document;
 pub mod inbox;
 pub mod message;
 pub mod params;
 pub mod session;
-pub mod sheet;
 pub mod wire;
 
 use crate::limits;

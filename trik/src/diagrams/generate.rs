@@ -2,8 +2,8 @@
 //!
 //! Owns the options and where the program goes. What it looks like is the business of `lang`.
 
+use super::report::Reporter;
 use super::save::must_open;
-use super::telling::Teller;
 use crate::language;
 use crate::output::Output;
 use crate::refusal::{REFUSED, Refusal, say};
@@ -70,11 +70,11 @@ pub(crate) fn run(args: &GenArgs) -> Result<u8, Refusal> {
         goto: args.goto,
         ..Options::default()
     };
-    let teller = Teller::new(&args.file, Some(&opened.project), args.language);
+    let reporter = Reporter::new(&args.file, Some(&opened.project), args.language);
     let generated = generate::generate(&opened.project, args.lang, options);
     let generated = generated.map_err(|mut problems| {
-        teller.sort(&mut problems);
-        let mut lines = teller.lines(&problems);
+        reporter.sort(&mut problems);
+        let mut lines = reporter.lines(&problems);
         // What a language lacks is nothing that is wrong with the diagram.
         let found = check(&opened.project, World::Robot);
         lines.push(if found.iter().any(|one| one.severity == Severity::Error) {
@@ -90,7 +90,7 @@ pub(crate) fn run(args: &GenArgs) -> Result<u8, Refusal> {
     })?;
     output.write(generated.text.as_bytes())?;
     let mut notes = generated.notes;
-    teller.sort(&mut notes);
-    say(&teller.lines(&notes));
+    reporter.sort(&mut notes);
+    say(&reporter.lines(&notes));
     Ok(0)
 }

@@ -2,8 +2,8 @@
 //!
 //! Owns the order of files, the summary and the exit code. What is wrong is found in `lang`.
 
+use super::report::{Count, Reporter};
 use super::save::{Unreadable, open};
-use super::telling::{Count, Teller};
 use super::words;
 use crate::language;
 use crate::output::{Output, standard};
@@ -75,7 +75,7 @@ pub(crate) fn run(args: &LintArgs) -> Result<u8, Refusal> {
 
 /// Lines of a save that could not be read.
 fn unread(file: &Path, why: Unreadable, count: &mut Count, tongue: Tongue) -> String {
-    let teller = Teller::new(file, None, tongue);
+    let reporter = Reporter::new(file, None, tongue);
     let lines = match why {
         Unreadable::File(why) => {
             count.errors += 1;
@@ -83,9 +83,9 @@ fn unread(file: &Path, why: Unreadable, count: &mut Count, tongue: Tongue) -> St
             vec![format!("{}: {error}: {why}", named(file))]
         }
         Unreadable::Save(mut problems) => {
-            teller.sort(&mut problems);
+            reporter.sort(&mut problems);
             count.add(&problems);
-            teller.lines(&problems)
+            reporter.lines(&problems)
         }
     };
     joined(&lines)
@@ -93,12 +93,12 @@ fn unread(file: &Path, why: Unreadable, count: &mut Count, tongue: Tongue) -> St
 
 /// Lines of a save that could be read.
 fn found(file: &Path, opened: &Opened, count: &mut Count, tongue: Tongue) -> String {
-    let teller = Teller::new(file, Some(&opened.project), tongue);
+    let reporter = Reporter::new(file, Some(&opened.project), tongue);
     let mut problems: Vec<Problem> = opened.problems.clone();
     problems.extend(check(&opened.project, World::Robot));
-    teller.sort(&mut problems);
+    reporter.sort(&mut problems);
     count.add(&problems);
-    joined(&teller.lines(&problems))
+    joined(&reporter.lines(&problems))
 }
 
 fn joined(lines: &[String]) -> String {
@@ -118,7 +118,7 @@ fn recover(opened: &mut Opened, file: &Path, out: &Path, args: &LintArgs) -> Res
         0 => words::nothing_to_recover(args.language).to_owned(),
         _ => {
             let bytes = opened.save.write().map_err(|problem| Refusal {
-                lines: Teller::new(file, None, args.language).lines(&[problem]),
+                lines: Reporter::new(file, None, args.language).lines(&[problem]),
                 code: REFUSED,
             })?;
             output.write(&bytes)?;

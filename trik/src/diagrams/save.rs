@@ -2,7 +2,7 @@
 //!
 //! Owns which files are read, and what is said of one that cannot be.
 
-use super::telling::Teller;
+use super::report::Reporter;
 use crate::refusal::{Refusal, UNREADABLE};
 use crate::terminal::named;
 use lang_diagram::limits::SAVE_BYTES;
@@ -31,7 +31,7 @@ pub(crate) fn must_open(path: &Path, tongue: Tongue) -> Result<Opened, Refusal> 
     open(path).map_err(|why| Refusal {
         lines: match why {
             Unreadable::File(why) => vec![format!("trik: {}: {why}", named(path))],
-            Unreadable::Save(problems) => Teller::new(path, None, tongue).lines(&problems),
+            Unreadable::Save(problems) => Reporter::new(path, None, tongue).lines(&problems),
         },
         code: UNREADABLE,
     })

@@ -2,8 +2,8 @@
 //!
 //! Owns which diagram of a project is meant. What is shown of it is the business of `lang`.
 
+use super::report::Reporter;
 use super::save::must_open;
-use super::telling::Teller;
 use crate::language;
 use crate::output::{Output, standard};
 use crate::refusal::{REFUSED, Refusal};
@@ -61,9 +61,9 @@ pub(crate) fn run(args: &ShowArgs) -> Result<u8, Refusal> {
     // The program begins there.
     opened.project.main = Some(chosen);
     let text = outline(&opened.project, args.language).map_err(|mut problems| {
-        let teller = Teller::new(&args.file, Some(&opened.project), args.language);
-        teller.sort(&mut problems);
-        let mut lines = teller.lines(&problems);
+        let reporter = Reporter::new(&args.file, Some(&opened.project), args.language);
+        reporter.sort(&mut problems);
+        let mut lines = reporter.lines(&problems);
         lines.push("trik: it is not clear what this diagram does: --svg shows it as it is".into());
         Refusal {
             lines,

@@ -59,7 +59,7 @@ pub(super) struct Link {
     sent: Instant,
     heard: Instant,
     /// The last failure that the robot told of: why a connection ends is said before its end.
-    told: Option<String>,
+    last_error: Option<String>,
     /// The other side has closed it; what came before may not all be taken.
     lost: Option<String>,
 }
@@ -79,7 +79,7 @@ impl Link {
             gone: 0,
             sent: now,
             heard: now,
-            told: None,
+            last_error: None,
             lost: None,
         })
     }
@@ -96,7 +96,7 @@ impl Link {
 
     /// Keeps a failure, in case the connection ends because of it.
     pub(super) fn remember(&mut self, text: &str) {
-        self.told = Some(text.to_owned());
+        self.last_error = Some(text.to_owned());
     }
 
     /// Puts one message of several parts behind what is still to be sent.
@@ -142,8 +142,8 @@ impl Link {
         if let Some(why) = &self.lost {
             let name = &self.name;
             // What it said last is the better reason.
-            return Err(Error::Unreachable(match &self.told {
-                Some(told) => format!("{name} has closed the connection: {told}"),
+            return Err(Error::Unreachable(match &self.last_error {
+                Some(error) => format!("{name} has closed the connection: {error}"),
                 None => format!("the connection to {name} is lost: {why}"),
             }));
         }

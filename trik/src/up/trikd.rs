@@ -98,7 +98,7 @@ impl Trikd {
 
     /// Where programs are uploaded, if it has told that since the last call: the ports of a new start may be others.
     pub(super) fn take_address(&mut self) -> Option<SocketAddr> {
-        let line = self.process.take_told()?;
+        let line = self.process.take_ready_line()?;
         let words = line.split_once(READY)?.1;
         let port = words.split(", ").find_map(|word| {
             let (name, number) = word.split_once(' ')?;

@@ -32,14 +32,14 @@ impl Count {
     }
 }
 
-/// Tells problems of one save.
-pub(super) struct Teller<'a> {
+/// Problems of one save as lines.
+pub(super) struct Reporter<'a> {
     file: String,
     blocks: HashMap<&'a str, (usize, usize, &'a Block)>,
     tongue: Tongue,
 }
 
-impl<'a> Teller<'a> {
+impl<'a> Reporter<'a> {
     /// For a save, with its project if it could be read.
     pub fn new(file: &Path, project: Option<&'a Project>, tongue: Tongue) -> Self {
         let mut blocks = HashMap::new();
@@ -145,12 +145,12 @@ mod tests {
         sketch.chain(&[start, wait, end]);
         sketch.link(lost, end);
         let project = sketch.project();
-        let teller = Teller::new(Path::new("a.qrs"), Some(&project), Tongue::English);
+        let reporter = Reporter::new(Path::new("a.qrs"), Some(&project), Tongue::English);
         let mut problems = check(&project, World::Robot);
         problems.reverse();
         problems.extend(problems.clone());
-        teller.sort(&mut problems);
-        let lines = teller.lines(&problems);
+        reporter.sort(&mut problems);
+        let lines = reporter.lines(&problems);
         let mut count = Count::default();
         count.add(&problems);
         assert_eq!((count.errors, count.notes), (1, 1), "{lines:?}");
