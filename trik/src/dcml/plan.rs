@@ -159,7 +159,7 @@ fn searched(
         (limit, _) => Some(limit.unwrap_or(60.0)),
     };
     let mut room = Room::new(obstacles, &asked.footprint, asked.parts, args.resolution)
-        .map_err(Refusal::new)?;
+        .map_err(|fault| Refusal::new(fault.to_string()))?;
     let is_watched = io::stderr().is_terminal() && !args.json;
     let mut shown = begun;
     let mut report = |counts: &Counts| {

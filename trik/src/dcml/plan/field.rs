@@ -2,7 +2,7 @@
 //!
 //! Owns the change of units: a world is in pixels with y down and degrees clockwise.
 
-use crate::error::Error;
+use lang_plan::Fault;
 use lang_plan::obstacles::flat::{Point, sine_and_cosine, wrapped};
 use lang_plan::obstacles::{Footprint, Obstacles, Pose, Shape};
 use sim::field::{Field, ROBOT_SIZE, Solid, SolidKind, Unit};
@@ -30,14 +30,13 @@ fn heading(degrees: f64) -> f64 {
 ///
 /// # Errors
 /// A thing of the world is no shape.
-pub(super) fn obstacles(field: &Field) -> Result<Obstacles, Error> {
+pub(super) fn obstacles(field: &Field) -> Result<Obstacles, Fault> {
     let walls = field.walls.iter().map(|wall| {
         let (from, to) = (wall.begin, wall.end);
         Shape::Wall(place(from.x, from.y), place(to.x, to.y), metres(wall.width))
     });
     let solids = field.solids.iter().map(solid);
     Obstacles::new(walls.chain(solids).collect(), None)
-        .map_err(|why| Error::Refused(why.to_string()))
 }
 
 fn solid(solid: &Solid) -> Shape {

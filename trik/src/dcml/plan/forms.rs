@@ -98,7 +98,10 @@ pub(crate) fn footing(text: &str) -> Result<Footing, Error> {
         ("polygon", all) if all.len() >= 6 && all.len() % 2 == 0 => {
             Footprint::polygon(all.chunks_exact(2).map(|one| [one[0], one[1]]).collect())
         }
-        _ => Err("write circle:RADIUS, or polygon: and x, y of three corners or more".to_owned()),
+        _ => {
+            let why = "write circle:RADIUS, or polygon: and x, y of three corners or more";
+            return Err(Error::Refused(why.to_owned()));
+        }
     };
     footprint
         .map(Footing)
