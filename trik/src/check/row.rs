@@ -3,8 +3,8 @@
 //! Owns both forms. The line is also what a worker process tells.
 
 use super::words;
-use crate::diagrams::telling::harmless;
 use crate::limits;
+use crate::terminal::harmless;
 use lang_text::problem::Tongue;
 use sim::judge::json::{self, Value};
 
