@@ -18,7 +18,7 @@ use crate::diagrams::output::{Output, standard};
 use crate::diagrams::{Refusal, UNREADABLE, end, say, telling};
 pub(crate) use args::CheckArgs;
 use jobs::Job;
-use lang_text::problem::Tongue;
+use lang_text::problem::Locale;
 use row::{Row, Verdict, Widths};
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -134,7 +134,7 @@ fn many(jobs: &[Job], args: &CheckArgs, results: Option<Output<'_>>) -> Result<u
 
 /// What has been told of many runs.
 struct Told<'a> {
-    tongue: Tongue,
+    locale: Locale,
     widths: Widths,
     counts: [usize; 4],
     worst: Option<Verdict>,
@@ -152,7 +152,7 @@ struct Results<'a> {
 
 impl<'a> Told<'a> {
     fn new(jobs: &[Job], args: &CheckArgs, results: Option<Output<'a>>) -> Result<Self, Refusal> {
-        let tongue = args.language;
+        let locale = args.language;
         let names = |path: &Path| telling::named(path);
         let all: Vec<(String, Option<String>)> = jobs
             .iter()
@@ -161,10 +161,10 @@ impl<'a> Told<'a> {
         let widths = Widths::new(
             all.iter()
                 .map(|(solution, field)| (&**solution, field.as_deref())),
-            tongue,
+            locale,
         );
         let told = Self {
-            tongue,
+            locale,
             widths,
             counts: [0; 4],
             worst: None,
@@ -177,7 +177,7 @@ impl<'a> Told<'a> {
             is_terminal: io::stderr().is_terminal(),
         };
         if told.has_table() {
-            let heading = told.widths.line(&words::heading(tongue));
+            let heading = told.widths.line(&words::heading(locale));
             standard(format!("{heading}\n").as_bytes())?;
         }
         Ok(told)
@@ -203,7 +203,7 @@ impl<'a> Told<'a> {
             }
         }
         if has_table {
-            let line = self.widths.line(&row.cells(self.tongue));
+            let line = self.widths.line(&row.cells(self.locale));
             self.clear();
             standard(format!("{line}\n").as_bytes())?;
         }
@@ -217,7 +217,7 @@ impl<'a> Told<'a> {
             .shown
             .is_none_or(|shown| shown.elapsed() > PROGRESS_EVERY);
         if self.is_terminal && is_due && done < self.all {
-            let text = words::progress(done, self.all, self.tongue);
+            let text = words::progress(done, self.all, self.locale);
             let _ = write!(io::stderr(), "\r{text}\x1b[K");
             self.shown = Some(Instant::now());
         }
@@ -238,7 +238,7 @@ impl<'a> Told<'a> {
             results.output.write(&results.bytes)?;
         }
         if has_table {
-            let summary = words::summary(self.counts, self.tongue);
+            let summary = words::summary(self.counts, self.locale);
             standard(format!("{summary}\n").as_bytes())?;
         }
         Ok(self.worst.map_or(UNREADABLE, Verdict::code))

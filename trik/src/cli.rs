@@ -10,7 +10,7 @@ use crate::remote::{self, Target};
 use crate::{check, diagrams, fault, limits, up};
 use clap::{Args, CommandFactory, Parser, Subcommand};
 use lang_diagram::generate::Language;
-use lang_text::problem::Tongue;
+use lang_text::problem::Locale;
 use sim::body::rolling::Actuator;
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -298,8 +298,8 @@ pub(crate) struct GenArgs {
     #[arg(long)]
     pub goto: bool,
     /// Language of messages: en or ru.
-    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = diagrams::tongue)]
-    pub language: Tongue,
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = diagrams::locale)]
+    pub language: Locale,
 }
 
 /// What `trik show` can be told.
@@ -321,8 +321,8 @@ pub(crate) struct ShowArgs {
     #[arg(long, requires = "svg")]
     pub force: bool,
     /// Language of sentences and messages: en or ru.
-    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = diagrams::tongue)]
-    pub language: Tongue,
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = diagrams::locale)]
+    pub language: Locale,
 }
 
 /// What `trik lint` can be told.
@@ -332,8 +332,8 @@ pub(crate) struct LintArgs {
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Language of messages: en or ru.
-    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = diagrams::tongue)]
-    pub language: Tongue,
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = diagrams::locale)]
+    pub language: Locale,
     /// Write the diagram into this new file, with blocks and links put back that are in the file but on no sheet, and
     /// look at that. For one FILE.
     #[arg(long, value_name = "OUT.qrs")]

@@ -13,7 +13,7 @@ mod words;
 pub(crate) use generate::{generate, language};
 use lang_diagram::limits::SAVE_BYTES;
 use lang_diagram::read::{self, Opened};
-use lang_text::problem::{Problem, Tongue};
+use lang_text::problem::{Locale, Problem};
 pub(crate) use lint::lint;
 pub(crate) use show::show;
 use std::fs::File;
@@ -53,10 +53,10 @@ pub(crate) enum Unreadable {
 }
 
 /// The language of messages by its short name.
-pub(crate) fn tongue(name: &str) -> Result<Tongue, String> {
+pub(crate) fn locale(name: &str) -> Result<Locale, String> {
     match name {
-        "en" => Ok(Tongue::English),
-        "ru" => Ok(Tongue::Russian),
+        "en" => Ok(Locale::English),
+        "ru" => Ok(Locale::Russian),
         _ => Err("there are en and ru".to_owned()),
     }
 }
@@ -85,11 +85,11 @@ pub(crate) fn open(path: &Path) -> Result<Opened, Unreadable> {
 }
 
 /// Reads a save of which nothing else can be said if it cannot be read.
-pub(crate) fn must_open(path: &Path, tongue: Tongue) -> Result<Opened, Refusal> {
+pub(crate) fn must_open(path: &Path, locale: Locale) -> Result<Opened, Refusal> {
     open(path).map_err(|why| Refusal {
         lines: match why {
             Unreadable::File(why) => vec![format!("trik: {}: {why}", telling::named(path))],
-            Unreadable::Save(problems) => Teller::new(path, None, tongue).lines(&problems),
+            Unreadable::Save(problems) => Teller::new(path, None, locale).lines(&problems),
         },
         code: UNREADABLE,
     })

@@ -4,7 +4,7 @@
 
 use crate::{diagrams, limits};
 use clap::Args;
-use lang_text::problem::Tongue;
+use lang_text::problem::Locale;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -79,8 +79,8 @@ pub(crate) struct CheckArgs {
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u32,
     /// Language of messages: en or ru.
-    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = diagrams::tongue)]
-    pub language: Tongue,
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = diagrams::locale)]
+    pub language: Locale,
     /// Serve jobs from standard input.
     #[arg(long, hide = true)]
     pub worker: bool,
@@ -126,8 +126,8 @@ impl CheckArgs {
             }
         }
         let language = match self.language {
-            Tongue::English => "en",
-            Tongue::Russian => "ru",
+            Locale::English => "en",
+            Locale::Russian => "ru",
         };
         words.extend([
             format!("--time-limit={}", self.time_limit).into(),

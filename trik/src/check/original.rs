@@ -15,7 +15,7 @@ use crate::diagrams::{self, must_open, say};
 use crate::limits;
 use clap::Parser;
 use lang_diagram::generate::Language;
-use lang_text::problem::Tongue;
+use lang_text::problem::Locale;
 use sim::field::Field;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
@@ -182,12 +182,12 @@ fn named(path: &Option<OsString>) -> Option<PathBuf> {
 }
 
 /// The language of messages is that of the system, as there.
-fn tongue() -> Tongue {
+fn locale() -> Locale {
     let names = ["LC_ALL", "LC_MESSAGES", "LANG"];
     let mut values = names.into_iter().filter_map(std::env::var_os);
     match values.find(|value| !value.is_empty()) {
-        Some(value) if value.to_string_lossy().starts_with("ru") => Tongue::Russian,
-        _ => Tongue::English,
+        Some(value) if value.to_string_lossy().starts_with("ru") => Locale::Russian,
+        _ => Locale::English,
     }
 }
 
@@ -266,7 +266,7 @@ fn wanted(args: Model, is_script: bool) -> CheckArgs {
         wall_limit: limits::WALL_SECONDS_MAX,
         memory: 1024,
         seed: 1,
-        language: tongue(),
+        language: locale(),
         worker: false,
         is_one: true,
         is_embedded: is_script,
@@ -291,7 +291,7 @@ fn generated(args: &Model, path: &Path) -> u8 {
         output: Some(path.to_owned()),
         force: false,
         goto: false,
-        language: tongue(),
+        language: locale(),
     };
     if diagrams::generate(&wanted) == ExitCode::SUCCESS {
         0
@@ -319,13 +319,13 @@ type Refused = (Vec<String>, u8);
 
 fn patched(args: &Patcher) -> Result<(), Refused> {
     let because = |code: u8| move |why: String| (vec![format!("patcher: {why}")], code);
-    let tongue = tongue();
+    let locale = locale();
     let fields = [&args.field, &args.world, &args.with_place];
     if fields.iter().filter(|field| field.is_some()).count() > 1 {
         return Err(because(2)("use only one of -f, -w and --wp".to_owned()));
     }
-    let mut opened = must_open(&args.file, tongue).map_err(|refusal| (refusal.lines, 1))?;
-    let told = |problem: lang_text::problem::Problem| because(1)(problem.in_tongue(tongue));
+    let mut opened = must_open(&args.file, locale).map_err(|refusal| (refusal.lines, 1))?;
+    let told = |problem: lang_text::problem::Problem| because(1)(problem.in_locale(locale));
     if let Some(path) = fields.into_iter().flatten().next() {
         let world = text(path, limits::WORLD_BYTES_MAX).map_err(because(1))?;
         let world = match &args.field {
@@ -349,7 +349,7 @@ fn patched(args: &Patcher) -> Result<(), Refused> {
     if args.to_start {
         let (project, _) = opened.save.project();
         let mut field =
-            field_of(project.world.as_deref().unwrap_or_default(), tongue).map_err(because(1))?;
+            field_of(project.world.as_deref().unwrap_or_default(), locale).map_err(because(1))?;
         if let Some(robot) = field.robot_mut() {
             robot.to_start();
         }
@@ -358,7 +358,7 @@ fn patched(args: &Patcher) -> Result<(), Refused> {
     let bytes = opened
         .save
         .write()
-        .map_err(|problem| because(255)(problem.in_tongue(tongue)))?;
+        .map_err(|problem| because(255)(problem.in_locale(locale)))?;
     let output = Output {
         path: Some(&args.file),
         force: true,
@@ -368,11 +368,11 @@ fn patched(args: &Patcher) -> Result<(), Refused> {
     output.write(&bytes).map_err(|refusal| (refusal.lines, 255))
 }
 
-fn field_of(world: &str, tongue: Tongue) -> Result<Field, String> {
+fn field_of(world: &str, locale: Locale) -> Result<Field, String> {
     let opened = Field::read(world).map_err(|problems| {
         let lines: Vec<String> = problems
             .iter()
-            .map(|problem| problem.in_tongue(tongue))
+            .map(|problem| problem.in_locale(locale))
             .collect();
         lines.join("; ")
     })?;
@@ -381,9 +381,9 @@ fn field_of(world: &str, tongue: Tongue) -> Result<Field, String> {
 
 /// A new world with the robots of an old one; they keep the new place unless `keep_place`.
 fn merged(new: &str, old: &str, keep_place: bool) -> Result<String, String> {
-    let tongue = tongue();
-    let mut field = field_of(new, tongue)?;
-    let old = field_of(old, tongue)?;
+    let locale = locale();
+    let mut field = field_of(new, locale)?;
+    let old = field_of(old, locale)?;
     if let (Some(robot), Some(before)) = (field.robot_mut(), old.robot()) {
         let (position, direction, start) = (robot.position, robot.direction, robot.start.clone());
         *robot = before.clone();

@@ -263,7 +263,7 @@ impl Worker {
                         true => judge::too_slow(args.wall_limit),
                         false => words::hung(),
                     };
-                    return Err(why.in_tongue(args.language).to_owned());
+                    return Err(why.in_locale(args.language).to_owned());
                 }
             }
         }

@@ -9,7 +9,7 @@ use crate::cli::LintArgs;
 use lang_diagram::check::check;
 use lang_diagram::lower::World;
 use lang_diagram::read::Opened;
-use lang_text::problem::{Problem, Tongue};
+use lang_text::problem::{Locale, Problem};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -54,12 +54,12 @@ fn linted(args: &LintArgs) -> Result<u8, Refusal> {
 }
 
 /// Lines of a save that could not be read.
-fn unread(file: &Path, why: Unreadable, count: &mut Count, tongue: Tongue) -> String {
-    let teller = Teller::new(file, None, tongue);
+fn unread(file: &Path, why: Unreadable, count: &mut Count, locale: Locale) -> String {
+    let teller = Teller::new(file, None, locale);
     let lines = match why {
         Unreadable::File(why) => {
             count.errors += 1;
-            let error = words::severity(lang_text::problem::Severity::Error, tongue);
+            let error = words::severity(lang_text::problem::Severity::Error, locale);
             vec![format!("{}: {error}: {why}", named(file))]
         }
         Unreadable::Save(mut problems) => {
@@ -72,8 +72,8 @@ fn unread(file: &Path, why: Unreadable, count: &mut Count, tongue: Tongue) -> St
 }
 
 /// Lines of a save that could be read.
-fn found(file: &Path, opened: &Opened, count: &mut Count, tongue: Tongue) -> String {
-    let teller = Teller::new(file, Some(&opened.project), tongue);
+fn found(file: &Path, opened: &Opened, count: &mut Count, locale: Locale) -> String {
+    let teller = Teller::new(file, Some(&opened.project), locale);
     let mut problems: Vec<Problem> = opened.problems.clone();
     problems.extend(check(&opened.project, World::Robot));
     teller.sort(&mut problems);

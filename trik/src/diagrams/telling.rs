@@ -6,7 +6,7 @@
 use super::words;
 use lang_diagram::blocks::{self, Row, words::russian};
 use lang_diagram::project::{Block, Project};
-use lang_text::problem::{Problem, Severity, Tongue};
+use lang_text::problem::{Locale, Problem, Severity};
 use std::cmp::Reverse;
 use std::collections::HashMap;
 use std::path::Path;
@@ -39,12 +39,12 @@ impl Count {
 pub(super) struct Teller<'a> {
     file: String,
     blocks: HashMap<&'a str, (usize, usize, &'a Block)>,
-    tongue: Tongue,
+    locale: Locale,
 }
 
 impl<'a> Teller<'a> {
     /// For a save, with its project if it could be read.
-    pub fn new(file: &Path, project: Option<&'a Project>, tongue: Tongue) -> Self {
+    pub fn new(file: &Path, project: Option<&'a Project>, locale: Locale) -> Self {
         let mut blocks = HashMap::new();
         for (at, diagram) in project
             .iter()
@@ -57,7 +57,7 @@ impl<'a> Teller<'a> {
         Self {
             file: named(file),
             blocks,
-            tongue,
+            locale,
         }
     }
 
@@ -86,7 +86,7 @@ impl<'a> Teller<'a> {
         let mut line = format!(
             "{}: {}: ",
             self.file,
-            words::severity(problem.severity, self.tongue)
+            words::severity(problem.severity, self.locale)
         );
         for part in [&place.file, &place.diagram].into_iter().flatten() {
             line.push_str(&format!("{}: ", harmless(part)));
@@ -110,14 +110,14 @@ impl<'a> Teller<'a> {
             (None, Some(at)) => line.push_str(&format!("{}:{}: ", at.line, at.column)),
             (None, None) => {}
         }
-        line.push_str(&harmless(problem.words.in_tongue(self.tongue)));
+        line.push_str(&harmless(problem.words.in_locale(self.locale)));
         line
     }
 
     fn translated(&self, shown: &'static str) -> &'static str {
-        match self.tongue {
-            Tongue::English => shown,
-            Tongue::Russian => russian(shown),
+        match self.locale {
+            Locale::English => shown,
+            Locale::Russian => russian(shown),
         }
     }
 
@@ -182,7 +182,7 @@ mod tests {
         sketch.chain(&[start, wait, end]);
         sketch.link(lost, end);
         let project = sketch.project();
-        let teller = Teller::new(Path::new("a.qrs"), Some(&project), Tongue::English);
+        let teller = Teller::new(Path::new("a.qrs"), Some(&project), Locale::English);
         let mut problems = check(&project, World::Robot);
         problems.reverse();
         problems.extend(problems.clone());
