@@ -23,9 +23,9 @@ const LARGEST: [(&str, usize); 17] = [
     ("sample-bus", 1),
     ("screen", 3),
     ("sim", 8),
-    ("trik", 38),
+    ("trik", 4),
     ("trikd", 11),
-    ("trikfs", 20),
+    ("trikfs", 13),
 ];
 
 /// The way to a module from the root of its crate.

@@ -32,9 +32,9 @@ use crate::convert::LogSink;
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::log::Log;
-use crate::node::Node;
 use crate::programs::Programs;
 use crate::stats::Counter;
+use linked::LinkedNode;
 use std::collections::BTreeSet;
 use std::os::fd::BorrowedFd;
 use std::os::unix::fs::MetadataExt;
@@ -59,6 +59,22 @@ pub trait State: Send {
     /// Text that ends before the tuple does is filled up with zero bytes (`read_at` at 0 gives all there is).
     fn is_text(&self) -> bool {
         false
+    }
+
+    /// Samples one raw tuple. Text is filled up with zero bytes; anything else that is short is an error.
+    fn whole_tuple(&mut self, tuple: &mut [u8]) -> Result<(), Error> {
+        let n = self.read_at(0, tuple)?;
+        if n < tuple.len() {
+            if !self.is_text() || n == 0 {
+                let what = format!(
+                    "the source gave {n} of the {} bytes of a tuple",
+                    tuple.len()
+                );
+                return Err(Error::Device(libc::EIO, what));
+            }
+            tuple[n..].fill(0);
+        }
+        Ok(())
     }
 }
 
@@ -108,7 +124,7 @@ pub trait Sink: Send {
 #[derive(Clone)]
 pub struct Surroundings {
     /// Nodes that `trikfs:` sources of this node name, by path.
-    pub links: Vec<(String, Arc<Node>)>,
+    pub links: Vec<(String, Arc<dyn LinkedNode>)>,
     /// How long a sink waits for a device that takes no bytes.
     pub timeout_ms: u32,
     /// Where the node counts what its source had to throw away.
@@ -152,7 +168,7 @@ impl Surroundings {
     }
 
     /// A node that the source names.
-    fn link(&self, path: &str) -> Result<&Arc<Node>, Error> {
+    fn link(&self, path: &str) -> Result<&Arc<dyn LinkedNode>, Error> {
         let found = self.links.iter().find(|(name, _)| name == path);
         found
             .map(|(_, node)| node)

@@ -6,8 +6,8 @@ use super::Node;
 use crate::errno::Error;
 use crate::events::lock;
 use crate::guardian::actions::RestAction;
-use config::program::Direction;
 use config::source::rest::Resting;
+use converter::Direction;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -100,7 +100,7 @@ impl Node {
         let sink = self.description.source.innermost();
         match sink.resting() {
             Resting::Node(path) => {
-                let other = self.around.links.iter().find(|(name, _)| name == path);
+                let other = self.links.iter().find(|(name, _)| name == path);
                 other.map_or(Ok(None), |(_, other)| other.action_of(&converted))
             }
             Resting::Device => Ok(Some(RestAction {
