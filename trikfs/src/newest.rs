@@ -162,7 +162,7 @@ impl Newest {
             self.finish(&waiting, Some(Error::Stale));
         }
         if let Some(node) = self.node.upgrade() {
-            self.page.drop(&node);
+            self.page.drop(&node.engine);
         }
         // A sampler that is inside the device right now closes the source when it comes out.
         if let Ok(mut work) = self.work.try_lock() {
@@ -290,7 +290,7 @@ impl Newest {
     /// Answers reads whose time is over, and drops a page that is not to be used; says when the next read is due.
     pub fn expire(&self) -> Option<Instant> {
         if let Some(node) = self.node.upgrade() {
-            self.page.drop_unwanted(&node);
+            self.page.drop_unwanted(&node.engine);
         }
         let now = Instant::now();
         let mut over = Vec::new();
@@ -393,7 +393,7 @@ impl Newest {
         }
         self.latch.publish(tuple);
         node.stats.samples.add(1);
-        self.page.fill(node, tuple);
+        self.page.fill(&node.engine, tuple);
         self.tell();
         if let Some(regulation) = node.driving.regulation() {
             regulation.step(node, tuple);
@@ -404,7 +404,7 @@ impl Newest {
         let is_new = self.latch.fail(&error);
         if let Some(node) = self.node.upgrade() {
             if is_new {
-                self.page.drop(&node);
+                self.page.drop(&node.engine);
             }
             if let Some(regulation) = node.driving.regulation() {
                 regulation.fail(&node, &error);
@@ -431,7 +431,10 @@ impl Newest {
         };
         let background = node.description.pace != Pace::OnRead;
         let size = node.description.output_tuple_size;
-        background && self.latch.is_good() && Page::can_hold(&node, size) && self.page.is_of(ino)
+        background
+            && self.latch.is_good()
+            && Page::can_hold(&node.engine, size)
+            && self.page.is_of(ino)
     }
 
     /// A cached open file comes (true) or goes.

@@ -87,9 +87,9 @@ impl Node {
             recipe,
             source: Source::new(&description, &links, &engine, &stats),
             sampling: Sampling::new(me.clone(), &description),
-            driving: Driving::new(&description.source, &links, lease),
+            driving: Driving::new(&description, &links, lease),
             quarantine: Quarantine::new(&description),
-            trouble: Trouble::default(),
+            trouble: Trouble::new(&description.path, engine.log.clone()),
             links,
             retired: AtomicBool::new(false),
             engine,
@@ -135,6 +135,43 @@ impl Node {
         } else {
             Ok(())
         }
+    }
+
+    /// Format of what programs write.
+    pub fn written_format(&self) -> Format {
+        if self.format.size() == self.description.written_tuple_size() {
+            self.format.clone()
+        } else {
+            Format::bytes(self.description.written_tuple_size())
+        }
+    }
+
+    /// What was written last, or else the newest sample if it has the shape of what is written.
+    pub fn last_tuple(&self) -> Option<Vec<u8>> {
+        if let Some(tuple) = self.driving.written.last() {
+            return Some(tuple);
+        }
+        let mut tuple = Vec::new();
+        let newest = self.sampling.newest.get(&mut tuple).ok().flatten();
+        newest
+            .filter(|_| self.description.output_tuple_size == self.description.written_tuple_size())
+            .map(|_| tuple)
+    }
+
+    /// Notes a failure. One of the device or the converter is shown by `fault`, `stats` and the log; a mistake of the
+    /// caller, who has the errno, by the log alone.
+    pub fn report(&self, error: &Error) {
+        self.trouble.report(error, &self.stats);
+    }
+
+    /// All is well again.
+    pub fn recover(&self) {
+        self.trouble.recover();
+    }
+
+    /// The present fault.
+    pub fn fault(&self) -> Option<Error> {
+        self.trouble.fault().or_else(|| self.driving.lost())
     }
 
     /// A problem at the place of this node's description.

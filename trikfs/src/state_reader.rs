@@ -61,7 +61,7 @@ impl StateReader {
                 return Err(error);
             }
             if batch.produced > 0 {
-                self.node.read_back(&self.raw, tuple);
+                self.node.driving.written.read_back(&self.raw, tuple);
                 return Ok(true);
             }
         }
@@ -134,7 +134,10 @@ impl StateReader {
             self.next_tuple += batch.consumed as u64;
             if batch.produced > 0 {
                 if tuples == 1 {
-                    self.node.read_back(input, &mut target[..output_size]);
+                    self.node
+                        .driving
+                        .written
+                        .read_back(input, &mut target[..output_size]);
                 }
                 if whole > 0 {
                     return Ok(batch.produced * output_size);

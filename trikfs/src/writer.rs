@@ -116,7 +116,7 @@ impl Writer {
                     self.node.report(error);
                 }
             })?;
-            self.node.sent(tuple, &self.output);
+            self.node.driving.written.sent(tuple, &self.output);
             self.node.driving.count_write();
         }
         Ok(())

@@ -214,7 +214,7 @@ impl OpenFile for ValueFile {
         lock_patiently(writer).write_whole(&tuple, !request.nonblocking)?;
         drop(turn);
         newest::renew(&self.node);
-        self.node.wrote(tuple);
+        self.node.driving.written.wrote(tuple);
         self.node.stats.writes.add(1);
         Ok(Outcome::Done(data.len()))
     }

@@ -103,7 +103,7 @@ impl Due for Ageing {
             .stamp()
             .map_or(limit, |stamp| Duration::from_nanos(stamp.age_ns()));
         if age >= limit {
-            if node.sampling.newest.page.drop_filled(&node) {
+            if node.sampling.newest.page.drop_filled(&node.engine) {
                 node.sampling.newest.tell();
             }
             return Some(Instant::now() + limit);

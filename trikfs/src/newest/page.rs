@@ -4,7 +4,7 @@
 //! on event and schedule threads only: a READ request may hold the page while it waits for the thread that serves the
 //! kernel, so that thread must never wait for the page.
 
-use crate::node::Node;
+use crate::engine::Engine;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
@@ -24,8 +24,8 @@ pub(super) struct Page {
 impl Page {
     /// Only these sizes are written in one piece, so that no reader sees half of two values; and the transport must
     /// be able to fill pages.
-    pub(super) fn can_hold(node: &Node, size: usize) -> bool {
-        let kernel = node.engine.kernel();
+    pub(super) fn can_hold(engine: &Engine, size: usize) -> bool {
+        let kernel = engine.kernel();
         matches!(size, 1 | 2 | 4 | 8) && kernel.is_some_and(|kernel| kernel.can_store())
     }
 
@@ -52,8 +52,8 @@ impl Page {
     }
 
     /// There is a new sample.
-    pub(super) fn fill(&self, node: &Node, tuple: &[u8]) {
-        let (Some(kernel), Some(&ino)) = (node.engine.kernel(), self.ino.get()) else {
+    pub(super) fn fill(&self, engine: &Engine, tuple: &[u8]) {
+        let (Some(kernel), Some(&ino)) = (engine.kernel(), self.ino.get()) else {
             return;
         };
         let has_readers = self.readers.load(Ordering::SeqCst) > 0;
@@ -67,25 +67,25 @@ impl Page {
     }
 
     /// The sample is no longer to be shown.
-    pub(super) fn drop(&self, node: &Node) {
-        if let (Some(kernel), Some(&ino)) = (node.engine.kernel(), self.ino.get()) {
+    pub(super) fn drop(&self, engine: &Engine) {
+        if let (Some(kernel), Some(&ino)) = (engine.kernel(), self.ino.get()) {
             kernel.invalidate(ino);
         }
     }
 
     /// Drops the page if it may hold something. True if it may have.
-    pub(super) fn drop_filled(&self, node: &Node) -> bool {
+    pub(super) fn drop_filled(&self, engine: &Engine) -> bool {
         let was_filled = self.is_filled.swap(false, Ordering::SeqCst);
         if was_filled {
-            self.drop(node);
+            self.drop(engine);
         }
         was_filled
     }
 
     /// Drops the page if somebody began to poll.
-    pub(super) fn drop_unwanted(&self, node: &Node) {
+    pub(super) fn drop_unwanted(&self, engine: &Engine) {
         if self.is_unwanted.swap(false, Ordering::SeqCst) {
-            self.drop(node);
+            self.drop(engine);
         }
     }
 }

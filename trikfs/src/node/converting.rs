@@ -49,7 +49,7 @@ impl Node {
         }
         if let Some(error) = &batch.fault {
             self.report(error);
-        } else if self.has_fault() {
+        } else if self.trouble.has_fault() {
             self.recover();
         }
         batch

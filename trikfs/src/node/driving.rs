@@ -10,7 +10,7 @@ use crate::errno::Error;
 use crate::events::lock;
 use crate::lease::Lease;
 use crate::regulation::Regulation;
-use config::description::SourceDescription;
+use config::description::{NodeDescription, SourceDescription};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 
@@ -29,15 +29,17 @@ pub struct Driving {
     lost: Mutex<Option<Error>>,
     /// How often a tuple went to the device. Wraps.
     writes: AtomicU32,
-    pub(super) written: Written,
+    /// What was written last.
+    pub written: Written,
 }
 
 impl Driving {
     pub(super) fn new(
-        source: &SourceDescription,
+        description: &NodeDescription,
         links: &[(String, Arc<Node>)],
         lease: Arc<Lease>,
     ) -> Self {
+        let source = &description.source;
         let linked = |path: &str| links.iter().find(|(name, _)| name == path);
         let regulation = match source {
             SourceDescription::Regulator(regulator) => {
@@ -46,7 +48,7 @@ impl Driving {
             _ => None,
         };
         let mut leases = vec![lease.clone()];
-        if let Some((_, node)) = written_node(source).and_then(linked) {
+        if let Some((_, node)) = source.written_node().and_then(linked) {
             // One that stands for another node has its lease.
             let others = node.driving.leases.iter();
             leases.extend(others.filter(|other| !Arc::ptr_eq(other, &lease)).cloned());
@@ -59,7 +61,7 @@ impl Driving {
             turn: Mutex::default(),
             lost: Mutex::default(),
             writes: AtomicU32::new(0),
-            written: Written::default(),
+            written: Written::new(description.read_back),
         }
     }
 
@@ -103,8 +105,8 @@ impl Node {
     /// What is driven in the end: the node itself, or the one that it stands for.
     fn driven(&self) -> &Self {
         let mut node = self;
-        while let SourceDescription::Node(path) = &node.description.source {
-            match node.links.iter().find(|(name, _)| name == path) {
+        while let SourceDescription::Node(link) = &node.description.source {
+            match node.links.iter().find(|(name, _)| *name == link.path) {
                 Some((_, other)) => node = other,
                 None => break,
             }
@@ -124,15 +126,5 @@ impl Node {
         let driving = &self.driven().driving;
         let is_regulated = driving.is_regulated.load(Ordering::Relaxed);
         is_regulated.then(|| lock_patiently(&driving.turn))
-    }
-}
-
-/// The node that a write to this source goes to.
-fn written_node(source: &SourceDescription) -> Option<&str> {
-    match source {
-        SourceDescription::Node(path) => Some(path),
-        SourceDescription::Regulator(regulator) => Some(&regulator.actuator),
-        SourceDescription::Faulty(faulty) => written_node(&faulty.source),
-        _ => None,
     }
 }

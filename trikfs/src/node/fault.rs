@@ -3,17 +3,20 @@
 //! Owns the present fault, which lasts until something works again, and the memory that keeps a program that makes the
 //! same mistake over and over from filling the log. A caller's mistake is no fault: the device is as well as before.
 
-use super::Node;
 use crate::clock::coarse_ms;
 use crate::errno::{Blame, Error};
 use crate::events::lock;
 use crate::limits;
-use std::sync::Mutex;
+use crate::log::Log;
+use crate::stats::Stats;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 
 /// The troubles of one node.
-#[derive(Default)]
 pub(super) struct Trouble {
+    /// The node's, for messages.
+    path: String,
+    log: Arc<Log>,
     fault: Mutex<Option<Error>>,
     /// The same, without a lock.
     is_faulty: AtomicBool,
@@ -21,24 +24,35 @@ pub(super) struct Trouble {
     mistake: Mutex<Option<(Error, u32)>>,
 }
 
-impl Node {
+impl Trouble {
+    pub(super) fn new(path: &str, log: Arc<Log>) -> Self {
+        Self {
+            path: path.to_owned(),
+            log,
+            fault: Mutex::default(),
+            is_faulty: AtomicBool::new(false),
+            mistake: Mutex::default(),
+        }
+    }
+
+    /// The same as whether there is a [`fault`](Self::fault), without a lock.
     pub(super) fn has_fault(&self) -> bool {
-        self.trouble.is_faulty.load(Ordering::Relaxed)
+        self.is_faulty.load(Ordering::Relaxed)
     }
 
     /// Notes a failure. One of the device or the converter is shown by `fault`, `stats` and the log; a mistake of the
     /// caller, who has the errno, by the log alone.
-    pub fn report(&self, error: &Error) {
+    pub(super) fn report(&self, error: &Error, stats: &Stats) {
         if error.blame() == Blame::Caller {
             return self.tell_mistake(error);
         }
-        self.stats.faults.add(1);
-        let mut fault = lock(&self.trouble.fault);
+        stats.faults.add(1);
+        let mut fault = lock(&self.fault);
         if fault.as_ref() != Some(error) {
             self.tell(error);
             *fault = Some(error.clone());
         }
-        self.trouble.is_faulty.store(true, Ordering::Relaxed);
+        self.is_faulty.store(true, Ordering::Relaxed);
     }
 
     /// A line of the log for a mistake that was not told a moment ago. That there is nothing yet is none.
@@ -47,7 +61,7 @@ impl Node {
             return;
         }
         let now_ms = coarse_ms();
-        let mut mistake = lock(&self.trouble.mistake);
+        let mut mistake = lock(&self.mistake);
         let is_old = |(told, at_ms): &(Error, u32)| {
             told == error && now_ms.wrapping_sub(*at_ms) < limits::MISTAKE_MS
         };
@@ -58,19 +72,18 @@ impl Node {
     }
 
     fn tell(&self, error: &Error) {
-        let line = format!("{}: {}: {error}", self.path(), error.blame());
-        self.engine.log.line(&line);
+        let line = format!("{}: {}: {error}", self.path, error.blame());
+        self.log.line(&line);
     }
 
     /// All is well again.
-    pub fn recover(&self) {
-        self.trouble.is_faulty.store(false, Ordering::Relaxed);
-        *lock(&self.trouble.fault) = None;
+    pub(super) fn recover(&self) {
+        self.is_faulty.store(false, Ordering::Relaxed);
+        *lock(&self.fault) = None;
     }
 
     /// The present fault.
-    pub fn fault(&self) -> Option<Error> {
-        let fault = lock(&self.trouble.fault).clone();
-        fault.or_else(|| self.driving.lost())
+    pub(super) fn fault(&self) -> Option<Error> {
+        lock(&self.fault).clone()
     }
 }

@@ -6,7 +6,7 @@ use super::Node;
 use crate::convert::{LogSink, Pipeline};
 use crate::device::lines::answer::Answer;
 use crate::device::linked::LinkedNode;
-use crate::device::{self, Device, State, Stream, Surroundings};
+use crate::device::{Device, State, Stream, Surroundings, kinds};
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::{Ready, lock};
@@ -107,7 +107,7 @@ impl Node {
     }
 
     fn open_origin(self: &Arc<Self>, on_ready: &Weak<dyn Ready>) -> Result<Opened, Error> {
-        let by_kind = device::is_shared(&self.description.source)?;
+        let by_kind = kinds::is_shared(&self.description.source)?;
         if !self.description.share.unwrap_or(by_kind) {
             return Ok(match self.open_device()? {
                 Device::State(state) => Opened::State(state),
@@ -136,7 +136,7 @@ impl Node {
     }
 
     fn open_device(&self) -> Result<Device, Error> {
-        device::open(
+        kinds::open(
             &self.description.source,
             self.description.input_tuple_size,
             &self.source.around,
@@ -162,7 +162,7 @@ impl Node {
             return Ok(Writer::to_regulation(self.clone()));
         }
         let pipeline = pipeline.map_or_else(|| self.open_pipeline(), Ok)?;
-        let sink = device::open_sink(&self.description.source, &self.source.around)
+        let sink = kinds::open_sink(&self.description.source, &self.source.around)
             .inspect_err(|error| self.report(error))?;
         Ok(Writer::new(self.clone(), sink, pipeline))
     }
