@@ -35,7 +35,7 @@ type Module = Vec<String>;
 fn no_circle_of_files_grows() {
     let mut complaints = Vec::new();
     for (name, most) in LARGEST {
-        let files = modules(&super::tidy::root().join(name).join("src"));
+        let files = modules(&crate::tidy::root().join(name).join("src"));
         assert!(!files.is_empty(), "{name}: no sources");
         let mut circles = circles(&edges(&files));
         circles.sort_by_key(|circle| std::cmp::Reverse(circle.len()));
@@ -60,7 +60,7 @@ fn no_circle_of_files_grows() {
 /// The texts of a crate without comments and tests.
 fn modules(src: &Path) -> BTreeMap<Module, String> {
     let mut paths = Vec::new();
-    super::tidy::files(src, "rs", &mut paths);
+    crate::tidy::files(src, "rs", &mut paths);
     let mut modules = BTreeMap::new();
     for path in paths {
         let name = path.strip_prefix(src).unwrap().with_extension("");
