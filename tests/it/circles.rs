@@ -23,7 +23,7 @@ const LARGEST: [(&str, usize); 17] = [
     ("sample-bus", 1),
     ("screen", 3),
     ("sim", 8),
-    ("trik", 38),
+    ("trik", 4),
     ("trikd", 11),
     ("trikfs", 41),
 ];
