@@ -205,7 +205,9 @@ impl Row {
         let verdict = words::verdict(self.verdict, tongue);
         let at = match self.verdict {
             Verdict::Broken => String::new(),
-            _ => format!(", {}", words::seconds(self.ms, tongue)),
+            Verdict::Accomplished | Verdict::Ended | Verdict::Failed => {
+                format!(", {}", words::seconds(self.ms, tongue))
+            }
         };
         let score = self.score().map_or_else(String::new, |score| {
             format!(", {}: {score}", words::heading(tongue)[4])
