@@ -25,7 +25,7 @@ const LARGEST: [(&str, usize); 17] = [
     ("sim", 8),
     ("trik", 4),
     ("trikd", 11),
-    ("trikfs", 41),
+    ("trikfs", 28),
 ];
 
 /// The way to a module from the root of its crate.

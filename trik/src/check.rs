@@ -19,7 +19,7 @@ use crate::refusal::{Refusal, UNREADABLE, say};
 use crate::terminal::named;
 pub(crate) use args::CheckArgs;
 use jobs::Job;
-use lang_text::problem::Tongue;
+use lang_text::problem::Locale;
 use row::{Row, Verdict, Widths};
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
@@ -127,7 +127,7 @@ fn many(jobs: &[Job], args: &CheckArgs, results: Option<Output<'_>>) -> Result<u
 
 /// The table of many runs and their lines of JSON, as far as they are written.
 struct Report<'a> {
-    tongue: Tongue,
+    locale: Locale,
     widths: Widths,
     counts: [usize; 4],
     worst: Option<Verdict>,
@@ -145,7 +145,7 @@ struct Results<'a> {
 
 impl<'a> Report<'a> {
     fn new(jobs: &[Job], args: &CheckArgs, results: Option<Output<'a>>) -> Result<Self, Refusal> {
-        let tongue = args.language;
+        let locale = args.language;
         let all: Vec<(String, Option<String>)> = jobs
             .iter()
             .map(|job| (named(job.judged(args)), job.rules(args).map(named)))
@@ -153,10 +153,10 @@ impl<'a> Report<'a> {
         let widths = Widths::new(
             all.iter()
                 .map(|(solution, field)| (&**solution, field.as_deref())),
-            tongue,
+            locale,
         );
         let report = Self {
-            tongue,
+            locale,
             widths,
             counts: [0; 4],
             worst: None,
@@ -169,7 +169,7 @@ impl<'a> Report<'a> {
             is_terminal: io::stderr().is_terminal(),
         };
         if report.has_table() {
-            let heading = report.widths.line(&words::heading(tongue));
+            let heading = report.widths.line(&words::heading(locale));
             standard(format!("{heading}\n").as_bytes())?;
         }
         Ok(report)
@@ -195,7 +195,7 @@ impl<'a> Report<'a> {
             }
         }
         if has_table {
-            let line = self.widths.line(&row.cells(self.tongue));
+            let line = self.widths.line(&row.cells(self.locale));
             self.clear();
             standard(format!("{line}\n").as_bytes())?;
         }
@@ -209,7 +209,7 @@ impl<'a> Report<'a> {
             .shown
             .is_none_or(|shown| shown.elapsed() > PROGRESS_EVERY);
         if self.is_terminal && is_due && done < self.all {
-            let text = words::progress(done, self.all, self.tongue);
+            let text = words::progress(done, self.all, self.locale);
             let _ = write!(io::stderr(), "\r{text}\x1b[K");
             self.shown = Some(Instant::now());
         }
@@ -230,7 +230,7 @@ impl<'a> Report<'a> {
             results.output.write(&results.bytes)?;
         }
         if has_table {
-            let summary = words::summary(self.counts, self.tongue);
+            let summary = words::summary(self.counts, self.locale);
             standard(format!("{summary}\n").as_bytes())?;
         }
         Ok(self.worst.map_or(UNREADABLE, Verdict::code))

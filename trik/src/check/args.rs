@@ -4,7 +4,7 @@
 
 use crate::{language, limits};
 use clap::Args;
-use lang_text::problem::Tongue;
+use lang_text::problem::Locale;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -79,8 +79,8 @@ pub(crate) struct CheckArgs {
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u32,
     /// Language of messages: en or ru.
-    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::tongue)]
-    pub language: Tongue,
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
+    pub language: Locale,
     /// Serve jobs from standard input.
     #[arg(long, hide = true)]
     pub worker: bool,

@@ -16,7 +16,7 @@ use crate::refusal::say;
 use crate::{language, limits};
 use clap::Parser;
 use lang_diagram::generate::Language;
-use lang_text::problem::Tongue;
+use lang_text::problem::Locale;
 use sim::field::Field;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
@@ -311,13 +311,13 @@ type Refused = (Vec<String>, u8);
 
 fn patched(args: &Patcher) -> Result<(), Refused> {
     let because = |code: u8| move |why: String| (vec![format!("patcher: {why}")], code);
-    let tongue = language::of_system();
+    let locale = language::of_system();
     let fields = [&args.field, &args.world, &args.with_place];
     if fields.iter().filter(|field| field.is_some()).count() > 1 {
         return Err(because(2)("use only one of -f, -w and --wp".to_owned()));
     }
-    let mut opened = must_open(&args.file, tongue).map_err(|refusal| (refusal.lines, 1))?;
-    let told = |problem: lang_text::problem::Problem| because(1)(problem.in_tongue(tongue));
+    let mut opened = must_open(&args.file, locale).map_err(|refusal| (refusal.lines, 1))?;
+    let told = |problem: lang_text::problem::Problem| because(1)(problem.in_locale(locale));
     if let Some(path) = fields.into_iter().flatten().next() {
         let world =
             text(path, limits::WORLD_BYTES_MAX).map_err(|why| because(1)(why.to_string()))?;
@@ -343,7 +343,7 @@ fn patched(args: &Patcher) -> Result<(), Refused> {
     if args.to_start {
         let (project, _) = opened.save.project();
         let mut field =
-            field_of(project.world.as_deref().unwrap_or_default(), tongue).map_err(because(1))?;
+            field_of(project.world.as_deref().unwrap_or_default(), locale).map_err(because(1))?;
         if let Some(robot) = field.robot_mut() {
             robot.to_start();
         }
@@ -352,7 +352,7 @@ fn patched(args: &Patcher) -> Result<(), Refused> {
     let bytes = opened
         .save
         .write()
-        .map_err(|problem| because(255)(problem.in_tongue(tongue)))?;
+        .map_err(|problem| because(255)(problem.in_locale(locale)))?;
     let output = Output {
         path: Some(&args.file),
         force: true,
@@ -362,11 +362,11 @@ fn patched(args: &Patcher) -> Result<(), Refused> {
     output.write(&bytes).map_err(|refusal| (refusal.lines, 255))
 }
 
-fn field_of(world: &str, tongue: Tongue) -> Result<Field, String> {
+fn field_of(world: &str, locale: Locale) -> Result<Field, String> {
     let opened = Field::read(world).map_err(|problems| {
         let lines: Vec<String> = problems
             .iter()
-            .map(|problem| problem.in_tongue(tongue))
+            .map(|problem| problem.in_locale(locale))
             .collect();
         lines.join("; ")
     })?;
@@ -375,9 +375,9 @@ fn field_of(world: &str, tongue: Tongue) -> Result<Field, String> {
 
 /// A new world with the robots of an old one; they keep the new place unless `keep_place`.
 fn merged(new: &str, old: &str, keep_place: bool) -> Result<String, String> {
-    let tongue = language::of_system();
-    let mut field = field_of(new, tongue)?;
-    let old = field_of(old, tongue)?;
+    let locale = language::of_system();
+    let mut field = field_of(new, locale)?;
+    let old = field_of(old, locale)?;
     if let (Some(robot), Some(before)) = (field.robot_mut(), old.robot()) {
         let (position, direction, start) = (robot.position, robot.direction, robot.start.clone());
         *robot = before.clone();

@@ -266,7 +266,7 @@ impl Worker {
                         true => judge::too_slow(args.wall_limit),
                         false => words::hung(),
                     };
-                    return Err(Error::Process(why.in_tongue(args.language).to_owned()));
+                    return Err(Error::Process(why.in_locale(args.language).to_owned()));
                 }
             }
         }

@@ -16,7 +16,7 @@ use crate::output::Output;
 use lang_constraint::Level;
 use lang_diagram::lower::{World, lower};
 use lang_diagram::project::Project;
-use lang_text::problem::{Problem, Tongue};
+use lang_text::problem::{Locale, Problem};
 use sim::field::Locks;
 use sim::judge::{self, Caption, Diagram, Outcome, Program, Settings, Task, Texts, Trajectory};
 use std::path::{Path, PathBuf};
@@ -153,7 +153,7 @@ fn judged(
         let trajectory = Trajectory::read(&text);
         let trajectory = trajectory.map_err(|why| vec![format!("{}: {why}", shown(log))])?;
         let names = judge::strange_in_record(&task, &trajectory);
-        let told = names.iter().map(|words| words.in_tongue(args.language));
+        let told = names.iter().map(|words| words.in_locale(args.language));
         strange.extend(told.map(|words| format!("{}: {words}", shown(log))));
         report_phase(Phase::Runs);
         let outcome = judge::judge_recorded(&task, &trajectory, &settings);
@@ -181,7 +181,7 @@ fn hold(task: &mut Task, given: &Path, args: &CheckArgs) -> Result<Lines, Lines>
     };
     let read = Task::read(texts).map_err(|problems| lines(given, &problems, args.language))?;
     let changed = task.hold(&read.0, Locks::of(&project.meta));
-    let changed = changed.iter().map(|words| words.in_tongue(args.language));
+    let changed = changed.iter().map(|words| words.in_locale(args.language));
     Ok(changed.map(str::to_owned).collect())
 }
 
@@ -201,7 +201,7 @@ fn settings(args: &CheckArgs) -> Result<Settings, Error> {
         }
     };
     Ok(Settings {
-        tongue: args.language,
+        locale: args.language,
         keep_going: args.keep_going,
         longest_ms: (args.time_limit * 1000.0) as u32,
         longest: Duration::from_secs_f64(args.wall_limit),
@@ -285,7 +285,7 @@ impl Solution {
             gamepad: args.gamepad.is_some(),
         };
         let lowered = lower(&self.project, world);
-        let lowered = lowered.map_err(|problem| vec![problem.in_tongue(args.language)])?;
+        let lowered = lowered.map_err(|problem| vec![problem.in_locale(args.language)])?;
         task.plug_in(&self.project, &lowered.program);
         Ok(Box::new(Diagram::new(Rc::new(lowered.program))))
     }
@@ -306,11 +306,11 @@ fn embedded(project: &Project, path: &Path) -> Result<(Language, String), Lines>
     Ok((language, code.clone()))
 }
 
-fn lines(path: &Path, problems: &[Problem], tongue: Tongue) -> Lines {
+fn lines(path: &Path, problems: &[Problem], locale: Locale) -> Lines {
     let name = shown(path);
     problems
         .iter()
-        .map(|problem| format!("{name}: {}", problem.in_tongue(tongue)))
+        .map(|problem| format!("{name}: {}", problem.in_locale(locale)))
         .collect()
 }
 
@@ -359,7 +359,7 @@ fn write(job: &Job, args: &CheckArgs, task: &Task, outcome: &Outcome) -> Result<
             title: &row.solution,
             verdict: &verdict,
             is_good: row.verdict.code() == 0,
-            tongue: args.language,
+            locale: args.language,
         };
         let (poses, entries) = (&outcome.trajectory, &outcome.entries);
         judge::page(&task.field, poses, entries, caption).into()

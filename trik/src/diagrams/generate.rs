@@ -12,7 +12,7 @@ use clap::Args;
 use lang_diagram::check::check;
 use lang_diagram::generate::{self, Language, Options};
 use lang_diagram::lower::World;
-use lang_text::problem::{Severity, Tongue};
+use lang_text::problem::{Locale, Severity};
 use std::path::PathBuf;
 
 /// What `trik gen` can be told.
@@ -33,8 +33,8 @@ pub(crate) struct GenArgs {
     #[arg(long)]
     pub goto: bool,
     /// Language of messages: en or ru.
-    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::tongue)]
-    pub language: Tongue,
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
+    pub language: Locale,
 }
 
 /// A language by its name; for the command line.

@@ -13,7 +13,7 @@ use clap::Args;
 use lang_diagram::check::check;
 use lang_diagram::lower::World;
 use lang_diagram::read::Opened;
-use lang_text::problem::{Problem, Tongue};
+use lang_text::problem::{Locale, Problem};
 use std::path::{Path, PathBuf};
 
 /// What `trik lint` can be told.
@@ -23,8 +23,8 @@ pub(crate) struct LintArgs {
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Language of messages: en or ru.
-    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::tongue)]
-    pub language: Tongue,
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
+    pub language: Locale,
     /// Write the diagram into this new file, with blocks and links put back that are in the file but on no sheet, and
     /// look at that. For one FILE.
     #[arg(long, value_name = "OUT.qrs")]
@@ -74,12 +74,12 @@ pub(crate) fn run(args: &LintArgs) -> Result<u8, Refusal> {
 }
 
 /// Lines of a save that could not be read.
-fn unread(file: &Path, why: Unreadable, count: &mut Count, tongue: Tongue) -> String {
-    let reporter = Reporter::new(file, None, tongue);
+fn unread(file: &Path, why: Unreadable, count: &mut Count, locale: Locale) -> String {
+    let reporter = Reporter::new(file, None, locale);
     let lines = match why {
         Unreadable::File(why) => {
             count.errors += 1;
-            let error = words::severity(lang_text::problem::Severity::Error, tongue);
+            let error = words::severity(lang_text::problem::Severity::Error, locale);
             vec![format!("{}: {error}: {why}", named(file))]
         }
         Unreadable::Save(mut problems) => {
@@ -92,8 +92,8 @@ fn unread(file: &Path, why: Unreadable, count: &mut Count, tongue: Tongue) -> St
 }
 
 /// Lines of a save that could be read.
-fn found(file: &Path, opened: &Opened, count: &mut Count, tongue: Tongue) -> String {
-    let reporter = Reporter::new(file, Some(&opened.project), tongue);
+fn found(file: &Path, opened: &Opened, count: &mut Count, locale: Locale) -> String {
+    let reporter = Reporter::new(file, Some(&opened.project), locale);
     let mut problems: Vec<Problem> = opened.problems.clone();
     problems.extend(check(&opened.project, World::Robot));
     reporter.sort(&mut problems);

@@ -6,7 +6,7 @@ use super::words;
 use crate::terminal::{harmless, named};
 use lang_diagram::blocks::{self, Row, words::russian};
 use lang_diagram::project::{Block, Project};
-use lang_text::problem::{Problem, Severity, Tongue};
+use lang_text::problem::{Locale, Problem, Severity};
 use std::cmp::Reverse;
 use std::collections::HashMap;
 use std::path::Path;
@@ -36,12 +36,12 @@ impl Count {
 pub(super) struct Reporter<'a> {
     file: String,
     blocks: HashMap<&'a str, (usize, usize, &'a Block)>,
-    tongue: Tongue,
+    locale: Locale,
 }
 
 impl<'a> Reporter<'a> {
     /// For a save, with its project if it could be read.
-    pub fn new(file: &Path, project: Option<&'a Project>, tongue: Tongue) -> Self {
+    pub fn new(file: &Path, project: Option<&'a Project>, locale: Locale) -> Self {
         let mut blocks = HashMap::new();
         for (at, diagram) in project
             .iter()
@@ -54,7 +54,7 @@ impl<'a> Reporter<'a> {
         Self {
             file: named(file),
             blocks,
-            tongue,
+            locale,
         }
     }
 
@@ -83,7 +83,7 @@ impl<'a> Reporter<'a> {
         let mut line = format!(
             "{}: {}: ",
             self.file,
-            words::severity(problem.severity, self.tongue)
+            words::severity(problem.severity, self.locale)
         );
         for part in [&place.file, &place.diagram].into_iter().flatten() {
             line.push_str(&format!("{}: ", harmless(part)));
@@ -107,14 +107,14 @@ impl<'a> Reporter<'a> {
             (None, Some(at)) => line.push_str(&format!("{}:{}: ", at.line, at.column)),
             (None, None) => {}
         }
-        line.push_str(&harmless(problem.words.in_tongue(self.tongue)));
+        line.push_str(&harmless(problem.words.in_locale(self.locale)));
         line
     }
 
     fn translated(&self, shown: &'static str) -> &'static str {
-        match self.tongue {
-            Tongue::English => shown,
-            Tongue::Russian => russian(shown),
+        match self.locale {
+            Locale::English => shown,
+            Locale::Russian => russian(shown),
         }
     }
 
@@ -145,7 +145,7 @@ mod tests {
         sketch.chain(&[start, wait, end]);
         sketch.link(lost, end);
         let project = sketch.project();
-        let reporter = Reporter::new(Path::new("a.qrs"), Some(&project), Tongue::English);
+        let reporter = Reporter::new(Path::new("a.qrs"), Some(&project), Locale::English);
         let mut problems = check(&project, World::Robot);
         problems.reverse();
         problems.extend(problems.clone());

@@ -8,7 +8,7 @@ use crate::refusal::{Refusal, UNREADABLE};
 use crate::terminal::named;
 use lang_diagram::limits::SAVE_BYTES;
 use lang_diagram::read::{self, Opened};
-use lang_text::problem::{Problem, Tongue};
+use lang_text::problem::{Locale, Problem};
 use std::path::Path;
 
 /// Why a save cannot be read.
@@ -26,11 +26,11 @@ pub(crate) fn open(path: &Path) -> Result<Opened, Unreadable> {
 }
 
 /// Reads a save of which nothing else can be said if it cannot be read.
-pub(crate) fn must_open(path: &Path, tongue: Tongue) -> Result<Opened, Refusal> {
+pub(crate) fn must_open(path: &Path, locale: Locale) -> Result<Opened, Refusal> {
     open(path).map_err(|why| Refusal {
         lines: match why {
             Unreadable::File(why) => vec![format!("trik: {}: {why}", named(path))],
-            Unreadable::Save(problems) => Reporter::new(path, None, tongue).lines(&problems),
+            Unreadable::Save(problems) => Reporter::new(path, None, locale).lines(&problems),
         },
         code: UNREADABLE,
     })

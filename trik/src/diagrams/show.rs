@@ -11,7 +11,7 @@ use crate::terminal::harmless;
 use clap::Args;
 use lang_diagram::project::Project;
 use lang_diagram::show::{outline::outline, picture::picture};
-use lang_text::problem::Tongue;
+use lang_text::problem::Locale;
 use std::path::PathBuf;
 
 /// Names of diagrams that a message lists.
@@ -36,8 +36,8 @@ pub(crate) struct ShowArgs {
     #[arg(long, requires = "svg")]
     pub force: bool,
     /// Language of sentences and messages: en or ru.
-    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::tongue)]
-    pub language: Tongue,
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
+    pub language: Locale,
 }
 
 /// Shows it.
