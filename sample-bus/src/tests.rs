@@ -138,7 +138,7 @@ fn a_slow_reader_hears_how_many_events_it_has_missed() {
         assert_eq!(tuple, number.to_ne_bytes());
     }
     assert_eq!(reader.next_event(&mut tuple), Step::Nothing);
-    // Who comes late begins with the oldest, and has missed nothing.
+    // A late reader begins with the oldest, and has missed nothing.
     let mut late = Reader::open_file(&folder.path("ring")).unwrap();
     let Step::Event(event) = late.next_event(&mut tuple) else {
         panic!("nothing");

@@ -1,6 +1,6 @@
 //! The publisher's end of a ring.
 //!
-//! Owns one file and its mapping. Publishing is a few stores into memory that is there already: it waits for nobody,
+//! Owns one file and its mapping. Publishing is a few stores into memory that is there already: it never waits,
 //! allocates nothing and makes no system call.
 
 use crate::layout::{self, Layout};
@@ -102,7 +102,7 @@ impl Writer {
         let event = layout::next_event(self.newest);
         let slot = self.layout.slot_at(event);
         self.map.set(slot + layout::AT_BEGIN, event);
-        // Whoever sees a byte of what follows also sees that it has begun.
+        // A reader that sees a byte of what follows also sees that it has begun.
         fence(Ordering::Release);
         let size = u32::try_from(tuple.len()).unwrap_or(0);
         let mut head = [0; 16];
@@ -111,7 +111,7 @@ impl Writer {
         head[8..].copy_from_slice(&time_ns.to_ne_bytes());
         self.map.copy_in(slot + layout::AT_SIZE, &head);
         self.map.copy_in(slot + layout::SLOT_HEADER_BYTES, tuple);
-        // Whoever sees the end also sees what came before.
+        // A reader that sees the end also sees what came before.
         fence(Ordering::Release);
         self.map.set(slot + layout::AT_END, event);
         self.map.set(layout::AT_NEWEST, event);

@@ -1,6 +1,6 @@
-//! The command line of `trikd`: what can be said, and which part of the crate does it.
+//! The command line of `trikd`: commands, options, and which part of the crate carries them out.
 //!
-//! Owns the words, the help and the exit codes: 0 done, 1 refused or failed, 2 not understood. The hidden commands are
+//! Owns the words, the help and the exit codes: 0 success, 1 refused or failed, 2 bad command line. The hidden commands are
 //! what `trikd` starts itself as: each is one child process.
 
 use crate::brick::Brick;
@@ -21,7 +21,7 @@ use std::net::IpAddr;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// The daemon of a robot that desktop clients, gamepads and programs talk to.
+/// The daemon of a robot, for desktop clients, gamepads and programs.
 #[derive(Parser)]
 #[command(name = "trikd", version, max_term_width = 100)]
 struct Cli {
@@ -33,9 +33,9 @@ struct Cli {
 enum Command {
     /// Serve desktop programs, gamepads and other robots until SIGTERM, SIGINT or SIGHUP.
     ///
-    /// Needs a mounted tree to do something, and waits for it if there is none. Says in one line when all ports are
-    /// served. Two processes: if the serving one crashes, the other brings motors to rest, ends the program and starts
-    /// it again.
+    /// It needs a mounted tree, and waits for one if there is none. It prints one line when all ports are
+    /// served. It runs as two processes: if the serving one crashes, the other brings motors to rest, ends the program and
+    /// starts it again.
     Serve {
         #[command(flatten)]
         settings: Box<Settings>,
@@ -76,7 +76,7 @@ enum Command {
     ///
     /// The orders are line X1 Y1 X2 Y2, point X Y, rect and ellipse X Y WIDTH HEIGHT FILLED, arc X Y WIDTH HEIGHT FROM
     /// SPAN, label X Y HEIGHT TEXT, image FILE, color NAME, width PIXELS, background NAME, removelabels, smile, sadsmile,
-    /// redraw, clear and hide. What was drawn is seen after redraw.
+    /// redraw, clear and hide. What was drawn is shown by redraw.
     Draw {
         /// Where the tree is mounted.
         #[arg(long, env = "TRIK_TREE", value_name = "DIR", default_value = "/trikfs")]
@@ -85,14 +85,14 @@ enum Command {
         #[arg(long)]
         answers: bool,
     },
-    /// Run a JavaScript program in this terminal, without the daemon; the motors rest at its end.
+    /// Run a JavaScript program in this terminal, without the daemon; motors come to rest when it ends.
     ///
-    /// Without a file it is the process of one program, whose standard input is the channel to the daemon.
+    /// Without a file this is the process of one program, whose standard input is the channel to the daemon.
     Js {
         /// Where the tree is mounted.
         #[arg(long, env = "TRIK_TREE", value_name = "DIR", default_value = "/trikfs")]
         tree: PathBuf,
-        /// One line of a program in place of a file; nothing rests at its end.
+        /// One line of a program instead of a file; motors are left as they are when it ends.
         #[arg(long, value_name = "TEXT", hide = true, conflicts_with = "file")]
         line: Option<String>,
         /// The program.
