@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::none;
-use crate::docs::documents;
+use harness::documents::documents;
 
 /// Phrases that a reader stumbles over, in small letters, with what to write instead.
 const BANNED: [(&str, &str); 12] = [
