@@ -180,13 +180,14 @@ pub fn of_studio(name: &str) -> ExitCode {
 
 /// What clap cannot say of a command line.
 fn understood(cli: Cli) -> Result<Cli, clap::Error> {
-    match &cli.command {
-        Command::Lint(args) if args.recover.is_some() && args.files.len() > 1 => {
-            let why = "--recover writes one file: name one FILE";
-            Err(Cli::command().error(clap::error::ErrorKind::TooManyValues, why))
-        }
-        _ => Ok(cli),
+    if let Command::Lint(args) = &cli.command
+        && args.recover.is_some()
+        && args.files.len() > 1
+    {
+        let why = "--recover writes one file: name one FILE";
+        return Err(Cli::command().error(clap::error::ErrorKind::TooManyValues, why));
     }
+    Ok(cli)
 }
 
 /// Does what a command says, and gives the exit code.

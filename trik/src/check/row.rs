@@ -205,7 +205,9 @@ impl Row {
         let verdict = words::verdict(self.verdict, locale);
         let at = match self.verdict {
             Verdict::Broken => String::new(),
-            _ => format!(", {}", words::seconds(self.ms, locale)),
+            Verdict::Accomplished | Verdict::Ended | Verdict::Failed => {
+                format!(", {}", words::seconds(self.ms, locale))
+            }
         };
         let score = self.score().map_or_else(String::new, |score| {
             format!(", {}: {score}", words::heading(locale)[4])

@@ -186,10 +186,12 @@ impl Python {
         let text = match answer {
             Ok(text) => format!("ok:{now}:{text}"),
             Err(error) => {
-                let number = match error.kind() {
-                    io::ErrorKind::WouldBlock => EAGAIN,
-                    io::ErrorKind::NotFound => ENOENT,
-                    _ => EIO,
+                let number = if error.kind() == io::ErrorKind::WouldBlock {
+                    EAGAIN
+                } else if error.kind() == io::ErrorKind::NotFound {
+                    ENOENT
+                } else {
+                    EIO
                 };
                 format!("no:{now}:{number}:{error}")
             }

@@ -87,7 +87,9 @@ pub(super) fn draw(
     for shape in obstacles.shapes().iter().take(SHAPES) {
         match shape {
             Shape::Circle(at, radius) => view.circle(&mut text, *at, *radius, look),
-            other => view.polygon(&mut text, &other.corners(), look),
+            Shape::Rectangle(..) | Shape::Polygon(_) | Shape::Wall(..) => {
+                view.polygon(&mut text, &shape.corners(), look);
+            }
         }
     }
     if let ([Some(x), Some(y)], radius) = asked.goal {
