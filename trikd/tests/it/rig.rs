@@ -172,6 +172,12 @@ impl Robot {
             .clone()
     }
 
+    /// Waits until it has written a line with this to standard error: lines come through a pipe and a thread, later than
+    /// what a client sees.
+    pub fn expect_log(&self, part: &str) {
+        eventually(part, || self.log().contains(part));
+    }
+
     /// The number of a port by its name.
     pub fn port(&self, name: &str) -> u16 {
         let words: Vec<&str> = self.ready.split([' ', ',']).collect();
