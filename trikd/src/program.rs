@@ -17,6 +17,7 @@ pub mod rest;
 use crate::daemon::Daemon;
 use crate::feedback::Moment;
 use crate::protocol::news::{self, End};
+use crate::protocol::program::{FromProgram, ToProgram};
 use crate::{limits, log};
 use child::{Child, Language, Said};
 use kill::{freeze, group, sweep};
@@ -118,8 +119,8 @@ impl Supervisor {
                     .unwrap_or(&path)
                     .display()
                     .to_string();
-                let first = format!("file:{}", path.display());
-                self.start(language, name, Some(path), &first);
+                let file = path.display().to_string();
+                self.start(language, name, Some(path), ToProgram::File(&file));
             }
             Command::Script(code) => {
                 self.end(Way::Order("another program")).await;
@@ -127,7 +128,7 @@ impl Supervisor {
                     Language::JavaScript,
                     "script".to_owned(),
                     None,
-                    &format!("script:{code}"),
+                    ToProgram::Script(&code),
                 );
             }
             Command::Direct(code) => self.direct(&code).await,
@@ -142,7 +143,7 @@ impl Supervisor {
                     .as_ref()
                     .is_some_and(|current| current.child.has_channel());
                 if heard {
-                    self.tell(format!("mail:{hull}:{text}").as_bytes());
+                    self.send(ToProgram::Mail { hull, text: &text });
                 } else {
                     self.daemon.mailbox.keep(hull, text);
                 }
@@ -150,7 +151,7 @@ impl Supervisor {
             Command::Web(answer) => {
                 if let Some(current) = &mut self.current
                     && current.web.len() < limits::COMMANDS
-                    && current.child.tell(b"web:")
+                    && current.child.send(ToProgram::Web)
                 {
                     current.web.push(answer);
                 }
@@ -175,25 +176,36 @@ impl Supervisor {
             } else {
                 Language::JavaScript
             };
-            self.start(language, "direct commands".to_owned(), None, "start:");
+            self.start(
+                language,
+                "direct commands".to_owned(),
+                None,
+                ToProgram::Start,
+            );
             match &mut self.current {
                 Some(current) => current.takes_direct = true,
                 None => return,
             }
         }
-        if !self.tell(format!("direct:{code}").as_bytes()) {
+        if !self.send(ToProgram::Direct(code)) {
             self.broadcast("error: the direct command is lost: the ones before it are not done yet. Stop, then try again");
         }
     }
 
-    fn tell(&mut self, payload: &[u8]) -> bool {
+    fn send(&mut self, message: ToProgram<'_>) -> bool {
         self.current
             .as_mut()
-            .is_some_and(|current| current.child.tell(payload))
+            .is_some_and(|current| current.child.send(message))
     }
 
-    /// Starts a child with the first frame of its channel; a program in a file has its path.
-    fn start(&mut self, language: Language, name: String, path: Option<PathBuf>, first: &str) {
+    /// Starts a child with the first message of its channel; a program in a file has its path.
+    fn start(
+        &mut self,
+        language: Language,
+        name: String,
+        path: Option<PathBuf>,
+        first: ToProgram<'_>,
+    ) {
         let daemon = self.daemon.clone();
         let started = child::start(
             &daemon.settings,
@@ -210,9 +222,9 @@ impl Supervisor {
                 return;
             }
         };
-        if child.tell(first.as_bytes()) {
+        if child.send(first) {
             for (hull, text) in daemon.mailbox.take_kept() {
-                child.tell(format!("mail:{hull}:{text}").as_bytes());
+                child.send(ToProgram::Mail { hull, text: &text });
             }
         }
         let is_quiet = path.is_none();
@@ -265,38 +277,37 @@ impl Supervisor {
     }
 
     fn hear_frame(&mut self, frame: &str) {
-        let (word, rest) = frame.split_once(':').unwrap_or((frame, ""));
-        match word {
-            "print" | "info" => self.show(word, rest),
-            "error" => {
+        let Some(message) = FromProgram::parse(frame) else {
+            return;
+        };
+        match message {
+            FromProgram::Print(text) => self.show("print", text),
+            FromProgram::Info(text) => self.show("info", text),
+            FromProgram::Error(text) => {
                 if let Some(current) = &mut self.current {
                     current.told_error = true;
                 }
-                self.show("error", rest);
+                self.show("error", text);
             }
-            "events" => {
+            FromProgram::Events => {
                 if let Some(current) = &mut self.current {
                     current.takes_direct = true;
                 }
             }
-            "mailbox" => {
-                let answer = self.daemon.mailbox.answer(rest);
-                self.tell(format!("answer:{answer}").as_bytes());
+            FromProgram::Mailbox(question) => {
+                let answer = self.daemon.mailbox.answer(question);
+                self.send(ToProgram::Answer(&answer));
             }
-            "web" => {
+            FromProgram::Web(json) => {
                 let web = self
                     .current
                     .as_mut()
                     .map(|current| std::mem::take(&mut current.web));
                 for answer in web.into_iter().flatten() {
-                    let _ = answer.send(rest.to_owned());
+                    let _ = answer.send(json.to_owned());
                 }
             }
-            "watch" => {
-                let (line, json) = rest.split_once('\n').unwrap_or((rest, "{}"));
-                self.daemon.clients.tell_watchers(line, json);
-            }
-            _ => {}
+            FromProgram::Watch { line, json } => self.daemon.clients.tell_watchers(line, json),
         }
     }
 
@@ -307,7 +318,7 @@ impl Supervisor {
             && current.is_watched != watched
         {
             current.is_watched = watched;
-            self.tell(if watched { b"watch:1" } else { b"watch:0" });
+            self.send(ToProgram::Watch(watched));
         }
     }
 
@@ -422,18 +433,30 @@ impl Supervisor {
                         current.ended.get_or_insert((ended, Instant::now()));
                     }
                     Said::Line(text) => self.show_last(current, "print", &text),
-                    Said::Frame(text) => {
-                        if let Some((kind @ ("print" | "error" | "info"), text)) =
-                            text.split_once(':')
-                        {
-                            current.told_error |= kind == "error";
-                            self.show_last(current, kind, text);
-                        }
-                    }
+                    Said::Frame(frame) => self.hear_last(current, &frame),
                 }
             }
         })
         .await;
+    }
+
+    /// Of a program that is dead only what it wanted to show counts.
+    fn hear_last(&self, current: &mut Current, frame: &str) {
+        match FromProgram::parse(frame) {
+            Some(FromProgram::Print(text)) => self.show_last(current, "print", text),
+            Some(FromProgram::Info(text)) => self.show_last(current, "info", text),
+            Some(FromProgram::Error(text)) => {
+                current.told_error = true;
+                self.show_last(current, "error", text);
+            }
+            Some(
+                FromProgram::Events
+                | FromProgram::Mailbox(_)
+                | FromProgram::Web(_)
+                | FromProgram::Watch { .. },
+            )
+            | None => {}
+        }
     }
 
     fn show_last(&self, current: &mut Current, kind: &str, text: &str) {

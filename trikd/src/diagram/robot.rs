@@ -10,6 +10,7 @@ use crate::display::Display;
 use crate::host::Host;
 use crate::limits;
 use crate::program::child;
+use crate::protocol::program::mailbox::Question;
 use lang_diagram::brick::{self, Command, Figure};
 use lang_diagram::ports::Port;
 use std::collections::{HashMap, HashSet, VecDeque};
@@ -179,8 +180,8 @@ impl<'a> Robot<'a> {
         self.note(file, result);
     }
 
-    fn mailbox(&mut self, words: &str) {
-        let result = self.host.post(words);
+    fn mailbox(&mut self, question: Question<'_>) {
+        let result = self.host.post(question);
         self.note("mailbox", result);
     }
 }
@@ -246,14 +247,19 @@ impl brick::Brick for Robot<'_> {
                 let result = self.readings.detect(mode);
                 self.note("camera", result);
             }
-            Command::Send { message, hull } => {
-                self.mailbox(&format!("send {} {message}", hull.unwrap_or(-1)));
-            }
+            Command::Send { message, hull } => self.mailbox(Question::Send {
+                hull: hull.or(Some(-1)),
+                text: message,
+            }),
             Command::Join {
                 address,
                 port,
                 hull,
-            } => self.mailbox(&format!("join {address} {port} {hull}")),
+            } => self.mailbox(Question::Join {
+                address,
+                port,
+                hull,
+            }),
             Command::CalibrateGyroscope => self.readings.calibrate(),
             Command::Console { text } => {
                 // As above.

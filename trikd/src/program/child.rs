@@ -6,6 +6,7 @@ use super::output::Lines;
 use super::reaper::{Ended, Reaper};
 use crate::limits;
 use crate::protocol::frame::{Decoder, encode};
+use crate::protocol::program::ToProgram;
 use crate::settings::Settings;
 use nix::unistd::{Pid, User};
 use std::ffi::OsString;
@@ -305,13 +306,14 @@ async fn ended(end: &mut Option<oneshot::Receiver<Ended>>) -> Ended {
 }
 
 impl Child {
-    /// Sends a frame when the child has room for it. False: it has not read for so long that this one is dropped.
-    pub fn tell(&mut self, payload: &[u8]) -> bool {
+    /// Sends a message when the child has room for it. False: it has not read for so long that this one is dropped.
+    pub fn send(&mut self, message: ToProgram<'_>) -> bool {
+        let payload = message.encode();
         if self.channel.is_none() || self.unsent.len() + payload.len() > limits::CHANNEL_FRAME_BYTES
         {
             return false;
         }
-        self.unsent.extend_from_slice(&encode(payload));
+        self.unsent.extend_from_slice(&encode(&payload));
         self.flush();
         true
     }

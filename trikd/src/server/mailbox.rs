@@ -9,6 +9,7 @@ use crate::daemon::Daemon;
 use crate::outbox::Outbox;
 use crate::program::Command;
 use crate::protocol::mail::{Message, NOWHERE, plain};
+use crate::protocol::program::mailbox::Question;
 use crate::scripts;
 use crate::{limits, log};
 use std::cell::{Cell, RefCell};
@@ -197,63 +198,55 @@ impl Mailbox {
 
     /// The answer to a question of a program; empty if there is nothing to say.
     pub fn answer(&self, words: &str) -> String {
-        let (word, rest) = words.split_once(' ').unwrap_or((words, ""));
-        let mut fields = rest.split_ascii_whitespace();
-        match word {
-            "send" => {
-                let (hull, text) = rest.split_once(' ').unwrap_or((rest, ""));
-                self.send(hull.parse().unwrap_or(UNKNOWN_HULL), text);
-            }
-            "connect" | "join" => {
-                let ip = fields.next().and_then(|ip| ip.parse().ok());
-                // Without a port, that of our own server, as on the robots of old.
-                let port = fields
-                    .next()
-                    .and_then(|port| port.parse().ok())
-                    .or(self.port.get());
-                if let Some(hull) = fields
-                    .next()
-                    .and_then(|hull| hull.parse().ok())
-                    .filter(|hull| *hull >= 0)
-                {
+        let flag = |holds: bool| u8::from(holds).to_string();
+        let Some(question) = Question::parse(words) else {
+            return String::new();
+        };
+        match question {
+            Question::Send { hull, text } => self.send(hull.unwrap_or(UNKNOWN_HULL), text),
+            Question::Connect { address, port } => self.join_new(address, port),
+            Question::Join {
+                address,
+                port,
+                hull,
+            } => {
+                if hull >= 0 {
                     self.set_hull(hull);
                 }
-                if let (Some(ip), Some(port)) = (ip, port) {
-                    let server = SocketAddr::new(plain(ip), port);
-                    self.server.set(Some(server));
-                    self.save();
-                    self.join(server, limits::JOIN_TRIES);
-                }
+                self.join_new(address, u16::try_from(port).ok());
             }
-            "hull" => match fields.next().map(str::parse) {
-                Some(Ok(hull)) => self.set_hull(hull),
-                _ => return self.hull.get().to_string(),
-            },
-            "server" => {
-                return self
-                    .server
-                    .get()
-                    .map_or_else(String::new, |server| server.ip().to_string());
+            Question::SetHull(hull) => self.set_hull(hull),
+            Question::Hull => return self.hull.get().to_string(),
+            Question::Server => {
+                let server = self.server.get();
+                return server.map_or_else(String::new, |server| server.ip().to_string());
             }
-            "ip" => {
+            Question::Ip => {
                 let daemon = self.daemon.borrow().upgrade();
                 let named = daemon.and_then(|daemon| daemon.settings.address.first().copied());
                 let named = named.filter(|ip| !ip.is_unspecified());
                 return named.unwrap_or_else(own_ip).to_string();
             }
-            "connected" => {
-                return u8::from(
-                    self.robots
-                        .borrow()
-                        .iter()
-                        .any(|robot| robot.link.is_some()),
-                )
-                .to_string();
+            Question::Connected => {
+                let robots = self.robots.borrow();
+                return flag(robots.iter().any(|robot| robot.link.is_some()));
             }
-            "enabled" => return u8::from(self.port.get().is_some()).to_string(),
-            _ => {}
+            Question::Enabled => return flag(self.port.get().is_some()),
+            // Our own address is looked for whenever somebody asks.
+            Question::Renew => {}
         }
         String::new()
+    }
+
+    /// Joins a robot and remembers that; without a port, that of our own server, as on the robots of old.
+    fn join_new(&self, address: &str, port: Option<u16>) {
+        let ip = address.parse().ok();
+        if let (Some(ip), Some(port)) = (ip, port.or(self.port.get())) {
+            let server = SocketAddr::new(plain(ip), port);
+            self.server.set(Some(server));
+            self.save();
+            self.join(server, limits::JOIN_TRIES);
+        }
     }
 
     fn set_hull(&self, hull: i32) {
