@@ -6,7 +6,7 @@
 use crate::brick::Brick;
 use crate::engine::Engine;
 use crate::host::Host;
-use crate::log::tell;
+use crate::log::report;
 #[cfg(feature = "manual")]
 use crate::manual;
 use crate::program::{kill, launch::Launch};
@@ -131,7 +131,7 @@ pub fn main() -> ExitCode {
     match perform(cli.command) {
         Ok(code) => code,
         Err(reason) => {
-            tell(reason);
+            report(reason);
             ExitCode::FAILURE
         }
     }
@@ -197,7 +197,7 @@ fn run_engine(engine: &mut impl Engine, tree: &std::path::Path) -> ExitCode {
     let host = match Host::from_standard_input() {
         Ok(host) => host,
         Err(error) => {
-            tell(format_args!(
+            report(format_args!(
                 "standard input is no channel to the daemon ({error}): this command is for trikd itself"
             ));
             return ExitCode::FAILURE;

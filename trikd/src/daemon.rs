@@ -291,7 +291,7 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), String> {
     match daemon.rest.now(limits::REST_LAST_MS).await {
         Err(why) => tracing::warn!(target: log::TREE, "at the start: {why}"),
         // The tree answers, so it does not hang.
-        Ok(()) => tell_of_rights(&daemon),
+        Ok(()) => warn_of_rights(&daemon),
     }
     open(&daemon, ports);
     spawn_local(status::serve(daemon.clone(), listener));
@@ -315,14 +315,14 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), String> {
     }
     tracing::info!(target: log::DAEMON, "ends");
     let (done, ended) = oneshot::channel();
-    daemon.programs.tell(Command::Quit(done)).await;
+    daemon.programs.send(Command::Quit(done)).await;
     let _ = ended.await;
     daemon.mailbox.rest().await;
     Ok(())
 }
 
 /// Says so if the user of programs cannot drive.
-fn tell_of_rights(daemon: &Daemon) {
+fn warn_of_rights(daemon: &Daemon) {
     if let Some(owner) = &daemon.owner
         && let Some(file) = owner.lacks(&daemon.settings.tree)
     {
@@ -388,7 +388,7 @@ async fn hear_keys(daemon: Rc<Daemon>, mut pressed: mpsc::Receiver<&'static str>
     };
     while let Some(key) = pressed.recv().await {
         if key == stop && daemon.programs.runs() {
-            daemon.programs.tell(Command::Stop("the stop key")).await;
+            daemon.programs.send(Command::Stop("the stop key")).await;
         } else if key == "Enter" && daemon.access.pairs() {
             match daemon.access.pair_last() {
                 Ok(Some(ip)) => tracing::info!(target: log::CLIENTS, "{ip} is paired"),

@@ -132,7 +132,7 @@ fn run(
     loop {
         let now = u32::try_from(start.elapsed().as_millis()).unwrap_or(u32::MAX);
         let status = machine.step(now, robot, watch);
-        watch.tell(machine, now, host)?;
+        watch.report(machine, now, host)?;
         if matches!(status, Status::Ended { .. }) {
             return Ok(());
         }

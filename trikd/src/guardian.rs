@@ -99,9 +99,9 @@ fn end(daemon: Pid) {
 /// How the serving process ended, if it has. One that is stopped (SIGSTOP) can neither serve nor see that it does not:
 /// a program with the same rights could do that to escape every stop. It is killed.
 fn ended(daemon: Pid) -> Option<WaitStatus> {
-    let look = WaitPidFlag::WNOHANG | WaitPidFlag::WUNTRACED;
+    let flags = WaitPidFlag::WNOHANG | WaitPidFlag::WUNTRACED;
     loop {
-        match waitpid(None, Some(look)) {
+        match waitpid(None, Some(flags)) {
             Ok(WaitStatus::StillAlive) | Err(_) => return None,
             Ok(WaitStatus::Stopped(pid, signal)) => {
                 if pid == daemon {

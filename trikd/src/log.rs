@@ -262,7 +262,7 @@ fn deceives(c: char) -> bool {
 }
 
 /// One line outside of any log. Nobody may be listening.
-pub fn tell(text: impl std::fmt::Display) {
+pub fn report(text: impl std::fmt::Display) {
     let _ = writeln!(std::io::stderr(), "trikd: {text}");
 }
 

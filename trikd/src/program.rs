@@ -19,7 +19,7 @@ use crate::feedback::Moment;
 use crate::protocol::news::{self, End};
 use crate::protocol::program::{FromProgram, ToProgram};
 use crate::{limits, log};
-use child::{Child, Language, Said};
+use child::{Child, Event, Language};
 use kill::{freeze, group, sweep};
 use nix::sys::signal::Signal;
 use nix::unistd::Pid;
@@ -41,7 +41,7 @@ struct Current {
     takes_direct: bool,
     /// Nobody wants to hear that it began and ended.
     is_quiet: bool,
-    told_error: bool,
+    has_reported_error: bool,
     /// It knows that somebody wants to see where it is.
     is_watched: bool,
     meter: Meter,
@@ -50,13 +50,13 @@ struct Current {
 }
 
 /// Why a program is ended.
-enum Way {
+enum Cause {
     /// By itself.
-    Own(Ended),
+    Exited(Ended),
     /// By somebody, or for another program.
-    Order(&'static str),
+    Ordered(&'static str),
     /// It did what it may not.
-    Greed(String),
+    Greedy(String),
 }
 
 /// Runs programs until it is told to quit.
@@ -80,28 +80,28 @@ impl Supervisor {
     pub async fn run(mut self) {
         let programs = self.daemon.clone();
         let programs = &programs.programs;
-        let mut look = tokio::time::interval(Duration::from_millis(limits::PROCESSES_MS));
-        look.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
+        let mut period = tokio::time::interval(Duration::from_millis(limits::PROCESSES_MS));
+        period.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
         loop {
             let drains = self.current.as_ref().and_then(|current| current.ended);
             tokio::select! {
                 biased;
                 command = programs.next() => {
                     if let Command::Quit(done) = command {
-                        self.end(Way::Order("the end of trikd")).await;
+                        self.end(Cause::Ordered("the end of trikd")).await;
                         let _ = done.send(());
                         return;
                     }
                     self.perform(command).await;
                 }
-                said = said(&mut self.current) => self.hear(said).await,
+                event = next_event(&mut self.current) => self.hear(event).await,
                 () = drained(drains) => {
                     if let Some((ended, _)) = drains {
-                        self.end(Way::Own(ended)).await;
+                        self.end(Cause::Exited(ended)).await;
                     }
                 }
-                _ = look.tick(), if self.current.is_some() => {
-                    self.tell_watched();
+                _ = period.tick(), if self.current.is_some() => {
+                    self.send_watch();
                     self.count_processes().await;
                 }
             }
@@ -111,7 +111,7 @@ impl Supervisor {
     async fn perform(&mut self, command: Command) {
         match command {
             Command::Run(path) => {
-                self.end(Way::Order("another program")).await;
+                self.end(Cause::Ordered("another program")).await;
                 let language = Language::of(&path);
                 let folder = &self.daemon.settings.scripts;
                 let name = path
@@ -123,7 +123,7 @@ impl Supervisor {
                 self.start(language, name, Some(path), ToProgram::File(&file));
             }
             Command::Script(code) => {
-                self.end(Way::Order("another program")).await;
+                self.end(Cause::Ordered("another program")).await;
                 self.start(
                     Language::JavaScript,
                     "script".to_owned(),
@@ -133,7 +133,7 @@ impl Supervisor {
             }
             Command::Direct(code) => self.direct(&code).await,
             Command::Stop(who) => {
-                self.end(Way::Order(who)).await;
+                self.end(Cause::Ordered(who)).await;
                 // Also what came while nothing ran: after a stop everything begins anew.
                 self.daemon.mailbox.forget_kept();
             }
@@ -170,7 +170,7 @@ impl Supervisor {
             .as_ref()
             .is_some_and(|current| current.takes_direct && current.child.runs());
         if !takes {
-            self.end(Way::Order("a direct command")).await;
+            self.end(Cause::Ordered("a direct command")).await;
             let language = if self.last == Language::Python {
                 Language::Python
             } else {
@@ -246,7 +246,7 @@ impl Supervisor {
             since: Instant::now(),
             takes_direct: false,
             is_quiet,
-            told_error: false,
+            has_reported_error: false,
             is_watched: false,
             meter: Meter::default(),
             web: Vec::new(),
@@ -258,11 +258,11 @@ impl Supervisor {
         self.daemon.clients.broadcast(text.as_bytes());
     }
 
-    async fn hear(&mut self, said: Said) {
-        match said {
-            Said::Line(text) => self.show("print", &text),
-            Said::Frame(text) => self.hear_frame(&text),
-            Said::Ended(ended) => {
+    async fn hear(&mut self, event: Event) {
+        match event {
+            Event::Line(text) => self.show("print", &text),
+            Event::Frame(text) => self.hear_frame(&text),
+            Event::Ended(ended) => {
                 if let Some(current) = &mut self.current {
                     current.ended = Some((ended, Instant::now()));
                 }
@@ -272,7 +272,7 @@ impl Supervisor {
         if let Some((ended, _)) = current.ended
             && current.child.is_silent()
         {
-            self.end(Way::Own(ended)).await;
+            self.end(Cause::Exited(ended)).await;
         }
     }
 
@@ -285,7 +285,7 @@ impl Supervisor {
             FromProgram::Info(text) => self.show("info", text),
             FromProgram::Error(text) => {
                 if let Some(current) = &mut self.current {
-                    current.told_error = true;
+                    current.has_reported_error = true;
                 }
                 self.show("error", text);
             }
@@ -307,12 +307,12 @@ impl Supervisor {
                     let _ = answer.send(json.to_owned());
                 }
             }
-            FromProgram::Watch { line, json } => self.daemon.clients.tell_watchers(line, json),
+            FromProgram::Watch { line, json } => self.daemon.clients.send_to_watchers(line, json),
         }
     }
 
     /// Tells a program when somebody begins or ceases to look at it.
-    fn tell_watched(&mut self) {
+    fn send_watch(&mut self) {
         let watched = self.daemon.clients.are_watching();
         if let Some(current) = &mut self.current
             && current.is_watched != watched
@@ -334,14 +334,14 @@ impl Supervisor {
         }
         let dropped = current.meter.take_dropped(now, false);
         if current.meter.admits(end, now) {
-            self.tell_dropped(dropped);
+            self.report_dropped(dropped);
             self.broadcast(&format!("{kind}: {}", &text[..end]));
         } else {
-            self.tell_dropped(dropped);
+            self.report_dropped(dropped);
         }
     }
 
-    fn tell_dropped(&self, dropped: Option<u32>) {
+    fn report_dropped(&self, dropped: Option<u32>) {
         if let Some(count) = dropped {
             self.broadcast(&format!("info: {count} messages of the program were left out: it says more than {} a second", limits::OUTPUT_MESSAGES_PER_SECOND));
         }
@@ -355,7 +355,7 @@ impl Supervisor {
         let count = u64::try_from(kill::below(Pid::this()).len()).unwrap_or(u64::MAX);
         let limit = self.daemon.settings.processes;
         if count > limit {
-            self.end(Way::Greed(format!(
+            self.end(Cause::Greedy(format!(
                 "it had {count} processes, and {limit} are allowed"
             )))
             .await;
@@ -364,7 +364,7 @@ impl Supervisor {
 
     /// The one way out. First the motors, then the processes, then the motors once more, because until its last moment
     /// a program may have set them going; then everybody is told.
-    async fn end(&mut self, way: Way) {
+    async fn end(&mut self, cause: Cause) {
         let began = Instant::now();
         // Whatever it is about to write waits until it is dead. The number of one that is dead may be another's already.
         if let Some(current) = self.current.as_ref().filter(|current| current.child.runs()) {
@@ -383,7 +383,7 @@ impl Supervisor {
                 Ok(()) => Ok(()),
                 Err(_) => self.daemon.rest.now(limits::REST_LAST_MS).await,
             };
-            self.tell_rest(last, rest_us);
+            self.report_rest(last, rest_us);
             return;
         };
         if current.child.runs() {
@@ -391,9 +391,9 @@ impl Supervisor {
         }
         self.kill_all(&mut current).await;
         let last = self.daemon.rest.now(limits::REST_LAST_MS).await;
-        self.tell_rest(last, rest_us);
+        self.report_rest(last, rest_us);
         self.daemon.feedback.show(Moment::Ended);
-        self.tell_end(&mut current, &way);
+        self.report_end(&mut current, &cause);
         self.daemon.programs.shown.borrow_mut().text = None;
         self.daemon.mailbox.forget_kept();
     }
@@ -428,12 +428,12 @@ impl Supervisor {
         let drain = Duration::from_millis(limits::DRAIN_MS);
         let _ = tokio::time::timeout(drain, async {
             while !current.child.is_silent() {
-                match current.child.said().await {
-                    Said::Ended(ended) => {
+                match current.child.next_event().await {
+                    Event::Ended(ended) => {
                         current.ended.get_or_insert((ended, Instant::now()));
                     }
-                    Said::Line(text) => self.show_last(current, "print", &text),
-                    Said::Frame(frame) => self.hear_last(current, &frame),
+                    Event::Line(text) => self.show_last(current, "print", &text),
+                    Event::Frame(frame) => self.hear_last(current, &frame),
                 }
             }
         })
@@ -446,7 +446,7 @@ impl Supervisor {
             Some(FromProgram::Print(text)) => self.show_last(current, "print", text),
             Some(FromProgram::Info(text)) => self.show_last(current, "info", text),
             Some(FromProgram::Error(text)) => {
-                current.told_error = true;
+                current.has_reported_error = true;
                 self.show_last(current, "error", text);
             }
             Some(
@@ -476,7 +476,7 @@ impl Supervisor {
         Some(Pid::from_raw(i32::try_from(process.id()).ok()?))
     }
 
-    fn tell_rest(&self, rested: Result<(), String>, rest_us: u128) {
+    fn report_rest(&self, rested: Result<(), String>, rest_us: u128) {
         let mut shown = self.daemon.programs.shown.borrow_mut();
         if shown.rests_us.len() >= limits::RESTS_SHOWN {
             shown.rests_us.pop_front();
@@ -489,26 +489,26 @@ impl Supervisor {
         }
     }
 
-    fn tell_end(&self, current: &mut Current, way: &Way) {
-        self.tell_dropped(current.meter.take_dropped(Instant::now(), true));
+    fn report_end(&self, current: &mut Current, cause: &Cause) {
+        self.report_dropped(current.meter.take_dropped(Instant::now(), true));
         let name = &current.name;
         let seconds = current.since.elapsed().as_secs_f64();
-        let end = match way {
-            Way::Own(Ended::Code(0)) if current.told_error => End::Failed,
-            Way::Own(Ended::Code(0)) => End::Well,
-            Way::Own(Ended::Code(code)) => End::Code(*code),
-            Way::Own(Ended::Signal(signal)) => {
+        let end = match cause {
+            Cause::Exited(Ended::Code(0)) if current.has_reported_error => End::Failed,
+            Cause::Exited(Ended::Code(0)) => End::Well,
+            Cause::Exited(Ended::Code(code)) => End::Code(*code),
+            Cause::Exited(Ended::Signal(signal)) => {
                 End::Killed(Signal::try_from(*signal).map_or("a signal", Signal::as_str))
             }
-            Way::Order(who) => End::Stopped(who),
-            Way::Greed(why) => End::Greedy(why),
+            Cause::Ordered(who) => End::Stopped(who),
+            Cause::Greedy(why) => End::Greedy(why),
         };
-        let (text, failed) = (end.tell(name, seconds), end.is_failure());
+        let (text, failed) = (end.describe(name, seconds), end.is_failure());
         match failed {
             true => tracing::warn!(target: log::PROGRAMS, "{text}"),
             false => tracing::info!(target: log::PROGRAMS, "{text}"),
         }
-        let is_news = failed && !current.told_error;
+        let is_news = failed && !current.has_reported_error;
         if is_news {
             self.broadcast(&format!("error: {text}"));
         } else if !current.is_quiet {
@@ -520,9 +520,9 @@ impl Supervisor {
     }
 }
 
-async fn said(current: &mut Option<Current>) -> Said {
+async fn next_event(current: &mut Option<Current>) -> Event {
     match current {
-        Some(current) => current.child.said().await,
+        Some(current) => current.child.next_event().await,
         None => std::future::pending().await,
     }
 }

@@ -73,7 +73,7 @@ pub async fn autorun(daemon: Rc<Daemon>, restarts: u32) {
         }
     };
     note(count + 1);
-    daemon.programs.tell(Command::Run(path)).await;
+    daemon.programs.send(Command::Run(path)).await;
     // The robot has survived this long, so the program is not what takes it down.
     sleep(Duration::from_millis(limits::AUTORUN_PROOF_MS)).await;
     note(0);

@@ -20,7 +20,7 @@ use std::os::unix::fs::MetadataExt;
 pub fn adopt_orphans() -> Result<(), String> {
     match prctl::set_child_subreaper(true) {
         Err(Errno::EINVAL) => {
-            crate::log::tell(
+            crate::log::report(
                 "this system has no PR_SET_CHILD_SUBREAPER: processes that leave their program outlive it",
             );
             Ok(())

@@ -36,13 +36,13 @@ impl Control {
     /// Programs in the order in which they came.
     async fn command(&self, command: Command) {
         self.daemon.clients.takes_control(self.client.peer);
-        self.daemon.programs.tell(command).await;
+        self.daemon.programs.send(command).await;
     }
 
     /// What runs, when everything is done that was asked for before.
     async fn status(&self) {
         let (answer, told) = oneshot::channel();
-        self.daemon.programs.tell(Command::Ask(answer)).await;
+        self.daemon.programs.send(Command::Ask(answer)).await;
         if let Ok(text) = told.await {
             self.client
                 .outbox

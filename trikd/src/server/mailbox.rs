@@ -486,7 +486,7 @@ impl Handler for Mails {
                 self.daemon
                     .clients
                     .broadcast(format!("mail: sender: {hull} contents: {text}").as_bytes());
-                self.daemon.programs.offer(Command::Mail(hull, text));
+                self.daemon.programs.try_send(Command::Mail(hull, text));
             }
             _ => {}
         }

@@ -79,7 +79,7 @@ pub async fn serve(daemon: Rc<Daemon>, guest: Guest) {
         Head::Get { path, .. } if path == "/web/" || path == "/web" => {
             if daemon.programs.runs() {
                 let (ask, told) = oneshot::channel();
-                daemon.programs.offer(Command::Web(ask));
+                daemon.programs.try_send(Command::Web(ask));
                 match timeout(Duration::from_millis(limits::WEB_MS), told).await {
                     Ok(Ok(json)) => answer("200 OK", "text/plain, charset=us-ascii", &json),
                     Ok(Err(_)) => text(
