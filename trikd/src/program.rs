@@ -14,18 +14,21 @@ pub mod queue;
 pub mod reaper;
 pub mod rest;
 
-use crate::daemon::Daemon;
-use crate::feedback::Moment;
+use crate::clients::Clients;
+use crate::feedback::{Feedback, Moment};
 use crate::protocol::news::{self, End};
 use crate::protocol::program::{FromProgram, ToProgram};
+use crate::server::mailbox::Mailbox;
+use crate::settings::Settings;
 use crate::{limits, log};
-use child::{Child, Event, Language};
+use child::{Child, Event, Language, Owner};
 use kill::{freeze, group, sweep};
 use nix::sys::signal::Signal;
 use nix::unistd::Pid;
 use output::Meter;
 pub use queue::{Command, Programs};
-use reaper::Ended;
+use reaper::{Ended, Reaper};
+use rest::Rest;
 use std::path::PathBuf;
 use std::process::Stdio;
 use std::rc::Rc;
@@ -59,18 +62,39 @@ enum Cause {
     Greedy(String),
 }
 
+/// What programs are run with.
+#[derive(Debug)]
+pub struct Surroundings {
+    /// Folders and limits of programs.
+    pub settings: Rc<Settings>,
+    /// Whose rights programs have; None: those of trikd.
+    pub owner: Option<Owner>,
+    /// What is asked for, and what the status shows.
+    pub programs: Rc<Programs>,
+    /// Who hears what programs say.
+    pub clients: Rc<Clients>,
+    /// Messages between robots.
+    pub mailbox: Rc<Mailbox>,
+    /// What brings motors to rest.
+    pub rest: Rc<Rest>,
+    /// Who hears of ends of processes.
+    pub reaper: Rc<Reaper>,
+    /// What a person beside the robot sees.
+    pub feedback: Rc<Feedback>,
+}
+
 /// Runs programs until it is told to quit.
 pub struct Supervisor {
-    daemon: Rc<Daemon>,
+    around: Surroundings,
     current: Option<Current>,
     last: Language,
 }
 
 impl Supervisor {
     /// Nothing runs yet.
-    pub fn new(daemon: Rc<Daemon>) -> Self {
+    pub fn new(around: Surroundings) -> Self {
         Self {
-            daemon,
+            around,
             current: None,
             last: Language::JavaScript,
         }
@@ -78,8 +102,7 @@ impl Supervisor {
 
     /// Serves for ever.
     pub async fn run(mut self) {
-        let programs = self.daemon.clone();
-        let programs = &programs.programs;
+        let programs = self.around.programs.clone();
         let mut period = tokio::time::interval(Duration::from_millis(limits::PROCESSES_MS));
         period.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
         loop {
@@ -113,7 +136,7 @@ impl Supervisor {
             Command::Run(path) => {
                 self.end(Cause::Ordered("another program")).await;
                 let language = Language::of(&path);
-                let folder = &self.daemon.settings.scripts;
+                let folder = &self.around.settings.scripts;
                 let name = path
                     .strip_prefix(folder)
                     .unwrap_or(&path)
@@ -135,7 +158,7 @@ impl Supervisor {
             Command::Stop(who) => {
                 self.end(Cause::Ordered(who)).await;
                 // Also what came while nothing ran: after a stop everything begins anew.
-                self.daemon.mailbox.forget_kept();
+                self.around.mailbox.forget_kept();
             }
             Command::Mail(hull, text) => {
                 let heard = self
@@ -145,7 +168,7 @@ impl Supervisor {
                 if heard {
                     self.send(ToProgram::Mail { hull, text: &text });
                 } else {
-                    self.daemon.mailbox.keep(hull, text);
+                    self.around.mailbox.keep(hull, text);
                 }
             }
             Command::Web(answer) => {
@@ -158,7 +181,7 @@ impl Supervisor {
             }
             Command::Ask(answer) => {
                 // Who asked may have left.
-                let _ = answer.send(self.daemon.programs.describe());
+                let _ = answer.send(self.around.programs.describe());
             }
             Command::Quit(_) => {}
         }
@@ -206,13 +229,13 @@ impl Supervisor {
         path: Option<PathBuf>,
         first: ToProgram<'_>,
     ) {
-        let daemon = self.daemon.clone();
+        let around = &self.around;
         let started = child::start(
-            &daemon.settings,
-            daemon.owner.as_ref(),
+            &around.settings,
+            around.owner.as_ref(),
             language,
             path.as_deref(),
-            &daemon.reaper,
+            &around.reaper,
         );
         let mut child = match started {
             Ok(child) => child,
@@ -223,13 +246,13 @@ impl Supervisor {
             }
         };
         if child.send(first) {
-            for (hull, text) in daemon.mailbox.take_kept() {
+            for (hull, text) in around.mailbox.take_kept() {
                 child.send(ToProgram::Mail { hull, text: &text });
             }
         }
         let is_quiet = path.is_none();
         self.last = language;
-        let mut shown = daemon.programs.shown.borrow_mut();
+        let mut shown = around.programs.shown.borrow_mut();
         shown.started = shown.started.saturating_add(1);
         shown.text = Some((
             format!("{name} ({}, process {})", language.name(), child.pid),
@@ -255,7 +278,7 @@ impl Supervisor {
     }
 
     fn broadcast(&self, text: &str) {
-        self.daemon.clients.broadcast(text.as_bytes());
+        self.around.clients.broadcast(text.as_bytes());
     }
 
     async fn hear(&mut self, event: Event) {
@@ -295,7 +318,7 @@ impl Supervisor {
                 }
             }
             FromProgram::Mailbox(question) => {
-                let answer = self.daemon.mailbox.answer(question);
+                let answer = self.around.mailbox.answer(question);
                 self.send(ToProgram::Answer(&answer));
             }
             FromProgram::Web(json) => {
@@ -307,13 +330,13 @@ impl Supervisor {
                     let _ = answer.send(json.to_owned());
                 }
             }
-            FromProgram::Watch { line, json } => self.daemon.clients.send_to_watchers(line, json),
+            FromProgram::Watch { line, json } => self.around.clients.send_to_watchers(line, json),
         }
     }
 
     /// Tells a program when somebody begins or ceases to look at it.
     fn send_watch(&mut self) {
-        let watched = self.daemon.clients.are_watching();
+        let watched = self.around.clients.are_watching();
         if let Some(current) = &mut self.current
             && current.is_watched != watched
         {
@@ -353,7 +376,7 @@ impl Supervisor {
             return;
         }
         let count = u64::try_from(kill::below(Pid::this()).len()).unwrap_or(u64::MAX);
-        let limit = self.daemon.settings.processes;
+        let limit = self.around.settings.processes;
         if count > limit {
             self.end(Cause::Greedy(format!(
                 "it had {count} processes, and {limit} are allowed"
@@ -371,17 +394,17 @@ impl Supervisor {
             group(current.child.pid, Signal::SIGSTOP);
         }
         // A tree that is slow is still on its way to rest; the program must not live so long.
-        let mut rested = self.daemon.rest.now(limits::REST_WAIT_MS).await;
+        let mut rested = self.around.rest.now(limits::REST_WAIT_MS).await;
         let leader = self.current.as_ref().map(|current| current.child.pid);
         // Processes that have left the group may have written since; from here on they stand still.
         if leader.is_some_and(|leader| freeze(Pid::this(), leader)) {
-            rested = self.daemon.rest.now(limits::REST_WAIT_MS).await;
+            rested = self.around.rest.now(limits::REST_WAIT_MS).await;
         }
         let rest_us = began.elapsed().as_micros();
         let Some(mut current) = self.current.take() else {
             let last = match rested {
                 Ok(()) => Ok(()),
-                Err(_) => self.daemon.rest.now(limits::REST_LAST_MS).await,
+                Err(_) => self.around.rest.now(limits::REST_LAST_MS).await,
             };
             self.report_rest(last, rest_us);
             return;
@@ -390,12 +413,12 @@ impl Supervisor {
             group(current.child.pid, Signal::SIGKILL);
         }
         self.kill_all(&mut current).await;
-        let last = self.daemon.rest.now(limits::REST_LAST_MS).await;
+        let last = self.around.rest.now(limits::REST_LAST_MS).await;
         self.report_rest(last, rest_us);
-        self.daemon.feedback.show(Moment::Ended);
+        self.around.feedback.show(Moment::Ended);
         self.report_end(&mut current, &cause);
-        self.daemon.programs.shown.borrow_mut().text = None;
-        self.daemon.mailbox.forget_kept();
+        self.around.programs.shown.borrow_mut().text = None;
+        self.around.mailbox.forget_kept();
     }
 
     /// Kills until nobody is left, and takes what was said before.
@@ -405,7 +428,7 @@ impl Supervisor {
         let mut rounds = 0;
         let mut pause = Duration::from_millis(1);
         loop {
-            self.daemon.reaper.reap();
+            self.around.reaper.reap();
             let left = sweep(Pid::this(), &spared);
             if left == 0 || Instant::now() > deadline {
                 if left > 0 {
@@ -467,7 +490,7 @@ impl Supervisor {
 
     /// Starts the process that kills all others of the user of programs.
     fn kill_user(&self) -> Option<Pid> {
-        let user = &self.daemon.owner.as_ref()?.user;
+        let user = &self.around.owner.as_ref()?.user;
         let mut command = child::this_program();
         command.arg("kill-user").stdin(Stdio::null());
         std::os::unix::process::CommandExt::uid(&mut command, user.uid.as_raw());
@@ -477,7 +500,7 @@ impl Supervisor {
     }
 
     fn report_rest(&self, rested: Result<(), String>, rest_us: u128) {
-        let mut shown = self.daemon.programs.shown.borrow_mut();
+        let mut shown = self.around.programs.shown.borrow_mut();
         if shown.rests_us.len() >= limits::RESTS_SHOWN {
             shown.rests_us.pop_front();
         }
@@ -514,7 +537,7 @@ impl Supervisor {
         } else if !current.is_quiet {
             self.broadcast(&format!("info: {text}"));
         }
-        let mut shown = self.daemon.programs.shown.borrow_mut();
+        let mut shown = self.around.programs.shown.borrow_mut();
         shown.failed = shown.failed.saturating_add(u32::from(failed));
         shown.last_end = text;
     }

@@ -12,7 +12,7 @@ pub mod telemetry;
 pub mod variables;
 pub mod video;
 
-use crate::daemon::Daemon;
+use crate::access::Access;
 use crate::protocol::frame::encode;
 use crate::protocol::mail::plain;
 use crate::{limits, log};
@@ -101,19 +101,31 @@ impl Port {
         first.map_or(0, |address| address.port())
     }
 
-    /// Starts a task for each listener, which starts one for each connection.
-    pub fn serve<F>(
+    /// Starts a task for each listener, which starts one for each connection that is admitted.
+    pub fn serve<S, F>(
         self,
-        daemon: &Rc<Daemon>,
-        serve: impl Fn(Rc<Daemon>, Guest) -> F + Clone + 'static,
+        admission: &Rc<Admission>,
+        service: &Rc<S>,
+        serve: impl Fn(Rc<S>, Guest) -> F + Clone + 'static,
     ) where
+        S: 'static,
         F: Future<Output = ()> + 'static,
     {
         for listener in self.listeners {
-            let (daemon, serve) = (daemon.clone(), serve.clone());
-            tokio::task::spawn_local(accept(self.name, listener, daemon, serve));
+            let (service, serve) = (service.clone(), serve.clone());
+            let serve = move |guest| serve(service.clone(), guest);
+            tokio::task::spawn_local(accept(self.name, listener, admission.clone(), serve));
         }
     }
+}
+
+/// Who gets in, at all ports.
+#[derive(Debug)]
+pub struct Admission {
+    /// The allow-list.
+    pub access: Rc<Access>,
+    /// The connections that there are.
+    pub seats: Rc<Seats>,
 }
 
 /// A connection that was let in.
@@ -128,8 +140,12 @@ pub struct Guest {
 }
 
 /// The connections of all ports, each as the network that it comes from.
-#[derive(Debug, Default)]
-pub struct Seats(RefCell<Vec<IpAddr>>);
+#[derive(Debug)]
+pub struct Seats {
+    taken: RefCell<Vec<IpAddr>>,
+    /// Connections at once.
+    limit: usize,
+}
 
 /// Whose connections are counted together: an IPv6 computer has a whole network of addresses.
 fn origin(ip: IpAddr) -> IpAddr {
@@ -140,17 +156,27 @@ fn origin(ip: IpAddr) -> IpAddr {
 }
 
 impl Seats {
-    /// How many there are.
-    pub fn taken(&self) -> usize {
-        self.0.borrow().len()
+    /// So many of them, all free.
+    pub fn new(limit: usize) -> Self {
+        Self {
+            taken: RefCell::default(),
+            limit,
+        }
+    }
+
+    /// Lines for the status.
+    pub fn describe(&self) -> String {
+        let taken = self.taken.borrow().len();
+        format!("connections {taken} of {}\n", self.limit)
     }
 
     /// A place. A quarter of them is out of reach for each computer, so that none keeps all others out.
     ///
     /// # Errors
     /// In words: there is none.
-    pub fn take(self: &Rc<Self>, limit: usize, ip: IpAddr) -> Result<Seat, String> {
-        let mut taken = self.0.borrow_mut();
+    pub fn take(self: &Rc<Self>, ip: IpAddr) -> Result<Seat, String> {
+        let limit = self.limit;
+        let mut taken = self.taken.borrow_mut();
         let ip = origin(ip);
         if taken.len() >= limit {
             return Err(format!(
@@ -174,7 +200,7 @@ pub struct Seat(Rc<Seats>, IpAddr);
 
 impl Drop for Seat {
     fn drop(&mut self) {
-        let mut taken = self.0.0.borrow_mut();
+        let mut taken = self.0.taken.borrow_mut();
         if let Some(index) = taken.iter().position(|ip| *ip == self.1) {
             taken.swap_remove(index);
         }
@@ -184,8 +210,8 @@ impl Drop for Seat {
 async fn accept<F>(
     name: &'static str,
     listener: TcpListener,
-    daemon: Rc<Daemon>,
-    serve: impl Fn(Rc<Daemon>, Guest) -> F,
+    admission: Rc<Admission>,
+    serve: impl Fn(Guest) -> F,
 ) where
     F: Future<Output = ()> + 'static,
 {
@@ -200,12 +226,11 @@ async fn accept<F>(
             }
         };
         let peer = SocketAddr::new(plain(peer.ip()), peer.port());
-        if !daemon.access.admits(peer.ip()) {
+        if !admission.access.admits(peer.ip()) {
             tracing::warn!(target: log::CLIENTS, "{name}: {peer} is not in the list of --allow");
             continue;
         }
-        let limit = usize::from(daemon.settings.connections);
-        let seat = match daemon.seats.take(limit, peer.ip()) {
+        let seat = match admission.seats.take(peer.ip()) {
             Ok(seat) => seat,
             Err(why) => {
                 tracing::warn!(target: log::CLIENTS, "{name}: {peer} is refused: {why}");
@@ -217,7 +242,7 @@ async fn accept<F>(
             }
         };
         prepare(&stream);
-        tokio::task::spawn_local(serve(daemon.clone(), Guest { stream, peer, seat }));
+        tokio::task::spawn_local(serve(Guest { stream, peer, seat }));
     }
 }
 
