@@ -3,6 +3,9 @@
 //! Owns one child and nothing else. It is the subreaper behind the daemon, so programs whose daemon is dead are its
 //! children; if the guardian itself dies, the daemon ends in order.
 
+// A request, a message or a command that is forgotten must not pass in silence.
+#![deny(clippy::wildcard_enum_match_arm)]
+
 use crate::program::kill;
 use crate::tree::{Access, Tree};
 use crate::{limits, log};
@@ -139,12 +142,8 @@ pub fn run(tree: &Path, arguments: &[OsString]) -> Result<ExitCode, String> {
         let Some(status) = ended(daemon) else {
             continue;
         };
-        match status {
-            WaitStatus::Exited(_, 0) => return Ok(ExitCode::SUCCESS),
-            WaitStatus::Exited(_, code @ (1 | 2)) => {
-                return Ok(ExitCode::from(u8::try_from(code).unwrap_or(1)));
-            }
-            _ => {}
+        if let WaitStatus::Exited(_, code @ 0..=2) = status {
+            return Ok(ExitCode::from(u8::try_from(code).unwrap_or(1)));
         }
         tracing::error!(
             target: log::DAEMON,

@@ -4,6 +4,9 @@
 //! pipes, `launch` gives it its limits, `kill` ends all that it started, `rest` brings the motors to rest, `reaper`
 //! hears of ends, `output` measures what it says, `boot` runs a program at the start.
 
+// A request, a message or a command that is forgotten must not pass in silence.
+#![deny(clippy::wildcard_enum_match_arm)]
+
 pub mod boot;
 pub mod child;
 pub mod kill;
@@ -194,10 +197,9 @@ impl Supervisor {
             .is_some_and(|current| current.takes_direct && current.child.runs());
         if !takes {
             self.end(Cause::Ordered("a direct command")).await;
-            let language = if self.last == Language::Python {
-                Language::Python
-            } else {
-                Language::JavaScript
+            let language = match self.last {
+                Language::Python => Language::Python,
+                Language::JavaScript | Language::Diagram | Language::Native => Language::JavaScript,
             };
             self.start(
                 language,

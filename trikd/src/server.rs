@@ -3,6 +3,9 @@
 //! `control`, `telemetry`, `mailbox`, `gamepad`, `video` and `variables` are one port each; `datagrams` and `discovery`
 //! are UDP. What is said on a port is in `protocol`.
 
+// A request, a message or a command that is forgotten must not pass in silence.
+#![deny(clippy::wildcard_enum_match_arm)]
+
 pub mod control;
 pub mod datagrams;
 pub mod discovery;
@@ -79,13 +82,16 @@ impl Port {
     /// In words: which port, why, and what to do.
     pub fn bind(name: &'static str, addresses: &[IpAddr], port: u16) -> Result<Self, String> {
         let listeners = bind_all(addresses, port).map_err(|error| {
-            let what = match error.kind() {
-                io::ErrorKind::AddrInUse => format!(
+            let what = if error.kind() == io::ErrorKind::AddrInUse {
+                format!(
                     "another program has it: end that program (`ss -ltnp 'sport = :{port}'` shows it), or take another port with --{name}-port"
-                ),
-                io::ErrorKind::AddrNotAvailable => "this machine does not have the address of --address".to_owned(),
-                io::ErrorKind::PermissionDenied => format!("ports below 1024 are for root: take another one with --{name}-port"),
-                _ => error.to_string(),
+                )
+            } else if error.kind() == io::ErrorKind::AddrNotAvailable {
+                "this machine does not have the address of --address".to_owned()
+            } else if error.kind() == io::ErrorKind::PermissionDenied {
+                format!("ports below 1024 are for root: take another one with --{name}-port")
+            } else {
+                error.to_string()
             };
             format!("port {port} ({name}) cannot be served: {what}")
         })?;

@@ -166,7 +166,7 @@ fn words(settings: &Settings, language: Language, path: Option<&Path>) -> Vec<Os
             ]
         }
         (Language::Diagram, _) => vec![SELF.into(), "diagram".into()],
-        _ => vec![SELF.into(), "js".into()],
+        (Language::JavaScript, _) | (Language::Native, None) => vec![SELF.into(), "js".into()],
     }
 }
 

@@ -73,6 +73,17 @@ impl Session {
         }
     }
 
+    async fn run(&self, name: &[u8]) {
+        match scripts::find(&self.control.scripts, name) {
+            Ok(path) => self.command(Command::Run(path)).await,
+            Err(why) => {
+                // What runs ends all the same: the person wants to see something else.
+                self.command(Command::Stop("a client")).await;
+                self.error(&why);
+            }
+        }
+    }
+
     async fn keep(&self, name: &[u8], content: &[u8]) {
         let folder = self.control.scripts.clone();
         let (name, content) = (name.to_owned(), content.to_owned());
@@ -114,41 +125,44 @@ impl Handler for Session {
             String::from_utf8_lossy(begin)
         );
         match request {
-            Request::Keepalive | Request::Unknown => return,
-            Request::Version => return self.client.outbox.send(VERSION),
+            // What is unknown has no answer, as on the robots of old.
+            Request::Keepalive | Request::Unknown => {}
+            Request::Version => self.client.outbox.send(VERSION),
             Request::ConfigVersion => {
                 let answer = format!("configVersion: {}", self.control.config_version);
-                return self.client.outbox.send(answer.as_bytes());
+                self.client.outbox.send(answer.as_bytes());
             }
-            Request::Status => return self.status().await,
+            Request::Status => self.status().await,
             Request::Watch(is_wanted) => {
                 let watching = if is_wanted {
                     Watching::Lines
                 } else {
                     Watching::No
                 };
-                return self.client.watch(watching);
+                self.client.watch(watching);
             }
             // Whoever sees danger may stop the robot.
-            Request::Stop => return self.command(Command::Stop("a client")).await,
-            _ => {}
-        }
-        if !self.may_control() {
-            return;
-        }
-        match request {
-            Request::File { name, content } => self.keep(name, content).await,
-            Request::Run(name) => match scripts::find(&self.control.scripts, name) {
-                Ok(path) => self.command(Command::Run(path)).await,
-                Err(why) => {
-                    // What runs ends all the same: the person wants to see something else.
-                    self.command(Command::Stop("a client")).await;
-                    self.error(&why);
+            Request::Stop => self.command(Command::Stop("a client")).await,
+            Request::File { name, content } => {
+                if self.may_control() {
+                    self.keep(name, content).await;
                 }
-            },
-            Request::DirectScript(code) => self.command(Command::Script(text(code))).await,
-            Request::Direct(code) => self.command(Command::Direct(text(code))).await,
-            _ => {}
+            }
+            Request::Run(name) => {
+                if self.may_control() {
+                    self.run(name).await;
+                }
+            }
+            Request::DirectScript(code) => {
+                if self.may_control() {
+                    self.command(Command::Script(text(code))).await;
+                }
+            }
+            Request::Direct(code) => {
+                if self.may_control() {
+                    self.command(Command::Direct(text(code))).await;
+                }
+            }
         }
     }
 

@@ -485,11 +485,15 @@ impl Handler for Mails {
         let port = mailbox.port.get().unwrap_or_default();
         let is_self = |ip: IpAddr, other: u16| ip == self.link.local.get() && other == port;
         match Message::parse(frame) {
-            Message::Register { port, hull } if !is_self(self.peer.ip(), port) => {
-                mailbox.register(SocketAddr::new(self.peer.ip(), port), hull, &self.link);
+            Message::Register { port, hull } => {
+                if !is_self(self.peer.ip(), port) {
+                    mailbox.register(SocketAddr::new(self.peer.ip(), port), hull, &self.link);
+                }
             }
-            Message::Connection { ip, port, hull } if !is_self(ip, port) => {
-                mailbox.meet(SocketAddr::new(plain(ip), port), Some(hull));
+            Message::Connection { ip, port, hull } => {
+                if !is_self(ip, port) {
+                    mailbox.meet(SocketAddr::new(plain(ip), port), Some(hull));
+                }
             }
             Message::Own(hull) => mailbox.learn_hull(&self.link, hull),
             Message::Data(text) => {
@@ -500,7 +504,7 @@ impl Handler for Mails {
                     .broadcast(format!("mail: sender: {hull} contents: {text}").as_bytes());
                 around.programs.try_send(Command::Mail(hull, text));
             }
-            _ => {}
+            Message::Unknown => {}
         }
     }
 }

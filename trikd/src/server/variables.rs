@@ -28,7 +28,7 @@ pub async fn head(stream: &mut TcpStream) -> Head {
             match parse(&bytes) {
                 Head::Partial if bytes.len() < limits::HTTP_HEAD_BYTES => {}
                 Head::Partial => return Head::Nonsense,
-                head => return head,
+                head @ (Head::Get { .. } | Head::OtherMethod | Head::Nonsense) => return head,
             }
         }
     };

@@ -10,6 +10,8 @@ fn talk(robot: &Robot, words: &str) -> Client {
     client.send(&format!("file:talk.py:{text}"));
     client.send("run:talk.py");
     client.until("print: ready");
+    // Python may take long to start for the next robot, and who says nothing for 5 s is gone.
+    client.keep_alive();
     client
 }
 
@@ -80,15 +82,10 @@ fn three_robots_in_a_ring_hear_all_and_equal_hulls() {
         x.send("run:say.py");
         x.until("print: ready");
     };
-    // Python may take long to start, and who says nothing for 5 s is gone.
-    let awake = |clients: [&mut Client; 3]| clients.map(|client| client.send("keepalive"));
-    awake([&mut a, &mut b, &mut c]);
     send(&robots[0], "", "to all");
-    awake([&mut a, &mut b, &mut c]);
     b.until("print: got to all\n");
     c.until("print: got to all\n");
     send(&robots[0], "2, ", "to hull 2");
-    awake([&mut a, &mut b, &mut c]);
     b.until("print: got to hull 2\n");
     c.until("print: got to hull 2\n");
     send(&robots[2], "1, ", "back");

@@ -271,6 +271,7 @@ pub struct Client {
     pub stream: TcpStream,
     buffer: Vec<u8>,
     sent: Instant,
+    kept_alive: Arc<()>,
 }
 
 /// A frame of a payload.
@@ -292,7 +293,19 @@ impl Client {
             stream,
             buffer: Vec::new(),
             sent: Instant::now(),
+            kept_alive: Arc::new(()),
         }
+    }
+
+    /// From now on it is not silent, whatever else the test does; whoever calls this sends small frames only.
+    pub fn keep_alive(&self) {
+        let mut stream = self.stream.try_clone().expect("a descriptor");
+        let lives = Arc::downgrade(&self.kept_alive);
+        std::thread::spawn(move || {
+            while lives.strong_count() > 0 && stream.write_all(&frame("keepalive")).is_ok() {
+                std::thread::sleep(Duration::from_millis(500));
+            }
+        });
     }
 
     /// Sends bytes as they are.
