@@ -214,7 +214,7 @@ fn surroundings(args: &PlanArgs) -> Result<(Obstacles, Option<field::Stand>), Re
     };
     let told = |why: String| Refusal::new(format!("{}: {why}", telling::named(path)));
     let obstacles = read(path)
-        .and_then(|text| text::read(&text))
+        .and_then(|text| text::read(&text).map_err(|fault| fault.to_string()))
         .map_err(told)?;
     Ok((obstacles, None))
 }
@@ -264,7 +264,7 @@ fn searched(
         (limit, _) => Some(limit.unwrap_or(60.0)),
     };
     let mut room = Room::new(obstacles, &asked.footprint, asked.parts, args.resolution)
-        .map_err(Refusal::new)?;
+        .map_err(|fault| Refusal::new(fault.to_string()))?;
     let is_watched = io::stderr().is_terminal() && !args.json;
     let mut shown = begun;
     let mut report = |counts: &Counts| {

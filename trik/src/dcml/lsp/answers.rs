@@ -93,8 +93,8 @@ pub fn answer(
     })
 }
 
-fn failed(reason: String) -> Refusal {
-    Refusal::new(FAILED, reason)
+fn failed(reason: lang_editor::Refusal) -> Refusal {
+    Refusal::new(FAILED, reason.to_string())
 }
 
 /// What this server can do, as the answer to `initialize`.

@@ -132,7 +132,7 @@ pub(super) fn ask(
                 || Footprint::circle(RADIUS),
                 |stand| Ok(stand.footprint.clone()),
             )
-            .map_err(Refusal::new)?,
+            .map_err(|fault| Refusal::new(fault.to_string()))?,
     };
     if parts.heading.is_none() && !footprint.corners_at(Default::default()).is_empty() {
         return Err(Refusal::new(

@@ -95,9 +95,13 @@ pub(crate) fn footing(text: &str) -> Result<Footing, String> {
         ("polygon", all) if all.len() >= 6 && all.len() % 2 == 0 => {
             Footprint::polygon(all.chunks_exact(2).map(|one| [one[0], one[1]]).collect())
         }
-        _ => Err("write circle:RADIUS, or polygon: and x, y of three corners or more".to_owned()),
+        _ => {
+            return Err(
+                "write circle:RADIUS, or polygon: and x, y of three corners or more".to_owned(),
+            );
+        }
     };
-    footprint.map(Footing)
+    footprint.map(Footing).map_err(|fault| fault.to_string())
 }
 
 #[cfg(test)]
