@@ -5,6 +5,7 @@
 
 use crate::brick::Brick;
 use crate::engine::Engine;
+use crate::error::Error;
 use crate::host::Host;
 use crate::log::report;
 #[cfg(feature = "manual")]
@@ -137,7 +138,7 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn perform(command: Command) -> Result<ExitCode, String> {
+fn perform(command: Command) -> Result<ExitCode, Error> {
     match command {
         Command::Serve { settings } => {
             // Behind the name of the program and `serve`.
@@ -161,18 +162,18 @@ fn perform(command: Command) -> Result<ExitCode, String> {
         Command::Launch(launch) => return Err(launch.become_program()),
         Command::KillUser => kill::own_user()?,
         Command::Draw { tree, answers } => {
-            display::serve(&tree, &mut std::io::stdin().lock(), answers)?;
+            display::serve(&tree, &mut std::io::stdin().lock(), answers).map_err(Error::Program)?;
         }
         Command::Js {
             tree,
             line: Some(line),
             ..
-        } => js::run_line(line, &tree)?,
+        } => js::run_line(line, &tree).map_err(Error::Program)?,
         Command::Js {
             tree,
             file: Some(file),
             ..
-        } => js::run_alone(&file, &tree)?,
+        } => js::run_alone(&file, &tree).map_err(Error::Program)?,
         Command::Js { tree, .. } => return Ok(run_engine(&mut js::engine(), &tree)),
         Command::Diagram { tree } => return Ok(run_engine(&mut diagram::engine(), &tree)),
         #[cfg(feature = "manual")]
@@ -185,9 +186,11 @@ fn perform(command: Command) -> Result<ExitCode, String> {
 
 /// On standard output; a reader that has seen enough is no failure.
 #[cfg(feature = "manual")]
-fn show(text: &[u8]) -> Result<(), String> {
+fn show(text: &[u8]) -> Result<(), Error> {
     match std::io::stdout().write_all(text) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.to_string()),
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Error::Os(error.into()))
+        }
         _ => Ok(()),
     }
 }
@@ -240,7 +243,7 @@ mod tests {
         assert!(page(Some("serve")).unwrap().contains("control\\-port"));
         for unknown in ["launch", "daemon", "frobnicate"] {
             let said = page(Some(unknown)).unwrap_err();
-            assert_eq!(said, format!("there is no command {unknown}"));
+            assert_eq!(said.to_string(), format!("there is no command {unknown}"));
         }
         let script = manual::completions(clap_complete::Shell::Bash, Cli::command());
         let script = String::from_utf8(script).unwrap();

@@ -7,6 +7,7 @@
 use crate::access::Access;
 use crate::clients::Clients;
 use crate::connection::Held;
+use crate::error::{BadUser, Error};
 use crate::feedback::Feedback;
 use crate::pace::Pace;
 use crate::pictures::Pictures;
@@ -49,7 +50,7 @@ struct Ports {
     variables: Option<Port>,
 }
 
-fn mailbox_port(settings: &Settings) -> Result<Port, String> {
+fn mailbox_port(settings: &Settings) -> Result<Port, Error> {
     let first = settings.mailbox_port;
     let bound = (first..=first.saturating_add(limits::MAILBOX_PORTS))
         .find_map(|port| Port::bind("mailbox", &settings.address, port).ok());
@@ -58,7 +59,7 @@ fn mailbox_port(settings: &Settings) -> Result<Port, String> {
 }
 
 impl Ports {
-    fn bind(settings: &Settings) -> Result<Self, String> {
+    fn bind(settings: &Settings) -> Result<Self, Error> {
         let all = &settings.address;
         // A robot that is for this machine alone has them where it has the rest, so that several can be side by side.
         let is_local = !all.is_empty() && all.iter().all(IpAddr::is_loopback);
@@ -104,48 +105,36 @@ impl Ports {
     }
 }
 
-/// Why a part that has a thread cannot be started.
-fn no_thread(error: std::io::Error) -> String {
-    format!("a thread cannot be started: {error}")
-}
-
 /// Makes a directory that is missing.
-fn directory(path: &Path, option: &str) -> Result<(), String> {
-    std::fs::create_dir_all(path).map_err(|error| unusable(path, &error, option))
+fn directory(path: &Path, option: &'static str) -> Result<(), Error> {
+    std::fs::create_dir_all(path).map_err(|error| unusable(path, error, option))
 }
 
 /// Why nothing can be put there, and what to do.
-fn unusable(path: &Path, error: &std::io::Error, option: &str) -> String {
-    format!(
-        "{}: {error}: name another directory with {option}",
-        path.display()
-    )
+fn unusable(path: &Path, error: std::io::Error, option: &'static str) -> Error {
+    Error::Directory(path.to_owned(), error.into(), option)
 }
 
 /// The user of programs, and whether they may write into their folder.
-fn owner(settings: &Settings) -> Result<Option<Owner>, String> {
+fn owner(settings: &Settings) -> Result<Option<Owner>, Error> {
     let Some(name) = &settings.user else {
         return Ok(None);
     };
-    let found = User::from_name(name).map_err(|error| format!("--user {name}: {error}"))?;
-    let user = found.ok_or_else(|| {
-        format!("--user {name}: there is no such user: `useradd --system {name}` makes one")
-    })?;
+    let bad = |why| Error::User(name.clone(), why);
+    let found = User::from_name(name).map_err(|error| bad(BadUser::Unknown(error.into())))?;
+    let user = found.ok_or_else(|| bad(BadUser::Missing))?;
     if user.uid == geteuid() {
         return Ok(None);
     }
     if !geteuid().is_root() {
-        return Err(format!(
-            "--user {name}: only root can start programs as another user"
-        ));
+        return Err(bad(BadUser::WithoutRoot));
     }
     if user.uid.is_root() {
-        return Err(format!(
-            "--user {name}: this is root: leave --user out to run programs as root"
-        ));
+        return Err(bad(BadUser::Root));
     }
-    chown(&settings.scripts, Some(user.uid), Some(user.gid))
-        .map_err(|error| format!("{}: {error}", settings.scripts.display()))?;
+    let folder = &settings.scripts;
+    chown(folder, Some(user.uid), Some(user.gid))
+        .map_err(|error| bad(BadUser::Folder(folder.clone(), error.into())))?;
     Ok(Some(Owner { user }))
 }
 
@@ -167,7 +156,7 @@ struct Parts {
 }
 
 impl Parts {
-    fn new(settings: Settings, owner: Option<Owner>) -> Result<Self, String> {
+    fn new(settings: Settings, owner: Option<Owner>) -> Result<Self, Error> {
         let access = Access::new(
             settings.allow.clone(),
             settings.pair,
@@ -188,10 +177,10 @@ impl Parts {
             },
         );
         let feedback = match settings.has(Service::Feedback) {
-            true => Feedback::start(&settings.tree).map_err(no_thread)?,
+            true => Feedback::start(&settings.tree).map_err(Error::thread)?,
             false => Feedback::default(),
         };
-        let access = Rc::new(access.map_err(|error| error.to_string())?);
+        let access = Rc::new(access.map_err(|error| Error::Os(error.into()))?);
         Ok(Self {
             owner,
             gamepads: Rc::new(Gamepads {
@@ -204,8 +193,8 @@ impl Parts {
             clients,
             seats,
             held,
-            sampler: Rc::new(Sampler::start(&settings.tree).map_err(no_thread)?),
-            rest: Rc::new(Rest::start(&settings.tree).map_err(no_thread)?),
+            sampler: Rc::new(Sampler::start(&settings.tree).map_err(Error::thread)?),
+            rest: Rc::new(Rest::start(&settings.tree).map_err(Error::thread)?),
             feedback: Rc::new(feedback),
             reaper: Rc::default(),
             programs,
@@ -359,41 +348,37 @@ impl Parts {
 /// Serves until a signal ends it. `restarts`: how often that has been tried after crashes.
 ///
 /// # Errors
-/// In words, before anything was served.
-pub fn run(settings: Settings, restarts: u32) -> Result<(), String> {
+/// Before anything was served.
+pub fn run(settings: Settings, restarts: u32) -> Result<(), Error> {
     let pace = Pace::default();
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
         .on_thread_park(move || pace.rest())
         .max_blocking_threads(limits::BLOCKING_THREADS)
         .build()
-        .map_err(|error| format!("no event loop: {error}"))?;
+        .map_err(|error| Error::EventLoop(error.into()))?;
     runtime.block_on(LocalSet::new().run_until(serve(settings, restarts)))
 }
 
-async fn serve(mut settings: Settings, restarts: u32) -> Result<(), String> {
+async fn serve(mut settings: Settings, restarts: u32) -> Result<(), Error> {
     settings.make_absolute()?;
     let ports = Ports::bind(&settings)?;
     directory(&settings.scripts, "--scripts")?;
     directory(&settings.state, "--state")?;
     directory(&settings.run, "--run")?;
     let python = settings.run.join("python");
-    let unusable = |path: &Path, error| unusable(path, &error, "--run");
+    let unusable = |path: &Path, error| unusable(path, error, "--run");
     program::child::install(&settings.run).map_err(|error| unusable(&settings.run, error))?;
     program::python::install(&python).map_err(|error| unusable(&python, error))?;
     let listener = status::listen(&settings.run).map_err(|error| unusable(&settings.run, error))?;
     let owner = owner(&settings)?;
     // Whoever loses its parent becomes a child of this process, and cannot outlive its program.
     program::kill::adopt_orphans()?;
-    let mut ends = Vec::new();
-    for kind in [
-        SignalKind::terminate(),
-        SignalKind::interrupt(),
-        SignalKind::hangup(),
-    ] {
-        ends.push(signal(kind).map_err(|error| format!("signals: {error}"))?);
-    }
-    let pressed = keys::watch(&settings.tree).map_err(no_thread)?;
+    let listen = |kind| signal(kind).map_err(|error| Error::Signals(error.into()));
+    let mut terminate = listen(SignalKind::terminate())?;
+    let mut interrupt = listen(SignalKind::interrupt())?;
+    let mut hang_up = listen(SignalKind::hangup())?;
+    let pressed = keys::watch(&settings.tree).map_err(Error::thread)?;
     let words = ports.describe();
     let parts = Parts::new(settings, owner)?;
     // Who has named root knows it.
@@ -407,7 +392,7 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), String> {
         let reaper = parts.reaper.clone();
         async move { reaper.run().await }
     });
-    heartbeat::start().map_err(no_thread)?;
+    heartbeat::start().map_err(Error::thread)?;
     // Behind the start of the threads that shall not have it.
     priority::take(Rank::Serving);
     let supervisor = spawn_local(parts.supervisor().run());
@@ -425,13 +410,10 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), String> {
     tracing::info!(target: log::DAEMON, "serves {words}");
     // Whoever started this may not listen.
     let _ = writeln!(std::io::stdout(), "trikd: ready: {words}");
-    let [first, second, third] = &mut ends[..] else {
-        return Err("signals".to_owned());
-    };
     tokio::select! {
-        _ = first.recv() => {}
-        _ = second.recv() => {}
-        _ = third.recv() => {}
+        _ = terminate.recv() => {}
+        _ = interrupt.recv() => {}
+        _ = hang_up.recv() => {}
         // Without them no program would be stopped: the guardian does that, and starts anew.
         _ = supervisor => std::process::abort(),
         _ = reaper => std::process::abort(),

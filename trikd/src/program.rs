@@ -501,7 +501,7 @@ impl Supervisor {
         Some(Pid::from_raw(i32::try_from(process.id()).ok()?))
     }
 
-    fn report_rest(&self, rested: Result<(), String>, rest_us: u128) {
+    fn report_rest(&self, rested: Result<(), rest::Failure>, rest_us: u128) {
         let mut shown = self.around.programs.shown.borrow_mut();
         if shown.rests_us.len() >= limits::RESTS_SHOWN {
             shown.rests_us.pop_front();

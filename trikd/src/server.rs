@@ -16,11 +16,13 @@ pub mod variables;
 pub mod video;
 
 use crate::access::Access;
+use crate::error::Error;
 use crate::protocol::frame::encode;
 use crate::protocol::mail::plain;
 use crate::{limits, log};
 use socket2::{Domain, Protocol, SockRef, Socket, Type};
 use std::cell::RefCell;
+use std::fmt;
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 use std::rc::Rc;
@@ -79,22 +81,10 @@ impl Port {
     /// Listens at all addresses, or everywhere if there are none.
     ///
     /// # Errors
-    /// In words: which port, why, and what to do.
-    pub fn bind(name: &'static str, addresses: &[IpAddr], port: u16) -> Result<Self, String> {
-        let listeners = bind_all(addresses, port).map_err(|error| {
-            let what = if error.kind() == io::ErrorKind::AddrInUse {
-                format!(
-                    "another program has it: end that program (`ss -ltnp 'sport = :{port}'` shows it), or take another port with --{name}-port"
-                )
-            } else if error.kind() == io::ErrorKind::AddrNotAvailable {
-                "this machine does not have the address of --address".to_owned()
-            } else if error.kind() == io::ErrorKind::PermissionDenied {
-                format!("ports below 1024 are for root: take another one with --{name}-port")
-            } else {
-                error.to_string()
-            };
-            format!("port {port} ({name}) cannot be served: {what}")
-        })?;
+    /// It is taken, or may not be served.
+    pub fn bind(name: &'static str, addresses: &[IpAddr], port: u16) -> Result<Self, Error> {
+        let listeners =
+            bind_all(addresses, port).map_err(|error| Error::Port(name, port, error.into()))?;
         Ok(Self { name, listeners })
     }
 
@@ -153,6 +143,30 @@ pub struct Seats {
     limit: usize,
 }
 
+/// Why there is no place for a connection; whoever connects is to blame.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Full {
+    /// All of so many are taken.
+    All(usize),
+    /// One computer has so many, and no more are for it.
+    One(usize),
+}
+
+impl fmt::Display for Full {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::All(limit) => write!(
+                out,
+                "there are {limit} connections already: close some, or wait"
+            ),
+            Self::One(most) => write!(
+                out,
+                "there are {most} connections from there already: close some"
+            ),
+        }
+    }
+}
+
 /// Whose connections are counted together: an IPv6 computer has a whole network of addresses.
 fn origin(ip: IpAddr) -> IpAddr {
     match ip {
@@ -179,21 +193,17 @@ impl Seats {
     /// A place. A quarter of them is out of reach for each computer, so that none keeps all others out.
     ///
     /// # Errors
-    /// In words: there is none.
-    pub fn take(self: &Rc<Self>, ip: IpAddr) -> Result<Seat, String> {
+    /// There is none.
+    pub fn take(self: &Rc<Self>, ip: IpAddr) -> Result<Seat, Full> {
         let limit = self.limit;
         let mut taken = self.taken.borrow_mut();
         let ip = origin(ip);
         if taken.len() >= limit {
-            return Err(format!(
-                "there are {limit} connections already: close some, or wait"
-            ));
+            return Err(Full::All(limit));
         }
         let most = limit - limit / limits::CONNECTIONS_OF_OTHERS;
         if taken.iter().filter(|other| **other == ip).count() >= most {
-            return Err(format!(
-                "there are {most} connections from there already: close some"
-            ));
+            return Err(Full::One(most));
         }
         taken.push(ip);
         Ok(Seat(self.clone(), ip))

@@ -4,11 +4,13 @@
 
 use crate::access::Access;
 use crate::clients::Clients;
+use crate::error::Os;
 use crate::limits;
 use crate::program::Programs;
 use crate::program::child::Owner;
 use crate::server::Seats;
 use crate::server::mailbox::Mailbox;
+use std::fmt;
 use std::io::{self, Read, Write};
 use std::net::IpAddr;
 use std::os::unix::fs::PermissionsExt;
@@ -119,22 +121,40 @@ async fn answer(status: &Status, mut stream: UnixStream) -> io::Result<()> {
     stream.write_all(text.as_bytes()).await
 }
 
+/// Why a question has no answer; whoever asks is to blame.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum Unanswered {
+    /// The socket of the running trikd.
+    Socket(PathBuf, Os),
+    /// It refuses, in its words.
+    Refused(String),
+}
+
+impl fmt::Display for Unanswered {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Socket(path, os) => {
+                let hint = match os.kind {
+                    io::ErrorKind::NotFound | io::ErrorKind::ConnectionRefused => {
+                        ": trikd does not run, or its --run is another directory"
+                    }
+                    io::ErrorKind::PermissionDenied => ": only the user of trikd may ask",
+                    _ => "",
+                };
+                write!(out, "{}: {os}{hint}", path.display())
+            }
+            Self::Refused(why) => out.write_str(why),
+        }
+    }
+}
+
 /// Asks the trikd whose directory is `run`.
 ///
 /// # Errors
-/// In words.
-pub fn ask(run: &Path, words: &str) -> Result<String, String> {
+/// It does not run, or refuses.
+pub fn ask(run: &Path, words: &str) -> Result<String, Unanswered> {
     let path = run.join(NAME);
-    let fails = |error: io::Error| {
-        let hint = match error.kind() {
-            io::ErrorKind::NotFound | io::ErrorKind::ConnectionRefused => {
-                ": trikd does not run, or its --run is another directory"
-            }
-            io::ErrorKind::PermissionDenied => ": only the user of trikd may ask",
-            _ => "",
-        };
-        format!("{}: {error}{hint}", path.display())
-    };
+    let fails = |error: io::Error| Unanswered::Socket(path.clone(), error.into());
     let mut stream = std::os::unix::net::UnixStream::connect(&path).map_err(fails)?;
     stream
         .set_read_timeout(Some(Duration::from_secs(5)))
@@ -145,7 +165,7 @@ pub fn ask(run: &Path, words: &str) -> Result<String, String> {
     let mut text = String::new();
     stream.read_to_string(&mut text).map_err(fails)?;
     match text.strip_prefix("refused: ") {
-        Some(why) => Err(why.trim().to_owned()),
+        Some(why) => Err(Unanswered::Refused(why.trim().to_owned())),
         None => Ok(text),
     }
 }

@@ -79,7 +79,7 @@ impl Session {
             Err(why) => {
                 // What runs ends all the same: the person wants to see something else.
                 self.command(Command::Stop("a client")).await;
-                self.error(&why);
+                self.error(&why.to_string());
             }
         }
     }
@@ -102,7 +102,7 @@ impl Session {
             }
             Ok(Err(why)) => {
                 tracing::warn!(target: log::PROGRAMS, "an upload by {} is refused: {why}", self.client.peer);
-                self.error(&why);
+                self.error(&why.to_string());
             }
             Err(error) => self.error(&format!("{}{error}", news::UPLOAD_FAILED)),
         }
