@@ -1,6 +1,6 @@
 //! Real projects judged, against what the real program said of them: verdict, messages in order, seconds, poses.
 //!
-//! Reads `../shared/data` if it is there; skips by name if not. Programs with random numbers are compared as far as chance
+//! Reads the recorded runs, or is skipped. Programs with random numbers are compared as far as chance
 //! plays no part.
 
 use sim::judge::json::{self, Value};
@@ -19,11 +19,6 @@ const RANDOM: [&str; 2] = ["example-13._Switch_action", "example-15._Dance_in_a_
 
 /// Runs in which single pixels of the floor decide: the way there is the same, and then a little off.
 const PIXELS: [&str; 1] = ["example-4._AlongTheLine"];
-fn data() -> Option<PathBuf> {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data"));
-    path.is_dir().then(|| path.to_owned())
-}
-
 /// A recorded run.
 struct Oracle {
     project: String,
@@ -178,10 +173,7 @@ fn differences(name: &str, oracle: &Oracle, outcome: &Outcome) -> Vec<String> {
 
 #[test]
 fn every_recorded_run_has_its_verdict_messages_seconds_and_poses() {
-    let Some(data) = data() else {
-        println!(
-            "skipped every_recorded_run_has_its_verdict_messages_seconds_and_poses: no ../shared"
-        );
+    let Some(data) = needs::data() else {
         return;
     };
     let mut paths: Vec<PathBuf> = std::fs::read_dir(data.join("oracle"))
@@ -216,8 +208,7 @@ fn every_recorded_run_has_its_verdict_messages_seconds_and_poses() {
 
 #[test]
 fn a_recorded_run_is_judged_as_the_run_itself_was() {
-    let Some(data) = data() else {
-        println!("skipped a_recorded_run_is_judged_as_the_run_itself_was: no ../shared");
+    let Some(data) = needs::data() else {
         return;
     };
     for name in [
