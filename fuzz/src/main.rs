@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 
 type Target = fn(&[u8]);
 
-const TARGETS: [(&str, Target); 12] = [
+const TARGETS: [(&str, Target); 13] = [
     ("reader", lang_diagram::fuzz::reader),
     ("expression", lang_expr::fuzz::expression),
     ("lowering", lang_diagram::fuzz::lowering),
@@ -19,6 +19,7 @@ const TARGETS: [(&str, Target); 12] = [
     ("frames", trikd::fuzz::fuzz_frames),
     ("messages", trikd::fuzz::fuzz_messages),
     ("lines", trikd::fuzz::fuzz_lines),
+    ("channel", trikd::fuzz::fuzz_channel),
     ("strangers", trikd::fuzz::fuzz_strangers),
     ("picture", sim::arena::floor::fuzz::picture),
 ];
