@@ -35,15 +35,15 @@ struct Oracle {
 }
 
 fn four(value: &Value) -> [f64; 4] {
-    let Value::List(list) = value else {
+    let Value::Array(list) = value else {
         panic!("{value:?}");
     };
-    std::array::from_fn(|index| list[index].number().unwrap())
+    std::array::from_fn(|index| list[index].as_f64().unwrap())
 }
 
 fn list<'a>(value: &'a Value, name: &str) -> &'a [Value] {
     match value.get(name) {
-        Some(Value::List(list)) => list,
+        Some(Value::Array(list)) => list,
         _ => &[],
     }
 }
@@ -51,12 +51,12 @@ fn list<'a>(value: &'a Value, name: &str) -> &'a [Value] {
 impl Oracle {
     fn read(path: &Path) -> Self {
         let value = json::read(&std::fs::read_to_string(path).unwrap()).unwrap();
-        let text = |name| value.get(name).and_then(Value::text).map(str::to_owned);
+        let text = |name| value.get(name).and_then(Value::as_str).map(str::to_owned);
         let said = |entry: &Value| {
-            let Value::List(parts) = entry else {
+            let Value::Array(parts) = entry else {
                 panic!("{entry:?}");
             };
-            let part = |index: usize| parts[index].text().unwrap().to_owned();
+            let part = |index: usize| parts[index].as_str().unwrap().to_owned();
             (part(0), part(1))
         };
         Self {

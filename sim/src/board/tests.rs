@@ -323,7 +323,7 @@ fn an_unplugged_bus_is_gone_and_comes_back() {
     wait("end of the node", || {
         (!board.root().join("dev/i2c-2").exists()).then_some(())
     });
-    assert_eq!(client.receive(MsgFlags::empty()).unwrap(), []);
+    assert!(client.receive(MsgFlags::empty()).unwrap().is_empty());
     assert_eq!(
         Client::connect(&board, 1).transact(1, &[], 0).0,
         121,
