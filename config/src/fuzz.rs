@@ -13,7 +13,7 @@ const MEMORY_BYTES: usize = 4 << 20;
 
 /// Loads the bytes as a configuration; if it is good, prepares a state and converts a tuple with each Lua stage.
 pub fn fuzz_load(bytes: &[u8]) {
-    use crate::program::Direction;
+    use converter::Direction;
     let Ok(loaded) = Loader::default().load_within("fuzz.lua", None, bytes, TIME_MS, MEMORY_BYTES)
     else {
         return;

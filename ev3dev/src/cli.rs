@@ -2,6 +2,7 @@
 //!
 //! Owns the words, the help and the exit codes: 0 done, 1 refused or failed, 2 not understood.
 
+use crate::failure::Failure;
 use crate::keeper::{self, Handover, Plan};
 use crate::scan::{Options, encoder_of};
 use crate::tree::Tree;
@@ -104,33 +105,26 @@ pub fn main() -> ExitCode {
     };
     match perform(cli, handover) {
         Ok(()) => ExitCode::SUCCESS,
+        Err(Failure::Told) => ExitCode::FAILURE,
         Err(reason) => {
-            // Empty if another process has told it.
-            if !reason.is_empty() {
-                let _ = writeln!(io::stderr(), "trikfs-ev3dev: {reason}");
-            }
+            let _ = writeln!(io::stderr(), "trikfs-ev3dev: {reason}");
             ExitCode::FAILURE
         }
     }
 }
 
-fn perform(cli: Cli, handover: Option<Handover>) -> Result<(), String> {
+fn perform(cli: Cli, handover: Option<Handover>) -> Result<(), Failure> {
     #[cfg(feature = "manual")]
     if let Some(command) = &cli.command {
         return match io::stdout().write_all(&manual(command)?) {
-            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-                Err(format!("standard output: {error}"))
-            }
+            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::Output(error)),
             _ => Ok(()),
         };
     }
     let tree = absolute(&cli.tree)?;
     let mountpoint = absolute(cli.mountpoint.as_deref().unwrap_or(Path::new("")))?;
     if tree == mountpoint {
-        return Err(format!(
-            "{}: the view cannot be mounted over its own tree",
-            tree.display()
-        ));
+        return Err(Failure::OverItsTree(tree));
     }
     if let Some(handover) = handover {
         let options = Options {
@@ -188,8 +182,8 @@ fn ready_line(plan: &Plan, devices: usize) -> String {
     }
 }
 
-fn absolute(path: &Path) -> Result<PathBuf, String> {
-    std::path::absolute(path).map_err(|error| format!("{}: {error}", path.display()))
+fn absolute(path: &Path) -> Result<PathBuf, Failure> {
+    std::path::absolute(path).map_err(|error| Failure::Path(path.to_owned(), error))
 }
 
 fn handover(word: &str) -> Option<Handover> {
@@ -205,7 +199,7 @@ fn handover(word: &str) -> Option<Handover> {
 
 /// The text that was asked for instead of a view.
 #[cfg(feature = "manual")]
-fn manual(command: &Command) -> Result<Vec<u8>, String> {
+fn manual(command: &Command) -> Result<Vec<u8>, Failure> {
     use clap::CommandFactory;
     let mut text = Vec::new();
     match command {
@@ -214,7 +208,7 @@ fn manual(command: &Command) -> Result<Vec<u8>, String> {
         }
         Command::Man => clap_mangen::Man::new(Cli::command())
             .render(&mut text)
-            .map_err(|error| error.to_string())?,
+            .map_err(Failure::Manual)?,
     }
     Ok(text)
 }
@@ -265,7 +259,7 @@ mod tests {
             assert!(error.to_string().contains(reason), "{error}");
         }
         let same = perform(parse(&["--tree=/t", "/t"]).unwrap(), None);
-        assert!(same.unwrap_err().contains("over its own tree"));
+        assert!(same.is_err_and(|failure| matches!(failure, Failure::OverItsTree(_))));
     }
 
     #[cfg(feature = "manual")]

@@ -6,6 +6,7 @@
 //! it drove. So nothing has to be done for the motors here, whatever ends the view.
 
 use crate::cli::SERVE;
+use crate::failure::Failure;
 use crate::limits::GRACE_MS;
 use crate::scan::Options;
 use crate::tree::Tree;
@@ -64,31 +65,30 @@ pub struct Handover {
 /// Call it while the process has one thread.
 ///
 /// # Errors
-/// Why there is no view, or how it ended; empty if the serving process has told the reason.
-pub fn keep(plan: &Plan, ready: &mut dyn FnMut(usize)) -> Result<(), String> {
+/// Why there is no view, or how it ended.
+pub fn keep(plan: &Plan, ready: &mut dyn FnMut(usize)) -> Result<(), Failure> {
     // Started through /proc/self/exe it would be listed as `exe`.
     let _ = set_name(c"trikfs-ev3dev");
-    let own = |error: Errno| format!("signals: {error}");
     let mask: SigSet = SIGNALS.into_iter().collect();
-    mask.thread_block().map_err(own)?;
-    let signals =
-        SignalFd::with_flags(&mask, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC).map_err(own)?;
+    mask.thread_block().map_err(Failure::Signals)?;
+    let signals = SignalFd::with_flags(&mask, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC)
+        .map_err(Failure::Signals)?;
     let path = &plan.mountpoint;
     // Dropped last, when nothing is mounted there any more.
-    let _made = MadeDirectory::at(path)
-        .map_err(|error| format!("the mount point {}: {error}", path.display()))?;
+    let _made =
+        MadeDirectory::at(path).map_err(|error| Failure::MountPoint(path.clone(), error))?;
     let options = MountOptions {
         allow_other: plan.allow_other,
         source: SOURCE.to_owned(),
         ..MountOptions::default()
     };
-    let device = mount::mount(path, &options).map_err(|error| error.to_string())?;
+    let device = mount::mount(path, &options).map_err(|error| Failure::Mount(error.to_string()))?;
     let mounted = match Mounted::find(path) {
         Ok(mounted) => mounted,
         Err(error) => {
             drop(device);
             let _ = mount::unmount(path);
-            return Err(error);
+            return Err(Failure::Mount(error.to_string()));
         }
     };
     let end = start(plan, &device, &mounted)
@@ -96,7 +96,7 @@ pub fn keep(plan: &Plan, ready: &mut dyn FnMut(usize)) -> Result<(), String> {
     // With the last descriptor whoever waits in the mount is let go.
     drop(device);
     unmount(&mounted);
-    end.map_err(|error| format!("serving: {error}"))?
+    end.map_err(Failure::Serving)?
 }
 
 /// A directory that was not there before. Dropping it removes it, if nobody has put anything there.
@@ -166,7 +166,7 @@ impl Server {
         signals: &SignalFd,
         mounted: &Mounted,
         ready: &mut dyn FnMut(usize),
-    ) -> io::Result<Result<(), String>> {
+    ) -> io::Result<Result<(), Failure>> {
         // Has an exceptional condition when the list of mounts changes.
         let mounts = File::open("/proc/self/mountinfo")?;
         let mut stopping: Option<Instant> = None;
@@ -241,15 +241,14 @@ impl Drop for Server {
 }
 
 /// What the end of the serving process means.
-fn judge(status: ExitStatus, was_asked: bool, mounted: &Mounted) -> Result<(), String> {
+fn judge(status: ExitStatus, was_asked: bool, mounted: &Mounted) -> Result<(), Failure> {
     match status.code() {
         _ if was_asked => Ok(()),
         Some(0) => Ok(()),
-        // It has said why.
-        Some(_) => Err(String::new()),
+        Some(_) => Err(Failure::Told),
         // An unmount ends it too, and may be seen later.
         None if !mounted.is_there() => Ok(()),
-        None => Err(format!("the serving process was ended by {status}")),
+        None => Err(Failure::Killed(status)),
     }
 }
 
@@ -262,8 +261,8 @@ pub fn serve(
     mountpoint: PathBuf,
     options: Options,
     handover: Handover,
-) -> Result<(), String> {
-    let own = |error: Errno| format!("serving: {error}");
+) -> Result<(), Failure> {
+    let own = |error: Errno| Failure::Serving(error.into());
     // Started through /proc/self/exe it would be listed as `exe`.
     let _ = set_name(c"trikfs-ev3dev");
     set_pdeathsig(Signal::SIGTERM).map_err(own)?;
@@ -271,12 +270,11 @@ pub fn serve(
     // It may have died before the line above, and then no signal comes.
     if u32::try_from(getppid().as_raw()) != Ok(handover.keeper) {
         unmount(&mounted);
-        return Err("the process that keeps the mount is gone".to_owned());
+        return Err(Failure::KeeperGone);
     }
     let mask: SigSet = SIGNALS.into_iter().collect();
     mask.thread_block().map_err(own)?;
     let signals = SignalFd::with_flags(&mask, SfdFlags::SFD_CLOEXEC).map_err(own)?;
-    let failed = |error: io::Error| format!("serving: {error}");
     thread::Builder::new()
         .name("signals".to_owned())
         .spawn(move || {
@@ -285,15 +283,18 @@ pub fn serve(
             // With the files of the tree open: what they drive comes to rest.
             std::process::exit(0);
         })
-        .map_err(failed)?;
-    let device = io::stdin().as_fd().try_clone_to_owned().map_err(failed)?;
+        .map_err(Failure::Serving)?;
+    let device = io::stdin()
+        .as_fd()
+        .try_clone_to_owned()
+        .map_err(Failure::Serving)?;
     let view = Arc::new(View::new(Tree::new(tree.to_owned()), options));
     let devices = view.devices();
     // Nobody may listen any more; the view can be used all the same.
     let mut out = io::stdout();
     let _ = writeln!(out, "ready {devices}").and_then(|()| out.flush());
     // The view outlives its mount: dropped, it would close its files of the tree, and what it drives would go on.
-    native::serve(device, Arc::clone(&view) as Arc<dyn Operations>).map_err(failed)?;
+    native::serve(device, Arc::clone(&view) as Arc<dyn Operations>).map_err(Failure::Serving)?;
     std::process::exit(0)
 }
 

@@ -3,12 +3,13 @@
 //! It reads and writes files of the tree and nothing else: never a device. From the kernel inwards: `view` (the operations of
 //! the mount), `table` (names and numbers), `scan` (what the tree has), `device` (what every device of a class is),
 //! `motor`, `servo`, `sensor`, `fixed` (the devices), `tree` (files of the tree).
-//! Beside them: `cli`, `keeper` (the processes), `limits`.
+//! Beside them: `cli`, `keeper` (the processes), `failure`, `limits`.
 
 #![forbid(unsafe_code)]
 
 pub mod cli;
 pub mod device;
+pub mod failure;
 pub mod fixed;
 pub mod keeper;
 pub mod limits;

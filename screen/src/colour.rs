@@ -3,6 +3,7 @@
 //! Owns the names that programs of TRIK robots use. Their values are those of the web's colours, because the robot's own
 //! runtime asks Qt for them by name; `darkYellow`, which the web does not have, is that of Qt.
 
+use crate::fault::Fault;
 use embedded_graphics::pixelcolor::{Rgb888, RgbColor};
 
 /// Red, green and blue, 0 to 255 each.
@@ -73,7 +74,7 @@ impl Colour {
     ///
     /// # Errors
     /// No such colour; the text names those that there are.
-    pub fn named(name: &str) -> Result<Self, String> {
+    pub fn named(name: &str) -> Result<Self, Fault> {
         let wanted = name.trim().to_ascii_lowercase();
         if let Some(number) = wanted.strip_prefix('#').and_then(hexadecimal) {
             return Ok(Self::from_number(number));
@@ -82,10 +83,7 @@ impl Colour {
         known.map_or_else(
             || {
                 let names: Vec<_> = NAMES.iter().map(|(name, _)| *name).collect();
-                Err(format!(
-                    "'{name}' is no colour; there are {} and #rrggbb",
-                    names.join(", ")
-                ))
+                Err(Fault::Colour(name.to_owned(), names.join(", ")))
             },
             |(_, number)| Ok(Self::from_number(*number)),
         )

@@ -4,6 +4,7 @@
 //! label replaces the one at the same place; colour and width of the pen hold for what is drawn after them.
 
 use crate::colour::{BLACK, Colour, WHITE};
+use crate::fault::Fault;
 use crate::limits;
 use crate::pixels::Pixels;
 use std::collections::BTreeMap;
@@ -191,13 +192,10 @@ impl Drawing {
         x: i32,
         y: i32,
         height: Option<u16>,
-    ) -> Result<(), String> {
+    ) -> Result<(), Fault> {
         let place = (cut(x), cut(y));
         if self.labels.len() >= limits::LABELS_MAX && !self.labels.contains_key(&place) {
-            return Err(format!(
-                "there are {} labels already: call removeLabels()",
-                limits::LABELS_MAX
-            ));
+            return Err(Fault::Labels);
         }
         let label = Label {
             text: text.chars().take(limits::LABEL_CHARACTERS).collect(),

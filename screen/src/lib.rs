@@ -5,6 +5,7 @@
 
 pub mod colour;
 pub mod drawing;
+pub mod fault;
 pub mod letters;
 pub mod limits;
 pub mod order;
@@ -13,6 +14,7 @@ pub mod picture;
 pub mod pixels;
 
 pub use drawing::Drawing;
+pub use fault::Fault;
 pub use pixels::Pixels;
 
 #[cfg(test)]

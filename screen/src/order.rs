@@ -16,6 +16,7 @@
 
 use crate::colour::{BLACK, Colour, colour};
 use crate::drawing::{Drawing, Outline};
+use crate::fault::Fault;
 use crate::limits;
 
 /// What is to be done with the display after an order.
@@ -33,14 +34,14 @@ const ORDERS: &str = "line, point, rect, ellipse, arc, label, color, width, back
                       redraw, clear and hide";
 
 /// `N` whole numbers at the beginning of the words, and what follows the space behind them.
-fn numbers<'a, const N: usize>(verb: &str, words: &'a str) -> Result<([i32; N], &'a str), String> {
+fn numbers<'a, const N: usize>(verb: &str, words: &'a str) -> Result<([i32; N], &'a str), Fault> {
     let mut rest = words;
     let mut numbers = [0; N];
     for number in &mut numbers {
         let (word, behind) = rest.split_once(' ').unwrap_or((rest, ""));
         let parsed = word.parse::<f64>().ok().filter(|parsed| parsed.is_finite());
         let Some(parsed) = parsed else {
-            return Err(format!("{verb} takes {N} numbers first, not '{word}'"));
+            return Err(Fault::Number(verb.to_owned(), N, word.to_owned()));
         };
         // What is too large is cut.
         *number = parsed.trunc() as i32;
@@ -49,10 +50,10 @@ fn numbers<'a, const N: usize>(verb: &str, words: &'a str) -> Result<([i32; N], 
     Ok((numbers, rest))
 }
 
-fn all<const N: usize>(verb: &str, words: &str) -> Result<[i32; N], String> {
+fn all<const N: usize>(verb: &str, words: &str) -> Result<[i32; N], Fault> {
     match numbers(verb, words)? {
         (numbers, "") => Ok(numbers),
-        (_, more) => Err(format!("{verb} takes {N} numbers and no more: '{more}'")),
+        (_, more) => Err(Fault::MoreWords(verb.to_owned(), N, more.to_owned())),
     }
 }
 
@@ -61,12 +62,9 @@ impl Drawing {
     ///
     /// # Errors
     /// The line makes no sense; nothing has changed then.
-    pub fn order(&mut self, line: &str) -> Result<Effect, String> {
+    pub fn order(&mut self, line: &str) -> Result<Effect, Fault> {
         if line.len() > limits::ORDER_BYTES {
-            return Err(format!(
-                "an order has at most {} bytes",
-                limits::ORDER_BYTES
-            ));
+            return Err(Fault::LongOrder);
         }
         let (verb, words) = line.split_once(' ').unwrap_or((line, ""));
         match verb {
@@ -114,9 +112,7 @@ impl Drawing {
             }
             "hide" => return Ok(Effect::Hide),
             _ => {
-                return Err(format!(
-                    "'{verb}' is no order for the display; there are {ORDERS}"
-                ));
+                return Err(Fault::Order(verb.to_owned(), ORDERS));
             }
         }
         Ok(Effect::Later)

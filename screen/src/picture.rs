@@ -3,6 +3,7 @@
 //! Owns the limits of a picture; the formats themselves are known to the crates that read them.
 
 use crate::colour::Colour;
+use crate::fault::Fault;
 use crate::limits;
 use crate::pixels::Pixels;
 use zune_jpeg::JpegDecoder;
@@ -14,18 +15,18 @@ use zune_jpeg::zune_core::options::DecoderOptions;
 ///
 /// # Errors
 /// It is neither, is damaged, or has more than [`limits::PICTURE_PIXELS`].
-pub fn decode(file: &[u8]) -> Result<Pixels, String> {
+pub fn decode(file: &[u8]) -> Result<Pixels, Fault> {
     if file.starts_with(&[0xff, 0xd8]) {
         jpeg(file)
     } else if file.starts_with(b"\x89PNG") {
         png(file)
     } else {
-        Err("this is neither a PNG nor a JPEG picture".to_owned())
+        Err(Fault::NoPicture)
     }
 }
 
 /// Width and height, if they are within the limits.
-fn sides(width: usize, height: usize) -> Result<(u16, u16), String> {
+fn sides(width: usize, height: usize) -> Result<(u16, u16), Fault> {
     let side = |size: usize| {
         u16::try_from(size)
             .ok()
@@ -33,20 +34,16 @@ fn sides(width: usize, height: usize) -> Result<(u16, u16), String> {
     };
     match (side(width), side(height)) {
         (Some(wide), Some(high)) if width * height <= limits::PICTURE_PIXELS => Ok((wide, high)),
-        _ => Err(format!(
-            "the picture has {width} x {height} pixels, more than {} in a row or {} in all",
-            limits::SIDE_MAX,
-            limits::PICTURE_PIXELS
-        )),
+        _ => Err(Fault::Pixels(width, height)),
     }
 }
 
-fn jpeg(file: &[u8]) -> Result<Pixels, String> {
+fn jpeg(file: &[u8]) -> Result<Pixels, Fault> {
     let options = DecoderOptions::default()
         .jpeg_set_out_colorspace(ColorSpace::RGB)
         .set_max_width(limits::SIDE_MAX.into())
         .set_max_height(limits::SIDE_MAX.into());
-    let damaged = |error| format!("the JPEG picture cannot be read: {error}");
+    let damaged = |error: zune_jpeg::errors::DecodeErrors| Fault::Jpeg(error.to_string());
     let mut decoder = JpegDecoder::new_with_options(ZCursor::new(file), options);
     decoder.decode_headers().map_err(damaged)?;
     let (width, height) = decoder.dimensions().unwrap_or_default();
@@ -55,8 +52,8 @@ fn jpeg(file: &[u8]) -> Result<Pixels, String> {
     Ok(Pixels::from_rgb(width, height, &bytes))
 }
 
-fn png(file: &[u8]) -> Result<Pixels, String> {
-    let damaged = |error: png::DecodingError| format!("the PNG picture cannot be read: {error}");
+fn png(file: &[u8]) -> Result<Pixels, Fault> {
+    let damaged = |error: png::DecodingError| Fault::Png(error.to_string());
     let bounds = png::Limits {
         bytes: 4 * limits::PICTURE_PIXELS,
     };
@@ -65,9 +62,7 @@ fn png(file: &[u8]) -> Result<Pixels, String> {
     let mut reader = decoder.read_info().map_err(damaged)?;
     let (width, height) = (reader.info().width as usize, reader.info().height as usize);
     let (width, height) = sides(width, height)?;
-    let size = reader
-        .output_buffer_size()
-        .ok_or("the PNG picture is too large")?;
+    let size = reader.output_buffer_size().ok_or(Fault::PngSize)?;
     let mut bytes = vec![0; size];
     let info = reader.next_frame(&mut bytes).map_err(damaged)?;
     let mut pixels = Pixels::new(width, height, None);
@@ -110,14 +105,12 @@ impl RawFormat {
     ///
     /// # Errors
     /// There is no such format.
-    pub fn named(name: &str) -> Result<Self, String> {
+    pub fn named(name: &str) -> Result<Self, Fault> {
         match name {
             "rgb32" => Ok(Self::Rgb32),
             "rgb888" => Ok(Self::Rgb888),
             "grayscale8" => Ok(Self::Grayscale8),
-            _ => Err(format!(
-                "'{name}' is no format of pixels; there are rgb32, rgb888 and grayscale8"
-            )),
+            _ => Err(Fault::Format(name.to_owned())),
         }
     }
 
@@ -134,17 +127,13 @@ impl RawFormat {
 ///
 /// # Errors
 /// There are fewer numbers than pixels need, or too many pixels.
-pub fn raw(numbers: &[i32], width: i32, height: i32, format: RawFormat) -> Result<Pixels, String> {
-    let side =
-        |size: i32| usize::try_from(size).map_err(|_| format!("{size} is no width or height"));
+pub fn raw(numbers: &[i32], width: i32, height: i32, format: RawFormat) -> Result<Pixels, Fault> {
+    let side = |size: i32| usize::try_from(size).map_err(|_| Fault::Side(size));
     let (columns, rows) = (side(width)?, side(height)?);
     let (width, height) = sides(columns, rows)?;
     let needed = columns * rows * format.numbers();
     if numbers.len() < needed {
-        return Err(format!(
-            "{width} x {height} pixels need {needed} numbers, there are {}",
-            numbers.len()
-        ));
+        return Err(Fault::FewNumbers(width, height, needed, numbers.len()));
     }
     // Numbers may be signed bytes: the lowest eight bits count.
     let byte = |number: i32| number.to_le_bytes()[0];

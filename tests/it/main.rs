@@ -137,6 +137,8 @@ mod trik_lua {
     /// The program behind the tones.
     mod tone;
 }
+/// Circles of files that need each other.
+mod circles;
 /// The documents: their examples run, their tables are complete.
 mod docs;
 /// Fuzz targets, briefly, with a printed seed.

@@ -1,7 +1,9 @@
 //! The rules of the project, as far as a program can check them.
 
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+
+/// Rules between crates and files.
+mod crates;
 
 const CRATES: [&str; 18] = [
     "config",
@@ -71,11 +73,11 @@ impl Source {
     }
 }
 
-fn root() -> &'static Path {
+pub(crate) fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
 }
 
-fn files(folder: &Path, ending: &str, found: &mut Vec<PathBuf>) {
+pub(crate) fn files(folder: &Path, ending: &str, found: &mut Vec<PathBuf>) {
     for entry in
         std::fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
     {
@@ -351,33 +353,6 @@ fn only_the_cross_build_names_its_target() {
             .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         if text.contains(&name) {
             complaints.push(format!("{}: names the cross target", path.display()));
-        }
-    }
-    none(&complaints);
-}
-
-#[test]
-fn every_module_is_named_in_the_map() {
-    let map = std::fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
-    let words: BTreeSet<&str> = map
-        .split(|c: char| !c.is_alphanumeric() && !"_./-".contains(c))
-        .collect();
-    let mut complaints = Vec::new();
-    for source in sources() {
-        let Some((krate, module)) = source.path.split_once("/src/") else {
-            continue;
-        };
-        let module = module.trim_end_matches(".rs");
-        if source.is_test() || module == "lib" || module == "main" || krate.contains("templates") {
-            continue;
-        }
-        let name = module.rsplit('/').next().unwrap_or(module);
-        let is_named = words.iter().any(|word| {
-            let word = word.trim_matches('.').trim_end_matches(".rs");
-            word == name || word.ends_with(&format!("/{name}"))
-        });
-        if !is_named {
-            complaints.push(format!("{}: not in ARCHITECTURE.md", source.path));
         }
     }
     none(&complaints);

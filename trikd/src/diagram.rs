@@ -15,7 +15,7 @@ use lang_diagram::lower::{World, lower};
 use lang_diagram::machine::{Machine, Options, STEP_MS, Status};
 use lang_diagram::read;
 use lang_expr::Compat;
-use lang_text::problem::{Problem, Severity, Tongue};
+use lang_text::problem::{Locale, Problem, Severity};
 use nix::poll::{PollFd, PollFlags, ppoll};
 use nix::sys::time::TimeSpec;
 use robot::Robot;
@@ -28,7 +28,7 @@ use watch::Watch;
 /// Runs diagrams.
 #[derive(Debug)]
 pub struct Diagram {
-    tongue: Tongue,
+    locale: Locale,
     compat: Compat,
 }
 
@@ -36,7 +36,7 @@ pub struct Diagram {
 pub fn engine() -> impl Engine {
     let named = |name: &str| std::env::var(name).unwrap_or_default();
     Diagram {
-        tongue: tongue(&named("TRIK_LANGUAGE")),
+        locale: locale(&named("TRIK_LANGUAGE")),
         compat: if named("TRIK_COMPAT") == settings::Compat::Fixed.name() {
             Compat::Fixed
         } else {
@@ -46,11 +46,11 @@ pub fn engine() -> impl Engine {
 }
 
 /// The language of messages by its name, as `LANG` has it: Russian if it begins with `ru`, else English.
-pub fn tongue(name: &str) -> Tongue {
+pub fn locale(name: &str) -> Locale {
     if name.starts_with("ru") {
-        Tongue::Russian
+        Locale::Russian
     } else {
-        Tongue::English
+        Locale::English
     }
 }
 
@@ -61,7 +61,7 @@ impl Engine for Diagram {
         };
         let mut machine = self.load(&path, host)?;
         let mut robot = Robot::new(brick, host);
-        let mut watch = Watch::new(self.tongue);
+        let mut watch = Watch::new(self.locale);
         let ran = run(&mut machine, &mut robot, &mut watch, host);
         machine.stop(&mut robot, &mut watch);
         ran.map_err(|error| format!("the daemon cannot be heard: {error}"))?;
@@ -83,7 +83,7 @@ impl Diagram {
             let lines: Vec<_> = problems
                 .iter()
                 .filter(|problem| problem.severity == Severity::Error)
-                .map(|problem| problem.in_tongue(self.tongue))
+                .map(|problem| problem.in_locale(self.locale))
                 .collect();
             format!("{name}: {}", lines.join("\n"))
         };
@@ -92,7 +92,7 @@ impl Diagram {
         let warnings = opened.problems.iter().chain(&lowered.problems);
         for problem in warnings.take(limits::DIAGRAM_WARNINGS) {
             // Faulty blocks tell their fault when they are reached; until then it is a warning.
-            let _ = host.info(&problem.in_tongue(self.tongue));
+            let _ = host.info(&problem.in_locale(self.locale));
         }
         Ok(Machine::new(
             Rc::new(lowered.program),

@@ -29,10 +29,10 @@ use crate::convert::LogSink;
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::log::Log;
-use crate::node::Node;
 use crate::programs::Programs;
 use crate::stats::Counter;
 use config::description::{GpioDirection, SourceDescription};
+use linked::LinkedNode;
 use std::collections::BTreeSet;
 use std::os::fd::BorrowedFd;
 use std::os::unix::fs::{FileTypeExt, MetadataExt};
@@ -57,6 +57,22 @@ pub trait State: Send {
     /// Text that ends before the tuple does is filled up with zero bytes (`read_at` at 0 gives all there is).
     fn is_text(&self) -> bool {
         false
+    }
+
+    /// Samples one raw tuple. Text is filled up with zero bytes; anything else that is short is an error.
+    fn whole_tuple(&mut self, tuple: &mut [u8]) -> Result<(), Error> {
+        let n = self.read_at(0, tuple)?;
+        if n < tuple.len() {
+            if !self.is_text() || n == 0 {
+                let what = format!(
+                    "the source gave {n} of the {} bytes of a tuple",
+                    tuple.len()
+                );
+                return Err(Error::Device(libc::EIO, what));
+            }
+            tuple[n..].fill(0);
+        }
+        Ok(())
     }
 }
 
@@ -106,7 +122,7 @@ pub trait Sink: Send {
 #[derive(Clone)]
 pub struct Surroundings {
     /// Nodes that `trikfs:` sources of this node name, by path.
-    pub links: Vec<(String, Arc<Node>)>,
+    pub links: Vec<(String, Arc<dyn LinkedNode>)>,
     /// How long a sink waits for a device that takes no bytes.
     pub timeout_ms: u32,
     /// Where the node counts what its source had to throw away.
@@ -149,7 +165,7 @@ impl Surroundings {
         }
     }
 
-    fn link(&self, path: &str) -> Result<&Arc<Node>, Error> {
+    fn link(&self, path: &str) -> Result<&Arc<dyn LinkedNode>, Error> {
         let found = self.links.iter().find(|(name, _)| name == path);
         found
             .map(|(_, node)| node)
@@ -177,7 +193,7 @@ pub fn open(
         SourceDescription::Faulty(faulty) => {
             faulty::open(faulty, open(&faulty.source, tuple_size, around)?)
         }
-        SourceDescription::Node(path) => linked::open(around.link(path)?),
+        SourceDescription::Node(path) => around.link(path)?.clone().open(),
         SourceDescription::Iio(iio) => Ok(Device::Stream(Box::new(iio::Iio::open(
             iio,
             around.damaged.clone(),
@@ -226,9 +242,7 @@ pub fn open_sink(
         SourceDescription::Fifo(path) => {
             Ok(Box::new(chardev::CharSink::open(path, around.timeout_ms)?))
         }
-        SourceDescription::Node(path) => {
-            Ok(Box::new(linked::LinkedSink::open(around.link(path)?)?))
-        }
+        SourceDescription::Node(path) => around.link(path)?.clone().open_sink(),
         SourceDescription::Faulty(faulty) => Ok(Box::new(faulty::FaultySink::new(
             faulty,
             open_sink(&faulty.source, around)?,

@@ -4,6 +4,7 @@
 //! Knows no file of the tree and no request of the kernel.
 
 mod fault;
+mod linked;
 mod rest;
 mod written;
 
@@ -11,6 +12,7 @@ use crate::clock::Stamp;
 use crate::convert::{LogSink, Pipeline, Recipe};
 use crate::crew::lock_patiently;
 use crate::device::lines::answer::Answer;
+use crate::device::linked::LinkedNode;
 use crate::device::{self, Device, Sink, Stream, Surroundings};
 use crate::engine::Engine;
 use crate::errno::Error;
@@ -27,10 +29,9 @@ use crate::writer::Writer;
 use config::description::{NodeDescription, Pace, SourceDescription};
 use config::format::Format;
 use config::problem::Problem;
-use config::program::Direction;
+use converter::Direction;
 use fault::Trouble;
 use std::collections::BTreeSet;
-use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, Weak};
 use written::Written;
@@ -56,6 +57,8 @@ pub struct Node {
     /// The newest sample, and how it is got.
     pub newest: Newest,
     recipe: Recipe,
+    /// Nodes that the source names, by path.
+    links: Vec<(String, Arc<Self>)>,
     around: Surroundings,
     hub: Mutex<Weak<Hub>>,
     trouble: Trouble,
@@ -114,8 +117,12 @@ impl Node {
             let others = linked.flat_map(|(_, node)| node.leases.clone());
             leases.extend(others.filter(|other| !Arc::ptr_eq(other, &lease)));
         }
+        let named = links.iter().map(|(path, node)| {
+            let node: Arc<dyn LinkedNode> = node.clone();
+            (path.clone(), node)
+        });
         let around = Surroundings {
-            links,
+            links: named.collect(),
             timeout_ms: description.timeout_ms,
             damaged: stats.damaged.clone(),
             log: log_sink(&engine, &description.path),
@@ -135,6 +142,7 @@ impl Node {
             stats,
             newest: Newest::new(me.clone(), description.output_tuple_size),
             recipe,
+            links,
             around,
             hub: Mutex::default(),
             trouble: Trouble::default(),
@@ -235,7 +243,7 @@ impl Node {
     fn driven(&self) -> &Self {
         let mut node = self;
         while let SourceDescription::Node(path) = &node.description.source {
-            match node.around.links.iter().find(|(name, _)| name == path) {
+            match node.links.iter().find(|(name, _)| name == path) {
                 Some((_, other)) => node = other,
                 None => break,
             }
@@ -481,11 +489,6 @@ impl Node {
             (Some(bus), true) => self.engine.schedule_of(&bus),
             _ => self.engine.schedule.clone(),
         }
-    }
-
-    /// The buses whose transfers this node waits for.
-    pub fn add_buses(&self, buses: &mut BTreeSet<PathBuf>) {
-        device::add_buses(&self.description.source, &self.around, buses);
     }
 
     /// A problem at the place of this node's description.

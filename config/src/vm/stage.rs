@@ -5,7 +5,7 @@
 
 use super::library;
 use super::state::{ARRAY_SLOT, PARAMS_SLOT, State, TREE_SLOT, text_of, type_name};
-use crate::program::{Conversion, Direction};
+use converter::{Conversion, Direction};
 use mlua_sys as lua;
 use std::collections::BTreeMap;
 use std::ffi::c_int;

@@ -11,7 +11,7 @@ use super::scene::{Object, Scene, Unfit};
 use super::value::{Value, shown};
 use super::words;
 use crate::limits;
-use lang_text::problem::{Tongue, Words};
+use lang_text::problem::{Locale, Words};
 
 /// How a message of the report is meant.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -82,7 +82,7 @@ struct Outcome {
 #[derive(Debug)]
 pub struct Checker {
     rules: Rc<Rules>,
-    tongue: Tongue,
+    locale: Locale,
     start_ms: u64,
     continues: bool,
     repeats: bool,
@@ -103,14 +103,14 @@ pub struct Checker {
 impl Checker {
     /// A run that starts at 0 ms, whose own messages are in a language; messages of the rules are as their author wrote
     /// them.
-    pub fn new(rules: Rc<Rules>, tongue: Tongue) -> Self {
+    pub fn new(rules: Rc<Rules>, locale: Locale) -> Self {
         let states = rules.events.iter().map(|event| State {
             is_alive: event.initially,
             since_ms: 0,
         });
         Self {
             states: states.collect(),
-            tongue,
+            locale,
             start_ms: 0,
             continues: false,
             repeats: false,
@@ -242,7 +242,7 @@ impl Checker {
         Run {
             now_ms,
             start_ms: self.start_ms,
-            tongue: self.tongue,
+            locale: self.locale,
             continues: self.continues,
             repeats: self.repeats,
             rules: &self.rules,
@@ -267,7 +267,7 @@ impl Checker {
 struct Run<'a> {
     now_ms: u64,
     start_ms: u64,
-    tongue: Tongue,
+    locale: Locale,
     continues: bool,
     repeats: bool,
     rules: &'a Rules,
@@ -362,7 +362,7 @@ impl Run<'_> {
             Trigger::Fail(message) => self.fail(Some(message)),
             Trigger::TimeOver => {
                 let message = words::too_long();
-                self.fail(Some(message.in_tongue(self.tongue)));
+                self.fail(Some(message.in_locale(self.locale)));
                 self.outcome.decided = true;
             }
             Trigger::Success { deferred: true } => self.outcome.deferred = true,
@@ -462,7 +462,7 @@ impl Run<'_> {
                 }
             }
             let words = words::in_checker(&words);
-            let text = words.in_tongue(self.tongue).to_owned();
+            let text = words.in_locale(self.locale).to_owned();
             self.tell(Level::Critical, text, false);
         }
     }
@@ -472,7 +472,7 @@ impl Run<'_> {
         let is_first = !self.outcome.failed;
         self.outcome.failed = true;
         let unfinished = words::unfinished();
-        let message = message.unwrap_or(unfinished.in_tongue(self.tongue));
+        let message = message.unwrap_or(unfinished.in_locale(self.locale));
         self.tell(Level::Error, message.to_owned(), is_first);
         if !self.continues {
             self.outcome.decided = true;
@@ -501,7 +501,7 @@ impl Run<'_> {
             return;
         }
         let words = words::accomplished(&seconds(self.now_ms.saturating_sub(self.start_ms)));
-        let text = words.in_tongue(self.tongue).to_owned();
+        let text = words.in_locale(self.locale).to_owned();
         self.tell(Level::Info, text, is_first);
         if !self.continues {
             self.dump();
@@ -528,7 +528,7 @@ impl Run<'_> {
             }
             *self.is_full = true;
             let words = words::too_many_messages();
-            self.push(Level::Critical, words.in_tongue(self.tongue).to_owned());
+            self.push(Level::Critical, words.in_locale(self.locale).to_owned());
             return;
         }
         self.push(level, text);

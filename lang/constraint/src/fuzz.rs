@@ -6,7 +6,7 @@ use crate::limits;
 use crate::{
     Checker, Missing, Object, ObjectPoint, Point, Rect, Scene, Unfit, Value, Verdict, read,
 };
-use lang_text::problem::Tongue;
+use lang_text::problem::Locale;
 use lang_text::xml;
 
 /// A world where almost every name is an object, and what is asked decides the answer.
@@ -86,8 +86,8 @@ pub fn constraints(bytes: &[u8]) {
         return;
     };
     let rules = Rc::new(rules);
-    let run = |tongue: Tongue| {
-        let mut checker = Checker::new(Rc::clone(&rules), tongue);
+    let run = |locale: Locale| {
+        let mut checker = Checker::new(Rc::clone(&rules), locale);
         if bytes.len().is_multiple_of(2) {
             checker = checker.continuing();
         }
@@ -105,5 +105,5 @@ pub fn constraints(bytes: &[u8]) {
         }
         (verdict, entries.len())
     };
-    assert_eq!(run(Tongue::English), run(Tongue::Russian));
+    assert_eq!(run(Locale::English), run(Locale::Russian));
 }

@@ -13,7 +13,7 @@ use super::{
     Checker, Entry, Level, Missing, Object, ObjectPoint, Rect, Rules, Scene, Unfit, Value, Verdict,
     read,
 };
-use lang_text::problem::{Problem, Severity, Tongue};
+use lang_text::problem::{Locale, Problem, Severity};
 use lang_text::xml;
 
 /// A world: objects with a class, properties and, if they have a place, a rectangle; regions are of the class `Region`.
@@ -176,7 +176,7 @@ impl Run {
     fn on(stage: Stage, inside: &str) -> Self {
         Self {
             stage,
-            checker: Checker::new(rules(inside), Tongue::English),
+            checker: Checker::new(rules(inside), Locale::English),
             entries: Vec::new(),
             now_ms: 0,
         }

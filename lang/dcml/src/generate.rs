@@ -20,7 +20,6 @@ use super::lower;
 use super::model::Model;
 use super::syntax::Kind;
 use super::tape::Lowered;
-use crate::limits;
 use graph::Scene;
 use std::fmt;
 
@@ -58,18 +57,23 @@ impl Target {
         Self::Latex,
     ];
 
+    /// What is known of it.
+    const fn row(self) -> &'static Row {
+        match self {
+            Self::Rust => &rust::ROW,
+            Self::C => &c::ROW,
+            Self::Java => &java::ROW,
+            Self::JavaHipparchus => &java::ROW_HIPPARCHUS,
+            Self::Python => &python::ROW,
+            Self::Lua => &lua::ROW,
+            Self::JavaScript => &javascript::ROW,
+            Self::Latex => &latex::ROW,
+        }
+    }
+
     /// Its name on the command line.
     pub const fn name(self) -> &'static str {
-        match self {
-            Self::Rust => "rust",
-            Self::C => "c",
-            Self::Java => "java",
-            Self::JavaHipparchus => "java-hipparchus",
-            Self::Python => "python",
-            Self::Lua => "lua",
-            Self::JavaScript => "javascript",
-            Self::Latex => "latex",
-        }
+        self.row().name
     }
 
     /// The target of this name.
@@ -79,16 +83,20 @@ impl Target {
 
     /// How the names of its files end, without a dot.
     pub const fn ending(self) -> &'static str {
-        match self {
-            Self::Rust => "rs",
-            Self::C => "h",
-            Self::Java | Self::JavaHipparchus => "java",
-            Self::Python => "py",
-            Self::Lua => "lua",
-            Self::JavaScript => "js",
-            Self::Latex => "tex",
-        }
+        self.row().ending
     }
+}
+
+/// One language, as the file of that language says it.
+struct Row {
+    /// On the command line.
+    name: &'static str,
+    /// Of the names of files, without a dot.
+    ending: &'static str,
+    /// Values and results that one function of the language can hold.
+    values_max: usize,
+    /// Writes a model.
+    print: fn(&Scene) -> String,
 }
 
 /// What may be chosen.
@@ -149,24 +157,11 @@ pub fn generate(model: &Model, target: Target, options: &Options) -> Result<Stri
     let named = lower::equations(&open).map_err(Refused::Model)?.outputs;
     let scene = Scene::new(model, &lowered, &named, options.jacobian);
     let values = scene.graph.operations.len() + scene.results();
-    let limit = match target {
-        Target::Java | Target::JavaHipparchus => limits::DCML_JAVA_VALUES,
-        Target::Lua => limits::DCML_LUA_VALUES,
-        _ => usize::MAX,
-    };
-    if values > limit {
-        return Err(Refused::TooLarge(target, values, limit));
+    let row = target.row();
+    if values > row.values_max {
+        return Err(Refused::TooLarge(target, values, row.values_max));
     }
-    Ok(match target {
-        Target::Rust => rust::print(&scene),
-        Target::C => c::print(&scene),
-        Target::Java => java::print(&scene, java::Library::CommonsMath),
-        Target::JavaHipparchus => java::print(&scene, java::Library::Hipparchus),
-        Target::Python => python::print(&scene),
-        Target::Lua => lua::print(&scene),
-        Target::JavaScript => javascript::print(&scene),
-        Target::Latex => latex::print(&scene),
-    })
+    Ok((row.print)(&scene))
 }
 
 #[cfg(test)]

@@ -49,8 +49,34 @@ pub struct Understood {
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// The text of a file; else where it is none and why, as `LINE:COLUMN: reason`.
-pub fn decode(bytes: Vec<u8>) -> Result<String, String> {
+/// A file that is no text: the first byte that cannot be.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub struct NoText {
+    /// The line, from 1.
+    pub line: usize,
+    /// The column in characters, from 1.
+    pub column: usize,
+    /// The byte.
+    pub byte: u8,
+}
+
+impl std::fmt::Display for NoText {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { line, column, byte } = self;
+        write!(
+            f,
+            "{line}:{column}: the byte 0x{byte:02x} is no text in UTF-8: save the file as UTF-8"
+        )
+    }
+}
+
+impl std::error::Error for NoText {}
+
+/// The text of a file.
+///
+/// # Errors
+/// It is not in UTF-8.
+pub fn decode(bytes: Vec<u8>) -> Result<String, NoText> {
     String::from_utf8(bytes).map_err(|error| {
         let place = error.utf8_error().valid_up_to();
         let bytes = error.as_bytes();
@@ -59,9 +85,7 @@ pub fn decode(bytes: Vec<u8>) -> Result<String, String> {
         let column = before.rsplit('\n').next().unwrap_or_default();
         let column = column.chars().count() + 1;
         let byte = bytes.get(place).copied().unwrap_or_default();
-        format!(
-            "{line}:{column}: the byte 0x{byte:02x} is no text in UTF-8: save the file as UTF-8"
-        )
+        NoText { line, column, byte }
     })
 }
 

@@ -86,7 +86,7 @@ impl Unit {
 
     /// Reads a unit: names with powers `m^2`, joined by `*`, `.` and `/`, to the left; parentheses group. Else why it is
     /// none.
-    pub fn read(text: &str) -> Result<Self, String> {
+    pub fn read(text: &str) -> Result<Self, NoUnit> {
         let mut reader = Reader {
             rest: text.trim(),
             depth: 0,
@@ -95,10 +95,7 @@ impl Unit {
         if reader.rest.is_empty() {
             Ok(unit)
         } else {
-            Err(format!(
-                "`{}` is not understood",
-                super::parser::shown(reader.rest)
-            ))
+            Err(NoUnit::Rest(reader.rest.to_owned()))
         }
     }
 
@@ -243,6 +240,42 @@ impl std::fmt::Display for Unit {
     }
 }
 
+/// Why a text is no unit.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum NoUnit {
+    /// What is left after a unit.
+    Rest(String),
+    /// A name that no unit has.
+    Unknown(String),
+    /// A name is missing.
+    Missing,
+    /// A power that is no whole number.
+    Power,
+    /// Powers beyond all that is measured.
+    TooHigh,
+    /// A parenthesis that is not closed.
+    Open,
+    /// Parentheses in parentheses without end.
+    TooDeep,
+}
+
+impl std::fmt::Display for NoUnit {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let shown = super::parser::shown;
+        match self {
+            Self::Rest(rest) => write!(f, "`{}` is not understood", shown(rest)),
+            Self::Unknown(name) => write!(f, "there is no unit `{}`", shown(name)),
+            Self::Missing => f.write_str("a name of a unit is missing"),
+            Self::Power => f.write_str("a power is a whole number: `m^2`"),
+            Self::TooHigh => f.write_str("its powers are too high"),
+            Self::Open => f.write_str("a parenthesis is not closed"),
+            Self::TooDeep => f.write_str("it nests too deep"),
+        }
+    }
+}
+
+impl std::error::Error for NoUnit {}
+
 struct Reader<'a> {
     rest: &'a str,
     depth: u8,
@@ -260,51 +293,46 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn product(&mut self) -> Result<Unit, String> {
-        let too_high = || "its powers are too high".to_owned();
+    fn product(&mut self) -> Result<Unit, NoUnit> {
         let mut unit = self.factor()?;
         loop {
             unit = if self.take('*') || self.take('.') {
-                unit.times(self.factor()?).ok_or_else(too_high)?
+                unit.times(self.factor()?).ok_or(NoUnit::TooHigh)?
             } else if self.take('/') {
-                unit.over(self.factor()?).ok_or_else(too_high)?
+                unit.over(self.factor()?).ok_or(NoUnit::TooHigh)?
             } else {
                 return Ok(unit);
             };
         }
     }
 
-    fn factor(&mut self) -> Result<Unit, String> {
+    fn factor(&mut self) -> Result<Unit, NoUnit> {
         let unit = if self.take('(') {
             self.depth += 1;
             if self.depth > 16 {
-                return Err("it nests too deep".to_owned());
+                return Err(NoUnit::TooDeep);
             }
             let inside = self.product()?;
             self.depth -= 1;
             if !self.take(')') {
-                return Err("a parenthesis is not closed".to_owned());
+                return Err(NoUnit::Open);
             }
             inside
         } else {
             let name = self.word(|sign| sign.is_alphanumeric());
             if name.is_empty() {
-                return Err("a name of a unit is missing".to_owned());
+                return Err(NoUnit::Missing);
             }
-            Unit::named(name)
-                .ok_or_else(|| format!("there is no unit `{}`", super::parser::shown(name)))?
+            Unit::named(name).ok_or_else(|| NoUnit::Unknown(name.to_owned()))?
         };
         if !self.take('^') {
             return Ok(unit);
         }
         let is_negative = self.take('-');
         let digits = self.word(|sign| sign.is_ascii_digit());
-        let power: i8 = digits
-            .parse()
-            .map_err(|_| "a power is a whole number: `m^2`".to_owned())?;
+        let power: i8 = digits.parse().map_err(|_| NoUnit::Power)?;
         let power = if is_negative { -power } else { power };
-        unit.power(f64::from(power))
-            .ok_or_else(|| "its powers are too high".to_owned())
+        unit.power(f64::from(power)).ok_or(NoUnit::TooHigh)
     }
 
     fn word(&mut self, is_of: impl Fn(char) -> bool) -> &'a str {

@@ -12,23 +12,23 @@ mod tests;
 
 use super::blocks::{self, Content, Row};
 use super::project::Block;
-use lang_text::problem::Tongue;
+use lang_text::problem::Locale;
 
 /// How long a property may be that is shown.
 const PROPERTY_MAX: usize = 48;
 
 /// The name of a block, as the editor has it.
-fn name(block: &Block, tongue: Tongue) -> String {
+fn name(block: &Block, locale: Locale) -> String {
     match blocks::find(&block.kind) {
-        Some(row) => in_tongue(row.shown, tongue).to_owned(),
+        Some(row) => in_locale(row.shown, locale).to_owned(),
         None => block.kind.clone(),
     }
 }
 
-fn in_tongue(shown: &'static str, tongue: Tongue) -> &'static str {
-    match tongue {
-        Tongue::English => shown,
-        Tongue::Russian => blocks::words::russian(shown),
+fn in_locale(shown: &'static str, locale: Locale) -> &'static str {
+    match locale {
+        Locale::English => shown,
+        Locale::Russian => blocks::words::russian(shown),
     }
 }
 

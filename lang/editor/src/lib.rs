@@ -11,6 +11,7 @@ mod fix;
 pub mod limits;
 mod names;
 mod outline;
+mod refusal;
 mod rename;
 mod signature;
 #[cfg(test)]
@@ -22,6 +23,7 @@ pub use colours::{Colour, Painted};
 pub use complete::{Completion, Item};
 pub use fix::Fix;
 pub use outline::{Fold, Symbol, SymbolKind};
+pub use refusal::Refusal;
 pub use signature::Signature;
 
 use crate::limits::DCML_EDITOR_BYTES;
@@ -85,13 +87,10 @@ impl Reading {
     ///
     /// # Errors
     /// Why it cannot be formatted: what cannot be read has no layout.
-    pub fn formatted(&self) -> Result<Option<Edit>, String> {
+    pub fn formatted(&self) -> Result<Option<Edit>, Refusal> {
         let wanted = lang_dcml::format::format(&self.text).map_err(|found| {
-            let first = found.first().map(|one| one.message.as_str());
-            format!(
-                "not while there are mistakes: {}",
-                first.unwrap_or_default()
-            )
+            let first = found.first().map(|one| one.message.clone());
+            Refusal::Mistakes(first.unwrap_or_default())
         })?;
         Ok(difference(&self.text, &wanted))
     }

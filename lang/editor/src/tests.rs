@@ -200,7 +200,7 @@ fn renaming_refuses_what_would_change_the_meaning() {
         ("a/*", "no name"),
         (&"a".repeat(300), "at most 250 letters"),
     ] {
-        let refusal = reading.rename(theta, new).expect_err(new);
+        let refusal = reading.rename(theta, new).expect_err(new).to_string();
         assert!(refusal.contains(why), "{new}: {refusal}");
     }
     assert_eq!(reading.rename(theta, "theta"), Ok(Vec::new()));
@@ -215,7 +215,7 @@ fn renaming_refuses_what_would_change_the_meaning() {
         ("Right", "no name"),
     ] {
         let (reading, offset) = at(word, 0);
-        let refusal = reading.rename(offset, "free").expect_err(word);
+        let refusal = reading.rename(offset, "free").expect_err(word).to_string();
         assert!(refusal.contains(why), "{word}: {refusal}");
     }
 }
@@ -478,7 +478,8 @@ fn a_text_is_formatted_unless_it_cannot_be_read() {
     assert_eq!(Reading::of(formatted).formatted(), Ok(None));
     let refusal = Reading::of("BEGIN M d(x) = (;".to_owned())
         .formatted()
-        .expect_err("mistakes");
+        .expect_err("mistakes")
+        .to_string();
     assert!(
         refusal.starts_with("not while there are mistakes: "),
         "{refusal}"

@@ -7,6 +7,7 @@
 //! answer: the planner itself uses only operations that are exact on every processor, so answers differ between machines
 //! only as far as the functions of the system do.
 
+pub mod fault;
 pub mod limits;
 mod motion;
 pub mod nearest;
@@ -20,6 +21,7 @@ pub mod tree;
 
 use std::fmt;
 
+pub use fault::Fault;
 pub use motion::Propagator;
 pub use path::Path;
 

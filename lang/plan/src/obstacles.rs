@@ -12,6 +12,7 @@ use self::flat::{
     to_segment, wrapped,
 };
 use self::index::{Bounds, Index};
+use crate::fault::Fault;
 use crate::limits::{
     PLAN_COORDINATE_MAX, PLAN_CORNERS_MAX, PLAN_OBSTACLES_MAX, PLAN_SWEEP_STEPS_MAX,
 };
@@ -66,14 +67,11 @@ impl Shape {
         }
     }
 
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<(), Fault> {
         let (points, lengths): (&[Point], &[f64]) = match self {
             Self::Rectangle(a, b) => (&[*a, *b], &[]),
             Self::Polygon(corners) if corners.len() < 3 => {
-                return Err(format!(
-                    "a polygon needs three corners or more, not {}",
-                    corners.len()
-                ));
+                return Err(Fault::Corners(corners.len()));
             }
             Self::Polygon(corners) => (corners, &[]),
             Self::Wall(from, to, thickness) => (&[*from, *to], &[*thickness]),
@@ -83,19 +81,17 @@ impl Shape {
             within_reach(*number)?;
         }
         match lengths.iter().find(|length| **length < 0.0) {
-            Some(length) => Err(format!("{length} is no thickness or radius")),
+            Some(length) => Err(Fault::Length(*length)),
             None => Ok(()),
         }
     }
 }
 
-fn within_reach(number: f64) -> Result<(), String> {
+fn within_reach(number: f64) -> Result<(), Fault> {
     if number.abs() <= PLAN_COORDINATE_MAX {
         return Ok(());
     }
-    Err(format!(
-        "{number} is no coordinate: they go from -{PLAN_COORDINATE_MAX:e} to {PLAN_COORDINATE_MAX:e}"
-    ))
+    Err(Fault::Coordinate(number))
 }
 
 /// What of the plane a robot covers, seen from its own position and heading.
@@ -112,10 +108,10 @@ impl Footprint {
     ///
     /// # Errors
     /// The radius is none.
-    pub fn circle(radius: f64) -> Result<Self, String> {
+    pub fn circle(radius: f64) -> Result<Self, Fault> {
         within_reach(radius)?;
         if radius < 0.0 {
-            return Err(format!("{radius} is no radius"));
+            return Err(Fault::Radius(radius));
         }
         Ok(Self {
             corners: Vec::new(),
@@ -127,7 +123,7 @@ impl Footprint {
     ///
     /// # Errors
     /// It has no area or is not convex.
-    pub fn polygon(mut corners: Vec<Point>) -> Result<Self, String> {
+    pub fn polygon(mut corners: Vec<Point>) -> Result<Self, Fault> {
         Shape::Polygon(corners.clone()).check()?;
         corners.dedup();
         if corners.len() > 1 && corners.first() == corners.last() {
@@ -147,7 +143,7 @@ impl Footprint {
             .map(|at| cross(corners[at], corners[(at + 1) % count]))
             .sum();
         if count < 3 || area == 0.0 {
-            return Err("the footprint has no area".to_owned());
+            return Err(Fault::NoArea);
         }
         // A star turns to one side too, but around more than once.
         let is_left = area > 0.0;
@@ -155,7 +151,7 @@ impl Footprint {
             .iter()
             .any(|&turn| turn != 0.0 && (turn > 0.0) != is_left);
         if turns_back || winds_more_than_once(&corners) {
-            return Err("the footprint is not convex: give its convex hull".to_owned());
+            return Err(Fault::NotConvex);
         }
         if !is_left {
             corners.reverse();
@@ -243,17 +239,14 @@ impl Obstacles {
     ///
     /// # Errors
     /// What is no shape, with its number from 1, or there are too many.
-    pub fn new(shapes: Vec<Shape>, workspace: Option<Bounds>) -> Result<Self, String> {
+    pub fn new(shapes: Vec<Shape>, workspace: Option<Bounds>) -> Result<Self, Fault> {
         if shapes.len() > PLAN_OBSTACLES_MAX {
-            return Err(format!(
-                "{} obstacles are more than {PLAN_OBSTACLES_MAX}",
-                shapes.len()
-            ));
+            return Err(Fault::Obstacles(shapes.len()));
         }
         if let Some(bounds) = workspace {
             bounds.into_iter().try_for_each(within_reach)?;
             if bounds[0] >= bounds[2] || bounds[1] >= bounds[3] {
-                return Err("the bounds of the workspace have no area".to_owned());
+                return Err(Fault::NoWorkspace);
             }
         }
         let mut edges = Vec::new();
@@ -261,7 +254,7 @@ impl Obstacles {
         for (at, shape) in shapes.iter().enumerate() {
             shape
                 .check()
-                .map_err(|reason| format!("obstacle {}: {reason}", at + 1))?;
+                .map_err(|fault| Fault::Obstacle(at + 1, Box::new(fault)))?;
             if let Shape::Circle(centre, radius) = shape {
                 edges.push(Edge {
                     ends: [*centre; 2],
@@ -276,7 +269,7 @@ impl Obstacles {
             }));
             bodies.push(corners);
             if edges.len() > PLAN_CORNERS_MAX {
-                return Err(format!("more than {PLAN_CORNERS_MAX} corners"));
+                return Err(Fault::TooManyCorners);
             }
         }
         let boxes: Vec<Bounds> = edges

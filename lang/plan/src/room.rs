@@ -4,7 +4,7 @@
 
 use super::obstacles::flat::{Point, wrapped};
 use super::obstacles::{Footprint, Obstacles, Pose};
-use super::{Problem, Surroundings};
+use super::{Fault, Problem, Surroundings};
 use crate::limits::PLAN_GOAL_TRIES;
 
 /// Which parts of a place are a pose.
@@ -49,9 +49,9 @@ impl<'a> Room<'a> {
         footprint: &'a Footprint,
         parts: Parts,
         resolution: f64,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, Fault> {
         if !(resolution > 0.0 && resolution.is_finite()) {
-            return Err(format!("{resolution} is no resolution: it is above 0"));
+            return Err(Fault::Resolution(resolution));
         }
         Ok(Self {
             obstacles,

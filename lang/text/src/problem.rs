@@ -8,7 +8,7 @@ use std::fmt;
 
 /// A language of messages.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
-pub enum Tongue {
+pub enum Locale {
     /// English.
     #[default]
     English,
@@ -35,10 +35,10 @@ impl Words {
     }
 
     /// The message in a language.
-    pub fn in_tongue(&self, tongue: Tongue) -> &str {
-        match tongue {
-            Tongue::English => &self.english,
-            Tongue::Russian => &self.russian,
+    pub fn in_locale(&self, locale: Locale) -> &str {
+        match locale {
+            Locale::English => &self.english,
+            Locale::Russian => &self.russian,
         }
     }
 }
@@ -110,7 +110,7 @@ impl Problem {
     }
 
     /// The problem in one line: place, severity, words.
-    pub fn in_tongue(&self, tongue: Tongue) -> String {
+    pub fn in_locale(&self, locale: Locale) -> String {
         let place = &self.place;
         let mut line = String::new();
         for part in [&place.file, &place.diagram, &place.block]
@@ -128,7 +128,7 @@ impl Problem {
             (None, Some(at)) => line.push_str(&format!("{}:{} ", at.line, at.column)),
             (None, None) => {}
         }
-        line.push_str(self.words.in_tongue(tongue));
+        line.push_str(self.words.in_locale(locale));
         line
     }
 }
@@ -142,6 +142,6 @@ pub fn keep(problems: &mut Vec<Problem>, problem: Problem) {
 
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.in_tongue(Tongue::English))
+        f.write_str(&self.in_locale(Locale::English))
     }
 }

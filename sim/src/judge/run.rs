@@ -14,7 +14,7 @@ use crate::arena::{Arena, Gamepad, Setup};
 use crate::limits;
 use lang_constraint::{Checker, Entry, Level, Value, Verdict as Decision};
 use lang_diagram::machine::{STEP_MS, Status};
-use lang_text::problem::{Problem, Tongue};
+use lang_text::problem::{Locale, Problem};
 use std::time::{Duration, Instant};
 
 /// How a run ended.
@@ -34,7 +34,7 @@ pub enum Verdict {
 #[derive(Clone, Debug)]
 pub struct Settings {
     /// Language of messages.
-    pub tongue: Tongue,
+    pub locale: Locale,
     /// Whether to go on after the first failure and collect all.
     pub keep_going: bool,
     /// Longest run, in milliseconds of model time.
@@ -56,7 +56,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            tongue: Tongue::English,
+            locale: Locale::English,
             keep_going: false,
             longest_ms: 600_000,
             longest: Duration::from_secs(60),
@@ -160,7 +160,7 @@ pub(super) struct Run<'a> {
 impl<'a> Run<'a> {
     pub fn new(task: &Task, settings: &'a Settings, arena: &Arena) -> Self {
         let checker = task.rules.clone().map(|rules| {
-            let checker = Checker::new(rules, settings.tongue);
+            let checker = Checker::new(rules, settings.locale);
             if settings.keep_going {
                 checker.continuing()
             } else {
@@ -253,7 +253,7 @@ impl<'a> Run<'a> {
             self.entries.push(Entry {
                 level: Level::Error,
                 at_ms: u64::from(now),
-                text: problem.in_tongue(self.settings.tongue),
+                text: problem.in_locale(self.settings.locale),
             });
         }
         self.heard = self.heard.max(errors.len());
@@ -264,7 +264,7 @@ impl<'a> Run<'a> {
         self.entries.push(Entry {
             level: Level::Error,
             at_ms: u64::from(now),
-            text: why.in_tongue(self.settings.tongue).to_owned(),
+            text: why.in_locale(self.settings.locale).to_owned(),
         });
         self.verdict = Some(Verdict::Failed);
     }

@@ -1,12 +1,12 @@
 //! What the judge says itself, in English and Russian.
 
-use lang_text::problem::{Tongue, Words};
+use lang_text::problem::{Locale, Words};
 
 /// Names of what can be moved on a page: time, speed.
-pub(super) fn page(tongue: Tongue) -> [&'static str; 2] {
-    match tongue {
-        Tongue::English => ["time", "speed"],
-        Tongue::Russian => ["время", "скорость"],
+pub(super) fn page(locale: Locale) -> [&'static str; 2] {
+    match locale {
+        Locale::English => ["time", "speed"],
+        Locale::Russian => ["время", "скорость"],
     }
 }
 

@@ -2,9 +2,9 @@
 //!
 //! Owns the options and how they are passed to a worker process. Knows nothing of what they do.
 
-use crate::{diagrams, limits};
+use crate::{language, limits};
 use clap::Args;
-use lang_text::problem::Tongue;
+use lang_text::problem::Locale;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -79,8 +79,8 @@ pub(crate) struct CheckArgs {
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u32,
     /// Language of messages: en or ru.
-    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = diagrams::tongue)]
-    pub language: Tongue,
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
+    pub language: Locale,
     /// Serve jobs from standard input.
     #[arg(long, hide = true)]
     pub worker: bool,
@@ -125,16 +125,12 @@ impl CheckArgs {
                 words.push(name.into());
             }
         }
-        let language = match self.language {
-            Tongue::English => "en",
-            Tongue::Russian => "ru",
-        };
         words.extend([
             format!("--time-limit={}", self.time_limit).into(),
             format!("--wall-limit={}", self.wall_limit).into(),
             format!("--memory={}", self.memory).into(),
             format!("--seed={}", self.seed).into(),
-            format!("--language={language}").into(),
+            format!("--language={}", language::name(self.language)).into(),
         ]);
         words
     }

@@ -3,9 +3,9 @@
 //! Owns both forms. The line is also what a worker process tells.
 
 use super::words;
-use crate::diagrams::telling::harmless;
 use crate::limits;
-use lang_text::problem::Tongue;
+use crate::terminal::harmless;
+use lang_text::problem::Locale;
 use sim::judge::json::{self, Value};
 
 /// How a run ended.
@@ -187,7 +187,7 @@ impl Row {
     }
 
     /// Lines for a person who runs one solution.
-    pub fn lines(&self, tongue: Tongue) -> Vec<String> {
+    pub fn lines(&self, locale: Locale) -> Vec<String> {
         let printed = self.printed.iter().flat_map(|text| text.lines());
         let mut lines: Vec<String> = printed
             .map(|text| format!("print: {}", harmless(text)))
@@ -195,20 +195,20 @@ impl Row {
         let messages = self.messages.iter();
         lines.extend(
             messages.map(|(level, text)| {
-                format!("{}: {}", words::level(level, tongue), harmless(text))
+                format!("{}: {}", words::level(level, locale), harmless(text))
             }),
         );
         if self.more > 0 {
-            lines.push(words::more(self.more, tongue));
+            lines.push(words::more(self.more, locale));
         }
         let solution = harmless(&self.solution);
-        let verdict = words::verdict(self.verdict, tongue);
+        let verdict = words::verdict(self.verdict, locale);
         let at = match self.verdict {
             Verdict::Broken => String::new(),
-            _ => format!(", {}", words::seconds(self.ms, tongue)),
+            _ => format!(", {}", words::seconds(self.ms, locale)),
         };
         let score = self.score().map_or_else(String::new, |score| {
-            format!(", {}: {score}", words::heading(tongue)[4])
+            format!(", {}: {score}", words::heading(locale)[4])
         });
         lines.push(format!("{solution}: {verdict}{at}{score}"));
         lines
@@ -219,7 +219,7 @@ impl Row {
     }
 
     /// The cells of its row in the table.
-    pub fn cells(&self, tongue: Tongue) -> [String; 6] {
+    pub fn cells(&self, locale: Locale) -> [String; 6] {
         let field = self.field.as_deref();
         let first = self
             .messages
@@ -229,12 +229,12 @@ impl Row {
         let is_broken = self.verdict == Verdict::Broken;
         [
             harmless(&self.solution),
-            field.map_or_else(|| words::own(tongue).to_owned(), harmless),
-            words::verdict(self.verdict, tongue).to_owned(),
+            field.map_or_else(|| words::own(locale).to_owned(), harmless),
+            words::verdict(self.verdict, locale).to_owned(),
             if is_broken {
                 "-".to_owned()
             } else {
-                words::seconds(self.ms, tongue)
+                words::seconds(self.ms, locale)
             },
             self.score()
                 .map_or_else(|| "-".to_owned(), |score| score.to_string()),
@@ -250,14 +250,14 @@ impl Widths {
     /// For these solutions and fields.
     pub fn new<'a>(
         names: impl Iterator<Item = (&'a str, Option<&'a str>)>,
-        tongue: Tongue,
+        locale: Locale,
     ) -> Self {
-        let heading = words::heading(tongue);
+        let heading = words::heading(locale);
         let count = |text: &str| text.chars().count();
         let mut widths = [count(heading[0]), count(heading[1]), 0];
         for (solution, field) in names {
             widths[0] = widths[0].max(count(solution));
-            widths[1] = widths[1].max(field.map_or(count(words::own(tongue)), count));
+            widths[1] = widths[1].max(field.map_or(count(words::own(locale)), count));
         }
         let all = [
             Verdict::Accomplished,
@@ -266,7 +266,7 @@ impl Widths {
             Verdict::Broken,
         ];
         for verdict in all {
-            widths[2] = widths[2].max(count(words::verdict(verdict, tongue)));
+            widths[2] = widths[2].max(count(words::verdict(verdict, locale)));
         }
         Self(widths)
     }
@@ -326,9 +326,9 @@ mod tests {
     fn a_table_has_even_columns_and_no_line_that_a_terminal_obeys() {
         let widths = Widths::new(
             [("a b.qrs", Some("f.xml")), ("c", None)].into_iter(),
-            Tongue::English,
+            Locale::English,
         );
-        let line = widths.line(&row().cells(Tongue::English));
+        let line = widths.line(&row().cells(Locale::English));
         assert_eq!(
             line,
             "a b.qrs   f.xml  not accomplished    19.83 s    2.5  out \"there\""

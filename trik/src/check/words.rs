@@ -1,12 +1,12 @@
 //! What `trik check` says itself, in English and Russian.
 
 use super::row::Verdict;
-use lang_text::problem::{Tongue, Words};
+use lang_text::problem::{Locale, Words};
 
-fn choose(tongue: Tongue, english: &'static str, russian: &'static str) -> &'static str {
-    match tongue {
-        Tongue::English => english,
-        Tongue::Russian => russian,
+fn choose(locale: Locale, english: &'static str, russian: &'static str) -> &'static str {
+    match locale {
+        Locale::English => english,
+        Locale::Russian => russian,
     }
 }
 
@@ -21,12 +21,12 @@ pub(super) const TIMES: [&str; 6] = [
 ];
 
 /// How a run ended.
-pub(super) fn verdict(verdict: Verdict, tongue: Tongue) -> &'static str {
+pub(super) fn verdict(verdict: Verdict, locale: Locale) -> &'static str {
     match verdict {
-        Verdict::Accomplished => choose(tongue, "accomplished", "выполнено"),
-        Verdict::Ended => choose(tongue, "ended (no rules)", "завершено (без правил)"),
-        Verdict::Failed => choose(tongue, "not accomplished", "не выполнено"),
-        Verdict::Broken => choose(tongue, "could not be run", "не запущено"),
+        Verdict::Accomplished => choose(locale, "accomplished", "выполнено"),
+        Verdict::Ended => choose(locale, "ended (no rules)", "завершено (без правил)"),
+        Verdict::Failed => choose(locale, "not accomplished", "не выполнено"),
+        Verdict::Broken => choose(locale, "could not be run", "не запущено"),
     }
 }
 
@@ -34,48 +34,48 @@ pub(super) fn verdict(verdict: Verdict, tongue: Tongue) -> &'static str {
 pub(super) const WARNING: &str = "warning";
 
 /// A level of a message.
-pub(super) fn level(name: &str, tongue: Tongue) -> &'static str {
+pub(super) fn level(name: &str, locale: Locale) -> &'static str {
     match name {
-        "info" => choose(tongue, "info", "сообщение"),
-        "log" => choose(tongue, "log", "журнал"),
-        WARNING => choose(tongue, "warning", "предупреждение"),
-        _ => choose(tongue, "error", "ошибка"),
+        "info" => choose(locale, "info", "сообщение"),
+        "log" => choose(locale, "log", "журнал"),
+        WARNING => choose(locale, "warning", "предупреждение"),
+        _ => choose(locale, "error", "ошибка"),
     }
 }
 
 /// The solution's own world.
-pub(super) fn own(tongue: Tongue) -> &'static str {
-    choose(tongue, "own", "своё")
+pub(super) fn own(locale: Locale) -> &'static str {
+    choose(locale, "own", "своё")
 }
 
 /// Names of the columns.
-pub(super) fn heading(tongue: Tongue) -> [&'static str; 6] {
-    match tongue {
-        Tongue::English => ["solution", "field", "verdict", "time", "score", "why"],
-        Tongue::Russian => ["решение", "поле", "вердикт", "время", "баллы", "почему"],
+pub(super) fn heading(locale: Locale) -> [&'static str; 6] {
+    match locale {
+        Locale::English => ["solution", "field", "verdict", "time", "score", "why"],
+        Locale::Russian => ["решение", "поле", "вердикт", "время", "баллы", "почему"],
     }
 }
 
 /// Model time.
-pub(super) fn seconds(ms: u32, tongue: Tongue) -> String {
-    let unit = choose(tongue, "s", "с");
+pub(super) fn seconds(ms: u32, locale: Locale) -> String {
+    let unit = choose(locale, "s", "с");
     format!("{}.{:02} {unit}", ms / 1000, ms % 1000 / 10)
 }
 
 /// Messages that are left out.
-pub(super) fn more(count: usize, tongue: Tongue) -> String {
-    match tongue {
-        Tongue::English => format!("and {count} more messages"),
-        Tongue::Russian => format!("и ещё сообщений: {count}"),
+pub(super) fn more(count: usize, locale: Locale) -> String {
+    match locale {
+        Locale::English => format!("and {count} more messages"),
+        Locale::Russian => format!("и ещё сообщений: {count}"),
     }
 }
 
 /// The last line of a table.
-pub(super) fn summary(counts: [usize; 4], tongue: Tongue) -> String {
+pub(super) fn summary(counts: [usize; 4], locale: Locale) -> String {
     let [accomplished, ended, failed, broken] = counts;
     let all: usize = counts.iter().sum();
-    match tongue {
-        Tongue::English => {
+    match locale {
+        Locale::English => {
             let s = if all == 1 { "" } else { "s" };
             let ended = match ended {
                 0 => String::new(),
@@ -85,7 +85,7 @@ pub(super) fn summary(counts: [usize; 4], tongue: Tongue) -> String {
                 "{all} run{s}: {accomplished} accomplished{ended}, {failed} not accomplished, {broken} could not be run"
             )
         }
-        Tongue::Russian => {
+        Locale::Russian => {
             let ended = match ended {
                 0 => String::new(),
                 _ => format!(", завершено без правил: {ended}"),
@@ -106,30 +106,30 @@ pub(super) fn hung() -> Words {
 }
 
 /// Programs in a directory were passed over.
-pub(super) fn left_out(count: usize, tongue: Tongue) -> String {
-    match tongue {
-        Tongue::English => format!(
+pub(super) fn left_out(count: usize, locale: Locale) -> String {
+    match locale {
+        Locale::English => format!(
             "trik: programs *.js and *.py are left out, {count} here: they have no world of their own, --field gives them one"
         ),
-        Tongue::Russian => format!(
+        Locale::Russian => format!(
             "trik: программы *.js и *.py пропущены ({count}): у них нет своего мира, --field даст его"
         ),
     }
 }
 
 /// A world where a solution should be.
-pub(super) fn is_world(tongue: Tongue) -> &'static str {
+pub(super) fn is_world(locale: Locale) -> &'static str {
     choose(
-        tongue,
+        locale,
         "this is a world and no solution: run one in it with --field",
         "это мир, а не решение: запустите решение в нём с --field",
     )
 }
 
 /// How far it is.
-pub(super) fn progress(done: usize, all: usize, tongue: Tongue) -> String {
-    match tongue {
-        Tongue::English => format!("{done} of {all}"),
-        Tongue::Russian => format!("{done} из {all}"),
+pub(super) fn progress(done: usize, all: usize, locale: Locale) -> String {
+    match locale {
+        Locale::English => format!("{done} of {all}"),
+        Locale::Russian => format!("{done} из {all}"),
     }
 }

@@ -2,13 +2,30 @@
 //!
 //! Owns the verdict and its exit code.
 
-use super::{CheckArgs, read, report, understood};
-use crate::diagrams::output::standard;
-use crate::diagrams::{REFUSED, Refusal, UNREADABLE, say};
+use super::report;
+use super::source::{read, understood};
+use crate::output::standard;
+use crate::refusal::{REFUSED, Refusal, UNREADABLE, say};
+use clap::Args;
 use lang_dcml::diagnostic::Severity;
+use std::path::PathBuf;
+
+/// What `trik dcml check` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct CheckArgs {
+    /// Files with models; - is standard input.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Refuse what the published language does not have: units, ranges, piecewise, comments with // and /* */.
+    #[arg(long)]
+    pub paper: bool,
+    /// Write a line of JSON for each error and warning to standard output instead, for programs.
+    #[arg(long)]
+    pub json: bool,
+}
 
 /// Checks all files; the worst of them is the exit code.
-pub(super) fn check(args: &CheckArgs) -> Result<u8, Refusal> {
+pub(super) fn run(args: &CheckArgs) -> Result<u8, Refusal> {
     let mut code = 0;
     for path in &args.files {
         let source = match read(path) {

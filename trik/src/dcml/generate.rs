@@ -2,9 +2,9 @@
 //!
 //! Owns the options and where the text goes. What it looks like is the business of `lang`.
 
-use super::load;
-use crate::diagrams::Refusal;
-use crate::diagrams::output::Output;
+use super::load::load;
+use crate::output::Output;
+use crate::refusal::Refusal;
 use clap::Args;
 use lang_dcml::generate::{Options, Target, generate};
 use std::path::PathBuf;
@@ -39,15 +39,15 @@ fn target(name: &str) -> Result<Target, String> {
     })
 }
 
-/// Does it.
-pub(super) fn write(args: &GenArgs) -> Result<u8, Refusal> {
+/// Writes the text.
+pub(super) fn run(args: &GenArgs) -> Result<u8, Refusal> {
     let output = Output {
         path: args.output.as_deref(),
         force: args.force,
         source: &args.file,
     };
     let (_, model) = load(&args.file, args.model.as_deref())?;
-    output.look()?;
+    output.refuse_present()?;
     let options = Options {
         jacobian: args.jacobian,
     };

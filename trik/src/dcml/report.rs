@@ -2,7 +2,7 @@
 //!
 //! Owns the look: colours and frames on a terminal, ASCII for files and programs; and lines of JSON. Lines that are too long for a screen are shown in part.
 
-use super::Source;
+use super::source::Source;
 use ariadne::{CharSet, Color, Config, IndexType, Label, Report, ReportKind};
 use lang_dcml::diagnostic::{Diagnostic, Severity};
 use lang_dcml::lines::Lines;

@@ -4,34 +4,38 @@
 //! come from is known to `sim/actions`, the picture to `sim/plot`.
 
 mod actions;
+pub(crate) mod args;
 mod plot;
+mod table;
 
-use super::{Form, SimArgs, Solver as Named, load, values};
-use crate::diagrams::output::Output;
-use crate::diagrams::{Refusal, say};
+use super::load::load;
+use super::values;
 use crate::limits;
+use crate::output::Output;
+use crate::refusal::{REFUSED, Refusal, say};
 use actions::Actions;
+use args::{Form, SimArgs, Solver as Named};
 use lang_dcml::model::Model;
-use lang_dcml::robot::{Part, Robot};
+use lang_dcml::robot::Robot;
 use lang_dcml::solve::run::Course;
 use lang_dcml::solve::{Failure, Method, Options, Solver, wrapped};
-use lang_dcml::syntax::{Domain, Kind};
-use std::fmt::Write as _;
+use lang_dcml::syntax::Kind;
 use std::path::Path;
+use table::{Column, Table};
 
 /// Pieces of the time that are shown if nothing else is said.
 const SHOWN: f64 = 200.0;
 /// Steps of one size if nothing else is said.
 const STEPS: f64 = 1000.0;
 
-/// Does it.
-pub(super) fn sim(args: &SimArgs) -> Result<u8, Refusal> {
+/// Solves it and writes what comes out.
+pub(super) fn run(args: &SimArgs) -> Result<u8, Refusal> {
     let output = Output {
         path: args.output.as_deref(),
         force: args.force,
         source: &args.file,
     };
-    output.look()?;
+    output.refuse_present()?;
     output.spare(&[Path::new(&args.actions)])?;
     let (_, model) = load(&args.file, args.model.as_deref())?;
     let is_time = |time: f64| time.is_finite() && time > 0.0;
@@ -56,65 +60,14 @@ pub(super) fn sim(args: &SimArgs) -> Result<u8, Refusal> {
     say(&simulation.actions.held());
     let table = &simulation.table;
     if table.rows.is_empty() {
-        return Ok(crate::diagrams::REFUSED);
+        return Ok(REFUSED);
     }
     let text = match args.out {
         Form::Csv => table.csv(),
         Form::Svg => plot::svg(&model.name, table),
     };
     output.write(text.as_bytes())?;
-    Ok(if failure.is_err() {
-        crate::diagrams::REFUSED
-    } else {
-        0
-    })
-}
-
-/// What is shown of a solution: a line for each time.
-pub(super) struct Table {
-    /// Time, states, outputs, actions.
-    pub columns: Vec<Column>,
-    /// How many of the columns behind the time are states and outputs.
-    pub configs: usize,
-    /// As many numbers as there are columns.
-    pub rows: Vec<Vec<f64>>,
-}
-
-/// A column of a table.
-pub(super) struct Column {
-    /// The name in the model.
-    pub name: String,
-    /// Its unit, if it is known.
-    pub unit: Option<String>,
-    /// Whether it is an angle that wraps.
-    pub is_circle: bool,
-}
-
-impl Column {
-    fn of(part: &Part) -> Self {
-        Self {
-            name: part.name.clone(),
-            unit: part.unit.clone(),
-            is_circle: part.domain == Some(Domain::Circle),
-        }
-    }
-}
-
-impl Table {
-    fn csv(&self) -> String {
-        let names: Vec<&str> = self.columns.iter().map(|one| one.name.as_str()).collect();
-        let mut text = names.join(",");
-        text.push('\n');
-        for row in &self.rows {
-            for (at, number) in row.iter().enumerate() {
-                let comma = if at == 0 { "" } else { "," };
-                // Zero has no sign for people.
-                let _ = write!(text, "{comma}{}", number + 0.0);
-            }
-            text.push('\n');
-        }
-        text
-    }
+    Ok(if failure.is_err() { REFUSED } else { 0 })
 }
 
 struct Simulation {

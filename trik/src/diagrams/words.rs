@@ -1,30 +1,30 @@
 //! What `trik lint` says itself, in English and Russian.
 
-use super::telling::Count;
-use lang_text::problem::{Severity, Tongue};
+use super::report::Count;
+use lang_text::problem::{Locale, Severity};
 
 /// How bad a problem is.
-pub(super) fn severity(severity: Severity, tongue: Tongue) -> &'static str {
+pub(super) fn severity(severity: Severity, locale: Locale) -> &'static str {
     let (english, russian) = match severity {
         Severity::Error => ("error", "ошибка"),
         Severity::Warning => ("warning", "предупреждение"),
         Severity::Note => ("note", "замечание"),
     };
-    match tongue {
-        Tongue::English => english,
-        Tongue::Russian => russian,
+    match locale {
+        Locale::English => english,
+        Locale::Russian => russian,
     }
 }
 
 /// The last line: how many files, and what was found in them.
-pub(super) fn summary(files: usize, unreadable: usize, count: Count, tongue: Tongue) -> String {
+pub(super) fn summary(files: usize, unreadable: usize, count: Count, locale: Locale) -> String {
     let Count {
         errors,
         warnings,
         notes,
     } = count;
-    match tongue {
-        Tongue::English => {
+    match locale {
+        Locale::English => {
             let many = |count: usize, word: &str| {
                 let s = if count == 1 { "" } else { "s" };
                 format!("{count} {word}{s}")
@@ -41,7 +41,7 @@ pub(super) fn summary(files: usize, unreadable: usize, count: Count, tongue: Ton
                 many(notes, "note")
             )
         }
-        Tongue::Russian => {
+        Locale::Russian => {
             let unread = match unreadable {
                 0 => String::new(),
                 count => format!(" (не прочитано: {count})"),
@@ -54,19 +54,19 @@ pub(super) fn summary(files: usize, unreadable: usize, count: Count, tongue: Ton
 }
 
 /// Blocks and links were put back.
-pub(super) fn recovered(count: usize, tongue: Tongue) -> String {
-    match tongue {
-        Tongue::English => format!("written, with {count} lost blocks, links and ends put back"),
-        Tongue::Russian => {
+pub(super) fn recovered(count: usize, locale: Locale) -> String {
+    match locale {
+        Locale::English => format!("written, with {count} lost blocks, links and ends put back"),
+        Locale::Russian => {
             format!("записан; возвращено потерянных блоков, связей и их концов: {count}")
         }
     }
 }
 
 /// Nothing was lost.
-pub(super) fn nothing_to_recover(tongue: Tongue) -> &'static str {
-    match tongue {
-        Tongue::English => "nothing is lost in it, so nothing was written",
-        Tongue::Russian => "в нём ничего не потеряно, поэтому ничего не записано",
+pub(super) fn nothing_to_recover(locale: Locale) -> &'static str {
+    match locale {
+        Locale::English => "nothing is lost in it, so nothing was written",
+        Locale::Russian => "в нём ничего не потеряно, поэтому ничего не записано",
     }
 }

@@ -8,6 +8,7 @@ use super::input::{GAMEPAD, Input, KEYS};
 use super::refresh::Readings;
 use super::tree::Tree;
 use super::{START_MS, drawing, problem};
+use crate::error::Error;
 use crate::limits;
 use lang_diagram::brick::{Answer, Brick, Command, Question};
 use lang_diagram::machine::Status;
@@ -69,10 +70,10 @@ impl Python {
     ///
     /// # Errors
     /// The file is nowhere.
-    pub fn new(file: &Path, text: &str, seed: u32, longest: Duration) -> Result<Self, String> {
+    pub fn new(file: &Path, text: &str, seed: u32, longest: Duration) -> Result<Self, Error> {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let absolute = std::path::absolute(file)
-            .map_err(|error| format!("{}: where is it? {error}", file.display()))?;
+            .map_err(|error| Error::file(file, format!("where is it? {error}")))?;
         Ok(Self {
             name: name.into_owned(),
             file: absolute,

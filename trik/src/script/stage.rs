@@ -343,7 +343,7 @@ impl Ground for Here {
         let done = self
             .stage
             .with(move |brick| drawing::order(&line, |command| brick.tell(command)));
-        done.unwrap_or(Ok(()))
+        done.unwrap_or(Ok(())).map_err(|error| error.to_string())
     }
 
     fn photo(&self, _shared: &Shared) -> Result<screen::Pixels, String> {

@@ -9,14 +9,14 @@ use lang_diagram::machine::Machine;
 use lang_diagram::machine::trace::Trace;
 use lang_diagram::program::Node;
 use lang_expr::Value;
-use lang_text::problem::{Problem, Tongue};
+use lang_text::problem::{Locale, Problem};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::io;
 
 /// Hears a machine and tells of it.
 pub struct Watch {
-    tongue: Tongue,
+    locale: Locale,
     is_wanted: bool,
     /// Everything is told next time.
     is_new: bool,
@@ -30,9 +30,9 @@ pub struct Watch {
 }
 
 impl Watch {
-    pub(super) fn new(tongue: Tongue) -> Self {
+    pub(super) fn new(locale: Locale) -> Self {
         Self {
-            tongue,
+            locale,
             is_wanted: false,
             is_new: false,
             has_moved: false,
@@ -89,7 +89,7 @@ impl Trace for Watch {
 
     fn trap(&mut self, _now: u32, problem: &Problem) {
         if self.errors.len() < lang_text::limits::PROBLEMS {
-            self.errors.push(problem.in_tongue(self.tongue));
+            self.errors.push(problem.in_locale(self.locale));
         }
     }
 

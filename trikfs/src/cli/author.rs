@@ -8,7 +8,7 @@ use crate::limits::RECORDING_BYTES_MAX;
 use crate::trial::stream::{self, Input, Shape, Wishes};
 use crate::trial::{self, Random, Subject};
 use clap::{Args, ValueEnum};
-use config::program::Direction;
+use converter::Direction;
 use converter::limits::TRIAL_TUPLES_MAX;
 use std::collections::BTreeMap;
 use std::fs::File;

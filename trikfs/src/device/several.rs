@@ -10,7 +10,6 @@ use super::{Device, Got, State, Stream, Surroundings};
 use crate::bytes::copy_at;
 use crate::clock::Stamp;
 use crate::errno::Error;
-use crate::state_reader::whole_tuple;
 use config::description::{PartDescription, SeveralDescription, SourceDescription};
 use nix::sys::epoll::{Epoll, EpollCreateFlags, EpollEvent, EpollFlags, EpollTimeout};
 use std::os::fd::{AsFd, BorrowedFd};
@@ -123,7 +122,7 @@ impl Joint {
     fn join(&mut self, into: &mut Vec<u8>) -> Result<bool, Error> {
         for input in &mut self.inputs {
             if let From::State(state) = &mut input.origin {
-                whole_tuple(state.as_mut(), &mut input.newest)?;
+                state.whole_tuple(&mut input.newest)?;
                 input.taken = Stamp::now();
             }
         }

@@ -8,7 +8,7 @@ use crate::errno::Error;
 use crate::events::lock;
 use crate::guardian::actions::RestAction;
 use config::description::SourceDescription;
-use config::program::Direction;
+use converter::Direction;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -104,7 +104,7 @@ impl Node {
         }
         match sink {
             SourceDescription::Node(path) => {
-                let other = self.around.links.iter().find(|(name, _)| name == path);
+                let other = self.links.iter().find(|(name, _)| name == path);
                 other.map_or(Ok(None), |(_, other)| other.action_of(&converted))
             }
             _ if !device::takes_bytes(sink) => Ok(None),

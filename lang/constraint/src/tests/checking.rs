@@ -5,7 +5,7 @@ use std::rc::Rc;
 use super::{Level, Run, Stage, Value, Verdict, holds, holds_on, rules};
 use crate::Checker;
 use crate::limits;
-use lang_text::problem::Tongue;
+use lang_text::problem::Locale;
 
 pub(super) fn event(attributes: &str, condition: &str, triggers: &str) -> String {
     format!(
@@ -50,7 +50,7 @@ fn the_time_limit_fails_the_task_when_it_is_reached() {
 #[test]
 fn time_counts_from_the_start_of_the_run() {
     let rules = rules(r#"<timelimit value="50"/>"#);
-    let mut checker = Checker::new(rules, Tongue::Russian).starting_at(1000);
+    let mut checker = Checker::new(rules, Locale::Russian).starting_at(1000);
     let (mut stage, mut entries) = (Stage::new(), Vec::new());
     assert_eq!(checker.check(1040, &mut stage, &mut entries), Verdict::Open);
     let failed = Verdict::Failed { after_ms: 50 };
@@ -372,7 +372,7 @@ fn errors_of_rules_can_be_told_in_each_pass_as_the_original_does() {
         r#"<inside objectId="ghost" regionId="zone"/>"#,
         "<success/>",
     );
-    let mut checker = Checker::new(rules(&ghost), Tongue::English).repeating();
+    let mut checker = Checker::new(rules(&ghost), Locale::English).repeating();
     let (mut stage, mut entries) = (Stage::new(), Vec::new());
     for tick in 1..=5 {
         checker.check(tick * 10, &mut stage, &mut entries);
@@ -482,7 +482,7 @@ fn one_reading_serves_many_runs() {
         r#"<setter name="n"><sum _1="${n}" _2="1"/></setter><success/>"#,
     ));
     for _ in 0..3 {
-        let mut checker = Checker::new(Rc::clone(&rules), Tongue::English);
+        let mut checker = Checker::new(Rc::clone(&rules), Locale::English);
         let (mut stage, mut entries) = (Stage::new(), Vec::new());
         checker.check(10, &mut stage, &mut entries);
         assert_eq!(checker.variable("n").map(Value::to_int), Some(1));

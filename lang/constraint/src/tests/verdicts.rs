@@ -3,7 +3,7 @@
 use super::checking::{at_once, event};
 use super::{Level, Run, Stage, Value, Verdict, rules};
 use crate::Checker;
-use lang_text::problem::Tongue;
+use lang_text::problem::Locale;
 
 #[test]
 fn success_is_told_with_its_time_and_what_follows_in_the_same_trigger_too() {
@@ -128,7 +128,7 @@ fn a_run_can_go_on_after_failures_and_tell_them_all() {
             "<success/>",
         ),
     ];
-    let mut checker = Checker::new(rules(&all.concat()), Tongue::English).continuing();
+    let mut checker = Checker::new(rules(&all.concat()), Locale::English).continuing();
     let (mut stage, mut entries) = (Stage::new(), Vec::new());
     for tick in 1..20 {
         assert_eq!(
@@ -159,7 +159,7 @@ fn a_run_that_goes_on_ends_when_the_time_is_over() {
         r#"<timelimit value="100"/>"#.to_owned(),
         at_once("b", r#"<fail message="b"/>"#),
     ];
-    let mut checker = Checker::new(rules(&all.concat()), Tongue::English).continuing();
+    let mut checker = Checker::new(rules(&all.concat()), Locale::English).continuing();
     let (mut stage, mut entries) = (Stage::new(), Vec::new());
     for tick in 1..=10 {
         checker.check(tick * 10, &mut stage, &mut entries);

@@ -2,12 +2,19 @@
 //!
 //! Owns how C writes it. Allocates nothing and knows no library but math.h.
 
-use super::about;
 use super::graph::Scene;
 use super::plan::{Body, Dialect, Level, Planner, Text, digits, sign};
+use super::{Row, about};
 use crate::function::Function;
 use crate::syntax::{Comparison, Domain};
 use crate::tape::{Input, ValueId};
+
+pub(super) const ROW: Row = Row {
+    name: "c",
+    ending: "h",
+    values_max: usize::MAX,
+    print,
+};
 
 /// Words of C and C++, macros of common headers, and what is called here.
 const TAKEN: &str = "alignas alignof and and_eq asm auto bitand bitor bool break case catch char char8_t char16_t \
@@ -78,7 +85,7 @@ struct Printer<'p, 's, 'm> {
 }
 
 /// The whole header.
-pub(super) fn print(scene: &Scene<'_>) -> String {
+fn print(scene: &Scene<'_>) -> String {
     let mut planner = Planner::new(scene, &[TAKEN]);
     let model = planner.take(&scene.model.name);
     let element = |array: &str, at: usize| format!("{array}[{at}]");

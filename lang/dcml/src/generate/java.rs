@@ -3,18 +3,32 @@
 //!
 //! Owns how Java writes it, the two libraries' interfaces, and letters: a file of Java is ASCII here.
 
-use super::about;
 use super::graph::Scene;
 use super::names::letters;
 use super::plan::{Body, Dialect, Level, Planner, Text, digits, sign};
+use super::{Row, about};
 use crate::function::Function;
 use crate::model::Symbol;
 use crate::syntax::Comparison;
 use crate::tape::{Input, ValueId};
 
+/// For Commons Math 3.
+pub(super) const ROW: Row = Row {
+    name: "java",
+    ending: "java",
+    values_max: crate::limits::DCML_JAVA_VALUES,
+    print: |scene| print(scene, Library::CommonsMath),
+};
+/// For Hipparchus.
+pub(super) const ROW_HIPPARCHUS: Row = Row {
+    name: "java-hipparchus",
+    print: |scene| print(scene, Library::Hipparchus),
+    ..ROW
+};
+
 /// Whose interface the class implements.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub(super) enum Library {
+enum Library {
     CommonsMath,
     Hipparchus,
 }
@@ -100,7 +114,7 @@ fn package(name: &str) -> String {
 }
 
 /// The whole class.
-pub(super) fn print(scene: &Scene<'_>, library: Library) -> String {
+fn print(scene: &Scene<'_>, library: Library) -> String {
     let mut planner = Planner::new(scene, &[TAKEN]);
     let class = planner.take(&scene.model.name);
     let element = |array: &str, at: usize| format!("{array}[{at}]");

@@ -2,14 +2,21 @@
 //!
 //! Owns how JavaScript writes it.
 
-use super::about;
 use super::graph::Scene;
 use super::names::letters;
 use super::plan::{Body, Dialect, Level, Planner, Text, digits, sign};
+use super::{Row, about};
 use crate::function::Function;
 use crate::model::Symbol;
 use crate::syntax::{Comparison, Domain};
 use crate::tape::{Input, ValueId};
+
+pub(super) const ROW: Row = Row {
+    name: "javascript",
+    ending: "js",
+    values_max: usize::MAX,
+    print,
+};
 
 /// Words of JavaScript, and what is called here.
 const TAKEN: &str = "abstract arguments async await boolean break byte case catch char class const continue debugger \
@@ -56,7 +63,7 @@ impl Dialect for JavaScript {
 }
 
 /// The whole module.
-pub(super) fn print(scene: &Scene<'_>) -> String {
+fn print(scene: &Scene<'_>) -> String {
     let mut planner = Planner::new(scene, &[TAKEN]);
     let model = planner.take(&scene.model.name);
     let element = |array: &str, at: usize| format!("{array}[{at}]");

@@ -2,16 +2,23 @@
 //!
 //! Owns how mathematics is set: Greek letters, indices, fractions. The text is a fragment that needs amsmath.
 
-use super::about;
 use super::graph::Scene;
 use super::names::letters;
 use super::plan::{Body, Dialect, Level, Planner, Text, digits};
+use super::{Row, about};
 use crate::function::Function;
 use crate::model::{Condition, Expr, Symbol};
 use crate::syntax::{Comparison, Kind, Operator};
 use crate::tape::{Input, ValueId};
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::{E, PI};
+
+pub(super) const ROW: Row = Row {
+    name: "latex",
+    ending: "tex",
+    values_max: usize::MAX,
+    print,
+};
 
 const GREEK: &str = "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon \
     phi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega";
@@ -276,7 +283,7 @@ fn names(planner: &Planner<'_, '_>) -> HashMap<String, String> {
 }
 
 /// The whole fragment.
-pub(super) fn print(scene: &Scene<'_>) -> String {
+fn print(scene: &Scene<'_>) -> String {
     let mut planner = Planner::new(scene, &[]);
     let dialect = Latex {
         names: names(&planner),

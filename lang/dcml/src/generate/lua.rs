@@ -3,14 +3,21 @@
 //! Owns how Lua writes it. Nothing but `math` is asked of the host, and a call whose caller brings the result's array
 //! makes no garbage.
 
-use super::about;
 use super::graph::Scene;
 use super::names::letters;
 use super::plan::{Body, Dialect, Level, Planner, Text, digits, sign};
+use super::{Row, about};
 use crate::function::Function;
 use crate::model::Symbol;
 use crate::syntax::{Comparison, Domain};
 use crate::tape::{Input, Operation, ValueId};
+
+pub(super) const ROW: Row = Row {
+    name: "lua",
+    ending: "lua",
+    values_max: crate::limits::DCML_LUA_VALUES,
+    print,
+};
 
 const KEYWORDS: &str = "and break do else elseif end false for function goto if in local nil not or repeat return then \
     true until while";
@@ -98,7 +105,7 @@ fn field(table: &str, name: &str) -> String {
 }
 
 /// The whole module.
-pub(super) fn print(scene: &Scene<'_>) -> String {
+fn print(scene: &Scene<'_>) -> String {
     let mut planner = Planner::new(scene, &[KEYWORDS, TAKEN]);
     let leaf = |one: &&Operation| !matches!(one, Operation::Constant(_) | Operation::Input(_));
     let values = scene.graph.operations.iter().filter(leaf).count() + scene.model.symbols.len();

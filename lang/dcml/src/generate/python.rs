@@ -2,12 +2,19 @@
 //!
 //! Owns how Python writes it.
 
-use super::about;
 use super::graph::Scene;
 use super::plan::{Body, Dialect, Level, Planner, Text, digits, sign};
+use super::{Row, about};
 use crate::function::Function;
 use crate::syntax::{Comparison, Domain, Operator};
 use crate::tape::{Input, ValueId};
+
+pub(super) const ROW: Row = Row {
+    name: "python",
+    ending: "py",
+    values_max: usize::MAX,
+    print,
+};
 
 /// Words of Python, and what is called here.
 const TAKEN: &str = "False None True and as assert async await break class continue def del elif else except finally for \
@@ -105,7 +112,7 @@ def _arrays(state, action, params):
 ";
 
 /// The whole module.
-pub(super) fn print(scene: &Scene<'_>) -> String {
+fn print(scene: &Scene<'_>) -> String {
     let mut planner = Planner::new(scene, &[TAKEN]);
     let element = |array: &str, at: usize| format!("{array}[{at}]");
     let header = about::header(&planner, element, &|at, _| format!("params[{at}]"));

@@ -2,13 +2,20 @@
 //!
 //! Owns how Rust writes it.
 
-use super::about;
 use super::graph::Scene;
 use super::plan::{Body, Dialect, Level, Planner, Text, digits, sign};
+use super::{Row, about};
 use crate::function::Function;
 use crate::syntax::{Comparison, Domain};
 use crate::tape::{Input, ValueId};
 use std::f64::consts::PI;
+
+pub(super) const ROW: Row = Row {
+    name: "rust",
+    ending: "rs",
+    values_max: usize::MAX,
+    print,
+};
 
 /// Words of Rust, names that are patterns, and what is called here.
 const TAKEN: &str = "abstract as async await become box break const continue crate do dyn else enum extern false final \
@@ -76,7 +83,7 @@ fn method(function: Function) -> &'static str {
 }
 
 /// The whole module.
-pub(super) fn print(scene: &Scene<'_>) -> String {
+fn print(scene: &Scene<'_>) -> String {
     let mut planner = Planner::new(scene, &[TAKEN, "unsafe"]);
     let element = |array: &str, at: usize| format!("{array}[{at}]");
     let header = about::header(&planner, element, &|_, name| format!("params.{name}"));

@@ -3,13 +3,13 @@
 use super::check;
 use crate::lower::World;
 use crate::sketch::{Sketch, Spot};
-use lang_text::problem::{Severity, Tongue};
+use lang_text::problem::{Locale, Severity};
 
-fn lines(sketch: &Sketch, tongue: Tongue) -> Vec<String> {
+fn lines(sketch: &Sketch, locale: Locale) -> Vec<String> {
     let problems = check(&sketch.project(), World::default());
     problems
         .iter()
-        .map(|problem| problem.in_tongue(tongue))
+        .map(|problem| problem.in_locale(locale))
         .collect()
 }
 
@@ -30,7 +30,7 @@ fn all_errors_are_told_at_once_at_their_blocks() {
     sketch.guarded(choice, loose, "true");
     sketch.guarded(choice, end, "false");
     sketch.link(alone, end);
-    let mut told = lines(&sketch, Tongue::English);
+    let mut told = lines(&sketch, Locale::English);
     // An expression may have several errors.
     told.dedup_by_key(|line| line.split("1:").next().unwrap_or_default().to_owned());
     let expected = [
@@ -44,7 +44,7 @@ fn all_errors_are_told_at_once_at_their_blocks() {
     for (told, expected) in told.iter().zip(expected) {
         assert!(told.starts_with(expected), "{told}\n{expected}");
     }
-    let russian = lines(&sketch, Tongue::Russian);
+    let russian = lines(&sketch, Locale::Russian);
     let is_russian = |line: &String| {
         line.chars()
             .any(|letter| ('\u{430}'..'\u{450}').contains(&letter))
@@ -74,7 +74,7 @@ fn what_only_seems_wrong_from_the_top_is_no_error() {
     let problems = check(&sketch.project(), World::default());
     let worst = problems.iter().map(|problem| problem.severity).max();
     assert_eq!(worst, Some(Severity::Warning), "{problems:#?}");
-    let told = lines(&sketch, Tongue::English);
+    let told = lines(&sketch, Locale::English);
     assert_eq!(told.len(), 2, "{told:#?}");
     assert!(
         told[0].starts_with("unused: End if: No outgoing links"),
@@ -100,7 +100,7 @@ fn parameters_are_known_in_their_subprogram() {
     let wrong = sketch.call(sheet, &["2 +", "'left'"]);
     let end = sketch.block("FinalNode", &[]);
     sketch.chain(&[start, call, wrong, end]);
-    let told = lines(&sketch, Tongue::English);
+    let told = lines(&sketch, Locale::English);
     assert_eq!(told.len(), 1, "{told:#?}");
     assert!(told[0].starts_with("main: Subprogram: '', 1:"), "{told:?}");
 }

@@ -3,7 +3,7 @@
 use super::*;
 use crate::archive::Entry;
 use crate::sketch::Sketch;
-use lang_text::problem::Tongue;
+use lang_text::problem::Locale;
 
 fn entries() -> Vec<Entry> {
     let mut sketch = Sketch::new();
@@ -265,7 +265,7 @@ fn problems_are_told_in_both_languages() {
     let mut entries = entries();
     entries.retain(|entry| !(entry.name.contains("logical") && entry.name.contains("Timer/{")));
     let opened = read(&archive::pack(&entries).unwrap()).unwrap();
-    let russian = opened.problems[0].in_tongue(Tongue::Russian);
+    let russian = opened.problems[0].in_locale(Locale::Russian);
     assert!(
         russian.starts_with("main: Timer (Timer): ") && !russian.is_ascii(),
         "{russian}"

@@ -13,13 +13,13 @@ use crate::program::{Node, Op, Program};
 use crate::project::{Block, Diagram, DiagramKind, Project};
 use crate::structure::{Jumps, structure};
 use crate::tree::{Condition, Tree};
-use lang_text::problem::{Problem, Tongue};
+use lang_text::problem::{Locale, Problem};
 
 /// The program of a project in sentences.
 ///
 /// # Errors
 /// What makes it unclear what the program does: links that are missing or too many, unclear threads.
-pub fn outline(project: &Project, tongue: Tongue) -> Result<String, Vec<Problem>> {
+pub fn outline(project: &Project, locale: Locale) -> Result<String, Vec<Problem>> {
     let lowered = lower(project, World::Robot).map_err(|problem| vec![problem])?;
     let program = &lowered.program;
     let plan = plan(program)?;
@@ -28,7 +28,7 @@ pub fn outline(project: &Project, tongue: Tongue) -> Result<String, Vec<Problem>
         program,
         main: project.main.and_then(|main| project.diagrams.get(main)),
         blocks: blocks.map(|block| (block.id.as_str(), block)).collect(),
-        tongue,
+        locale,
         function: None,
         out: String::new(),
     };
@@ -43,14 +43,14 @@ struct Writer<'a> {
     /// The diagram that is shown first; it may be a subprogram.
     main: Option<&'a Diagram>,
     blocks: HashMap<&'a str, &'a Block>,
-    tongue: Tongue,
+    locale: Locale,
     function: Option<&'a Function>,
     out: String,
 }
 
 impl<'a> Writer<'a> {
     fn word(&self, word: Word) -> &'static str {
-        word.text(self.tongue)
+        word.text(self.locale)
     }
 
     fn line(&mut self, depth: usize, text: &str) {
@@ -192,7 +192,7 @@ impl<'a> Writer<'a> {
         let Some(block) = self.block(block) else {
             return;
         };
-        let mut said = name(block, self.tongue);
+        let mut said = name(block, self.locale);
         if let Op::Call { call, .. } = self.program.ops[node as usize] {
             let diagram = self.program.calls[call as usize].diagram;
             let sheet = diagram.and_then(|diagram| self.program.diagrams.get(diagram as usize));

@@ -8,7 +8,7 @@ use super::{details, name};
 use crate::blocks::{self, Act, Category, Does};
 use crate::limits::{PICTURE_BLOCKS_MAX, PICTURE_CORNERS_MAX};
 use crate::project::{Block, Diagram, Link};
-use lang_text::problem::Tongue;
+use lang_text::problem::Locale;
 
 /// Half of the side of a block, in px.
 const HALF: f64 = 25.0;
@@ -18,7 +18,7 @@ const MARGIN: f64 = 70.0;
 const FAR: f64 = 200_000.0;
 
 /// The picture of a diagram. What is too much for one picture is left out, and said.
-pub fn picture(diagram: &Diagram, tongue: Tongue) -> String {
+pub fn picture(diagram: &Diagram, locale: Locale) -> String {
     let blocks: Vec<&Block> = diagram.blocks.iter().take(PICTURE_BLOCKS_MAX).collect();
     let (mut low, mut high) = ((f64::MAX, f64::MAX), (f64::MIN, f64::MIN));
     for block in &blocks {
@@ -40,7 +40,7 @@ pub fn picture(diagram: &Diagram, tongue: Tongue) -> String {
         draw_link(link, diagram, &mut out);
     }
     for block in &blocks {
-        draw_block(block, tongue, &mut out);
+        draw_block(block, locale, &mut out);
     }
     let left = diagram.blocks.len() - blocks.len();
     if left > 0 {
@@ -139,7 +139,7 @@ fn draw_link(link: &Link, diagram: &Diagram, out: &mut String) {
     }
 }
 
-fn draw_block(block: &Block, tongue: Tongue, out: &mut String) {
+fn draw_block(block: &Block, locale: Locale, out: &mut String) {
     let (x, y) = middle(block);
     let row = blocks::find(&block.kind);
     let color = match row.map(|row| row.category) {
@@ -149,7 +149,7 @@ fn draw_block(block: &Block, tongue: Tongue, out: &mut String) {
         Some(Category::Drawing) => "#8a4fb5",
         None => "#888888",
     };
-    let said = escaped(&name(block, tongue));
+    let said = escaped(&name(block, locale));
     let details = escaped(&details(block));
     let _ = writeln!(
         out,

@@ -4,7 +4,7 @@ use super::outline::outline;
 use super::picture::picture;
 use crate::project::Project;
 use crate::sketch::Sketch;
-use lang_text::problem::Tongue;
+use lang_text::problem::Locale;
 
 /// Forward, three times a second, stop; with a name of choice.
 fn project(ports: &str) -> Project {
@@ -23,12 +23,12 @@ fn project(ports: &str) -> Project {
 }
 
 #[test]
-fn an_outline_has_loops_and_names_in_both_tongues() {
-    let text = outline(&project("M3"), Tongue::English).unwrap();
+fn an_outline_has_loops_and_names_in_both_languages() {
+    let text = outline(&project("M3"), Locale::English).unwrap();
     let wanted =
         "Program:\n  Motors Forward: M3, 70\n  Repeat, times: 3:\n    Timer: 1000\n  End\n";
     assert_eq!(text, wanted);
-    let text = outline(&project("M3"), Tongue::Russian).unwrap();
+    let text = outline(&project("M3"), Locale::Russian).unwrap();
     assert_eq!(text.lines().count(), 5);
     assert!(!text.contains("Timer"), "{text}");
 }
@@ -41,7 +41,7 @@ fn a_picture_is_xml_whatever_the_texts_say() {
         "\"&<>'\u{0}\u{ffff}\u{202e}",
     ] {
         let project = project(text);
-        let svg = picture(&project.diagrams[0], Tongue::Russian);
+        let svg = picture(&project.diagrams[0], Locale::Russian);
         let root = lang_text::xml::parse(&svg).unwrap_or_else(|error| panic!("{error:?}\n{svg}"));
         assert_eq!(root.name, "svg");
         assert!(!svg.contains("<script"));
@@ -56,7 +56,7 @@ fn places_that_are_none_are_drawn_somewhere() {
     let mut project = project("M3");
     project.diagrams[0].blocks[1].position = (f64::NAN, f64::INFINITY);
     project.diagrams[0].links[0].path = vec![(f64::NAN, 1e300); 10_000];
-    let svg = picture(&project.diagrams[0], Tongue::English);
+    let svg = picture(&project.diagrams[0], Locale::English);
     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
     assert!(svg.len() < 20_000, "{}", svg.len());
 }
@@ -64,7 +64,7 @@ fn places_that_are_none_are_drawn_somewhere() {
 #[test]
 fn nothing_has_a_picture_too() {
     let project = Sketch::new().project();
-    let svg = picture(&project.diagrams[0], Tongue::English);
+    let svg = picture(&project.diagrams[0], Locale::English);
     assert!(lang_text::xml::parse(&svg).is_ok());
-    assert!(outline(&project, Tongue::English).is_err());
+    assert!(outline(&project, Locale::English).is_err());
 }

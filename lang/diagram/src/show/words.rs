@@ -1,6 +1,6 @@
 //! Words of outlines, in English and Russian.
 
-use lang_text::problem::Tongue;
+use lang_text::problem::Locale;
 
 /// Words between blocks.
 #[derive(Clone, Copy, Debug)]
@@ -49,7 +49,7 @@ pub enum Word {
 
 impl Word {
     /// The word.
-    pub fn text(self, tongue: Tongue) -> &'static str {
+    pub fn text(self, locale: Locale) -> &'static str {
         let (english, russian) = match self {
             Self::Program => ("Program", "Программа"),
             Self::Subprogram => ("Subprogram", "Подпрограмма"),
@@ -72,9 +72,9 @@ impl Word {
             Self::Place => ("place", "место"),
             Self::Begin => ("Begin the thread", "Запустить поток"),
         };
-        match tongue {
-            Tongue::English => english,
-            Tongue::Russian => russian,
+        match locale {
+            Locale::English => english,
+            Locale::Russian => russian,
         }
     }
 }

@@ -108,12 +108,12 @@ fn the_document_shows_what_is_generated() {
 #[test]
 fn all_real_projects_have_pictures_and_outlines() {
     use lang_diagram::show::{outline::outline, picture::picture};
-    use lang_text::problem::Tongue;
+    use lang_text::problem::Locale;
 
     for (name, project) in projects("pictures") {
-        for tongue in [Tongue::English, Tongue::Russian] {
+        for locale in [Locale::English, Locale::Russian] {
             for diagram in &project.diagrams {
-                let svg = picture(diagram, tongue);
+                let svg = picture(diagram, locale);
                 let blocks = svg.matches("<rect x=\"-25\"").count();
                 assert_eq!(blocks, diagram.blocks.len(), "{name}");
                 if let Ok(keep) = std::env::var("KEEP_GENERATED") {
@@ -121,7 +121,7 @@ fn all_real_projects_have_pictures_and_outlines() {
                     std::fs::write(kept, &svg).unwrap();
                 }
             }
-            let text = outline(&project, tongue)
+            let text = outline(&project, locale)
                 .unwrap_or_else(|problems| panic!("{name}: {}", problems[0]));
             assert!(text.lines().count() > 1, "{name}: {text}");
         }

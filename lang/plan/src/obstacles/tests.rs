@@ -117,7 +117,11 @@ fn a_pose_that_is_no_number_meets_something() {
 
 #[test]
 fn footprints_that_are_none_are_refused() {
-    let refused = |corners: &[Point]| Footprint::polygon(corners.to_vec()).unwrap_err();
+    let refused = |corners: &[Point]| {
+        Footprint::polygon(corners.to_vec())
+            .unwrap_err()
+            .to_string()
+    };
     assert_eq!(
         refused(&[[0.0, 0.0], [1.0, 0.0]]),
         "a polygon needs three corners or more, not 2"
@@ -194,7 +198,7 @@ fn a_million_obstacles_are_asked_fast() {
     assert!((2100..2650).contains(&met), "{met}");
     shapes.push(Shape::Circle([0.0, 0.0], 1.0));
     assert_eq!(
-        Obstacles::new(shapes, None).unwrap_err(),
+        Obstacles::new(shapes, None).unwrap_err().to_string(),
         "1000001 obstacles are more than 1000000"
     );
 }

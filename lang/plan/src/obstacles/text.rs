@@ -11,27 +11,32 @@
 //! circle 1 1  0.1             centre, radius
 //! ```
 
-use super::{Obstacles, Shape};
+use super::{Fault, Obstacles, Shape};
 use crate::limits::{PLAN_CORNERS_MAX, PLAN_OBSTACLES_MAX, PLAN_OBSTACLES_TEXT_MAX};
 
 const KINDS: [&str; 5] = ["bounds", "rectangle", "polygon", "wall", "circle"];
+/// Which numbers stand after each word.
+const FORMS: [(&str, &str); 5] = [
+    ("bounds", "4 numbers: x, y of two opposite corners"),
+    ("rectangle", "4 numbers: x, y of two opposite corners"),
+    ("polygon", "two numbers for each corner"),
+    ("wall", "5 numbers: x, y of both ends and the thickness"),
+    ("circle", "3 numbers: x, y of its centre and the radius"),
+];
 
 /// Reads obstacles.
 ///
 /// # Errors
 /// The first line that is none, with its number, and why.
-pub fn read(text: &str) -> Result<Obstacles, String> {
+pub fn read(text: &str) -> Result<Obstacles, Fault> {
     if text.len() > PLAN_OBSTACLES_TEXT_MAX {
-        return Err(format!(
-            "the text has {} bytes, more than {PLAN_OBSTACLES_TEXT_MAX}",
-            text.len()
-        ));
+        return Err(Fault::TextBytes(text.len(), PLAN_OBSTACLES_TEXT_MAX));
     }
     let mut shapes = Vec::new();
     let mut workspace = None;
     for (at, line) in text.lines().enumerate() {
         let line = line.split('#').next().unwrap_or_default();
-        let told = |reason: String| format!("line {}: {reason}", at + 1);
+        let told = |fault: Fault| Fault::Line(at + 1, Box::new(fault));
         let Some((word, numbers)) = words(line).map_err(told)? else {
             continue;
         };
@@ -41,7 +46,7 @@ pub fn read(text: &str) -> Result<Obstacles, String> {
                     .replace([a.min(c), b.min(d), a.max(c), b.max(d)])
                     .is_some()
                 {
-                    return Err(told("a second `bounds`".to_owned()));
+                    return Err(told(Fault::SecondWorkspace));
                 }
                 continue;
             }
@@ -55,14 +60,14 @@ pub fn read(text: &str) -> Result<Obstacles, String> {
         };
         shape.check().map_err(told)?;
         if shapes.len() >= PLAN_OBSTACLES_MAX {
-            return Err(told(format!("more than {PLAN_OBSTACLES_MAX} obstacles")));
+            return Err(told(Fault::TooManyObstacles));
         }
         shapes.push(shape);
     }
     Obstacles::new(shapes, workspace)
 }
 
-fn words(line: &str) -> Result<Option<(&str, Vec<f64>)>, String> {
+fn words(line: &str) -> Result<Option<(&str, Vec<f64>)>, Fault> {
     let mut words = line
         .split(|sign: char| sign.is_whitespace() || sign == ',')
         .filter(|word| !word.is_empty());
@@ -75,36 +80,21 @@ fn words(line: &str) -> Result<Option<(&str, Vec<f64>)>, String> {
     let mut numbers = Vec::new();
     for word in words {
         let number = word.parse::<f64>();
-        let number = number.map_err(|_| format!("{} is no number", shown(word)))?;
+        let number = number.map_err(|_| Fault::Number(word.to_owned()))?;
         if numbers.len() >= 2 * PLAN_CORNERS_MAX {
-            return Err(format!("more than {PLAN_CORNERS_MAX} corners"));
+            return Err(Fault::TooManyCorners);
         }
         numbers.push(number);
     }
     Ok(Some((first, numbers)))
 }
 
-fn wanted(word: &str, got: usize) -> String {
-    let form = match word {
-        "bounds" | "rectangle" => "4 numbers: x, y of two opposite corners",
-        "wall" => "5 numbers: x, y of both ends and the thickness",
-        "circle" => "3 numbers: x, y of its centre and the radius",
-        "polygon" => "two numbers for each corner",
-        _ => {
-            return format!(
-                "{} is no kind of obstacle: {}",
-                shown(word),
-                KINDS.join(", ")
-            );
-        }
-    };
-    format!("`{word}` needs {form}; here are {got}")
-}
-
-fn shown(word: &str) -> String {
-    const MOST: usize = 40;
-    let short: String = word.chars().take(MOST).collect();
-    format!("{short:?}")
+/// The fault of a line whose word or count of numbers is none of [`KINDS`].
+fn wanted(word: &str, got: usize) -> Fault {
+    match FORMS.iter().find(|(kind, _)| *kind == word) {
+        Some((kind, form)) => Fault::Numbers(kind, form, got),
+        None => Fault::Kind(word.to_owned(), &KINDS),
+    }
 }
 
 #[cfg(test)]
@@ -133,7 +123,7 @@ mod tests {
 
     #[test]
     fn what_is_wrong_is_told_with_its_line() {
-        let refused = |text: &str| read(text).unwrap_err();
+        let refused = |text: &str| read(text).unwrap_err().to_string();
         assert_eq!(
             refused("\ncube 1 2"),
             "line 2: \"cube\" is no kind of obstacle: bounds, rectangle, polygon, wall, circle"

@@ -11,7 +11,7 @@ use crate::judge::trajectory::Trajectory;
 use crate::judge::words;
 use crate::limits;
 use lang_constraint::{Entry, Level};
-use lang_text::problem::Tongue;
+use lang_text::problem::Locale;
 use std::fmt::Write as _;
 
 /// The frame.
@@ -27,7 +27,7 @@ pub struct Caption<'a> {
     /// Whether that is good.
     pub is_good: bool,
     /// Language of the page's own words.
-    pub tongue: Tongue,
+    pub locale: Locale,
 }
 
 /// The page of a run.
@@ -47,10 +47,10 @@ pub fn page(
         let _ = writeln!(svg, "<g id=\"robot{robot}\">{}</g>", body(robot));
     }
     svg.push_str("</svg>");
-    let names = words::page(caption.tongue);
-    let language = match caption.tongue {
-        Tongue::English => "en",
-        Tongue::Russian => "ru",
+    let names = words::page(caption.locale);
+    let language = match caption.locale {
+        Locale::English => "en",
+        Locale::Russian => "ru",
     };
     let data = data(trajectory, entries);
     let parts: [(&str, &str); 8] = [

@@ -3,7 +3,7 @@
 use super::*;
 use crate::judge::trajectory::Told;
 use lang_constraint::{Entry, Level};
-use lang_text::problem::Tongue;
+use lang_text::problem::Locale;
 
 const WORLD: &str = r##"<root version="20251219">
 <settings backgroundColor="#ff00ff00"/>
@@ -97,7 +97,7 @@ fn a_page_has_all_that_was_said_and_nothing_of_it_is_a_tag() {
         title: "<i>{VERDICT}</i>.qrs",
         verdict: "good",
         is_good: true,
-        tongue: Tongue::Russian,
+        locale: Locale::Russian,
     };
     let page = page(&field(), &drive(), &entries, caption);
     assert!(page.contains("&lt;i&gt;{VERDICT}&lt;/i&gt;.qrs"), "{page}");

@@ -2,10 +2,10 @@
 //!
 //! Owns the defaults, and the names of states, outputs and actions.
 
-use super::PlanArgs;
+use super::args::PlanArgs;
 use super::field::Stand;
 use super::forms::{Given, Named, Ranges};
-use crate::diagrams::Refusal;
+use crate::refusal::Refusal;
 use lang_dcml::robot::{Part, Robot};
 use lang_dcml::syntax::Domain;
 use lang_plan::obstacles::{Footprint, Obstacles};
@@ -132,7 +132,7 @@ pub(super) fn ask(
                 || Footprint::circle(RADIUS),
                 |stand| Ok(stand.footprint.clone()),
             )
-            .map_err(Refusal::new)?,
+            .map_err(|fault| Refusal::new(fault.to_string()))?,
     };
     if parts.heading.is_none() && !footprint.corners_at(Default::default()).is_empty() {
         return Err(Refusal::new(

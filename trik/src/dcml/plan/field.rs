@@ -2,6 +2,7 @@
 //!
 //! Owns the change of units: a world is in pixels with y down and degrees clockwise.
 
+use lang_plan::Fault;
 use lang_plan::obstacles::flat::{Point, sine_and_cosine, wrapped};
 use lang_plan::obstacles::{Footprint, Obstacles, Pose, Shape};
 use sim::field::{Field, ROBOT_SIZE, Solid, SolidKind, Unit};
@@ -29,7 +30,7 @@ fn heading(degrees: f64) -> f64 {
 ///
 /// # Errors
 /// A thing of the world is no shape.
-pub(super) fn obstacles(field: &Field) -> Result<Obstacles, String> {
+pub(super) fn obstacles(field: &Field) -> Result<Obstacles, Fault> {
     let walls = field.walls.iter().map(|wall| {
         let (from, to) = (wall.begin, wall.end);
         Shape::Wall(place(from.x, from.y), place(to.x, to.y), metres(wall.width))

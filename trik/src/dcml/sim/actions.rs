@@ -3,9 +3,10 @@
 //! Owns the form of the table: names in the first line, then rising times in s, each with what is done from then on.
 //! Columns of states are left out, so that tables of other commands can be given.
 
-use crate::dcml::{Source, report};
-use crate::diagrams::{REFUSED, Refusal, UNREADABLE};
+use crate::dcml::report;
+use crate::dcml::source::Source;
 use crate::limits;
+use crate::refusal::{REFUSED, Refusal, UNREADABLE};
 use lang_dcml::formulas::{Formulas, Wrong};
 use lang_dcml::robot::Robot;
 use lang_dcml::syntax::Domain;

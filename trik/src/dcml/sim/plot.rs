@@ -2,7 +2,7 @@
 //!
 //! Owns the layout. Writes SVG as text, with names of the model escaped.
 
-use super::{Column, Table};
+use super::table::{Column, Table};
 use crate::limits;
 use std::fmt::Write as _;
 

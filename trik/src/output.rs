@@ -2,7 +2,8 @@
 //!
 //! Owns the choice between standard output, a new file and one that is replaced. Knows nothing of what is written.
 
-use super::{Refusal, telling};
+use crate::refusal::Refusal;
+use crate::terminal::named;
 use std::fs::{self, File, Metadata};
 use std::io::{self, Write};
 use std::os::unix::fs::MetadataExt;
@@ -33,11 +34,11 @@ impl Output<'_> {
     ///
     /// # Errors
     /// It is the file that was read; it is there and `force` is not given.
-    pub fn look(&self) -> Result<(), Refusal> {
+    pub fn refuse_present(&self) -> Result<(), Refusal> {
         let Some(path) = self.file() else {
             return Ok(());
         };
-        let name = telling::named(path);
+        let name = named(path);
         if is_same(path, self.source) {
             let why = format!("{name} is the file that is read: name another one");
             return Err(Refusal::new(why));
@@ -61,7 +62,7 @@ impl Output<'_> {
         match others.iter().find(is_used) {
             Some(_) => Err(Refusal::new(format!(
                 "{} is needed for something else here: name another file",
-                telling::named(path)
+                named(path)
             ))),
             None => Ok(()),
         }
@@ -70,9 +71,9 @@ impl Output<'_> {
     /// Writes it. A reader of standard output that has seen enough is no failure.
     ///
     /// # Errors
-    /// As [`Self::look`], and what the system says.
+    /// As [`Self::refuse_present`], and what the system says.
     pub fn write(&self, bytes: &[u8]) -> Result<(), Refusal> {
-        self.look()?;
+        self.refuse_present()?;
         let Some(path) = self.file() else {
             return standard(bytes);
         };
@@ -87,7 +88,7 @@ impl Output<'_> {
             Err(_) => create(path, bytes),
         };
         written.map_err(|error| {
-            let name = telling::named(path);
+            let name = named(path);
             Refusal::new(match error.kind() {
                 io::ErrorKind::AlreadyExists => {
                     format!("{name} is there already: --force replaces it")

@@ -42,7 +42,7 @@ pub struct Change {
 
 /// See the head of this file.
 #[derive(Debug)]
-pub struct Sheet {
+pub struct Document {
     text: Rope,
     /// It became too long, and so it is not known any more.
     is_too_long: bool,
@@ -53,18 +53,18 @@ pub struct Sheet {
     pub is_new: bool,
 }
 
-impl Sheet {
+impl Document {
     /// A document as it was opened.
     pub fn new(text: &str, version: Option<i64>) -> Self {
-        let mut sheet = Self {
+        let mut document = Self {
             text: Rope::new(),
             is_too_long: false,
             reading: OnceCell::new(),
             version,
             is_new: true,
         };
-        sheet.replace(text);
-        sheet
+        document.replace(text);
+        document
     }
 
     fn replace(&mut self, text: &str) {
@@ -237,30 +237,30 @@ mod tests {
     }
 
     fn edited(text: &str, from: Position, to: Position, put: &str, encoding: Encoding) -> String {
-        let mut sheet = Sheet::new(text, None);
+        let mut document = Document::new(text, None);
         let change = Change {
             range: Some((from, to)),
             text: put.to_owned(),
         };
-        sheet.change(&change, encoding);
-        sheet.reading().text().to_owned()
+        document.change(&change, encoding);
+        document.reading().text().to_owned()
     }
 
     #[test]
     fn columns_are_counted_as_the_editor_counts() {
         let text = "a\n// \u{3b8}\u{1F600}b\r\nc";
-        let sheet = Sheet::new(text, None);
+        let document = Document::new(text, None);
         let b = u32::try_from(text.find('b').unwrap()).unwrap();
         for (encoding, unit) in [(Utf8, 9), (Utf16, 6), (Utf32, 5)] {
-            assert_eq!(sheet.position(b, encoding), at(1, unit));
-            assert_eq!(sheet.offset(at(1, unit), encoding), b);
-            assert_eq!(sheet.offset(at(1, 99), encoding), b + 1);
-            assert_eq!(sheet.offset(at(9, 0), encoding), b + 4);
+            assert_eq!(document.position(b, encoding), at(1, unit));
+            assert_eq!(document.offset(at(1, unit), encoding), b);
+            assert_eq!(document.offset(at(1, 99), encoding), b + 1);
+            assert_eq!(document.offset(at(9, 0), encoding), b + 4);
         }
         // Inside a surrogate pair, and inside the bytes of a character.
-        assert_eq!(sheet.offset(at(1, 5), Utf16), b - 4);
-        assert_eq!(sheet.offset(at(1, 6), Utf8), b - 4);
-        assert_eq!(sheet.position(b - 1, Utf16), at(1, 4));
+        assert_eq!(document.offset(at(1, 5), Utf16), b - 4);
+        assert_eq!(document.offset(at(1, 6), Utf8), b - 4);
+        assert_eq!(document.position(b - 1, Utf16), at(1, 4));
     }
 
     #[test]
@@ -281,25 +281,25 @@ mod tests {
 
     #[test]
     fn a_text_that_becomes_too_long_is_forgotten_until_all_of_it_comes() {
-        let mut sheet = Sheet::new("a", Some(1));
+        let mut document = Document::new("a", Some(1));
         let long = "x".repeat(limits::LSP_DOCUMENT_BYTES);
         let mut change = Change {
             range: Some((at(0, 0), at(0, 0))),
             text: long,
         };
-        sheet.change(&change, Utf16);
-        assert!(sheet.is_too_long() && sheet.bytes() == 0);
+        document.change(&change, Utf16);
+        assert!(document.is_too_long() && document.bytes() == 0);
         (change.range, change.text) = (None, "b".to_owned());
-        sheet.change(&change, Utf16);
-        assert!(!sheet.is_too_long());
-        assert_eq!(sheet.reading().text(), "b");
+        document.change(&change, Utf16);
+        assert!(!document.is_too_long());
+        assert_eq!(document.reading().text(), "b");
     }
 
     #[test]
     fn a_stretch_over_lines_has_a_part_on_each() {
         let text = "/* a\r\n\n b */ c";
-        let sheet = Sheet::new(text, None);
-        let parts = sheet.by_lines(Span { start: 0, end: 12 });
+        let document = Document::new(text, None);
+        let parts = document.by_lines(Span { start: 0, end: 12 });
         let parts: Vec<&str> = parts
             .map(|one| &text[byte(one.start)..byte(one.end)])
             .collect();

@@ -1,18 +1,15 @@
 //! Problems of a diagram as lines for a person: file, how bad, diagram, block with its place, property, words.
 //!
-//! Owns the order of problems and what a terminal may be shown. Names in a save come from anywhere: a terminal would
-//! obey some of their characters.
+//! Owns the order of problems and the form of a line.
 
 use super::words;
+use crate::terminal::{harmless, named};
 use lang_diagram::blocks::{self, Row, words::russian};
 use lang_diagram::project::{Block, Project};
-use lang_text::problem::{Problem, Severity, Tongue};
+use lang_text::problem::{Locale, Problem, Severity};
 use std::cmp::Reverse;
 use std::collections::HashMap;
 use std::path::Path;
-
-/// Characters of a name or a message that are shown.
-const SHOWN_CHARS_MAX: usize = 400;
 
 /// How many problems of each kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -35,16 +32,16 @@ impl Count {
     }
 }
 
-/// Tells problems of one save.
-pub(super) struct Teller<'a> {
+/// Problems of one save as lines.
+pub(super) struct Reporter<'a> {
     file: String,
     blocks: HashMap<&'a str, (usize, usize, &'a Block)>,
-    tongue: Tongue,
+    locale: Locale,
 }
 
-impl<'a> Teller<'a> {
+impl<'a> Reporter<'a> {
     /// For a save, with its project if it could be read.
-    pub fn new(file: &Path, project: Option<&'a Project>, tongue: Tongue) -> Self {
+    pub fn new(file: &Path, project: Option<&'a Project>, locale: Locale) -> Self {
         let mut blocks = HashMap::new();
         for (at, diagram) in project
             .iter()
@@ -57,7 +54,7 @@ impl<'a> Teller<'a> {
         Self {
             file: named(file),
             blocks,
-            tongue,
+            locale,
         }
     }
 
@@ -86,7 +83,7 @@ impl<'a> Teller<'a> {
         let mut line = format!(
             "{}: {}: ",
             self.file,
-            words::severity(problem.severity, self.tongue)
+            words::severity(problem.severity, self.locale)
         );
         for part in [&place.file, &place.diagram].into_iter().flatten() {
             line.push_str(&format!("{}: ", harmless(part)));
@@ -110,14 +107,14 @@ impl<'a> Teller<'a> {
             (None, Some(at)) => line.push_str(&format!("{}:{}: ", at.line, at.column)),
             (None, None) => {}
         }
-        line.push_str(&harmless(problem.words.in_tongue(self.tongue)));
+        line.push_str(&harmless(problem.words.in_locale(self.locale)));
         line
     }
 
     fn translated(&self, shown: &'static str) -> &'static str {
-        match self.tongue {
-            Tongue::English => shown,
-            Tongue::Russian => russian(shown),
+        match self.locale {
+            Locale::English => shown,
+            Locale::Russian => russian(shown),
         }
     }
 
@@ -131,46 +128,12 @@ impl<'a> Teller<'a> {
     }
 }
 
-/// A path for people.
-pub(crate) fn named(path: &Path) -> String {
-    harmless(&path.to_string_lossy())
-}
-
-/// One line that no terminal obeys: without control characters and those that turn the direction of writing.
-pub(crate) fn harmless(text: &str) -> String {
-    let is_turn = |c: char| matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    let mut shown = String::new();
-    for (count, c) in text.trim_end().chars().enumerate() {
-        if count == SHOWN_CHARS_MAX {
-            shown.push_str("...");
-            break;
-        }
-        match c {
-            '\n' | '\r' | '\t' => shown.push(' '),
-            c if c.is_control() || is_turn(c) => shown.push('\u{fffd}'),
-            c => shown.push(c),
-        }
-    }
-    shown
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use lang_diagram::check::check;
     use lang_diagram::lower::World;
     use lang_diagram::sketch::Sketch;
-
-    #[test]
-    fn names_that_a_terminal_would_obey_are_shown_and_not_obeyed() {
-        assert_eq!(
-            harmless("a\x1b[2Jb\nc\u{202e}d"),
-            "a\u{fffd}[2Jb c\u{fffd}d"
-        );
-        let long = harmless(&"x".repeat(10_000));
-        assert_eq!(long.len(), SHOWN_CHARS_MAX + 3);
-        assert_eq!(harmless("ends\n"), "ends");
-    }
 
     #[test]
     fn problems_stand_at_their_blocks_the_worst_first_and_once() {
@@ -182,12 +145,12 @@ mod tests {
         sketch.chain(&[start, wait, end]);
         sketch.link(lost, end);
         let project = sketch.project();
-        let teller = Teller::new(Path::new("a.qrs"), Some(&project), Tongue::English);
+        let reporter = Reporter::new(Path::new("a.qrs"), Some(&project), Locale::English);
         let mut problems = check(&project, World::Robot);
         problems.reverse();
         problems.extend(problems.clone());
-        teller.sort(&mut problems);
-        let lines = teller.lines(&problems);
+        reporter.sort(&mut problems);
+        let lines = reporter.lines(&problems);
         let mut count = Count::default();
         count.add(&problems);
         assert_eq!((count.errors, count.notes), (1, 1), "{lines:?}");

@@ -1,0 +1,87 @@
+//! What `trik dcml sim` can be told.
+//!
+//! Owns the options. Knows nothing of what they do.
+
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// What `trik dcml sim` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct SimArgs {
+    /// A file with a model, - for standard input, or the name of a model that comes with the program.
+    #[arg(value_name = "FILE")]
+    pub file: PathBuf,
+    /// Which model, if the file has several.
+    #[arg(long, value_name = "NAME")]
+    pub model: Option<String>,
+    /// A number for each parameter: L=0.4,r=0.05.
+    #[arg(
+        long,
+        value_name = "NAME=NUMBER,...",
+        default_value = "",
+        hide_default_value = true
+    )]
+    pub params: String,
+    /// Where it starts; what is not named starts at 0.
+    #[arg(
+        long,
+        value_name = "NAME=NUMBER,...",
+        default_value = "",
+        hide_default_value = true,
+        allow_hyphen_values = true
+    )]
+    pub start: String,
+    /// Formulas of the time t for all actions, 'u_l = 2 + sin(t); u_r = 3', or a table: its first line has the names
+    /// t,u_l,u_r, each other one a time in s and what is done from then on.
+    #[arg(long, value_name = "FORMULAS|FILE.csv")]
+    pub actions: String,
+    /// For how many seconds.
+    #[arg(long = "t", value_name = "SECONDS", allow_negative_numbers = true)]
+    pub time: f64,
+    /// How it is solved.
+    #[arg(long, value_enum, default_value = "rk45")]
+    pub solver: Solver,
+    /// Size of the steps in s: a thousandth of the time if it is not said; for rk45 the largest one.
+    #[arg(long, value_name = "SECONDS")]
+    pub step: Option<f64>,
+    /// For rk45: the error of a step, as a part of each state.
+    #[arg(long, value_name = "PART", default_value_t = 1e-6)]
+    pub rtol: f64,
+    /// For rk45: and beside that, in the unit of the state.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1e-9)]
+    pub atol: f64,
+    /// Seconds between lines of the table: a two-hundredth of the time if it is not said.
+    #[arg(long, value_name = "SECONDS")]
+    pub every: Option<f64>,
+    /// What is written: csv is a table, svg a picture of the path and of everything over time.
+    #[arg(long, value_enum, default_value = "csv")]
+    pub out: Form,
+    /// A new file for it, instead of standard output.
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// Replace the file if it is there.
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// How a model is solved.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Solver {
+    /// Dormand-Prince, order 5, with steps as the errors allow.
+    Rk45,
+    /// Runge-Kutta, order 4.
+    Rk4,
+    /// Order 2.
+    Heun,
+    /// Order 1.
+    Euler,
+}
+
+/// What a simulation writes.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum Form {
+    /// A table.
+    Csv,
+    /// A picture.
+    Svg,
+}
