@@ -77,24 +77,47 @@ fn publish(memory: &Chosen, sequence: u32) {
     write(memory, &LAYOUT, event, &[sequence as u8; WORD_BYTES]);
 }
 
-#[test]
-fn no_reader_sees_a_torn_sample() {
-    loom::model(|| {
+/// Whatever event was read, it is whole.
+fn is_whole(event: Event, tuple: &[u8]) {
+    assert_eq!(event.time_ns, u64::from(event.sequence));
+    assert_eq!(event.errno, 0);
+    assert_eq!(tuple, [event.sequence as u8; WORD_BYTES]);
+}
+
+/// A publisher of two more events beside a reader.
+fn beside(reader: fn(&Chosen)) {
+    loom::model(move || {
         let memory = Arc::new(Chosen::new());
         publish(&memory, 1);
         let publisher = {
             let memory = Arc::clone(&memory);
             thread::spawn(move || (2..=3).for_each(|sequence| publish(&memory, sequence)))
         };
-        let sequence = newest(&*memory);
-        let mut tuple = Vec::new();
-        if let Some(event) = read(&*memory, &LAYOUT, sequence, &mut tuple) {
-            assert_eq!((event.sequence, event.errno), (sequence, 0));
-            assert_eq!(event.time_ns, u64::from(sequence));
-            assert_eq!(tuple, [sequence as u8; WORD_BYTES]);
-        }
+        reader(&memory);
         publisher.join().unwrap();
-        let event = read(&*memory, &LAYOUT, newest(&*memory), &mut tuple).unwrap();
-        assert_eq!((event.sequence, &*tuple), (3, &[3; WORD_BYTES][..]));
+        let mut tuple = Vec::new();
+        let last = read(&*memory, &LAYOUT, newest(&*memory), &mut tuple).unwrap();
+        assert_eq!(last.sequence, 3);
+        is_whole(last, &tuple);
+    });
+}
+
+#[test]
+fn the_newest_event_is_never_torn() {
+    beside(|memory| {
+        let mut tuple = Vec::new();
+        if let Some(event) = read(memory, &LAYOUT, newest(memory), &mut tuple) {
+            is_whole(event, &tuple);
+        }
+    });
+}
+
+#[test]
+fn an_event_asked_for_by_its_number_is_never_torn() {
+    beside(|memory| {
+        let mut tuple = Vec::new();
+        if let Some(event) = read(memory, &LAYOUT, 2, &mut tuple) {
+            is_whole(event, &tuple);
+        }
     });
 }
