@@ -1,7 +1,7 @@
 //! Real projects judged, against what the real program said of them: verdict, messages in order, seconds, poses.
 //!
-//! Runs of our own projects are in `tests/recorded`. Those of others are read from `../shared/data` if it is there; skips
-//! by name if not. Programs with random numbers are compared as far as chance plays no part.
+//! Runs of our own projects are in `tests/recorded`; those of others are recorded elsewhere, or skipped. Programs with
+//! random numbers are compared as far as chance plays no part.
 
 use sim::judge::json::{self, Value};
 use sim::judge::{self, Diagram, Outcome, Settings, Task, Texts, Verdict};
@@ -22,11 +22,6 @@ const RANDOM: [&str; 2] = ["example-13._Switch_action", "example-15._Dance_in_a_
 
 /// Runs in which single pixels of the floor decide: the way there is the same, and then a little off.
 const PIXELS: [&str; 1] = ["example-4._AlongTheLine"];
-
-fn data() -> Option<PathBuf> {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data"));
-    path.is_dir().then(|| path.to_owned())
-}
 
 /// A recorded run.
 struct Oracle {
@@ -190,10 +185,7 @@ fn differences(name: &str, oracle: &Oracle, outcome: &Outcome) -> Vec<String> {
 
 #[test]
 fn every_recorded_run_has_its_verdict_messages_seconds_and_poses() {
-    let Some(data) = data() else {
-        println!(
-            "skipped every_recorded_run_has_its_verdict_messages_seconds_and_poses: no ../shared"
-        );
+    let Some(data) = needs::data() else {
         return;
     };
     let mut paths: Vec<PathBuf> = std::fs::read_dir(data.join("oracle"))
@@ -282,8 +274,7 @@ fn recorded_runs_of_our_own_projects_stay_as_equal_as_they_are() {
 
 #[test]
 fn a_recorded_run_is_judged_as_the_run_itself_was() {
-    let Some(data) = data() else {
-        println!("skipped a_recorded_run_is_judged_as_the_run_itself_was: no ../shared");
+    let Some(data) = needs::data() else {
         return;
     };
     for name in [

@@ -36,7 +36,7 @@ Examples:
   trik check class/ --field hard.xml --results all.jsonl   a class, in another world
   trik fault D1 unplug               pull the plug of the distance sensor D1
   trik fault D1 --clear              and put it back
-  trik fault --at /tmp/robot D1 unplug   the same, if several robots run
+  trik fault --robot /tmp/robot D1 unplug   the same, if several robots run
 
 Exit status: 0 done; 1 refused, or something failed; 2 the command line was not understood, or a robot could not be
 reached.";
@@ -133,10 +133,10 @@ enum Command {
         /// The shell.
         shell: clap_complete::Shell,
     },
-    /// Print the manual page, of the program or of one command, for example: trik man up | man -l -
+    /// Print the manual page, of the program or of one command, for example: trik man dcml plan | man -l -
     Man {
-        /// The command.
-        command: Option<String>,
+        /// The command, perhaps with the one below it.
+        command: Vec<String>,
     },
     /// A process that serves a mount of a robot: ends with its parent.
     #[command(hide = true)]
@@ -209,8 +209,7 @@ fn run(command: Command) -> Result<u8, Refusal> {
             standard(&manual::completions(shell, Cli::command())).map(|()| 0)
         }
         Command::Man { command } => {
-            standard(&manual::page(command.as_deref(), Cli::command()).map_err(Refusal::new)?)
-                .map(|()| 0)
+            standard(&manual::page(&command, Cli::command()).map_err(Refusal::new)?).map(|()| 0)
         }
         Command::Tree {
             parent,
@@ -302,28 +301,44 @@ mod tests {
         }
     }
 
+    /// The words of each command that a person is shown, and of those below it.
+    fn shown(command: &clap::Command, before: &[String]) -> Vec<Vec<String>> {
+        let subcommands = command.get_subcommands();
+        let shown = subcommands.filter(|one| !one.is_hide_set() && one.get_name() != "help");
+        shown
+            .flat_map(|one| {
+                let words = [before, &[one.get_name().to_owned()]].concat();
+                let below = self::shown(one, &words);
+                std::iter::once(words).chain(below)
+            })
+            .collect()
+    }
+
     #[test]
     fn every_command_but_the_hidden_one_has_a_manual_page() {
-        for name in [
-            "up",
-            "run",
-            "stop",
-            "send",
-            "status",
-            "fault",
-            "gen",
-            "show",
-            "lint",
-            "check",
-            "2d-model",
-            "man",
-            "completions",
-        ] {
-            let page = manual::page(Some(name), Cli::command()).expect(name);
-            assert!(String::from_utf8_lossy(&page).contains(name));
+        let all = shown(&Cli::command(), &[]);
+        assert!(all.len() >= 23, "{all:?}");
+        for words in &all {
+            let page = manual::page(words, Cli::command()).expect("a page");
+            let page = String::from_utf8(page).expect("UTF-8");
+            let title = format!("trik-{}", words.join("-"));
+            assert!(page.contains(&title.replace('-', "\\-")), "{title}: {page}");
+            assert!(page.contains(".SH DESCRIPTION"), "{title}: {page}");
         }
-        assert!(manual::page(Some("tree"), Cli::command()).is_err());
+        let refused = |words: &[&str]| manual::page(words, Cli::command()).is_err();
+        assert!(refused(&["tree"]) && refused(&["dcml", "fly"]) && refused(&["up", "up"]));
         let script = manual::completions(clap_complete::Shell::Bash, Cli::command());
         assert!(String::from_utf8_lossy(&script).contains("--no-view"));
+    }
+
+    #[test]
+    fn spellings_of_before_are_understood() {
+        for line in [
+            &["dcml", "check", "a.dcml"] as &[&str],
+            &["dcml", "gen", "--target", "c", "a.dcml"],
+            &["fault", "--at", "/tmp/robot", "D1", "unplug"],
+        ] {
+            assert!(parse(line).is_ok(), "{line:?}");
+        }
     }
 }

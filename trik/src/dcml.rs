@@ -5,10 +5,10 @@
 //!
 //! Exit codes: 0 done, 1 refused or failed, 2 a file that cannot be read, or a command line that was not understood.
 
-mod check;
 mod doc;
 mod fmt;
 mod generate;
+mod lint;
 pub(crate) mod load;
 pub mod lsp;
 mod models;
@@ -28,7 +28,8 @@ pub(crate) enum Dcml {
     ///
     /// Each error and warning is shown with its place, the line, and what to do. Exit status: 0 no errors, perhaps
     /// warnings; 1 errors; 2 a file cannot be read, or the command line was not understood.
-    Check(check::CheckArgs),
+    #[command(alias = "check")]
+    Lint(lint::LintArgs),
     /// Bring models into the one layout: spaces, line ends, long lines.
     ///
     /// Files are changed in place, except standard input, which goes to standard output. Comments and the order of the
@@ -75,7 +76,7 @@ pub(crate) enum Dcml {
 /// It cannot be done; see each command.
 pub(crate) fn run(command: &Dcml) -> Result<u8, Refusal> {
     match command {
-        Dcml::Check(args) => check::run(args),
+        Dcml::Lint(args) => lint::run(args),
         Dcml::Fmt(args) => fmt::run(args),
         Dcml::Doc(args) => doc::run(args),
         Dcml::Plan(args) => plan::run(args),

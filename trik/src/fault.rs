@@ -17,8 +17,8 @@ use std::path::{Path, PathBuf};
 #[derive(Args, Clone, Debug, PartialEq, Eq)]
 pub(crate) struct FaultArgs {
     /// The robot that is mounted there; needed when several run.
-    #[arg(long, value_name = "MOUNTPOINT")]
-    pub at: Option<PathBuf>,
+    #[arg(long, alias = "at", value_name = "MOUNTPOINT")]
+    pub robot: Option<PathBuf>,
     /// Print the devices, the kinds of faults, and the faults in force.
     #[arg(long, conflicts_with_all = ["device", "kind", "clear"])]
     pub list: bool,
@@ -48,7 +48,7 @@ fn fault(args: &FaultArgs) -> Result<String, Error> {
     let all = place::running(&base).map_err(|error| Error::file(&base, error));
     // Looking makes the directory; nobody needs it if no robot does.
     let _ = fs::remove_dir(&base);
-    let robot = choose(all?, args.at.as_deref());
+    let robot = choose(all?, args.robot.as_deref());
     let Some(device) = &args.device else {
         // The table is good to know also when nothing runs.
         return Ok(table(robot.ok().as_ref()));
@@ -90,7 +90,7 @@ fn choose(mut all: Vec<Running>, at: Option<&Path>) -> Result<Running, Error> {
         0 => Err(none()),
         1 => Ok(all.swap_remove(0)),
         _ => Err(Error::Refused(format!(
-            "several robots run: say which with --at; there are {}",
+            "several robots run: say which with --robot; there are {}",
             points(&all)
         ))),
     }
@@ -154,7 +154,7 @@ mod tests {
         assert_eq!(
             choose(two(), None),
             Err(Error::Refused(
-                "several robots run: say which with --at; there are /a, /b".to_owned()
+                "several robots run: say which with --robot; there are /a, /b".to_owned()
             ))
         );
         assert_eq!(choose(two(), Some(Path::new("/b"))), Ok(robot("/b")));

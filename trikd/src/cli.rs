@@ -178,7 +178,7 @@ fn perform(command: Command) -> Result<ExitCode, String> {
         #[cfg(feature = "manual")]
         Command::Completions { shell } => show(&manual::completions(shell, Cli::command()))?,
         #[cfg(feature = "manual")]
-        Command::Man { command } => show(&manual::page(command.as_deref(), Cli::command())?)?,
+        Command::Man { command } => show(&manual::page(command.as_slice(), Cli::command())?)?,
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -234,8 +234,10 @@ mod tests {
     #[cfg(feature = "manual")]
     #[test]
     fn manual_pages_and_completions_know_the_commands_but_not_the_hidden_ones() {
-        let page =
-            |name| manual::page(name, Cli::command()).map(|page| String::from_utf8(page).unwrap());
+        let page = |name: Option<&str>| {
+            manual::page(name.as_slice(), Cli::command())
+                .map(|page| String::from_utf8(page).unwrap())
+        };
         assert!(page(None).unwrap().contains("trikd\\-serve(1)"));
         assert!(page(Some("serve")).unwrap().contains("control\\-port"));
         for unknown in ["launch", "daemon", "frobnicate"] {

@@ -13,7 +13,7 @@ use crate::convert::{LogSink, Pipeline, Recipe};
 use crate::crew::lock_patiently;
 use crate::device::lines::answer::Answer;
 use crate::device::linked::LinkedNode;
-use crate::device::{self, Device, Sink, Stream, Surroundings};
+use crate::device::{self, Device, Sink, Stream, Surroundings, kinds};
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::{Due, Ready, Schedule, lock};
@@ -111,7 +111,7 @@ impl Node {
         };
         let stats = Stats::default();
         let mut leases = vec![lease.clone()];
-        if let Some(other) = written_node(&description.source) {
+        if let Some(other) = description.source.written_node() {
             let linked = links.iter().filter(|(path, _)| path == other);
             // One that stands for another node has its lease.
             let others = linked.flat_map(|(_, node)| node.leases.clone());
@@ -242,8 +242,8 @@ impl Node {
     /// What is driven in the end: the node itself, or the one that it stands for.
     fn driven(&self) -> &Self {
         let mut node = self;
-        while let SourceDescription::Node(path) = &node.description.source {
-            match node.links.iter().find(|(name, _)| name == path) {
+        while let SourceDescription::Node(link) = &node.description.source {
+            match node.links.iter().find(|(name, _)| *name == link.path) {
                 Some((_, other)) => node = other,
                 None => break,
             }
@@ -358,7 +358,7 @@ impl Node {
     }
 
     fn open_origin(self: &Arc<Self>, on_ready: &Weak<dyn Ready>) -> Result<Opened, Error> {
-        let by_kind = device::is_shared(&self.description.source)?;
+        let by_kind = kinds::is_shared(&self.description.source)?;
         if self.description.share.unwrap_or(by_kind) {
             // What came before, an end included, is for those who were there before.
             let running = lock(&self.hub).upgrade();
@@ -388,7 +388,7 @@ impl Node {
     }
 
     fn open_device(&self) -> Result<Device, Error> {
-        device::open(
+        kinds::open(
             &self.description.source,
             self.description.input_tuple_size,
             &self.around,
@@ -414,7 +414,7 @@ impl Node {
             return Ok(Writer::to_regulation(self.clone()));
         }
         let pipeline = pipeline.map_or_else(|| self.open_pipeline(), Ok)?;
-        let sink: Box<dyn Sink> = device::open_sink(&self.description.source, &self.around)
+        let sink: Box<dyn Sink> = kinds::open_sink(&self.description.source, &self.around)
             .inspect_err(|error| self.report(error))?;
         Ok(Writer::new(self.clone(), sink, pipeline))
     }
@@ -512,16 +512,6 @@ fn log_sink(engine: &Engine, path: &str) -> LogSink {
 pub fn directory_of(path: &str, is_attribute: bool) -> &str {
     let parent = path.rsplit_once('/').filter(|_| is_attribute);
     parent.map_or(path, |(parent, _)| parent)
-}
-
-/// The node that a write to this source goes to.
-fn written_node(source: &SourceDescription) -> Option<&str> {
-    match source {
-        SourceDescription::Node(path) => Some(path),
-        SourceDescription::Regulator(regulator) => Some(&regulator.actuator),
-        SourceDescription::Faulty(faulty) => written_node(&faulty.source),
-        _ => None,
-    }
 }
 
 /// One operation inside a node: its place among those that may be there at once.

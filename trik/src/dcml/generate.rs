@@ -15,8 +15,8 @@ pub(crate) struct GenArgs {
     /// A file with a model; - is standard input.
     pub file: PathBuf,
     /// The language: rust, c, java, java-hipparchus, python, lua, javascript or latex.
-    #[arg(long, value_name = "TARGET", value_parser = target)]
-    pub target: Target,
+    #[arg(long, alias = "target", value_name = "LANGUAGE", value_parser = target)]
+    pub lang: Target,
     /// A new file for the text; - is standard output, as without this option.
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
@@ -31,11 +31,11 @@ pub(crate) struct GenArgs {
     pub force: bool,
 }
 
-/// A target by its name; for the command line.
+/// A language by its name; for the command line.
 fn target(name: &str) -> Result<Target, String> {
     Target::named(name).ok_or_else(|| {
         let all: Vec<_> = Target::ALL.into_iter().map(Target::name).collect();
-        format!("there is no such target; there are {}", all.join(", "))
+        format!("there is no such language; there are {}", all.join(", "))
     })
 }
 
@@ -51,7 +51,7 @@ pub(super) fn run(args: &GenArgs) -> Result<u8, Refusal> {
     let options = Options {
         jacobian: args.jacobian,
     };
-    let text = generate(&model, args.target, &options)
+    let text = generate(&model, args.lang, &options)
         .map_err(|why| Refusal::new(format!("{}: {why}", model.name)))?;
     output.write(text.as_bytes())?;
     Ok(0)

@@ -30,13 +30,8 @@ const STEPS: f64 = 1000.0;
 
 /// Solves it and writes what comes out.
 pub(super) fn run(args: &SimArgs) -> Result<u8, Refusal> {
-    let output = Output {
-        path: args.output.as_deref(),
-        force: args.force,
-        source: &args.file,
-    };
-    output.refuse_present()?;
-    output.spare(&[Path::new(&args.actions)])?;
+    let outputs = Outputs::new(args);
+    outputs.refuse()?;
     let (_, model) = load(&args.file, args.model.as_deref())?;
     let is_time = |time: f64| time.is_finite() && time > 0.0;
     if !is_time(args.time) {
@@ -62,12 +57,56 @@ pub(super) fn run(args: &SimArgs) -> Result<u8, Refusal> {
     if table.rows.is_empty() {
         return Ok(REFUSED);
     }
-    let text = match args.out {
-        Form::Csv => table.csv(),
-        Form::Svg => plot::svg(&model.name, table),
-    };
-    output.write(text.as_bytes())?;
+    if let Some(output) = &outputs.table {
+        output.write(table.csv().as_bytes())?;
+    }
+    if let Some(output) = &outputs.picture {
+        output.write(plot::svg(&model.name, table).as_bytes())?;
+    }
     Ok(if failure.is_err() { REFUSED } else { 0 })
+}
+
+/// Where the table and the picture go.
+struct Outputs<'a> {
+    table: Option<Output<'a>>,
+    picture: Option<Output<'a>>,
+    actions: &'a Path,
+}
+
+impl<'a> Outputs<'a> {
+    /// As the options say.
+    fn new(args: &'a SimArgs) -> Self {
+        let output = |path| Output {
+            path,
+            force: args.force,
+            source: &args.file,
+        };
+        let (named, svg) = (args.output.as_deref(), args.svg.as_deref());
+        let (table, picture) = match (args.out, svg) {
+            (Some(Form::Svg), _) => (None, Some(output(named))),
+            (Some(Form::Csv) | None, None) => (Some(output(named)), None),
+            (Some(Form::Csv) | None, Some(_)) => {
+                (named.map(|path| output(Some(path))), Some(output(svg)))
+            }
+        };
+        Self {
+            table,
+            picture,
+            actions: Path::new(&args.actions),
+        }
+    }
+
+    /// Refuses what must not be replaced.
+    fn refuse(&self) -> Result<(), Refusal> {
+        for output in [&self.table, &self.picture].into_iter().flatten() {
+            output.refuse_present()?;
+            output.spare(&[self.actions])?;
+        }
+        match (&self.table, &self.picture) {
+            (Some(table), Some(picture)) => table.spare(picture.path.as_slice()),
+            _ => Ok(()),
+        }
+    }
 }
 
 struct Simulation {

@@ -3,15 +3,34 @@
 //! Owns keeping the other nodes' sources open meanwhile, and taking several of their samples at one moment.
 
 use super::linked::LinkedNode;
-use super::{Device, State};
+use super::{Device, Kind, State, Surroundings};
 use crate::bytes::copy_at;
 use crate::clock::Stamp;
 use crate::errno::Error;
 use crate::latch::{Latch, Sample};
+use config::description::NewestDescription;
+use std::collections::BTreeSet;
+use std::path::PathBuf;
 use std::sync::Arc;
 
+impl Kind for NewestDescription {
+    fn open(&self, _tuple_size: usize, around: &Surroundings) -> Result<Device, Error> {
+        open(around.link(&self.path)?)
+    }
+
+    fn is_shared(&self) -> Result<bool, Error> {
+        Ok(false)
+    }
+
+    fn add_buses(&self, around: &Surroundings, buses: &mut BTreeSet<PathBuf>) {
+        if let Ok(node) = around.link(&self.path) {
+            node.add_buses(buses);
+        }
+    }
+}
+
 /// Opens the newest sample of one node as a state.
-pub fn open(other: &Arc<dyn LinkedNode>) -> Result<Device, Error> {
+fn open(other: &Arc<dyn LinkedNode>) -> Result<Device, Error> {
     let latched = Latched::open(other)?;
     Ok(Device::State(Box::new(LatchedState {
         latched,

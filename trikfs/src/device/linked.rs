@@ -2,13 +2,34 @@
 //!
 //! Owns the border: all that devices know of nodes is the trait [`LinkedNode`]. How a node answers is its own business.
 
-use super::{Device, Sink};
+use super::{Device, Kind, Sink, Surroundings};
 use crate::errno::Error;
 use crate::latch::Latch;
+use config::description::LinkDescription;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
+
+impl Kind for LinkDescription {
+    fn open(&self, _tuple_size: usize, around: &Surroundings) -> Result<Device, Error> {
+        around.link(&self.path)?.clone().open()
+    }
+
+    fn open_sink(&self, around: &Surroundings) -> Result<Box<dyn Sink>, Error> {
+        around.link(&self.path)?.clone().open_sink()
+    }
+
+    fn is_shared(&self) -> Result<bool, Error> {
+        Ok(false)
+    }
+
+    fn add_buses(&self, around: &Surroundings, buses: &mut BTreeSet<PathBuf>) {
+        if let Ok(node) = around.link(&self.path) {
+            node.add_buses(buses);
+        }
+    }
+}
 
 /// A node that others read or drive.
 pub trait LinkedNode: Send + Sync {

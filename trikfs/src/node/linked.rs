@@ -5,7 +5,7 @@
 
 use super::{Feed, Node};
 use crate::device::linked::LinkedNode;
-use crate::device::{self, Device, Got, Sink, Stream};
+use crate::device::{Device, Got, Sink, Stream, kinds};
 use crate::errno::Error;
 use crate::events::Ready;
 use crate::latch::Latch;
@@ -71,7 +71,7 @@ impl LinkedNode for Node {
     }
 
     fn add_buses(&self, buses: &mut BTreeSet<PathBuf>) {
-        device::add_buses(&self.description.source, &self.around, buses);
+        kinds::add_buses(&self.description.source, &self.around, buses);
     }
 }
 

@@ -53,13 +53,17 @@ pub(crate) struct SimArgs {
     /// Seconds between lines of the table: a two-hundredth of the time if it is not said.
     #[arg(long, value_name = "SECONDS")]
     pub every: Option<f64>,
-    /// What is written: csv is a table, svg a picture of the path and of everything over time.
-    #[arg(long, value_enum, default_value = "csv")]
-    pub out: Form,
-    /// A new file for it, instead of standard output.
-    #[arg(short, long, value_name = "FILE")]
+    /// A new file for the table; - is standard output, as without this option.
+    #[arg(short, long, value_name = "OUT.csv")]
     pub output: Option<PathBuf>,
-    /// Replace the file if it is there.
+    /// Draw the path and everything over time into a new file, instead of the table, or with -o beside it; - is standard
+    /// output.
+    #[arg(long, value_name = "OUT.svg")]
+    pub svg: Option<PathBuf>,
+    /// What -o writes: the older spelling of --svg.
+    #[arg(long, value_enum, hide = true, conflicts_with = "svg")]
+    pub out: Option<Form>,
+    /// Replace files that are there.
     #[arg(long)]
     pub force: bool,
 }
@@ -77,7 +81,7 @@ pub(crate) enum Solver {
     Euler,
 }
 
-/// What a simulation writes.
+/// What `-o` writes.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum Form {
     /// A table.

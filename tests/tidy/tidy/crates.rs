@@ -230,3 +230,31 @@ fn the_list_of_modules_is_up_to_date() {
         String::from_utf8_lossy(&made.stderr)
     );
 }
+
+#[test]
+fn what_the_emulated_controller_leaves_out_starts_no_program() {
+    let script = text(&root().join("cross/test.sh"));
+    let modules = script
+        .split_once("for module in ")
+        .and_then(|(_, rest)| rest.split_once("; do"))
+        .expect("cross/test.sh names modules that are native")
+        .0;
+    let mut complaints = Vec::new();
+    for module in modules.split_whitespace() {
+        let path = format!("tests/it/{}.rs", module.replace("::", "/"));
+        let code = text(&root().join(&path));
+        for starts in [
+            "mount(",
+            "mount_on(",
+            "mount_with(",
+            "trikfs(",
+            "program()",
+            "Setting {",
+        ] {
+            if code.contains(starts) {
+                complaints.push(format!("{path}: {starts} starts the program under test, and cross/test.sh leaves it out"));
+            }
+        }
+    }
+    none(&complaints);
+}

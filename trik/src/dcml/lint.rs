@@ -1,4 +1,4 @@
-//! `trik dcml check`: what is wrong with models.
+//! `trik dcml lint`: what is wrong with models.
 //!
 //! Owns the verdict and its exit code.
 
@@ -10,9 +10,9 @@ use clap::Args;
 use lang_dcml::diagnostic::Severity;
 use std::path::PathBuf;
 
-/// What `trik dcml check` can be told.
+/// What `trik dcml lint` can be told.
 #[derive(Args, Clone, Debug)]
-pub(crate) struct CheckArgs {
+pub(crate) struct LintArgs {
     /// Files with models; - is standard input.
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
@@ -24,8 +24,8 @@ pub(crate) struct CheckArgs {
     pub json: bool,
 }
 
-/// Checks all files; the worst of them is the exit code.
-pub(super) fn run(args: &CheckArgs) -> Result<u8, Refusal> {
+/// Looks at all files; the worst of them is the exit code.
+pub(super) fn run(args: &LintArgs) -> Result<u8, Refusal> {
     let mut code = 0;
     for path in &args.files {
         let source = match read(path) {

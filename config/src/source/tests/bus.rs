@@ -1,6 +1,8 @@
 //! Tests of registers and absent ports: defaults, sizes, every refusal with its words.
 
-use crate::description::{I2cBusDescription, I2cDescription, I2cTransfer, SourceDescription};
+use crate::description::{
+    AbsentDescription, I2cBusDescription, I2cDescription, I2cTransfer, SourceDescription,
+};
 use crate::load::Loader;
 
 fn source(src: &str, more: &str) -> Result<(SourceDescription, usize, u16), String> {
@@ -150,7 +152,9 @@ fn an_absent_port_is_described_like_one_that_is_there() {
         "absent{ reason = 'no such port on this board' }",
         "format = 'i8 power', rest = 0",
     );
-    let expected = SourceDescription::Absent("no such port on this board".to_owned());
+    let expected = SourceDescription::Absent(AbsentDescription {
+        reason: "no such port on this board".to_owned(),
+    });
     assert_eq!(absent, Ok((expected, 1, 0o644)));
 }
 

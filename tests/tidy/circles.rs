@@ -9,7 +9,7 @@ use std::path::Path;
 
 /// The largest circle that a crate may have. Lower a number with the circle; never raise one.
 const LARGEST: [(&str, usize); 17] = [
-    ("config", 7),
+    ("config", 4),
     ("converter", 1),
     ("ev3dev", 2),
     ("filters", 1),
@@ -25,7 +25,7 @@ const LARGEST: [(&str, usize); 17] = [
     ("sim", 8),
     ("trik", 4),
     ("trikd", 11),
-    ("trikfs", 41),
+    ("trikfs", 13),
 ];
 
 /// The way to a module from the root of its crate.
@@ -35,7 +35,7 @@ type Module = Vec<String>;
 fn no_circle_of_files_grows() {
     let mut complaints = Vec::new();
     for (name, most) in LARGEST {
-        let files = modules(&super::tidy::root().join(name).join("src"));
+        let files = modules(&crate::tidy::root().join(name).join("src"));
         assert!(!files.is_empty(), "{name}: no sources");
         let mut circles = circles(&edges(&files));
         circles.sort_by_key(|circle| std::cmp::Reverse(circle.len()));
@@ -60,7 +60,7 @@ fn no_circle_of_files_grows() {
 /// The texts of a crate without comments and tests.
 fn modules(src: &Path) -> BTreeMap<Module, String> {
     let mut paths = Vec::new();
-    super::tidy::files(src, "rs", &mut paths);
+    crate::tidy::files(src, "rs", &mut paths);
     let mut modules = BTreeMap::new();
     for path in paths {
         let name = path.strip_prefix(src).unwrap().with_extension("");
