@@ -78,6 +78,14 @@ macro_rules! kinds {
             false $(|| is_word_of::<$description>(word))+
         }
 
+        /// All words of the sandbox that make a source.
+        #[cfg(test)]
+        fn constructors() -> Vec<&'static str> {
+            let mut words = Vec::new();
+            $(words.extend(<$description as Kind>::CONSTRUCTORS.iter().map(|made| made.word));)+
+            words
+        }
+
         /// What the constructor `word` made of the table that `fields` reads; None if there is no such constructor.
         fn construct(
             word: &str,

@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 /// Rules between crates and files.
 mod crates;
+/// Rules of the documents.
+mod prose;
 
 const CRATES: [&str; 19] = [
     "config",

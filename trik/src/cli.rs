@@ -13,7 +13,7 @@ use std::ffi::OsString;
 use std::process::ExitCode;
 use trikd::manual;
 
-/// A whole virtual TRIK robot in one command, for a person at a PC.
+/// Virtual TRIK robots, programs on robots, diagrams, tasks and models, on a PC.
 #[derive(Parser)]
 #[command(name = "trik", version, max_term_width = 100, after_long_help = EXAMPLES)]
 struct Cli {
@@ -28,7 +28,7 @@ Examples:
   trik run square.js                 run a program on it, with its output here
   trik run square.js --robot 192.168.77.1   the same on a robot in the network
   trik send a.js b.py --robot 192.168.77.1,192.168.77.2 --run a.js
-  trik stop                          end the program, all motors rest
+  trik stop                          end the program, bring all motors to rest
   trik lint maze.qrs                 what is wrong with a diagram of TRIK Studio
   trik gen --lang python maze.qrs -o maze.py   the diagram as a program
   trik show maze.qrs --svg maze.svg  the diagram as a picture
@@ -38,46 +38,46 @@ Examples:
   trik fault D1 --clear              and put it back
   trik fault --robot /tmp/robot D1 unplug   the same, if several robots run
 
-Exit status: 0 done; 1 refused, or something failed; 2 the command line was not understood, or a robot could not be
+Exit status: 0 success; 1 refused, or something failed; 2 bad command line, or a robot could not be
 reached.";
 
 #[derive(Subcommand)]
 enum Command {
     /// Start a virtual robot and mount its tree of files.
     ///
-    /// Needs no hardware: a virtual board stands in for the controller below the level of its buses, so the tree, its
-    /// configuration and programs that use it are those of a real robot. Says in one line when the tree can be used
+    /// Needs no hardware: a virtual board replaces the controller below the level of its buses, so the tree, its
+    /// configuration and programs that use it are those of a real robot. Prints one line when the tree can be used,
     /// and what to try, then shows the robot until Ctrl-C, SIGTERM, SIGHUP or an unmount. Then it brings all actuators
     /// to rest, unmounts and leaves nothing behind. Several may run side by side.
     Up(Box<up::args::UpArgs>),
-    /// Run a program on a robot and show what it says.
+    /// Run a program on a robot and show what it prints.
     ///
     /// Sends the file, runs it, and ends when it has ended. What it prints goes to standard output, errors to standard
-    /// error. NAME.py is Python, NAME.js JavaScript, what begins with #! or is an ELF file is executed on the robot.
-    /// Another program that runs there ends first. Ctrl-C stops the program on the robot; a second one does not wait.
+    /// error. NAME.py is Python, NAME.js JavaScript; a file that begins with #! or an ELF file is executed on the robot.
+    /// Another program that runs there is ended first. Ctrl-C stops the program on the robot; a second one does not wait.
     ///
     /// Exit status: 0 the program has ended; 1 it has failed, or was stopped; 2 it could not be run, or the connection
     /// was lost.
     Run(remote::run::RunArgs),
     /// End the program of a robot, and bring everything to rest.
     ///
-    /// Several robots are stopped at once. Exit status: 0 all rest; 1 a robot does not say so; 2 one could not be
+    /// Several robots are stopped at once. Exit status: 0 all are at rest; 1 a robot does not say so; 2 one could not be
     /// reached.
     Stop(remote::fleet::FleetArgs),
-    /// Send files to robots, to all at once, and perhaps run one of them there.
+    /// Send files to several robots at once, and optionally run one of them there.
     ///
-    /// Tells the progress of each, and at the end in a table who has got everything. A program that is started goes on.
+    /// Prints the progress of each, and at the end a table of which robots have got everything. A started program goes on.
     ///
     /// Exit status: 0 all robots have got everything; 1 one has not.
     Send(remote::fleet::SendArgs),
     /// Show what runs on a robot, and how the last program ended.
     Status(remote::fleet::FleetArgs),
-    /// Break a device of a running virtual robot, or mend it.
+    /// Break a device of a running virtual robot, or repair it.
     ///
-    /// Programs see what they would see with a real device that fails so. Without a MOUNTPOINT it is the only robot
+    /// Programs see what they would see with a real device that fails in this way. Without a MOUNTPOINT it is the only robot
     /// that runs.
     Fault(fault::FaultArgs),
-    /// Write a diagram of TRIK Studio as a program in a language with text.
+    /// Write a diagram of TRIK Studio as a program in a textual language.
     ///
     /// The program does what the diagram does, and goes to standard output, or into a new file with -o. Notes go to
     /// standard error, for example that blocks had to be written twice because arrows cross.
@@ -90,20 +90,20 @@ enum Command {
     /// Exit status: 0 shown; 1 it is not clear what the diagram does, there is no diagram with this name, or the picture
     /// could not be written; 2 the diagram cannot be read, or the command line was not understood.
     Show(diagrams::show::ShowArgs),
-    /// Find everything that is wrong with diagrams of TRIK Studio, without running them.
+    /// Find mistakes in diagrams of TRIK Studio, without running them.
     ///
-    /// A line for each problem: file, how bad, diagram, block and its place on the sheet in px, property, line and column
-    /// in its text, what is wrong. The worst come first. The last line counts them.
+    /// A line for each problem: file, severity, diagram, block and its position on the sheet in px, property, line and column
+    /// in its text, what is wrong. The most severe come first. The last line counts them.
     ///
     /// Exit status: 0 no errors, perhaps warnings and notes; 1 errors; 2 a diagram cannot be read, or the command line
     /// was not understood.
     Lint(diagrams::lint::LintArgs),
-    /// Run solutions of tasks in virtual time and judge them.
+    /// Run solutions of tasks in simulated time and judge them.
     ///
     /// A solution is a diagram of TRIK Studio in a file NAME.qrs, with a world in it and rules that say what the task is;
-    /// --field puts it into other worlds. The world is simulated as TRIK Studio does it, much faster than real time, and
-    /// the same run always ends in the same way. One run tells its messages, several make a table. A directory stands for
-    /// all solutions below it, which are done on all cores; a run that crashes or hangs harms no other.
+    /// --field puts it into other worlds. The world is simulated as in TRIK Studio, much faster than real time, and
+    /// the same run always ends in the same way. One run prints its messages, several make a table. A directory means
+    /// all solutions below it, which run on all cores; a run that crashes or hangs does not affect the others.
     ///
     /// Exit status: 0 all tasks were accomplished, or there were no rules and no errors; 1 one was not; 2 a solution could
     /// not be run or judged, or the command line was not understood.
@@ -180,13 +180,14 @@ pub fn of_studio(name: &str) -> ExitCode {
 
 /// What clap cannot say of a command line.
 fn understood(cli: Cli) -> Result<Cli, clap::Error> {
-    match &cli.command {
-        Command::Lint(args) if args.recover.is_some() && args.files.len() > 1 => {
-            let why = "--recover writes one file: name one FILE";
-            Err(Cli::command().error(clap::error::ErrorKind::TooManyValues, why))
-        }
-        _ => Ok(cli),
+    if let Command::Lint(args) = &cli.command
+        && args.recover.is_some()
+        && args.files.len() > 1
+    {
+        let why = "--recover writes one file: name one FILE";
+        return Err(Cli::command().error(clap::error::ErrorKind::TooManyValues, why));
     }
+    Ok(cli)
 }
 
 /// Does what a command says, and gives the exit code.

@@ -16,13 +16,13 @@ use std::path::{Path, PathBuf};
 /// What `trik fault` can be told.
 #[derive(Args, Clone, Debug, PartialEq, Eq)]
 pub(crate) struct FaultArgs {
-    /// The robot that is mounted there; needed when several run.
+    /// The robot mounted there; needed if several run.
     #[arg(long, alias = "at", value_name = "MOUNTPOINT")]
     pub robot: Option<PathBuf>,
     /// Print the devices, the kinds of faults, and the faults in force.
     #[arg(long, conflicts_with_all = ["device", "kind", "clear"])]
     pub list: bool,
-    /// Mend the device.
+    /// Repair the device.
     #[arg(long, requires = "device", conflicts_with = "kind")]
     pub clear: bool,
     /// The device, for example msp430, A1, D1, gyroscope; see --list.

@@ -89,12 +89,12 @@ impl Output<'_> {
         };
         written.map_err(|error| {
             let name = named(path);
-            Refusal::new(match error.kind() {
-                io::ErrorKind::AlreadyExists => {
-                    format!("{name} is there already: --force replaces it")
-                }
-                io::ErrorKind::NotFound => format!("{name}: there is no such directory"),
-                _ => format!("{name} cannot be written: {error}"),
+            Refusal::new(if error.kind() == io::ErrorKind::AlreadyExists {
+                format!("{name} is there already: --force replaces it")
+            } else if error.kind() == io::ErrorKind::NotFound {
+                format!("{name}: there is no such directory")
+            } else {
+                format!("{name} cannot be written: {error}")
             })
         })
     }

@@ -67,7 +67,7 @@ pub enum Error {
     },
     /// More operations want the device than may wait for it.
     Crowded(String),
-    /// What the device gives has not the form that it must have.
+    /// What the device gives does not have the form that it must have.
     Malformed(String),
     /// The device answers, and what it says is no measurement: a converter has seen that.
     Measurement(String),

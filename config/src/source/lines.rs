@@ -25,7 +25,7 @@ pub struct LinesDescription {
     pub stop: Option<CommandDescription>,
     /// What is kept for those who come later.
     pub answer: Option<AnswerDescription>,
-    /// `pictures{ ... }`: the pipe gives JPEG pictures, one behind the other, and no lines.
+    /// `pictures{ ... }`: the pipe gives JPEG pictures, one after the other, and no lines.
     pub are_pictures: bool,
 }
 

@@ -6,7 +6,7 @@ mod ports;
 use super::rest::{Bytes, Resting};
 use super::{
     GpioDescription, GpioDirection, I2cDescription, I2cTransfer, LinesDescription, PwmDescription,
-    SourceDescription, TAGS, is_constructor, taken,
+    SourceDescription, TAGS, constructors, is_constructor, taken,
 };
 
 /// One device of each form.
@@ -81,8 +81,20 @@ fn what_cannot_be_written_has_no_form() {
 }
 
 #[test]
-fn the_words_of_constructors_are_those_of_the_sandbox() {
-    for word in ["evdev", "lines", "pictures", "i2c_bus", "absent"] {
+fn the_words_of_constructors_are_those_of_the_manual() {
+    let manual = include_str!("../../../docs/user/config.md");
+    let row = manual.lines().find_map(|line| {
+        let (words, what) = line.strip_prefix("| `")?.split_once("` | ")?;
+        (what == "constructors of sources |").then_some(words)
+    });
+    let mut written: Vec<_> = row.expect("a row of words").split(' ').collect();
+    written.sort_unstable();
+    let mut known = constructors();
+    known.sort_unstable();
+    assert_eq!(written, known);
+    known.dedup();
+    assert_eq!(written, known, "two constructors have the same word");
+    for word in written {
         assert!(is_constructor(word.as_bytes()), "{word}");
     }
     for word in ["", "path", "trikfs", "newest", "several", "evde"] {

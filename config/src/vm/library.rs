@@ -363,7 +363,7 @@ unsafe extern "C-unwind" fn start_compiler(l: *mut lua::lua_State) -> c_int {
     0
 }
 
-/// Lets go of a library that nobody asks for again.
+/// Releases a library that is not needed again.
 unsafe fn forget_library(l: *mut lua::lua_State, name: &std::ffi::CStr) {
     // SAFETY: called by functions whose upvalue 1 is the table of the raw libraries.
     unsafe {

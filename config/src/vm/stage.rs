@@ -17,7 +17,7 @@ struct Buffer {
     size: usize,
 }
 
-// SAFETY: the bytes belong to whoever owns the buffer and its state, which move together.
+// SAFETY: the bytes belong to what owns the buffer and its state, which move together.
 unsafe impl Send for Buffer {}
 
 impl Buffer {

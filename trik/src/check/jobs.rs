@@ -204,9 +204,12 @@ fn below(
     max: usize,
 ) -> Result<Vec<(PathBuf, PathBuf)>, Error> {
     let refused = Error::Refused;
-    let failed = |error: io::Error| match error.kind() {
-        io::ErrorKind::NotFound => refused(format!("{}: there is no such file", named(path))),
-        _ => refused(format!("{} cannot be read: {error}", named(path))),
+    let failed = |error: io::Error| {
+        refused(if error.kind() == io::ErrorKind::NotFound {
+            format!("{}: there is no such file", named(path))
+        } else {
+            format!("{} cannot be read: {error}", named(path))
+        })
     };
     if !fs::metadata(path).map_err(failed)?.is_dir() {
         let name = path.file_name().map_or_else(|| path.into(), PathBuf::from);

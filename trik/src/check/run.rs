@@ -10,6 +10,7 @@ use super::script::{self, Given, Language};
 use super::words;
 use crate::diagrams::save::{Unreadable, open};
 use crate::error::Error;
+use crate::input::{self, Unread};
 use crate::limits;
 use crate::output::Output;
 use lang_constraint::Level;
@@ -18,8 +19,6 @@ use lang_diagram::project::Project;
 use lang_text::problem::{Locale, Problem};
 use sim::field::Locks;
 use sim::judge::{self, Caption, Diagram, Outcome, Program, Settings, Task, Texts, Trajectory};
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::time::Duration;
@@ -317,17 +316,12 @@ fn lines(path: &Path, problems: &[Problem], locale: Locale) -> Lines {
 
 /// A text file that is no longer than it may be.
 pub(super) fn text(path: &Path, max: u64) -> Result<String, Error> {
-    let failed = |error: std::io::Error| match error.kind() {
-        std::io::ErrorKind::NotFound => Error::file(path, "there is no such file"),
-        std::io::ErrorKind::IsADirectory => Error::file(path, "this is a directory: name a file"),
-        _ => Error::system(format!("{} cannot be read", path.display()), error),
-    };
-    let mut bytes = Vec::new();
-    let file = File::open(path).map_err(failed)?;
-    file.take(max + 1).read_to_end(&mut bytes).map_err(failed)?;
-    if bytes.len() as u64 > max {
-        return Err(Error::file(path, format!("longer than {} MiB", max >> 20)));
-    }
+    let bytes = input::read(path, max).map_err(|unread| match unread {
+        Unread::Missing => Error::file(path, "there is no such file"),
+        Unread::Directory => Error::file(path, "this is a directory: name a file"),
+        Unread::TooLong => Error::file(path, format!("longer than {} MiB", max >> 20)),
+        Unread::Failed(error) => Error::system(format!("{} cannot be read", path.display()), error),
+    })?;
     String::from_utf8(bytes).map_err(|_| Error::file(path, "this is no text in UTF-8"))
 }
 

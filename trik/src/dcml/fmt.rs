@@ -22,7 +22,7 @@ pub(crate) struct FmtArgs {
     pub check: bool,
 }
 
-/// Lays out all files; the worst of them is the exit code.
+/// Formats all files; the worst result is the exit code.
 pub(super) fn run(args: &FmtArgs) -> Result<u8, Refusal> {
     let mut code = 0;
     for path in &args.files {

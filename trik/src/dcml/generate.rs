@@ -17,16 +17,16 @@ pub(crate) struct GenArgs {
     /// The language: rust, c, java, java-hipparchus, python, lua, javascript or latex.
     #[arg(long, alias = "target", value_name = "LANGUAGE", value_parser = target)]
     pub lang: Target,
-    /// A new file for the text; - is standard output, as without this option.
+    /// Write to a new file; - is standard output, as without this option.
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
     /// The model with this name, if the file has several.
     #[arg(long, value_name = "NAME")]
     pub model: Option<String>,
-    /// Write the Jacobians df/dx and df/du too.
+    /// Also write the Jacobians df/dx and df/du.
     #[arg(long)]
     pub jacobian: bool,
-    /// Replace OUT if it is there already.
+    /// Overwrite OUT if it exists.
     #[arg(long, requires = "output")]
     pub force: bool,
 }

@@ -33,7 +33,7 @@ pub(super) fn serve() -> u8 {
         filled.end();
     });
     let mut out = io::BufWriter::new(io::stdout().lock());
-    let status = match answer(&inbox, &mut out, &mut |line| log(line)) {
+    match answer(&inbox, &mut out, &mut |line| log(line)) {
         Ok(status) => status,
         // Nobody is there to be told.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => 1,
@@ -41,8 +41,7 @@ pub(super) fn serve() -> u8 {
             log(&format!("standard output: {error}"));
             1
         }
-    };
-    status
+    }
 }
 
 fn log(line: &str) {

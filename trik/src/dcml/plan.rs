@@ -83,16 +83,16 @@ fn prepared(args: &PlanArgs) -> Result<u8, Refusal> {
     if let (Some(output), Some(path)) = (&outputs[0], &outcome.path) {
         output.write(answer::table(&mut robot, path).as_bytes())?;
     }
-    let told = if args.json {
+    let summary = if args.json {
         answer::json(&mut robot, &asked, &outcome, seconds)
     } else {
         answer::summary(&mut robot, &asked, &outcome, seconds)
     };
     // Standard output is the table's if it goes there.
     if outputs[0].as_ref().is_some_and(Output::is_standard) {
-        let _ = io::stderr().write_all(told.as_bytes());
+        let _ = io::stderr().write_all(summary.as_bytes());
     } else {
-        standard(told.as_bytes())?;
+        standard(summary.as_bytes())?;
     }
     Ok(if outcome.path.is_some() { 0 } else { NO_PATH })
 }

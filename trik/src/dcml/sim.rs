@@ -137,7 +137,7 @@ impl Simulation {
         };
         let mut options = match method {
             Method::Rk45 => Options::adaptive(args.rtol, args.atol),
-            _ => Options::fixed(method, args.time / STEPS),
+            Method::Euler | Method::Heun | Method::Rk4 => Options::fixed(method, args.time / STEPS),
         };
         options.step = args.step.unwrap_or(options.step);
         let mut solver = Solver::new(options, states.len(), robot.action_parts().len())

@@ -2,12 +2,12 @@
 //!
 //! Owns which files are read, and what is said of one that cannot be.
 
+use crate::input::{self, Unread};
 use crate::refusal::{Refusal, UNREADABLE};
 use lang_dcml::limits::DCML_TEXT_MAX;
 use lang_dcml::models as shipped;
 use lang_dcml::{Understood, understand, understand_paper};
-use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::path::Path;
 
 /// A text with models, and how it is called in messages.
@@ -30,32 +30,24 @@ pub(crate) fn read(path: &Path) -> Result<Source, Refusal> {
         lines: vec![format!("trik: {name}: {why}")],
         code: UNREADABLE,
     };
+    let most = DCML_TEXT_MAX as u64;
     let bytes = if is_input {
-        bytes(io::stdin().lock())
+        input::all_of(io::stdin().lock(), most)
     } else {
-        File::open(path).and_then(bytes)
+        input::read(path, most)
     };
-    if let (Err(error), Some(model)) = (&bytes, shipped::named(&name))
-        && error.kind() == io::ErrorKind::NotFound
-    {
+    if let (Err(Unread::Missing), Some(model)) = (&bytes, shipped::named(&name)) {
         let text = model.text.to_owned();
         return Ok(Source { name, text });
     }
-    let bytes = bytes.map_err(|error| {
-        unreadable(match error.kind() {
-            io::ErrorKind::NotFound => "there is no such file".to_owned(),
-            io::ErrorKind::IsADirectory => {
-                "this is a directory: name a file with models".to_owned()
-            }
-            _ => format!("cannot be read: {error}"),
+    let bytes = bytes.map_err(|unread| {
+        unreadable(match unread {
+            Unread::Missing => "there is no such file".to_owned(),
+            Unread::Directory => "this is a directory: name a file with models".to_owned(),
+            Unread::TooLong => format!("longer than {} MiB, which no model is", most >> 20),
+            Unread::Failed(error) => format!("cannot be read: {error}"),
         })
     })?;
-    if bytes.len() > DCML_TEXT_MAX {
-        let mib = DCML_TEXT_MAX >> 20;
-        return Err(unreadable(format!(
-            "longer than {mib} MiB, which no model is"
-        )));
-    }
     match lang_dcml::decode(bytes) {
         Ok(text) => Ok(Source { name, text }),
         Err(why) => Err(Refusal {
@@ -63,14 +55,6 @@ pub(crate) fn read(path: &Path) -> Result<Source, Refusal> {
             code: UNREADABLE,
         }),
     }
-}
-
-/// One byte more than may be, so that it can be seen.
-fn bytes(from: impl Read) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    from.take(DCML_TEXT_MAX as u64 + 1)
-        .read_to_end(&mut bytes)?;
-    Ok(bytes)
 }
 
 /// Understands a text, as the published language if that is wanted.

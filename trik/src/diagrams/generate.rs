@@ -23,13 +23,13 @@ pub(crate) struct GenArgs {
     /// The language: python, javascript, lua, c, pascal or fsharp.
     #[arg(long, value_name = "LANGUAGE", value_parser = target_language)]
     pub lang: Language,
-    /// A new file for the program; - is standard output.
+    /// Write to a new file; - is standard output.
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
-    /// Replace OUT if it is there already.
+    /// Overwrite OUT if it exists.
     #[arg(long, requires = "output")]
     pub force: bool,
-    /// Write arrows that cross as goto and not as copies of blocks: in C and Lua.
+    /// Write crossing arrows as goto instead of copies of blocks: in C and Lua.
     #[arg(long)]
     pub goto: bool,
     /// Language of messages: en or ru.

@@ -25,11 +25,11 @@ pub(crate) struct LintArgs {
     /// Language of messages: en or ru.
     #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
     pub language: Locale,
-    /// Write the diagram into this new file, with blocks and links put back that are in the file but on no sheet, and
-    /// look at that. For one FILE.
+    /// Write the diagram to this new file, with the blocks and links restored that are in the file but on no sheet, and
+    /// check that. For one FILE.
     #[arg(long, value_name = "OUT.qrs")]
     pub recover: Option<PathBuf>,
-    /// Replace OUT.qrs if it is there already.
+    /// Overwrite OUT.qrs if it exists.
     #[arg(long, requires = "recover")]
     pub force: bool,
 }

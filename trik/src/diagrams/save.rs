@@ -3,13 +3,12 @@
 //! Owns which files are read, and what is said of one that cannot be.
 
 use super::report::Reporter;
+use crate::input::{self, Unread};
 use crate::refusal::{Refusal, UNREADABLE};
 use crate::terminal::named;
 use lang_diagram::limits::SAVE_BYTES;
 use lang_diagram::read::{self, Opened};
 use lang_text::problem::{Locale, Problem};
-use std::fs::File;
-use std::io::{self, Read};
 use std::path::Path;
 
 /// Why a save cannot be read.
@@ -39,22 +38,11 @@ pub(crate) fn must_open(path: &Path, locale: Locale) -> Result<Opened, Refusal> 
 
 /// The bytes of a file that is no longer than a save may be.
 fn bytes(path: &Path) -> Result<Vec<u8>, String> {
-    let failed = |error: io::Error| match error.kind() {
-        io::ErrorKind::NotFound => "there is no such file".to_owned(),
-        io::ErrorKind::IsADirectory => {
-            "this is a directory: name a diagram, a file NAME.qrs".to_owned()
-        }
-        _ => format!("cannot be read: {error}"),
-    };
     let limit = SAVE_BYTES as u64;
-    let mut bytes = Vec::new();
-    let file = File::open(path).map_err(failed)?;
-    file.take(limit + 1)
-        .read_to_end(&mut bytes)
-        .map_err(failed)?;
-    if bytes.len() as u64 > limit {
-        let mib = limit >> 20;
-        return Err(format!("longer than {mib} MiB, which no diagram is"));
-    }
-    Ok(bytes)
+    input::read(path, limit).map_err(|unread| match unread {
+        Unread::Missing => "there is no such file".to_owned(),
+        Unread::Directory => "this is a directory: name a diagram, a file NAME.qrs".to_owned(),
+        Unread::TooLong => format!("longer than {} MiB, which no diagram is", limit >> 20),
+        Unread::Failed(error) => format!("cannot be read: {error}"),
+    })
 }

@@ -32,7 +32,7 @@ pub(crate) struct ShowArgs {
     /// subprograms that it calls.
     #[arg(long, value_name = "NAME")]
     pub diagram: Option<String>,
-    /// Replace OUT.svg if it is there already.
+    /// Overwrite OUT.svg if it exists.
     #[arg(long, requires = "svg")]
     pub force: bool,
     /// Language of sentences and messages: en or ru.

@@ -126,6 +126,8 @@ impl Target {
         Err(Error::Unreachable(why))
     }
 
+    // Kinds of errors of the system are not ours to list.
+    #[allow(clippy::wildcard_enum_match_arm)]
     fn explain(&self, error: &std::io::Error) -> String {
         use std::io::ErrorKind;
         let seconds = limits::CONNECT_MS / 1000;

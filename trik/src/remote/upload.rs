@@ -80,7 +80,7 @@ impl Upload {
                         return Err(Error::Robot(why));
                     }
                     Message::Error(text) => link.remember(&text),
-                    _ => {}
+                    Message::Print(_) | Message::Info(_) | Message::Status(_) => {}
                 }
             }
             if moved.0 != link.unsent() {
@@ -133,7 +133,7 @@ pub(super) fn start(
                     let why = format!("{} does not run {name}: {why}", link.name());
                     return Err(Error::Robot(why));
                 }
-                _ => {}
+                Message::Print(_) | Message::Info(_) | Message::Version => {}
             }
             errors.drain(..errors.len().saturating_sub(1));
         }

@@ -10,7 +10,7 @@ use sim::body::rolling::Actuator;
 use std::net::IpAddr;
 use std::path::{Path, PathBuf};
 
-/// The robot of whoever names none.
+/// The robot used if none is named.
 pub(crate) const DEFAULT_ROBOT: &str = "two-wheels";
 
 /// What `trik up` can be told.
@@ -23,21 +23,21 @@ pub(crate) struct UpArgs {
     /// Which model, if the file has several.
     #[arg(long, value_name = "NAME")]
     pub model: Option<String>,
-    /// Numbers for the parameters of the model.
+    /// Values for the parameters of the model.
     #[arg(long, value_name = "NAME=NUMBER", value_delimiter = ',', value_parser = number_of)]
     pub params: Vec<(String, f64)>,
     /// What drives the actions of the model: u_l=M3 is the speed of the motor in rad/s, steer=S1 the angle of the servo in
-    /// rad to the left, v=M3*0.028 so many times as much [default: what the model says of its actions].
+    /// rad to the left, v=M3*0.028 that speed times 0.028 [default: what the model says of its actions].
     #[arg(long, value_name = "ACTION=PORT", value_delimiter = ',', value_parser = driven)]
     pub drive: Vec<(String, Actuator)>,
-    /// States of the model that do not begin with 0.
+    /// Initial values of states of the model that do not begin with 0.
     #[arg(long, value_name = "STATE=NUMBER", value_delimiter = ',', value_parser = number_of)]
     pub start: Vec<(String, f64)>,
-    /// A world of TRIK Studio in the place of the robot's own: FILE.xml, or a project FILE.qrs with a world in it. The robot
-    /// stands where the world has it, and has the wheels and sensors that are plugged in there.
+    /// A world of TRIK Studio instead of the robot's own: FILE.xml, or a project FILE.qrs with a world in it. The robot
+    /// is where the world puts it, and has the wheels and sensors that are plugged in there.
     #[arg(long, value_name = "FILE", conflicts_with = "robot")]
     pub world: Option<PathBuf>,
-    /// Configuration in the place of the robot's own.
+    /// Configuration instead of the robot's own.
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
     /// How fast simulated time runs, from 0.1 to 20 times real time. Programs see their own clock, so at 2 the robot
@@ -47,10 +47,10 @@ pub(crate) struct UpArgs {
     /// Seed of everything that is random: noise of sensors, faults. The same seed gives the same noise.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u64,
-    /// Do not show the robot, also on a terminal.
+    /// Do not show the robot, even on a terminal.
     #[arg(long)]
     pub no_view: bool,
-    /// Directory for files that configurations include, before /etc/trikfs; may be given several times.
+    /// Directory of files that configurations include, searched before /etc/trikfs; may be given several times.
     #[arg(long, value_name = "DIR")]
     pub include: Vec<PathBuf>,
     /// Private directory for compiled C and copies of libraries [default: as for trikfs].
@@ -60,25 +60,25 @@ pub(crate) struct UpArgs {
     /// --allow-other --group GROUP` does.
     #[arg(long, value_name = "GROUP")]
     pub group: Option<String>,
-    /// Mount the devices of the robot a second time as the classes of ev3dev, for programs that know those [default: the
-    /// mount point of the robot with .ev3dev behind its name].
+    /// Mount the devices of the robot a second time as the classes of ev3dev, for programs written for those [default: the
+    /// mount point of the robot with .ev3dev added to its name].
     #[arg(long, value_name = "DIR", num_args = 0..=1, require_equals = true)]
     pub ev3dev: Option<Option<PathBuf>>,
     /// Do not start trikd: no TRIK Studio, no gamepad and no `trik run` reaches the robot.
     #[arg(long, conflicts_with_all = ["trikd_address", "trikd_ports", "scripts"])]
     pub no_trikd: bool,
-    /// Address at which trikd serves; may be given several times. With one that others reach, 0.0.0.0 for all, they run
+    /// Address at which trikd serves; may be given several times. If others can reach it (0.0.0.0 for all), they can run
     /// programs with your rights [default: 127.0.0.1; for robot-2 127.0.0.2 and so on].
     #[arg(long, value_name = "ADDRESS")]
     pub trikd_address: Vec<IpAddr>,
     /// First of the ports of trikd: programs, sensors, gamepads, pictures, variables, mailbox are in a row from there; 0
-    /// takes any free ones [default: 8888, 9000, 4444, 8080, 10000, 8889, which TRIK Studio knows].
+    /// takes any free ones [default: 8888, 9000, 4444, 8080, 10000, 8889, which TRIK Studio uses].
     #[arg(long, value_name = "PORT")]
     pub trikd_ports: Option<u16>,
-    /// Where uploaded programs are kept [default: a directory that goes with the robot].
+    /// Where uploaded programs are kept [default: a directory that is removed with the robot].
     #[arg(long, value_name = "DIR")]
     pub scripts: Option<PathBuf>,
-    /// An empty directory; made if nothing is there, and removed again [default: robot, or else robot-2 and so on, in
+    /// An empty directory; created if it does not exist, and then removed again [default: robot, or else robot-2 and so on, in
     /// $XDG_RUNTIME_DIR/trik or /tmp/trik-UID].
     pub mountpoint: Option<PathBuf>,
 }

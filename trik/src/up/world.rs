@@ -3,9 +3,9 @@
 //! Owns which files have worlds and what is said when one has none. Knows no simulation.
 
 use crate::error::Error;
+use crate::input::{self, Unread};
 use lang_text::problem::Problem;
 use sim::field::{Field, Locks};
-use std::io::Read;
 use std::path::Path;
 
 /// Bytes of a file that are read at most: more than any save may have.
@@ -18,16 +18,12 @@ const BYTES: u64 = 64 << 20;
 pub(crate) fn read(path: &Path) -> Result<(Field, Locks), Error> {
     let say = |problem: &dyn std::fmt::Display| format!("{}: {problem}", path.display());
     let refused = |why: &dyn std::fmt::Display| Error::file(path, why);
-    let mut bytes = Vec::new();
-    std::fs::File::open(path)
-        .and_then(|file| file.take(BYTES).read_to_end(&mut bytes))
-        .map_err(|error| match error.kind() {
-            std::io::ErrorKind::NotFound => refused(&"there is no such file"),
-            std::io::ErrorKind::IsADirectory => {
-                refused(&"this is a directory: name a world or a project")
-            }
-            _ => refused(&error),
-        })?;
+    let bytes = input::read(path, BYTES).map_err(|unread| match unread {
+        Unread::Missing => refused(&"there is no such file"),
+        Unread::Directory => refused(&"this is a directory: name a world or a project"),
+        Unread::TooLong => refused(&format!("longer than {} MiB", BYTES >> 20)),
+        Unread::Failed(error) => refused(&error),
+    })?;
     let all = |problems: Vec<Problem>| {
         let lines: Vec<String> = problems.iter().map(|one| say(one)).collect();
         Error::Refused(lines.join("\n"))

@@ -39,14 +39,14 @@ pub(super) const ROWS: &[Row] = &[
         "Motors Forward",
         Act::Forward,
         &[MOTORS, POWER],
-        "Gives power to motors, in percent from -100 to 100; more counts as 100. The program goes on at once.",
+        "Sets the power of motors, in percent from -100 to 100; more counts as 100. The program goes on at once.",
     ),
     row(
         "TrikV6EnginesBackward",
         "Motors Backward",
         Act::Backward,
         &[MOTORS, POWER],
-        "Gives power to motors in the other direction.",
+        "Sets the power of motors in the other direction.",
     ),
     row(
         "TrikV6EnginesStop",
@@ -145,7 +145,7 @@ pub(super) const ROWS: &[Row] = &[
                 flag("Code", "Code", "false"),
                 EVALUATE,
             ],
-            "Runs a command of the shell on the robot, or a line of a program if `Code` is set. In the simulator it does nothing.",
+            "Runs a shell command on the robot, or a line of a program if `Code` is set. In the simulator it does nothing.",
         )
     },
     row(
@@ -156,7 +156,7 @@ pub(super) const ROWS: &[Row] = &[
             property("File", "File", Raw, "output.txt"),
             expression("Text", "Text", Text, ""),
         ],
-        "Appends the value of an expression to a file, without a new line.",
+        "Appends the value of an expression to a file, without a newline.",
     ),
     row(
         "TrikRemoveFile",
@@ -245,7 +245,7 @@ pub(super) const ROWS: &[Row] = &[
                 property("Message", "Message", Raw, ""),
                 expression("HullNumber", "Hull Number", Whole, ""),
             ],
-            "Sends a text as it stands to the robot with a hull number; without a number, to all.",
+            "Sends a text unchanged to the robot with a hull number; without a number, to all.",
         )
     },
     Row {
@@ -255,7 +255,7 @@ pub(super) const ROWS: &[Row] = &[
             "Calibrate gyroscope",
             Act::CalibrateGyroscope,
             &[],
-            "The present heading becomes 0.",
+            "Sets the present heading to 0.",
         )
     },
     Row {

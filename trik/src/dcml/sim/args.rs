@@ -8,13 +8,13 @@ use std::path::PathBuf;
 /// What `trik dcml sim` can be told.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct SimArgs {
-    /// A file with a model, - for standard input, or the name of a model that comes with the program.
+    /// A file with a model, - for standard input, or the name of a shipped model.
     #[arg(value_name = "FILE")]
     pub file: PathBuf,
     /// Which model, if the file has several.
     #[arg(long, value_name = "NAME")]
     pub model: Option<String>,
-    /// A number for each parameter: L=0.4,r=0.05.
+    /// A value for each parameter: L=0.4,r=0.05.
     #[arg(
         long,
         value_name = "NAME=NUMBER,...",
@@ -22,7 +22,7 @@ pub(crate) struct SimArgs {
         hide_default_value = true
     )]
     pub params: String,
-    /// Where it starts; what is not named starts at 0.
+    /// The initial state; what is not named starts at 0.
     #[arg(
         long,
         value_name = "NAME=NUMBER,...",
@@ -32,25 +32,25 @@ pub(crate) struct SimArgs {
     )]
     pub start: String,
     /// Formulas of the time t for all actions, 'u_l = 2 + sin(t); u_r = 3', or a table: its first line has the names
-    /// t,u_l,u_r, each other one a time in s and what is done from then on.
+    /// t,u_l,u_r, each other line a time in s and the actions from then on.
     #[arg(long, value_name = "FORMULAS|FILE.csv")]
     pub actions: String,
-    /// For how many seconds.
+    /// Duration in seconds.
     #[arg(long = "t", value_name = "SECONDS", allow_negative_numbers = true)]
     pub time: f64,
-    /// How it is solved.
+    /// The solver.
     #[arg(long, value_enum, default_value = "rk45")]
     pub solver: Solver,
-    /// Size of the steps in s: a thousandth of the time if it is not said; for rk45 the largest one.
+    /// Step size in s, by default a thousandth of the duration; for rk45 the largest step.
     #[arg(long, value_name = "SECONDS")]
     pub step: Option<f64>,
-    /// For rk45: the error of a step, as a part of each state.
+    /// For rk45: the error allowed in a step, relative to each state.
     #[arg(long, value_name = "PART", default_value_t = 1e-6)]
     pub rtol: f64,
-    /// For rk45: and beside that, in the unit of the state.
+    /// For rk45: the error allowed in a step, in the unit of the state.
     #[arg(long, value_name = "NUMBER", default_value_t = 1e-9)]
     pub atol: f64,
-    /// Seconds between lines of the table: a two-hundredth of the time if it is not said.
+    /// Seconds between lines of the table, by default a two-hundredth of the duration.
     #[arg(long, value_name = "SECONDS")]
     pub every: Option<f64>,
     /// A new file for the table; - is standard output, as without this option.
@@ -63,7 +63,7 @@ pub(crate) struct SimArgs {
     /// What -o writes: the older spelling of --svg.
     #[arg(long, value_enum, hide = true, conflicts_with = "svg")]
     pub out: Option<Form>,
-    /// Replace files that are there.
+    /// Overwrite existing files.
     #[arg(long)]
     pub force: bool,
 }

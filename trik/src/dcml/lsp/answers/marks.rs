@@ -42,9 +42,10 @@ pub fn tokens(document: &Document, stretch: Span, encoding: Encoding) -> Value {
             .by_lines(one.span)
             .take(DCML_EDITOR_PLACES - data.len() / 5);
         let whole = std::iter::once(one.span);
-        let parts: &mut dyn Iterator<Item = Span> = match one.colour {
-            Colour::Comment => &mut { parts },
-            _ => &mut { whole },
+        let parts: &mut dyn Iterator<Item = Span> = if one.colour == Colour::Comment {
+            &mut { parts }
+        } else {
+            &mut { whole }
         };
         for part in parts {
             walk.to(part.start);
