@@ -5,8 +5,9 @@
 
 use crate::brick::Brick;
 use crate::engine::Engine;
+use crate::error::Error;
 use crate::host::Host;
-use crate::log::tell;
+use crate::log::report;
 #[cfg(feature = "manual")]
 use crate::manual;
 use crate::program::{kill, launch::Launch};
@@ -131,13 +132,13 @@ pub fn main() -> ExitCode {
     match perform(cli.command) {
         Ok(code) => code,
         Err(reason) => {
-            tell(reason);
+            report(reason);
             ExitCode::FAILURE
         }
     }
 }
 
-fn perform(command: Command) -> Result<ExitCode, String> {
+fn perform(command: Command) -> Result<ExitCode, Error> {
     match command {
         Command::Serve { settings } => {
             // Behind the name of the program and `serve`.
@@ -161,18 +162,18 @@ fn perform(command: Command) -> Result<ExitCode, String> {
         Command::Launch(launch) => return Err(launch.become_program()),
         Command::KillUser => kill::own_user()?,
         Command::Draw { tree, answers } => {
-            display::serve(&tree, &mut std::io::stdin().lock(), answers)?;
+            display::serve(&tree, &mut std::io::stdin().lock(), answers).map_err(Error::Program)?;
         }
         Command::Js {
             tree,
             line: Some(line),
             ..
-        } => js::run_line(line, &tree)?,
+        } => js::run_line(line, &tree).map_err(Error::Program)?,
         Command::Js {
             tree,
             file: Some(file),
             ..
-        } => js::run_alone(&file, &tree)?,
+        } => js::run_alone(&file, &tree).map_err(Error::Program)?,
         Command::Js { tree, .. } => return Ok(run_engine(&mut js::engine(), &tree)),
         Command::Diagram { tree } => return Ok(run_engine(&mut diagram::engine(), &tree)),
         #[cfg(feature = "manual")]
@@ -185,9 +186,11 @@ fn perform(command: Command) -> Result<ExitCode, String> {
 
 /// On standard output; a reader that has seen enough is no failure.
 #[cfg(feature = "manual")]
-fn show(text: &[u8]) -> Result<(), String> {
+fn show(text: &[u8]) -> Result<(), Error> {
     match std::io::stdout().write_all(text) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.to_string()),
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Error::Os(error.into()))
+        }
         _ => Ok(()),
     }
 }
@@ -197,7 +200,7 @@ fn run_engine(engine: &mut impl Engine, tree: &std::path::Path) -> ExitCode {
     let host = match Host::from_standard_input() {
         Ok(host) => host,
         Err(error) => {
-            tell(format_args!(
+            report(format_args!(
                 "standard input is no channel to the daemon ({error}): this command is for trikd itself"
             ));
             return ExitCode::FAILURE;
@@ -242,7 +245,7 @@ mod tests {
         assert!(page(Some("serve")).unwrap().contains("control\\-port"));
         for unknown in ["launch", "daemon", "frobnicate"] {
             let said = page(Some(unknown)).unwrap_err();
-            assert_eq!(said, format!("there is no command {unknown}"));
+            assert_eq!(said.to_string(), format!("there is no command {unknown}"));
         }
         let script = manual::completions(clap_complete::Shell::Bash, Cli::command());
         let script = String::from_utf8(script).unwrap();

@@ -3,6 +3,7 @@
 //! Owns names and defaults; what they mean is known where they are used.
 
 use crate::access::Network;
+use crate::error::Error;
 use crate::limits;
 use crate::log::Filter;
 use clap::{Args, ValueEnum};
@@ -173,7 +174,7 @@ impl Settings {
     ///
     /// # Errors
     /// The current directory is gone.
-    pub fn make_absolute(&mut self) -> Result<(), String> {
+    pub fn make_absolute(&mut self) -> Result<(), Error> {
         let paths = [
             &mut self.tree,
             &mut self.scripts,
@@ -182,8 +183,7 @@ impl Settings {
             &mut self.gamepad_fifo,
         ];
         for path in paths {
-            *path = std::path::absolute(&*path)
-                .map_err(|error| format!("{}: {error}", path.display()))?;
+            *path = std::path::absolute(&*path).map_err(|error| Error::file(path, error))?;
         }
         Ok(())
     }

@@ -161,19 +161,19 @@ impl Row {
     /// Reads such a line.
     pub fn read(line: &str) -> Option<Self> {
         let value = json::read(line).ok()?;
-        let text = |name| value.get(name).and_then(Value::text);
-        let number = |name| value.get(name).and_then(Value::number);
-        let Some(Value::List(all)) = value.get("messages") else {
+        let text = |name| value.get(name).and_then(Value::as_str);
+        let number = |name| value.get(name).and_then(Value::as_f64);
+        let Some(Value::Array(all)) = value.get("messages") else {
             return None;
         };
         let messages = all.iter().map(|one| {
-            let part = |name| one.get(name).and_then(Value::text).map(str::to_owned);
+            let part = |name| one.get(name).and_then(Value::as_str).map(str::to_owned);
             Some((part("level")?, part("message")?))
         });
-        let Some(Value::List(printed)) = value.get("printed") else {
+        let Some(Value::Array(printed)) = value.get("printed") else {
             return None;
         };
-        let printed = printed.iter().map(|one| one.text().map(str::to_owned));
+        let printed = printed.iter().map(|one| one.as_str().map(str::to_owned));
         Some(Self {
             solution: text("solution")?.to_owned(),
             field: text("field").map(str::to_owned),

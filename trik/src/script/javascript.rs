@@ -114,8 +114,8 @@ impl JavaScript {
             let (shared, own) = (self.shared.clone(), slot.clone());
             let words: usize = (JS_STACK_BYTES + JS_STACK_SPARE_BYTES) / size_of::<usize>();
             let start: Start = Box::new(move || {
-                let ground = Rc::new(here);
-                let outcome = unbroken(|| machine::run_on(ground, &job, &shared, &own));
+                let platform = Rc::new(here);
+                let outcome = unbroken(|| machine::run_on(platform, &job, &shared, &own));
                 shared.finish(&own, outcome);
             });
             let body = Gn::<Start>::new_opt(words, || {

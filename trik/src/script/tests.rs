@@ -364,3 +364,21 @@ fn python_that_never_ends_or_fails_is_ended_and_says_where() {
     let (_, error) = drive(&mut slow, 1000, &mut robot());
     assert!(error.contains("does not wait"), "{error}");
 }
+
+#[test]
+fn what_the_child_process_says_is_what_is_heard_here() {
+    use trikd::protocol::program::FROM_PROGRAM;
+    let child = include_str!("virtual.py");
+    let parts = ["link.ask('", "link.send('"].map(|mark| child.split(mark).skip(1));
+    let words: Vec<_> = parts
+        .into_iter()
+        .flatten()
+        .filter_map(|rest| rest.split('\'').next())
+        .collect();
+    assert!(words.len() > 15, "{words:?}");
+    let here = include_str!("python.rs");
+    for word in words {
+        let is_heard = FROM_PROGRAM.contains(&word) || here.contains(&format!("\"{word}\" =>"));
+        assert!(is_heard, "{word}");
+    }
+}

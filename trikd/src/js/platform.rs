@@ -1,7 +1,7 @@
-//! What an engine stands on: the robot, time, streams, and what is around the program.
+//! What an engine runs on: the robot, time, streams, and what is around the program.
 //!
 //! Owns the border between the functions of our scripts and where a program runs: on a robot, or under a judge in time
-//! that passes only when programs wait. [`Mounted`] is the robot; the rest implements [`Ground`].
+//! that passes only when programs wait. [`Mounted`] is the robot; the rest implements [`Platform`].
 
 use super::events::{Record, Streams};
 use super::machine::Job;
@@ -27,8 +27,8 @@ pub enum Shown<'a> {
     Numbers(&'a [i32], i32, i32, &'a str),
 }
 
-/// What one engine stands on. Files are named as the program names them, relative to its folder.
-pub trait Ground {
+/// What one engine runs on. Files are named as the program names them, relative to its folder.
+pub trait Platform {
     /// The robot, for this engine alone.
     fn brick(&self) -> Brick;
 
@@ -199,7 +199,7 @@ impl Mounted {
     }
 }
 
-impl Ground for Mounted {
+impl Platform for Mounted {
     fn brick(&self) -> Brick {
         Brick::new(&self.root)
     }
