@@ -7,6 +7,7 @@ use crate::layout::{self, HEADER_BYTES, Layout};
 use crate::limits;
 use crate::map::Map;
 use crate::place;
+pub use crate::ring::Event;
 use crate::ring::{self, Memory as _};
 use nix::time::{ClockId, clock_gettime};
 use std::fs::File;
@@ -14,17 +15,6 @@ use std::io;
 use std::os::unix::fs::{FileExt, MetadataExt};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-
-/// One sample, or one failure to take one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Event {
-    /// Its number: 1 for the first of the ring, and so on; 0 is left out when it wraps.
-    pub sequence: u32,
-    /// When it was taken, in ns of CLOCK_MONOTONIC.
-    pub time_ns: u64,
-    /// 0 for a sample; else why there is none.
-    pub errno: i32,
-}
 
 /// What comes next for a reader that wants all events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,8 +4,18 @@
 //! in which two processors can see them.
 
 use crate::layout::{self, Layout};
-use crate::reader::Event;
 use std::sync::atomic::Ordering;
+
+/// One sample, or one failure to take one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Event {
+    /// Its number: 1 for the first of the ring, and so on; 0 is left out when it wraps.
+    pub sequence: u32,
+    /// When it was taken, in ns of CLOCK_MONOTONIC.
+    pub time_ns: u64,
+    /// 0 for a sample; else why there is none.
+    pub errno: i32,
+}
 
 #[cfg(all(test, loom))]
 mod model;

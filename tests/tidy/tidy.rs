@@ -391,3 +391,52 @@ fn every_path_that_a_document_names_exists() {
     }
     none(&complaints);
 }
+
+/// Modules that match our own enums in full, so that a new variant does not compile until each of them has an answer.
+const EXHAUSTIVE: [&str; 5] = [
+    "trik/src/lib.rs",
+    "trikd/src/diagram.rs",
+    "trikd/src/guardian.rs",
+    "trikd/src/program.rs",
+    "trikd/src/server.rs",
+];
+
+#[test]
+fn where_an_end_may_not_be_silent_wildcard_arms_are_denied() {
+    let sources = sources();
+    let denies = |name: &str| {
+        let source = sources.iter().find(|source| source.path == name);
+        source.is_some_and(|source| {
+            source
+                .text
+                .contains("#![deny(clippy::wildcard_enum_match_arm)]")
+        })
+    };
+    none(
+        &EXHAUSTIVE
+            .iter()
+            .filter(|name| !denies(name))
+            .map(|name| format!("{name}: does not deny clippy::wildcard_enum_match_arm"))
+            .collect::<Vec<_>>(),
+    );
+}
+
+#[test]
+fn what_is_skipped_is_said_by_one_crate() {
+    let mut complaints = Vec::new();
+    for source in sources() {
+        // Benchmarks judge nothing, so they skip nothing.
+        if source.path.starts_with("tests/") || source.path.contains("/benches/") {
+            continue;
+        }
+        for (number, line) in source.code() {
+            if line.contains("println!(\"skipped") {
+                complaints.push(format!(
+                    "{}:{number}: a skip that nobody counts",
+                    source.path
+                ));
+            }
+        }
+    }
+    none(&complaints);
+}
