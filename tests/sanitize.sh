@@ -17,7 +17,6 @@ address() {
     export RUSTC_BOOTSTRAP=1 RUSTFLAGS=-Zsanitizer=address CARGO_TARGET_DIR=target/sanitize/address
     export ASAN_OPTIONS=detect_leaks=0
     cargo test --target "$host" -p converter -p sample-bus --lib
-    cargo test --target "$host" -p config --lib vm::
 }
 
 loom() {
