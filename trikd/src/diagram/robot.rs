@@ -122,23 +122,9 @@ impl<'a> Robot<'a> {
         self.note(port.name(), result);
     }
 
-    /// What changes the display.
-    fn show(&mut self, command: Command<'_>) {
-        let order = match command {
-            Command::Draw(figure) => order(figure),
-            Command::Label { x, y, size, text } => {
-                let text = text.replace('\n', "\\n");
-                format!("label {x} {y} {size} {text}")
-            }
-            Command::PenColor { color } => format!("color {color}"),
-            Command::PenWidth { width } => format!("width {width}"),
-            Command::Background { color } => format!("background {color}"),
-            Command::Smile { sad } => if sad { "sadsmile" } else { "smile" }.to_owned(),
-            Command::ClearScreen => "clear".to_owned(),
-            Command::Redraw => "redraw".to_owned(),
-            _ => return,
-        };
-        let result = self.display.order(&order);
+    /// Gives the display an order.
+    fn show(&mut self, order: &str) {
+        let result = self.display.order(order);
         self.note("display", result);
     }
 
@@ -183,6 +169,12 @@ impl<'a> Robot<'a> {
         let result = self.host.post(words);
         self.note("mailbox", result);
     }
+}
+
+/// A label as an order for the display.
+fn label([x, y, size]: [i32; 3], text: &str) -> String {
+    let text = text.replace('\n', "\\n");
+    format!("label {x} {y} {size} {text}")
 }
 
 /// A figure as an order for the display.
@@ -259,14 +251,14 @@ impl brick::Brick for Robot<'_> {
                 // As above.
                 let _ = self.host.print(&format!("{text}\n"));
             }
-            Command::Draw(_)
-            | Command::Label { .. }
-            | Command::PenColor { .. }
-            | Command::PenWidth { .. }
-            | Command::Background { .. }
-            | Command::Smile { .. }
-            | Command::ClearScreen
-            | Command::Redraw => self.show(command),
+            Command::Draw(figure) => self.show(&order(figure)),
+            Command::Label { x, y, size, text } => self.show(&label([x, y, size], text)),
+            Command::PenColor { color } => self.show(&format!("color {color}")),
+            Command::PenWidth { width } => self.show(&format!("width {width}")),
+            Command::Background { color } => self.show(&format!("background {color}")),
+            Command::Smile { sad } => self.show(if sad { "sadsmile" } else { "smile" }),
+            Command::ClearScreen => self.show("clear"),
+            Command::Redraw => self.show("redraw"),
             // Pictures are made when somebody looks; a real robot has no marker; the daemon brings all to rest.
             Command::StartVideo { .. }
             | Command::StopVideo
