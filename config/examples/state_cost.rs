@@ -6,7 +6,8 @@
 //! are means over the same states.
 
 use config::load::Loader;
-use config::program::{Direction, Program, Vm};
+use config::program::{Program, Vm};
+use converter::Direction;
 use std::time::{Duration, Instant};
 
 const STATES: usize = 500;

@@ -3,28 +3,26 @@
 //! Owns the rules about names and the order in which nodes are built (a node that reads another needs its size first).
 //! The fields of one description are the submodules' business. Runs no Lua.
 
-mod bus;
-mod delivery;
 mod fields;
 mod node;
 mod params;
-mod ports;
 mod regulator;
 mod setup;
 mod several;
 mod source;
 mod stages;
 
-use crate::description::{Alias, Config, NodeDescription, SetupAction};
+use crate::description::{Alias, Config, NodeDescription, SetupAction, SourceDescription};
+use crate::fields::extended;
 use crate::format::Format;
 use crate::limits::{GROUP_DEPTH_MAX, NAME_BYTES_MAX, NODES_MAX, SOURCES_MAX};
 use crate::nearest::{nearest, suggestion};
 use crate::problem::Problem;
 use crate::search::Search;
+use crate::source::kind::Delivery;
 use crate::texts::Texts;
 use crate::value::{Key, Table, Value, Values};
-use delivery::Delivery;
-use fields::Fields;
+use fields::NodeFields;
 use std::collections::HashMap;
 
 /// Names at the top that belong to the filesystem.
@@ -325,14 +323,7 @@ impl<'a> Checker<'a> {
             ));
         }
         self.trail.push(path.clone());
-        let mut fields = Fields {
-            checker: self,
-            path,
-            keys,
-            table,
-            depth,
-        };
-        let description = fields.description()?;
+        let description = NodeFields::new(self, path, keys, table, depth).description()?;
         self.trail.pop();
         let delivery = self.delivery(&description.source);
         if let Some(draft) = self.drafts.get_mut(number) {
@@ -398,6 +389,19 @@ impl<'a> Checker<'a> {
             }
         }
         Ok(())
+    }
+
+    /// How tuples come out of a source. The nodes that it reads have been built.
+    fn delivery(&self, source: &SourceDescription) -> Delivery {
+        source.delivery(&|path| self.delivery_of_node(path))
+    }
+
+    /// How the tuples of a node come out. That was found out when it was built, so that nobody walks through all that it
+    /// reads.
+    fn delivery_of_node(&self, path: &str) -> Delivery {
+        let number = self.index.get(path).copied();
+        let draft = number.and_then(|number| self.drafts.get(number));
+        draft.map_or(Delivery::Unknown, |draft| draft.delivery)
     }
 
     /// True if what another node gives can also be written to it. It has been built.
@@ -481,13 +485,6 @@ fn table_hint(table: &Table) -> String {
         .filter(|name| !node::FIELDS.contains(name))
         .find(|name| nearest(name, ["src"]).is_some());
     wrong.map_or_else(String::new, |name| format!(", is '{name}' a typing error"))
-}
-
-/// The keys and one more.
-fn extended(keys: &[String], name: &str) -> Vec<String> {
-    let mut keys = keys.to_vec();
-    keys.push(name.to_owned());
-    keys
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! Takes every device path of a checked configuration below a folder: the shipped configuration on a virtual board.
 //!
-//! Owns which paths belong to devices. Libraries, included files and recordings are not among them.
+//! Owns where they stand in a configuration; each kind of source shows its own. Libraries, included files and recordings
+//! are not among them.
 
-use crate::description::{Config, NodeDescription, SetupAction, SetupStep, SourceDescription};
+use crate::description::{Config, NodeDescription, SetupAction, SetupStep};
 use std::path::{Path, PathBuf};
 
 /// `/dev/i2c-2` becomes `ROOT/dev/i2c-2`, everywhere in the configuration.
@@ -22,7 +23,7 @@ fn below(root: &Path, path: &Path) -> PathBuf {
 }
 
 fn of_node(node: &mut NodeDescription, take: &mut dyn FnMut(&mut PathBuf)) {
-    of_source(&mut node.source, take);
+    node.source.each_path(take);
     for attribute in &mut node.attributes {
         of_node(attribute, take);
     }
@@ -32,48 +33,10 @@ fn of_action(action: &mut SetupAction, take: &mut dyn FnMut(&mut PathBuf)) {
     match &mut action.step {
         SetupStep::Write { path, .. } => take(path),
         SetupStep::Run { program, .. } => take(program),
-        SetupStep::Send { to, .. } => of_source(to, take),
+        SetupStep::Send { to, .. } => to.each_path(take),
     }
     if let Some(path) = &mut action.unless {
         take(path);
-    }
-}
-
-fn of_source(source: &mut SourceDescription, take: &mut dyn FnMut(&mut PathBuf)) {
-    match source {
-        SourceDescription::Path(path)
-        | SourceDescription::Attribute(path)
-        | SourceDescription::Fifo(path) => take(path),
-        SourceDescription::Evdev(evdev) => take(&mut evdev.path),
-        SourceDescription::I2c(i2c) => take(&mut i2c.path),
-        SourceDescription::I2cBus(bus) => take(&mut bus.path),
-        SourceDescription::Iio(iio) => {
-            take(&mut iio.devices);
-            take(&mut iio.nodes);
-        }
-        SourceDescription::Pwm(pwm) => take(&mut pwm.chip),
-        SourceDescription::Gpio(gpio) => take(&mut gpio.base),
-        SourceDescription::Lines(lines) => {
-            take(&mut lines.path);
-            lines.input.iter_mut().for_each(&mut *take);
-            for command in lines.start.iter_mut().chain(&mut lines.stop) {
-                take(&mut command.program);
-            }
-        }
-        SourceDescription::Program(command) => take(&mut command.program),
-        SourceDescription::Packets(packets) => take(&mut packets.path),
-        SourceDescription::Faulty(faulty) => of_source(&mut faulty.source, take),
-        SourceDescription::Several(several) => {
-            for part in &mut several.parts {
-                of_source(&mut part.source, take);
-            }
-        }
-        SourceDescription::Fake(_)
-        | SourceDescription::Replay(_)
-        | SourceDescription::Node(_)
-        | SourceDescription::Newest(_)
-        | SourceDescription::Regulator(_)
-        | SourceDescription::Absent(_) => {}
     }
 }
 

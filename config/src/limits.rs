@@ -26,6 +26,10 @@ pub const SETUP_BYTES_MAX: usize = 4_096;
 pub const SETUP_TIMEOUT_MS: u32 = 1_000;
 /// Largest `timeout_ms` of an action of `setup`.
 pub const SETUP_TIMEOUT_MS_MAX: u32 = 60_000;
+/// Smallest 7-bit address of a device; the I2C specification reserves those below.
+pub const I2C_ADDRESS_MIN: u32 = 0x03;
+/// Largest 7-bit address of a device; the I2C specification reserves those above.
+pub const I2C_ADDRESS_MAX: u32 = 0x77;
 /// Bytes of one SMBus block (`I2C_SMBUS_BLOCK_MAX` of linux/i2c.h).
 pub const I2C_BLOCK_BYTES_MAX: usize = 32;
 /// Bytes of one plain I2C message (8192 in the kernel's i2c-dev.c).
@@ -61,6 +65,10 @@ pub const MEMORY_KB: u32 = 1_024;
 /// Largest `memory_kb`: 64 MiB.
 pub const MEMORY_KB_MAX: u32 = 64 << 10;
 
+/// Codes of one `evdev` tuple.
+pub const EVDEV_CODES_MAX: usize = 256;
+/// Bytes of the reason of an absent source.
+pub const ABSENT_REASON_BYTES_MAX: usize = 200;
 /// Names that one `iio` source may look for.
 pub const IIO_NAMES_MAX: usize = 16;
 /// Channels of one `iio` source.

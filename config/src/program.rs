@@ -7,27 +7,10 @@ use crate::limits::{BUDGET_US, LOAD_MEMORY_BYTES, LOAD_TIME_MS, MEMORY_KB};
 use crate::vm::bytecode::Code;
 use crate::vm::stage::Stages;
 use crate::vm::state::{Include, State};
+use converter::{Conversion, Direction};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
-
-/// Which way bytes pass through a converter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Direction {
-    /// From the device to the program.
-    Read,
-    /// From the program to the device.
-    Write,
-}
-
-/// What a converter did with a tuple.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Conversion {
-    /// The output tuple is filled.
-    Produced,
-    /// The input was taken and there is no output yet.
-    Consumed,
-}
 
 /// A converter bound in a [`Vm`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

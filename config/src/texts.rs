@@ -2,8 +2,8 @@
 //!
 //! Owns the translation between Lua's chunk names and the names that users gave. Opens nothing.
 
-use crate::description::Place;
 use crate::lines::{Lines, line_of};
+use crate::place::Place;
 use crate::problem::Problem;
 
 /// Longest chunk name that Lua does not shorten in messages (LUA_IDSIZE less the terminator).

@@ -3,7 +3,7 @@
 //! Tables stand in one list and refer to each other by number, in which order they were met. Knows no field of a
 //! description.
 
-use crate::description::Place;
+use crate::place::Place;
 
 /// A value of a configuration.
 #[derive(Clone, Debug, PartialEq)]

@@ -102,7 +102,7 @@ pub struct RawLibrary {
     pub(crate) converters: *const *const RawConverter,
 }
 
-// SAFETY: the pointers lead to constants (`export::descriptor` makes them from 'static references) that nobody writes.
+// SAFETY: the pointers lead to constants (`export::descriptor` makes them from 'static references) that are never written.
 unsafe impl Sync for RawConverter {}
 // SAFETY: as above; `export::library` takes a 'static slice.
 unsafe impl Sync for RawLibrary {}

@@ -263,7 +263,7 @@ unsafe extern "C" fn close<T: Converter>(state: *mut c_void) {
     if !state.is_null() {
         // SAFETY: `open::<T>` made it with Box::into_raw and the header promises a single close.
         let opened = unsafe { Box::from_raw(state.cast::<Opened<T>>()) };
-        // A panic in a destructor has nobody left to be reported to; the hook has printed it.
+        // A panic in a destructor can no longer be reported; the hook has printed it.
         let _ = catch_unwind(AssertUnwindSafe(move || drop(opened)));
     }
 }
@@ -316,7 +316,7 @@ unsafe fn bytes<'a>(start: *const u8, size: usize) -> &'a [u8] {
 /// An output array of C as a slice.
 ///
 /// # Safety
-/// `size` bytes can be written, and nobody else looks at them.
+/// `size` bytes can be written, and nothing else accesses them.
 unsafe fn bytes_mut<'a>(start: *mut u8, size: usize) -> &'a mut [u8] {
     if size == 0 || start.is_null() {
         return &mut [];

@@ -108,7 +108,7 @@ fn the_header_compiles_as_c99_and_as_cpp() {
         )
         .unwrap();
         if Command::new(name).arg("--version").output().is_err() {
-            println!("skipped: no {name}");
+            needs::Need::Tools.missing(format_args!("no {name}"));
             continue;
         }
         run(compiler(name)

@@ -12,7 +12,7 @@ use std::fmt::Write;
 /// One opened converter: input and output of the sizes of the opening; a fault is its text.
 pub type Opened = Box<dyn FnMut(&[u8], &mut [u8]) -> Result<Conversion, String>>;
 
-/// Opens a converter afresh, or says why it refuses.
+/// Opens a new converter, or says why it refuses.
 pub type Open<'a> = dyn FnMut() -> Result<Opened, String> + 'a;
 
 /// What opens a converter in Rust, for the other functions of this module.
@@ -146,7 +146,7 @@ pub struct Report {
     pub faults: BTreeMap<String, usize>,
 }
 
-/// Bytes around an output that nobody may touch.
+/// Bytes around an output that must not be touched.
 const GUARD: usize = 64;
 const GUARD_BYTE: u8 = 0xa5;
 
@@ -154,7 +154,7 @@ const GUARD_BYTE: u8 = 0xa5;
 ///
 /// - It does not crash: that would end the program.
 /// - Each output passes `check`.
-/// - Nothing is written before or behind an output.
+/// - Nothing is written before or after an output.
 /// - Opened again it does the same with the same tuples, while another opening gets other tuples in between: no state
 ///   is shared or left over.
 ///

@@ -23,7 +23,7 @@ no_arguments "$@"
 . "$root/cross/install/stage.sh"
 
 from=$root/cross/install/deb
-built=${CARGO_TARGET_DIR:-$root/target}/release
+built=${CARGO_TARGET_DIR:-$root/target}/dist
 work=
 
 main() {
@@ -33,7 +33,7 @@ main() {
     need_packages dpkg-dev binutils
     if [ -n "$build" ]; then
         say "building for this PC"
-        (cd "$root" && cargo build --release "${robot_crates[@]}" --locked)
+        (cd "$root" && cargo build --profile dist "${robot_crates[@]}" --locked)
     fi
     local program
     for program in trikfs trikfs-ev3dev trikd; do
@@ -82,6 +82,8 @@ make_docs() {
     "$view" completions zsh >"$share/zsh/vendor-completions/_trikfs-ev3dev"
     "$view" completions fish >"$share/fish/vendor_completions.d/trikfs-ev3dev.fish"
     install -m 644 "$from/copyright" "$doc"
+    # Debian has this one on every system.
+    rm "$doc/LICENSE"
     gzip -9n <"$work/debian/changelog" >"$doc/changelog.gz"
     install -m 644 "$root"/docs/user/*.md "$doc"
 }

@@ -19,5 +19,9 @@ stage() {
         [ "$(basename "$file")" = prelude.lua ] ||
             install -D -m 644 "$file" "$prefix/share/trikfs/lua/${file#"$root"/config/lua/}"
     done
+    # What is inside the programs, with the licences that must go with it.
+    for file in LICENSE NOTICE; do
+        install -D -m 644 "$root/$file" "$prefix/share/doc/trikfs/$file"
+    done
     install -D -m 644 "$root/converter/include/trikfs_converter.h" "$prefix/include/trikfs_converter.h"
 }

@@ -1,6 +1,6 @@
-//! The command line of `trikfs-ev3dev`: what can be said, and which part of the crate does it.
+//! The command line of `trikfs-ev3dev`: options, commands, and which part of the crate carries them out.
 //!
-//! Owns the words, the help and the exit codes: 0 done, 1 refused or failed, 2 not understood.
+//! Owns the words, the help and the exit codes: 0 success, 1 refused or failed, 2 bad command line.
 
 use crate::failure::Failure;
 use crate::keeper::{self, Handover, Plan};
@@ -17,10 +17,10 @@ use std::process::ExitCode;
 
 /// Show the devices of a trikfs tree as the classes of ev3dev.
 ///
-/// Programs that are written for ev3dev then find motors, sensors, lights and the battery of the tree in MOUNTPOINT as they
-/// would in /sys/class. Stays in the foreground until it is unmounted or gets SIGTERM or SIGINT, and says in one line
-/// when the view can be used. Motors that it drives come to rest when it ends, by whatever cause. The tree may go and come
-/// back meanwhile, and need not be there at the start.
+/// Programs written for ev3dev then find motors, sensors, lights and the battery of the tree in MOUNTPOINT as they
+/// would in /sys/class. Stays in the foreground until it is unmounted or gets SIGTERM or SIGINT, and prints one line
+/// when the view can be used. Motors that it drives come to rest when it ends, for whatever reason. The tree may go
+/// and come back meanwhile, and need not be there at the start.
 #[derive(Parser)]
 #[command(name = "trikfs-ev3dev", version, max_term_width = 100, after_long_help = EXAMPLES)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
@@ -31,7 +31,7 @@ struct Cli {
     /// Where the tree is mounted.
     #[arg(long, value_name = "DIR", default_value = "/trikfs")]
     tree: PathBuf,
-    /// Greatest speed that motors with an encoder are asked for, in degrees per second: about 80 percent of what they
+    /// Maximum speed of motors with an encoder, in degrees per second: about 80 percent of what they
     /// reach without a load.
     #[arg(long, value_name = "NUMBER", default_value_t = 1000, value_parser = clap::value_parser!(i32).range(10..=100_000))]
     max_speed: i32,
@@ -42,12 +42,12 @@ struct Cli {
     /// Let other users in, with the permissions that the files show.
     #[arg(long)]
     allow_other: bool,
-    /// A directory; made if nothing is there, and then removed again. One with the name of a command is ./NAME.
+    /// A directory; created if it does not exist, and then removed again. For one with the name of a command write ./NAME.
     #[arg(required = true, value_parser = OsStringValueParser::new().try_map(mountpoint))]
     mountpoint: Option<PathBuf>,
 }
 
-/// What can be asked for instead of a view.
+/// Commands that print something instead of mounting a view.
 #[cfg(feature = "manual")]
 #[derive(Subcommand)]
 enum Command {
@@ -83,10 +83,10 @@ Examples:
   cat /ev3dev/tacho-motor/motor0/address
   trikfs umount /ev3dev
 
-Exit status: 0 done; 1 refused, or something failed; 2 the command line was not understood.";
+Exit status: 0 success; 1 refused, or something failed; 2 bad command line.";
 
-/// The first argument of the serving process: process id of its keeper and the numbers of the mount. Not a matter of
-/// people, so it is no option.
+/// The first argument of the serving process: process id of its keeper and the numbers of the mount. Not meant for
+/// users, so it is not an option.
 pub(crate) const SERVE: &str = "--serve=";
 
 /// The program: reads the arguments of the process, does it, gives the exit code.
@@ -161,7 +161,7 @@ fn arguments(tree: &Path, cli: &Cli) -> Vec<OsString> {
     list
 }
 
-/// What is said before the view is mounted.
+/// What is printed before the view is mounted.
 fn missing_line(tree: &Path) -> String {
     format!(
         "{}: no tree is mounted there; the view is empty until there is one (--tree=DIR says another place)",
@@ -197,7 +197,7 @@ fn handover(word: &str) -> Option<Handover> {
     }
 }
 
-/// The text that was asked for instead of a view.
+/// The text that is printed instead of mounting a view.
 #[cfg(feature = "manual")]
 fn manual(command: &Command) -> Result<Vec<u8>, Failure> {
     use clap::CommandFactory;

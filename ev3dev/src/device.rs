@@ -1,7 +1,7 @@
 //! What every device of a class is to the view: a list of attributes that are shown and stored as text.
 //!
 //! Owns the rules of sysfs texts (one line, whole numbers to the base ten, a line break at the end is not part of it) and
-//! who is told when an attribute changes. Knows no device and no inode.
+//! what is notified when an attribute changes. Knows no device and no inode.
 
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
@@ -80,7 +80,7 @@ pub trait Device: Send + Sync {
     /// Why it is refused.
     fn store(&self, attribute: &str, text: &str) -> Result<(), Error>;
 
-    /// Who is told when this attribute changes; none if it never tells.
+    /// What is notified when this attribute changes; none if it never notifies.
     fn changes(&self, _attribute: &str) -> Option<&Arc<Changes>> {
         None
     }
@@ -199,7 +199,7 @@ impl Changes {
         lock(&self.watchers).retain(|(other, _)| *other != fh);
     }
 
-    /// Counts a change and wakes whoever polls. Call it without any lock that an operation takes.
+    /// Counts a change and wakes programs that poll. Call it without any lock that an operation takes.
     pub fn tell(&self) {
         self.count.fetch_add(1, Ordering::SeqCst);
         let handles: Vec<PollHandle> = lock(&self.watchers)

@@ -1,6 +1,6 @@
 //! Why there is no view, or why it ended.
 //!
-//! Owns the reasons, which of the two processes tells them, and their words.
+//! Owns the reasons, which of the two processes prints them, and their words.
 
 use nix::errno::Errno;
 use std::fmt;

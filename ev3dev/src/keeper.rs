@@ -1,4 +1,4 @@
-//! The two processes of the view: one that serves it, and one that keeps the mount and cleans up behind it.
+//! The two processes of the view: one that serves it, and one that keeps the mount and cleans up after it.
 //!
 //! The keeper mounts, starts the serving process and waits for a signal, an unmount or its end; then it unmounts, so that a
 //! kill of the serving process leaves no dead mount. If the keeper is killed, the kernel tells the serving process, which
@@ -93,13 +93,13 @@ pub fn keep(plan: &Plan, ready: &mut dyn FnMut(usize)) -> Result<(), Failure> {
     };
     let end = start(plan, &device, &mounted)
         .and_then(|mut server| server.until_end(&signals, &mounted, ready));
-    // With the last descriptor whoever waits in the mount is let go.
+    // With the last descriptor every program that waits in the mount is released.
     drop(device);
     unmount(&mounted);
     end.map_err(Failure::Serving)?
 }
 
-/// A directory that was not there before. Dropping it removes it, if nobody has put anything there.
+/// A directory that was not there before. Dropping it removes it, if it is empty.
 struct MadeDirectory<'a>(&'a Path);
 
 impl<'a> MadeDirectory<'a> {
@@ -160,7 +160,7 @@ struct Server {
 }
 
 impl Server {
-    /// Waits for the end and brings it about when somebody wants it.
+    /// Waits for the end and brings it about when it is asked for.
     fn until_end(
         &mut self,
         signals: &SignalFd,

@@ -16,7 +16,7 @@ pub const NAME_TTL_MS: u64 = 500;
 pub const LOOP_MS: u64 = 10;
 /// How often a motor that cannot be reached is tried to be let go.
 pub const RETRY_MS: u64 = 100;
-/// How long the loop goes on after somebody has asked for the speed of a motor that stands.
+/// How long the loop goes on after the speed of a motor at rest was read.
 pub const OBSERVE_S: f64 = 0.3;
 /// How long the encoder or the power of a motor may fail before it is stopped.
 pub const LOST_S: f64 = 0.2;

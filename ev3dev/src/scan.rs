@@ -75,7 +75,7 @@ pub struct Found {
     pub class: &'static str,
     /// What it is in the tree; one device for each in a class.
     pub key: String,
-    /// Its directory, or where its number is put behind.
+    /// How its directory is called.
     pub name: Name,
     what: What,
 }
@@ -83,9 +83,9 @@ pub struct Found {
 /// How the directory of a device is called.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Name {
-    /// So.
+    /// By this name.
     Exact(&'static str),
-    /// So with a number behind that no device of the class had before.
+    /// By this name and a number that no device of the class had before.
     Numbered(&'static str),
 }
 
@@ -179,7 +179,7 @@ fn numbered(class: &'static str, node: &str, prefix: &'static str, what: What) -
     }
 }
 
-/// As on an EV3, with the name of the port of the controller behind.
+/// As on an EV3, followed by the name of the controller's port.
 fn address(name: &str, port: &str) -> String {
     format!("ev3-ports:{name}:{port}")
 }

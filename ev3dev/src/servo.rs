@@ -47,7 +47,7 @@ struct Work {
 }
 
 impl Servo {
-    /// A servo that nobody drives yet.
+    /// A servo that is not driven yet.
     pub fn new(tree: Tree, address: String, node: String, in_degrees: bool) -> Self {
         Self {
             tree,

@@ -26,7 +26,7 @@ impl Tree {
         &self.root
     }
 
-    /// True if somebody serves it: every tree has a `status`.
+    /// True if it is served: every tree has a `status`.
     pub fn is_there(&self) -> bool {
         self.root.join("status").metadata().is_ok()
     }
@@ -190,7 +190,7 @@ impl KeptFile {
         self.file = None;
     }
 
-    /// Uses the open file; if that is of a tree or node that is gone, opens it anew, once.
+    /// Uses the open file; if that is of a tree or node that is gone, opens it again, once.
     fn with<R>(&mut self, mut call: impl FnMut(&TreeFile) -> Result<R, Error>) -> Result<R, Error> {
         if let Some(file) = &self.file {
             match call(file) {

@@ -1,9 +1,9 @@
 //! The operations of the mount: names of the table, and open attributes with the rules of sysfs.
 //!
-//! A read at offset 0 makes the text anew, a read beyond goes on in it. One write(2) is one text, wherever it is written.
-//! poll tells POLLPRI and POLLERR of an attribute that changes when it has changed since it was last read, as
+//! A read at offset 0 makes the text again, a read beyond goes on in it. One write(2) is one text, wherever it is written.
+//! poll reports POLLPRI and POLLERR of an attribute that changes when it has changed since it was last read, as
 //! sysfs_notify does; all files can always be read and written.
-//! Knows no device; looks through the tree for new ones when somebody looks at names.
+//! Knows no device; looks through the tree for new ones when names are looked up.
 
 use crate::device::{Access, Attribute, Changes, Device, KernelSlot, lock};
 use crate::limits::{NAME_TTL_MS, OPEN_MAX, SCAN_MS, WRITE_BYTES_MAX};

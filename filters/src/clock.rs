@@ -1,8 +1,8 @@
-//! How much time lies between two tuples: from the tuples themselves, or from the configuration.
+//! The time between two tuples: from the tuples themselves, or from the configuration.
 //!
 //! Owns the rule for time. Reads no clock: a filter knows only what it is told.
 //!
-//! A tuple may end with `time_us`, microseconds as u32; it may start anywhere and goes on from 0 behind its greatest value,
+//! A tuple may end with `time_us`, microseconds as u32; it may start anywhere and wraps to 0 after its greatest value,
 //! after 71 minutes. If there is one, it counts. Otherwise all tuples lie `period_ms` apart.
 
 use crate::limits::{GAP_US_MAX, PERIOD_MS_MAX};

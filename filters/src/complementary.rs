@@ -125,7 +125,7 @@ mod tests {
 
     #[test]
     fn a_drifting_rate_stays_near_the_angle() {
-        // A rate that is wrong by b for ever leaves an error of b tau: 10 * 0.5 = 5.
+        // A rate that is wrong by b permanently leaves an error of b tau: 10 * 0.5 = 5.
         let params = [("period_ms", 10.0), ("time_constant_ms", 500.0)];
         let mut filter = open::<Complementary<f32>>((2, 1), &params).unwrap();
         let last = (0..2000)
@@ -155,7 +155,7 @@ mod tests {
             step::<_, 1>(&mut filter, &[f32::MAX, f32::MAX], Some(1_000_000)).unwrap_err(),
             "complementary: the result is not a finite number"
         );
-        // And afresh.
+        // And it starts over.
         assert_eq!(step(&mut filter, &[0.0, 3.0], Some(0)), Ok([3.0]));
     }
 }

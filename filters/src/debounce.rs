@@ -84,7 +84,7 @@ mod tests {
 
     #[test]
     fn a_bouncing_contact_changes_once() {
-        // By hand, three in a row: the third 1 in a row counts; the single 0 behind it does not.
+        // By hand, three in a row: the third 1 in a row counts; the single 0 after it does not.
         let values = [0, 1, 0, 1, 1, 1, 0, 1, 0, 0, 0];
         assert_eq!(run(3, values), [0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 0]);
     }

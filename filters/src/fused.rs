@@ -4,7 +4,7 @@
 //!
 //! A tuple has the values that the filter names, 32 bits each, and may end with `time_us` (see `clock.rs`).
 //! A tuple with the same time as the one before is the same sample again, as several sources in one node make them: its
-//! result is the last one. After a fault the filter begins afresh.
+//! result is the last one. After a fault the filter starts over.
 
 use crate::clock::{Clock, Elapsed};
 use crate::limits::{FUSED_INPUTS_MAX, FUSED_OUTPUTS_MAX};

@@ -287,7 +287,7 @@ proptest! {
                 let panicked = matches!(result, Err(text) if text.contains("panicked"));
                 prop_assert!(!panicked, "{name}: {result:?}");
             }
-            // A fault of either value begins both afresh, so only runs without one can be compared.
+            // A fault of either value makes both start over, so only runs without one can be compared.
             if together.iter().all(Result::is_ok) {
                 for (pair, single) in together.iter().flatten().zip(alone.iter().flatten()) {
                     prop_assert_eq!((pair.0, &pair.1[..4]), (single.0, &single.1[..]), "{}", name);

@@ -105,7 +105,7 @@ pub fn lost() -> Fault {
     Fault::new("the orientation is lost: the sensors contradict each other")
 }
 
-/// Fills in what the size of the result asks for: w x y z, or roll pitch yaw in degrees, or both one behind the other.
+/// Fills in what the size of the result asks for: w x y z, or roll pitch yaw in degrees, or both, one after the other.
 pub fn fill(q: Quaternion, results: &mut [f32]) {
     let mut rest = results;
     if rest.len() >= 4 {

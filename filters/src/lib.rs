@@ -5,7 +5,7 @@
 //! Every tuple is an array of little-endian 32-bit values: `i32` for the plain names, `f32` for the names that end in `_f32`.
 //! Most filters work on each value of a tuple on its own (`lanes`); those that fuse several values into others (`fused`) say
 //! which values they take, and get the time between two tuples from `clock`. A value that is not a finite number is a fault,
-//! and so is a result that is none; after a fault the filter begins afresh, so that no later value leans on a missing one.
+//! and so is a result that is none; after a fault the filter starts over, so that no later value leans on a missing one.
 //!
 //! `config/lua/filters.lua` has the same filters in Lua, equal bit for bit, but for [`LIBRARY_ONLY`];
 //! `tests/golden/filters` holds both to it.

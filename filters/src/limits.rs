@@ -6,7 +6,7 @@ pub const STATE_BYTES_MAX: usize = 1 << 20;
 pub const FUSED_INPUTS_MAX: usize = 9;
 /// Values of the largest result of such a filter: a quaternion and three angles.
 pub const FUSED_OUTPUTS_MAX: usize = 7;
-/// Longest time between two tuples that is still bridged: what happened in a longer one, nobody knows.
+/// Longest time between two tuples that is still bridged: what happened in a longer one is unknown.
 pub const GAP_US_MAX: u32 = 1_000_000;
 /// How long a sensor of direction may give nothing but zeros, as in free fall, before it counts as dead.
 pub const SILENCE_US_MAX: u32 = 1_000_000;

@@ -6,8 +6,8 @@
 //! keep their ratio between two tuples, in a straight line and on any circle.
 //! The heading is computed from the whole counts since the beginning, so it gathers no rounding errors.
 //! x points ahead at the beginning, y to the left; angles grow to the left (ROS REP 103).
-//! Counters of 32 bits go on behind their end. More than 10 turns of a wheel between two tuples are a counter that was set
-//! back: a fault, and the robot is at the origin again, for where it went nobody knows.
+//! Counters of 32 bits may wrap around. More than 10 turns of a wheel between two tuples are a counter that was set
+//! back: a fault, and the robot is at the origin again, because where it went is unknown.
 //! In f64: steps of micrometres would vanish in an f32 of metres. Cost: about 60 operations, one or two divisions.
 
 use crate::clock::Elapsed;

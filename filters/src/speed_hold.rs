@@ -292,7 +292,7 @@ mod tests {
             }
             before = power;
         }
-        // The counter of 32 bits goes on behind its end.
+        // The counter of 32 bits wraps around.
         let mut hold = open::<SpeedHold>((2, 2), &PARAMS).unwrap();
         let mut speeds = (0..100).map(|n| {
             let position = (i32::MAX - 150).wrapping_add(3 * n);

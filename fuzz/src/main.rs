@@ -1,6 +1,6 @@
 //! One program for all fuzz targets: libFuzzer in front of the function that `TRIK_FUZZ_TARGET` names.
 //!
-//! Owns the list of targets. What they do is in the `fuzz` module of each crate; `run.sh` builds and starts this.
+//! Owns the list of targets. What they do is said beside them, mostly in the `fuzz` module of their crate; `run.sh` builds and starts this.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 
 type Target = fn(&[u8]);
 
-const TARGETS: [(&str, Target); 12] = [
+const TARGETS: [(&str, Target); 18] = [
     ("reader", lang_diagram::fuzz::reader),
     ("expression", lang_expr::fuzz::expression),
     ("lowering", lang_diagram::fuzz::lowering),
@@ -19,7 +19,13 @@ const TARGETS: [(&str, Target); 12] = [
     ("frames", trikd::fuzz::fuzz_frames),
     ("messages", trikd::fuzz::fuzz_messages),
     ("lines", trikd::fuzz::fuzz_lines),
+    ("channel", trikd::fuzz::fuzz_channel),
     ("strangers", trikd::fuzz::fuzz_strangers),
+    ("decode", trikfs::transport::native::fuzz_decode),
+    ("library", converter::abi::fuzz_library),
+    ("load", config::fuzz::fuzz_load),
+    ("format", config::fuzz::fuzz_format),
+    ("pattern", config::fuzz::fuzz_pattern),
     ("picture", sim::arena::floor::fuzz::picture),
 ];
 

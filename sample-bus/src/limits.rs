@@ -16,7 +16,7 @@ pub const RING_BYTES: usize = 4 << 20;
 pub const TUPLE_BYTES_MAX: usize = 64 << 20;
 /// Attempts of a reader to get one event that is overwritten again and again.
 pub const ATTEMPTS: usize = 8;
-/// Attempts to take a directory that somebody else has or is just removing.
+/// Attempts to take a directory that another process has or is just removing.
 pub const DIRECTORY_ATTEMPTS: usize = 16;
 /// Pause between two of them: who cleans up has a directory for a moment only.
 pub const DIRECTORY_PAUSE: Duration = Duration::from_millis(2);

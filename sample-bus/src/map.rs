@@ -3,11 +3,12 @@
 //! Owns the mapping of a file and the only `unsafe` of this crate. All access is by atomic operations, so that a
 //! concurrent change gives other numbers and nothing worse. Knows nothing of what the numbers mean.
 
+use crate::ring::Memory;
 use std::fs::File;
 use std::io;
 use std::os::fd::AsRawFd;
 use std::ptr::NonNull;
-use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering, fence};
 
 const WORD_BYTES: usize = size_of::<usize>();
 
@@ -78,20 +79,20 @@ impl Map {
         // AtomicUsize has the layout of usize, and all bytes of a mapped file are initialised.
         unsafe { std::slice::from_raw_parts(self.start.as_ptr().add(at).cast(), count) }
     }
+}
 
-    /// Reads a number; order it with a fence. (Stronger loads are not promised to work on memory that is read-only.)
-    pub(crate) fn get(&self, at: usize) -> u32 {
+impl Memory for Map {
+    // Stronger loads are not promised to work on memory that is read-only.
+    fn get(&self, at: usize) -> u32 {
         self.number(at).load(Ordering::Relaxed)
     }
 
-    /// Writes a number; order it with a fence.
-    pub(crate) fn set(&self, at: usize, number: u32) {
+    fn set(&self, at: usize, number: u32) {
         assert!(self.is_writable);
         self.number(at).store(number, Ordering::Relaxed);
     }
 
-    /// Writes bytes; the rest of the last word becomes 0.
-    pub(crate) fn copy_in(&self, at: usize, bytes: &[u8]) {
+    fn copy_in(&self, at: usize, bytes: &[u8]) {
         assert!(self.is_writable);
         let words = self.words(at, bytes.len().div_ceil(WORD_BYTES));
         let (whole, rest) = bytes.as_chunks::<WORD_BYTES>();
@@ -105,8 +106,7 @@ impl Map {
         }
     }
 
-    /// Reads bytes.
-    pub(crate) fn copy_out(&self, at: usize, bytes: &mut [u8]) {
+    fn copy_out(&self, at: usize, bytes: &mut [u8]) {
         let words = self.words(at, bytes.len().div_ceil(WORD_BYTES));
         let (whole, rest) = bytes.as_chunks_mut::<WORD_BYTES>();
         for (word, bytes) in words.iter().zip(whole.iter_mut()) {
@@ -116,6 +116,10 @@ impl Map {
             let last = word.load(Ordering::Relaxed).to_ne_bytes();
             rest.copy_from_slice(&last[..rest.len()]);
         }
+    }
+
+    fn fence(&self, order: Ordering) {
+        fence(order);
     }
 }
 

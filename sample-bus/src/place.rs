@@ -1,6 +1,6 @@
 //! Where the rings of a mounted tree are: a directory in shared memory, named after the mount point.
 //!
-//! Owns the names, and the directory of one publisher: that it is the only one, that nobody else put it there, that
+//! Owns the names, and the directory of one publisher: that it is the only one, that no other user put it there, that
 //! what a killed publisher left is removed. Knows nothing of what is in a ring.
 
 use crate::limits;
@@ -83,7 +83,7 @@ impl Directory {
     /// Takes the directory with the given rights; makes it or removes what a killed publisher left in it.
     ///
     /// # Errors
-    /// There is no shared memory, somebody else's directory is there, or another publisher of this mount point lives.
+    /// There is no shared memory, another user's directory is there, or another publisher of this mount point lives.
     pub fn take(path: &Path, mode: u32) -> io::Result<Self> {
         let mut busy = None;
         for _ in 0..limits::DIRECTORY_ATTEMPTS {
@@ -95,7 +95,7 @@ impl Directory {
                 Ok(Some(lock)) => lock,
                 // Somebody else has just removed it.
                 Ok(None) => continue,
-                // Perhaps only by somebody who cleans up.
+                // Perhaps only by a process that cleans up.
                 Err(error) if error.kind() == io::ErrorKind::ResourceBusy => {
                     busy = Some(error);
                     std::thread::sleep(limits::DIRECTORY_PAUSE);
@@ -154,7 +154,7 @@ impl Directory {
     fn empty(&self) -> io::Result<()> {
         for entry in std::fs::read_dir(&self.path)? {
             let entry = entry?;
-            // No publisher makes one, but what is there must not stay in the way for ever.
+            // No publisher makes one, but what is there must not stay in the way forever.
             if entry.file_type()?.is_dir() {
                 std::fs::remove_dir_all(entry.path())?;
             } else {
@@ -177,7 +177,7 @@ pub fn sweep(shared_memory: &Path) {
     let entries = std::fs::read_dir(shared_memory).into_iter().flatten();
     for entry in entries.flatten() {
         let path = entry.path();
-        // An empty one may be somebody's who just begins.
+        // An empty one may be that of a publisher that is just starting.
         let has_rings = || std::fs::read_dir(&path).is_ok_and(|mut rings| rings.next().is_some());
         if entry.file_name().as_bytes().starts_with(b"trikfs+") && has_rings() {
             remove_left(&path);

@@ -7,12 +7,12 @@ use crate::layout::{self, HEADER_BYTES, Layout};
 use crate::limits;
 use crate::map::Map;
 use crate::place;
+use crate::ring::{self, Memory as _};
 use nix::time::{ClockId, clock_gettime};
 use std::fs::File;
 use std::io;
 use std::os::unix::fs::{FileExt, MetadataExt};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{Ordering, fence};
 use std::time::Duration;
 
 /// One sample, or one failure to take one.
@@ -141,39 +141,12 @@ impl Reader {
 
     /// The number of the newest event; 0 before the first.
     pub fn newest_sequence(&self) -> u32 {
-        let sequence = self.map.get(layout::AT_NEWEST);
-        fence(Ordering::Acquire);
-        sequence
+        ring::newest(&self.map)
     }
 
     /// The event with a number, with its bytes. None: it is not there yet, or no longer.
     pub fn event(&self, sequence: u32, tuple: &mut Vec<u8>) -> Option<Event> {
-        let slot = self.layout.slot_at(sequence);
-        let end = self.map.get(slot + layout::AT_END);
-        // What was written before the end is seen after this.
-        fence(Ordering::Acquire);
-        if end != sequence {
-            return None;
-        }
-        let mut head = [0; 16];
-        self.map.copy_out(slot + layout::AT_SIZE, &mut head);
-        let [size, errno, time_low, time_high] = split(head);
-        let size = usize::try_from(size).ok()?.min(self.layout.tuple_bytes);
-        tuple.resize(size, 0);
-        self.map.copy_out(slot + layout::SLOT_HEADER_BYTES, tuple);
-        // If a byte of a later event was seen above, its beginning is seen below.
-        fence(Ordering::Acquire);
-        if self.map.get(slot + layout::AT_BEGIN) != sequence {
-            return None;
-        }
-        let mut time = [0; 8];
-        time[..4].copy_from_slice(&time_low.to_ne_bytes());
-        time[4..].copy_from_slice(&time_high.to_ne_bytes());
-        Some(Event {
-            sequence,
-            time_ns: u64::from_ne_bytes(time),
-            errno: i32::from_ne_bytes(errno.to_ne_bytes()),
-        })
+        ring::read(&self.map, &self.layout, sequence, tuple)
     }
 
     /// The event after the last one that this gave: at first the oldest that is kept.
@@ -220,13 +193,4 @@ impl Event {
         });
         now.saturating_sub(self.time_ns)
     }
-}
-
-fn split(head: [u8; 16]) -> [u32; 4] {
-    let (numbers, _) = head.as_chunks::<4>();
-    std::array::from_fn(|at| {
-        numbers
-            .get(at)
-            .map_or(0, |bytes| u32::from_ne_bytes(*bytes))
-    })
 }

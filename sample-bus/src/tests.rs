@@ -8,7 +8,8 @@ use std::fs::File;
 use std::io::{self, ErrorKind};
 use std::os::unix::fs::{FileExt, PermissionsExt, symlink};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
+use tempfile::TempDir;
 
 const READABLE: Rights = Rights {
     mode: 0o444,
@@ -16,35 +17,21 @@ const READABLE: Rights = Rights {
 };
 
 /// A directory for one test, gone with it.
-struct Folder(PathBuf);
+struct Folder(TempDir);
 
 impl Folder {
     fn new() -> Self {
-        static COUNT: AtomicU32 = AtomicU32::new(0);
-        let name = format!(
-            "sample-bus-test-{}-{}",
-            std::process::id(),
-            COUNT.fetch_add(1, Ordering::Relaxed)
-        );
-        let path = std::env::temp_dir().join(name);
-        std::fs::create_dir(&path).unwrap();
-        Self(path)
+        Self(tempfile::tempdir().unwrap())
     }
 
     fn path(&self, name: &str) -> PathBuf {
-        self.0.join(name)
+        self.0.path().join(name)
     }
 
     fn ring(&self, tuple_bytes: usize) -> (Writer, Reader) {
         let path = self.path("ring");
         let writer = Writer::create(&path, tuple_bytes, READABLE).unwrap();
         (writer, Reader::open_file(&path).unwrap())
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
     }
 }
 
@@ -138,7 +125,7 @@ fn a_slow_reader_hears_how_many_events_it_has_missed() {
         assert_eq!(tuple, number.to_ne_bytes());
     }
     assert_eq!(reader.next_event(&mut tuple), Step::Nothing);
-    // Who comes late begins with the oldest, and has missed nothing.
+    // A late reader begins with the oldest, and has missed nothing.
     let mut late = Reader::open_file(&folder.path("ring")).unwrap();
     let Step::Event(event) = late.next_event(&mut tuple) else {
         panic!("nothing");
@@ -324,7 +311,7 @@ fn a_directory_has_one_publisher_and_is_cleaned_of_what_a_dead_one_left() {
     std::fs::write(path.join("ring"), b"x").unwrap();
     let other = folder.path("trikfs+other");
     let lives = Directory::take(&other, 0o700).unwrap();
-    place::sweep(&folder.0);
+    place::sweep(folder.0.path());
     assert!(!path.exists() && lives.path().exists());
     assert!(!place::remove_left(&path));
 }
@@ -347,7 +334,7 @@ fn publishers_that_begin_and_sweepers_do_not_disturb_each_other() {
     std::thread::scope(|scope| {
         for number in 0..4 {
             let path = folder.path(&format!("trikfs+{number}"));
-            let shared_memory = &folder.0;
+            let shared_memory = folder.0.path();
             scope.spawn(move || {
                 for _ in 0..50 {
                     place::sweep(shared_memory);
@@ -360,7 +347,7 @@ fn publishers_that_begin_and_sweepers_do_not_disturb_each_other() {
             });
         }
     });
-    assert_eq!(std::fs::read_dir(&folder.0).unwrap().count(), 0);
+    assert_eq!(std::fs::read_dir(folder.0.path()).unwrap().count(), 0);
 }
 
 #[test]

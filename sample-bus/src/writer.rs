@@ -1,10 +1,12 @@
 //! The publisher's end of a ring.
 //!
-//! Owns one file and its mapping. Publishing is a few stores into memory that is there already: it waits for nobody,
+//! Owns one file and its mapping. Publishing is a few stores into memory that is there already: it never waits,
 //! allocates nothing and makes no system call.
 
 use crate::layout::{self, Layout};
 use crate::map::Map;
+use crate::reader::Event;
+use crate::ring::{self, Memory as _};
 use nix::fcntl::posix_fallocate;
 use std::fs::{File, Permissions};
 use std::io;
@@ -99,23 +101,13 @@ impl Writer {
 
     fn write(&mut self, time_ns: u64, errno: i32, tuple: &[u8]) {
         let tuple = tuple.get(..self.layout.tuple_bytes).unwrap_or(tuple);
-        let event = layout::next_event(self.newest);
-        let slot = self.layout.slot_at(event);
-        self.map.set(slot + layout::AT_BEGIN, event);
-        // Whoever sees a byte of what follows also sees that it has begun.
-        fence(Ordering::Release);
-        let size = u32::try_from(tuple.len()).unwrap_or(0);
-        let mut head = [0; 16];
-        head[..4].copy_from_slice(&size.to_ne_bytes());
-        head[4..8].copy_from_slice(&errno.to_ne_bytes());
-        head[8..].copy_from_slice(&time_ns.to_ne_bytes());
-        self.map.copy_in(slot + layout::AT_SIZE, &head);
-        self.map.copy_in(slot + layout::SLOT_HEADER_BYTES, tuple);
-        // Whoever sees the end also sees what came before.
-        fence(Ordering::Release);
-        self.map.set(slot + layout::AT_END, event);
-        self.map.set(layout::AT_NEWEST, event);
-        self.newest = event;
+        let event = Event {
+            sequence: layout::next_event(self.newest),
+            time_ns,
+            errno,
+        };
+        ring::write(&self.map, &self.layout, event, tuple);
+        self.newest = event.sequence;
     }
 
     /// The age in ms from which a sample is no longer shown as the newest value; 0: none is too old.

@@ -255,7 +255,7 @@ fn the_header_is_good_for_cpp() {
         compiler.args([standard, "-x", "c++", "-fsyntax-only"]);
         compiler.arg(folder().join("examples/follow.c"));
         match compiler.stderr(Stdio::piped()).output() {
-            Err(error) => println!("skipped: the_header_is_good_for_cpp: no C++ compiler: {error}"),
+            Err(error) => needs::Need::Tools.missing(format_args!("no C++ compiler: {error}")),
             Ok(output) => assert!(
                 output.status.success(),
                 "{}",

@@ -20,7 +20,7 @@ pub const COORDINATE_MAX: i32 = 2000;
 pub const PEN_MAX: u16 = 100;
 /// Pixels of the height of a letter.
 pub const LETTER_MAX: u16 = 240;
-/// Height of a letter when nobody says one.
+/// Height of a letter when none is given.
 pub const LETTER: u16 = 18;
 /// Bytes of a picture in a file, PNG or JPEG.
 pub const FILE_BYTES: usize = 4 << 20;

@@ -33,7 +33,7 @@ pub enum Effect {
 const ORDERS: &str = "line, point, rect, ellipse, arc, label, color, width, background, removelabels, smile, sadsmile, \
                       redraw, clear and hide";
 
-/// `N` whole numbers at the beginning of the words, and what follows the space behind them.
+/// `N` whole numbers at the beginning of the words, and what follows the space after them.
 fn numbers<'a, const N: usize>(verb: &str, words: &'a str) -> Result<([i32; N], &'a str), Fault> {
     let mut rest = words;
     let mut numbers = [0; N];

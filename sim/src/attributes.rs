@@ -185,32 +185,32 @@ pub fn appear(root: &Path, name: &str, text: &str) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scratch::Scratch;
+    use tempfile::tempdir;
 
     #[test]
     fn a_written_attribute_is_news_once() {
-        let scratch = Scratch::new();
-        let mut attributes = Attributes::new(scratch.dir()).unwrap();
+        let scratch = tempdir().unwrap();
+        let mut attributes = Attributes::new(scratch.path()).unwrap();
         attributes.make("class/led/brightness", "0").unwrap();
         attributes.changed();
         assert!(attributes.changed().is_empty());
-        std::fs::write(scratch.path("class/led/brightness"), "1").unwrap();
+        std::fs::write(scratch.path().join("class/led/brightness"), "1").unwrap();
         let names = attributes.changed();
         assert_eq!(names.iter().collect::<Vec<_>>(), ["class/led/brightness"]);
         assert_eq!(attributes.line("class/led/brightness").unwrap(), "1");
-        std::fs::remove_file(scratch.path("class/led/brightness")).unwrap();
+        std::fs::remove_file(scratch.path().join("class/led/brightness")).unwrap();
         assert_eq!(attributes.changed().len(), 1);
         assert_eq!(attributes.line("class/led/brightness"), None);
     }
 
     #[test]
     fn what_is_no_short_text_is_no_text() {
-        let scratch = Scratch::new();
-        let attributes = Attributes::new(scratch.dir()).unwrap();
-        std::fs::create_dir(scratch.path("folder")).unwrap();
-        std::fs::write(scratch.path("bytes"), [0xFF, 0xFE]).unwrap();
-        std::fs::write(scratch.path("empty"), "\n").unwrap();
-        std::os::unix::fs::symlink("/proc/self/status", scratch.path("link")).unwrap();
+        let scratch = tempdir().unwrap();
+        let attributes = Attributes::new(scratch.path()).unwrap();
+        std::fs::create_dir(scratch.path().join("folder")).unwrap();
+        std::fs::write(scratch.path().join("bytes"), [0xFF, 0xFE]).unwrap();
+        std::fs::write(scratch.path().join("empty"), "\n").unwrap();
+        std::os::unix::fs::symlink("/proc/self/status", scratch.path().join("link")).unwrap();
         for name in ["folder", "bytes", "empty", "link", "missing"] {
             assert_eq!(attributes.line(name), None, "{name}");
         }
@@ -218,10 +218,10 @@ mod tests {
 
     #[test]
     fn a_folder_that_is_removed_or_moved_is_there_again_and_watched() {
-        let scratch = Scratch::new();
-        let mut attributes = Attributes::new(scratch.dir()).unwrap();
+        let scratch = tempdir().unwrap();
+        let mut attributes = Attributes::new(scratch.path()).unwrap();
         attributes.folder("faults").unwrap();
-        let (folder, aside) = (scratch.path("faults"), scratch.path("aside"));
+        let (folder, aside) = (scratch.path().join("faults"), scratch.path().join("aside"));
         for removed in [true, false] {
             if removed {
                 std::fs::remove_dir(&folder).unwrap();

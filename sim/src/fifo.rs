@@ -222,12 +222,12 @@ impl Drop for In {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scratch::Scratch;
+    use tempfile::tempdir;
 
     #[test]
     fn a_reader_is_noticed_when_it_comes_and_when_it_goes() {
-        let scratch = Scratch::new();
-        let path = scratch.path("device");
+        let scratch = tempdir().unwrap();
+        let path = scratch.path().join("device");
         let mut out = Out::make(path.clone()).unwrap();
         assert_eq!(out.reader(), Reader::None);
         let open = || {
@@ -251,12 +251,12 @@ mod tests {
 
     #[test]
     fn a_full_fifo_drops_whole_pieces() {
-        let scratch = Scratch::new();
-        let mut out = Out::make(scratch.path("device")).unwrap();
+        let scratch = tempdir().unwrap();
+        let mut out = Out::make(scratch.path().join("device")).unwrap();
         let mut reader = File::options()
             .read(true)
             .custom_flags(libc::O_NONBLOCK)
-            .open(scratch.path("device"))
+            .open(scratch.path().join("device"))
             .unwrap();
         out.reader();
         for number in 0..1000u32 {
@@ -270,12 +270,12 @@ mod tests {
 
     #[test]
     fn a_large_piece_comes_whole_and_another_does_not_come_between() {
-        let scratch = Scratch::new();
-        let mut out = Out::make_large(scratch.path("device")).unwrap();
+        let scratch = tempdir().unwrap();
+        let mut out = Out::make_large(scratch.path().join("device")).unwrap();
         let mut reader = File::options()
             .read(true)
             .custom_flags(libc::O_NONBLOCK)
-            .open(scratch.path("device"))
+            .open(scratch.path().join("device"))
             .unwrap();
         out.reader();
         let piece = |number: u8| vec![number; 40_000];
@@ -292,11 +292,11 @@ mod tests {
 
     #[test]
     fn lines_that_cannot_be_are_left_out() {
-        let scratch = Scratch::new();
-        let mut lines = In::make(scratch.path("in")).unwrap();
+        let scratch = tempdir().unwrap();
+        let mut lines = In::make(scratch.path().join("in")).unwrap();
         let mut writer = File::options()
             .write(true)
-            .open(scratch.path("in"))
+            .open(scratch.path().join("in"))
             .unwrap();
         let long = "x".repeat(300);
         write!(writer, "one\r\n{long}\nbad\x07\ntwo\nhal").unwrap();

@@ -267,7 +267,7 @@ impl Part for Keys {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scratch::Scratch;
+    use tempfile::tempdir;
 
     #[test]
     #[cfg(target_pointer_width = "64")]
@@ -283,8 +283,8 @@ mod tests {
     /// 1 m: 5830 us there and back; 5830 * 16 / 931 = 100.
     #[test]
     fn a_metre_is_100_cm_and_no_echo_is_minus_1() {
-        let scratch = Scratch::new();
-        let mut attributes = Attributes::new(scratch.dir()).unwrap();
+        let scratch = tempdir().unwrap();
+        let mut attributes = Attributes::new(scratch.path()).unwrap();
         let mut sensor = Ultrasonic::make(&mut attributes).unwrap().remove(0);
         let mut random = Random::new(3);
         let fault = Fault::default();

@@ -34,8 +34,6 @@ mod pose;
 mod random;
 pub mod robots;
 mod root;
-#[cfg(test)]
-mod scratch;
 mod sensors;
 mod shared;
 mod sysfs;

@@ -42,8 +42,6 @@ pub const PHOTO_HEIGHT: u16 = 240;
 pub const PHOTO_QUALITY: u8 = 70;
 /// What the FIFO of pictures holds, in bytes: one picture at any time.
 pub const PHOTO_FIFO_BYTES: i32 = 64 << 10;
-/// How deep values of JSON may nest.
-pub const JSON_DEPTH: usize = 32;
 /// Values of one text of JSON: an hour of ticks of one robot has 2.2 million.
 pub const JSON_VALUES: usize = 4_000_000;
 /// Longest run that is judged, in milliseconds of model time.

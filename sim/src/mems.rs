@@ -277,7 +277,7 @@ mod tests {
         );
         let x_and_z = [true, false, true, false];
         assert_eq!(scan(values, time_ns, x_and_z), [0, 0, 0x40, 0]);
-        assert_eq!(scan(values, time_ns, [false; 4]), []);
+        assert!(scan(values, time_ns, [false; 4]).is_empty());
         let only_time = [false, false, false, true];
         assert_eq!(scan(values, time_ns, only_time).len(), 8);
     }

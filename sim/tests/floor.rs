@@ -1,8 +1,8 @@
 //! Real projects that look at the floor or draw on the display, against poses and lists that the original recorded.
 //!
-//! Reads `../shared/data` if it is there; skips by name if not.
+//! Reads the recorded runs, or is skipped.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::rc::Rc;
 
 use lang_diagram::lower::{World, lower};
@@ -16,15 +16,6 @@ use sim::field::Field;
 
 /// Recorded poses have six decimals, so they are off by half of the last one.
 const NEAR: f64 = 0.51e-6;
-
-fn data(name: &str) -> Option<PathBuf> {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data"));
-    if !path.is_dir() {
-        println!("skipped {name}: no ../shared");
-        return None;
-    }
-    Some(path.to_owned())
-}
 
 /// An example in its own world, before its first step.
 fn open(data: &Path, example: &str) -> (Arena, Machine) {
@@ -122,7 +113,7 @@ fn compare(data: &Path, example: &str) -> Compared {
 /// hundredth of a pixel.
 #[test]
 fn a_line_is_followed_by_light_as_the_original_follows_it() {
-    let Some(data) = data("a_line_is_followed_by_light") else {
+    let Some(data) = needs::data() else {
         return;
     };
     let Compared {
@@ -143,7 +134,7 @@ fn a_line_is_followed_by_light_as_the_original_follows_it() {
 
 #[test]
 fn programs_with_a_display_or_a_floor_stand_where_they_stood() {
-    let Some(data) = data("programs_with_a_display_or_a_floor") else {
+    let Some(data) = needs::data() else {
         return;
     };
     for example in ["5._DirectlySetValue", "6._AlongTheLineVideo", "19._Smiles"] {
@@ -157,7 +148,7 @@ fn programs_with_a_display_or_a_floor_stand_where_they_stood() {
 /// The light sensor stands on the line already, so the program ends at once, as the record says.
 #[test]
 fn a_black_line_ends_a_wait_for_light() {
-    let Some(data) = data("a_black_line_ends_a_wait_for_light") else {
+    let Some(data) = needs::data() else {
         return;
     };
     let (mut arena, mut machine) = open(&data, "3._StraightToTheLine");
@@ -175,7 +166,7 @@ fn a_black_line_ends_a_wait_for_light() {
 /// The record stands before its "Enter"; when that is pressed, the camera keeps the robot on the line.
 #[test]
 fn the_camera_keeps_a_robot_on_its_line() {
-    let Some(data) = data("the_camera_keeps_a_robot_on_its_line") else {
+    let Some(data) = needs::data() else {
         return;
     };
     let (mut arena, mut machine) = open(&data, "6._AlongTheLineVideo");
@@ -238,7 +229,7 @@ fn told(object: &Object) -> String {
 /// The list of a display is the one that the original recorded last.
 #[test]
 fn displays_list_what_the_original_listed() {
-    let Some(data) = data("displays_list_what_the_original_listed") else {
+    let Some(data) = needs::data() else {
         return;
     };
     for (file, record, until) in [

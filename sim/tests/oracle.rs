@@ -1,8 +1,8 @@
 //! Real projects on real fields in the arena, against poses that the original recorded.
 //!
-//! Reads `../shared/data` if it is there; skips by name if not. What sees the floor has no place here.
+//! Reads the recorded runs, or is skipped. What sees the floor has no place here.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::rc::Rc;
 
 use lang_diagram::lower::{World, lower};
@@ -17,11 +17,6 @@ use sim::field::Field;
 const NEAR: f64 = 0.51e-6;
 /// The last pose has all digits.
 const SAME: f64 = 1e-9;
-
-fn data() -> Option<PathBuf> {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data"));
-    path.is_dir().then(|| path.to_owned())
-}
 
 /// What the original did.
 struct Oracle {
@@ -143,8 +138,7 @@ fn fixed(name: &str) -> Option<i32> {
 
 #[test]
 fn every_recorded_pose_is_met_where_no_floor_is_seen() {
-    let Some(data) = data() else {
-        println!("skipped every_recorded_pose_is_met_where_no_floor_is_seen: no ../shared");
+    let Some(data) = needs::data() else {
         return;
     };
     let mut count = 0;
@@ -178,8 +172,7 @@ fn every_recorded_pose_is_met_where_no_floor_is_seen() {
 
 #[test]
 fn real_worlds_are_written_as_they_were_read() {
-    let Some(data) = data() else {
-        println!("skipped real_worlds_are_written_as_they_were_read: no ../shared");
+    let Some(data) = needs::data() else {
         return;
     };
     let mut count = 0;

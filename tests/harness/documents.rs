@@ -1,6 +1,8 @@
-//! The fenced examples of a Markdown file.
+//! The documents of the project, and the fenced examples of a Markdown file.
 //!
 //! Owns finding them, nothing of what they mean.
+
+use std::path::{Path, PathBuf};
 
 /// One fenced block.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -11,6 +13,33 @@ pub struct Example {
     pub line: usize,
     /// The text between the fences.
     pub text: String,
+}
+
+/// All documents of the project.
+pub fn documents() -> Vec<PathBuf> {
+    let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
+    let mut found: Vec<_> = [
+        "README.md",
+        "ARCHITECTURE.md",
+        "CONTRIBUTING.md",
+        "CHANGELOG.md",
+    ]
+    .iter()
+    .map(|name| root.join(name))
+    .collect();
+    let mut folders = vec![root.join("docs"), root.join("cross")];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "md") {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    found
 }
 
 /// All fenced blocks in order. One that is not closed ends with the file.

@@ -46,14 +46,9 @@ pub struct Mount {
     ready_line: String,
 }
 
-/// Which transport the tests use: `TRIK_TRANSPORT`, or else the one that the build adds.
+/// Which transport the tests use: what `TRIK_TRANSPORT` says, or else our own. The build must have it.
 pub fn transport() -> String {
-    let built = if cfg!(feature = "fuser") {
-        "fuser"
-    } else {
-        "native"
-    };
-    std::env::var("TRIK_TRANSPORT").unwrap_or_else(|_| built.to_owned())
+    std::env::var("TRIK_TRANSPORT").unwrap_or_else(|_| "native".to_owned())
 }
 
 /// Why nothing can be mounted here, if so.

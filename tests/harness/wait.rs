@@ -2,6 +2,8 @@
 //!
 //! Owns the two time limits of the suite. A condition is looked at again and again: nothing waits for a fixed time.
 
+use needs::Need;
+pub use needs::test_name;
 use std::time::{Duration, Instant};
 
 /// How long anything that must happen may take before the test fails. Generous: two processors serve all tests.
@@ -23,27 +25,17 @@ pub fn eventually(what: &str, mut holds: impl FnMut() -> bool) {
     }
 }
 
-/// Name of the running test.
-pub fn test_name() -> String {
-    std::thread::current().name().unwrap_or("main").to_owned()
-}
-
 /// Says that the running test is skipped, and why. A limit of the machine: with `TRIK_REQUIRE_FUSE=1` it is a failure.
 ///
 /// # Panics
 /// With `TRIK_REQUIRE_FUSE=1`.
 pub fn skip(why: &str) {
-    let name = test_name();
-    assert!(
-        std::env::var_os("TRIK_REQUIRE_FUSE").is_none_or(|value| value != "1"),
-        "{name} would be skipped: {why}"
-    );
-    note_skip(why);
+    Need::Fuse.missing(why);
 }
 
 /// Says that the running test is skipped for a reason that no machine can change.
 pub fn note_skip(why: &str) {
-    println!("skipped: {}: {why}", test_name());
+    Need::Extra.missing(why);
 }
 
 #[cfg(test)]

@@ -8,42 +8,16 @@
 use crate::{mount_on, trikfs};
 use harness::Board;
 use harness::documents::{Example, examples};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
 }
 
-/// All documents of the project.
-pub fn documents() -> Vec<PathBuf> {
-    let mut found: Vec<_> = [
-        "README.md",
-        "ARCHITECTURE.md",
-        "CONTRIBUTING.md",
-        "CHANGELOG.md",
-    ]
-    .iter()
-    .map(|name| root().join(name))
-    .collect();
-    let mut folders = vec![root().join("docs"), root().join("cross")];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|ending| ending == "md") {
-                found.push(path);
-            }
-        }
-    }
-    found.sort();
-    found
-}
-
 /// Examples whose words begin with `mark`, with the place for messages.
 fn marked(mark: &str) -> Vec<(String, Example)> {
     let mut found = Vec::new();
-    for path in documents() {
+    for path in harness::documents::documents() {
         let text = std::fs::read_to_string(&path)
             .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
         for example in examples(&text) {
@@ -212,7 +186,7 @@ fn every_transcript_in_the_documents_is_what_really_happens() {
 
 #[test]
 fn every_conversion_in_the_documents_gives_what_the_page_says() {
-    for document in documents() {
+    for document in harness::documents::documents() {
         let page = std::fs::read_to_string(&document).unwrap();
         let found = examples(&page);
         // What one example of a page leaves behind, the next one finds.

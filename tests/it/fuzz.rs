@@ -1,11 +1,33 @@
-//! The fuzz targets of all crates, each for a moment on random, mutated and truncated bytes.
+//! The fuzz targets of what stands below the tree, each for a moment on random, mutated and truncated bytes.
 //!
-//! Those of `trikd` are run by its own tests: this program is also built for the controller, which has no `trikd` yet.
+//! Begins with `fuzz/seeds`, as libFuzzer does. The targets of other crates are run by their own tests: this program is also
+//! built for the controller, which has none of them.
 
+use ::config::fuzz as config_fuzz;
 use harness::fuzz::run;
+use std::path::Path;
+
+/// The inputs of `fuzz/seeds/NAME`, in the order of their names.
+fn seeds(name: &str) -> Vec<Vec<u8>> {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../fuzz/seeds")).join(name);
+    let entries = std::fs::read_dir(&folder).expect("a folder of seeds");
+    let mut paths: Vec<_> = entries.map(|entry| entry.expect("a seed").path()).collect();
+    paths.sort();
+    let read = |path| std::fs::read(path).expect("a seed");
+    paths.into_iter().map(read).collect()
+}
+
+fn run_seeds(name: &str, target: fn(&[u8])) {
+    let seeds = seeds(name);
+    let seeds: Vec<&[u8]> = seeds.iter().map(Vec::as_slice).collect();
+    assert!(!seeds.is_empty(), "no seeds for {name}");
+    run(name, target, &seeds);
+}
 
 #[test]
 fn requests_of_a_strange_kernel_do_no_harm() {
+    let target = trikfs::transport::native::fuzz_decode;
+    run_seeds("decode", target);
     let mut samples = Vec::new();
     // A header and a body for each operation code of linux/fuse.h.
     for opcode in 0u32..54 {
@@ -18,63 +40,25 @@ fn requests_of_a_strange_kernel_do_no_harm() {
         samples.push(bytes);
     }
     let samples: Vec<&[u8]> = samples.iter().map(Vec::as_slice).collect();
-    run("decode", trikfs::transport::native::fuzz_decode, &samples);
+    run("decode", target, &samples);
 }
 
 #[test]
 fn libraries_that_lie_about_themselves_do_no_harm() {
-    let good: Vec<u8> = [1u32, 24, 1, 1, 72, 0, 0, 0, 0]
-        .iter()
-        .flat_map(|word| word.to_le_bytes())
-        .collect();
-    run(
-        "library",
-        converter::abi::fuzz_library,
-        &[&good, &[0; 200], &[0xff; 200]],
-    );
+    run_seeds("library", converter::abi::fuzz_library);
 }
 
 #[test]
 fn configurations_of_any_bytes_do_no_harm() {
-    let hello = include_bytes!("../../config/lua/hello.lua");
-    let words: &[&[u8]] = &[
-        hello,
-        b"trikfs = { a = { src = '/dev/zero', input_tuple_size = 4, format = 'i16 x, >u16 y', poll_ms = 5, rest = { 0, 0 } } }",
-        b"trikfs = { a = { src = { 'trikfs:b', fake{ data = 'x' } }, input_tuple_size = { 1, 1 } }, b = { src = evdev{ path = 'e', axes = { 'ABS_X' } } } }",
-        b"for i = 1, 10 do trikfs = { ['n' .. i] = { src = '/dev/null', input_tuple_size = i, output_tuple_size = i, converter = id_create(i) } } end",
-        b"local s = ('x'):rep(100):gsub('(x)(x*)', '%2%1') trikfs = { g = { n = { src = replay{ path = s } } } }",
-    ];
-    run("load", config_fuzz::fuzz_load, words);
+    run_seeds("load", config_fuzz::fuzz_load);
 }
 
 #[test]
 fn formats_of_any_bytes_do_no_harm() {
-    run(
-        "format",
-        config_fuzz::fuzz_format,
-        &[
-            b"i16 x, i16 y, u8 flags",
-            b">f64 a,u64 b",
-            b"u8 a, u8 a",
-            b"1 2 3",
-            b"-0x1p4 nan 1e400",
-        ],
-    );
+    run_seeds("format", config_fuzz::fuzz_format);
 }
 
 #[test]
 fn patterns_of_any_bytes_do_no_harm() {
-    run(
-        "pattern",
-        config_fuzz::fuzz_pattern,
-        &[
-            b"^(%a+)%s*=%s*(.-)$\0name = value",
-            b"%b()%f[%w]\0(a(b)c)",
-            b"[%a-z^]]*-+?\0aaaa",
-            b"%1(x)\0xx",
-        ],
-    );
+    run_seeds("pattern", config_fuzz::fuzz_pattern);
 }
-
-/// The module of the crate `config`, under a name that is not that of a folder of tests.
-use ::config::fuzz as config_fuzz;

@@ -137,16 +137,12 @@ mod trik_lua {
     /// The program behind the tones.
     mod tone;
 }
-/// Circles of files that need each other.
-mod circles;
 /// The documents: their examples run, their tables are complete.
 mod docs;
 /// Fuzz targets, briefly, with a printed seed.
 mod fuzz;
 /// Streams against a naive model.
 mod model;
-/// The rules of the project.
-mod tidy;
 
 use harness::{Board, Mount, Setting};
 use std::sync::OnceLock;

@@ -15,11 +15,9 @@ const ORIGINAL_MS: f64 = 700.0;
 const ROUNDS: usize = 41;
 
 fn main() {
-    let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/data"));
-    if !data.is_dir() {
-        println!("skipped: no ../shared");
+    let Some(data) = needs::data() else {
         return;
-    }
+    };
     println!(
         "{:<44} {:>9} {:>9} {:>11} {:>12}",
         "one task, a whole process", "p50 ms", "p90 ms", "model time", "2D-model/us"
@@ -43,7 +41,7 @@ fn main() {
         one(name, &data.join(file));
     }
     start();
-    many(data);
+    many(&data);
     let most = getrusage(UsageWho::RUSAGE_CHILDREN).map_or(0, |usage| usage.max_rss());
     println!("largest process: {:.1} MiB", most as f64 / 1024.0);
 }

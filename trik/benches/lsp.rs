@@ -82,7 +82,7 @@ impl Server {
         }
     }
 
-    fn tell(&mut self, method: &str, params: Value) {
+    fn notify(&mut self, method: &str, params: Value) {
         let message = json!({"jsonrpc": "2.0", "method": method, "params": params});
         send(&mut self.to, &message);
     }
@@ -110,7 +110,7 @@ fn changes(server: &mut Server, bytes: usize) {
         let params =
             json!({"textDocument": {"uri": URI, "version": version}, "contentChanges": [change]});
         let (begin, clock) = (used(&server.process), Instant::now());
-        server.tell("textDocument/didChange", params);
+        server.notify("textDocument/didChange", params);
         let told = receive(&mut server.from);
         let (took, waited) = (used(&server.process) - begin, clock.elapsed());
         assert_eq!(told["params"]["version"], version);
@@ -137,7 +137,7 @@ fn main() {
     server.ask("initialize", json!({"capabilities": {}}));
     let text = model();
     let document = json!({"uri": URI, "languageId": "dcml", "version": 0, "text": text});
-    server.tell("textDocument/didOpen", json!({"textDocument": document}));
+    server.notify("textDocument/didOpen", json!({"textDocument": document}));
     receive(&mut server.from);
     changes(&mut server, text.len());
     let place = json!({"textDocument": {"uri": URI}, "position": {"line": 5000, "character": 1}});
@@ -153,6 +153,6 @@ fn main() {
         println!("{method}: {:.1} ms", ms(used(&server.process) - begin));
     }
     server.ask("shutdown", Value::Null);
-    server.tell("exit", Value::Null);
+    server.notify("exit", Value::Null);
     assert!(server.process.wait().expect("it ends").success());
 }

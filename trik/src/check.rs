@@ -14,37 +14,40 @@ mod script;
 mod words;
 mod worker;
 
-use crate::diagrams::output::{Output, standard};
-use crate::diagrams::{Refusal, UNREADABLE, end, say, telling};
+use crate::output::{Output, standard};
+use crate::refusal::{Refusal, UNREADABLE, say};
+use crate::terminal::named;
 pub(crate) use args::CheckArgs;
 use jobs::Job;
 use lang_text::problem::Locale;
 use row::{Row, Verdict, Widths};
 use std::io::{self, IsTerminal, Write};
-use std::path::{Path, PathBuf};
-use std::process::ExitCode;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// How often progress is shown.
 const PROGRESS_EVERY: Duration = Duration::from_millis(200);
 
-/// Does it.
-pub(crate) fn check(args: &CheckArgs) -> ExitCode {
+/// Judges, or serves as a process that does.
+///
+/// # Errors
+/// There is nothing to judge, or what came out cannot be told.
+pub(crate) fn run(args: &CheckArgs) -> Result<u8, Refusal> {
     // What could not be told is no verdict: 1 is for tasks that were not accomplished.
-    end(checked(args).map_err(|refusal| Refusal {
+    checked(args).map_err(|refusal| Refusal {
         code: UNREADABLE,
         ..refusal
-    }))
+    })
 }
 
 fn checked(args: &CheckArgs) -> Result<u8, Refusal> {
     if args.worker {
-        worker::serve(args).map_err(Refusal::new)?;
+        worker::serve(args)?;
         return Ok(0);
     }
     let jobs = jobs::jobs(args).map_err(|why| Refusal {
-        lines: vec![format!("trik: {why}")],
         code: UNREADABLE,
+        ..Refusal::from(why)
     })?;
     let results = args.results.as_deref().map(|path| Output {
         path: Some(path),
@@ -52,9 +55,9 @@ fn checked(args: &CheckArgs) -> Result<u8, Refusal> {
         source: jobs.first().map_or(Path::new(""), |job| job.judged(args)),
     });
     if let Some(results) = &results {
-        results.look()?;
+        results.refuse_present()?;
     }
-    look(&jobs, args)?;
+    refuse_present(&jobs, args)?;
     let left_out = jobs::left_out(args);
     if left_out > 0 {
         say(&[words::left_out(left_out, args.language)]);
@@ -66,7 +69,7 @@ fn checked(args: &CheckArgs) -> Result<u8, Refusal> {
 }
 
 /// Refuses files that are there before anything runs: afterwards a verdict would be lost with them.
-fn look(jobs: &[Job], args: &CheckArgs) -> Result<(), Refusal> {
+fn refuse_present(jobs: &[Job], args: &CheckArgs) -> Result<(), Refusal> {
     let wanted = [
         (&args.report, run::REPORT),
         (&args.trajectory, run::TRAJECTORY),
@@ -77,13 +80,13 @@ fn look(jobs: &[Job], args: &CheckArgs) -> Result<(), Refusal> {
     for (path, ending) in wanted {
         let Some(path) = path else { continue };
         for job in jobs {
-            let path = place(path, job, ending, jobs.len() == 1);
+            let path = job.place(path, ending, jobs.len() == 1);
             let output = Output {
                 path: Some(&path),
                 force: args.force,
                 source: job.judged(args),
             };
-            output.look()?;
+            output.refuse_present()?;
         }
     }
     Ok(())
@@ -111,29 +114,19 @@ fn many(jobs: &[Job], args: &CheckArgs, results: Option<Output<'_>>) -> Result<u
     let folders = outputs.into_iter().chain([&args.display]);
     for folder in folders.flatten() {
         std::fs::create_dir_all(folder).map_err(|error| {
-            let name = telling::named(folder);
+            let name = named(folder);
             Refusal::new(format!(
                 "{name}: with several runs this is a directory: {error}"
             ))
         })?;
     }
-    let mut told = Told::new(jobs, args, results)?;
-    let mut failure = None;
-    let done = pool::run(jobs, args, |index, row| {
-        told.tell(index, &row).map_err(|refusal| {
-            failure = Some(refusal);
-            String::new()
-        })
-    });
-    if let Some(refusal) = failure {
-        return Err(refusal);
-    }
-    done.map_err(Refusal::new)?;
-    told.finish()
+    let mut report = Report::new(jobs, args, results)?;
+    pool::run(jobs, args, |index, row| report.add(index, &row))?;
+    report.finish()
 }
 
-/// What has been told of many runs.
-struct Told<'a> {
+/// The table of many runs and their lines of JSON, as far as they are written.
+struct Report<'a> {
     locale: Locale,
     widths: Widths,
     counts: [usize; 4],
@@ -150,20 +143,19 @@ struct Results<'a> {
     bytes: Vec<u8>,
 }
 
-impl<'a> Told<'a> {
+impl<'a> Report<'a> {
     fn new(jobs: &[Job], args: &CheckArgs, results: Option<Output<'a>>) -> Result<Self, Refusal> {
         let locale = args.language;
-        let names = |path: &Path| telling::named(path);
         let all: Vec<(String, Option<String>)> = jobs
             .iter()
-            .map(|job| (names(job.judged(args)), job.rules(args).map(names)))
+            .map(|job| (named(job.judged(args)), job.rules(args).map(named)))
             .collect();
         let widths = Widths::new(
             all.iter()
                 .map(|(solution, field)| (&**solution, field.as_deref())),
             locale,
         );
-        let told = Self {
+        let report = Self {
             locale,
             widths,
             counts: [0; 4],
@@ -176,11 +168,11 @@ impl<'a> Told<'a> {
             shown: None,
             is_terminal: io::stderr().is_terminal(),
         };
-        if told.has_table() {
-            let heading = told.widths.line(&words::heading(locale));
+        if report.has_table() {
+            let heading = report.widths.line(&words::heading(locale));
             standard(format!("{heading}\n").as_bytes())?;
         }
-        Ok(told)
+        Ok(report)
     }
 
     fn has_table(&self) -> bool {
@@ -190,7 +182,7 @@ impl<'a> Told<'a> {
             .is_some_and(|results| results.output.is_standard())
     }
 
-    fn tell(&mut self, index: usize, row: &Row) -> Result<(), Refusal> {
+    fn add(&mut self, index: usize, row: &Row) -> Result<(), Refusal> {
         self.counts[row.verdict as usize] += 1;
         self.worst = self.worst.max(Some(row.verdict));
         let has_table = self.has_table();
@@ -243,14 +235,4 @@ impl<'a> Told<'a> {
         }
         Ok(self.worst.map_or(UNREADABLE, Verdict::code))
     }
-}
-
-/// Where a file of one run goes: the file itself, or one in a directory.
-fn place(wanted: &Path, job: &Job, ending: &str, is_one: bool) -> PathBuf {
-    if is_one {
-        return wanted.to_owned();
-    }
-    let mut name = job.name.clone().into_os_string();
-    name.push(ending);
-    wanted.join(name)
 }

@@ -3,23 +3,52 @@
 //! Owns the way to a board and the files in which it finds its faults; what may be asked for is the board's table, and
 //! what a fault does is the board's business.
 
-use crate::cli::FaultArgs;
+use crate::error::Error;
+use crate::output::standard;
 use crate::place::{self, Running};
+use crate::refusal::Refusal;
+use clap::Args;
 use sim::faults::{Faults, devices};
 use std::fs;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// Does it, and gives what is to be printed.
+/// What `trik fault` can be told.
+#[derive(Args, Clone, Debug, PartialEq, Eq)]
+pub(crate) struct FaultArgs {
+    /// The robot mounted there; needed if several run.
+    #[arg(long, alias = "at", value_name = "MOUNTPOINT")]
+    pub robot: Option<PathBuf>,
+    /// Print the devices, the kinds of faults, and the faults in force.
+    #[arg(long, conflicts_with_all = ["device", "kind", "clear"])]
+    pub list: bool,
+    /// Repair the device.
+    #[arg(long, requires = "device", conflicts_with = "kind")]
+    pub clear: bool,
+    /// The device, for example msp430, A1, D1, gyroscope; see --list.
+    #[arg(required_unless_present = "list")]
+    pub device: Option<String>,
+    /// What happens to it, with its numbers, for example: unplug; nack 0.5; slow 20.
+    #[arg(required_unless_present_any = ["list", "clear"], num_args = 1.., allow_negative_numbers = true)]
+    pub kind: Vec<String>,
+}
+
+/// Does it, and prints what was asked for.
 ///
 /// # Errors
 /// No such robot, device or kind.
-pub(crate) fn fault(args: &FaultArgs) -> Result<String, String> {
+pub(crate) fn run(args: &FaultArgs) -> Result<u8, Refusal> {
+    standard(fault(args)?.as_bytes())?;
+    Ok(0)
+}
+
+/// Does it, and gives what is to be printed.
+fn fault(args: &FaultArgs) -> Result<String, Error> {
     let base = place::base()?;
-    let all = place::running(&base).map_err(|error| format!("{}: {error}", base.display()));
+    let all = place::running(&base).map_err(|error| Error::file(&base, error));
     // Looking makes the directory; nobody needs it if no robot does.
     let _ = fs::remove_dir(&base);
-    let robot = choose(all?, args.at.as_deref());
+    let robot = choose(all?, args.robot.as_deref());
     let Some(device) = &args.device else {
         // The table is good to know also when nothing runs.
         return Ok(table(robot.ok().as_ref()));
@@ -28,15 +57,16 @@ pub(crate) fn fault(args: &FaultArgs) -> Result<String, String> {
         true => String::new(),
         false => args.kind.join(" "),
     };
-    Faults::default().set(device, &text)?;
+    Faults::default()
+        .set(device, &text)
+        .map_err(|why| Error::Refused(why.to_string()))?;
     let faults = robot?.board.join("faults");
-    put(&faults, device, &text)
-        .map_err(|error| format!("{}: {error}", faults.join(device).display()))?;
+    put(&faults, device, &text).map_err(|error| Error::file(&faults.join(device), error))?;
     Ok(String::new())
 }
 
 /// The robot that is meant.
-fn choose(mut all: Vec<Running>, at: Option<&Path>) -> Result<Running, String> {
+fn choose(mut all: Vec<Running>, at: Option<&Path>) -> Result<Running, Error> {
     let points = |all: &[Running]| {
         let points: Vec<_> = all
             .iter()
@@ -49,25 +79,26 @@ fn choose(mut all: Vec<Running>, at: Option<&Path>) -> Result<Running, String> {
         let found = all.iter().position(|robot| robot.mountpoint == path);
         return match found {
             Some(index) => Ok(all.swap_remove(index)),
-            None if all.is_empty() => Err(NONE.to_owned()),
-            None => Err(format!(
-                "{}: no robot of yours runs there; there are {}",
-                at.display(),
-                points(&all)
+            None if all.is_empty() => Err(none()),
+            None => Err(Error::file(
+                at,
+                format!("no robot of yours runs there; there are {}", points(&all)),
             )),
         };
     }
     match all.len() {
-        0 => Err(NONE.to_owned()),
+        0 => Err(none()),
         1 => Ok(all.swap_remove(0)),
-        _ => Err(format!(
-            "several robots run: say which with --at; there are {}",
+        _ => Err(Error::Refused(format!(
+            "several robots run: say which with --robot; there are {}",
             points(&all)
-        )),
+        ))),
     }
 }
 
-const NONE: &str = "no robot of yours runs: start one with trik up";
+fn none() -> Error {
+    Error::Refused("no robot of yours runs: start one with trik up".to_owned())
+}
 
 /// Makes the text the fault of the device, at one stroke: the board must not see half of it.
 fn put(faults: &Path, device: &str, text: &str) -> io::Result<()> {
@@ -117,17 +148,22 @@ mod tests {
 
     #[test]
     fn the_only_robot_is_meant_and_among_several_the_named_one() {
-        assert_eq!(choose(vec![], None), Err(NONE.to_owned()));
+        assert_eq!(choose(vec![], None), Err(none()));
         assert_eq!(choose(vec![robot("/a")], None), Ok(robot("/a")));
         let two = || vec![robot("/a"), robot("/b")];
         assert_eq!(
             choose(two(), None),
-            Err("several robots run: say which with --at; there are /a, /b".to_owned())
+            Err(Error::Refused(
+                "several robots run: say which with --robot; there are /a, /b".to_owned()
+            ))
         );
         assert_eq!(choose(two(), Some(Path::new("/b"))), Ok(robot("/b")));
         assert_eq!(
             choose(two(), Some(Path::new("/c"))),
-            Err("/c: no robot of yours runs there; there are /a, /b".to_owned())
+            Err(Error::file(
+                Path::new("/c"),
+                "no robot of yours runs there; there are /a, /b"
+            ))
         );
     }
 

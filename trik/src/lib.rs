@@ -1,18 +1,27 @@
 //! The tool for a person at a PC: a whole virtual robot in one command.
 //!
-//! `cli` has the words, `up` starts the virtual board and the tree over it, `fault` breaks devices of a running board,
+//! `cli` lists the commands. `up` starts the virtual board and the tree over it, `fault` breaks devices of a running board,
 //! `place` knows where the robots of a user are, `remote` brings programs to robots, `diagrams` shows, checks and translates
-//! diagrams without a robot, `dcml` does the same with models of robots, `check` runs and judges solutions of tasks, `script` runs programs with text for it. Nothing of
-//! this runs on the controller.
+//! diagrams without a robot, `dcml` does the same with models of robots, `check` runs and judges solutions of tasks,
+//! `script` runs programs with text for it. All of them stand on `error`, `refusal`, `input`, `output`,
+//! `terminal` and `language`, which know no command. Nothing of this runs on the controller.
+
+#![deny(clippy::wildcard_enum_match_arm)]
 
 mod check;
 pub mod cli;
 mod dcml;
 mod diagrams;
+pub mod error;
 mod fault;
 pub mod fuzz;
+mod input;
+mod language;
 pub mod limits;
+mod output;
 pub mod place;
+mod refusal;
 mod remote;
 pub mod script;
+mod terminal;
 mod up;

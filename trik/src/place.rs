@@ -6,6 +6,7 @@
 //! tells where the robot is: a line with the path of its tree, and one with the address where trikd takes programs, if it
 //! runs. Knows nothing of what a board or a tree is.
 
+use crate::error::Error;
 use crate::limits;
 use nix::sys::statfs::statfs;
 use nix::unistd::geteuid;
@@ -28,7 +29,7 @@ const WORLD: &str = "lua";
 ///
 /// # Errors
 /// It cannot be made, or somebody else could write to it.
-pub fn base() -> Result<PathBuf, String> {
+pub fn base() -> Result<PathBuf, Error> {
     let runtime = std::env::var_os("XDG_RUNTIME_DIR").map(PathBuf::from);
     let dir = match runtime.filter(|dir| dir.is_absolute() && dir.is_dir()) {
         Some(runtime) if runtime.as_os_str().len() + 5 <= limits::BASE_BYTES_MAX => {
@@ -36,7 +37,7 @@ pub fn base() -> Result<PathBuf, String> {
         }
         _ => PathBuf::from(format!("/tmp/trik-{}", geteuid())),
     };
-    make_private(&dir).map_err(|error| format!("{}: {error}", dir.display()))?;
+    make_private(&dir).map_err(|error| Error::file(&dir, error))?;
     Ok(dir)
 }
 
@@ -80,13 +81,13 @@ impl Place {
     ///
     /// # Errors
     /// The mount point is not an empty directory, or too many robots run.
-    pub fn claim(base: &Path, mountpoint: Option<&Path>) -> Result<Self, String> {
+    pub fn claim(base: &Path, mountpoint: Option<&Path>) -> Result<Self, Error> {
         // Those of other names too: nobody may ever ask for their names again.
         sweep(base);
         for number in 1..=limits::ROBOTS_MAX {
             let name = name(number);
             let lock = base.join(format!("{name}.lock"));
-            let fail = |error: io::Error| format!("{}: {error}", lock.display());
+            let fail = |error: io::Error| Error::file(&lock, error);
             let taken = match take(&lock) {
                 // The last of the robots before has taken the directory with it.
                 Err(error) if error.kind() == io::ErrorKind::NotFound => make_private(base)
@@ -119,27 +120,27 @@ impl Place {
             place.made_mountpoint = make_mountpoint(&place.mountpoint)? || mountpoint.is_none();
             place
                 .record()
-                .map_err(|error| format!("{}: {error}", place.lock.display()))?;
+                .map_err(|error| Error::file(&place.lock, error))?;
             return Ok(place);
         }
-        Err(format!(
+        Err(Error::Refused(format!(
             "{} robots run already: stop one",
             limits::ROBOTS_MAX
-        ))
+        )))
     }
 
     /// A directory for the view of ev3dev: this one, or the one beside the tree.
     ///
     /// # Errors
     /// It is not empty, cannot be made, or the tree has no name to which one could be added.
-    pub fn make_view(&mut self, wanted: Option<&Path>) -> Result<PathBuf, String> {
+    pub fn make_view(&mut self, wanted: Option<&Path>) -> Result<PathBuf, Error> {
         let path = match wanted {
             Some(path) => path.to_owned(),
             None => view_of(&self.mountpoint).ok_or_else(|| {
                 let shown = self.mountpoint.display();
-                format!(
+                Error::Refused(format!(
                     "nothing can be beside {shown}: say where the view is to be with --ev3dev=DIR"
-                )
+                ))
             })?,
         };
         // The one in our own directory is ours, whoever of us made it.
@@ -333,32 +334,32 @@ fn is_dead(mountpoint: &Path) -> bool {
         )
 }
 
-fn is_mount(path: &Path) -> Result<bool, String> {
+fn is_mount(path: &Path) -> Result<bool, Error> {
     trikfs::mount::find(path)
         .map(|found| found.is_some())
-        .map_err(|error| error.to_string())
+        .map_err(|error| Error::Refused(error.to_string()))
 }
 
 /// True if the directory was made here.
-fn make_mountpoint(path: &Path) -> Result<bool, String> {
+fn make_mountpoint(path: &Path) -> Result<bool, Error> {
     let shown = path.display();
     // Before it is looked into: who serves it may not answer.
     if is_mount(path)? {
-        return Err(format!(
-            "{shown}: something is mounted there already: unmount it, or name another directory"
-        ));
+        let why = "something is mounted there already: unmount it, or name another directory";
+        return Err(Error::file(path, why));
     }
     match fs::read_dir(path).map(|entries| entries.count()) {
         Ok(0) => Ok(false),
-        Ok(_) => Err(format!(
+        Ok(_) => Err(Error::Refused(format!(
             "{shown} is not empty: name an empty directory, or none"
-        )),
+        ))),
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             let made = DirBuilder::new().recursive(true).mode(0o700).create(path);
-            made.map(|()| true)
-                .map_err(|error| format!("the mount point {shown} cannot be made: {error}"))
+            made.map(|()| true).map_err(|error| {
+                Error::system(format!("the mount point {shown} cannot be made"), error)
+            })
         }
-        Err(error) => Err(format!("the mount point {shown}: {error}")),
+        Err(error) => Err(Error::system(format!("the mount point {shown}"), error)),
     }
 }
 
@@ -434,7 +435,9 @@ mod tests {
         let base = Base::new("point");
         let full = base.0.join("full");
         fs::create_dir_all(full.join("x")).expect("a directory");
-        let refusal = Place::claim(&base.0, Some(&full)).expect_err("refused");
+        let refusal = Place::claim(&base.0, Some(&full))
+            .expect_err("refused")
+            .to_string();
         assert_eq!(
             refusal,
             format!(
@@ -442,7 +445,9 @@ mod tests {
                 full.display()
             )
         );
-        let refusal = Place::claim(&base.0, Some(Path::new("/proc"))).expect_err("refused");
+        let refusal = Place::claim(&base.0, Some(Path::new("/proc")))
+            .expect_err("refused")
+            .to_string();
         assert!(
             refusal.contains("something is mounted there already"),
             "{refusal}"

@@ -20,6 +20,7 @@ use lang_diagram::brick::Command;
 use lang_text::problem::{Place, Position, Problem, Words};
 use std::path::{Component, Path};
 use trikd::js::read_text;
+use trikd::protocol::program::mailbox::Question;
 
 /// When a program begins, in milliseconds of model time: as late as a diagram does in the original's simulator, so that
 /// what rules do at the beginning is done by then.
@@ -40,19 +41,19 @@ fn beside(folder: &Path, file: &str) -> Result<String, String> {
 
 /// What the mailbox answers to the words of the daemon's programs, and what the robot is told.
 fn mailbox(words: &str, hull: &mut i32, mut tell: impl FnMut(Command<'_>)) -> String {
-    let (word, rest) = words.split_once(' ').unwrap_or((words, ""));
-    let number = |text: &str| text.trim().parse::<i32>().ok();
-    match word {
-        "send" => {
-            let (to, message) = rest.split_once(' ').unwrap_or((rest, ""));
-            let hull = number(to).filter(|hull| *hull >= 0);
-            tell(Command::Send { message, hull });
-        }
-        "join" => {
-            let mut parts = rest.split(' ');
-            let address = parts.next().unwrap_or("");
-            let mut part = || parts.next().and_then(number).unwrap_or(-1);
-            let (port, own) = (part(), part());
+    let Some(question) = Question::parse(words) else {
+        return String::new();
+    };
+    match question {
+        Question::Send { hull, text } => tell(Command::Send {
+            message: text,
+            hull: hull.filter(|hull| *hull >= 0),
+        }),
+        Question::Join {
+            address,
+            port,
+            hull: own,
+        } => {
             *hull = own.max(0);
             tell(Command::Join {
                 address,
@@ -60,13 +61,15 @@ fn mailbox(words: &str, hull: &mut i32, mut tell: impl FnMut(Command<'_>)) -> St
                 hull: own,
             });
         }
-        "hull" => {
-            *hull = number(rest).unwrap_or(*hull);
+        Question::SetHull(number) => {
+            *hull = number;
             return hull.to_string();
         }
-        "ip" => return "127.0.0.1".to_owned(),
-        "connected" | "enabled" => return "1".to_owned(),
-        _ => {}
+        Question::Hull => return hull.to_string(),
+        Question::Ip => return "127.0.0.1".to_owned(),
+        Question::Connected | Question::Enabled => return "1".to_owned(),
+        // The judge knows no other addresses.
+        Question::Connect { .. } | Question::Server | Question::Renew => {}
     }
     String::new()
 }

@@ -5,6 +5,7 @@
 //! `trikd` and `ev3dev`, `world` reads worlds of
 //! TRIK Studio, `model` makes a robot of a model, `view` says how the robot is, `screen` draws it, `hints` says what to try.
 
+pub(crate) mod args;
 mod companion;
 mod ev3dev;
 mod hints;
@@ -15,10 +16,12 @@ mod trikd;
 mod view;
 pub(crate) mod world;
 
-use crate::cli::UpArgs;
+use crate::error::Error;
 use crate::limits;
 use crate::place::{self, Place};
-use companion::Companion;
+use crate::refusal::Refusal;
+use args::{UpArgs, absolute};
+use companion::{Companion, after};
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::signal::{SigSet, Signal, kill};
 use nix::sys::signalfd::{SfdFlags, SignalFd};
@@ -26,7 +29,6 @@ use nix::unistd::getpid;
 use screen::Screen;
 use sim::board::{Board, Options};
 use sim::body::Body;
-use sim::body::rolling::Actuator;
 use sim::body::studio::{self, Studio};
 use sim::field::{Field, Locks};
 use std::ffi::OsString;
@@ -39,9 +41,6 @@ use std::time::{Duration, Instant};
 use tree::Tree;
 use trikd::Trikd;
 
-/// The robot of whoever names none.
-pub(crate) const DEFAULT_ROBOT: &str = "two-wheels";
-
 /// What ends `trik up` in order; a stop of the terminal is for the view.
 const SIGNALS: [Signal; 5] = [
     Signal::SIGTERM,
@@ -51,54 +50,28 @@ const SIGNALS: [Signal; 5] = [
     Signal::SIGTSTP,
 ];
 
-/// The name of a robot that there is, or of a model.
-pub(crate) fn robot_name(text: &str) -> Result<String, String> {
-    match sim::robots::by_name(text) {
-        Some(_) => Ok(text.to_owned()),
-        None if model::is_named(text) => Ok(text.to_owned()),
-        None => Err(format!(
-            "there is no such robot; there are {}, models FILE.dcml, and the shipped models {}",
-            sim::robots::names().collect::<Vec<_>>().join(", "),
-            model::shipped().collect::<Vec<_>>().join(", ")
-        )),
-    }
-}
-
-/// `NAME=NUMBER`
-pub(crate) fn number_of(text: &str) -> Result<(String, f64), String> {
-    let (name, number) = text.split_once('=').ok_or("write NAME=NUMBER")?;
-    let number = number
-        .trim()
-        .parse()
-        .ok()
-        .filter(|one: &f64| one.is_finite());
-    let number = number.ok_or_else(|| format!("'{text}': a number belongs behind ="))?;
-    Ok((name.trim().to_owned(), number))
-}
-
-/// `ACTION=PORT`
-pub(crate) fn driven(text: &str) -> Result<(String, Actuator), String> {
-    let (name, port) = text.split_once('=').ok_or("write ACTION=PORT")?;
-    Ok((name.trim().to_owned(), Actuator::read(port)?))
-}
-
 /// Runs a virtual robot until somebody stops it.
 ///
 /// # Errors
-/// Why it does not run, or how it ended, empty if another process has told it.
-pub(crate) fn up(args: UpArgs) -> Result<(), String> {
+/// Why it does not run, or how it ended.
+pub(crate) fn run(args: UpArgs) -> Result<u8, Refusal> {
+    simulate(args)?;
+    Ok(0)
+}
+
+fn simulate(args: UpArgs) -> Result<(), Error> {
     let world = args.world.as_deref().map(world::read).transpose()?;
-    let made = match &world {
-        Some((field, locks)) => Made::world(field, *locks, args.seed),
-        None => Made::robot(&args)?,
+    let platform = match &world {
+        Some((field, locks)) => Platform::world(field, *locks, args.seed),
+        None => Platform::robot(&args)?,
     };
-    let config = match (&args.config, &made.configuration) {
+    let config = match (&args.config, &platform.configuration) {
         // The configuration is made here, and includes this one.
         (None, Some(_)) => shipped(Path::new("trik.lua"), &args).map(|_| None)?,
         _ => Some(configuration(&args)?),
     };
     // Before the board has threads, so that these come to the main thread alone.
-    let signals = signals().map_err(|error| format!("signals: {error}"))?;
+    let signals = signals().map_err(|error| Error::system("signals", error))?;
     let mountpoint = args.mountpoint.as_deref().map(absolute).transpose()?;
     let mut place = Place::claim(&place::base()?, mountpoint.as_deref())?;
     let ev3dev = match &args.ev3dev {
@@ -118,12 +91,14 @@ pub(crate) fn up(args: UpArgs) -> Result<(), String> {
         seed: args.seed,
         ..Options::default()
     };
-    let config = match (config, made.configuration) {
+    let config = match (config, platform.configuration) {
         (None, Some(text)) => write(&text, &place.world)?,
         (config, _) => config.unwrap_or_default(),
     };
-    let board = Board::start(&place.board, made.body, options)
-        .map_err(|error| format!("the virtual board in {}: {error}", place.board.display()))?;
+    let board = Board::start(&place.board, platform.body, options).map_err(|error| {
+        let what = format!("the virtual board in {}", place.board.display());
+        Error::system(what, error)
+    })?;
     let arguments = arguments(&args, &config, &place);
     let tree = start(&arguments)?;
     let mut session = Session {
@@ -157,13 +132,13 @@ pub(crate) fn up(args: UpArgs) -> Result<(), String> {
     end
 }
 
-/// A body, and the configuration that goes with it if it is in no file.
-struct Made {
+/// What a virtual robot stands on: a body, and the configuration that goes with it if it is in no file.
+struct Platform {
     body: Box<dyn Body>,
     configuration: Option<String>,
 }
 
-impl Made {
+impl Platform {
     /// The robot of a world.
     fn world(field: &Field, locks: Locks, seed: u64) -> Self {
         Self {
@@ -173,13 +148,13 @@ impl Made {
     }
 
     /// The robot of a name.
-    fn robot(args: &UpArgs) -> Result<Self, String> {
+    fn robot(args: &UpArgs) -> Result<Self, Error> {
         if let Some(robot) = sim::robots::by_name(&args.robot) {
             if let Some(option) = model::stray(args) {
-                return Err(format!(
+                return Err(Error::Refused(format!(
                     "{option} is for a model: --robot FILE.dcml; '{}' has its own",
                     args.robot
-                ));
+                )));
             }
             return Ok(Self {
                 body: robot.body(),
@@ -195,8 +170,8 @@ impl Made {
 }
 
 /// Writes a configuration into a file, and gives its name back.
-fn write(text: &str, into: &Path) -> Result<PathBuf, String> {
-    std::fs::write(into, text).map_err(|error| format!("{}: {error}", into.display()))?;
+fn write(text: &str, into: &Path) -> Result<PathBuf, Error> {
+    std::fs::write(into, text).map_err(|error| Error::file(into, error))?;
     Ok(into.to_owned())
 }
 
@@ -208,10 +183,10 @@ fn signals() -> nix::Result<SignalFd> {
 }
 
 /// What the tree is to be made of.
-fn configuration(args: &UpArgs) -> Result<PathBuf, String> {
+fn configuration(args: &UpArgs) -> Result<PathBuf, Error> {
     match &args.config {
         Some(path) if path.is_file() => absolute(path),
-        Some(path) => Err(format!("{}: no such configuration", path.display())),
+        Some(path) => Err(Error::file(path, "no such configuration")),
         None => {
             let name = PathBuf::from(format!("robots/{}.lua", args.robot));
             shipped(&name, args)
@@ -220,10 +195,12 @@ fn configuration(args: &UpArgs) -> Result<PathBuf, String> {
 }
 
 /// A file that comes with this program.
-fn shipped(name: &Path, args: &UpArgs) -> Result<PathBuf, String> {
-    let include: Result<_, _> = args.include.iter().map(|dir| absolute(dir)).collect();
+fn shipped(name: &Path, args: &UpArgs) -> Result<PathBuf, Error> {
+    let include: Result<_, Error> = args.include.iter().map(|dir| absolute(dir)).collect();
     trikfs::cli::find_shipped(name, include?).map_err(|why| {
-        format!("{why}; --include names another directory: that of the source is config/lua")
+        Error::Refused(format!(
+            "{why}; --include names another directory: that of the source is config/lua"
+        ))
     })
 }
 
@@ -254,16 +231,8 @@ fn arguments(args: &UpArgs, config: &Path, place: &Place) -> Vec<OsString> {
     list
 }
 
-fn absolute(path: &Path) -> Result<PathBuf, String> {
-    std::path::absolute(path).map_err(|error| format!("{}: {error}", path.display()))
-}
-
-fn start(arguments: &[OsString]) -> Result<Tree, String> {
-    Tree::start("trikfs", arguments).map_err(|error| format!("starting the tree: {error}"))
-}
-
-fn after(ms: u32) -> Instant {
-    Instant::now() + Duration::from_millis(ms.into())
+fn start(arguments: &[OsString]) -> Result<Tree, Error> {
+    Tree::start("trikfs", arguments).map_err(|error| Error::system("starting the tree", error))
 }
 
 /// How far things are.
@@ -297,7 +266,7 @@ struct Session<'a> {
     /// Where trikd takes programs, as other commands were told.
     address: Option<SocketAddr>,
     /// What went wrong beside the tree.
-    failure: Option<String>,
+    failure: Option<Error>,
     stage: Stage,
     /// By a signal.
     was_asked: bool,
@@ -307,10 +276,11 @@ struct Session<'a> {
 }
 
 impl Session<'_> {
-    fn run(&mut self) -> Result<(), String> {
+    fn run(&mut self) -> Result<(), Error> {
         let mut status = None;
         loop {
-            self.wait().map_err(|error| format!("waiting: {error}"))?;
+            self.wait()
+                .map_err(|error| Error::system("waiting", error))?;
             self.hear_signals();
             self.hear_tree();
             self.hear_companions();
@@ -319,7 +289,7 @@ impl Session<'_> {
                 status = Some(
                     self.tree
                         .wait()
-                        .map_err(|error| format!("the tree: {error}"))?,
+                        .map_err(|error| Error::system("the tree", error))?,
                 );
                 self.stage = Stage::Orphaned(after(limits::ORPHAN_MS));
             }
@@ -513,7 +483,7 @@ impl Session<'_> {
     }
 
     /// What an init system does for a real robot.
-    fn start_again(&mut self, status: ExitStatus) -> Result<(), String> {
+    fn start_again(&mut self, status: ExitStatus) -> Result<(), Error> {
         self.restarts += 1;
         self.note(&format!(
             "trik: the guardian of the tree was ended by {status}; starting it again"
@@ -580,14 +550,16 @@ impl Session<'_> {
     }
 
     /// What the end of the guardian means.
-    fn judge(&self, status: ExitStatus) -> Result<(), String> {
+    fn judge(&self, status: ExitStatus) -> Result<(), Error> {
         match status.code() {
             Some(0) => Ok(()),
             // It has said why.
-            Some(_) if !self.was_ready => Err(String::new()),
+            Some(_) if !self.was_ready => Err(Error::Reported),
             _ if self.was_asked => Ok(()),
-            Some(code) => Err(format!("the tree ended with status {code}")),
-            None => Err(format!("the guardian of the tree was ended by {status}")),
+            Some(code) => Err(Error::Process(format!("the tree ended with status {code}"))),
+            None => Err(Error::Process(format!(
+                "the guardian of the tree was ended by {status}"
+            ))),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! How long motors turn after a stop was sent: a virtual board, its tree and the daemon, and programs that do different
 //! things at that moment. Prints, and judges nothing.
 //!
-//! The board is `trik up` of the same build, which must be there: `cargo build --release -p trik`. At rest is when the
+//! The board is `trik up` of the same build, which must be there: `cargo build --profile bench -p trik`. At rest is when the
 //! register of the coprocessor is zero, as the tree reads it.
 
 use std::fs;
@@ -42,7 +42,7 @@ fn start(command: &mut Command, sign: &str) -> (Ends, String) {
 fn board(folder: &Path) -> Option<Ends> {
     let trik = Path::new(env!("CARGO_BIN_EXE_trikd")).with_file_name("trik");
     if !trik.exists() || !Path::new("/dev/fuse").exists() {
-        println!("skipped: no virtual board: `cargo build --release -p trik`, and /dev/fuse");
+        println!("skipped: no virtual board: `cargo build --profile bench -p trik`, and /dev/fuse");
         return None;
     }
     let mut command = Command::new(trik);

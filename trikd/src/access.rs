@@ -7,6 +7,7 @@ use crate::limits;
 use crate::protocol::mail::plain;
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
+use std::fmt;
 use std::io;
 use std::net::IpAddr;
 use std::path::{Path, PathBuf};
@@ -37,15 +38,27 @@ impl Network {
     }
 }
 
-impl FromStr for Network {
-    type Err = String;
+/// A text that is no network.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct NoNetwork(String);
 
-    fn from_str(text: &str) -> Result<Self, String> {
-        let why = || {
-            format!(
-                "'{text}' is no network: an address such as 192.168.77.5, or one with bits, 192.168.77.0/24"
-            )
-        };
+impl fmt::Display for NoNetwork {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            out,
+            "'{}' is no network: an address such as 192.168.77.5, or one with bits, 192.168.77.0/24",
+            self.0
+        )
+    }
+}
+
+impl std::error::Error for NoNetwork {}
+
+impl FromStr for Network {
+    type Err = NoNetwork;
+
+    fn from_str(text: &str) -> Result<Self, NoNetwork> {
+        let why = || NoNetwork(text.to_owned());
         let (ip, bits) = text
             .split_once('/')
             .map_or((text, None), |(ip, bits)| (ip, Some(bits)));
@@ -239,6 +252,7 @@ mod tests {
             assert!(
                 bad.parse::<Network>()
                     .unwrap_err()
+                    .to_string()
                     .contains("is no network"),
                 "{bad}"
             );

@@ -1,12 +1,13 @@
-//! The command line of `trikd`: what can be said, and which part of the crate does it.
+//! The command line of `trikd`: commands, options, and which part of the crate carries them out.
 //!
-//! Owns the words, the help and the exit codes: 0 done, 1 refused or failed, 2 not understood. The hidden commands are
+//! Owns the words, the help and the exit codes: 0 success, 1 refused or failed, 2 bad command line. The hidden commands are
 //! what `trikd` starts itself as: each is one child process.
 
 use crate::brick::Brick;
 use crate::engine::Engine;
+use crate::error::Error;
 use crate::host::Host;
-use crate::log::tell;
+use crate::log::report;
 #[cfg(feature = "manual")]
 use crate::manual;
 use crate::program::{kill, launch::Launch};
@@ -21,7 +22,7 @@ use std::net::IpAddr;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// The daemon of a robot that desktop clients, gamepads and programs talk to.
+/// The daemon of a robot, for desktop clients, gamepads and programs.
 #[derive(Parser)]
 #[command(name = "trikd", version, max_term_width = 100)]
 struct Cli {
@@ -33,9 +34,9 @@ struct Cli {
 enum Command {
     /// Serve desktop programs, gamepads and other robots until SIGTERM, SIGINT or SIGHUP.
     ///
-    /// Needs a mounted tree to do something, and waits for it if there is none. Says in one line when all ports are
-    /// served. Two processes: if the serving one crashes, the other brings motors to rest, ends the program and starts
-    /// it again.
+    /// It needs a mounted tree, and waits for one if there is none. It prints one line when all ports are
+    /// served. It runs as two processes: if the serving one crashes, the other brings motors to rest, ends the program and
+    /// starts it again.
     Serve {
         #[command(flatten)]
         settings: Box<Settings>,
@@ -76,7 +77,7 @@ enum Command {
     ///
     /// The orders are line X1 Y1 X2 Y2, point X Y, rect and ellipse X Y WIDTH HEIGHT FILLED, arc X Y WIDTH HEIGHT FROM
     /// SPAN, label X Y HEIGHT TEXT, image FILE, color NAME, width PIXELS, background NAME, removelabels, smile, sadsmile,
-    /// redraw, clear and hide. What was drawn is seen after redraw.
+    /// redraw, clear and hide. What was drawn is shown by redraw.
     Draw {
         /// Where the tree is mounted.
         #[arg(long, env = "TRIK_TREE", value_name = "DIR", default_value = "/trikfs")]
@@ -85,14 +86,14 @@ enum Command {
         #[arg(long)]
         answers: bool,
     },
-    /// Run a JavaScript program in this terminal, without the daemon; the motors rest at its end.
+    /// Run a JavaScript program in this terminal, without the daemon; motors come to rest when it ends.
     ///
-    /// Without a file it is the process of one program, whose standard input is the channel to the daemon.
+    /// Without a file this is the process of one program, whose standard input is the channel to the daemon.
     Js {
         /// Where the tree is mounted.
         #[arg(long, env = "TRIK_TREE", value_name = "DIR", default_value = "/trikfs")]
         tree: PathBuf,
-        /// One line of a program in place of a file; nothing rests at its end.
+        /// One line of a program instead of a file; motors are left as they are when it ends.
         #[arg(long, value_name = "TEXT", hide = true, conflicts_with = "file")]
         line: Option<String>,
         /// The program.
@@ -131,13 +132,13 @@ pub fn main() -> ExitCode {
     match perform(cli.command) {
         Ok(code) => code,
         Err(reason) => {
-            tell(reason);
+            report(reason);
             ExitCode::FAILURE
         }
     }
 }
 
-fn perform(command: Command) -> Result<ExitCode, String> {
+fn perform(command: Command) -> Result<ExitCode, Error> {
     match command {
         Command::Serve { settings } => {
             // Behind the name of the program and `serve`.
@@ -161,33 +162,35 @@ fn perform(command: Command) -> Result<ExitCode, String> {
         Command::Launch(launch) => return Err(launch.become_program()),
         Command::KillUser => kill::own_user()?,
         Command::Draw { tree, answers } => {
-            display::serve(&tree, &mut std::io::stdin().lock(), answers)?;
+            display::serve(&tree, &mut std::io::stdin().lock(), answers).map_err(Error::Program)?;
         }
         Command::Js {
             tree,
             line: Some(line),
             ..
-        } => js::run_line(line, &tree)?,
+        } => js::run_line(line, &tree).map_err(Error::Program)?,
         Command::Js {
             tree,
             file: Some(file),
             ..
-        } => js::run_alone(&file, &tree)?,
+        } => js::run_alone(&file, &tree).map_err(Error::Program)?,
         Command::Js { tree, .. } => return Ok(run_engine(&mut js::engine(), &tree)),
         Command::Diagram { tree } => return Ok(run_engine(&mut diagram::engine(), &tree)),
         #[cfg(feature = "manual")]
         Command::Completions { shell } => show(&manual::completions(shell, Cli::command()))?,
         #[cfg(feature = "manual")]
-        Command::Man { command } => show(&manual::page(command.as_deref(), Cli::command())?)?,
+        Command::Man { command } => show(&manual::page(command.as_slice(), Cli::command())?)?,
     }
     Ok(ExitCode::SUCCESS)
 }
 
 /// On standard output; a reader that has seen enough is no failure.
 #[cfg(feature = "manual")]
-fn show(text: &[u8]) -> Result<(), String> {
+fn show(text: &[u8]) -> Result<(), Error> {
     match std::io::stdout().write_all(text) {
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(error.to_string()),
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Error::Os(error.into()))
+        }
         _ => Ok(()),
     }
 }
@@ -197,7 +200,7 @@ fn run_engine(engine: &mut impl Engine, tree: &std::path::Path) -> ExitCode {
     let host = match Host::from_standard_input() {
         Ok(host) => host,
         Err(error) => {
-            tell(format_args!(
+            report(format_args!(
                 "standard input is no channel to the daemon ({error}): this command is for trikd itself"
             ));
             return ExitCode::FAILURE;
@@ -234,13 +237,15 @@ mod tests {
     #[cfg(feature = "manual")]
     #[test]
     fn manual_pages_and_completions_know_the_commands_but_not_the_hidden_ones() {
-        let page =
-            |name| manual::page(name, Cli::command()).map(|page| String::from_utf8(page).unwrap());
+        let page = |name: Option<&str>| {
+            manual::page(name.as_slice(), Cli::command())
+                .map(|page| String::from_utf8(page).unwrap())
+        };
         assert!(page(None).unwrap().contains("trikd\\-serve(1)"));
         assert!(page(Some("serve")).unwrap().contains("control\\-port"));
         for unknown in ["launch", "daemon", "frobnicate"] {
             let said = page(Some(unknown)).unwrap_err();
-            assert_eq!(said, format!("there is no command {unknown}"));
+            assert_eq!(said.to_string(), format!("there is no command {unknown}"));
         }
         let script = manual::completions(clap_complete::Shell::Bash, Cli::command());
         let script = String::from_utf8(script).unwrap();

@@ -100,7 +100,7 @@ impl Clients {
     }
 
     /// Tells those who want to know where the running diagram is.
-    pub fn tell_watchers(&self, line: &str, json: &str) {
+    pub fn send_to_watchers(&self, line: &str, json: &str) {
         let frame: Rc<[u8]> = encode(format!("info: {line}").as_bytes()).into();
         let object: Rc<[u8]> = format!("{json}\n").into_bytes().into();
         for client in self.living() {

@@ -1,24 +1,33 @@
-//! The serving process: everything that its tasks share, and the order in which things come and go.
+//! The serving process: its services, what they share, and the order in which things come and go.
 //!
 //! Owns the start, which is whole or does not happen, and the end. One thread runs all tasks, so what they share needs
-//! no locks; the threads beside it read the tree, stop motors and wait for keys.
+//! no locks; the threads beside it read the tree, stop motors and wait for keys. What a service works with stands in a
+//! struct of its own, which is filled in here.
 
 use crate::access::Access;
 use crate::clients::Clients;
 use crate::connection::Held;
+use crate::error::{BadUser, Error};
 use crate::feedback::Feedback;
 use crate::pace::Pace;
 use crate::pictures::Pictures;
 use crate::priority::{self, Rank};
+use crate::program::boot::Autorun;
 use crate::program::child::Owner;
 use crate::program::reaper::Reaper;
 use crate::program::rest::Rest;
 use crate::program::{self, Command, Programs, Supervisor, boot};
 use crate::sampler::Sampler;
-use crate::server::gamepad::Pipe;
-use crate::server::mailbox::Mailbox;
-use crate::server::{self, Port, Seats};
+use crate::server::control::Control;
+use crate::server::discovery::{self, About};
+use crate::server::gamepad::{Gamepads, Pipe};
+use crate::server::mailbox::{self, Mailbox};
+use crate::server::telemetry::Telemetry;
+use crate::server::variables::Variables;
+use crate::server::video::Video;
+use crate::server::{self, Admission, Port, Seats};
 use crate::settings::{Service, Settings, StopKey};
+use crate::status::Status;
 use crate::{heartbeat, keys, status};
 use crate::{limits, log};
 use nix::unistd::{User, chown, geteuid};
@@ -31,41 +40,6 @@ use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::{mpsc, oneshot};
 use tokio::task::{LocalSet, spawn_local};
 
-/// What all tasks share.
-#[derive(Debug)]
-pub struct Daemon {
-    /// The command line.
-    pub settings: Settings,
-    /// Who may do what.
-    pub access: Access,
-    /// Who is connected.
-    pub clients: Clients,
-    /// Connections on all ports.
-    pub seats: Rc<Seats>,
-    /// Bytes of half frames.
-    pub held: Held,
-    /// What the robot senses.
-    pub sampler: Sampler,
-    /// The way to bring motors to rest.
-    pub rest: Rest,
-    /// What a person beside the robot hears and sees.
-    pub feedback: Feedback,
-    /// Who hears of ends of processes.
-    pub reaper: Reaper,
-    /// Whose rights programs have; None: those of trikd.
-    pub owner: Option<Owner>,
-    /// The way to whoever runs programs.
-    pub programs: Programs,
-    /// What the camera sees.
-    pub pictures: Pictures,
-    /// Messages between robots.
-    pub mailbox: Mailbox,
-    /// Where lines of gamepads go.
-    pub gamepad_pipe: Pipe,
-    started: Instant,
-    ports: String,
-}
-
 /// All ports; those that are not wanted are absent.
 struct Ports {
     control: Port,
@@ -76,7 +50,7 @@ struct Ports {
     variables: Option<Port>,
 }
 
-fn mailbox_port(settings: &Settings) -> Result<Port, String> {
+fn mailbox_port(settings: &Settings) -> Result<Port, Error> {
     let first = settings.mailbox_port;
     let bound = (first..=first.saturating_add(limits::MAILBOX_PORTS))
         .find_map(|port| Port::bind("mailbox", &settings.address, port).ok());
@@ -85,7 +59,7 @@ fn mailbox_port(settings: &Settings) -> Result<Port, String> {
 }
 
 impl Ports {
-    fn bind(settings: &Settings) -> Result<Self, String> {
+    fn bind(settings: &Settings) -> Result<Self, Error> {
         let all = &settings.address;
         // A robot that is for this machine alone has them where it has the rest, so that several can be side by side.
         let is_local = !all.is_empty() && all.iter().all(IpAddr::is_loopback);
@@ -132,268 +106,350 @@ impl Ports {
 }
 
 /// Makes a directory that is missing.
-fn directory(path: &Path, option: &str) -> Result<(), String> {
-    std::fs::create_dir_all(path).map_err(|error| unusable(path, &error, option))
+fn directory(path: &Path, option: &'static str) -> Result<(), Error> {
+    std::fs::create_dir_all(path).map_err(|error| unusable(path, error, option))
 }
 
 /// Why nothing can be put there, and what to do.
-fn unusable(path: &Path, error: &std::io::Error, option: &str) -> String {
-    format!(
-        "{}: {error}: name another directory with {option}",
-        path.display()
-    )
+fn unusable(path: &Path, error: std::io::Error, option: &'static str) -> Error {
+    Error::Directory(path.to_owned(), error.into(), option)
 }
 
 /// The user of programs, and whether they may write into their folder.
-fn owner(settings: &Settings) -> Result<Option<Owner>, String> {
+fn owner(settings: &Settings) -> Result<Option<Owner>, Error> {
     let Some(name) = &settings.user else {
         return Ok(None);
     };
-    let found = User::from_name(name).map_err(|error| format!("--user {name}: {error}"))?;
-    let user = found.ok_or_else(|| {
-        format!("--user {name}: there is no such user: `useradd --system {name}` makes one")
-    })?;
+    let bad = |why| Error::User(name.clone(), why);
+    let found = User::from_name(name).map_err(|error| bad(BadUser::Unknown(error.into())))?;
+    let user = found.ok_or_else(|| bad(BadUser::Missing))?;
     if user.uid == geteuid() {
         return Ok(None);
     }
     if !geteuid().is_root() {
-        return Err(format!(
-            "--user {name}: only root can start programs as another user"
-        ));
+        return Err(bad(BadUser::WithoutRoot));
     }
     if user.uid.is_root() {
-        return Err(format!(
-            "--user {name}: this is root: leave --user out to run programs as root"
-        ));
+        return Err(bad(BadUser::Root));
     }
-    chown(&settings.scripts, Some(user.uid), Some(user.gid))
-        .map_err(|error| format!("{}: {error}", settings.scripts.display()))?;
+    let folder = &settings.scripts;
+    chown(folder, Some(user.uid), Some(user.gid))
+        .map_err(|error| bad(BadUser::Folder(folder.clone(), error.into())))?;
     Ok(Some(Owner { user }))
 }
 
-impl Daemon {
-    fn new(settings: Settings, owner: Option<Owner>, ports: String) -> Result<Self, String> {
-        let threads = |error| format!("a thread cannot be started: {error}");
+/// Everything that has one owner here and several users: services take from it what they name.
+struct Parts {
+    settings: Rc<Settings>,
+    owner: Option<Owner>,
+    access: Rc<Access>,
+    clients: Rc<Clients>,
+    seats: Rc<Seats>,
+    held: Rc<Held>,
+    sampler: Rc<Sampler>,
+    rest: Rc<Rest>,
+    feedback: Rc<Feedback>,
+    reaper: Rc<Reaper>,
+    programs: Rc<Programs>,
+    mailbox: Rc<Mailbox>,
+    gamepads: Rc<Gamepads>,
+}
+
+impl Parts {
+    fn new(settings: Settings, owner: Option<Owner>) -> Result<Self, Error> {
         let access = Access::new(
             settings.allow.clone(),
             settings.pair,
             &settings.state.join("paired"),
         );
-        Ok(Self {
-            access: access.map_err(|error| error.to_string())?,
-            clients: Clients::default(),
-            seats: Rc::default(),
-            held: Held::default(),
-            sampler: Sampler::start(&settings.tree).map_err(threads)?,
-            rest: Rest::start(&settings.tree).map_err(threads)?,
-            feedback: match settings.has(Service::Feedback) {
-                true => Feedback::start(&settings.tree).map_err(threads)?,
-                false => Feedback::default(),
+        let clients = Rc::<Clients>::default();
+        let seats = Rc::new(Seats::new(settings.connections.into()));
+        let held = Rc::<Held>::default();
+        let programs = Rc::<Programs>::default();
+        let mailbox = Mailbox::new(
+            &settings.state.join("mailbox"),
+            mailbox::Surroundings {
+                clients: clients.clone(),
+                held: held.clone(),
+                seats: seats.clone(),
+                programs: programs.clone(),
+                addresses: settings.address.clone(),
             },
-            reaper: Reaper::default(),
+        );
+        let feedback = match settings.has(Service::Feedback) {
+            true => Feedback::start(&settings.tree).map_err(Error::thread)?,
+            false => Feedback::default(),
+        };
+        let access = Rc::new(access.map_err(|error| Error::Os(error.into()))?);
+        Ok(Self {
             owner,
-            programs: Programs::default(),
-            pictures: Pictures::new(&settings.tree),
-            mailbox: Mailbox::new(&settings.state.join("mailbox")),
-            gamepad_pipe: Pipe::new(&settings.gamepad_fifo),
-            started: Instant::now(),
-            ports,
-            settings,
+            gamepads: Rc::new(Gamepads {
+                access: access.clone(),
+                clients: clients.clone(),
+                // The tree may read it also when nobody serves gamepads here.
+                pipe: Pipe::new(&settings.gamepad_fifo),
+            }),
+            access,
+            clients,
+            seats,
+            held,
+            sampler: Rc::new(Sampler::start(&settings.tree).map_err(Error::thread)?),
+            rest: Rc::new(Rest::start(&settings.tree).map_err(Error::thread)?),
+            feedback: Rc::new(feedback),
+            reaper: Rc::default(),
+            programs,
+            mailbox: Rc::new(mailbox),
+            settings: Rc::new(settings),
         })
     }
 
-    /// What `trikd status` shows.
-    pub fn describe(&self) -> String {
-        let tree = &self.settings.tree;
-        let state = if tree.join("stop").exists() {
-            "mounted"
-        } else {
-            "NOT MOUNTED"
+    fn supervisor(&self) -> Supervisor {
+        Supervisor::new(program::Surroundings {
+            settings: self.settings.clone(),
+            owner: self.owner.clone(),
+            programs: self.programs.clone(),
+            clients: self.clients.clone(),
+            mailbox: self.mailbox.clone(),
+            rest: self.rest.clone(),
+            reaper: self.reaper.clone(),
+            feedback: self.feedback.clone(),
+        })
+    }
+
+    fn status(&self, ports: String) -> Status {
+        Status {
+            started: Instant::now(),
+            ports,
+            tree: self.settings.tree.clone(),
+            access: self.access.clone(),
+            owner: self.owner.clone(),
+            memory_mib: self.settings.memory_mib,
+            processes: self.settings.processes,
+            programs: self.programs.clone(),
+            mailbox: self.mailbox.clone(),
+            seats: self.seats.clone(),
+            clients: self.clients.clone(),
+        }
+    }
+
+    fn autorun(&self) -> Autorun {
+        Autorun {
+            scripts: self.settings.scripts.clone(),
+            state: self.settings.state.clone(),
+            sampler: self.sampler.clone(),
+            programs: self.programs.clone(),
+        }
+    }
+
+    /// Says so if the user of programs cannot drive.
+    fn warn_of_rights(&self) {
+        if let Some(owner) = &self.owner
+            && let Some(file) = owner.lacks(&self.settings.tree)
+        {
+            let name = &owner.user.name;
+            tracing::warn!(
+                target: log::PROGRAMS,
+                "programs run as {name}, who may not write {}: mount with --allow-other --group and the group of {name}",
+                file.display()
+            );
+        }
+    }
+
+    /// Begins to accept on all ports.
+    fn open(&self, ports: Ports) {
+        let admission = Rc::new(Admission {
+            access: self.access.clone(),
+            seats: self.seats.clone(),
+        });
+        let control_port = ports.control.number();
+        let control = Rc::new(self.control());
+        ports
+            .control
+            .serve(&admission, &control, server::control::serve);
+        let telemetry = Rc::new(Telemetry {
+            clients: self.clients.clone(),
+            held: self.held.clone(),
+            sampler: self.sampler.clone(),
+        });
+        ports
+            .telemetry
+            .serve(&admission, &telemetry, server::telemetry::serve);
+        if let Some(port) = ports.mailbox {
+            let number = port.number();
+            port.serve(&admission, &self.mailbox, server::mailbox::serve);
+            self.mailbox.open(number);
+        }
+        if let Some(port) = ports.gamepad {
+            port.serve(&admission, &self.gamepads, server::gamepad::serve);
+        }
+        if let Some(port) = ports.video {
+            let video = Rc::new(Video {
+                clients: self.clients.clone(),
+                pictures: Pictures::new(&self.settings.tree),
+            });
+            port.serve(&admission, &video, server::video::serve);
+        }
+        if let Some(port) = ports.variables {
+            let variables = Rc::new(Variables {
+                clients: self.clients.clone(),
+                programs: self.programs.clone(),
+            });
+            port.serve(&admission, &variables, server::variables::serve);
+        }
+        self.open_datagrams(control_port);
+    }
+
+    fn control(&self) -> Control {
+        Control {
+            access: self.access.clone(),
+            clients: self.clients.clone(),
+            held: self.held.clone(),
+            programs: self.programs.clone(),
+            feedback: self.feedback.clone(),
+            scripts: self.settings.scripts.clone(),
+            upload_bytes: usize::from(self.settings.upload_mib) << 20,
+            config_version: self.settings.config_version.clone(),
+        }
+    }
+
+    /// Begins what goes by datagrams; without it everything else works.
+    fn open_datagrams(&self, control_port: u16) {
+        let report = |what: &'static str, task: std::io::Result<()>| {
+            if let Err(error) = task {
+                tracing::warn!(target: log::DAEMON, "{what} is off: {error}");
+            }
         };
-        let user = self
-            .owner
-            .as_ref()
-            .map_or("the user of trikd", |owner| owner.user.name.as_str());
-        format!(
-            "trikd {} for {} s\nports {}\ntree {} {state}\naccess {}\nprograms run as {user}, with {} MiB and {} processes\n{}{}connections {} of {}\n{}",
-            env!("CARGO_PKG_VERSION"),
-            self.started.elapsed().as_secs(),
-            self.ports,
-            tree.display(),
-            self.access.describe(),
-            self.settings.memory_mib,
-            self.settings.processes,
-            self.programs.describe(),
-            self.mailbox.describe(),
-            self.seats.taken(),
-            self.settings.connections,
-            self.clients.describe()
-        )
+        if self.settings.has(Service::Discovery) {
+            let about = About {
+                name: self.settings.name.clone(),
+                config_version: self.settings.config_version.clone(),
+                port: control_port,
+            };
+            spawn_local(async move { report("discovery", discovery::answer(about).await) });
+        }
+        if let Some(to) = self.settings.udp_telemetry {
+            let (sampler, period_ms) = (self.sampler.clone(), self.settings.udp_period_ms);
+            spawn_local(async move {
+                let sent = server::datagrams::send(sampler, to, period_ms).await;
+                report("telemetry by datagrams", sent);
+            });
+        }
+    }
+
+    fn keys(&self) -> Keys {
+        Keys {
+            stop_key: self.settings.stop_key,
+            access: self.access.clone(),
+            programs: self.programs.clone(),
+        }
     }
 }
 
 /// Serves until a signal ends it. `restarts`: how often that has been tried after crashes.
 ///
 /// # Errors
-/// In words, before anything was served.
-pub fn run(settings: Settings, restarts: u32) -> Result<(), String> {
+/// Before anything was served.
+pub fn run(settings: Settings, restarts: u32) -> Result<(), Error> {
     let pace = Pace::default();
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_all()
         .on_thread_park(move || pace.rest())
         .max_blocking_threads(limits::BLOCKING_THREADS)
         .build()
-        .map_err(|error| format!("no event loop: {error}"))?;
+        .map_err(|error| Error::EventLoop(error.into()))?;
     runtime.block_on(LocalSet::new().run_until(serve(settings, restarts)))
 }
 
-async fn serve(mut settings: Settings, restarts: u32) -> Result<(), String> {
+async fn serve(mut settings: Settings, restarts: u32) -> Result<(), Error> {
     settings.make_absolute()?;
     let ports = Ports::bind(&settings)?;
     directory(&settings.scripts, "--scripts")?;
     directory(&settings.state, "--state")?;
     directory(&settings.run, "--run")?;
     let python = settings.run.join("python");
-    let unusable = |path: &Path, error| unusable(path, &error, "--run");
+    let unusable = |path: &Path, error| unusable(path, error, "--run");
     program::child::install(&settings.run).map_err(|error| unusable(&settings.run, error))?;
     program::python::install(&python).map_err(|error| unusable(&python, error))?;
     let listener = status::listen(&settings.run).map_err(|error| unusable(&settings.run, error))?;
     let owner = owner(&settings)?;
     // Whoever loses its parent becomes a child of this process, and cannot outlive its program.
     program::kill::adopt_orphans()?;
-    let mut ends = Vec::new();
-    for kind in [
-        SignalKind::terminate(),
-        SignalKind::interrupt(),
-        SignalKind::hangup(),
-    ] {
-        ends.push(signal(kind).map_err(|error| format!("signals: {error}"))?);
-    }
-    let pressed = keys::watch(&settings.tree)
-        .map_err(|error| format!("a thread cannot be started: {error}"))?;
+    let listen = |kind| signal(kind).map_err(|error| Error::Signals(error.into()));
+    let mut terminate = listen(SignalKind::terminate())?;
+    let mut interrupt = listen(SignalKind::interrupt())?;
+    let mut hang_up = listen(SignalKind::hangup())?;
+    let pressed = keys::watch(&settings.tree).map_err(Error::thread)?;
     let words = ports.describe();
-    let daemon = Rc::new(Daemon::new(settings, owner, words.clone())?);
+    let parts = Parts::new(settings, owner)?;
     // Who has named root knows it.
-    if daemon.settings.user.is_none() && geteuid().is_root() {
+    if parts.settings.user.is_none() && geteuid().is_root() {
         tracing::warn!(
             target: log::PROGRAMS,
             "programs run as root: name a user for them with --user"
         );
     }
     let reaper = spawn_local({
-        let daemon = daemon.clone();
-        async move { daemon.reaper.run().await }
+        let reaper = parts.reaper.clone();
+        async move { reaper.run().await }
     });
-    heartbeat::start().map_err(|error| format!("a thread cannot be started: {error}"))?;
+    heartbeat::start().map_err(Error::thread)?;
     // Behind the start of the threads that shall not have it.
     priority::take(Rank::Serving);
-    let supervisor = spawn_local(Supervisor::new(daemon.clone()).run());
-    match daemon.rest.now(limits::REST_LAST_MS).await {
+    let supervisor = spawn_local(parts.supervisor().run());
+    match parts.rest.now(limits::REST_LAST_MS).await {
         Err(why) => tracing::warn!(target: log::TREE, "at the start: {why}"),
         // The tree answers, so it does not hang.
-        Ok(()) => tell_of_rights(&daemon),
+        Ok(()) => parts.warn_of_rights(),
     }
-    open(&daemon, ports);
-    spawn_local(status::serve(daemon.clone(), listener));
-    spawn_local(hear_keys(daemon.clone(), pressed));
-    if !daemon.settings.no_autorun {
-        spawn_local(boot::autorun(daemon.clone(), restarts));
+    parts.open(ports);
+    spawn_local(status::serve(parts.status(words.clone()), listener));
+    spawn_local(parts.keys().hear(pressed));
+    if !parts.settings.no_autorun {
+        spawn_local(boot::autorun(parts.autorun(), restarts));
     }
     tracing::info!(target: log::DAEMON, "serves {words}");
     // Whoever started this may not listen.
     let _ = writeln!(std::io::stdout(), "trikd: ready: {words}");
-    let [first, second, third] = &mut ends[..] else {
-        return Err("signals".to_owned());
-    };
     tokio::select! {
-        _ = first.recv() => {}
-        _ = second.recv() => {}
-        _ = third.recv() => {}
+        _ = terminate.recv() => {}
+        _ = interrupt.recv() => {}
+        _ = hang_up.recv() => {}
         // Without them no program would be stopped: the guardian does that, and starts anew.
         _ = supervisor => std::process::abort(),
         _ = reaper => std::process::abort(),
     }
     tracing::info!(target: log::DAEMON, "ends");
     let (done, ended) = oneshot::channel();
-    daemon.programs.tell(Command::Quit(done)).await;
+    parts.programs.send(Command::Quit(done)).await;
     let _ = ended.await;
-    daemon.mailbox.rest().await;
+    parts.mailbox.rest().await;
     Ok(())
 }
 
-/// Says so if the user of programs cannot drive.
-fn tell_of_rights(daemon: &Daemon) {
-    if let Some(owner) = &daemon.owner
-        && let Some(file) = owner.lacks(&daemon.settings.tree)
-    {
-        let name = &owner.user.name;
-        tracing::warn!(
-            target: log::PROGRAMS,
-            "programs run as {name}, who may not write {}: mount with --allow-other --group and the group of {name}",
-            file.display()
-        );
-    }
+/// What the keys of the robot act on.
+struct Keys {
+    stop_key: StopKey,
+    access: Rc<Access>,
+    programs: Rc<Programs>,
 }
 
-/// Begins to accept on all ports.
-fn open(daemon: &Rc<Daemon>, ports: Ports) {
-    let control = ports.control.number();
-    ports.control.serve(daemon, server::control::serve);
-    ports.telemetry.serve(daemon, server::telemetry::serve);
-    if let Some(port) = ports.mailbox {
-        let number = port.number();
-        port.serve(daemon, server::mailbox::serve);
-        daemon.mailbox.open(daemon, number);
-    }
-    if let Some(port) = ports.gamepad {
-        port.serve(daemon, server::gamepad::serve);
-    }
-    if let Some(port) = ports.video {
-        port.serve(daemon, server::video::serve);
-    }
-    if let Some(port) = ports.variables {
-        port.serve(daemon, server::variables::serve);
-    }
-    let told = |what: &'static str, task: std::io::Result<()>| {
-        if let Err(error) = task {
-            tracing::warn!(target: log::DAEMON, "{what} is off: {error}");
-        }
-    };
-    if daemon.settings.has(Service::Discovery) {
-        let daemon = daemon.clone();
-        spawn_local(async move {
-            told(
-                "discovery",
-                server::discovery::answer(daemon, control).await,
-            )
-        });
-    }
-    if let Some(to) = daemon.settings.udp_telemetry {
-        let daemon = daemon.clone();
-        spawn_local(async move {
-            told(
-                "telemetry by datagrams",
-                server::datagrams::send(daemon, to).await,
-            )
-        });
-    }
-}
-
-/// The stop key ends the program; Enter pairs who has asked.
-async fn hear_keys(daemon: Rc<Daemon>, mut pressed: mpsc::Receiver<&'static str>) {
-    let stop = match daemon.settings.stop_key {
-        StopKey::Power => "Power",
-        StopKey::Esc => "Esc",
-        StopKey::None => "",
-    };
-    while let Some(key) = pressed.recv().await {
-        if key == stop && daemon.programs.runs() {
-            daemon.programs.tell(Command::Stop("the stop key")).await;
-        } else if key == "Enter" && daemon.access.pairs() {
-            match daemon.access.pair_last() {
-                Ok(Some(ip)) => tracing::info!(target: log::CLIENTS, "{ip} is paired"),
-                Ok(None) => {}
-                Err(error) => tracing::warn!(target: log::CLIENTS, "pairing: {error}"),
+impl Keys {
+    /// The stop key ends the program; Enter pairs who has asked.
+    async fn hear(self, mut pressed: mpsc::Receiver<&'static str>) {
+        let stop = match self.stop_key {
+            StopKey::Power => "Power",
+            StopKey::Esc => "Esc",
+            StopKey::None => "",
+        };
+        while let Some(key) = pressed.recv().await {
+            if key == stop && self.programs.runs() {
+                self.programs.send(Command::Stop("the stop key")).await;
+            } else if key == "Enter" && self.access.pairs() {
+                match self.access.pair_last() {
+                    Ok(Some(ip)) => tracing::info!(target: log::CLIENTS, "{ip} is paired"),
+                    Ok(None) => {}
+                    Err(error) => tracing::warn!(target: log::CLIENTS, "pairing: {error}"),
+                }
             }
         }
     }

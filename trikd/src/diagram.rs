@@ -3,6 +3,9 @@
 //! Owns the time of a running diagram and its way outside. `robot` is the tree as the machine sees it, `readings` its
 //! sensors, `watch` what is told of the run. What blocks mean is known in `lang` alone.
 
+// A request, a message or a command that is forgotten must not pass in silence.
+#![deny(clippy::wildcard_enum_match_arm)]
+
 mod readings;
 mod robot;
 mod watch;
@@ -132,7 +135,7 @@ fn run(
     loop {
         let now = u32::try_from(start.elapsed().as_millis()).unwrap_or(u32::MAX);
         let status = machine.step(now, robot, watch);
-        watch.tell(machine, now, host)?;
+        watch.report(machine, now, host)?;
         if matches!(status, Status::Ended { .. }) {
             return Ok(());
         }
@@ -146,7 +149,8 @@ fn run(
                     Incoming::Mail(_, text) => robot.post(text),
                     Incoming::Web => host.web(&watch::variables(machine))?,
                     Incoming::Watch(is_wanted) => watch.set_wanted(is_wanted),
-                    Incoming::Direct(_) => {}
+                    // The daemon starts another program for them; whoever sends one all the same learns that it is lost.
+                    Incoming::Direct(_) => host.error("a diagram takes no direct commands")?,
                     Incoming::Gone => return Ok(()),
                 }
             }

@@ -165,7 +165,7 @@ pub fn serve(root: &Path, input: &mut impl BufRead, answers: bool) -> Result<(),
             let said = output.write_all(&answer).and_then(|()| output.flush());
             said.map_err(|error| format!("answers cannot be written: {error}"))?;
         } else if let Err(reason) = done {
-            crate::log::tell(reason);
+            crate::log::report(reason);
         }
     }
     if failures > 0 && !answers {

@@ -3,6 +3,8 @@
 //! Run by the integration tests of the project with a printed seed, and by anybody's fuzzer.
 
 use crate::protocol::frame::{Decoder, encode};
+use crate::protocol::program::mailbox::Question;
+use crate::protocol::program::{FromProgram, ToProgram};
 use crate::protocol::{control, dns, gamepad, http, mail, telemetry};
 use crate::{limits, program::output, scripts};
 use std::path::Path;
@@ -64,6 +66,29 @@ pub fn fuzz_messages(bytes: &[u8]) {
     }
     if let gamepad::Line::Command(text) = gamepad::Line::parse(bytes) {
         assert!(!text.contains('\n'));
+    }
+}
+
+/// What a program and its daemon tell each other: a meaning is kept when it is sent again.
+pub fn fuzz_channel(bytes: &[u8]) {
+    let payload = String::from_utf8_lossy(bytes);
+    if let Some(message) = ToProgram::parse(&payload) {
+        let again = String::from_utf8_lossy(&message.encode()).into_owned();
+        assert_eq!(ToProgram::parse(&again), Some(message));
+    }
+    if let Some(message) = FromProgram::parse(&payload) {
+        let again = String::from_utf8_lossy(&message.encode()).into_owned();
+        assert_eq!(FromProgram::parse(&again), Some(message));
+    }
+    // Without an address there are no fields to find it among.
+    if let Some(question) = Question::parse(&payload)
+        && !matches!(question, Question::Join { address: "", .. })
+    {
+        let words = question.to_string();
+        assert_eq!(
+            Question::parse(&words).map(|again| again.to_string()),
+            Some(words)
+        );
     }
 }
 

@@ -3,7 +3,12 @@
 //! Owns one child and nothing else. It is the subreaper behind the daemon, so programs whose daemon is dead are its
 //! children; if the guardian itself dies, the daemon ends in order.
 
+// A request, a message or a command that is forgotten must not pass in silence.
+#![deny(clippy::wildcard_enum_match_arm)]
+
+use crate::error::Error;
 use crate::program::kill;
+use crate::program::rest::Failure;
 use crate::tree::{Access, Tree};
 use crate::{limits, log};
 use nix::sys::prctl;
@@ -22,21 +27,21 @@ const ENDS: [Signal; 3] = [Signal::SIGTERM, Signal::SIGINT, Signal::SIGHUP];
 /// The beginning of the serving process: it ends in order when the guardian dies.
 ///
 /// # Errors
-/// In words.
-pub fn follow(guardian: i32) -> Result<(), String> {
+/// The guardian is gone, or the kernel refuses.
+pub fn follow(guardian: i32) -> Result<(), Error> {
     // For those who look at a list of processes.
     let _ = prctl::set_name(c"trikd");
     let reset = SigSet::empty().thread_swap_mask(SigmaskHow::SIG_SETMASK);
     reset
         .and_then(|_| prctl::set_pdeathsig(Signal::SIGTERM))
-        .map_err(|error| error.to_string())?;
+        .map_err(|error| Error::Os(error.into()))?;
     if getppid().as_raw() != guardian {
-        return Err("the process that started this one is gone".to_owned());
+        return Err(Error::GuardianGone);
     }
     Ok(())
 }
 
-fn start(arguments: &[OsString], restarts: u32) -> Result<Pid, String> {
+fn start(arguments: &[OsString], restarts: u32) -> Result<Pid, Error> {
     let mut command = crate::program::child::this_program();
     command
         .arg("daemon")
@@ -48,10 +53,10 @@ fn start(arguments: &[OsString], restarts: u32) -> Result<Pid, String> {
         .args(arguments);
     let child = command
         .spawn()
-        .map_err(|error| format!("the serving process cannot be started: {error}"))?;
-    Ok(Pid::from_raw(
-        i32::try_from(child.id()).map_err(|error| error.to_string())?,
-    ))
+        .map_err(|error| Error::ServingProcess(error.into()))?;
+    Ok(Pid::from_raw(i32::try_from(child.id()).map_err(
+        |error| Error::Os(std::io::Error::other(error).into()),
+    )?))
 }
 
 /// Motors to rest, programs away, motors to rest again.
@@ -73,7 +78,7 @@ fn rest(tree: &Path) {
     let root = tree.to_owned();
     std::thread::spawn(move || {
         let done = Tree::new(&root).node("stop", Access::Write).write("1\n");
-        let _ = tell.send(done.map_err(|error| crate::program::rest::explain(&root, &error)));
+        let _ = tell.send(done.map_err(|error| Failure::of(&root, error)));
     });
     match told.recv_timeout(Duration::from_millis(limits::GUARDIAN_REST_MS)) {
         Ok(Ok(())) => {}
@@ -99,9 +104,9 @@ fn end(daemon: Pid) {
 /// How the serving process ended, if it has. One that is stopped (SIGSTOP) can neither serve nor see that it does not:
 /// a program with the same rights could do that to escape every stop. It is killed.
 fn ended(daemon: Pid) -> Option<WaitStatus> {
-    let look = WaitPidFlag::WNOHANG | WaitPidFlag::WUNTRACED;
+    let flags = WaitPidFlag::WNOHANG | WaitPidFlag::WUNTRACED;
     loop {
-        match waitpid(None, Some(look)) {
+        match waitpid(None, Some(flags)) {
             Ok(WaitStatus::StillAlive) | Err(_) => return None,
             Ok(WaitStatus::Stopped(pid, signal)) => {
                 if pid == daemon {
@@ -118,9 +123,9 @@ fn ended(daemon: Pid) -> Option<WaitStatus> {
 /// Starts the serving process with the same arguments and looks after it until it ends in order.
 ///
 /// # Errors
-/// In words, empty if the serving process has told it.
-pub fn run(tree: &Path, arguments: &[OsString]) -> Result<ExitCode, String> {
-    let fails = |error: nix::Error| format!("guardian: {error}");
+/// The serving process cannot be started, or crashes again and again.
+pub fn run(tree: &Path, arguments: &[OsString]) -> Result<ExitCode, Error> {
+    let fails = |error: nix::Error| Error::Guardian(error.into());
     kill::adopt_orphans()?;
     let mut signals = SigSet::from_iter(ENDS);
     signals.add(Signal::SIGCHLD);
@@ -139,12 +144,8 @@ pub fn run(tree: &Path, arguments: &[OsString]) -> Result<ExitCode, String> {
         let Some(status) = ended(daemon) else {
             continue;
         };
-        match status {
-            WaitStatus::Exited(_, 0) => return Ok(ExitCode::SUCCESS),
-            WaitStatus::Exited(_, code @ (1 | 2)) => {
-                return Ok(ExitCode::from(u8::try_from(code).unwrap_or(1)));
-            }
-            _ => {}
+        if let WaitStatus::Exited(_, code @ 0..=2) = status {
+            return Ok(ExitCode::from(u8::try_from(code).unwrap_or(1)));
         }
         tracing::error!(
             target: log::DAEMON,
@@ -152,16 +153,12 @@ pub fn run(tree: &Path, arguments: &[OsString]) -> Result<ExitCode, String> {
         );
         clean_up(tree);
         if is_over {
-            return Err("the serving process crashed at its end".to_owned());
+            return Err(Error::CrashAtTheEnd);
         }
         crashes.push_back(Instant::now());
         crashes.retain(|crash| crash.elapsed() < Duration::from_millis(limits::CRASHES_MS));
         if crashes.len() >= limits::CRASHES {
-            return Err(format!(
-                "{} crashes within {} s: it is not started again",
-                limits::CRASHES,
-                limits::CRASHES_MS / 1000
-            ));
+            return Err(Error::Crashes(limits::CRASHES, limits::CRASHES_MS / 1000));
         }
         restarts += 1;
         daemon = start(arguments, restarts)?;

@@ -19,7 +19,7 @@ pub fn start() -> io::Result<()> {
         let mut missing = Missing::default();
         loop {
             std::thread::sleep(Duration::from_millis(limits::BEAT_MS));
-            if missing.look(seen.load(Ordering::Relaxed)) >= limits::BEATS_MISSING {
+            if missing.observe(seen.load(Ordering::Relaxed)) >= limits::BEATS_MISSING {
                 tracing::error!(target: log::DAEMON, "the serving thread hangs: it is ended");
                 std::process::abort();
             }
@@ -45,7 +45,7 @@ struct Missing {
 }
 
 impl Missing {
-    fn look(&mut self, beats: u32) -> u32 {
+    fn observe(&mut self, beats: u32) -> u32 {
         self.rounds = if beats == self.last {
             self.rounds + 1
         } else {
@@ -63,7 +63,9 @@ mod tests {
     #[test]
     fn only_beats_that_stay_away_in_a_row_count() {
         let mut missing = Missing::default();
-        let rounds: Vec<u32> = [1, 2, 2, 2, 3, 3].map(|beats| missing.look(beats)).into();
+        let rounds: Vec<u32> = [1, 2, 2, 2, 3, 3]
+            .map(|beats| missing.observe(beats))
+            .into();
         assert_eq!(rounds, [0, 0, 1, 2, 0, 1]);
     }
 }

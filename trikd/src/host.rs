@@ -1,31 +1,14 @@
 //! The daemon as a program sees it: a channel of frames on standard input, in both directions.
 //!
-//! Owns the words of that channel and its end on the program's side; `program` has the other end. Frames are those of
-//! the network ([`crate::protocol::frame`]). Everything is blocking and on one thread: an engine polls [`Host::fd`]
-//! together with its timers. Python programs speak the same words through `trik.py`.
-//!
-//! | daemon to program | means |
-//! | --- | --- |
-//! | `file:PATH`, `script:TEXT`, `start:` | what to begin with: first frame, exactly once |
-//! | `direct:TEXT` | the next direct text |
-//! | `mail:HULL:TEXT` | a message of the mailbox |
-//! | `answer:TEXT` | the answer to a `mailbox:` question |
-//! | `web:` | asks for the variables that the program shows |
-//! | `watch:1`, `watch:0` | somebody, or nobody any more, wants to see where the program is |
-//!
-//! | program to daemon | means |
-//! | --- | --- |
-//! | `print:TEXT` | output, as it shall be shown, with its newline |
-//! | `error:TEXT` | a failure; the daemon puts nothing before it |
-//! | `info:TEXT` | something a person may want to know |
-//! | `events:` | the program is event-driven from now on: direct texts may come in between |
-//! | `mailbox:WORDS` | a question to the mailbox, see [`crate::server::mailbox`] |
-//! | `web:JSON` | the variables |
-//! | `watch:LINE`, newline, JSON | where the program is, for people and for programs |
+//! Owns the program's end of that channel; `program` has the other end, and [`crate::protocol::program`] what is said.
+//! Everything is blocking and on one thread: an engine polls [`Host::fd`] together with its timers. Python programs
+//! have `trik.py` in its place.
 
 use crate::engine::Start;
 use crate::limits;
 use crate::protocol::frame::{Decoder, encode};
+use crate::protocol::program::mailbox::Question;
+use crate::protocol::program::{FromProgram, ToProgram};
 use nix::errno::Errno;
 use nix::sys::socket::MsgFlags;
 use std::cell::RefCell;
@@ -92,14 +75,23 @@ impl Host {
     /// The daemon is gone, or speaks differently.
     pub fn start(&self) -> io::Result<Start> {
         let frame = self.frame(None)?.ok_or(io::ErrorKind::UnexpectedEof)?;
-        let (word, rest) = frame.split_once(':').unwrap_or((&frame, ""));
-        match word {
-            "file" => Ok(Start::File(rest.into())),
-            "script" => Ok(Start::Script(rest.to_owned())),
-            "start" => Ok(Start::Direct),
-            _ => Err(io::Error::other(format!(
-                "'{word}' is no way to start a program"
-            ))),
+        match ToProgram::parse(&frame) {
+            Some(ToProgram::File(path)) => Ok(Start::File(path.into())),
+            Some(ToProgram::Script(text)) => Ok(Start::Script(text.to_owned())),
+            Some(ToProgram::Start) => Ok(Start::Direct),
+            Some(
+                ToProgram::Direct(_)
+                | ToProgram::Mail { .. }
+                | ToProgram::Answer(_)
+                | ToProgram::Web
+                | ToProgram::Watch(_),
+            )
+            | None => {
+                let word = frame.split(':').next().unwrap_or_default();
+                Err(io::Error::other(format!(
+                    "'{word}' is no way to start a program"
+                )))
+            }
         }
     }
 
@@ -126,16 +118,15 @@ impl Host {
         }
     }
 
-    /// Asks the mailbox and waits for its answer: `send HULL TEXT`, `connect IP [PORT]`, `join IP PORT HULL`, `hull`,
-    /// `hull N`, `server`, `ip`, `connected`, `enabled`, `renew`.
+    /// Asks the mailbox in the words of [`Question`] and waits for its answer.
     ///
     /// # Errors
     /// The daemon is gone.
     pub fn mailbox(&self, words: &str) -> io::Result<String> {
-        self.send("mailbox:", words)?;
+        self.send(FromProgram::Mailbox(words))?;
         loop {
             let frame = self.frame(None)?.ok_or(io::ErrorKind::UnexpectedEof)?;
-            if let Some(answer) = frame.strip_prefix("answer:") {
+            if let Some(ToProgram::Answer(answer)) = ToProgram::parse(&frame) {
                 return Ok(answer.to_owned());
             }
             self.early.borrow_mut().extend(incoming(&frame));
@@ -173,8 +164,8 @@ impl Host {
     ///
     /// # Errors
     /// The daemon is gone.
-    pub fn post(&self, words: &str) -> io::Result<()> {
-        self.send("mailbox:", words)
+    pub fn post(&self, question: Question<'_>) -> io::Result<()> {
+        self.send(FromProgram::Mailbox(&question.to_string()))
     }
 
     /// Tells where the program is: a line for people, and a JSON object.
@@ -182,7 +173,7 @@ impl Host {
     /// # Errors
     /// The daemon is gone.
     pub fn watch(&self, line: &str, json: &str) -> io::Result<()> {
-        self.send("watch:", &format!("{line}\n{json}"))
+        self.send(FromProgram::Watch { line, json })
     }
 
     /// Shows output as it is; the newline is part of it.
@@ -190,7 +181,7 @@ impl Host {
     /// # Errors
     /// The daemon is gone.
     pub fn print(&self, text: &str) -> io::Result<()> {
-        self.send("print:", shown(text))
+        self.send(FromProgram::Print(shown(text)))
     }
 
     /// Shows a failure.
@@ -198,7 +189,7 @@ impl Host {
     /// # Errors
     /// The daemon is gone.
     pub fn error(&self, text: &str) -> io::Result<()> {
-        self.send("error:", shown(text))
+        self.send(FromProgram::Error(shown(text)))
     }
 
     /// Shows an information.
@@ -206,7 +197,7 @@ impl Host {
     /// # Errors
     /// The daemon is gone.
     pub fn info(&self, text: &str) -> io::Result<()> {
-        self.send("info:", shown(text))
+        self.send(FromProgram::Info(shown(text)))
     }
 
     /// Says that the program is event-driven from now on.
@@ -214,7 +205,7 @@ impl Host {
     /// # Errors
     /// The daemon is gone.
     pub fn events(&self) -> io::Result<()> {
-        self.send("events:", "")
+        self.send(FromProgram::Events)
     }
 
     /// Answers [`Incoming::Web`] with a JSON object.
@@ -222,13 +213,11 @@ impl Host {
     /// # Errors
     /// The daemon is gone.
     pub fn web(&self, json: &str) -> io::Result<()> {
-        self.send("web:", json)
+        self.send(FromProgram::Web(json))
     }
 
-    fn send(&self, word: &str, text: &str) -> io::Result<()> {
-        let mut payload = Vec::with_capacity(word.len() + text.len());
-        payload.extend_from_slice(word.as_bytes());
-        payload.extend_from_slice(text.as_bytes());
+    fn send(&self, message: FromProgram<'_>) -> io::Result<()> {
+        let payload = message.encode();
         if payload.len() > limits::CHANNEL_FRAME_BYTES {
             // The daemon would take it for the end of the program.
             let why = format!(
@@ -273,18 +262,15 @@ fn is_late(error: &io::Error) -> bool {
     [io::ErrorKind::WouldBlock, io::ErrorKind::TimedOut].contains(&error.kind())
 }
 
-/// None for what this side does not know.
+/// What a frame means to a running program. None: nothing, or too late or too early.
 fn incoming(frame: &str) -> Option<Incoming> {
-    let (word, rest) = frame.split_once(':')?;
-    match word {
-        "direct" => Some(Incoming::Direct(rest.to_owned())),
-        "mail" => {
-            let (hull, text) = rest.split_once(':')?;
-            Some(Incoming::Mail(hull.parse().ok()?, text.to_owned()))
-        }
-        "web" => Some(Incoming::Web),
-        "watch" => Some(Incoming::Watch(rest == "1")),
-        _ => None,
+    match ToProgram::parse(frame)? {
+        ToProgram::Direct(text) => Some(Incoming::Direct(text.to_owned())),
+        ToProgram::Mail { hull, text } => Some(Incoming::Mail(hull, text.to_owned())),
+        ToProgram::Web => Some(Incoming::Web),
+        ToProgram::Watch(is_wanted) => Some(Incoming::Watch(is_wanted)),
+        // A program starts once, and the answer to what was posted is dropped.
+        ToProgram::File(_) | ToProgram::Script(_) | ToProgram::Start | ToProgram::Answer(_) => None,
     }
 }
 
@@ -297,16 +283,16 @@ mod tests {
         (daemon, Host::new(program))
     }
 
-    fn tell(daemon: &mut UnixStream, text: &str) {
+    fn send(daemon: &mut UnixStream, text: &str) {
         daemon.write_all(&encode(text.as_bytes())).unwrap();
     }
 
     #[test]
     fn a_program_is_told_its_start_and_what_comes_later() {
         let (mut daemon, host) = pair();
-        tell(&mut daemon, "file:/a:b.js");
-        tell(&mut daemon, "unknown:x");
-        tell(&mut daemon, "mail:-1:a:b");
+        send(&mut daemon, "file:/a:b.js");
+        send(&mut daemon, "unknown:x");
+        send(&mut daemon, "mail:-1:a:b");
         assert_eq!(host.start().unwrap(), Start::File("/a:b.js".into()));
         assert_eq!(
             host.receive(None).unwrap(),
@@ -327,7 +313,7 @@ mod tests {
             all
         });
         host.print(&format!("x{long}")).unwrap();
-        let refusal = host.post(&long).unwrap_err();
+        let refusal = host.mailbox(&long).unwrap_err();
         assert!(refusal.to_string().contains("too many"), "{refusal}");
         host.print("end\n").unwrap();
         drop(host);
@@ -344,8 +330,8 @@ mod tests {
     #[test]
     fn what_comes_before_an_answer_is_not_lost() {
         let (mut daemon, host) = pair();
-        tell(&mut daemon, "direct:x = 1");
-        tell(&mut daemon, "answer:7");
+        send(&mut daemon, "direct:x = 1");
+        send(&mut daemon, "answer:7");
         assert_eq!(host.mailbox("hull").unwrap(), "7");
         assert_eq!(
             host.receive(None).unwrap(),

@@ -5,10 +5,11 @@
 
 pub mod events;
 pub mod failure;
-pub mod ground;
+
 pub mod machine;
 pub mod natives;
 pub mod outside;
+pub mod platform;
 pub mod session;
 pub mod shared;
 pub mod source;

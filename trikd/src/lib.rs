@@ -13,6 +13,7 @@ pub mod daemon;
 pub mod diagram;
 pub mod display;
 pub mod engine;
+pub mod error;
 pub mod feedback;
 pub mod fuzz;
 pub mod guardian;

@@ -36,7 +36,34 @@ impl Default for Filter {
     }
 }
 
-fn level(word: &str) -> Result<LevelFilter, String> {
+/// A text that is no filter.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum NoFilter {
+    /// A word in the place of a level.
+    Level(String),
+    /// Nothing that lines are about.
+    Target(String),
+}
+
+impl fmt::Display for NoFilter {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Level(word) => write!(
+                out,
+                "'{word}' is no level: off, error, warn, info, debug, trace"
+            ),
+            Self::Target(target) => write!(
+                out,
+                "there are no lines about '{target}', but about {}",
+                TARGETS.join(", ")
+            ),
+        }
+    }
+}
+
+impl std::error::Error for NoFilter {}
+
+fn level(word: &str) -> Result<LevelFilter, NoFilter> {
     match word {
         "off" => Ok(LevelFilter::OFF),
         "error" => Ok(LevelFilter::ERROR),
@@ -44,17 +71,15 @@ fn level(word: &str) -> Result<LevelFilter, String> {
         "info" => Ok(LevelFilter::INFO),
         "debug" => Ok(LevelFilter::DEBUG),
         "trace" => Ok(LevelFilter::TRACE),
-        _ => Err(format!(
-            "'{word}' is no level: off, error, warn, info, debug, trace"
-        )),
+        _ => Err(NoFilter::Level(word.to_owned())),
     }
 }
 
 impl FromStr for Filter {
-    type Err = String;
+    type Err = NoFilter;
 
     /// Such as `warn`, or `info,clients=off`; the empty text is the default.
-    fn from_str(text: &str) -> Result<Self, String> {
+    fn from_str(text: &str) -> Result<Self, NoFilter> {
         let mut filter = Self::default();
         for part in text
             .split(',')
@@ -67,12 +92,7 @@ impl FromStr for Filter {
                     let index = TARGETS
                         .iter()
                         .position(|known| *known == target)
-                        .ok_or_else(|| {
-                            format!(
-                                "there are no lines about '{target}', but about {}",
-                                TARGETS.join(", ")
-                            )
-                        })?;
+                        .ok_or_else(|| NoFilter::Target(target.to_owned()))?;
                     filter.0[index] = level(word)?;
                 }
             }
@@ -262,7 +282,7 @@ fn deceives(c: char) -> bool {
 }
 
 /// One line outside of any log. Nobody may be listening.
-pub fn tell(text: impl std::fmt::Display) {
+pub fn report(text: impl std::fmt::Display) {
     let _ = writeln!(std::io::stderr(), "trikd: {text}");
 }
 
@@ -295,8 +315,18 @@ mod tests {
                 LevelFilter::WARN
             ]
         );
-        assert!(filter("loud").unwrap_err().contains("off, error, warn"));
-        assert!(filter("cats=info").unwrap_err().contains("clients, pro"));
+        assert!(
+            filter("loud")
+                .unwrap_err()
+                .to_string()
+                .contains("off, error, warn")
+        );
+        assert!(
+            filter("cats=info")
+                .unwrap_err()
+                .to_string()
+                .contains("clients, pro")
+        );
     }
 
     #[test]

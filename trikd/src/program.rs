@@ -4,6 +4,9 @@
 //! pipes, `launch` gives it its limits, `kill` ends all that it started, `rest` brings the motors to rest, `reaper`
 //! hears of ends, `output` measures what it says, `boot` runs a program at the start.
 
+// A request, a message or a command that is forgotten must not pass in silence.
+#![deny(clippy::wildcard_enum_match_arm)]
+
 pub mod boot;
 pub mod child;
 pub mod kill;
@@ -14,17 +17,21 @@ pub mod queue;
 pub mod reaper;
 pub mod rest;
 
-use crate::daemon::Daemon;
-use crate::feedback::Moment;
+use crate::clients::Clients;
+use crate::feedback::{Feedback, Moment};
 use crate::protocol::news::{self, End};
+use crate::protocol::program::{FromProgram, ToProgram};
+use crate::server::mailbox::Mailbox;
+use crate::settings::Settings;
 use crate::{limits, log};
-use child::{Child, Language, Said};
+use child::{Child, Event, Language, Owner};
 use kill::{freeze, group, sweep};
 use nix::sys::signal::Signal;
 use nix::unistd::Pid;
 use output::Meter;
 pub use queue::{Command, Programs};
-use reaper::Ended;
+use reaper::{Ended, Reaper};
+use rest::Rest;
 use std::path::PathBuf;
 use std::process::Stdio;
 use std::rc::Rc;
@@ -40,7 +47,7 @@ struct Current {
     takes_direct: bool,
     /// Nobody wants to hear that it began and ended.
     is_quiet: bool,
-    told_error: bool,
+    has_reported_error: bool,
     /// It knows that somebody wants to see where it is.
     is_watched: bool,
     meter: Meter,
@@ -49,27 +56,48 @@ struct Current {
 }
 
 /// Why a program is ended.
-enum Way {
+enum Cause {
     /// By itself.
-    Own(Ended),
+    Exited(Ended),
     /// By somebody, or for another program.
-    Order(&'static str),
+    Ordered(&'static str),
     /// It did what it may not.
-    Greed(String),
+    Greedy(String),
+}
+
+/// What programs are run with.
+#[derive(Debug)]
+pub struct Surroundings {
+    /// Folders and limits of programs.
+    pub settings: Rc<Settings>,
+    /// Whose rights programs have; None: those of trikd.
+    pub owner: Option<Owner>,
+    /// What is asked for, and what the status shows.
+    pub programs: Rc<Programs>,
+    /// Who hears what programs say.
+    pub clients: Rc<Clients>,
+    /// Messages between robots.
+    pub mailbox: Rc<Mailbox>,
+    /// What brings motors to rest.
+    pub rest: Rc<Rest>,
+    /// Who hears of ends of processes.
+    pub reaper: Rc<Reaper>,
+    /// What a person beside the robot sees.
+    pub feedback: Rc<Feedback>,
 }
 
 /// Runs programs until it is told to quit.
 pub struct Supervisor {
-    daemon: Rc<Daemon>,
+    around: Surroundings,
     current: Option<Current>,
     last: Language,
 }
 
 impl Supervisor {
     /// Nothing runs yet.
-    pub fn new(daemon: Rc<Daemon>) -> Self {
+    pub fn new(around: Surroundings) -> Self {
         Self {
-            daemon,
+            around,
             current: None,
             last: Language::JavaScript,
         }
@@ -77,30 +105,29 @@ impl Supervisor {
 
     /// Serves for ever.
     pub async fn run(mut self) {
-        let programs = self.daemon.clone();
-        let programs = &programs.programs;
-        let mut look = tokio::time::interval(Duration::from_millis(limits::PROCESSES_MS));
-        look.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
+        let programs = self.around.programs.clone();
+        let mut period = tokio::time::interval(Duration::from_millis(limits::PROCESSES_MS));
+        period.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
         loop {
             let drains = self.current.as_ref().and_then(|current| current.ended);
             tokio::select! {
                 biased;
                 command = programs.next() => {
                     if let Command::Quit(done) = command {
-                        self.end(Way::Order("the end of trikd")).await;
+                        self.end(Cause::Ordered("the end of trikd")).await;
                         let _ = done.send(());
                         return;
                     }
                     self.perform(command).await;
                 }
-                said = said(&mut self.current) => self.hear(said).await,
+                event = next_event(&mut self.current) => self.hear(event).await,
                 () = drained(drains) => {
                     if let Some((ended, _)) = drains {
-                        self.end(Way::Own(ended)).await;
+                        self.end(Cause::Exited(ended)).await;
                     }
                 }
-                _ = look.tick(), if self.current.is_some() => {
-                    self.tell_watched();
+                _ = period.tick(), if self.current.is_some() => {
+                    self.send_watch();
                     self.count_processes().await;
                 }
             }
@@ -110,31 +137,31 @@ impl Supervisor {
     async fn perform(&mut self, command: Command) {
         match command {
             Command::Run(path) => {
-                self.end(Way::Order("another program")).await;
+                self.end(Cause::Ordered("another program")).await;
                 let language = Language::of(&path);
-                let folder = &self.daemon.settings.scripts;
+                let folder = &self.around.settings.scripts;
                 let name = path
                     .strip_prefix(folder)
                     .unwrap_or(&path)
                     .display()
                     .to_string();
-                let first = format!("file:{}", path.display());
-                self.start(language, name, Some(path), &first);
+                let file = path.display().to_string();
+                self.start(language, name, Some(path), ToProgram::File(&file));
             }
             Command::Script(code) => {
-                self.end(Way::Order("another program")).await;
+                self.end(Cause::Ordered("another program")).await;
                 self.start(
                     Language::JavaScript,
                     "script".to_owned(),
                     None,
-                    &format!("script:{code}"),
+                    ToProgram::Script(&code),
                 );
             }
             Command::Direct(code) => self.direct(&code).await,
             Command::Stop(who) => {
-                self.end(Way::Order(who)).await;
+                self.end(Cause::Ordered(who)).await;
                 // Also what came while nothing ran: after a stop everything begins anew.
-                self.daemon.mailbox.forget_kept();
+                self.around.mailbox.forget_kept();
             }
             Command::Mail(hull, text) => {
                 let heard = self
@@ -142,22 +169,22 @@ impl Supervisor {
                     .as_ref()
                     .is_some_and(|current| current.child.has_channel());
                 if heard {
-                    self.tell(format!("mail:{hull}:{text}").as_bytes());
+                    self.send(ToProgram::Mail { hull, text: &text });
                 } else {
-                    self.daemon.mailbox.keep(hull, text);
+                    self.around.mailbox.keep(hull, text);
                 }
             }
             Command::Web(answer) => {
                 if let Some(current) = &mut self.current
                     && current.web.len() < limits::COMMANDS
-                    && current.child.tell(b"web:")
+                    && current.child.send(ToProgram::Web)
                 {
                     current.web.push(answer);
                 }
             }
             Command::Ask(answer) => {
                 // Who asked may have left.
-                let _ = answer.send(self.daemon.programs.describe());
+                let _ = answer.send(self.around.programs.describe());
             }
             Command::Quit(_) => {}
         }
@@ -169,38 +196,48 @@ impl Supervisor {
             .as_ref()
             .is_some_and(|current| current.takes_direct && current.child.runs());
         if !takes {
-            self.end(Way::Order("a direct command")).await;
-            let language = if self.last == Language::Python {
-                Language::Python
-            } else {
-                Language::JavaScript
+            self.end(Cause::Ordered("a direct command")).await;
+            let language = match self.last {
+                Language::Python => Language::Python,
+                Language::JavaScript | Language::Diagram | Language::Native => Language::JavaScript,
             };
-            self.start(language, "direct commands".to_owned(), None, "start:");
+            self.start(
+                language,
+                "direct commands".to_owned(),
+                None,
+                ToProgram::Start,
+            );
             match &mut self.current {
                 Some(current) => current.takes_direct = true,
                 None => return,
             }
         }
-        if !self.tell(format!("direct:{code}").as_bytes()) {
+        if !self.send(ToProgram::Direct(code)) {
             self.broadcast("error: the direct command is lost: the ones before it are not done yet. Stop, then try again");
         }
     }
 
-    fn tell(&mut self, payload: &[u8]) -> bool {
+    fn send(&mut self, message: ToProgram<'_>) -> bool {
         self.current
             .as_mut()
-            .is_some_and(|current| current.child.tell(payload))
+            .is_some_and(|current| current.child.send(message))
     }
 
-    /// Starts a child with the first frame of its channel; a program in a file has its path.
-    fn start(&mut self, language: Language, name: String, path: Option<PathBuf>, first: &str) {
-        let daemon = self.daemon.clone();
+    /// Starts a child with the first message of its channel; a program in a file has its path.
+    fn start(
+        &mut self,
+        language: Language,
+        name: String,
+        path: Option<PathBuf>,
+        first: ToProgram<'_>,
+    ) {
+        let around = &self.around;
         let started = child::start(
-            &daemon.settings,
-            daemon.owner.as_ref(),
+            &around.settings,
+            around.owner.as_ref(),
             language,
             path.as_deref(),
-            &daemon.reaper,
+            &around.reaper,
         );
         let mut child = match started {
             Ok(child) => child,
@@ -210,14 +247,14 @@ impl Supervisor {
                 return;
             }
         };
-        if child.tell(first.as_bytes()) {
-            for (hull, text) in daemon.mailbox.take_kept() {
-                child.tell(format!("mail:{hull}:{text}").as_bytes());
+        if child.send(first) {
+            for (hull, text) in around.mailbox.take_kept() {
+                child.send(ToProgram::Mail { hull, text: &text });
             }
         }
         let is_quiet = path.is_none();
         self.last = language;
-        let mut shown = daemon.programs.shown.borrow_mut();
+        let mut shown = around.programs.shown.borrow_mut();
         shown.started = shown.started.saturating_add(1);
         shown.text = Some((
             format!("{name} ({}, process {})", language.name(), child.pid),
@@ -234,7 +271,7 @@ impl Supervisor {
             since: Instant::now(),
             takes_direct: false,
             is_quiet,
-            told_error: false,
+            has_reported_error: false,
             is_watched: false,
             meter: Meter::default(),
             web: Vec::new(),
@@ -243,14 +280,14 @@ impl Supervisor {
     }
 
     fn broadcast(&self, text: &str) {
-        self.daemon.clients.broadcast(text.as_bytes());
+        self.around.clients.broadcast(text.as_bytes());
     }
 
-    async fn hear(&mut self, said: Said) {
-        match said {
-            Said::Line(text) => self.show("print", &text),
-            Said::Frame(text) => self.hear_frame(&text),
-            Said::Ended(ended) => {
+    async fn hear(&mut self, event: Event) {
+        match event {
+            Event::Line(text) => self.show("print", &text),
+            Event::Frame(text) => self.hear_frame(&text),
+            Event::Ended(ended) => {
                 if let Some(current) = &mut self.current {
                     current.ended = Some((ended, Instant::now()));
                 }
@@ -260,54 +297,53 @@ impl Supervisor {
         if let Some((ended, _)) = current.ended
             && current.child.is_silent()
         {
-            self.end(Way::Own(ended)).await;
+            self.end(Cause::Exited(ended)).await;
         }
     }
 
     fn hear_frame(&mut self, frame: &str) {
-        let (word, rest) = frame.split_once(':').unwrap_or((frame, ""));
-        match word {
-            "print" | "info" => self.show(word, rest),
-            "error" => {
+        let Some(message) = FromProgram::parse(frame) else {
+            return;
+        };
+        match message {
+            FromProgram::Print(text) => self.show("print", text),
+            FromProgram::Info(text) => self.show("info", text),
+            FromProgram::Error(text) => {
                 if let Some(current) = &mut self.current {
-                    current.told_error = true;
+                    current.has_reported_error = true;
                 }
-                self.show("error", rest);
+                self.show("error", text);
             }
-            "events" => {
+            FromProgram::Events => {
                 if let Some(current) = &mut self.current {
                     current.takes_direct = true;
                 }
             }
-            "mailbox" => {
-                let answer = self.daemon.mailbox.answer(rest);
-                self.tell(format!("answer:{answer}").as_bytes());
+            FromProgram::Mailbox(question) => {
+                let answer = self.around.mailbox.answer(question);
+                self.send(ToProgram::Answer(&answer));
             }
-            "web" => {
+            FromProgram::Web(json) => {
                 let web = self
                     .current
                     .as_mut()
                     .map(|current| std::mem::take(&mut current.web));
                 for answer in web.into_iter().flatten() {
-                    let _ = answer.send(rest.to_owned());
+                    let _ = answer.send(json.to_owned());
                 }
             }
-            "watch" => {
-                let (line, json) = rest.split_once('\n').unwrap_or((rest, "{}"));
-                self.daemon.clients.tell_watchers(line, json);
-            }
-            _ => {}
+            FromProgram::Watch { line, json } => self.around.clients.send_to_watchers(line, json),
         }
     }
 
     /// Tells a program when somebody begins or ceases to look at it.
-    fn tell_watched(&mut self) {
-        let watched = self.daemon.clients.are_watching();
+    fn send_watch(&mut self) {
+        let watched = self.around.clients.are_watching();
         if let Some(current) = &mut self.current
             && current.is_watched != watched
         {
             current.is_watched = watched;
-            self.tell(if watched { b"watch:1" } else { b"watch:0" });
+            self.send(ToProgram::Watch(watched));
         }
     }
 
@@ -323,14 +359,14 @@ impl Supervisor {
         }
         let dropped = current.meter.take_dropped(now, false);
         if current.meter.admits(end, now) {
-            self.tell_dropped(dropped);
+            self.report_dropped(dropped);
             self.broadcast(&format!("{kind}: {}", &text[..end]));
         } else {
-            self.tell_dropped(dropped);
+            self.report_dropped(dropped);
         }
     }
 
-    fn tell_dropped(&self, dropped: Option<u32>) {
+    fn report_dropped(&self, dropped: Option<u32>) {
         if let Some(count) = dropped {
             self.broadcast(&format!("info: {count} messages of the program were left out: it says more than {} a second", limits::OUTPUT_MESSAGES_PER_SECOND));
         }
@@ -342,9 +378,9 @@ impl Supervisor {
             return;
         }
         let count = u64::try_from(kill::below(Pid::this()).len()).unwrap_or(u64::MAX);
-        let limit = self.daemon.settings.processes;
+        let limit = self.around.settings.processes;
         if count > limit {
-            self.end(Way::Greed(format!(
+            self.end(Cause::Greedy(format!(
                 "it had {count} processes, and {limit} are allowed"
             )))
             .await;
@@ -353,38 +389,38 @@ impl Supervisor {
 
     /// The one way out. First the motors, then the processes, then the motors once more, because until its last moment
     /// a program may have set them going; then everybody is told.
-    async fn end(&mut self, way: Way) {
+    async fn end(&mut self, cause: Cause) {
         let began = Instant::now();
         // Whatever it is about to write waits until it is dead. The number of one that is dead may be another's already.
         if let Some(current) = self.current.as_ref().filter(|current| current.child.runs()) {
             group(current.child.pid, Signal::SIGSTOP);
         }
         // A tree that is slow is still on its way to rest; the program must not live so long.
-        let mut rested = self.daemon.rest.now(limits::REST_WAIT_MS).await;
+        let mut rested = self.around.rest.now(limits::REST_WAIT_MS).await;
         let leader = self.current.as_ref().map(|current| current.child.pid);
         // Processes that have left the group may have written since; from here on they stand still.
         if leader.is_some_and(|leader| freeze(Pid::this(), leader)) {
-            rested = self.daemon.rest.now(limits::REST_WAIT_MS).await;
+            rested = self.around.rest.now(limits::REST_WAIT_MS).await;
         }
         let rest_us = began.elapsed().as_micros();
         let Some(mut current) = self.current.take() else {
             let last = match rested {
                 Ok(()) => Ok(()),
-                Err(_) => self.daemon.rest.now(limits::REST_LAST_MS).await,
+                Err(_) => self.around.rest.now(limits::REST_LAST_MS).await,
             };
-            self.tell_rest(last, rest_us);
+            self.report_rest(last, rest_us);
             return;
         };
         if current.child.runs() {
             group(current.child.pid, Signal::SIGKILL);
         }
         self.kill_all(&mut current).await;
-        let last = self.daemon.rest.now(limits::REST_LAST_MS).await;
-        self.tell_rest(last, rest_us);
-        self.daemon.feedback.show(Moment::Ended);
-        self.tell_end(&mut current, &way);
-        self.daemon.programs.shown.borrow_mut().text = None;
-        self.daemon.mailbox.forget_kept();
+        let last = self.around.rest.now(limits::REST_LAST_MS).await;
+        self.report_rest(last, rest_us);
+        self.around.feedback.show(Moment::Ended);
+        self.report_end(&mut current, &cause);
+        self.around.programs.shown.borrow_mut().text = None;
+        self.around.mailbox.forget_kept();
     }
 
     /// Kills until nobody is left, and takes what was said before.
@@ -394,7 +430,7 @@ impl Supervisor {
         let mut rounds = 0;
         let mut pause = Duration::from_millis(1);
         loop {
-            self.daemon.reaper.reap();
+            self.around.reaper.reap();
             let left = sweep(Pid::this(), &spared);
             if left == 0 || Instant::now() > deadline {
                 if left > 0 {
@@ -417,23 +453,35 @@ impl Supervisor {
         let drain = Duration::from_millis(limits::DRAIN_MS);
         let _ = tokio::time::timeout(drain, async {
             while !current.child.is_silent() {
-                match current.child.said().await {
-                    Said::Ended(ended) => {
+                match current.child.next_event().await {
+                    Event::Ended(ended) => {
                         current.ended.get_or_insert((ended, Instant::now()));
                     }
-                    Said::Line(text) => self.show_last(current, "print", &text),
-                    Said::Frame(text) => {
-                        if let Some((kind @ ("print" | "error" | "info"), text)) =
-                            text.split_once(':')
-                        {
-                            current.told_error |= kind == "error";
-                            self.show_last(current, kind, text);
-                        }
-                    }
+                    Event::Line(text) => self.show_last(current, "print", &text),
+                    Event::Frame(frame) => self.hear_last(current, &frame),
                 }
             }
         })
         .await;
+    }
+
+    /// Of a program that is dead only what it wanted to show counts.
+    fn hear_last(&self, current: &mut Current, frame: &str) {
+        match FromProgram::parse(frame) {
+            Some(FromProgram::Print(text)) => self.show_last(current, "print", text),
+            Some(FromProgram::Info(text)) => self.show_last(current, "info", text),
+            Some(FromProgram::Error(text)) => {
+                current.has_reported_error = true;
+                self.show_last(current, "error", text);
+            }
+            Some(
+                FromProgram::Events
+                | FromProgram::Mailbox(_)
+                | FromProgram::Web(_)
+                | FromProgram::Watch { .. },
+            )
+            | None => {}
+        }
     }
 
     fn show_last(&self, current: &mut Current, kind: &str, text: &str) {
@@ -444,7 +492,7 @@ impl Supervisor {
 
     /// Starts the process that kills all others of the user of programs.
     fn kill_user(&self) -> Option<Pid> {
-        let user = &self.daemon.owner.as_ref()?.user;
+        let user = &self.around.owner.as_ref()?.user;
         let mut command = child::this_program();
         command.arg("kill-user").stdin(Stdio::null());
         std::os::unix::process::CommandExt::uid(&mut command, user.uid.as_raw());
@@ -453,8 +501,8 @@ impl Supervisor {
         Some(Pid::from_raw(i32::try_from(process.id()).ok()?))
     }
 
-    fn tell_rest(&self, rested: Result<(), String>, rest_us: u128) {
-        let mut shown = self.daemon.programs.shown.borrow_mut();
+    fn report_rest(&self, rested: Result<(), rest::Failure>, rest_us: u128) {
+        let mut shown = self.around.programs.shown.borrow_mut();
         if shown.rests_us.len() >= limits::RESTS_SHOWN {
             shown.rests_us.pop_front();
         }
@@ -466,40 +514,40 @@ impl Supervisor {
         }
     }
 
-    fn tell_end(&self, current: &mut Current, way: &Way) {
-        self.tell_dropped(current.meter.take_dropped(Instant::now(), true));
+    fn report_end(&self, current: &mut Current, cause: &Cause) {
+        self.report_dropped(current.meter.take_dropped(Instant::now(), true));
         let name = &current.name;
         let seconds = current.since.elapsed().as_secs_f64();
-        let end = match way {
-            Way::Own(Ended::Code(0)) if current.told_error => End::Failed,
-            Way::Own(Ended::Code(0)) => End::Well,
-            Way::Own(Ended::Code(code)) => End::Code(*code),
-            Way::Own(Ended::Signal(signal)) => {
+        let end = match cause {
+            Cause::Exited(Ended::Code(0)) if current.has_reported_error => End::Failed,
+            Cause::Exited(Ended::Code(0)) => End::Well,
+            Cause::Exited(Ended::Code(code)) => End::Code(*code),
+            Cause::Exited(Ended::Signal(signal)) => {
                 End::Killed(Signal::try_from(*signal).map_or("a signal", Signal::as_str))
             }
-            Way::Order(who) => End::Stopped(who),
-            Way::Greed(why) => End::Greedy(why),
+            Cause::Ordered(who) => End::Stopped(who),
+            Cause::Greedy(why) => End::Greedy(why),
         };
-        let (text, failed) = (end.tell(name, seconds), end.is_failure());
+        let (text, failed) = (end.describe(name, seconds), end.is_failure());
         match failed {
             true => tracing::warn!(target: log::PROGRAMS, "{text}"),
             false => tracing::info!(target: log::PROGRAMS, "{text}"),
         }
-        let is_news = failed && !current.told_error;
+        let is_news = failed && !current.has_reported_error;
         if is_news {
             self.broadcast(&format!("error: {text}"));
         } else if !current.is_quiet {
             self.broadcast(&format!("info: {text}"));
         }
-        let mut shown = self.daemon.programs.shown.borrow_mut();
+        let mut shown = self.around.programs.shown.borrow_mut();
         shown.failed = shown.failed.saturating_add(u32::from(failed));
         shown.last_end = text;
     }
 }
 
-async fn said(current: &mut Option<Current>) -> Said {
+async fn next_event(current: &mut Option<Current>) -> Event {
     match current {
-        Some(current) => current.child.said().await,
+        Some(current) => current.child.next_event().await,
         None => std::future::pending().await,
     }
 }

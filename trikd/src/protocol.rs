@@ -7,4 +7,5 @@ pub mod gamepad;
 pub mod http;
 pub mod mail;
 pub mod news;
+pub mod program;
 pub mod telemetry;

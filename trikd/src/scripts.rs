@@ -2,7 +2,9 @@
 //!
 //! Knows nothing of requests and languages.
 
+use crate::error::{Blame, Os};
 use crate::limits;
+use std::fmt;
 use std::fs::{self, DirBuilder, File, OpenOptions};
 use std::io::{self, Write};
 use std::os::fd::AsRawFd;
@@ -10,44 +12,162 @@ use std::os::unix::fs::{DirBuilderExt, OpenOptionsExt};
 use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
+/// Why a name is none of a program.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum BadName {
+    /// Bytes that are no text.
+    NoUtf8,
+    /// No letters.
+    Empty,
+    /// More than [`limits::NAME_BYTES`].
+    Long,
+    /// Characters that no terminal shows.
+    Control,
+    /// More than [`limits::NAME_DEPTH`] folders.
+    Deep,
+    /// A hidden part.
+    Dot,
+    /// A part `.`.
+    Here,
+    /// A part `..`.
+    Outside,
+    /// It begins at the root.
+    Absolute,
+    /// It ends with a slash.
+    Folder,
+}
+
+/// Why a program is not kept or not run, with its name.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum Refusal {
+    /// The name is none.
+    Name(String, BadName),
+    /// A folder of its name is a link, which could lead anywhere.
+    LinkedFolder(String),
+    /// A folder has its name.
+    Folder(String),
+    /// The disk.
+    Disk(String, Os),
+    /// There is none in the folder.
+    Missing(String, PathBuf),
+    /// It is a link.
+    Linked(String, PathBuf),
+}
+
+impl Refusal {
+    /// Whoever can change something about it.
+    pub fn blame(&self) -> Blame {
+        match self {
+            Self::Name(..)
+            | Self::LinkedFolder(_)
+            | Self::Folder(_)
+            | Self::Missing(..)
+            | Self::Linked(..) => Blame::Client,
+            Self::Disk(..) => Blame::System,
+        }
+    }
+}
+
+impl fmt::Display for BadName {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(match self {
+            Self::NoUtf8 => "it is not UTF-8",
+            Self::Empty => "it is empty",
+            Self::Long => "it is too long",
+            Self::Control => "it has control characters",
+            Self::Deep => "it has too many folders",
+            Self::Dot => "a part of it begins with a dot",
+            Self::Here => "it has '.' in it",
+            Self::Outside => "it leads out of the folder of programs",
+            Self::Absolute => "it is absolute",
+            Self::Folder => "it is a folder",
+        })
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Name(name, why) => {
+                write!(out, "'{name}' cannot be the name of a program: {why}")
+            }
+            Self::LinkedFolder(name) => {
+                write!(out, "'{name}' was not kept: a folder in it is a link")
+            }
+            Self::Folder(name) => {
+                write!(out, "'{name}' was not kept: there is a folder of this name")
+            }
+            Self::Disk(name, os) => {
+                let hint = match os.errno {
+                    Some(libc::ENOSPC | libc::EDQUOT) => {
+                        "; the disk is full: delete something on the robot"
+                    }
+                    Some(libc::EROFS) => "; the disk is read-only",
+                    Some(_) | None => "",
+                };
+                write!(out, "'{name}' was not kept: {os}{hint}")
+            }
+            Self::Missing(name, folder) => write!(
+                out,
+                "there is no program '{name}' in {}: upload it first",
+                folder.display()
+            ),
+            Self::Linked(name, folder) => write!(
+                out,
+                "'{name}' is a link: only programs in {} are run",
+                folder.display()
+            ),
+        }
+    }
+}
+
+impl std::error::Error for Refusal {}
+
+/// For callers whose own errors are texts.
+impl From<Refusal> for String {
+    fn from(refusal: Refusal) -> Self {
+        refusal.to_string()
+    }
+}
+
 static NUMBER: AtomicU32 = AtomicU32::new(0);
 
 /// The path of a program below the folder.
 ///
 /// # Errors
-/// In words: the name is not UTF-8, empty, too long, absolute, leads out of the folder or is hidden.
-pub fn locate(folder: &Path, name: &[u8]) -> Result<PathBuf, String> {
+/// The name is not UTF-8, empty, too long, absolute, leads out of the folder or is hidden.
+pub fn locate(folder: &Path, name: &[u8]) -> Result<PathBuf, Refusal> {
     let shown = crate::log::printable(&String::from_utf8_lossy(name));
-    let refused = |why: &str| Err(format!("'{shown}' cannot be the name of a program: {why}"));
+    let refused = |why: BadName| Err(Refusal::Name(shown.clone(), why));
     let Ok(name) = std::str::from_utf8(name) else {
-        return refused("it is not UTF-8");
+        return refused(BadName::NoUtf8);
     };
     if name.is_empty() {
-        return refused("it is empty");
+        return refused(BadName::Empty);
     }
     if name.len() > limits::NAME_BYTES {
-        return refused("it is too long");
+        return refused(BadName::Long);
     }
     if name.chars().any(char::is_control) {
-        return refused("it has control characters");
+        return refused(BadName::Control);
     }
     let path = Path::new(name);
     for (depth, component) in path.components().enumerate() {
         match component {
             Component::Normal(_) if depth >= limits::NAME_DEPTH => {
-                return refused("it has too many folders");
+                return refused(BadName::Deep);
             }
             Component::Normal(part) if part.as_encoded_bytes().starts_with(b".") => {
-                return refused("a part of it begins with a dot");
+                return refused(BadName::Dot);
             }
             Component::Normal(_) => {}
-            Component::CurDir => return refused("it has '.' in it"),
-            Component::ParentDir => return refused("it leads out of the folder of programs"),
-            Component::RootDir | Component::Prefix(_) => return refused("it is absolute"),
+            Component::CurDir => return refused(BadName::Here),
+            Component::ParentDir => return refused(BadName::Outside),
+            Component::RootDir | Component::Prefix(_) => return refused(BadName::Absolute),
         }
     }
     if name.ends_with('/') {
-        return refused("it is a folder");
+        return refused(BadName::Folder);
     }
     Ok(folder.join(path))
 }
@@ -67,28 +187,18 @@ fn is_inside(folder: &Path, path: &Path) -> bool {
 /// Keeps an upload: makes the folders that its name has, then replaces the file whole.
 ///
 /// # Errors
-/// In words, with the name and what to do.
-pub fn keep(folder: &Path, name: &[u8], content: &[u8]) -> Result<PathBuf, String> {
+/// The name is none, a folder is in the way, or the disk refuses.
+pub fn keep(folder: &Path, name: &[u8], content: &[u8]) -> Result<PathBuf, Refusal> {
     let path = locate(folder, name)?;
-    let shown = String::from_utf8_lossy(name);
-    let refused = |why: &str| Err(format!("'{shown}' was not kept: {why}"));
-    let fails = |error: io::Error| {
-        let hint = match error.raw_os_error() {
-            Some(libc::ENOSPC | libc::EDQUOT) => {
-                "; the disk is full: delete something on the robot"
-            }
-            Some(libc::EROFS) => "; the disk is read-only",
-            _ => "",
-        };
-        format!("'{shown}' was not kept: {error}{hint}")
-    };
+    let shown = || String::from_utf8_lossy(name).into_owned();
+    let fails = |error: io::Error| Refusal::Disk(shown(), error.into());
     let parent = path.parent().unwrap_or(folder);
     let Some(place) = enter(folder, parent).map_err(fails)? else {
-        return refused("a folder in it is a link");
+        return Err(Refusal::LinkedFolder(shown()));
     };
     let last = inside(&place).join(path.file_name().unwrap_or_default());
     if fs::symlink_metadata(&last).is_ok_and(|found| found.is_dir()) {
-        return refused("there is a folder of this name");
+        return Err(Refusal::Folder(shown()));
     }
     let mode = if is_executable(content) { 0o755 } else { 0o644 };
     replace(&last, content, mode).map_err(fails)?;
@@ -137,21 +247,15 @@ pub fn is_executable(content: &[u8]) -> bool {
 /// The program of this name, if it is there.
 ///
 /// # Errors
-/// In words.
-pub fn find(folder: &Path, name: &[u8]) -> Result<PathBuf, String> {
+/// There is none, or it is not in the folder.
+pub fn find(folder: &Path, name: &[u8]) -> Result<PathBuf, Refusal> {
     let path = locate(folder, name)?;
-    let shown = String::from_utf8_lossy(name);
+    let shown = || String::from_utf8_lossy(name).into_owned();
     if !path.is_file() {
-        return Err(format!(
-            "there is no program '{shown}' in {}: upload it first",
-            folder.display()
-        ));
+        return Err(Refusal::Missing(shown(), folder.to_owned()));
     }
     if !is_inside(folder, &path) {
-        return Err(format!(
-            "'{shown}' is a link: only programs in {} are run",
-            folder.display()
-        ));
+        return Err(Refusal::Linked(shown(), folder.to_owned()));
     }
     Ok(path)
 }
@@ -208,9 +312,14 @@ mod tests {
             (&"x".repeat(300), "too long"),
         ] {
             let refusal = locate(folder, name.as_bytes()).unwrap_err();
-            assert!(refusal.contains(why), "{name}: {refusal}");
+            assert!(refusal.to_string().contains(why), "{name}: {refusal}");
         }
-        assert!(locate(folder, b"\xff").unwrap_err().contains("UTF-8"));
+        assert!(
+            locate(folder, b"\xff")
+                .unwrap_err()
+                .to_string()
+                .contains("UTF-8")
+        );
         assert_eq!(
             locate(folder, b"a/b c.js").unwrap(),
             Path::new("/scripts/a/b c.js")
@@ -232,16 +341,19 @@ mod tests {
         assert!(
             find(&folder, b"none.js")
                 .unwrap_err()
+                .to_string()
                 .contains("there is no program 'none.js'")
         );
         assert!(
             keep(&folder, b"a", b"")
                 .unwrap_err()
+                .to_string()
                 .contains("folder of this name")
         );
         assert!(
             keep(&folder, b"a/b.bin/c", b"")
                 .unwrap_err()
+                .to_string()
                 .contains("was not kept")
         );
     }
@@ -253,12 +365,23 @@ mod tests {
         scratch.file("outside/x.js", "");
         fs::create_dir_all(&folder).unwrap();
         std::os::unix::fs::symlink(scratch.path().join("outside"), folder.join("l")).unwrap();
-        assert!(keep(&folder, b"l/y.js", b"").unwrap_err().contains("link"));
-        assert!(find(&folder, b"l/x.js").unwrap_err().contains("link"));
+        assert!(
+            keep(&folder, b"l/y.js", b"")
+                .unwrap_err()
+                .to_string()
+                .contains("link")
+        );
+        assert!(
+            find(&folder, b"l/x.js")
+                .unwrap_err()
+                .to_string()
+                .contains("link")
+        );
         assert!(!scratch.path().join("outside/y.js").exists());
         assert!(
             keep(&folder, b"l/new/y.js", b"")
                 .unwrap_err()
+                .to_string()
                 .contains("link")
         );
         assert!(

@@ -3,6 +3,9 @@
 //! `control`, `telemetry`, `mailbox`, `gamepad`, `video` and `variables` are one port each; `datagrams` and `discovery`
 //! are UDP. What is said on a port is in `protocol`.
 
+// A request, a message or a command that is forgotten must not pass in silence.
+#![deny(clippy::wildcard_enum_match_arm)]
+
 pub mod control;
 pub mod datagrams;
 pub mod discovery;
@@ -12,12 +15,14 @@ pub mod telemetry;
 pub mod variables;
 pub mod video;
 
-use crate::daemon::Daemon;
+use crate::access::Access;
+use crate::error::Error;
 use crate::protocol::frame::encode;
 use crate::protocol::mail::plain;
 use crate::{limits, log};
 use socket2::{Domain, Protocol, SockRef, Socket, Type};
 use std::cell::RefCell;
+use std::fmt;
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 use std::rc::Rc;
@@ -76,19 +81,10 @@ impl Port {
     /// Listens at all addresses, or everywhere if there are none.
     ///
     /// # Errors
-    /// In words: which port, why, and what to do.
-    pub fn bind(name: &'static str, addresses: &[IpAddr], port: u16) -> Result<Self, String> {
-        let listeners = bind_all(addresses, port).map_err(|error| {
-            let what = match error.kind() {
-                io::ErrorKind::AddrInUse => format!(
-                    "another program has it: end that program (`ss -ltnp 'sport = :{port}'` shows it), or take another port with --{name}-port"
-                ),
-                io::ErrorKind::AddrNotAvailable => "this machine does not have the address of --address".to_owned(),
-                io::ErrorKind::PermissionDenied => format!("ports below 1024 are for root: take another one with --{name}-port"),
-                _ => error.to_string(),
-            };
-            format!("port {port} ({name}) cannot be served: {what}")
-        })?;
+    /// It is taken, or may not be served.
+    pub fn bind(name: &'static str, addresses: &[IpAddr], port: u16) -> Result<Self, Error> {
+        let listeners =
+            bind_all(addresses, port).map_err(|error| Error::Port(name, port, error.into()))?;
         Ok(Self { name, listeners })
     }
 
@@ -101,19 +97,31 @@ impl Port {
         first.map_or(0, |address| address.port())
     }
 
-    /// Starts a task for each listener, which starts one for each connection.
-    pub fn serve<F>(
+    /// Starts a task for each listener, which starts one for each connection that is admitted.
+    pub fn serve<S, F>(
         self,
-        daemon: &Rc<Daemon>,
-        serve: impl Fn(Rc<Daemon>, Guest) -> F + Clone + 'static,
+        admission: &Rc<Admission>,
+        service: &Rc<S>,
+        serve: impl Fn(Rc<S>, Guest) -> F + Clone + 'static,
     ) where
+        S: 'static,
         F: Future<Output = ()> + 'static,
     {
         for listener in self.listeners {
-            let (daemon, serve) = (daemon.clone(), serve.clone());
-            tokio::task::spawn_local(accept(self.name, listener, daemon, serve));
+            let (service, serve) = (service.clone(), serve.clone());
+            let serve = move |guest| serve(service.clone(), guest);
+            tokio::task::spawn_local(accept(self.name, listener, admission.clone(), serve));
         }
     }
+}
+
+/// Who gets in, at all ports.
+#[derive(Debug)]
+pub struct Admission {
+    /// The allow-list.
+    pub access: Rc<Access>,
+    /// The connections that there are.
+    pub seats: Rc<Seats>,
 }
 
 /// A connection that was let in.
@@ -128,8 +136,36 @@ pub struct Guest {
 }
 
 /// The connections of all ports, each as the network that it comes from.
-#[derive(Debug, Default)]
-pub struct Seats(RefCell<Vec<IpAddr>>);
+#[derive(Debug)]
+pub struct Seats {
+    taken: RefCell<Vec<IpAddr>>,
+    /// Connections at once.
+    limit: usize,
+}
+
+/// Why there is no place for a connection; whoever connects is to blame.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Full {
+    /// All of so many are taken.
+    All(usize),
+    /// One computer has so many, and no more are for it.
+    One(usize),
+}
+
+impl fmt::Display for Full {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::All(limit) => write!(
+                out,
+                "there are {limit} connections already: close some, or wait"
+            ),
+            Self::One(most) => write!(
+                out,
+                "there are {most} connections from there already: close some"
+            ),
+        }
+    }
+}
 
 /// Whose connections are counted together: an IPv6 computer has a whole network of addresses.
 fn origin(ip: IpAddr) -> IpAddr {
@@ -140,28 +176,34 @@ fn origin(ip: IpAddr) -> IpAddr {
 }
 
 impl Seats {
-    /// How many there are.
-    pub fn taken(&self) -> usize {
-        self.0.borrow().len()
+    /// So many of them, all free.
+    pub fn new(limit: usize) -> Self {
+        Self {
+            taken: RefCell::default(),
+            limit,
+        }
+    }
+
+    /// Lines for the status.
+    pub fn describe(&self) -> String {
+        let taken = self.taken.borrow().len();
+        format!("connections {taken} of {}\n", self.limit)
     }
 
     /// A place. A quarter of them is out of reach for each computer, so that none keeps all others out.
     ///
     /// # Errors
-    /// In words: there is none.
-    pub fn take(self: &Rc<Self>, limit: usize, ip: IpAddr) -> Result<Seat, String> {
-        let mut taken = self.0.borrow_mut();
+    /// There is none.
+    pub fn take(self: &Rc<Self>, ip: IpAddr) -> Result<Seat, Full> {
+        let limit = self.limit;
+        let mut taken = self.taken.borrow_mut();
         let ip = origin(ip);
         if taken.len() >= limit {
-            return Err(format!(
-                "there are {limit} connections already: close some, or wait"
-            ));
+            return Err(Full::All(limit));
         }
         let most = limit - limit / limits::CONNECTIONS_OF_OTHERS;
         if taken.iter().filter(|other| **other == ip).count() >= most {
-            return Err(format!(
-                "there are {most} connections from there already: close some"
-            ));
+            return Err(Full::One(most));
         }
         taken.push(ip);
         Ok(Seat(self.clone(), ip))
@@ -174,7 +216,7 @@ pub struct Seat(Rc<Seats>, IpAddr);
 
 impl Drop for Seat {
     fn drop(&mut self) {
-        let mut taken = self.0.0.borrow_mut();
+        let mut taken = self.0.taken.borrow_mut();
         if let Some(index) = taken.iter().position(|ip| *ip == self.1) {
             taken.swap_remove(index);
         }
@@ -184,8 +226,8 @@ impl Drop for Seat {
 async fn accept<F>(
     name: &'static str,
     listener: TcpListener,
-    daemon: Rc<Daemon>,
-    serve: impl Fn(Rc<Daemon>, Guest) -> F,
+    admission: Rc<Admission>,
+    serve: impl Fn(Guest) -> F,
 ) where
     F: Future<Output = ()> + 'static,
 {
@@ -200,12 +242,11 @@ async fn accept<F>(
             }
         };
         let peer = SocketAddr::new(plain(peer.ip()), peer.port());
-        if !daemon.access.admits(peer.ip()) {
+        if !admission.access.admits(peer.ip()) {
             tracing::warn!(target: log::CLIENTS, "{name}: {peer} is not in the list of --allow");
             continue;
         }
-        let limit = usize::from(daemon.settings.connections);
-        let seat = match daemon.seats.take(limit, peer.ip()) {
+        let seat = match admission.seats.take(peer.ip()) {
             Ok(seat) => seat,
             Err(why) => {
                 tracing::warn!(target: log::CLIENTS, "{name}: {peer} is refused: {why}");
@@ -217,7 +258,7 @@ async fn accept<F>(
             }
         };
         prepare(&stream);
-        tokio::task::spawn_local(serve(daemon.clone(), Guest { stream, peer, seat }));
+        tokio::task::spawn_local(serve(Guest { stream, peer, seat }));
     }
 }
 

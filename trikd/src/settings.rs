@@ -3,13 +3,14 @@
 //! Owns names and defaults; what they mean is known where they are used.
 
 use crate::access::Network;
+use crate::error::Error;
 use crate::limits;
 use crate::log::Filter;
 use clap::{Args, ValueEnum};
 use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;
 
-/// Something that can be left out.
+/// A service or feature that can be turned off.
 #[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
 pub enum Service {
     /// Messages between robots.
@@ -20,16 +21,16 @@ pub enum Service {
     Video,
     /// Variables of a program for web pages.
     Variables,
-    /// The answer to who looks for robots in the network.
+    /// The answer to programs that look for robots in the network.
     Discovery,
     /// The beep after an upload and the green light after a program.
     Feedback,
 }
 
-/// What ends the program when it is pressed.
+/// The key that ends the program.
 #[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
 pub enum StopKey {
-    /// The key with the sign of power.
+    /// The power key.
     Power,
     /// The key Esc.
     Esc,
@@ -40,9 +41,9 @@ pub enum StopKey {
 /// The rules by which diagrams run.
 #[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
 pub enum Compat {
-    /// Those of TRIK Studio, with its oddities.
+    /// The rules of TRIK Studio, with its oddities.
     Studio,
-    /// Oddities are mended.
+    /// The oddities are corrected.
     Fixed,
 }
 
@@ -62,19 +63,19 @@ pub struct Settings {
     /// Where the tree of the robot is mounted.
     #[arg(long, value_name = "DIR", default_value = "/trikfs")]
     pub tree: PathBuf,
-    /// Where uploaded programs are.
+    /// Directory of uploaded programs.
     #[arg(long, value_name = "DIR", default_value = "/home/root/trik/scripts")]
     pub scripts: PathBuf,
-    /// Where trikd keeps what it must remember: the mailbox, paired computers.
+    /// Directory of what trikd keeps: the mailbox, paired computers.
     #[arg(long, value_name = "DIR", default_value = "/var/lib/trikd")]
     pub state: PathBuf,
-    /// Where trikd has its socket and the Python module while it runs.
+    /// Directory of the socket and the Python module of the running trikd.
     #[arg(long, value_name = "DIR", default_value = "/run/trikd")]
     pub run: PathBuf,
     /// Address to serve at; may be given several times [default: all, IPv4 and IPv6].
     #[arg(long, value_name = "ADDRESS")]
     pub address: Vec<IpAddr>,
-    /// Port of programs and output; 0 takes any free one, as for all ports.
+    /// Port of programs and output; here and below, 0 takes any free port.
     #[arg(long, value_name = "PORT", default_value_t = 8888)]
     pub control_port: u16,
     /// Port of sensor values.
@@ -89,13 +90,13 @@ pub struct Settings {
     /// Port of pictures of the camera.
     #[arg(long, value_name = "PORT", default_value_t = 8080)]
     pub video_port: u16,
-    /// Port of variables of the program, only for this machine.
+    /// Port of variables of the program, served only to this machine.
     #[arg(long, value_name = "PORT", default_value_t = 10000)]
     pub variables_port: u16,
-    /// Do without this; may be given several times.
+    /// Turn this off; may be given several times.
     #[arg(long, value_name = "SERVICE", value_enum)]
     pub without: Vec<Service>,
-    /// Send sensor values there, one JSON object in each datagram.
+    /// Send sensor values to this address, one JSON object in each datagram.
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub udp_telemetry: Option<SocketAddr>,
     /// Milliseconds between two datagrams.
@@ -111,28 +112,28 @@ pub struct Settings {
     /// Name of the robot in the network [default: the name of the host].
     #[arg(long, value_name = "NAME")]
     pub name: Option<String>,
-    /// The answer to `configVersion`: desktop programs refuse to run programs on another model than theirs.
+    /// The answer to `configVersion`: desktop programs refuse to run programs on a model other than theirs.
     #[arg(long, value_name = "TEXT", default_value = "model-2015")]
     pub config_version: String,
-    /// Serve only computers of this address or network, such as 192.168.77.0/24; may be given several times.
+    /// Serve only computers with this address or in this network, such as 192.168.77.0/24; may be given several times.
     #[arg(long, value_name = "NETWORK")]
     pub allow: Vec<Network>,
-    /// Programs only from computers that have been paired: press Enter on the robot within 30 s of their first try.
+    /// Accept programs only from paired computers: press Enter on the robot within 30 s of the first attempt.
     #[arg(long)]
     pub pair: bool,
     /// User whose rights programs have, when trikd is root.
     #[arg(long, value_name = "USER")]
     pub user: Option<String>,
-    /// Memory of one program in MiB.
+    /// Maximum memory of one program, in MiB.
     #[arg(long, value_name = "MIB", default_value_t = limits::PROGRAM_MEMORY_MIB, value_parser = clap::value_parser!(u64).range(8..=1 << 20))]
     pub memory_mib: u64,
-    /// Processes of one program.
+    /// Maximum number of processes of one program.
     #[arg(long, value_name = "NUMBER", default_value_t = limits::PROGRAM_PROCESSES, value_parser = clap::value_parser!(u64).range(1..=10_000))]
     pub processes: u64,
-    /// Greatest upload in MiB.
+    /// Maximum size of an upload, in MiB.
     #[arg(long, value_name = "MIB", default_value_t = 16, value_parser = clap::value_parser!(u16).range(1..=256))]
     pub upload_mib: u16,
-    /// Connections at once, on all ports together.
+    /// Maximum number of connections, on all ports together.
     #[arg(long, value_name = "NUMBER", default_value_t = limits::CONNECTIONS, value_parser = clap::value_parser!(u16).range(4..=4096))]
     pub connections: u16,
     /// The key that ends the program.
@@ -141,11 +142,11 @@ pub struct Settings {
     /// Do not run autorun.py or autorun.js at the start.
     #[arg(long)]
     pub no_autorun: bool,
-    /// What to tell on standard error: off, error, warn, info, debug or trace, and other levels for some matters, such
-    /// as warn,programs=debug; matters are clients, programs, tree and daemon.
+    /// What to log on standard error: off, error, warn, info, debug or trace, and other levels for some areas, such
+    /// as warn,programs=debug; areas are clients, programs, tree and daemon.
     #[arg(long, value_name = "LEVEL", env = "TRIKD_LOG", default_value = "info")]
     pub log: Filter,
-    /// Whether diagrams have the oddities of TRIK Studio, or what a user would expect in their place.
+    /// Whether diagrams have the oddities of TRIK Studio, or behave as a user would expect.
     #[arg(
         long,
         value_name = "RULES",
@@ -154,7 +155,7 @@ pub struct Settings {
         default_value = "studio"
     )]
     pub compat: Compat,
-    /// Language of what diagrams say: English, or Russian if it begins with ru, as LANG does.
+    /// Language of messages of diagrams: English, or Russian if it begins with ru, as LANG does.
     #[arg(
         long,
         value_name = "LANGUAGE",
@@ -169,11 +170,11 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Programs run in another directory than trikd.
+    /// Makes paths absolute, because programs run in another directory than trikd.
     ///
     /// # Errors
     /// The current directory is gone.
-    pub fn make_absolute(&mut self) -> Result<(), String> {
+    pub fn make_absolute(&mut self) -> Result<(), Error> {
         let paths = [
             &mut self.tree,
             &mut self.scripts,
@@ -182,8 +183,7 @@ impl Settings {
             &mut self.gamepad_fifo,
         ];
         for path in paths {
-            *path = std::path::absolute(&*path)
-                .map_err(|error| format!("{}: {error}", path.display()))?;
+            *path = std::path::absolute(&*path).map_err(|error| Error::file(path, error))?;
         }
         Ok(())
     }

@@ -4,7 +4,6 @@
 
 use crate::convert::shared::Cache;
 use crate::convert::{Recipe, Workshop};
-use crate::device;
 use crate::reload;
 use config::description::{Config, Place};
 use config::limits::CONFIG_BYTES_MAX;
@@ -81,7 +80,7 @@ fn missing_devices(config: &Config) -> Vec<Problem> {
     let mut found: Vec<Missing> = Vec::new();
     let mut position: HashMap<PathBuf, usize> = HashMap::new();
     for description in reload::all(config) {
-        let paths = device::paths(&description.source);
+        let paths = description.source.needed_paths();
         for path in paths.into_iter().filter(|path| !path.exists()) {
             let place = missing_place(path);
             let at = *position.entry(place.clone()).or_insert_with(|| {

@@ -39,36 +39,36 @@ struct Cli {
 
 const EXAMPLES: &str = "\
 Examples:
-  trikfs check robot.lua                          is this configuration right?
+  trikfs check robot.lua                          is this configuration good?
   trikfs mount --config robot.lua /trikfs         serve it until Ctrl-C
   cat /trikfs/distance/value                      the newest value, as text
   trikfs edit /trikfs                             change the configuration in use
   trikfs convert --text robot.lua distance raw    try a converter without a device
-  trikfs new-converter --lang c sonar             begin a converter of your own
+  trikfs new-converter --lang c sonar             start a converter of your own
   trikfs umount /trikfs
 
-Exit status: 0 done; 1 the configuration was refused, or something failed; 2 the command line was not understood.";
+Exit status: 0 success; 1 the configuration was refused, or something failed; 2 bad command line.";
 
 #[derive(Subcommand)]
 enum Command {
     /// Mount the tree and serve it.
     ///
-    /// Stays in the foreground until it is unmounted or gets SIGTERM or SIGINT, and says in one line when the tree can
+    /// Stays in the foreground until it is unmounted or gets SIGTERM or SIGINT, and prints one line when the tree can
     /// be used. Then it brings all actuators to rest and unmounts. A tree that a killed trikfs left behind is replaced.
     Mount(MountArgs),
-    /// Check a configuration like the mounted tree would, without opening a device.
+    /// Check a configuration as the mounted tree would, without opening a device.
     ///
     /// Prints `FILE:LINE: REASON` and exits with 1 if the configuration would be refused. Warnings, such as a device
     /// that is not there, do not change the exit status.
     Check(CheckArgs),
     /// Run one node's converter over recorded bytes, without mounting and without a device.
     ///
-    /// Writes the converted bytes to standard output. A tuple that is refused ends it with its place and the reason, and
+    /// Writes the converted bytes to standard output. A refused tuple ends it with its place, the reason and
     /// exit status 1. With --vectors or --random the converter is tested instead.
     Convert(author::ConvertArgs),
-    /// Write a project for a converter of your own: working, with tests, to be changed.
+    /// Create a working project for a converter of your own, with tests.
     ///
-    /// Prints the commands that try it. Nothing is downloaded, not by its builds either.
+    /// Prints the commands that try it. Nothing is downloaded, not even by its builds.
     NewConverter(author::NewConverterArgs),
     /// Unmount a tree; one that is in use is detached: it disappears at once, and programs get ENOTCONN from it.
     Umount {
@@ -77,8 +77,8 @@ enum Command {
     },
     /// Edit the configuration of a mounted tree and apply it.
     ///
-    /// Opens a copy in $VISUAL, $EDITOR or vi and writes it back when the editor ends. If it is refused, says why and
-    /// offers to edit again; the tree goes on with the old configuration meanwhile.
+    /// Opens a copy in $VISUAL, $EDITOR or vi and writes it back when the editor ends. If the text is refused, says why and
+    /// offers to edit again; until then the old configuration stays in force.
     Edit {
         /// Where the tree is mounted.
         mountpoint: PathBuf,
@@ -102,7 +102,7 @@ enum Command {
 /// Options that say what is served, for the guardian and its daemon alike.
 #[derive(Args, Clone, Debug, PartialEq, Eq)]
 struct TreeArgs {
-    /// Configuration to begin with; without it the tree is empty until somebody writes to MOUNTPOINT/config.
+    /// Configuration to begin with; without it the tree is empty until MOUNTPOINT/config is written.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
     #[command(flatten)]
@@ -112,11 +112,11 @@ struct TreeArgs {
     #[arg(long, value_name = "GROUP", value_parser = group_id)]
     config_group: Option<u32>,
     /// Group whose members may write what the mounting user may write of each node, such as motors, but not
-    /// MOUNTPOINT/config: for programs without rights. Nodes whose description names a group keep that one. Needs
+    /// MOUNTPOINT/config: for unprivileged programs. Nodes whose description names a group keep that one. Needs
     /// --allow-other.
     #[arg(long, value_name = "GROUP", value_parser = group_id)]
     group: Option<u32>,
-    /// How to speak to the kernel.
+    /// How to talk to the kernel.
     #[arg(long, value_name = "NAME", value_enum, default_value_t = TransportName::Native)]
     transport: TransportName,
     /// Do not put samples into shared memory.
@@ -146,7 +146,7 @@ impl TransportName {
 
 #[derive(Args, Clone, Debug, PartialEq, Eq)]
 struct SearchArgs {
-    /// Directory for files that configurations include, before /etc/trikfs; may be given several times.
+    /// Directory of files that configurations include, searched before /etc/trikfs; may be given several times.
     #[arg(long, value_name = "DIR")]
     include: Vec<PathBuf>,
     /// Private directory for compiled C and copies of libraries [default: /var/cache/trikfs for root, else
@@ -166,13 +166,13 @@ struct MountArgs {
     /// Let other users in, with the permissions that the files show.
     #[arg(long)]
     allow_other: bool,
-    /// Return when the tree can be used and serve it in the background.
+    /// Return when the tree can be used, and serve it in the background.
     #[arg(long)]
     background: bool,
     /// This is the process in the background.
     #[arg(long, hide = true)]
     detached: bool,
-    /// A directory; made if nothing is there.
+    /// A directory; created if it does not exist.
     mountpoint: PathBuf,
 }
 
@@ -277,14 +277,14 @@ fn check(args: CheckArgs) -> Result<(), Failure> {
     print(format!("{}: good\n", args.file.display()).as_bytes())
 }
 
-/// What takes long is told to a person who waits, and to nobody else.
+/// Reports what takes long, only if a person is waiting at a terminal.
 fn progress(line: &str) {
     if io::stderr().is_terminal() {
         let _ = writeln!(io::stderr(), "{line}");
     }
 }
 
-/// Standard output; a reader that has seen enough is no failure.
+/// Standard output; a reader that stops reading is not a failure.
 fn print(text: &[u8]) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     match out.write_all(text).and_then(|()| out.flush()) {

@@ -11,8 +11,8 @@ use crate::errno::Error;
 use crate::events::lock;
 use config::description::{NodeDescription, StageDescription, StageKind};
 use config::problem::Problem;
-use config::program::{Direction, StageId, Vm};
-use converter::Conversion;
+use config::program::{StageId, Vm};
+use converter::{Conversion, Direction};
 use inline_c::Compiler;
 use lua::StatePool;
 use shared::{Cache, Library, NativeStage};
@@ -476,15 +476,9 @@ impl Code {
     ) -> Result<Conversion, Error> {
         match (self, vm) {
             (Self::Native(native), _) => native.convert(input, output).map_err(Error::of_converter),
-            (Self::Lua(stage), Some(vm)) => {
-                let outcome = vm
-                    .convert(*stage, input, output)
-                    .map_err(Error::of_converter)?;
-                Ok(match outcome {
-                    config::program::Conversion::Produced => Conversion::Produced,
-                    config::program::Conversion::Consumed => Conversion::Consumed,
-                })
-            }
+            (Self::Lua(stage), Some(vm)) => vm
+                .convert(*stage, input, output)
+                .map_err(Error::of_converter),
             (Self::Lua(_), None) => Err(Error::Converter(NO_STATE.to_owned())),
         }
     }

@@ -23,6 +23,7 @@ pub mod guardian;
 pub mod hash;
 pub mod hub;
 pub mod kit;
+pub mod latch;
 pub mod lease;
 pub mod limits;
 pub mod log;

@@ -1,8 +1,9 @@
 //! The newest sample of a node: one state for all readers of `bin_data`, `value` and `valueN`.
 //!
-//! Owns the latch, when samples are taken (on read, by the clock, on event), who waits for the first one, when a
-//! sample is too old to be shown. `pace` takes samples in the background, `page` is the copy in the kernel's page
-//! cache. A failure replaces the sample: what cannot be read is an error with a reason, never the value of before.
+//! Owns the way of a sample into the latch, when samples are taken (on read, by the clock, on event), who waits for the
+//! first one, and when a sample is too old to be shown. `pace` takes samples in the background, `page` is the copy in
+//! the kernel's page cache. A failure replaces the sample: what cannot be read is an error with a reason, never the
+//! value of before.
 
 mod pace;
 mod page;
@@ -12,16 +13,16 @@ use crate::crew::lock_patiently;
 use crate::device::Got;
 use crate::errno::Error;
 use crate::events::{Due, Ready, lock};
+use crate::latch::{Glimpse, Latch};
 use crate::limits;
 use crate::node::{Feed, Node};
 use crate::reader::Reader;
-use crate::sample_bus::Ring;
 use crate::state_reader::StateReader;
 use crate::transport::RequestId;
 use config::description::Pace;
 use config::format::FieldKind;
-pub use pace::renew;
-use pace::{Ageing, Listening, Sampling, check_age, too_old};
+use pace::{Ageing, Listening, Sampling};
+pub use pace::{renew, too_old};
 use page::Page;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, Weak};
@@ -30,7 +31,7 @@ use std::time::{Duration, Instant};
 /// Newest sample of one node and everything that keeps it new.
 pub struct Newest {
     node: Weak<Node>,
-    latch: Mutex<Latch>,
+    latch: Latch,
     work: Mutex<Work>,
     /// Open files that keep the source of an unsampled node open.
     users: AtomicU32,
@@ -38,16 +39,6 @@ pub struct Newest {
     watchers: Mutex<Vec<Weak<dyn Ready>>>,
     jobs: Mutex<Vec<Arc<dyn Due>>>,
     page: Page,
-}
-
-struct Latch {
-    tuple: Vec<u8>,
-    stamp: Option<Stamp>,
-    error: Option<Error>,
-    /// Counts samples and failures; a reader that has seen this number has nothing new to read.
-    events: u32,
-    /// The same for programs that read shared memory.
-    ring: Option<Ring>,
 }
 
 #[derive(Default)]
@@ -76,27 +67,12 @@ pub trait Waiter: Send + Sync {
     fn serve(&self, id: RequestId, error: Option<Error>);
 }
 
-/// One sample and when it was taken.
-pub struct Sample {
-    /// The converted tuple.
-    pub tuple: Vec<u8>,
-    /// When it was taken.
-    pub stamp: Stamp,
-}
-
 impl Newest {
     /// No sample yet.
     pub fn new(node: Weak<Node>, tuple_size: usize) -> Self {
-        let latch = Latch {
-            tuple: vec![0; tuple_size],
-            stamp: None,
-            error: None,
-            events: 0,
-            ring: None,
-        };
         Self {
             node,
-            latch: Mutex::new(latch),
+            latch: Latch::new(tuple_size),
             work: Mutex::default(),
             users: AtomicU32::new(0),
             waiting: Mutex::default(),
@@ -130,24 +106,21 @@ impl Newest {
 
     fn join_bus(&self, node: &Node) {
         match node.engine.samples.ring(&node.description) {
-            Ok(ring) => lock(&self.latch).ring = ring,
+            Ok(ring) => self.latch.set_ring(ring),
             Err(reason) => (node.engine.log).line(&format!("{}: {reason}", node.path())),
         }
         self.tell_bus_of_period(node);
     }
 
     fn tell_bus_of_period(&self, node: &Node) {
-        if let Some(age) = too_old(node)
-            && let Some(ring) = &mut lock(&self.latch).ring
-        {
-            ring.set_too_old(age);
+        if let Some(age) = too_old(node) {
+            self.latch.tell_ring_of_age(age);
         }
     }
 
     /// Ends the node's part of the sample bus.
     pub fn leave_bus(&self) {
-        // It goes after the lock.
-        let _ended = lock(&self.latch).ring.take();
+        self.latch.set_ring(None);
     }
 
     fn schedule_sampling(&self, node: &Arc<Node>) {
@@ -204,9 +177,8 @@ impl Newest {
             return Err(Error::Stale);
         };
         if node.description.pace != Pace::OnRead {
-            let latch = lock(&self.latch);
-            return match &latch.error {
-                Some(error @ Error::NoDevice(_)) => Err(error.clone()),
+            return match self.latch.error() {
+                Some(error @ Error::NoDevice(_)) => Err(error),
                 _ => Ok(false),
             };
         }
@@ -216,8 +188,7 @@ impl Newest {
         work.open(&node)?;
         if was_closed && matches!(work.source, Source::Stream(_)) {
             // What a stream gave while it was open for others may be long ago.
-            let mut latch = lock(&self.latch);
-            (latch.stamp, latch.error) = (None, None);
+            self.latch.forget();
         }
         self.users.fetch_add(1, Ordering::Relaxed);
         Ok(!matches!(&work.source, Source::Stream(reader) if reader.is_shared()))
@@ -257,55 +228,16 @@ impl Newest {
         let Some(node) = self.node.upgrade() else {
             return Err(Error::Stale);
         };
-        let latch = lock(&self.latch);
-        if let Some(error) = &latch.error {
-            return Err(error.clone());
-        }
-        let Some(stamp) = latch.stamp else {
+        let Some(Glimpse { age_ns, events }) = self.latch.get(too_old(&node), tuple)? else {
             return Ok(None);
         };
-        let age_ns = stamp.age_ns();
-        check_age(&node, age_ns)?;
-        tuple.clear();
-        tuple.extend_from_slice(&latch.tuple);
         node.stats.age.add(age_ns);
-        Ok(Some(latch.events))
+        Ok(Some(events))
     }
 
-    /// The newest samples of several nodes as they stood at one moment: no publisher comes in between.
-    /// None: there is none yet.
-    pub fn of_all(all: &[&Self]) -> Vec<Result<Option<Sample>, Error>> {
-        // Latches are locked in the order of their addresses, each once, so that two such readers cannot wait for
-        // each other; nobody else holds two.
-        let mut order: Vec<&Self> = all.to_vec();
-        order.sort_by_key(|newest| std::ptr::from_ref::<Self>(newest));
-        order.dedup_by_key(|newest| std::ptr::from_ref::<Self>(newest));
-        let latches: Vec<_> = order.iter().map(|newest| lock(&newest.latch)).collect();
-        let sample = |newest: &&Self| {
-            let at = order.iter().position(|other| std::ptr::eq(*other, *newest));
-            match at.and_then(|at| latches.get(at)) {
-                Some(latch) => newest.sample_of(latch),
-                None => Ok(None),
-            }
-        };
-        all.iter().map(sample).collect()
-    }
-
-    fn sample_of(&self, latch: &Latch) -> Result<Option<Sample>, Error> {
-        let Some(node) = self.node.upgrade() else {
-            return Err(Error::Stale);
-        };
-        if let Some(error) = &latch.error {
-            return Err(error.clone());
-        }
-        let Some(stamp) = latch.stamp else {
-            return Ok(None);
-        };
-        check_age(&node, stamp.age_ns())?;
-        Ok(Some(Sample {
-            tuple: latch.tuple.clone(),
-            stamp,
-        }))
+    /// The latch itself.
+    pub fn latch(&self) -> &Latch {
+        &self.latch
     }
 
     /// Samples are taken without anybody reading.
@@ -316,12 +248,12 @@ impl Newest {
 
     /// When the newest sample was taken, however old it is.
     pub fn stamp(&self) -> Option<Stamp> {
-        lock(&self.latch).stamp
+        self.latch.stamp()
     }
 
     /// The number of the newest event; see [`get`](Self::get).
     pub fn events(&self) -> u32 {
-        lock(&self.latch).events
+        self.latch.events()
     }
 
     /// Keeps a read until the first sample, at most `timeout_ms`.
@@ -336,10 +268,7 @@ impl Newest {
         // The sample may have come before the request was in the list; a stream may need to be watched.
         self.arm(&node);
         self.ready();
-        let latch = lock(&self.latch);
-        let has_news = latch.stamp.is_some() || latch.error.is_some();
-        drop(latch);
-        if has_news {
+        if self.latch.has_news() {
             self.serve_waiting();
         }
     }
@@ -462,17 +391,7 @@ impl Newest {
             node.report(&error);
             return self.fail(error);
         }
-        {
-            let mut latch = lock(&self.latch);
-            latch.tuple.copy_from_slice(tuple);
-            let stamp = Stamp::now();
-            latch.stamp = Some(stamp);
-            latch.error = None;
-            latch.events = latch.events.wrapping_add(1);
-            if let Some(ring) = &mut latch.ring {
-                ring.publish(stamp, tuple);
-            }
-        }
+        self.latch.publish(tuple);
         node.stats.samples.add(1);
         self.page.fill(node, tuple);
         self.tell();
@@ -482,18 +401,7 @@ impl Newest {
     }
 
     fn fail(&self, error: Error) {
-        let is_new = {
-            let mut latch = lock(&self.latch);
-            let is_new = latch.error.as_ref() != Some(&error);
-            latch.error = Some(error.clone());
-            if is_new {
-                latch.events = latch.events.wrapping_add(1);
-                if let Some(ring) = &mut latch.ring {
-                    ring.fail(Stamp::now(), &error);
-                }
-            }
-            is_new
-        };
+        let is_new = self.latch.fail(&error);
         if let Some(node) = self.node.upgrade() {
             if is_new {
                 self.page.drop(&node);
@@ -522,9 +430,8 @@ impl Newest {
             return false;
         };
         let background = node.description.pace != Pace::OnRead;
-        let latch = lock(&self.latch);
-        let good = latch.stamp.is_some() && latch.error.is_none();
-        background && good && Page::can_hold(&node, latch.tuple.len()) && self.page.is_of(ino)
+        let size = node.description.output_tuple_size;
+        background && self.latch.is_good() && Page::can_hold(&node, size) && self.page.is_of(ino)
     }
 
     /// A cached open file comes (true) or goes.

@@ -4,6 +4,7 @@
 //! Knows no file of the tree and no request of the kernel.
 
 mod fault;
+mod linked;
 mod rest;
 mod written;
 
@@ -11,7 +12,8 @@ use crate::clock::Stamp;
 use crate::convert::{LogSink, Pipeline, Recipe};
 use crate::crew::lock_patiently;
 use crate::device::lines::answer::Answer;
-use crate::device::{self, Device, Sink, Stream, Surroundings};
+use crate::device::linked::LinkedNode;
+use crate::device::{self, Device, Sink, Stream, Surroundings, kinds};
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::{Due, Ready, Schedule, lock};
@@ -27,10 +29,9 @@ use crate::writer::Writer;
 use config::description::{NodeDescription, Pace, SourceDescription};
 use config::format::Format;
 use config::problem::Problem;
-use config::program::Direction;
+use converter::Direction;
 use fault::Trouble;
 use std::collections::BTreeSet;
-use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, Weak};
 use written::Written;
@@ -56,6 +57,8 @@ pub struct Node {
     /// The newest sample, and how it is got.
     pub newest: Newest,
     recipe: Recipe,
+    /// Nodes that the source names, by path.
+    links: Vec<(String, Arc<Self>)>,
     around: Surroundings,
     hub: Mutex<Weak<Hub>>,
     trouble: Trouble,
@@ -108,14 +111,18 @@ impl Node {
         };
         let stats = Stats::default();
         let mut leases = vec![lease.clone()];
-        if let Some(other) = written_node(&description.source) {
+        if let Some(other) = description.source.written_node() {
             let linked = links.iter().filter(|(path, _)| path == other);
             // One that stands for another node has its lease.
             let others = linked.flat_map(|(_, node)| node.leases.clone());
             leases.extend(others.filter(|other| !Arc::ptr_eq(other, &lease)));
         }
+        let named = links.iter().map(|(path, node)| {
+            let node: Arc<dyn LinkedNode> = node.clone();
+            (path.clone(), node)
+        });
         let around = Surroundings {
-            links,
+            links: named.collect(),
             timeout_ms: description.timeout_ms,
             damaged: stats.damaged.clone(),
             log: log_sink(&engine, &description.path),
@@ -135,6 +142,7 @@ impl Node {
             stats,
             newest: Newest::new(me.clone(), description.output_tuple_size),
             recipe,
+            links,
             around,
             hub: Mutex::default(),
             trouble: Trouble::default(),
@@ -234,8 +242,8 @@ impl Node {
     /// What is driven in the end: the node itself, or the one that it stands for.
     fn driven(&self) -> &Self {
         let mut node = self;
-        while let SourceDescription::Node(path) = &node.description.source {
-            match node.around.links.iter().find(|(name, _)| name == path) {
+        while let SourceDescription::Node(link) = &node.description.source {
+            match node.links.iter().find(|(name, _)| *name == link.path) {
                 Some((_, other)) => node = other,
                 None => break,
             }
@@ -350,7 +358,7 @@ impl Node {
     }
 
     fn open_origin(self: &Arc<Self>, on_ready: &Weak<dyn Ready>) -> Result<Opened, Error> {
-        let by_kind = device::is_shared(&self.description.source)?;
+        let by_kind = kinds::is_shared(&self.description.source)?;
         if self.description.share.unwrap_or(by_kind) {
             // What came before, an end included, is for those who were there before.
             let running = lock(&self.hub).upgrade();
@@ -380,7 +388,7 @@ impl Node {
     }
 
     fn open_device(&self) -> Result<Device, Error> {
-        device::open(
+        kinds::open(
             &self.description.source,
             self.description.input_tuple_size,
             &self.around,
@@ -406,7 +414,7 @@ impl Node {
             return Ok(Writer::to_regulation(self.clone()));
         }
         let pipeline = pipeline.map_or_else(|| self.open_pipeline(), Ok)?;
-        let sink: Box<dyn Sink> = device::open_sink(&self.description.source, &self.around)
+        let sink: Box<dyn Sink> = kinds::open_sink(&self.description.source, &self.around)
             .inspect_err(|error| self.report(error))?;
         Ok(Writer::new(self.clone(), sink, pipeline))
     }
@@ -483,11 +491,6 @@ impl Node {
         }
     }
 
-    /// The buses whose transfers this node waits for.
-    pub fn add_buses(&self, buses: &mut BTreeSet<PathBuf>) {
-        device::add_buses(&self.description.source, &self.around, buses);
-    }
-
     /// A problem at the place of this node's description.
     pub fn problem(&self, reason: &str) -> Problem {
         let place = &self.description.place;
@@ -509,16 +512,6 @@ fn log_sink(engine: &Engine, path: &str) -> LogSink {
 pub fn directory_of(path: &str, is_attribute: bool) -> &str {
     let parent = path.rsplit_once('/').filter(|_| is_attribute);
     parent.map_or(path, |(parent, _)| parent)
-}
-
-/// The node that a write to this source goes to.
-fn written_node(source: &SourceDescription) -> Option<&str> {
-    match source {
-        SourceDescription::Node(path) => Some(path),
-        SourceDescription::Regulator(regulator) => Some(&regulator.actuator),
-        SourceDescription::Faulty(faulty) => written_node(&faulty.source),
-        _ => None,
-    }
 }
 
 /// One operation inside a node: its place among those that may be there at once.

@@ -11,7 +11,7 @@ use crate::events::{Due, Ready, Watch, lock};
 use crate::hub::Subscription;
 use crate::limits;
 use crate::node::Node;
-use config::program::Direction;
+use converter::Direction;
 use std::sync::{Arc, Mutex, Weak};
 use std::time::{Duration, Instant};
 

@@ -10,10 +10,10 @@ use crate::clock::Stamp;
 use crate::convert::Pipeline;
 use crate::errno::{Blame, Error};
 use crate::events::lock;
-use crate::newest::Newest;
+use crate::newest;
 use crate::node::Node;
 use crate::writer::Writer;
-use config::program::Direction;
+use converter::Direction;
 use std::sync::{Arc, Mutex};
 
 /// The regulator of one node.
@@ -63,7 +63,7 @@ impl Regulation {
     /// feedback, the law or the driven node; then nothing is held, and what was held before came to rest.
     pub fn order(&self, node: &Arc<Node>, target: &[u8]) -> Result<(), Error> {
         let mut slot = lock(&self.order);
-        let measured = Newest::of_all(&[&node.newest]).pop();
+        let measured = node.newest.latch().sample(newest::too_old(node));
         let turn = self.actuator.take_turn();
         let before = match slot.as_mut() {
             Some(order) if self.is_mine(order, node) => {
@@ -78,10 +78,10 @@ impl Regulation {
             return Ok(());
         };
         let outcome = match measured {
-            Some(Ok(Some(sample))) => order.step(node, &sample.tuple),
+            Ok(Some(sample)) => order.step(node, &sample.tuple),
             // The first sample makes the first step.
-            Some(Ok(None)) | None => Ok(false),
-            Some(Err(error)) => Err(error),
+            Ok(None) => Ok(false),
+            Err(error) => Err(error),
         };
         if let Ok(wrote) = outcome {
             order.count(wrote);

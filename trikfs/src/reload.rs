@@ -18,7 +18,9 @@ use crate::limits;
 use crate::node::{Node, directory_of};
 use crate::setup::SetupRunner;
 use crate::tree::{Owner, Tree};
-use config::description::{Alias, Config, NodeDescription, SourceDescription, StageKind};
+use config::description::{
+    Alias, Config, LinkDescription, NodeDescription, SourceDescription, StageKind,
+};
 use config::load::Loader;
 use config::problem::Problem;
 use std::collections::{BTreeSet, HashMap};
@@ -426,7 +428,7 @@ impl Builder<'_> {
             ));
         };
         let mut links = Vec::new();
-        for name in linked(&description.source) {
+        for name in description.source.nodes() {
             links.push((name.to_owned(), self.make(name, descriptions)?));
         }
         let directory = leased_directory(directory_of(path, is_attribute), descriptions);
@@ -477,7 +479,7 @@ fn leased_directory<'a>(
     // Directories may lead back to each other through their attributes; then each has a lease of its own.
     let mut passed = Vec::new();
     while let Some((main, _)) = descriptions.get(directory)
-        && let SourceDescription::Node(target) = &main.source
+        && let SourceDescription::Node(LinkDescription { path: target }) = &main.source
         && let Some((_, is_attribute)) = descriptions.get(target.as_str())
     {
         if passed.contains(&directory) {
@@ -508,24 +510,4 @@ fn libraries(description: &NodeDescription) -> impl Iterator<Item = u128> {
             .as_nanos();
         Some(modified ^ u128::from(meta.len()) << 64 ^ u128::from(meta.ino()) << 96)
     })
-}
-
-/// Paths of the nodes that a source names.
-fn linked(source: &SourceDescription) -> Vec<&str> {
-    match source {
-        SourceDescription::Node(path) | SourceDescription::Newest(path) => vec![path],
-        SourceDescription::Several(several) => {
-            let parts = several.parts.iter();
-            parts.flat_map(|part| linked(&part.source)).collect()
-        }
-        SourceDescription::Regulator(regulator) => {
-            let feedback = regulator.feedback.parts.iter();
-            feedback
-                .flat_map(|part| linked(&part.source))
-                .chain([regulator.actuator.as_str()])
-                .collect()
-        }
-        SourceDescription::Faulty(faulty) => linked(&faulty.source),
-        _ => Vec::new(),
-    }
 }

@@ -2,35 +2,25 @@
 
 use crate::convert::shared::Cache;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
+use tempfile::TempDir;
 
 /// The directory; everything in it goes when this is dropped.
-pub(crate) struct Scratch(PathBuf);
+pub(crate) struct Scratch(TempDir);
 
 impl Scratch {
     pub(crate) fn new() -> Self {
-        static NEXT: AtomicU32 = AtomicU32::new(0);
-        let number = NEXT.fetch_add(1, Ordering::Relaxed);
-        let dir = std::env::temp_dir().join(format!("trikfs-test-{}-{number}", std::process::id()));
-        std::fs::create_dir(&dir).expect("a fresh directory");
-        Self(dir)
+        Self(tempfile::tempdir().expect("a fresh directory"))
     }
 
     pub(crate) fn dir(&self) -> &Path {
-        &self.0
+        self.0.path()
     }
 
     pub(crate) fn path(&self, name: &str) -> PathBuf {
-        self.0.join(name)
+        self.0.path().join(name)
     }
 
     pub(crate) fn cache(&self) -> Cache {
         Cache::open(Some(&self.path("cache"))).expect("a private cache")
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
     }
 }

@@ -4,7 +4,7 @@
 //! configuration. Opens nothing itself: what is written goes through a sink of `device`, programs run through `command`.
 
 use crate::command::{self, Limits};
-use crate::device::{self, Surroundings};
+use crate::device::{Surroundings, kinds};
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::lock;
@@ -128,7 +128,7 @@ impl SetupRunner {
             SetupStep::Run { program, arguments } => self.run_program(program, arguments, timeout),
             SetupStep::Write { path, bytes } => {
                 let exports = path.file_name().is_some_and(|name| name == "export");
-                let to = SourceDescription::Path(path.clone());
+                let to = SourceDescription::Path(path.as_path().into());
                 match self.send(&to, bytes, action.timeout_ms) {
                     // Somebody has done it before us, a boot script usually.
                     Err(Error::Device(libc::EBUSY, _)) if exports => Outcome::Done,
@@ -154,7 +154,7 @@ impl SetupRunner {
         stuck.fetch_add(1, Ordering::AcqRel);
         let work = move || {
             let result =
-                device::open_sink(&to, &around).and_then(|mut sink| sink.write(&bytes, true));
+                kinds::open_sink(&to, &around).and_then(|mut sink| sink.write(&bytes, true));
             stuck.fetch_sub(1, Ordering::AcqRel);
             let _ = said.send(result);
         };

@@ -8,7 +8,7 @@ use crate::errno::Error;
 use crate::events::lock;
 use crate::limits;
 use crate::node::Node;
-use config::program::Direction;
+use converter::Direction;
 use std::sync::{Arc, Mutex};
 
 /// One consumer's view of a state.
@@ -22,22 +22,6 @@ pub struct StateReader {
     /// The offset behind the last read, and the tuple of the source that comes next there.
     next_at: u64,
     next_tuple: u64,
-}
-
-/// Samples one raw tuple. Text is filled up with zero bytes; anything else that is short is an error.
-pub fn whole_tuple(state: &mut dyn State, tuple: &mut [u8]) -> Result<(), Error> {
-    let n = state.read_at(0, tuple)?;
-    if n < tuple.len() {
-        if !state.is_text() || n == 0 {
-            let what = format!(
-                "the source gave {n} of the {} bytes of a tuple",
-                tuple.len()
-            );
-            return Err(Error::Device(libc::EIO, what));
-        }
-        tuple[n..].fill(0);
-    }
-    Ok(())
 }
 
 impl StateReader {
@@ -62,7 +46,7 @@ impl StateReader {
         }
         self.raw.resize(self.node.description.input_tuple_size, 0);
         for _ in 0..limits::CONSUMED_TUPLES_MAX {
-            match whole_tuple(self.device.as_mut(), &mut self.raw) {
+            match self.device.whole_tuple(&mut self.raw) {
                 // The clock asks again soon, and whoever reads waits for that.
                 Err(Error::WouldBlock) if self.node.newest.is_in_background() => return Ok(false),
                 sampled => sampled.map_err(|error| self.failed(error))?,
@@ -80,38 +64,6 @@ impl StateReader {
             }
         }
         Ok(false)
-    }
-
-    /// Converted bytes from an offset, counted in converted bytes. 0 samples anew; the end is 0 bytes.
-    ///
-    /// Reading on where the last read ended goes on in the source where that ended; any other offset counts
-    /// one tuple of the source for each converted one.
-    pub fn read_at(&mut self, offset: u64, out: &mut [u8]) -> Result<usize, Error> {
-        if self.node.is_retired() {
-            return Err(Error::Stale);
-        }
-        let size = self.node.description.output_tuple_size as u64;
-        let mut skip = 0;
-        if offset == 0 || offset != self.next_at {
-            self.rest.clear();
-            self.next_tuple = offset / size;
-            skip = usize::try_from(offset % size).unwrap_or(0);
-        }
-        let mut filled = self.take_rest(out);
-        while filled < out.len() {
-            let made = if self.device.is_text() {
-                self.convert_text(skip, &mut out[filled..])?
-            } else {
-                self.convert_next(skip, &mut out[filled..])?
-            };
-            skip = 0;
-            filled += made;
-            if made == 0 {
-                break;
-            }
-        }
-        self.next_at = offset + filled as u64;
-        Ok(filled)
     }
 
     /// A failure of the source, reported. One that only has nothing yet is late for whoever asks now.
@@ -194,5 +146,39 @@ impl StateReader {
             }
         }
         Err(Error::WouldBlock)
+    }
+}
+
+impl State for StateReader {
+    /// Converted bytes from an offset, counted in converted bytes. 0 samples anew; the end is 0 bytes.
+    ///
+    /// Reading on where the last read ended goes on in the source where that ended; any other offset counts
+    /// one tuple of the source for each converted one.
+    fn read_at(&mut self, offset: u64, out: &mut [u8]) -> Result<usize, Error> {
+        if self.node.is_retired() {
+            return Err(Error::Stale);
+        }
+        let size = self.node.description.output_tuple_size as u64;
+        let mut skip = 0;
+        if offset == 0 || offset != self.next_at {
+            self.rest.clear();
+            self.next_tuple = offset / size;
+            skip = usize::try_from(offset % size).unwrap_or(0);
+        }
+        let mut filled = self.take_rest(out);
+        while filled < out.len() {
+            let made = if self.device.is_text() {
+                self.convert_text(skip, &mut out[filled..])?
+            } else {
+                self.convert_next(skip, &mut out[filled..])?
+            };
+            skip = 0;
+            filled += made;
+            if made == 0 {
+                break;
+            }
+        }
+        self.next_at = offset + filled as u64;
+        Ok(filled)
     }
 }

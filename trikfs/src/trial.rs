@@ -14,7 +14,7 @@ use crate::errno::Error;
 use crate::reload;
 use config::description::NodeDescription;
 use config::format::Format;
-use config::program::Direction;
+use converter::Direction;
 use converter::limits::VECTORS_BYTES_MAX;
 use converter::trial::{Opened, Report, Trial};
 use converter::{Conversion, trial, vectors};

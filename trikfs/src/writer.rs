@@ -7,7 +7,7 @@ use crate::device::Sink;
 use crate::errno::Error;
 use crate::events::lock;
 use crate::node::Node;
-use config::program::Direction;
+use converter::Direction;
 use std::sync::{Arc, Mutex};
 
 /// One program's way to a device.
@@ -125,5 +125,11 @@ impl Writer {
     /// Bytes of a tuple that is not complete yet.
     pub fn incomplete(&self) -> usize {
         self.partial.len()
+    }
+}
+
+impl Sink for Writer {
+    fn write(&mut self, tuple: &[u8], waits: bool) -> Result<(), Error> {
+        self.write_whole(tuple, waits)
     }
 }

@@ -1,194 +1,91 @@
-//! Reading the fields of one description with their types and limits, each refusal at the field's own line.
+//! The fields of one description, with the other nodes in reach.
+//!
+//! Owns what a source may ask of the nodes that it names. Reading single fields is the business of `crate::fields`.
 
-use super::{Checker, extended};
-use crate::description::Place;
-use crate::nearest::suggestion;
+use super::Checker;
+use crate::description::SourceDescription;
+use crate::fields::Fields;
 use crate::problem::Problem;
-use crate::value::{Key, Table, Value};
+use crate::source::kind::Nodes;
+use crate::value::Table;
+use std::ops::Deref;
 
 /// A description that is being read.
-pub(super) struct Fields<'c, 'a> {
+pub(super) struct NodeFields<'c, 'a> {
+    fields: Fields<'a>,
     pub(super) checker: &'c mut Checker<'a>,
-    /// Path of the node, which begins every reason.
-    pub(super) path: String,
-    /// Keys in the text that lead to the description.
-    pub(super) keys: Vec<String>,
-    pub(super) table: &'a Table,
     /// Nodes that wait for this one's size.
-    pub(super) depth: usize,
+    depth: usize,
 }
 
-impl<'a> Fields<'_, 'a> {
-    /// A refusal at the line of a field.
-    pub(super) fn problem(&self, field: &str, reason: impl AsRef<str>) -> Problem {
-        self.checker.problem(
-            &extended(&self.keys, field),
-            format!("{}: {}", self.path, reason.as_ref()),
-        )
-    }
-
-    /// The place of a field.
-    pub(super) fn place(&self, field: &str) -> Place {
-        let keys = extended(&self.keys, field);
-        let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
-        self.checker.texts.place(&keys)
-    }
-
-    /// The same refusal at the line of another field: keys inside a field's table are found by that field.
-    pub(super) fn at<T>(&self, field: &str, result: Result<T, Problem>) -> Result<T, Problem> {
-        result.map_err(|problem| {
-            let place = self.place(field);
-            Problem::new(place.file, place.line, problem.reason)
-        })
-    }
-
-    /// A refusal of a value of the wrong type.
-    pub(super) fn wrong_type(&self, field: &str, wanted: &str, value: &Value) -> Problem {
-        self.problem(
-            field,
-            format!("{field} must be {wanted}, not {}", value.describe()),
-        )
-    }
-
-    pub(super) fn get(&self, field: &str) -> Option<&'a Value> {
-        self.table.get(field)
-    }
-
-    /// The table of a value.
-    pub(super) fn table_of(&self, value: &Value) -> Option<&'a Table> {
-        self.checker.values.table(value)
-    }
-
-    /// A whole number within limits.
-    pub(super) fn whole(&self, field: &str, min: u32, max: u32) -> Result<Option<u32>, Problem> {
-        self.get(field)
-            .map(|value| self.whole_value(field, value, min, max))
-            .transpose()
-    }
-
-    /// A value that must be a whole number within limits.
-    pub(super) fn whole_value(
-        &self,
-        field: &str,
-        value: &Value,
-        min: u32,
-        max: u32,
-    ) -> Result<u32, Problem> {
-        let Value::Number(number) = value else {
-            return Err(self.wrong_type(field, "a number", value));
+impl<'c, 'a> NodeFields<'c, 'a> {
+    /// The table of one description, or of what is read like one.
+    pub(super) fn new(
+        checker: &'c mut Checker<'a>,
+        path: String,
+        keys: Vec<String>,
+        table: &'a Table,
+        depth: usize,
+    ) -> Self {
+        let fields = Fields {
+            values: checker.values,
+            texts: checker.texts,
+            search: checker.search,
+            path,
+            keys,
+            table,
         };
-        if number.fract() == 0.0 && *number >= f64::from(min) && *number <= f64::from(max) {
-            return Ok(*number as u32);
-        }
-        Err(self.problem(
-            field,
-            format!("{field} must be a whole number from {min} to {max}, not {number}"),
-        ))
-    }
-
-    /// A finite number.
-    pub(super) fn finite_value(&self, field: &str, value: &Value) -> Result<f64, Problem> {
-        match value {
-            Value::Number(number) if number.is_finite() => Ok(*number),
-            Value::Number(number) => {
-                Err(self.problem(field, format!("{field} must be finite, not {number}")))
-            }
-            _ => Err(self.wrong_type(field, "a number", value)),
+        Self {
+            fields,
+            checker,
+            depth,
         }
     }
 
-    pub(super) fn boolean(&self, field: &str) -> Result<Option<bool>, Problem> {
-        match self.get(field) {
-            None => Ok(None),
-            Some(Value::Boolean(value)) => Ok(Some(*value)),
-            Some(value) => Err(self.wrong_type(field, "true or false", value)),
+    /// The fields, and the other nodes for their sources.
+    pub(super) fn split(&mut self) -> (&Fields<'a>, Others<'_, 'a>) {
+        let others = Others {
+            checker: self.checker,
+            depth: self.depth,
+        };
+        (&self.fields, others)
+    }
+}
+
+impl<'a> Deref for NodeFields<'_, 'a> {
+    type Target = Fields<'a>;
+
+    fn deref(&self) -> &Fields<'a> {
+        &self.fields
+    }
+}
+
+/// The other nodes, for one that is being built.
+pub(super) struct Others<'c, 'a> {
+    checker: &'c mut Checker<'a>,
+    depth: usize,
+}
+
+impl Nodes for Others<'_, '_> {
+    fn tuple_size(&mut self, path: &str) -> Result<Option<usize>, Problem> {
+        self.checker.size_of_node(path, self.depth)
+    }
+
+    fn driven_tuple_size(&self, path: &str) -> Result<usize, &'static str> {
+        let Some(node) = self.checker.built(path) else {
+            return Err("there is no such node");
+        };
+        let is_linked = matches!(node.source, SourceDescription::Node(_));
+        if !is_linked && !node.source.takes_writes() {
+            Err("it cannot be written")
+        } else if node.rest.is_none() {
+            Err("it has no rest, so nothing could stop it")
+        } else {
+            Ok(node.written_tuple_size())
         }
     }
 
-    /// A string of UTF-8 without control characters.
-    pub(super) fn text(&self, field: &str, bytes_max: usize) -> Result<Option<&'a str>, Problem> {
-        match self.get(field) {
-            None => Ok(None),
-            Some(Value::Text(bytes)) => {
-                let text = std::str::from_utf8(bytes)
-                    .map_err(|_| self.problem(field, format!("{field} is not UTF-8")))?;
-                if text.len() > bytes_max {
-                    return Err(
-                        self.problem(field, format!("{field} has more than {bytes_max} bytes"))
-                    );
-                }
-                if text.chars().any(char::is_control) {
-                    return Err(
-                        self.problem(field, format!("{field} contains a control character"))
-                    );
-                }
-                Ok(Some(text))
-            }
-            Some(value) => Err(self.wrong_type(field, "a string", value)),
-        }
-    }
-
-    /// A path for the system: not empty, no zero byte.
-    pub(super) fn path_bytes(&self, field: &str, value: &'a Value) -> Result<&'a [u8], Problem> {
-        match value {
-            Value::Text(bytes) if bytes.is_empty() => {
-                Err(self.problem(field, format!("{field} is empty")))
-            }
-            Value::Text(bytes) if bytes.contains(&0) => {
-                Err(self.problem(field, format!("{field} contains a zero byte")))
-            }
-            Value::Text(bytes) if bytes.len() > 4095 => {
-                Err(self.problem(field, format!("{field} is longer than a path can be")))
-            }
-            Value::Text(bytes) => Ok(bytes),
-            _ => Err(self.wrong_type(field, "a path", value)),
-        }
-    }
-
-    /// Refuses keys of a table that are not known.
-    pub(super) fn only(&self, field: &str, table: &Table, known: &[&str]) -> Result<(), Problem> {
-        for (key, value) in &table.entries {
-            let within = if field.is_empty() {
-                String::new()
-            } else {
-                format!("{field}: ")
-            };
-            match key {
-                Key::Text(text) => {
-                    let name = String::from_utf8_lossy(text);
-                    if known.contains(&name.as_ref()) {
-                        continue;
-                    }
-                    let shown: String =
-                        name.chars().take(64).flat_map(char::escape_debug).collect();
-                    let place = if field.is_empty() { &*name } else { field };
-                    if field.is_empty()
-                        && self
-                            .table_of(value)
-                            .is_some_and(|table| table.get("src").is_some())
-                    {
-                        let reason = format!(
-                            "'{shown}' looks like a node, but this table is a node itself because it has 'src'; further files of a node stand in 'attributes'"
-                        );
-                        return Err(self.problem(place, reason));
-                    }
-                    let hint = suggestion(&name, known.iter().copied());
-                    return Err(self.problem(place, format!("{within}unknown key '{shown}'{hint}")));
-                }
-                Key::Number(number) => {
-                    let reason = format!(
-                        "{within}there is an entry with the number {number}, but keys are names here"
-                    );
-                    return Err(self.problem(field, reason));
-                }
-                Key::Other(kind) => {
-                    return Err(self.problem(
-                        field,
-                        format!("{within}a key is a {kind}, but keys are names here"),
-                    ));
-                }
-            }
-        }
-        Ok(())
+    fn nearest(&self, wrong: &str) -> String {
+        self.checker.nearest_node(wrong)
     }
 }

@@ -1,7 +1,6 @@
 //! One description, field by field: sizes, pace, permissions, rest, limits.
 
-use super::fields::Fields;
-use super::source::is_read_only;
+use super::fields::NodeFields;
 use super::stages::{StageDraft, sized};
 use crate::description::{
     NodeDescription, Pace, RegulatorDescription, SourceDescription, StageDescription,
@@ -58,7 +57,7 @@ struct Layout {
     format: Option<Format>,
 }
 
-impl Fields<'_, '_> {
+impl NodeFields<'_, '_> {
     /// Reads and checks everything.
     pub(super) fn description(&mut self) -> Result<NodeDescription, Problem> {
         self.only("", self.table, &FIELDS)?;
@@ -72,8 +71,10 @@ impl Fields<'_, '_> {
         }
         let read_only = match &source {
             // Writing through another node has to be asked for.
-            SourceDescription::Node(other) => write.is_none() || !self.checker.takes_tuples(other),
-            source => is_read_only(source),
+            SourceDescription::Node(other) => {
+                write.is_none() || !self.checker.takes_tuples(&other.path)
+            }
+            source => !source.takes_writes(),
         };
         if write.is_some() && read_only {
             return Err(self.problem(
@@ -162,7 +163,7 @@ impl Fields<'_, '_> {
 
     fn own_place(&self) -> crate::description::Place {
         let keys: Vec<&str> = self.keys.iter().map(String::as_str).collect();
-        self.checker.texts.place(&keys)
+        self.texts.place(&keys)
     }
 
     /// Finds out both sizes.
@@ -334,15 +335,7 @@ impl Fields<'_, '_> {
 
     /// What is written can be compared with what is read: the source keeps it, and the sizes are the same.
     fn check_read_back(&self, node: &NodeDescription, read_only: bool) -> Result<(), Problem> {
-        let keeps = match innermost(&node.source) {
-            SourceDescription::Path(_)
-            | SourceDescription::Attribute(_)
-            | SourceDescription::I2c(_)
-            | SourceDescription::Pwm(_)
-            | SourceDescription::Gpio(_)
-            | SourceDescription::Node(_) => !read_only,
-            _ => false,
-        };
+        let keeps = node.source.keeps_what_is_written() && !read_only;
         if node.read_back && !(keeps && node.write_converter.is_some()) {
             let reason = "read_back is for devices that keep what is written, with a converter and a write_converter";
             return Err(self.problem("read_back", reason));
@@ -366,14 +359,6 @@ impl Fields<'_, '_> {
             .unwrap_or_else(|| Format::bytes(size));
         let encoded = format.encode_numbers(rest, &mut vec![0; size]);
         encoded.map_err(|error| self.problem("rest", format!("rest: {error}")))
-    }
-}
-
-/// The source that others stand before.
-fn innermost(source: &SourceDescription) -> &SourceDescription {
-    match source {
-        SourceDescription::Faulty(faulty) => innermost(&faulty.source),
-        source => source,
     }
 }
 
@@ -423,9 +408,9 @@ fn fingerprint(node: &NodeDescription, digests: &[u128]) -> u128 {
 
 /// The permission bits of a node that asks for none.
 fn usual_mode(source: &SourceDescription, read_only: bool) -> u16 {
-    match (source, read_only) {
-        (SourceDescription::Program(_), _) => 0o222,
-        (_, true) => 0o444,
-        (_, false) => 0o644,
+    match (source.gives_tuples(), read_only) {
+        (false, _) => 0o222,
+        (true, true) => 0o444,
+        (true, false) => 0o644,
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Owns their names and limits.
 
-use super::fields::Fields;
+use crate::fields::Fields;
 use crate::limits::PARAMS_MAX;
 use crate::problem::Problem;
 use crate::value::{Key, Value};
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// Params by name, and the least and the greatest value of those that have a range.
 pub(super) type Params = (BTreeMap<String, f64>, BTreeMap<String, (f64, f64)>);
 
-impl Fields<'_, '_> {
+impl Fields<'_> {
     /// `params = { gain = 3, alpha = { 0.5, min = 0, max = 1 } }`
     pub(super) fn params(&self) -> Result<Params, Problem> {
         let mut params = BTreeMap::new();

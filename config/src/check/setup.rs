@@ -2,13 +2,11 @@
 //!
 //! Owns their keys and limits. Does none of them.
 
-use super::fields::Fields;
-use super::source::is_read_only;
-use super::{Checker, extended};
+use super::Checker;
+use super::fields::NodeFields;
 use crate::description::{SetupAction, SetupStep};
 use crate::limits::{SETUP_ACTIONS_MAX, SETUP_BYTES_MAX, SETUP_TIMEOUT_MS, SETUP_TIMEOUT_MS_MAX};
 use crate::problem::Problem;
-use crate::search::path_of;
 use crate::value::{Table, Value};
 
 /// Keys of an action.
@@ -44,20 +42,14 @@ impl<'a> Checker<'a> {
                 let reason = format!("{path}: an action is a table, not {}", value.describe());
                 return Err(self.problem(&keys, reason));
             };
-            let mut fields = Fields {
-                checker: self,
-                path,
-                keys: keys.clone(),
-                table,
-                depth: 0,
-            };
+            let mut fields = NodeFields::new(self, path, keys.clone(), table, 0);
             actions.push(fields.setup_action(table)?);
         }
         Ok(actions)
     }
 }
 
-impl<'a> Fields<'_, 'a> {
+impl<'a> NodeFields<'_, 'a> {
     fn setup_action(&mut self, table: &'a Table) -> Result<SetupAction, Problem> {
         self.only("", table, &KEYS)?;
         let given: Vec<&str> = ["path", "run", "to"]
@@ -82,10 +74,8 @@ impl<'a> Fields<'_, 'a> {
             None => None,
             Some(_) => Some(self.setup_path("unless")?),
         };
-        let keys: Vec<String> = extended(&self.keys, "");
-        let keys: Vec<&str> = keys.iter().map(String::as_str).collect();
         Ok(SetupAction {
-            place: self.checker.texts.place(&keys),
+            place: self.place(""),
             step,
             unless,
             timeout_ms: self
@@ -96,7 +86,7 @@ impl<'a> Fields<'_, 'a> {
 
     fn setup_path(&self, field: &str) -> Result<std::path::PathBuf, Problem> {
         match self.get(field) {
-            Some(value) => Ok(path_of(self.absolute(field, value)?)),
+            Some(value) => self.absolute(field, value),
             None => Err(self.problem(field, format!("{field} is missing"))),
         }
     }
@@ -158,7 +148,7 @@ impl<'a> Fields<'_, 'a> {
             return Err(self.problem("to", "to is missing"));
         };
         let to = self.single(value)?;
-        if is_read_only(&to) {
+        if !to.takes_writes() {
             return Err(self.problem("to", "to: the source cannot be written"));
         }
         if let Some(size) = self.size_of(&to)?
@@ -170,7 +160,7 @@ impl<'a> Fields<'_, 'a> {
             );
             return Err(self.problem("write", reason));
         }
-        self.check_data(&to, bytes.len())?;
+        to.check_tuple_size(bytes.len(), self)?;
         Ok(SetupStep::Send { to, bytes })
     }
 }

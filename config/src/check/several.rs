@@ -2,15 +2,17 @@
 //!
 //! Owns the layout of the input of the one converter behind them; each single source is read by `source`.
 
-use super::delivery::Delivery;
-use super::fields::Fields;
-use crate::description::{PartDescription, SeveralDescription, SourceDescription};
+use super::fields::NodeFields;
+use crate::description::{
+    LinkDescription, NewestDescription, PartDescription, SeveralDescription, SourceDescription,
+};
 use crate::format::Format;
 use crate::limits::{NAME_BYTES_MAX, SOURCES_MAX};
 use crate::problem::Problem;
+use crate::source::kind::Delivery;
 use crate::value::{Key, Table, Value};
 
-impl<'a> Fields<'_, 'a> {
+impl<'a> NodeFields<'_, 'a> {
     /// A list or a named table of sources, with `trigger`, `ages` and `interval`.
     pub(super) fn several(&mut self, table: &'a Table) -> Result<SeveralDescription, Problem> {
         if table.entries.is_empty() {
@@ -67,7 +69,7 @@ impl<'a> Fields<'_, 'a> {
                     ));
                 }
             };
-            self.check_data(&source, tuple_size)?;
+            source.check_tuple_size(tuple_size, self)?;
             parts.push(PartDescription {
                 name,
                 source,
@@ -157,9 +159,9 @@ impl<'a> Fields<'_, 'a> {
     fn cannot_trigger(&self, part: &PartDescription) -> Option<String> {
         const INSTEAD: &str =
             "name a stream, or leave out trigger and let poll_ms say when to sample";
-        if let SourceDescription::Newest(other) = &part.source {
-            let node = SourceDescription::Node(other.clone());
-            return Some(match self.checker.delivery(&node) {
+        if let SourceDescription::Newest(newest) = &part.source {
+            let other = &newest.path;
+            return Some(match self.checker.delivery_of_node(other) {
                 Delivery::Stream => format!(
                     "'newest:{other}' has no events of its own; 'trikfs:{other}' delivers each tuple"
                 ),
@@ -213,7 +215,8 @@ impl<'a> Fields<'_, 'a> {
         };
         let mut fields = Vec::new();
         for part in &several.parts {
-            let (SourceDescription::Node(other) | SourceDescription::Newest(other)) = &part.source
+            let (SourceDescription::Node(LinkDescription { path: other })
+            | SourceDescription::Newest(NewestDescription { path: other })) = &part.source
             else {
                 return None;
             };

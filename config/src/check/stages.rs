@@ -2,8 +2,8 @@
 //!
 //! Owns which size each stage has when the description does not say.
 
-use super::fields::Fields;
 use crate::description::{Place, StageDescription, StageKind};
+use crate::fields::Fields;
 use crate::limits::CHAIN_MAX;
 use crate::problem::Problem;
 use crate::value::{Table, Value};
@@ -51,7 +51,7 @@ pub(super) fn sized(
     Ok(stages)
 }
 
-impl<'a> Fields<'_, 'a> {
+impl<'a> Fields<'a> {
     /// Reads `converter` or `write_converter`; None if it is not there.
     pub(super) fn stages(&self, field: &str) -> Result<Option<Vec<StageDraft>>, Problem> {
         let Some(value) = self.get(field) else {
@@ -148,14 +148,14 @@ impl<'a> Fields<'_, 'a> {
 
     /// A stage whose code is a Lua function of the program's.
     fn function(&self, field: &str, number: usize) -> Result<StageDraft, Problem> {
-        let known = &self.checker.values.functions;
+        let known = &self.values.functions;
         let function = known.get(number).cloned().unwrap_or_default();
         if !function.lua {
             let reason =
                 format!("{field} must be a function written in lua, not one of the library");
             return Err(self.problem(field, reason));
         }
-        let place = self.checker.texts.of_chunk(&function.place);
+        let place = self.texts.of_chunk(&function.place);
         Ok(StageDraft {
             kind: StageKind::Lua,
             place: place.unwrap_or_else(|| self.place(field)),
@@ -179,7 +179,6 @@ impl<'a> Fields<'_, 'a> {
             return Err(self.problem(field, "the path of the library is empty"));
         }
         let path = self
-            .checker
             .search
             .library(path)
             .map_err(|reason| self.problem(field, reason))?;
@@ -205,7 +204,6 @@ impl<'a> Fields<'_, 'a> {
             None => return Err(self.problem(field, "code is missing")),
         };
         let place = self
-            .checker
             .texts
             .of_text(code)
             .unwrap_or_else(|| self.place(field));

@@ -1,7 +1,8 @@
 //! Tests of models that a configuration names: from their text to a node that moves, and every way to be refused.
 
 use crate::load::Loader;
-use crate::program::{Conversion, Direction, StageId, Vm};
+use crate::program::{StageId, Vm};
+use converter::{Conversion, Direction};
 use std::fs;
 use std::path::{Path, PathBuf};
 

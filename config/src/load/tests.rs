@@ -1,7 +1,7 @@
 //! Tests of loading: programs that fail, never end, take all memory or try to get out.
 
 use super::*;
-use crate::program::Direction;
+use converter::Direction;
 use std::fs;
 use std::time::{Duration, Instant};
 

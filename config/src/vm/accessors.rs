@@ -52,7 +52,7 @@ pub(crate) fn source(name: &str) -> Option<String> {
         FieldKind::U8 => "s.b[0]".to_owned(),
         FieldKind::I8 => "(s.b[0] < 128 and s.b[0] or s.b[0] - 256)".to_owned(),
         // LuaJIT keeps tags and addresses of its values in the bits of negative NaNs, and takes what it finds in memory
-        // for its own: bytes of a device could name any table. So such a NaN is never loaded but made afresh.
+        // for its own: bytes of a device could name any table. So such a NaN is never loaded but made anew.
         FieldKind::F32 => "(s.u32 > 0xff800000 and 0/0 or s.f32)".to_owned(),
         FieldKind::F64 => format!(
             "(s.h[{}] >= 0xfff8 and 0/0 or s.f64)",

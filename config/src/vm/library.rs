@@ -7,6 +7,7 @@
 use super::bytecode::{self, Code, Part};
 use super::pattern::{self, Capture, Match};
 use super::state::Host;
+use crate::source::is_constructor;
 use mlua_sys as lua;
 use std::ffi::{c_char, c_int};
 use std::panic::catch_unwind;
@@ -208,9 +209,7 @@ unsafe extern "C-unwind" fn part(l: *mut lua::lua_State) -> c_int {
                 lua::lua_pushvalue(l, raw);
                 3
             }
-            b"evdev" | b"fifo" | b"attribute" | b"fake" | b"replay" | b"faulty" | b"i2c"
-            | b"i2c_bus" | b"absent" | b"iio" | b"pwm" | b"gpio" | b"lines" | b"packets"
-            | b"pictures" | b"program" | b"regulator" => {
+            name if is_constructor(name) => {
                 push_maker(l, Part::Sources);
                 lua::lua_pushvalue(l, 1);
                 lua::lua_pushvalue(l, raw);
@@ -364,7 +363,7 @@ unsafe extern "C-unwind" fn start_compiler(l: *mut lua::lua_State) -> c_int {
     0
 }
 
-/// Lets go of a library that nobody asks for again.
+/// Releases a library that is not needed again.
 unsafe fn forget_library(l: *mut lua::lua_State, name: &std::ffi::CStr) {
     // SAFETY: called by functions whose upvalue 1 is the table of the raw libraries.
     unsafe {

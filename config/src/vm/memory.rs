@@ -106,7 +106,7 @@ impl Memory {
     /// Takes a block back.
     ///
     /// # Safety
-    /// The block must come from `take` with this size, and nobody may use it any more.
+    /// The block must come from `take` with this size, and must not be used any more.
     unsafe fn give(&self, block: *mut c_void, size: usize) {
         // SAFETY: the caller vouches for the block; a small one has room for an address because of the grain.
         unsafe {

@@ -291,7 +291,7 @@ impl Matcher<'_> {
         Ok(None)
     }
 
-    /// `%f[set]`, with `[` at `p`: the pattern's position behind the set.
+    /// `%f[set]`, with `[` at `p`: the pattern's position after the set.
     fn frontier(&mut self, s: usize, p: usize) -> Step {
         if self.at(p) != Some(b'[') {
             return Err("missing '[' after '%f' in pattern");
@@ -326,7 +326,7 @@ impl Matcher<'_> {
         Ok(equal.then_some(s + (to - from)))
     }
 
-    /// The pattern's position behind the single-character class at `p`.
+    /// The pattern's position after the single-character class at `p`.
     fn class_end(&mut self, p: usize) -> Result<usize, &'static str> {
         match self.at(p) {
             Some(ESCAPE) => match self.at(p + 1) {

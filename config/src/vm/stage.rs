@@ -5,7 +5,7 @@
 
 use super::library;
 use super::state::{ARRAY_SLOT, PARAMS_SLOT, State, TREE_SLOT, text_of, type_name};
-use crate::program::{Conversion, Direction};
+use converter::{Conversion, Direction};
 use mlua_sys as lua;
 use std::collections::BTreeMap;
 use std::ffi::c_int;
@@ -17,7 +17,7 @@ struct Buffer {
     size: usize,
 }
 
-// SAFETY: the bytes belong to whoever owns the buffer and its state, which move together.
+// SAFETY: the bytes belong to what owns the buffer and its state, which move together.
 unsafe impl Send for Buffer {}
 
 impl Buffer {

@@ -121,7 +121,7 @@ impl State {
         // SAFETY: `Host` begins with its `Memory` (repr(C)) and lives until `drop`, after the state is closed.
         let state = unsafe { lua::lua_newstate(allocate, host.as_ptr().cast()) };
         let Some(lua) = NonNull::new(state) else {
-            // SAFETY: leaked above and given to nobody who is still there.
+            // SAFETY: leaked above and given to nothing that still exists.
             drop(unsafe { Box::from_raw(host.as_ptr()) });
             return Err(NO_MEMORY.into());
         };
@@ -239,7 +239,7 @@ impl State {
         Err(text)
     }
 
-    /// Throws away what nobody can reach. Returns the bytes that are left.
+    /// Frees what is unreachable. Returns the bytes that are left.
     pub(crate) fn collect(&self) -> Result<usize, String> {
         self.protect(&[], |l| {
             // SAFETY: inside a protected call.

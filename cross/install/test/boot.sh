@@ -331,7 +331,8 @@ opkg_remove() {
         tar tzf data.tar.gz | grep -v "/$" | while read -r file; do
             rm -f "/$file"
         done
-        rmdir /usr/lib/trikfs /usr/share/trikfs/lua/trik /usr/share/trikfs/lua/robots /usr/share/trikfs/lua /usr/share/trikfs
+        rmdir /usr/lib/trikfs /usr/share/trikfs/lua/trik /usr/share/trikfs/lua/robots /usr/share/trikfs/lua /usr/share/trikfs \
+            /usr/share/doc/trikfs
         control/postrm remove'
 }
 

@@ -151,7 +151,7 @@ impl Control {
         }
     }
 
-    /// Lets it run out, whatever it did, because it cannot be driven: nobody knows whether it still turns.
+    /// Lets it run out, whatever it did, because it cannot be driven: whether it still turns is unknown.
     pub fn let_go(&mut self) {
         self.encoder.lose_sight();
         self.goal = Goal::Coast;
@@ -312,7 +312,7 @@ impl Control {
         self.settle();
     }
 
-    /// Regulation begins anew.
+    /// Regulation starts over.
     fn settle(&mut self) {
         self.integral.sum = 0.0;
         self.reference_speed = 0.0;

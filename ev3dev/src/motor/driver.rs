@@ -1,10 +1,10 @@
 //! Drives one motor of the tree: a loop that reads the encoder, asks [`Control`] and writes the power.
 //!
-//! Owns the open files of the motor and its thread, which sleeps while the motor is let go and stands. The files are
+//! Owns the open files of the motor and its thread, which sleeps while the motor is released and does not turn. The files are
 //! opened by a command and stay open until the motor has been let go, so that the tree brings the motor to rest if this
 //! process dies. While it runs the encoder is sampled as often as the loop asks.
 //!
-//! Locks: `files`, then `control` or `turns`. Whoever holds `files` is the one who drives: the loop, or a program's
+//! Locks: `files`, then `control` or `turns`. What holds `files` drives the motor: the loop, or a program's
 //! command, whose first step is done in its own call so that it hears of a failure.
 
 use super::command::{Command, Output};
@@ -206,7 +206,7 @@ impl Driver {
         Ok(())
     }
 
-    /// One step of the regulation. `files` are locked, so nobody else writes the power.
+    /// One step of the regulation. `files` are locked, so nothing else writes the power.
     fn step(&self, files: &mut Files) -> Result<(), Error> {
         let is_let_go = self.control().is_let_go();
         let counts = match read_encoder(files) {
@@ -251,7 +251,7 @@ impl Driver {
                 files.wrote_s = now_s;
                 Ok(())
             }
-            // A motor that is to be let go is tried for ever.
+            // A motor that is to be let go is tried forever.
             Err(error)
                 if is_passing(&error)
                     && (now_s - files.wrote_s < LOST_S || self.control().is_let_go()) =>
@@ -397,7 +397,7 @@ impl Driver {
         (usual > LOOP_MS && self.tree.write(&name, &LOOP_MS.to_string()).is_ok()).then_some(usual)
     }
 
-    /// Undoes that, unless somebody has changed it meanwhile.
+    /// Undoes that, unless it has been changed meanwhile.
     fn calm_encoder(&self, files: &mut Files) {
         let (Some(usual), Some(node)) = (files.usual_ms.take(), &self.paths.encoder) else {
             return;

@@ -74,7 +74,7 @@ pub(super) struct Speed {
 
 impl Speed {
     pub(super) fn take(&mut self, now_s: f64, position: i64) {
-        // After a pause nobody knows when it moved.
+        // After a pause it is unknown when it moved.
         if self
             .places
             .back()

@@ -5,12 +5,8 @@ use lang_text::xml::{self, Element};
 use std::path::{Path, PathBuf};
 
 fn shared(folder: &str) -> Option<Vec<PathBuf>> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let folder = root.join(folder);
-    let Ok(entries) = std::fs::read_dir(&folder) else {
-        eprintln!("skipped {}: no ../shared", folder.display());
-        return None;
-    };
+    let folder = needs::data()?.join(folder);
+    let entries = std::fs::read_dir(folder).unwrap();
     let mut paths: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
     paths.sort();
     Some(paths)

@@ -1,9 +1,11 @@
 //! A tree to a model: every name means one thing, every value can be computed.
 //!
-//! Owns the rules of names, declarations and equations. `resolve` has those of expressions, `order` finds what needs what.
+//! Owns the rules of names, declarations and equations. `resolve` has those of expressions, `rates` those of derivatives in
+//! them, `order` finds what needs what.
 //! A rule is silent where what it complains of may be missing because it could not be read.
 
 mod order;
+mod rates;
 mod resolve;
 mod units;
 
@@ -13,7 +15,7 @@ use super::model::{Equation, Expr, Model, Symbol, SymbolId};
 use super::nearest::nearest;
 use super::parser::shown;
 use super::syntax::{Document, Domain, EquationText, Kind, ModelText, Node, Span};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Checks all models; gives those without errors.
 pub(super) fn check(document: &Document, findings: &mut Findings) -> Vec<Model> {
@@ -51,6 +53,10 @@ struct Checker<'a, 'f> {
     used: Vec<bool>,
     /// The equation of each symbol.
     equation_of: Vec<Option<usize>>,
+    /// The variable that holds the derivative of a symbol, if an expression has it.
+    rates: BTreeMap<SymbolId, SymbolId>,
+    /// The names of these variables.
+    rate_names: HashSet<String>,
     /// Names that are not declared, and where they are told.
     undeclared: HashMap<&'a str, Option<usize>>,
 }
@@ -64,6 +70,8 @@ impl<'a, 'f> Checker<'a, 'f> {
             ids: HashMap::new(),
             used: Vec::new(),
             equation_of: Vec::new(),
+            rates: BTreeMap::new(),
+            rate_names: HashSet::new(),
             undeclared: HashMap::new(),
         }
     }
@@ -84,6 +92,7 @@ impl<'a, 'f> Checker<'a, 'f> {
             used.dedup();
             uses.push(used);
         }
+        self.rate_equations();
         self.missing_sections();
         self.missing_equations();
         let order = self.order(&targets, &uses);
@@ -91,10 +100,23 @@ impl<'a, 'f> Checker<'a, 'f> {
         self.unused();
         let equations = order.into_iter().filter_map(|at| {
             let text = &self.text.equations[at];
+            let target = targets[at]?;
+            // Where an expression has the derivative its equation comes twice: first as that of the variable.
+            let rate = self
+                .rates
+                .get(&target)
+                .filter(|_| text.is_derivative)
+                .copied();
+            let (target, is_derivative, value) = match (values[at].take(), rate) {
+                (Some(value), Some(rate)) => (rate, false, value),
+                (Some(value), None) => (target, text.is_derivative, value),
+                (None, Some(rate)) => (target, true, Expr::Symbol(rate)),
+                (None, None) => return None,
+            };
             Some(Equation {
-                target: targets[at]?,
-                is_derivative: text.is_derivative,
-                value: values[at].take()?,
+                target,
+                is_derivative,
+                value,
                 span: text.span,
             })
         });

@@ -14,6 +14,7 @@ mod lua;
 mod names;
 mod plan;
 mod python;
+mod row;
 mod rust;
 
 use super::lower;
@@ -21,6 +22,7 @@ use super::model::Model;
 use super::syntax::Kind;
 use super::tape::Lowered;
 use graph::Scene;
+use row::Row;
 use std::fmt;
 
 /// A language that a model can be written in.
@@ -85,18 +87,6 @@ impl Target {
     pub const fn ending(self) -> &'static str {
         self.row().ending
     }
-}
-
-/// One language, as the file of that language says it.
-struct Row {
-    /// On the command line.
-    name: &'static str,
-    /// Of the names of files, without a dot.
-    ending: &'static str,
-    /// Values and results that one function of the language can hold.
-    values_max: usize,
-    /// Writes a model.
-    print: fn(&Scene) -> String,
 }
 
 /// What may be chosen.

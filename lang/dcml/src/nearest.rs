@@ -1,7 +1,9 @@
 //! The known word that a mistyped one was probably meant to be.
 //!
 //! Distance: insertions, deletions, substitutions and swaps of neighbours count one each (optimal string alignment);
-//! case counts half. Pure; bounded by [`crate::limits::DCML_WORDS_COMPARED`].
+//! case counts half an edit. Pure; bounded by [`crate::limits::DCML_WORDS_COMPARED`].
+
+use strsim::osa_distance;
 
 use crate::limits::{DCML_WORD_COMPARED_BYTES, DCML_WORDS_COMPARED};
 
@@ -10,27 +12,17 @@ pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
     if word.len() > DCML_WORD_COMPARED_BYTES {
         return None;
     }
-    let word: Vec<char> = word.chars().collect();
-    let most = ((word.len() + 1) / 3).max(1) * 2;
+    let letters = word.chars().count();
+    let most = ((letters + 1) / 3).max(1) * 2;
     let mut best: Option<(usize, &str)> = None;
     for one in known.into_iter().take(DCML_WORDS_COMPARED) {
         // A letter that is there once more is one edit at least.
-        if one.len().abs_diff(word.len()) * 2 > most {
+        if one.chars().count().abs_diff(letters) * 2 > most {
             continue;
         }
-        let letters: Vec<char> = one.chars().collect();
-        let is_case = letters.len() == word.len()
-            && letters
-                .iter()
-                .zip(&word)
-                .all(|(a, b)| a.eq_ignore_ascii_case(b));
-        let found = if is_case {
-            1
-        } else {
-            distance(&word, &letters)
-        };
+        let found = distance(word, one);
         // A word of one letter has nothing left of it after one edit, except its case.
-        let enough = if word.len() == 1 {
+        let enough = if letters == 1 {
             found < 2
         } else {
             found <= most
@@ -42,28 +34,10 @@ pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
     best.map(|(_, one)| one)
 }
 
-/// Twice the number of edits between two words.
-fn distance(a: &[char], b: &[char]) -> usize {
-    let cost = |x: char, y: char| match () {
-        () if x == y => 0,
-        () if x.eq_ignore_ascii_case(&y) => 1,
-        () => 2,
-    };
-    let mut before_last: Vec<usize> = Vec::new();
-    let mut last: Vec<usize> = (0..=b.len()).map(|at| at * 2).collect();
-    for (i, &x) in a.iter().enumerate() {
-        let mut row = Vec::with_capacity(b.len() + 1);
-        row.push((i + 1) * 2);
-        for (j, &y) in b.iter().enumerate() {
-            let mut best = (last[j] + cost(x, y)).min(last[j + 1] + 2).min(row[j] + 2);
-            if i > 0 && j > 0 && x == b[j - 1] && a[i - 1] == y && x != y {
-                best = best.min(before_last[j - 1] + 2);
-            }
-            row.push(best);
-        }
-        before_last = std::mem::replace(&mut last, row);
-    }
-    last.last().copied().unwrap_or_default()
+/// Twice the number of edits, and one more if the case differs somewhere.
+fn distance(a: &str, b: &str) -> usize {
+    let edits = osa_distance(&a.to_ascii_lowercase(), &b.to_ascii_lowercase());
+    2 * edits + usize::from(edits != osa_distance(a, b))
 }
 
 #[cfg(test)]

@@ -213,3 +213,89 @@ fn the_document_has_all_functions_and_units() {
         assert!(words.contains(&unit), "{unit}");
     }
 }
+
+#[test]
+fn derivatives_in_expressions_are_computed_before_what_needs_them() {
+    let text = "BEGIN M ACTION: u; PARAM: k; CONFIG: x, y, speed, z, d_z; VAR: a;
+        d(x) = u + a; d(y) = 2 * d(x) + x; speed = sqrt(pow(d(x), 2) + pow(d(y), 2));
+        a = k * d(z); d(z) = x; d(d_z) = d(z); END;";
+    for all in [understand(text), understand_paper(text)] {
+        assert_eq!(all.diagnostics, []);
+        let mut robot = crate::robot::Robot::new(&all.models[0], &[10.0]).unwrap();
+        // In the order x, y, z, d_z: z' = x, a = 10 z', x' = u + a, y' = 2 x' + x.
+        let (state, action) = ([3.0, 0.0, 0.0, 0.0], [1.0]);
+        let mut derivative = [0.0; 4];
+        crate::system::System::derivative(&mut robot, &state, &action, &mut derivative);
+        assert_eq!(derivative, [31.0, 65.0, 3.0, 3.0]);
+        let mut outputs = [0.0];
+        robot.output(&state, &action, &mut outputs);
+        assert_eq!(outputs, [31f64.hypot(65.0)]);
+    }
+}
+
+#[test]
+fn derivatives_that_are_not_known_are_told() {
+    let told = |inside: &str| {
+        let text = format!("BEGIN M ACTION: u; CONFIG: x, y; {inside} END;");
+        let all = understand(&text).diagnostics;
+        let mut mistakes = all.iter().filter(|one| one.severity == Severity::Error);
+        let first = mistakes.next().expect("a mistake");
+        (first.code, first.message.clone())
+    };
+    for (inside, code, message) in [
+        (
+            "d(x) = d(y); d(y) = d(x);",
+            Code::AlgebraicLoop,
+            "values need each other in a circle: d(x) -> d(y) -> d(x)",
+        ),
+        (
+            "VAR: a; a = d(x); d(x) = a; d(y) = u;",
+            Code::AlgebraicLoop,
+            "values need each other in a circle: a -> d(x) -> a",
+        ),
+        (
+            "d(x) = d(y); y = x + u;",
+            Code::NotDerivable,
+            "`y` is computed from other values, and its derivative is not known",
+        ),
+        (
+            "d(x) = d(u); d(y) = u;",
+            Code::NotDerivable,
+            "`u` is no `CONFIG`, and only those have a derivative",
+        ),
+        (
+            "d(x) = d(x, y) + u; d(y) = u;",
+            Code::NotDerivable,
+            "only a name of `CONFIG` has a derivative",
+        ),
+        (
+            "d(x) = d(z) + u; d(y) = u;",
+            Code::UndeclaredName,
+            "`z` is not declared",
+        ),
+        (
+            "d(x) = d(y) + u;",
+            Code::MissingEquation,
+            "`y` has no equation",
+        ),
+    ] {
+        assert_eq!(told(inside), (code, message.to_owned()), "{inside}");
+    }
+}
+
+#[test]
+fn a_derivative_has_the_unit_of_its_state_by_time() {
+    let with = |sum: &str| {
+        let text = format!(
+            "BEGIN M ACTION: u [m/s]; CONFIG: x [m], y [m]; d(x) = u; d(y) = d(x) + {sum}; END;"
+        );
+        let codes: Vec<_> = understand(&text)
+            .diagnostics
+            .iter()
+            .map(|one| one.code)
+            .collect();
+        codes
+    };
+    assert_eq!(with("u"), []);
+    assert_eq!(with("x"), [Code::UnitMismatch]);
+}

@@ -88,8 +88,10 @@ fn what_hints_say_is_of_use() {
         ("d(x) = sin * u;", "`sin` is a function: write `sin(...)`"),
         (
             "d(x) = u * d(x);",
-            "a derivative stands only on the left side",
+            "solve these equations for one of the derivatives by hand",
         ),
+        ("d(x) = u + d(u);", "move `u` to `CONFIG`"),
+        ("d(x) = u + d(2 * u);", "write `d(x)`"),
         ("d(x) = arctan(u);", "write `atan(x)`"),
         ("d(x) = atn2(u, 1);", "did you mean `atan2`?"),
         ("d(x) = u(3);", "to multiply write `u * (...)`"),

@@ -52,7 +52,7 @@ fn a_car_with_a_trailer_ends_where_scipy_says() {
     );
     if text.trim() == "missing" {
         assert!(named.is_none(), "TRIK_NUMPY_PYTHON has no scipy");
-        println!("skipped a_car_with_a_trailer_ends_where_scipy_says: no python3 with scipy");
+        needs::Need::Tools.missing("no python3 with scipy");
         return;
     }
     let shipped = models::named("trailer").expect("a model");

@@ -5,7 +5,6 @@
 //! `cargo bench -p lang-diagram --bench machine`; the best of several runs counts.
 
 use std::hint::black_box;
-use std::path::Path;
 use std::rc::Rc;
 use std::time::Instant;
 
@@ -171,11 +170,9 @@ fn memory(project: &lang_diagram::project::Project, kept: &mut Vec<Machine>) -> 
 
 /// Real projects: time to be read, checked and lowered, and memory of a machine that has run for two seconds.
 fn projects() {
-    let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"));
-    if !data.is_dir() {
-        println!("skipped projects: no ../shared");
+    let Some(data) = needs::data() else {
         return;
-    }
+    };
     let mut kept = Vec::new();
     let (mut slowest, mut largest) = ((0.0_f64, String::new()), (0, String::new()));
     for folder in ["examples", "course", "grading", "structure"] {

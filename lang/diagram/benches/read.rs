@@ -7,7 +7,7 @@ use lang_diagram::check::check;
 use lang_diagram::lower::{World, lower};
 use lang_diagram::read::read;
 use lang_diagram::sketch::Sketch;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// How often each thing is done.
@@ -81,9 +81,10 @@ fn made() -> Vec<u8> {
 }
 
 fn main() {
-    let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"));
     let inside = |folder: PathBuf| std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut paths: Vec<PathBuf> = inside(data.to_owned())
+    let mut paths: Vec<PathBuf> = needs::data()
+        .into_iter()
+        .flat_map(inside)
         .flat_map(|folder| inside(folder.path()))
         .map(|entry| entry.path())
         .filter(|path| path.extension().is_some_and(|ending| ending == "qrs"))

@@ -5,15 +5,14 @@ use lang_diagram::ports::Kit;
 use lang_diagram::read::read;
 use lang_expr::words::Stage;
 use lang_expr::{Compat, Names, Source, Wanted, analyse};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 #[test]
 fn expressions_of_real_saves_are_read_and_print_the_same() {
-    let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"));
-    let Ok(folders) = std::fs::read_dir(data) else {
-        println!("skipped expressions_of_real_saves_are_read_and_print_the_same: no ../shared");
+    let Some(data) = needs::data() else {
         return;
     };
+    let folders = std::fs::read_dir(data).unwrap();
     let inside = |folder: PathBuf| std::fs::read_dir(folder).into_iter().flatten();
     let paths = folders
         .flat_map(|folder| inside(folder.unwrap().path()))

@@ -1,9 +1,9 @@
 //! Real projects on the stand-in, against poses and ends that the real program recorded.
 //!
-//! Reads `../shared/data` if it is there; skips by name if not. Runs with walls or light have no place here; where a few
+//! Reads the recorded runs, or is skipped. Runs with walls or light have no place here; where a few
 //! readings or random numbers decide, they are given by script.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::rc::Rc;
 
 use lang_diagram::check::check;
@@ -19,11 +19,6 @@ use lang_text::problem::Severity;
 const NEAR: f64 = 0.51e-6;
 /// The last pose has all digits.
 const SAME: f64 = 1e-9;
-
-fn data() -> Option<PathBuf> {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"));
-    path.is_dir().then(|| path.to_owned())
-}
 
 /// What the real program did.
 struct Oracle {
@@ -168,8 +163,7 @@ fn run(data: &Path, oracle: &Oracle, script: impl Fn(&mut StandIn)) -> Ran {
 
 /// All recorded poses are met. `ends`: the program itself ended the run, so its end and the last pose are the same too.
 fn meets(name: &str, ends: bool, script: impl Fn(&mut StandIn)) {
-    let Some(data) = data() else {
-        println!("skipped {name}: no ../shared");
+    let Some(data) = needs::data() else {
         return;
     };
     let oracle = Oracle::read(&data.join("oracle").join(format!("{name}.json")));
@@ -284,8 +278,7 @@ fn a_wait_for_a_distance_is_also_answered_by_the_refresh_of_its_variable() {
 
 #[test]
 fn devices_are_told_when_the_real_ones_were() {
-    let Some(data) = data() else {
-        println!("skipped devices_are_told_when_the_real_ones_were: no ../shared");
+    let Some(data) = needs::data() else {
         return;
     };
     for name in [
@@ -326,8 +319,7 @@ fn threads_of_the_first_moment_begin_with_the_real_ones() {
 
 #[test]
 fn every_project_runs_without_a_panic() {
-    let Some(data) = data() else {
-        println!("skipped every_project_runs_without_a_panic: no ../shared");
+    let Some(data) = needs::data() else {
         return;
     };
     let mut count = 0;
@@ -358,8 +350,7 @@ fn every_project_runs_without_a_panic() {
 
 #[test]
 fn projects_that_the_real_program_runs_have_no_errors() {
-    let Some(data) = data() else {
-        println!("skipped projects_that_the_real_program_runs_have_no_errors: no ../shared");
+    let Some(data) = needs::data() else {
         return;
     };
     let mut count = 0;

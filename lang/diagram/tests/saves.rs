@@ -5,15 +5,14 @@ use lang_diagram::project::{Link, Project};
 use lang_diagram::read::{Opened, VERSION, VERSION_KEY, read};
 use lang_text::problem::{Problem, Severity};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-/// Real saves by name, in order; says by name that a test is skipped if there are none.
-fn saves(test: &str) -> Vec<(String, Vec<u8>)> {
-    let data = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"));
-    let Ok(folders) = std::fs::read_dir(data) else {
-        println!("skipped {test}: no ../shared");
+/// Real saves by name, in order; none, and a skip, if they are not there.
+fn saves() -> Vec<(String, Vec<u8>)> {
+    let Some(data) = needs::data() else {
         return Vec::new();
     };
+    let folders = std::fs::read_dir(data).unwrap();
     let inside = |folder: PathBuf| std::fs::read_dir(folder).into_iter().flatten();
     let mut found: Vec<PathBuf> = folders
         .flat_map(|folder| inside(folder.unwrap().path()))
@@ -48,7 +47,7 @@ fn meaning(mut project: Project) -> Project {
 
 #[test]
 fn real_saves_are_read_without_errors() {
-    for (name, bytes) in saves("real_saves_are_read_without_errors") {
+    for (name, bytes) in saves() {
         let opened = opened(&name, &bytes);
         let bad = |problem: &&Problem| problem.severity == Severity::Error;
         assert_eq!(opened.problems.iter().find(bad), None, "{name}");
@@ -79,9 +78,7 @@ fn real_saves_are_read_without_errors() {
 
 #[test]
 fn real_saves_have_what_the_editor_shows() {
-    let all: BTreeMap<_, _> = saves("real_saves_have_what_the_editor_shows")
-        .into_iter()
-        .collect();
+    let all: BTreeMap<_, _> = saves().into_iter().collect();
     if all.is_empty() {
         return;
     }
@@ -124,7 +121,7 @@ fn real_saves_have_what_the_editor_shows() {
 
 #[test]
 fn real_saves_are_written_as_they_came() {
-    for (name, bytes) in saves("real_saves_are_written_as_they_came") {
+    for (name, bytes) in saves() {
         let opened = opened(&name, &bytes);
         let written = opened.save.write().unwrap();
         let again = self::opened(&name, &written);
@@ -145,7 +142,7 @@ fn real_saves_are_written_as_they_came() {
 
 #[test]
 fn real_saves_keep_their_meaning_when_they_are_changed() {
-    for (name, bytes) in saves("real_saves_keep_their_meaning_when_they_are_changed") {
+    for (name, bytes) in saves() {
         let mut opened = opened(&name, &bytes);
         opened.save.set_meta("exerciseId", Some("mine")).unwrap();
         let written = opened.save.write().unwrap();
@@ -170,7 +167,7 @@ fn real_saves_keep_their_meaning_when_they_are_changed() {
 #[test]
 fn real_orphans_are_recovered_or_removed() {
     let mut found = 0;
-    for (name, bytes) in saves("real_orphans_are_recovered_or_removed") {
+    for (name, bytes) in saves() {
         let mut removed = opened(&name, &bytes);
         let orphans = removed.save.orphans().len();
         found += orphans;
@@ -212,7 +209,7 @@ impl Random {
 fn damaged_saves_do_no_harm() {
     let mut random = Random(0x2545_f491);
     let (mut refused, mut all) = (0, 0);
-    for (_, bytes) in saves("damaged_saves_do_no_harm") {
+    for (_, bytes) in saves() {
         for _ in 0..10 {
             let mut damaged = bytes.clone();
             match random.below(3) {
@@ -235,7 +232,7 @@ fn damaged_saves_do_no_harm() {
 #[test]
 fn damaged_files_in_saves_do_no_harm() {
     let mut random = Random(0x9e37_79b9);
-    let small = saves("damaged_files_in_saves_do_no_harm");
+    let small = saves();
     let mut read_again = 0;
     for (_, bytes) in small.iter().filter(|(_, bytes)| bytes.len() < 100_000) {
         let whole = archive::open(bytes, &mut Vec::new()).unwrap().entries;

@@ -1,10 +1,12 @@
-//! What the languages share: what is wrong with a text and where, in two languages, and XML as a tree.
+//! What the languages share: what is wrong with a text and where, in two languages, XML as a tree,
+//! and the signs of markup.
 //!
 //! Pure: bytes in, values and [`problem::Problem`]s out. Knows no language, no files, network, threads or clock.
 
 // Problems are rare, and their size costs nothing where none is.
 #![allow(clippy::result_large_err)]
 
+pub mod escape;
 pub mod limits;
 pub mod problem;
 pub mod xml;

@@ -3,6 +3,7 @@
 //! Owns the tree and how it is written; `read` makes it from text. Knows no meaning of tags. Names are kept as they
 //! stand, because saves have the tag `qReal::Id`, which no parser with namespaces accepts.
 
+use crate::escape::entity;
 use std::borrow::Cow;
 
 mod read;
@@ -192,14 +193,13 @@ fn put(text: &mut String, element: &Element<'_>, indent: usize, level: usize) {
 fn escape(text: &mut String, value: &str) {
     for c in value.chars() {
         match c {
-            '<' => text.push_str("&lt;"),
-            '>' => text.push_str("&gt;"),
-            '&' => text.push_str("&amp;"),
-            '"' => text.push_str("&quot;"),
             '\n' => text.push_str("&#xa;"),
             '\r' => text.push_str("&#xd;"),
             '\t' => text.push_str("&#x9;"),
-            _ => text.push(c),
+            c => match entity(c) {
+                Some(entity) => text.push_str(entity),
+                None => text.push(c),
+            },
         }
     }
 }

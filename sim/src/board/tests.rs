@@ -4,17 +4,17 @@ mod devices;
 
 use super::*;
 use crate::robots;
-use crate::scratch::Scratch;
 use nix::sys::socket::{
     AddressFamily, MsgFlags, SockFlag, SockType, UnixAddr, connect, recv, send, socket,
 };
 use std::os::fd::{AsRawFd, OwnedFd};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
+use tempfile::{TempDir, tempdir};
 
-fn board(scratch: &Scratch, name: &str) -> Board {
+fn board(scratch: &TempDir, name: &str) -> Board {
     let body = robots::by_name("two-wheels").unwrap().body();
-    Board::start(&scratch.path(name), body, Options::default()).unwrap()
+    Board::start(&scratch.path().join(name), body, Options::default()).unwrap()
 }
 
 /// Waits until `condition` gives something.
@@ -84,7 +84,7 @@ fn read(board: &Board, name: &str) -> Option<String> {
 
 #[test]
 fn a_motor_that_is_written_over_the_bus_moves_the_robot() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "board");
     let client = Client::connect(&board, 2);
     assert_eq!(client.transact(0x48, &[0xEE], 2), (0, vec![0x0E, 0x28]));
@@ -105,7 +105,7 @@ fn a_motor_that_is_written_over_the_bus_moves_the_robot() {
 
 #[test]
 fn other_addresses_and_the_other_bus_do_not_answer() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "board");
     assert_eq!(
         Client::connect(&board, 2).transact(0x20, &[0], 1),
@@ -119,7 +119,7 @@ fn other_addresses_and_the_other_bus_do_not_answer() {
 
 #[test]
 fn malformed_packets_are_told_and_the_connection_lives_on() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "board");
     let client = Client::connect(&board, 2);
     let bad: [&[u8]; 4] = [
@@ -139,7 +139,7 @@ fn malformed_packets_are_told_and_the_connection_lives_on() {
 
 #[test]
 fn a_client_that_never_reads_is_cut_off_and_harms_nobody() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "board");
     let lazy = Client::connect(&board, 2);
     let packet = [1, 0, 0x48, 0, 1, 0, 0, 0x20, 0x26];
@@ -155,7 +155,7 @@ fn a_client_that_never_reads_is_cut_off_and_harms_nobody() {
 
 #[test]
 fn a_hundred_connections_are_served_and_far_more_are_refused_not_fatal() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "board");
     let clients: Vec<Client> = (0..100).map(|_| Client::connect(&board, 2)).collect();
     for client in &clients {
@@ -191,7 +191,7 @@ fn a_hundred_connections_are_served_and_far_more_are_refused_not_fatal() {
 
 #[test]
 fn pulses_are_measured_by_the_port_that_was_asked_to() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "board");
     let folder = "sys/class/pwm/ecap_cap.1";
     let measured = |what: &str, frequency: &str, duty: &str| {
@@ -232,7 +232,7 @@ fn pulses_are_measured_by_the_port_that_was_asked_to() {
 
 #[test]
 fn servos_leds_and_gpio_are_files() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "board");
     write(&board, "sys/class/pwm/pwmchip5/pwm1/period", "20000000");
     write(&board, "sys/class/pwm/pwmchip5/pwm1/enable", "1");
@@ -266,7 +266,7 @@ fn servos_leds_and_gpio_are_files() {
 
 #[test]
 fn faults_are_put_in_and_taken_out_through_files() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "board");
     let client = Client::connect(&board, 2);
     write(&board, "faults/msp430", "nack\n");
@@ -293,7 +293,7 @@ fn faults_are_put_in_and_taken_out_through_files() {
 
 #[test]
 fn a_folder_of_faults_that_is_removed_or_moved_away_mends_all_and_is_there_again() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "board");
     let client = Client::connect(&board, 2);
     let folder = board.root().join("faults");
@@ -316,14 +316,14 @@ fn a_folder_of_faults_that_is_removed_or_moved_away_mends_all_and_is_there_again
 
 #[test]
 fn an_unplugged_bus_is_gone_and_comes_back() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "board");
     let client = Client::connect(&board, 2);
     write(&board, "faults/i2c-2", "unplug");
     wait("end of the node", || {
         (!board.root().join("dev/i2c-2").exists()).then_some(())
     });
-    assert_eq!(client.receive(MsgFlags::empty()).unwrap(), []);
+    assert!(client.receive(MsgFlags::empty()).unwrap().is_empty());
     assert_eq!(
         Client::connect(&board, 1).transact(1, &[], 0).0,
         121,
@@ -336,7 +336,7 @@ fn an_unplugged_bus_is_gone_and_comes_back() {
 
 #[test]
 fn a_slow_bus_takes_its_time_and_the_other_one_does_not() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "board");
     let (slow, other) = (Client::connect(&board, 2), Client::connect(&board, 1));
     write(&board, "faults/i2c-2", "slow 60000");
@@ -362,7 +362,7 @@ fn a_slow_bus_takes_its_time_and_the_other_one_does_not() {
 
 #[test]
 fn a_stuck_bus_never_answers() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "board");
     let client = Client::connect(&board, 2);
     write(&board, "faults/i2c-2", "stuck");
@@ -391,7 +391,7 @@ impl Client {
 
 #[test]
 fn two_boards_side_by_side_are_two_boards() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let (one, two) = (board(&scratch, "one"), board(&scratch, "two"));
     Client::connect(&one, 2).transact(0x48, &[0x14, 30], 0);
     wait("motor of one", || {
@@ -402,56 +402,61 @@ fn two_boards_side_by_side_are_two_boards() {
 
 #[test]
 fn a_directory_of_somebody_else_is_refused_and_left_alone() {
-    let scratch = Scratch::new();
-    std::fs::create_dir(scratch.path("theirs")).unwrap();
-    std::fs::write(scratch.path("theirs/letter"), "dear").unwrap();
+    let scratch = tempdir().unwrap();
+    std::fs::create_dir(scratch.path().join("theirs")).unwrap();
+    std::fs::write(scratch.path().join("theirs/letter"), "dear").unwrap();
     let start = |path: PathBuf| {
         let body = robots::by_name("two-wheels").unwrap().body();
         Board::start(&path, body, Options::default())
     };
-    let refused = start(scratch.path("theirs")).err().unwrap();
+    let refused = start(scratch.path().join("theirs")).err().unwrap();
     assert!(
         refused
             .to_string()
             .contains("is not empty and not the directory of a board"),
         "{refused}"
     );
-    assert!(scratch.path("theirs/letter").exists());
-    let first = start(scratch.path("board")).unwrap();
-    let refused = start(scratch.path("board")).err().unwrap();
+    assert!(scratch.path().join("theirs/letter").exists());
+    let first = start(scratch.path().join("board")).unwrap();
+    let refused = start(scratch.path().join("board")).err().unwrap();
     assert!(
         refused.to_string().contains("another board runs here"),
         "{refused}"
     );
     assert_eq!(Client::connect(&first, 2).transact(0x48, &[0xEE], 2).0, 0);
     drop(first);
-    assert!(!scratch.path("board").exists());
+    assert!(!scratch.path().join("board").exists());
     // What a killed board leaves is taken over.
-    std::fs::create_dir_all(scratch.path("board/dev")).unwrap();
-    std::fs::write(scratch.path("board/.virtual-board"), "").unwrap();
-    std::fs::write(scratch.path("board/dev/i2c-2"), "").unwrap();
+    std::fs::create_dir_all(scratch.path().join("board/dev")).unwrap();
+    std::fs::write(scratch.path().join("board/.virtual-board"), "").unwrap();
+    std::fs::write(scratch.path().join("board/dev/i2c-2"), "").unwrap();
     assert_eq!(
-        Client::connect(&start(scratch.path("board")).unwrap(), 2)
+        Client::connect(&start(scratch.path().join("board")).unwrap(), 2)
             .transact(0x48, &[0xEE], 2)
             .0,
         0
     );
     // An empty directory stays.
-    std::fs::create_dir(scratch.path("empty")).unwrap();
-    drop(start(scratch.path("empty")).unwrap());
-    assert_eq!(std::fs::read_dir(scratch.path("empty")).unwrap().count(), 0);
+    std::fs::create_dir(scratch.path().join("empty")).unwrap();
+    drop(start(scratch.path().join("empty")).unwrap());
+    assert_eq!(
+        std::fs::read_dir(scratch.path().join("empty"))
+            .unwrap()
+            .count(),
+        0
+    );
 }
 
 #[test]
 fn a_speed_that_cannot_be_is_refused() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     for speed in [0.0, -1.0, f64::NAN, 1e9] {
         let body = robots::by_name("two-wheels").unwrap().body();
         let options = Options {
             speed,
             ..Options::default()
         };
-        assert!(Board::start(&scratch.path("board"), body, options).is_err());
-        assert!(!scratch.path("board").exists());
+        assert!(Board::start(&scratch.path().join("board"), body, options).is_err());
+        assert!(!scratch.path().join("board").exists());
     }
 }

@@ -87,7 +87,7 @@ fn marker(trajectory: &Trajectory, out: &mut String) {
                     stroke.clear();
                     match (&*told.property, &told.value) {
                         ("isDown", Value::Bool(down)) => is_down = *down,
-                        ("color", Value::Text(text)) => ink = colour(text, "#000000"),
+                        ("color", Value::String(text)) => ink = colour(text, "#000000"),
                         _ => {}
                     }
                     if is_down {

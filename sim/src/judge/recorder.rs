@@ -46,20 +46,20 @@ impl Recorder<'_> {
         match *command {
             Command::Say { .. } | Command::Console { .. } => {
                 let phrase = self.shown().last_phrase.clone();
-                self.told(SHELL, "lastPhrase", Value::Text(phrase));
+                self.told(SHELL, "lastPhrase", phrase.into());
             }
             Command::Led { .. } => {
-                let colour = Value::Text(hex(self.shown().led));
+                let colour = Value::from(hex(self.shown().led));
                 self.told(LED, "color", colour);
             }
             Command::MarkerDown { color } => {
-                let colour = Value::Text(hex(crate::arena::screen::named(color)));
+                let colour = Value::from(hex(crate::arena::screen::named(color)));
                 self.told(MARKER, "isDown", Value::Bool(true));
                 self.told(MARKER, "color", colour);
             }
             Command::MarkerUp => self.told(MARKER, "isDown", Value::Bool(false)),
             Command::Background { .. } => {
-                let colour = Value::Text(hex(self.shown().screen.background()));
+                let colour = Value::from(hex(self.shown().screen.background()));
                 self.told(DISPLAY, "background", colour);
             }
             Command::Smile { .. } | Command::ClearScreen => {
@@ -68,14 +68,14 @@ impl Recorder<'_> {
                 self.told(DISPLAY, "smiles", Value::Bool(smiles));
                 self.told(DISPLAY, "sadSmiles", Value::Bool(sad));
                 if matches!(command, Command::ClearScreen) {
-                    self.told(DISPLAY, "objects", Value::List(Vec::new()));
+                    self.told(DISPLAY, "objects", Value::Array(Vec::new()));
                 }
             }
             Command::Draw(_) | Command::Label { .. } => {
                 let objects = self.shown().screen.objects();
                 // A list of a crowded display in each record would need too much memory.
                 let some = objects.iter().take(limits::OBJECTS_TOLD).map(object);
-                let list = Value::List(some.collect());
+                let list = Value::Array(some.collect());
                 self.told(DISPLAY, "objects", list);
             }
             // What moves is recorded as a trajectory; the rest leaves nothing on a device that can be seen.
@@ -141,15 +141,14 @@ impl Brick for Recorder<'_> {
 
 /// A thing on a display, with names in the order of the alphabet.
 fn object(object: &Object) -> Value {
-    let number = |value: i32| Value::Number(f64::from(value));
-    let colour = ("color", Value::Text(hex(object.colour)));
-    let mut parts: Vec<(&str, Value)> = vec![colour, ("thickness", number(object.thickness))];
+    let colour = ("color", hex(object.colour).into());
+    let mut parts: Vec<(&str, Value)> = vec![colour, ("thickness", object.thickness.into())];
     let mut numbers = |names: &[&'static str], values: &[i32]| {
         parts.extend(
             names
                 .iter()
                 .zip(values)
-                .map(|(name, value)| (*name, number(*value))),
+                .map(|(name, value)| (*name, (*value).into())),
         );
     };
     let kind = match &object.form {
@@ -179,35 +178,29 @@ fn object(object: &Object) -> Value {
             "text"
         }
     };
-    parts.push(("type", Value::Text(kind.to_owned())));
+    parts.push(("type", kind.into()));
     match &object.form {
-        Form::Text(_, text, _) => parts.push(("text", Value::Text(text.clone()))),
+        Form::Text(_, text, _) => parts.push(("text", text.as_str().into())),
         Form::Rectangle(_, true) | Form::Ellipse(_, true) => {
-            parts.push(("filled", Value::Bool(true)));
+            parts.push(("filled", true.into()));
         }
         _ => {}
     }
-    parts.sort_by_key(|(name, _)| *name);
-    Value::Object(
-        parts
-            .into_iter()
-            .map(|(name, value)| (name.to_owned(), value))
-            .collect(),
-    )
+    parts.into_iter().collect()
 }
 
 /// Tells a device again what it was told.
 pub(super) fn replay(brick: &mut dyn Brick, told: &Told) {
     match (&*told.device, &*told.property, &told.value) {
-        (_, "lastPhrase", Value::Text(text)) => brick.tell(Command::Say { text }),
-        ("led", "color", Value::Text(color)) => brick.tell(Command::Led { color }),
-        ("marker", "color", Value::Text(color)) => brick.tell(Command::MarkerDown { color }),
+        (_, "lastPhrase", Value::String(text)) => brick.tell(Command::Say { text }),
+        ("led", "color", Value::String(color)) => brick.tell(Command::Led { color }),
+        ("marker", "color", Value::String(color)) => brick.tell(Command::MarkerDown { color }),
         (_, "isDown", Value::Bool(true)) => brick.tell(Command::MarkerDown { color: "black" }),
         (_, "isDown", Value::Bool(false)) => brick.tell(Command::MarkerUp),
-        (_, "background", Value::Text(color)) => brick.tell(Command::Background { color }),
+        (_, "background", Value::String(color)) => brick.tell(Command::Background { color }),
         (_, "smiles", Value::Bool(true)) => brick.tell(Command::Smile { sad: false }),
         (_, "sadSmiles", Value::Bool(true)) => brick.tell(Command::Smile { sad: true }),
-        (_, "objects", Value::List(objects)) => {
+        (_, "objects", Value::Array(objects)) => {
             brick.tell(Command::ClearScreen);
             objects.iter().for_each(|object| draw(brick, object));
         }
@@ -218,10 +211,10 @@ pub(super) fn replay(brick: &mut dyn Brick, told: &Told) {
 /// Draws a thing of a record again.
 fn draw(brick: &mut dyn Brick, object: &Value) {
     let number = |name: &str| {
-        let number = object.get(name).and_then(Value::number);
+        let number = object.get(name).and_then(Value::as_f64);
         number.unwrap_or_default() as i32
     };
-    let text = |name: &str| object.get(name).and_then(Value::text).unwrap_or_default();
+    let text = |name: &str| object.get(name).and_then(Value::as_str).unwrap_or_default();
     let is_filled = object.get("filled") == Some(&Value::Bool(true));
     brick.tell(Command::PenColor {
         color: text("color"),

@@ -72,16 +72,16 @@ mod tests {
                 r#"{"variables":[{"name":"total_score","value":3}]}"#,
             ),
         ]);
-        let Ok(Value::List(list)) = read(&report) else {
+        let Ok(Value::Array(list)) = read(&report) else {
             panic!("{report}");
         };
         assert_eq!(
-            list[0].get("message").and_then(Value::text),
+            list[0].get("message").and_then(Value::as_str),
             Some("a \"b\"")
         );
-        assert_eq!(list[1].get("level").and_then(Value::text), Some("error"));
+        assert_eq!(list[1].get("level").and_then(Value::as_str), Some("error"));
         let variables = list[2].get("variables");
-        assert!(matches!(variables, Some(Value::List(list)) if list.len() == 1));
-        assert_eq!(read(&write(&[])), Ok(Value::List(Vec::new())));
+        assert!(matches!(variables, Some(Value::Array(list)) if list.len() == 1));
+        assert_eq!(read(&write(&[])), Ok(Value::Array(Vec::new())));
     }
 }

@@ -139,7 +139,7 @@ impl Trajectory {
                 out.push_str(",\"timestamp\":");
                 json::number(out, f64::from(*ms));
                 out.push_str(",\"value\":");
-                told.value.write(out);
+                json::write(out, &told.value);
             }
         }
         out.push('}');
@@ -169,19 +169,19 @@ impl Trajectory {
     }
 
     fn record(&mut self, value: &Value) -> Result<Record, &'static str> {
-        let name = value.get("robotId").and_then(Value::text);
+        let name = value.get("robotId").and_then(Value::as_str);
         let robot = self.robot(name.ok_or("'robotId' is missing in this record")?);
         if usize::from(robot) >= limits::ROBOTS {
             return Err("there are too many robots");
         }
-        let ms = value.get("timestamp").and_then(Value::number);
+        let ms = value.get("timestamp").and_then(Value::as_f64);
         let ms = ms.filter(|ms| (0.0..=f64::from(limits::RUN_MS_MAX)).contains(ms));
         let ms = ms.ok_or("'timestamp' of this record is no time in milliseconds")? as u32;
-        if let Some(property) = value.get("property").and_then(Value::text) {
+        if let Some(property) = value.get("property").and_then(Value::as_str) {
             let part = |key| {
                 value
                     .get(key)
-                    .and_then(Value::text)
+                    .and_then(Value::as_str)
                     .unwrap_or("")
                     .to_owned()
             };
@@ -194,7 +194,7 @@ impl Trajectory {
             let told = Box::new(told);
             return Ok(Record::Told { robot, ms, told });
         }
-        let number = |key| value.get(key).and_then(Value::number);
+        let number = |key| value.get(key).and_then(Value::as_f64);
         let parts = (number("x"), number("y"), number("rotation"));
         let (Some(x), Some(y), Some(degrees)) = parts else {
             return Err("this record has neither 'x', 'y' and 'rotation' nor 'property'");
@@ -240,7 +240,7 @@ mod tests {
                 device: "led".into(),
                 port: "LedPort".into(),
                 property: "color".into(),
-                value: Value::Text("#008000".into()),
+                value: "#008000".into(),
             }),
         });
         let text = trajectory.write();
@@ -255,7 +255,7 @@ mod tests {
     #[test]
     fn what_is_no_trajectory_is_refused_with_its_place() {
         for (text, why) in [
-            ("{}", "line 1, column 1: a list begins with ["),
+            ("{}", "line 1, column 1: invalid type: map, expected a list"),
             (
                 "[1]",
                 "line 1, column 3: 'robotId' is missing in this record",

@@ -4,7 +4,8 @@
 
 use config::description::{NodeDescription, StageDescription, StageKind};
 use config::load::{Loaded, Loader};
-use config::program::{Conversion, Direction, StageId, Vm};
+use config::program::{StageId, Vm};
+use converter::{Conversion, Direction};
 use std::collections::HashMap;
 use std::path::Path;
 

@@ -2,7 +2,7 @@
 //!
 //! Owns the options and how they are passed to a worker process. Knows nothing of what they do.
 
-use crate::{diagrams, limits};
+use crate::{language, limits};
 use clap::Args;
 use lang_text::problem::Locale;
 use std::ffi::OsString;
@@ -14,8 +14,8 @@ pub(crate) struct CheckArgs {
     /// Solutions: diagrams NAME.qrs, programs NAME.js and NAME.py if a field is given, and directories of them.
     #[arg(value_name = "FILE|DIR", required_unless_present_any = ["worker", "log"])]
     pub paths: Vec<PathBuf>,
-    /// A world with its rules in place of the solution's own: walls, robot, sensors and constraints are all replaced. May
-    /// be given several times; a directory stands for all NAME.xml in it.
+    /// A world with its rules instead of the solution's own: walls, robot, sensors and constraints are all replaced. May
+    /// be given several times; a directory means all NAME.xml in it.
     #[arg(long, value_name = "WORLD.xml")]
     pub field: Vec<PathBuf>,
     /// With --field: run each solution in its own world too.
@@ -25,27 +25,27 @@ pub(crate) struct CheckArgs {
     /// solution's own.
     #[arg(long, value_name = "TASK.qrs", conflicts_with_all = ["field", "log"])]
     pub task: Option<PathBuf>,
-    /// A program in JavaScript or Python that drives the robot in place of the diagram.
+    /// A program in JavaScript or Python that drives the robot instead of the diagram.
     #[arg(long, value_name = "PROG.js|.py", conflicts_with = "log")]
     pub script: Option<PathBuf>,
-    /// Lines that the program is given when it asks: answers for Input blocks, and what programs with text read.
+    /// Lines that the program is given when it asks: answers for Input blocks, and what textual programs read.
     #[arg(long, value_name = "FILE")]
     pub inputs: Option<PathBuf>,
-    /// What a person does with the gamepad and the keys meanwhile: lines as "1.5 pad 1 30 -50", with seconds.
+    /// What a person does with the gamepad and the keys: lines such as "1.5 pad 1 30 -50", with the time in seconds.
     #[arg(long, value_name = "FILE", conflicts_with = "log")]
     pub gamepad: Option<PathBuf>,
-    /// Judge a recorded trajectory in place of running a program: a file that --trajectory or TRIK Studio has written, by
-    /// the rules of FILE or of --field. May be given several times; a directory stands for all NAME.json in it.
+    /// Judge a recorded trajectory instead of running a program: a file that --trajectory or TRIK Studio has written, by
+    /// the rules of FILE or of --field. May be given several times; a directory means all NAME.json in it.
     #[arg(long, value_name = "T.json|DIR")]
     pub log: Vec<PathBuf>,
-    /// Write all messages as JSON, in the form of TRIK Studio. With several runs here and below: a directory, with a
+    /// Write all messages as JSON, in the format of TRIK Studio. With several runs here and below: a directory, with a
     /// file for each run.
     #[arg(long, value_name = "OUT.json")]
     pub report: Option<PathBuf>,
-    /// Write where the robot was in each tick and what its devices were told, in the form of TRIK Studio.
+    /// Write where the robot was in each tick and the commands to its devices, in the format of TRIK Studio.
     #[arg(long, value_name = "OUT.json")]
     pub trajectory: Option<PathBuf>,
-    /// Draw the field and the way of the robot.
+    /// Draw the field and the path of the robot.
     #[arg(long, value_name = "OUT.svg")]
     pub svg: Option<PathBuf>,
     /// Write a page that shows the run, for any browser.
@@ -54,10 +54,10 @@ pub(crate) struct CheckArgs {
     /// Write what is on the robot's display at the end, as a picture.
     #[arg(long, value_name = "OUT.png")]
     pub display: Option<PathBuf>,
-    /// Write a line of JSON for each run, in the order of the runs; - is standard output, in place of the table.
+    /// Write a line of JSON for each run, in the order of the runs; - is standard output, instead of the table.
     #[arg(long, value_name = "OUT.jsonl")]
     pub results: Option<PathBuf>,
-    /// Replace files that are there already.
+    /// Overwrite existing files.
     #[arg(long)]
     pub force: bool,
     /// Go on after the first failure and collect all of them.
@@ -66,20 +66,20 @@ pub(crate) struct CheckArgs {
     /// How many runs at once [default: one for each core].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub jobs: Option<u16>,
-    /// Longest run in seconds of model time, whatever the rules say.
+    /// Longest run in seconds of simulated time, whatever the rules say.
     #[arg(long, value_name = "SECONDS", default_value_t = 600.0, value_parser = model_seconds)]
     pub time_limit: f64,
-    /// Longest run in seconds of real time; what takes longer could not be run.
+    /// Longest run in seconds of real time; a longer one counts as one that could not be run.
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = wall_seconds)]
     pub wall_limit: f64,
-    /// Most memory of one process, in MiB.
+    /// Maximum memory of one process, in MiB.
     #[arg(long, value_name = "MIB", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(64..=65536))]
     pub memory: u32,
-    /// Seed of everything that is random. The same seed gives the same run.
+    /// Seed of everything random. The same seed gives the same run.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u32,
     /// Language of messages: en or ru.
-    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = diagrams::locale)]
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
     pub language: Locale,
     /// Serve jobs from standard input.
     #[arg(long, hide = true)]
@@ -125,16 +125,12 @@ impl CheckArgs {
                 words.push(name.into());
             }
         }
-        let language = match self.language {
-            Locale::English => "en",
-            Locale::Russian => "ru",
-        };
         words.extend([
             format!("--time-limit={}", self.time_limit).into(),
             format!("--wall-limit={}", self.wall_limit).into(),
             format!("--memory={}", self.memory).into(),
             format!("--seed={}", self.seed).into(),
-            format!("--language={language}").into(),
+            format!("--language={}", language::name(self.language)).into(),
         ]);
         words
     }

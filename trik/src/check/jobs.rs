@@ -3,9 +3,10 @@
 //! Owns the order (as it was said, directories by name) and the names of files that a run writes. Opens nothing but
 //! directories; links to directories are not followed.
 
-use crate::cli::CheckArgs;
-use crate::diagrams::telling::named;
+use super::args::CheckArgs;
+use crate::error::Error;
 use crate::limits;
+use crate::terminal::named;
 use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::fs;
@@ -38,13 +39,28 @@ impl Job {
         let save = (!is_own).then_some(&*self.solution);
         self.field.as_deref().or(save)
     }
+
+    /// Where a file of this run goes: the file itself if it is the only run, or else one in a directory.
+    pub fn place(&self, wanted: &Path, ending: &str, is_one: bool) -> PathBuf {
+        if is_one {
+            return wanted.to_owned();
+        }
+        let mut name = self.name.clone().into_os_string();
+        name.push(ending);
+        wanted.join(name)
+    }
+}
+
+/// A path as a row has it.
+pub(super) fn shown(path: &Path) -> String {
+    path.to_string_lossy().into_owned()
 }
 
 /// All runs.
 ///
 /// # Errors
 /// A path that cannot be read, a directory without solutions or fields, more than the limits allow.
-pub(super) fn jobs(args: &CheckArgs) -> Result<Vec<Job>, String> {
+pub(super) fn jobs(args: &CheckArgs) -> Result<Vec<Job>, Error> {
     let mut fields: Vec<Option<PathBuf>> = Vec::new();
     if args.own || args.field.is_empty() {
         fields.push(None);
@@ -53,7 +69,10 @@ pub(super) fn jobs(args: &CheckArgs) -> Result<Vec<Job>, String> {
         let found = below(path, &["xml"], 1, limits::FIELDS_MAX)?;
         fields.extend(found.into_iter().map(|(field, _)| Some(field)));
         if fields.len() > limits::FIELDS_MAX {
-            return Err(format!("there are more than {} fields", limits::FIELDS_MAX));
+            return Err(Error::Refused(format!(
+                "there are more than {} fields",
+                limits::FIELDS_MAX
+            )));
         }
     }
     let solutions = match args.log.is_empty() {
@@ -72,14 +91,16 @@ pub(super) fn jobs(args: &CheckArgs) -> Result<Vec<Job>, String> {
         }
         if all.len() > limits::SOLUTIONS_MAX {
             let max = limits::SOLUTIONS_MAX;
-            return Err(format!("there are more than {max} runs to do"));
+            return Err(Error::Refused(format!(
+                "there are more than {max} runs to do"
+            )));
         }
     }
     Ok(all)
 }
 
 /// All solutions, with their names from where they were looked for.
-fn solutions(args: &CheckArgs) -> Result<Vec<(PathBuf, PathBuf)>, String> {
+fn solutions(args: &CheckArgs) -> Result<Vec<(PathBuf, PathBuf)>, Error> {
     let endings: &[&str] = match args.field.is_empty() {
         true => &["qrs"],
         false => &["qrs", "js", "py"],
@@ -111,15 +132,25 @@ pub(super) fn left_out(args: &CheckArgs) -> usize {
 }
 
 /// All records, each against the rules of each world.
-fn recorded(args: &CheckArgs, fields: &[Option<PathBuf>]) -> Result<Vec<Job>, String> {
+fn recorded(args: &CheckArgs, fields: &[Option<PathBuf>]) -> Result<Vec<Job>, Error> {
     let save = match &args.paths[..] {
         [] if args.field.is_empty() => {
-            return Err("--log needs rules: --field WORLD.xml, or a save that has them".to_owned());
+            return Err(Error::Refused(
+                "--log needs rules: --field WORLD.xml, or a save that has them".to_owned(),
+            ));
         }
-        [] if args.own => return Err("--own needs a save, whose world it is".to_owned()),
+        [] if args.own => {
+            return Err(Error::Refused(
+                "--own needs a save, whose world it is".to_owned(),
+            ));
+        }
         [] => None,
         [save] if !save.is_dir() => Some(save),
-        _ => return Err("with --log, name one save: that whose world has the rules".to_owned()),
+        _ => {
+            return Err(Error::Refused(
+                "with --log, name one save: that whose world has the rules".to_owned(),
+            ));
+        }
     };
     let (mut all, mut names) = (Vec::new(), HashSet::new());
     for path in &args.log {
@@ -133,7 +164,9 @@ fn recorded(args: &CheckArgs, fields: &[Option<PathBuf>]) -> Result<Vec<Job>, St
         }
         if all.len() > limits::SOLUTIONS_MAX {
             let max = limits::SOLUTIONS_MAX;
-            return Err(format!("there are more than {max} runs to do"));
+            return Err(Error::Refused(format!(
+                "there are more than {max} runs to do"
+            )));
         }
     }
     Ok(all)
@@ -169,10 +202,14 @@ fn below(
     endings: &[&str],
     deep: usize,
     max: usize,
-) -> Result<Vec<(PathBuf, PathBuf)>, String> {
-    let failed = |error: io::Error| match error.kind() {
-        io::ErrorKind::NotFound => format!("{}: there is no such file", named(path)),
-        _ => format!("{} cannot be read: {error}", named(path)),
+) -> Result<Vec<(PathBuf, PathBuf)>, Error> {
+    let refused = Error::Refused;
+    let failed = |error: io::Error| {
+        refused(if error.kind() == io::ErrorKind::NotFound {
+            format!("{}: there is no such file", named(path))
+        } else {
+            format!("{} cannot be read: {error}", named(path))
+        })
     };
     if !fs::metadata(path).map_err(failed)?.is_dir() {
         let name = path.file_name().map_or_else(|| path.into(), PathBuf::from);
@@ -197,7 +234,10 @@ fn below(
                 let name = inside.strip_prefix(path).unwrap_or(&inside).to_owned();
                 found.push((inside, name));
                 if found.len() > max {
-                    return Err(format!("{}: there are more than {max} files", named(path)));
+                    return Err(Error::Refused(format!(
+                        "{}: there are more than {max} files",
+                        named(path)
+                    )));
                 }
             }
         }
@@ -205,7 +245,10 @@ fn below(
     if found.is_empty() {
         let endings: Vec<String> = endings.iter().map(|one| format!("*.{one}")).collect();
         let endings = endings.join(" and ");
-        return Err(format!("{}: there is no {endings} here", named(path)));
+        return Err(Error::Refused(format!(
+            "{}: there is no {endings} here",
+            named(path)
+        )));
     }
     found.sort();
     Ok(found)

@@ -4,22 +4,22 @@
 //! written, 4 unknown language; patcher 0 done, 1 unreadable, 2 contradicting options, 255 not saved. The exit code of the
 //! original is 0 for failed tasks too; here it is true. What a run is, is in `run`.
 
-use super::CheckArgs;
+use super::args::CheckArgs;
 use super::jobs::Job;
 use super::pool;
 use super::row::Verdict;
 use super::run::text;
-use crate::cli::GenArgs;
-use crate::diagrams::output::Output;
-use crate::diagrams::{self, must_open, say};
-use crate::limits;
+use crate::diagrams::generate::{self, GenArgs};
+use crate::diagrams::save::must_open;
+use crate::output::Output;
+use crate::refusal::say;
+use crate::{language, limits};
 use clap::Parser;
 use lang_diagram::generate::Language;
 use lang_text::problem::Locale;
 use sim::field::Field;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 /// How Qt shows windows, in its own words.
 const PLATFORMS: [&str; 12] = [
@@ -167,10 +167,10 @@ fn words(name: &str, arguments: impl Iterator<Item = OsString>) -> Vec<OsString>
         .collect()
 }
 
-fn parsed<T: Parser>(name: &str, arguments: impl Iterator<Item = OsString>) -> Result<T, ExitCode> {
+fn parsed<T: Parser>(name: &str, arguments: impl Iterator<Item = OsString>) -> Result<T, u8> {
     T::try_parse_from(words(name, arguments)).map_err(|error| {
         let _ = error.print();
-        ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2))
+        u8::try_from(error.exit_code()).unwrap_or(2)
     })
 }
 
@@ -181,18 +181,8 @@ fn named(path: &Option<OsString>) -> Option<PathBuf> {
         .map(PathBuf::from)
 }
 
-/// The language of messages is that of the system, as there.
-fn locale() -> Locale {
-    let names = ["LC_ALL", "LC_MESSAGES", "LANG"];
-    let mut values = names.into_iter().filter_map(std::env::var_os);
-    match values.find(|value| !value.is_empty()) {
-        Some(value) if value.to_string_lossy().starts_with("ru") => Locale::Russian,
-        _ => Locale::English,
-    }
-}
-
 /// `2D-model` with these arguments.
-pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> ExitCode {
+pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> u8 {
     let args: Model = match parsed("2D-model", arguments) {
         Ok(args) => args,
         Err(code) => return code,
@@ -202,7 +192,7 @@ pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> ExitCode {
         None => 0,
     };
     if code != 0 || args.only_generate {
-        return ExitCode::from(code);
+        return code;
     }
     let is_script = match &*args.mode {
         "diagram" => false,
@@ -211,12 +201,12 @@ pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> ExitCode {
             say(&[format!(
                 "2D-model: there is no mode '{other}'; there are diagram and script"
             )]);
-            return ExitCode::from(2);
+            return 2;
         }
     };
     if named(&args.script_path).is_some() && !is_script {
         say(&["2D-model: --script-path is used only with --mode script".to_owned()]);
-        return ExitCode::from(2);
+        return 2;
     }
     let job = Job {
         solution: args.file.clone(),
@@ -235,11 +225,11 @@ pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     }
     say(&row.lines(check.language));
     let has_error = row.messages.iter().any(|(level, _)| level == "error");
-    ExitCode::from(match row.verdict {
+    match row.verdict {
         Verdict::Broken => 2,
         Verdict::Failed => 1,
         Verdict::Accomplished | Verdict::Ended => u8::from(has_error),
-    })
+    }
 }
 
 /// The same in the words of `trik check`.
@@ -266,7 +256,7 @@ fn wanted(args: Model, is_script: bool) -> CheckArgs {
         wall_limit: limits::WALL_SECONDS_MAX,
         memory: 1024,
         seed: 1,
-        language: locale(),
+        language: language::of_system(),
         worker: false,
         is_one: true,
         is_embedded: is_script,
@@ -291,26 +281,28 @@ fn generated(args: &Model, path: &Path) -> u8 {
         output: Some(path.to_owned()),
         force: false,
         goto: false,
-        language: locale(),
+        language: language::of_system(),
     };
-    if diagrams::generate(&wanted) == ExitCode::SUCCESS {
-        0
-    } else {
-        3
+    match generate::run(&wanted) {
+        Ok(_) => 0,
+        Err(refusal) => {
+            say(&refusal.lines);
+            3
+        }
     }
 }
 
 /// `patcher` with these arguments.
-pub(crate) fn patcher(arguments: impl Iterator<Item = OsString>) -> ExitCode {
+pub(crate) fn patcher(arguments: impl Iterator<Item = OsString>) -> u8 {
     let args: Patcher = match parsed("patcher", arguments) {
         Ok(args) => args,
         Err(code) => return code,
     };
     match patched(&args) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err((lines, code)) => {
             say(&lines);
-            ExitCode::from(code)
+            code
         }
     }
 }
@@ -319,7 +311,7 @@ type Refused = (Vec<String>, u8);
 
 fn patched(args: &Patcher) -> Result<(), Refused> {
     let because = |code: u8| move |why: String| (vec![format!("patcher: {why}")], code);
-    let locale = locale();
+    let locale = language::of_system();
     let fields = [&args.field, &args.world, &args.with_place];
     if fields.iter().filter(|field| field.is_some()).count() > 1 {
         return Err(because(2)("use only one of -f, -w and --wp".to_owned()));
@@ -327,7 +319,8 @@ fn patched(args: &Patcher) -> Result<(), Refused> {
     let mut opened = must_open(&args.file, locale).map_err(|refusal| (refusal.lines, 1))?;
     let told = |problem: lang_text::problem::Problem| because(1)(problem.in_locale(locale));
     if let Some(path) = fields.into_iter().flatten().next() {
-        let world = text(path, limits::WORLD_BYTES_MAX).map_err(because(1))?;
+        let world =
+            text(path, limits::WORLD_BYTES_MAX).map_err(|why| because(1)(why.to_string()))?;
         let world = match &args.field {
             Some(_) => world,
             None => {
@@ -338,7 +331,8 @@ fn patched(args: &Patcher) -> Result<(), Refused> {
         opened.save.set_world(&world).map_err(told)?;
     }
     if let Some(path) = named(&args.script) {
-        let code = text(&path, limits::WORLD_BYTES_MAX).map_err(because(1))?;
+        let code =
+            text(&path, limits::WORLD_BYTES_MAX).map_err(|why| because(1)(why.to_string()))?;
         let ending = path
             .extension()
             .and_then(OsStr::to_str)
@@ -381,7 +375,7 @@ fn field_of(world: &str, locale: Locale) -> Result<Field, String> {
 
 /// A new world with the robots of an old one; they keep the new place unless `keep_place`.
 fn merged(new: &str, old: &str, keep_place: bool) -> Result<String, String> {
-    let locale = locale();
+    let locale = language::of_system();
     let mut field = field_of(new, locale)?;
     let old = field_of(old, locale)?;
     if let (Some(robot), Some(before)) = (field.robot_mut(), old.robot()) {

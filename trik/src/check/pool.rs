@@ -3,18 +3,21 @@
 //! Owns the processes. A run that crashes, eats its memory or hangs takes only its process with it: another one is started
 //! and does the rest. Results come in the order of the runs; whoever is far ahead waits, so memory is bounded.
 
-use super::jobs::Job;
+use super::args::CheckArgs;
+use super::jobs::{Job, shown};
 use super::row::Row;
-use super::{run, words, worker};
-use crate::cli::CheckArgs;
+use super::run::report;
+use super::{words, worker};
+use crate::error::Error;
 use crate::limits;
+use crate::refusal::Refusal;
 use sim::judge;
 use std::ffi::OsString;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::process::{CommandExt, ExitStatusExt};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Child, ChildStdin, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
@@ -66,15 +69,15 @@ impl Shared {
     }
 }
 
-/// Does all runs in processes, and gives each result to `tell` in order; stops early if that says so.
+/// Does all runs in processes, and gives each result to `take` in order; stops early if that says so.
 ///
 /// # Errors
-/// What `tell` says.
+/// What `take` says.
 pub(super) fn run(
     jobs: &[Job],
     args: &CheckArgs,
-    mut tell: impl FnMut(usize, Row) -> Result<(), String>,
-) -> Result<(), String> {
+    mut take: impl FnMut(usize, Row) -> Result<(), Refusal>,
+) -> Result<(), Refusal> {
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let crew = args
         .jobs
@@ -88,7 +91,7 @@ pub(super) fn run(
             scope.spawn(move || feed(jobs, args, shared, &send));
         }
         drop(send);
-        let done = in_order(&shared, &results, &mut tell);
+        let done = in_order(&shared, &results, &mut take);
         shared.lock().is_over = true;
         shared.has_moved.notify_all();
         // Whoever waits for room is let go.
@@ -117,14 +120,14 @@ pub(super) fn run_one(job: Job, args: &CheckArgs) -> Row {
 fn in_order(
     shared: &Shared,
     results: &Receiver<(usize, Row)>,
-    tell: &mut impl FnMut(usize, Row) -> Result<(), String>,
-) -> Result<(), String> {
+    take: &mut impl FnMut(usize, Row) -> Result<(), Refusal>,
+) -> Result<(), Refusal> {
     let mut early = std::collections::BTreeMap::new();
     let mut next = 0;
     for (index, row) in results {
         early.insert(index, row);
         while let Some(row) = early.remove(&next) {
-            tell(next, row)?;
+            take(next, row)?;
             next += 1;
         }
         shared.lock().told = next;
@@ -142,8 +145,12 @@ fn feed(jobs: &[Job], args: &CheckArgs, shared: &Shared, send: &SyncSender<(usiz
         let row = done(&mut worker, job, &words, args).unwrap_or_else(|why| {
             // Whatever it was, the next run gets a fresh process.
             worker = None;
-            let mut row = Row::broken(shown(job.judged(args)), job.rules(args).map(shown), why);
-            run::report(job, args, &mut row);
+            let mut row = Row::broken(
+                shown(job.judged(args)),
+                job.rules(args).map(shown),
+                why.to_string(),
+            );
+            report(job, args, &mut row);
             row
         });
         if send.send((index, row)).is_err() {
@@ -152,26 +159,22 @@ fn feed(jobs: &[Job], args: &CheckArgs, shared: &Shared, send: &SyncSender<(usiz
     }
 }
 
-/// A path as a row has it.
-pub(super) fn shown(path: &Path) -> String {
-    path.to_string_lossy().into_owned()
-}
-
 fn done(
     worker: &mut Option<Worker>,
     job: &Job,
     words: &[OsString],
     args: &CheckArgs,
-) -> Result<Row, String> {
+) -> Result<Row, Error> {
     let worker = match worker {
         Some(worker) => worker,
         None => {
-            let fresh = Worker::start(words).map_err(|error| format!("no process: {error}"))?;
+            let fresh = Worker::start(words).map_err(|error| Error::system("no process", error))?;
             worker.insert(fresh)
         }
     };
     let line = worker.ask(job, args)?;
-    Row::read(&line).ok_or_else(|| "the process that ran it said something strange".to_owned())
+    Row::read(&line)
+        .ok_or_else(|| Error::Process("the process that ran it said something strange".to_owned()))
 }
 
 /// A process that does runs. Dropping it kills it.
@@ -222,7 +225,7 @@ impl Worker {
     }
 
     /// Has a run done.
-    fn ask(&mut self, job: &Job, args: &CheckArgs) -> Result<String, String> {
+    fn ask(&mut self, job: &Job, args: &CheckArgs) -> Result<String, Error> {
         let mut bytes = Vec::new();
         let path = |path: &'_ Option<PathBuf>| path.clone().unwrap_or_default();
         let (field, log) = (path(&job.field), path(&job.log));
@@ -263,22 +266,22 @@ impl Worker {
                         true => judge::too_slow(args.wall_limit),
                         false => words::hung(),
                     };
-                    return Err(why.in_locale(args.language).to_owned());
+                    return Err(Error::Process(why.in_locale(args.language).to_owned()));
                 }
             }
         }
     }
 
     /// What has become of it.
-    fn died(&mut self) -> String {
+    fn died(&mut self) -> Error {
         // One that only has closed its pipes would be waited for without end.
         let _ = self.child.kill();
         let status = self.child.wait().unwrap_or(ExitStatus::from_raw(0));
-        match status.signal() {
+        Error::Process(match status.signal() {
             Some(6) => "the process that ran it has crashed, perhaps for want of memory: --memory is its limit".to_owned(),
             Some(signal) => format!("the process that ran it was killed by signal {signal}"),
             None => format!("the process that ran it has ended: {status}"),
-        }
+        })
     }
 }
 

@@ -3,8 +3,8 @@
 //! Owns both forms. The line is also what a worker process tells.
 
 use super::words;
-use crate::diagrams::telling::harmless;
 use crate::limits;
+use crate::terminal::harmless;
 use lang_text::problem::Locale;
 use sim::judge::json::{self, Value};
 
@@ -161,19 +161,19 @@ impl Row {
     /// Reads such a line.
     pub fn read(line: &str) -> Option<Self> {
         let value = json::read(line).ok()?;
-        let text = |name| value.get(name).and_then(Value::text);
-        let number = |name| value.get(name).and_then(Value::number);
-        let Some(Value::List(all)) = value.get("messages") else {
+        let text = |name| value.get(name).and_then(Value::as_str);
+        let number = |name| value.get(name).and_then(Value::as_f64);
+        let Some(Value::Array(all)) = value.get("messages") else {
             return None;
         };
         let messages = all.iter().map(|one| {
-            let part = |name| one.get(name).and_then(Value::text).map(str::to_owned);
+            let part = |name| one.get(name).and_then(Value::as_str).map(str::to_owned);
             Some((part("level")?, part("message")?))
         });
-        let Some(Value::List(printed)) = value.get("printed") else {
+        let Some(Value::Array(printed)) = value.get("printed") else {
             return None;
         };
-        let printed = printed.iter().map(|one| one.text().map(str::to_owned));
+        let printed = printed.iter().map(|one| one.as_str().map(str::to_owned));
         Some(Self {
             solution: text("solution")?.to_owned(),
             field: text("field").map(str::to_owned),
@@ -205,7 +205,9 @@ impl Row {
         let verdict = words::verdict(self.verdict, locale);
         let at = match self.verdict {
             Verdict::Broken => String::new(),
-            _ => format!(", {}", words::seconds(self.ms, locale)),
+            Verdict::Accomplished | Verdict::Ended | Verdict::Failed => {
+                format!(", {}", words::seconds(self.ms, locale))
+            }
         };
         let score = self.score().map_or_else(String::new, |score| {
             format!(", {}: {score}", words::heading(locale)[4])

@@ -3,24 +3,22 @@
 //! Owns what of a solution and a field is taken: a field replaces the whole world of a project. What becomes of it is known
 //! in `sim`.
 
-use super::jobs::Job;
-use super::place;
-use super::pool::shown;
+use super::args::CheckArgs;
+use super::jobs::{Job, shown};
 use super::row::{Row, Verdict};
 use super::script::{self, Given, Language};
 use super::words;
-use crate::cli::CheckArgs;
-use crate::diagrams::output::Output;
-use crate::diagrams::{Unreadable, open};
+use crate::diagrams::save::{Unreadable, open};
+use crate::error::Error;
+use crate::input::{self, Unread};
 use crate::limits;
+use crate::output::Output;
 use lang_constraint::Level;
 use lang_diagram::lower::{World, lower};
 use lang_diagram::project::Project;
 use lang_text::problem::{Locale, Problem};
 use sim::field::Locks;
 use sim::judge::{self, Caption, Diagram, Outcome, Program, Settings, Task, Texts, Trajectory};
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::time::Duration;
@@ -42,7 +40,7 @@ pub(super) enum Phase {
 }
 
 /// Does a run and writes its files; tells how far it is.
-pub(super) fn run(job: &Job, args: &CheckArgs, tell_phase: &mut dyn FnMut(Phase)) -> Row {
+pub(super) fn run(job: &Job, args: &CheckArgs, report_phase: &mut dyn FnMut(Phase)) -> Row {
     let mut row = Row {
         solution: shown(job.judged(args)),
         field: job.rules(args).map(shown),
@@ -53,11 +51,11 @@ pub(super) fn run(job: &Job, args: &CheckArgs, tell_phase: &mut dyn FnMut(Phase)
         more: 0,
         printed: Vec::new(),
     };
-    match judged(job, args, tell_phase) {
+    match judged(job, args, report_phase) {
         Ok((task, outcome, strange)) => {
             let some = strange.iter().take(limits::ROW_WARNINGS_MAX);
             some.for_each(|line| row.say(words::WARNING, line));
-            tell(&outcome, &mut row);
+            fill(&outcome, &mut row);
             if let Err(lines) = write(job, args, &task, &outcome) {
                 row.verdict = Verdict::Broken;
                 lines.iter().for_each(|line| row.say("error", line));
@@ -76,12 +74,12 @@ pub(super) fn report(job: &Job, args: &CheckArgs, row: &mut Row) {
     let Some(path) = &args.report else { return };
     let text = judge::report::of_messages(&row.messages);
     if let Err(why) = put(job, args, path, REPORT, text.as_bytes()) {
-        row.say("error", &why);
+        row.say("error", &why.to_string());
     }
 }
 
 /// What came out, as a row.
-fn tell(outcome: &Outcome, row: &mut Row) {
+fn fill(outcome: &Outcome, row: &mut Row) {
     row.verdict = match outcome.verdict {
         judge::Verdict::Accomplished => Verdict::Accomplished,
         judge::Verdict::Ended => Verdict::Ended,
@@ -100,20 +98,25 @@ fn tell(outcome: &Outcome, row: &mut Row) {
 
 type Lines = Vec<String>;
 
+/// An error as the only line.
+fn line(error: Error) -> Lines {
+    vec![error.to_string()]
+}
+
 /// The task, what came out, and what is strange in the world.
 fn judged(
     job: &Job,
     args: &CheckArgs,
-    tell_phase: &mut dyn FnMut(Phase),
+    report_phase: &mut dyn FnMut(Phase),
 ) -> Result<(Task, Outcome, Lines), Lines> {
-    let settings = settings(args).map_err(|why| vec![why])?;
+    let settings = settings(args).map_err(line)?;
     let mut solution = match &job.log {
         Some(log) if *log == job.solution => Solution::default(),
         _ => Solution::read(&job.solution, args)?,
     };
     let field = match &job.field {
         None => None,
-        Some(path) => Some(text(path, limits::WORLD_BYTES_MAX).map_err(|why| vec![why])?),
+        Some(path) => Some(text(path, limits::WORLD_BYTES_MAX).map_err(line)?),
     };
     if let Some(world) = field {
         solution.project.world = Some(world);
@@ -146,22 +149,22 @@ fn judged(
         );
     }
     if let Some(log) = &job.log {
-        let text = text(log, limits::LOG_BYTES_MAX).map_err(|why| vec![why])?;
+        let text = text(log, limits::LOG_BYTES_MAX).map_err(line)?;
         let trajectory = Trajectory::read(&text);
         let trajectory = trajectory.map_err(|why| vec![format!("{}: {why}", shown(log))])?;
         let names = judge::strange_in_record(&task, &trajectory);
         let told = names.iter().map(|words| words.in_locale(args.language));
         strange.extend(told.map(|words| format!("{}: {words}", shown(log))));
-        tell_phase(Phase::Runs);
+        report_phase(Phase::Runs);
         let outcome = judge::judge_recorded(&task, &trajectory, &settings);
-        tell_phase(Phase::Ended);
+        report_phase(Phase::Ended);
         return Ok((task, outcome, strange));
     }
     let mut program = solution.program(&mut task, args)?;
-    tell_phase(Phase::Runs);
+    report_phase(Phase::Runs);
     let outcome = judge::judge(&task, &mut *program, &settings);
     drop(program);
-    tell_phase(Phase::Ended);
+    report_phase(Phase::Ended);
     Ok((task, outcome, strange))
 }
 
@@ -182,7 +185,7 @@ fn hold(task: &mut Task, given: &Path, args: &CheckArgs) -> Result<Lines, Lines>
     Ok(changed.map(str::to_owned).collect())
 }
 
-fn settings(args: &CheckArgs) -> Result<Settings, String> {
+fn settings(args: &CheckArgs) -> Result<Settings, Error> {
     let answers = match &args.inputs {
         None => Vec::new(),
         Some(path) => text(path, limits::WORLD_BYTES_MAX)?
@@ -194,7 +197,7 @@ fn settings(args: &CheckArgs) -> Result<Settings, String> {
         None => None,
         Some(path) => {
             let deeds = judge::hands::read(&text(path, limits::WORLD_BYTES_MAX)?);
-            Some(deeds.map_err(|why| format!("{}: {why}", shown(path)))?)
+            Some(deeds.map_err(|why| Error::file(path, why))?)
         }
     };
     Ok(Settings {
@@ -251,7 +254,7 @@ impl Solution {
                         shown(path)
                     )]
                 })?;
-                let text = text(path, limits::WORLD_BYTES_MAX).map_err(|why| vec![why])?;
+                let text = text(path, limits::WORLD_BYTES_MAX).map_err(line)?;
                 Some((language, text))
             }
         };
@@ -275,7 +278,7 @@ impl Solution {
                 seed: args.seed,
                 wall_seconds: args.wall_limit,
             };
-            return script::open(*language, text, given).map_err(|why| vec![why]);
+            return script::open(*language, text, given).map_err(line);
         }
         let world = World::Simulated {
             mailbox: false,
@@ -312,20 +315,14 @@ fn lines(path: &Path, problems: &[Problem], locale: Locale) -> Lines {
 }
 
 /// A text file that is no longer than it may be.
-pub(super) fn text(path: &Path, max: u64) -> Result<String, String> {
-    let name = shown(path);
-    let failed = |error: std::io::Error| match error.kind() {
-        std::io::ErrorKind::NotFound => format!("{name}: there is no such file"),
-        std::io::ErrorKind::IsADirectory => format!("{name}: this is a directory: name a file"),
-        _ => format!("{name} cannot be read: {error}"),
-    };
-    let mut bytes = Vec::new();
-    let file = File::open(path).map_err(failed)?;
-    file.take(max + 1).read_to_end(&mut bytes).map_err(failed)?;
-    if bytes.len() as u64 > max {
-        return Err(format!("{name}: longer than {} MiB", max >> 20));
-    }
-    String::from_utf8(bytes).map_err(|_| format!("{name}: this is no text in UTF-8"))
+pub(super) fn text(path: &Path, max: u64) -> Result<String, Error> {
+    let bytes = input::read(path, max).map_err(|unread| match unread {
+        Unread::Missing => Error::file(path, "there is no such file"),
+        Unread::Directory => Error::file(path, "this is a directory: name a file"),
+        Unread::TooLong => Error::file(path, format!("longer than {} MiB", max >> 20)),
+        Unread::Failed(error) => Error::system(format!("{} cannot be read", path.display()), error),
+    })?;
+    String::from_utf8(bytes).map_err(|_| Error::file(path, "this is no text in UTF-8"))
 }
 
 /// Writes the files of a run.
@@ -335,7 +332,7 @@ fn write(job: &Job, args: &CheckArgs, task: &Task, outcome: &Outcome) -> Result<
         if let Some(path) = path
             && let Err(why) = put(job, args, path, ending, &make())
         {
-            wrong.push(why);
+            wrong.push(why.to_string());
         }
     };
     write(&args.report, REPORT, &|| {
@@ -352,7 +349,7 @@ fn write(job: &Job, args: &CheckArgs, task: &Task, outcome: &Outcome) -> Result<
     });
     write(&args.html, HTML, &|| {
         let mut row = Row::broken(shown(job.judged(args)), None, String::new());
-        tell(outcome, &mut row);
+        fill(outcome, &mut row);
         let verdict = format!(
             "{}, {}",
             words::verdict(row.verdict, args.language),
@@ -374,12 +371,12 @@ fn write(job: &Job, args: &CheckArgs, task: &Task, outcome: &Outcome) -> Result<
 }
 
 /// Writes one file of a run.
-fn put(job: &Job, args: &CheckArgs, path: &Path, ending: &str, bytes: &[u8]) -> Result<(), String> {
+fn put(job: &Job, args: &CheckArgs, path: &Path, ending: &str, bytes: &[u8]) -> Result<(), Error> {
     let is_one = args.is_one;
-    let path = place(path, job, ending, is_one);
+    let path = job.place(path, ending, is_one);
     if let (false, Some(folder)) = (is_one, path.parent()) {
         let made = std::fs::create_dir_all(folder);
-        made.map_err(|error| format!("{} cannot be made: {error}", shown(folder)))?;
+        made.map_err(|error| Error::system(format!("{} cannot be made", folder.display()), error))?;
     }
     let output = Output {
         path: Some(&path),
@@ -388,7 +385,7 @@ fn put(job: &Job, args: &CheckArgs, path: &Path, ending: &str, bytes: &[u8]) -> 
     };
     output.write(bytes).map_err(|refusal| {
         let lines: Vec<&str> = refusal.lines.iter().map(|line| plain(line)).collect();
-        lines.join("; ")
+        Error::Refused(lines.join("; "))
     })
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Owns which language a file is in. Knows no engine from inside.
 
+use crate::error::Error;
 use crate::script::{JavaScript, Python};
 use sim::judge::Program;
 use std::path::Path;
@@ -51,7 +52,7 @@ pub(super) fn open(
     language: Language,
     text: &str,
     given: Given<'_>,
-) -> Result<Box<dyn Program>, String> {
+) -> Result<Box<dyn Program>, Error> {
     match language {
         Language::JavaScript => Ok(Box::new(JavaScript::new(given.file, text)?)),
         Language::Python => {

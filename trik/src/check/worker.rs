@@ -3,11 +3,11 @@
 //! Owns its limit of memory and its end with its parent. A run that panics is told as one that could not be run. Programs in
 //! Python can find its standard output, so each line begins with a mark that only this process and its parent know.
 
-use super::jobs::Job;
-use super::pool::shown;
+use super::args::CheckArgs;
+use super::jobs::{Job, shown};
 use super::row::Row;
 use super::run::{self, Phase};
-use crate::cli::CheckArgs;
+use crate::error::Error;
 use crate::limits;
 use nix::sys::prctl::{set_dumpable, set_pdeathsig};
 use nix::sys::resource::{Resource, rlim_t, setrlimit};
@@ -33,19 +33,19 @@ const JOB_BYTES_MAX: u64 = 64 << 10;
 ///
 /// # Errors
 /// The pipes, and what the system says of limits.
-pub(super) fn serve(args: &CheckArgs) -> Result<(), String> {
-    set_pdeathsig(Signal::SIGKILL).map_err(|error| format!("worker: {error}"))?;
+pub(super) fn serve(args: &CheckArgs) -> Result<(), Error> {
+    set_pdeathsig(Signal::SIGKILL).map_err(|error| Error::system("worker", error))?;
     // Programs that it starts have the same user, and look neither into its memory nor at its pipes.
-    set_dumpable(false).map_err(|error| format!("worker: {error}"))?;
-    adopt_orphans()?;
-    limit_memory(args).map_err(|error| format!("--memory: {error}"))?;
+    set_dumpable(false).map_err(|error| Error::system("worker", error))?;
+    adopt_orphans().map_err(|why| Error::Refused(why.to_string()))?;
+    limit_memory(args).map_err(|error| Error::system("--memory", error))?;
     let mut input = io::stdin().lock();
     let mut output = io::stdout().lock();
     let mut mark = String::new();
     let read = input.by_ref().take(JOB_BYTES_MAX).read_line(&mut mark);
-    read.map_err(|error| format!("jobs: {error}"))?;
+    read.map_err(|error| Error::system("jobs", error))?;
     let mark = mark.trim_end_matches('\n');
-    while let Some(job) = next(&mut input).map_err(|error| format!("jobs: {error}"))? {
+    while let Some(job) = next(&mut input).map_err(|error| Error::system("jobs", error))? {
         let row = guarded(&job, args, &mut |phase| {
             let word = match phase {
                 Phase::Runs => RUNS,
@@ -61,7 +61,7 @@ pub(super) fn serve(args: &CheckArgs) -> Result<(), String> {
         let written = output.write_all(line.as_bytes());
         written
             .and_then(|()| output.flush())
-            .map_err(|error| format!("results: {error}"))?;
+            .map_err(|error| Error::system("results", error))?;
     }
     Ok(())
 }
@@ -91,8 +91,8 @@ fn limit_memory(args: &CheckArgs) -> nix::Result<()> {
 }
 
 /// Does a run; a panic in it is its result.
-fn guarded(job: &Job, args: &CheckArgs, tell_phase: &mut dyn FnMut(Phase)) -> Row {
-    catch_unwind(AssertUnwindSafe(|| run::run(job, args, tell_phase))).unwrap_or_else(|_| {
+fn guarded(job: &Job, args: &CheckArgs, report_phase: &mut dyn FnMut(Phase)) -> Row {
+    catch_unwind(AssertUnwindSafe(|| run::run(job, args, report_phase))).unwrap_or_else(|_| {
         let field = job.rules(args).map(shown);
         let why = "trik has a defect and cannot judge this: please report it with this file";
         Row::broken(shown(job.judged(args)), field, why.to_owned())

@@ -2,15 +2,28 @@
 //!
 //! Owns which files are changed. The layout is known to crate `lang`.
 
-use super::{FmtArgs, read, report};
-use crate::diagrams::output::{replace, standard};
-use crate::diagrams::{REFUSED, Refusal, UNREADABLE, say};
+use super::report;
+use super::source::read;
+use crate::output::{replace, standard};
+use crate::refusal::{REFUSED, Refusal, UNREADABLE, say};
+use clap::Args;
 use lang_dcml::format::format;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// Lays out all files; the worst of them is the exit code.
-pub(super) fn fmt(args: &FmtArgs) -> Result<u8, Refusal> {
+/// What `trik dcml fmt` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct FmtArgs {
+    /// Files with models; - is standard input.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Change nothing, and name the files that would change.
+    #[arg(long)]
+    pub check: bool,
+}
+
+/// Formats all files; the worst result is the exit code.
+pub(super) fn run(args: &FmtArgs) -> Result<u8, Refusal> {
     let mut code = 0;
     for path in &args.files {
         code = code.max(match one(path, args.check) {

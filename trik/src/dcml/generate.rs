@@ -2,9 +2,9 @@
 //!
 //! Owns the options and where the text goes. What it looks like is the business of `lang`.
 
-use super::load;
-use crate::diagrams::Refusal;
-use crate::diagrams::output::Output;
+use super::load::load;
+use crate::output::Output;
+use crate::refusal::Refusal;
 use clap::Args;
 use lang_dcml::generate::{Options, Target, generate};
 use std::path::PathBuf;
@@ -15,43 +15,43 @@ pub(crate) struct GenArgs {
     /// A file with a model; - is standard input.
     pub file: PathBuf,
     /// The language: rust, c, java, java-hipparchus, python, lua, javascript or latex.
-    #[arg(long, value_name = "TARGET", value_parser = target)]
-    pub target: Target,
-    /// A new file for the text; - is standard output, as without this option.
+    #[arg(long, alias = "target", value_name = "LANGUAGE", value_parser = target)]
+    pub lang: Target,
+    /// Write to a new file; - is standard output, as without this option.
     #[arg(short, long, value_name = "OUT")]
     pub output: Option<PathBuf>,
     /// The model with this name, if the file has several.
     #[arg(long, value_name = "NAME")]
     pub model: Option<String>,
-    /// Write the Jacobians df/dx and df/du too.
+    /// Also write the Jacobians df/dx and df/du.
     #[arg(long)]
     pub jacobian: bool,
-    /// Replace OUT if it is there already.
+    /// Overwrite OUT if it exists.
     #[arg(long, requires = "output")]
     pub force: bool,
 }
 
-/// A target by its name; for the command line.
+/// A language by its name; for the command line.
 fn target(name: &str) -> Result<Target, String> {
     Target::named(name).ok_or_else(|| {
         let all: Vec<_> = Target::ALL.into_iter().map(Target::name).collect();
-        format!("there is no such target; there are {}", all.join(", "))
+        format!("there is no such language; there are {}", all.join(", "))
     })
 }
 
-/// Does it.
-pub(super) fn write(args: &GenArgs) -> Result<u8, Refusal> {
+/// Writes the text.
+pub(super) fn run(args: &GenArgs) -> Result<u8, Refusal> {
     let output = Output {
         path: args.output.as_deref(),
         force: args.force,
         source: &args.file,
     };
     let (_, model) = load(&args.file, args.model.as_deref())?;
-    output.look()?;
+    output.refuse_present()?;
     let options = Options {
         jacobian: args.jacobian,
     };
-    let text = generate(&model, args.target, &options)
+    let text = generate(&model, args.lang, &options)
         .map_err(|why| Refusal::new(format!("{}: {why}", model.name)))?;
     output.write(text.as_bytes())?;
     Ok(0)

@@ -4,11 +4,11 @@
 //! protocol; what a person may want to know goes to standard error.
 
 pub mod answers;
+pub mod document;
 pub mod inbox;
 pub mod message;
 pub mod params;
 pub mod session;
-pub mod sheet;
 pub mod wire;
 
 use crate::limits;
@@ -17,36 +17,34 @@ use message::{INVALID_REQUEST, Message, Refusal};
 use serde_json::Value;
 use session::Session;
 use std::io::{self, BufRead, BufReader, Write};
-use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Duration;
 use wire::{Frame, Frames};
 
 /// Serves until the editor says `exit` or is gone.
-pub(super) fn serve() -> ExitCode {
+pub(super) fn serve() -> u8 {
     let inbox = Arc::new(Inbox::default());
     let filled = Arc::clone(&inbox);
     // It ends with the process: nobody can wake it while it reads.
     std::thread::spawn(move || {
         if let Err(error) = fill(BufReader::new(io::stdin()), &filled) {
-            tell(&format!("standard input: {error}"));
+            log(&format!("standard input: {error}"));
         }
         filled.end();
     });
     let mut out = io::BufWriter::new(io::stdout().lock());
-    let status = match answer(&inbox, &mut out, &mut |line| tell(line)) {
+    match answer(&inbox, &mut out, &mut |line| log(line)) {
         Ok(status) => status,
         // Nobody is there to be told.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => 1,
         Err(error) => {
-            tell(&format!("standard output: {error}"));
+            log(&format!("standard output: {error}"));
             1
         }
-    };
-    ExitCode::from(status)
+    }
 }
 
-fn tell(line: &str) {
+fn log(line: &str) {
     let _ = writeln!(io::stderr(), "trik dcml lsp: {line}");
 }
 
@@ -75,18 +73,18 @@ fn put(frame: Frame, inbox: &Inbox) {
 }
 
 /// Answers messages until the talk is over; gives the exit status.
-fn answer(inbox: &Inbox, to: &mut impl Write, tell: &mut dyn FnMut(&str)) -> io::Result<u8> {
+fn answer(inbox: &Inbox, to: &mut impl Write, log: &mut dyn FnMut(&str)) -> io::Result<u8> {
     let mut session = Session::default();
     loop {
         match inbox.take(Duration::from_millis(limits::LSP_PARENT_MS)) {
             Taken::End => return Ok(session.exit_status()),
             Taken::Nothing if session.parent().is_some_and(is_gone) => {
-                tell("the editor is gone");
+                log("the editor is gone");
                 return Ok(session.exit_status());
             }
             Taken::Nothing => {}
             Taken::Message(message, is_cancelled) => {
-                if step(&mut session, message, is_cancelled, inbox, to, tell)? {
+                if step(&mut session, message, is_cancelled, inbox, to, log)? {
                     return Ok(session.exit_status());
                 }
             }
@@ -101,19 +99,19 @@ fn step(
     is_cancelled: bool,
     inbox: &Inbox,
     to: &mut impl Write,
-    tell: &mut dyn FnMut(&str),
+    log: &mut dyn FnMut(&str),
 ) -> io::Result<bool> {
     let will_change = |uri: &str| inbox.will_change(uri);
-    let (mut out, mut log) = (Vec::new(), Vec::new());
-    let is_over = session.receive(message, is_cancelled, &will_change, &mut out, &mut log);
+    let (mut out, mut lines) = (Vec::new(), Vec::new());
+    let is_over = session.receive(message, is_cancelled, &will_change, &mut out, &mut lines);
     if !is_over {
         session.settle(&will_change, &mut out);
     }
     for message in &out {
         wire::write(to, message)?;
     }
-    for line in log {
-        tell(&line);
+    for line in lines {
+        log(&line);
     }
     Ok(is_over)
 }

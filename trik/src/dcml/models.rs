@@ -2,13 +2,20 @@
 //!
 //! Owns the list for people; the texts are in `lang`.
 
-use super::ModelsArgs;
-use crate::diagrams::Refusal;
-use crate::diagrams::output::standard;
+use crate::output::standard;
+use crate::refusal::Refusal;
+use clap::Args;
 use lang_dcml::models::{ALL, named};
 
+/// What `trik dcml models` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct ModelsArgs {
+    /// The one to print.
+    pub name: Option<String>,
+}
+
 /// Lists them, or prints one.
-pub(super) fn models(args: &ModelsArgs) -> Result<u8, Refusal> {
+pub(super) fn run(args: &ModelsArgs) -> Result<u8, Refusal> {
     let text = match &args.name {
         None => ALL
             .iter()

@@ -1,8 +1,8 @@
 //! Findings as people see them: place, line, what to do.
 //!
-//! Owns the look: colours and frames on a terminal, ASCII for files and programs; and lines of JSON. Lines that are too long for a screen are shown in part.
+//! Owns the style: colours and frames on a terminal, ASCII for files and programs; and lines of JSON. Lines that are too long for a screen are shown in part.
 
-use super::Source;
+use super::source::Source;
 use ariadne::{CharSet, Color, Config, IndexType, Label, Report, ReportKind};
 use lang_dcml::diagnostic::{Diagnostic, Severity};
 use lang_dcml::lines::Lines;
@@ -16,9 +16,9 @@ const LINE_SHOWN: u32 = 400;
 /// Bytes of a longer one that are shown on each side of a place.
 const AROUND: usize = 60;
 
-/// What whoever looks can see.
+/// How findings are drawn.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-enum Look {
+enum Style {
     Colours,
     Frames,
     Ascii,
@@ -27,16 +27,16 @@ enum Look {
 /// Shows all findings of a text on standard error.
 pub(super) fn show(source: &Source, all: &[Diagnostic]) {
     let err = io::stderr();
-    let look = match err.is_terminal() {
-        true if std::env::var_os("NO_COLOR").is_some() => Look::Frames,
-        true => Look::Colours,
-        false => Look::Ascii,
+    let style = match err.is_terminal() {
+        true if std::env::var_os("NO_COLOR").is_some() => Style::Frames,
+        true => Style::Colours,
+        false => Style::Ascii,
     };
-    let _ = err.lock().write_all(&written(source, all, look));
+    let _ = err.lock().write_all(&written(source, all, style));
 }
 
 /// The same as text.
-fn written(source: &Source, all: &[Diagnostic], look: Look) -> Vec<u8> {
+fn written(source: &Source, all: &[Diagnostic], style: Style) -> Vec<u8> {
     let mut out = Vec::new();
     if all.is_empty() {
         return out;
@@ -52,7 +52,7 @@ fn written(source: &Source, all: &[Diagnostic], look: Look) -> Vec<u8> {
         let mut spans = one.notes.iter().map(|(span, _)| *span).chain([one.span]);
         if spans.all(is_short) {
             let text = text.get_or_insert_with(|| ariadne::Source::from(source.text.as_str()));
-            drawn(source, &lines, one, text, look, &mut out);
+            drawn(source, &lines, one, text, style, &mut out);
         } else {
             plain(source, &lines, one, &mut out);
         }
@@ -72,7 +72,7 @@ fn drawn<'a>(
     lines: &Lines<'_>,
     one: &Diagnostic,
     text: &ariadne::Source<&'a str>,
-    look: Look,
+    style: Style,
     out: &mut Vec<u8>,
 ) {
     let name = source.name.as_str();
@@ -81,8 +81,8 @@ fn drawn<'a>(
         Severity::Warning => (ReportKind::Warning, Color::Yellow),
     };
     let config = Config::default()
-        .with_color(look == Look::Colours)
-        .with_char_set(if look == Look::Ascii {
+        .with_color(style == Style::Colours)
+        .with_char_set(if style == Style::Ascii {
             CharSet::Ascii
         } else {
             CharSet::Unicode
@@ -106,7 +106,7 @@ fn drawn<'a>(
     }
     let mut drawn = Vec::new();
     let _ = report.finish().write((name, text), &mut drawn);
-    if look == Look::Colours {
+    if style == Style::Colours {
         out.extend(drawn);
         return;
     }

@@ -4,35 +4,34 @@
 //! come from is known to `sim/actions`, the picture to `sim/plot`.
 
 mod actions;
+pub(crate) mod args;
 mod plot;
+mod table;
 
-use super::{Form, SimArgs, Solver as Named, load, values};
-use crate::diagrams::output::Output;
-use crate::diagrams::{Refusal, say};
+use super::load::load;
+use super::values;
 use crate::limits;
+use crate::output::Output;
+use crate::refusal::{REFUSED, Refusal, say};
 use actions::Actions;
+use args::{Form, SimArgs, Solver as Named};
 use lang_dcml::model::Model;
-use lang_dcml::robot::{Part, Robot};
+use lang_dcml::robot::Robot;
 use lang_dcml::solve::run::Course;
 use lang_dcml::solve::{Failure, Method, Options, Solver, wrapped};
-use lang_dcml::syntax::{Domain, Kind};
-use std::fmt::Write as _;
+use lang_dcml::syntax::Kind;
 use std::path::Path;
+use table::{Column, Table};
 
 /// Pieces of the time that are shown if nothing else is said.
 const SHOWN: f64 = 200.0;
 /// Steps of one size if nothing else is said.
 const STEPS: f64 = 1000.0;
 
-/// Does it.
-pub(super) fn sim(args: &SimArgs) -> Result<u8, Refusal> {
-    let output = Output {
-        path: args.output.as_deref(),
-        force: args.force,
-        source: &args.file,
-    };
-    output.look()?;
-    output.spare(&[Path::new(&args.actions)])?;
+/// Solves it and writes what comes out.
+pub(super) fn run(args: &SimArgs) -> Result<u8, Refusal> {
+    let outputs = Outputs::new(args);
+    outputs.refuse()?;
     let (_, model) = load(&args.file, args.model.as_deref())?;
     let is_time = |time: f64| time.is_finite() && time > 0.0;
     if !is_time(args.time) {
@@ -56,64 +55,57 @@ pub(super) fn sim(args: &SimArgs) -> Result<u8, Refusal> {
     say(&simulation.actions.held());
     let table = &simulation.table;
     if table.rows.is_empty() {
-        return Ok(crate::diagrams::REFUSED);
+        return Ok(REFUSED);
     }
-    let text = match args.out {
-        Form::Csv => table.csv(),
-        Form::Svg => plot::svg(&model.name, table),
-    };
-    output.write(text.as_bytes())?;
-    Ok(if failure.is_err() {
-        crate::diagrams::REFUSED
-    } else {
-        0
-    })
-}
-
-/// What is shown of a solution: a line for each time.
-pub(super) struct Table {
-    /// Time, states, outputs, actions.
-    pub columns: Vec<Column>,
-    /// How many of the columns behind the time are states and outputs.
-    pub configs: usize,
-    /// As many numbers as there are columns.
-    pub rows: Vec<Vec<f64>>,
-}
-
-/// A column of a table.
-pub(super) struct Column {
-    /// The name in the model.
-    pub name: String,
-    /// Its unit, if it is known.
-    pub unit: Option<String>,
-    /// Whether it is an angle that wraps.
-    pub is_circle: bool,
-}
-
-impl Column {
-    fn of(part: &Part) -> Self {
-        Self {
-            name: part.name.clone(),
-            unit: part.unit.clone(),
-            is_circle: part.domain == Some(Domain::Circle),
-        }
+    if let Some(output) = &outputs.table {
+        output.write(table.csv().as_bytes())?;
     }
+    if let Some(output) = &outputs.picture {
+        output.write(plot::svg(&model.name, table).as_bytes())?;
+    }
+    Ok(if failure.is_err() { REFUSED } else { 0 })
 }
 
-impl Table {
-    fn csv(&self) -> String {
-        let names: Vec<&str> = self.columns.iter().map(|one| one.name.as_str()).collect();
-        let mut text = names.join(",");
-        text.push('\n');
-        for row in &self.rows {
-            for (at, number) in row.iter().enumerate() {
-                let comma = if at == 0 { "" } else { "," };
-                // Zero has no sign for people.
-                let _ = write!(text, "{comma}{}", number + 0.0);
+/// Where the table and the picture go.
+struct Outputs<'a> {
+    table: Option<Output<'a>>,
+    picture: Option<Output<'a>>,
+    actions: &'a Path,
+}
+
+impl<'a> Outputs<'a> {
+    /// As the options say.
+    fn new(args: &'a SimArgs) -> Self {
+        let output = |path| Output {
+            path,
+            force: args.force,
+            source: &args.file,
+        };
+        let (named, svg) = (args.output.as_deref(), args.svg.as_deref());
+        let (table, picture) = match (args.out, svg) {
+            (Some(Form::Svg), _) => (None, Some(output(named))),
+            (Some(Form::Csv) | None, None) => (Some(output(named)), None),
+            (Some(Form::Csv) | None, Some(_)) => {
+                (named.map(|path| output(Some(path))), Some(output(svg)))
             }
-            text.push('\n');
+        };
+        Self {
+            table,
+            picture,
+            actions: Path::new(&args.actions),
         }
-        text
+    }
+
+    /// Refuses what must not be replaced.
+    fn refuse(&self) -> Result<(), Refusal> {
+        for output in [&self.table, &self.picture].into_iter().flatten() {
+            output.refuse_present()?;
+            output.spare(&[self.actions])?;
+        }
+        match (&self.table, &self.picture) {
+            (Some(table), Some(picture)) => table.spare(picture.path.as_slice()),
+            _ => Ok(()),
+        }
     }
 }
 
@@ -145,7 +137,7 @@ impl Simulation {
         };
         let mut options = match method {
             Method::Rk45 => Options::adaptive(args.rtol, args.atol),
-            _ => Options::fixed(method, args.time / STEPS),
+            Method::Euler | Method::Heun | Method::Rk4 => Options::fixed(method, args.time / STEPS),
         };
         options.step = args.step.unwrap_or(options.step);
         let mut solver = Solver::new(options, states.len(), robot.action_parts().len())

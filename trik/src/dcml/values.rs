@@ -2,7 +2,7 @@
 //!
 //! Owns their form and what is said of names that are missing, strange or there twice.
 
-use crate::diagrams::Refusal;
+use crate::refusal::Refusal;
 
 /// The numbers of an option, in the order of these names; names may be missing.
 pub(crate) fn values(

@@ -2,30 +2,54 @@
 //!
 //! Owns the options and where the program goes. What it looks like is the business of `lang`.
 
-use super::output::Output;
-use super::telling::{self, Teller};
-use super::{REFUSED, Refusal, end, must_open, say};
-use crate::cli::GenArgs;
+use super::report::Reporter;
+use super::save::must_open;
+use crate::language;
+use crate::output::Output;
+use crate::refusal::{REFUSED, Refusal, say};
+use crate::terminal::named;
+use clap::Args;
 use lang_diagram::check::check;
 use lang_diagram::generate::{self, Language, Options};
 use lang_diagram::lower::World;
-use lang_text::problem::Severity;
-use std::process::ExitCode;
+use lang_text::problem::{Locale, Severity};
+use std::path::PathBuf;
+
+/// What `trik gen` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct GenArgs {
+    /// The diagram, a file NAME.qrs.
+    pub file: PathBuf,
+    /// The language: python, javascript, lua, c, pascal or fsharp.
+    #[arg(long, value_name = "LANGUAGE", value_parser = target_language)]
+    pub lang: Language,
+    /// Write to a new file; - is standard output.
+    #[arg(short, long, value_name = "OUT")]
+    pub output: Option<PathBuf>,
+    /// Overwrite OUT if it exists.
+    #[arg(long, requires = "output")]
+    pub force: bool,
+    /// Write crossing arrows as goto instead of copies of blocks: in C and Lua.
+    #[arg(long)]
+    pub goto: bool,
+    /// Language of messages: en or ru.
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
+    pub language: Locale,
+}
 
 /// A language by its name; for the command line.
-pub(crate) fn language(name: &str) -> Result<Language, String> {
+fn target_language(name: &str) -> Result<Language, String> {
     Language::named(name).ok_or_else(|| {
         let all = "python, javascript, lua, c, pascal and fsharp";
         format!("there is no such language; there are {all}")
     })
 }
 
-/// Does it.
-pub(crate) fn generate(args: &GenArgs) -> ExitCode {
-    end(written(args))
-}
-
-fn written(args: &GenArgs) -> Result<u8, Refusal> {
+/// Writes the program.
+///
+/// # Errors
+/// The save cannot be read, the diagram has errors or cannot be written in this language, or the file is there already.
+pub(crate) fn run(args: &GenArgs) -> Result<u8, Refusal> {
     if args.goto && !args.lang.has_goto() {
         let with = Language::ALL.into_iter().filter(|one| one.has_goto());
         let with: Vec<_> = with.map(Language::name).collect();
@@ -41,20 +65,20 @@ fn written(args: &GenArgs) -> Result<u8, Refusal> {
         source: &args.file,
     };
     let opened = must_open(&args.file, args.language)?;
-    output.look()?;
+    output.refuse_present()?;
     let options = Options {
         goto: args.goto,
         ..Options::default()
     };
-    let teller = Teller::new(&args.file, Some(&opened.project), args.language);
+    let reporter = Reporter::new(&args.file, Some(&opened.project), args.language);
     let generated = generate::generate(&opened.project, args.lang, options);
     let generated = generated.map_err(|mut problems| {
-        teller.sort(&mut problems);
-        let mut lines = teller.lines(&problems);
+        reporter.sort(&mut problems);
+        let mut lines = reporter.lines(&problems);
         // What a language lacks is nothing that is wrong with the diagram.
         let found = check(&opened.project, World::Robot);
         lines.push(if found.iter().any(|one| one.severity == Severity::Error) {
-            let file = telling::named(&args.file);
+            let file = named(&args.file);
             format!("trik: no program was written: trik lint {file} tells all")
         } else {
             "trik: no program was written".to_owned()
@@ -66,7 +90,7 @@ fn written(args: &GenArgs) -> Result<u8, Refusal> {
     })?;
     output.write(generated.text.as_bytes())?;
     let mut notes = generated.notes;
-    teller.sort(&mut notes);
-    say(&teller.lines(&notes));
+    reporter.sort(&mut notes);
+    say(&reporter.lines(&notes));
     Ok(0)
 }

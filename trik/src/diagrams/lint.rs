@@ -2,23 +2,43 @@
 //!
 //! Owns the order of files, the summary and the exit code. What is wrong is found in `lang`.
 
-use super::output::{Output, standard};
-use super::telling::{Count, Teller, named};
-use super::{REFUSED, Refusal, UNREADABLE, Unreadable, end, open, words};
-use crate::cli::LintArgs;
+use super::report::{Count, Reporter};
+use super::save::{Unreadable, open};
+use super::words;
+use crate::language;
+use crate::output::{Output, standard};
+use crate::refusal::{REFUSED, Refusal, UNREADABLE};
+use crate::terminal::named;
+use clap::Args;
 use lang_diagram::check::check;
 use lang_diagram::lower::World;
 use lang_diagram::read::Opened;
 use lang_text::problem::{Locale, Problem};
-use std::path::Path;
-use std::process::ExitCode;
+use std::path::{Path, PathBuf};
 
-/// Does it.
-pub(crate) fn lint(args: &LintArgs) -> ExitCode {
-    end(linted(args))
+/// What `trik lint` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct LintArgs {
+    /// Diagrams, files NAME.qrs.
+    #[arg(required = true, value_name = "FILE")]
+    pub files: Vec<PathBuf>,
+    /// Language of messages: en or ru.
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
+    pub language: Locale,
+    /// Write the diagram to this new file, with the blocks and links restored that are in the file but on no sheet, and
+    /// check that. For one FILE.
+    #[arg(long, value_name = "OUT.qrs")]
+    pub recover: Option<PathBuf>,
+    /// Overwrite OUT.qrs if it exists.
+    #[arg(long, requires = "recover")]
+    pub force: bool,
 }
 
-fn linted(args: &LintArgs) -> Result<u8, Refusal> {
+/// Finds and tells everything.
+///
+/// # Errors
+/// What was found could not be told, or what was put back could not be written.
+pub(crate) fn run(args: &LintArgs) -> Result<u8, Refusal> {
     let mut count = Count::default();
     let mut unreadable = 0;
     for file in &args.files {
@@ -55,7 +75,7 @@ fn linted(args: &LintArgs) -> Result<u8, Refusal> {
 
 /// Lines of a save that could not be read.
 fn unread(file: &Path, why: Unreadable, count: &mut Count, locale: Locale) -> String {
-    let teller = Teller::new(file, None, locale);
+    let reporter = Reporter::new(file, None, locale);
     let lines = match why {
         Unreadable::File(why) => {
             count.errors += 1;
@@ -63,9 +83,9 @@ fn unread(file: &Path, why: Unreadable, count: &mut Count, locale: Locale) -> St
             vec![format!("{}: {error}: {why}", named(file))]
         }
         Unreadable::Save(mut problems) => {
-            teller.sort(&mut problems);
+            reporter.sort(&mut problems);
             count.add(&problems);
-            teller.lines(&problems)
+            reporter.lines(&problems)
         }
     };
     joined(&lines)
@@ -73,12 +93,12 @@ fn unread(file: &Path, why: Unreadable, count: &mut Count, locale: Locale) -> St
 
 /// Lines of a save that could be read.
 fn found(file: &Path, opened: &Opened, count: &mut Count, locale: Locale) -> String {
-    let teller = Teller::new(file, Some(&opened.project), locale);
+    let reporter = Reporter::new(file, Some(&opened.project), locale);
     let mut problems: Vec<Problem> = opened.problems.clone();
     problems.extend(check(&opened.project, World::Robot));
-    teller.sort(&mut problems);
+    reporter.sort(&mut problems);
     count.add(&problems);
-    joined(&teller.lines(&problems))
+    joined(&reporter.lines(&problems))
 }
 
 fn joined(lines: &[String]) -> String {
@@ -92,13 +112,13 @@ fn recover(opened: &mut Opened, file: &Path, out: &Path, args: &LintArgs) -> Res
         force: args.force,
         source: file,
     };
-    output.look()?;
+    output.refuse_present()?;
     let recovered = opened.save.recover_orphans();
     let told = match recovered {
         0 => words::nothing_to_recover(args.language).to_owned(),
         _ => {
             let bytes = opened.save.write().map_err(|problem| Refusal {
-                lines: Teller::new(file, None, args.language).lines(&[problem]),
+                lines: Reporter::new(file, None, args.language).lines(&[problem]),
                 code: REFUSED,
             })?;
             output.write(&bytes)?;

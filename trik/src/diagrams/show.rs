@@ -2,23 +2,49 @@
 //!
 //! Owns which diagram of a project is meant. What is shown of it is the business of `lang`.
 
-use super::output::{Output, standard};
-use super::telling::{Teller, harmless};
-use super::{REFUSED, Refusal, end, must_open};
-use crate::cli::ShowArgs;
+use super::report::Reporter;
+use super::save::must_open;
+use crate::language;
+use crate::output::{Output, standard};
+use crate::refusal::{REFUSED, Refusal};
+use crate::terminal::harmless;
+use clap::Args;
 use lang_diagram::project::Project;
 use lang_diagram::show::{outline::outline, picture::picture};
-use std::process::ExitCode;
+use lang_text::problem::Locale;
+use std::path::PathBuf;
 
 /// Names of diagrams that a message lists.
 const NAMES_MAX: usize = 20;
 
-/// Does it.
-pub(crate) fn show(args: &ShowArgs) -> ExitCode {
-    end(shown(args))
+/// What `trik show` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct ShowArgs {
+    /// The diagram, a file NAME.qrs.
+    pub file: PathBuf,
+    /// Write a picture into a new file; - is standard output.
+    #[arg(long, value_name = "OUT.svg")]
+    pub svg: Option<PathBuf>,
+    /// Print the program as sentences, as without this option.
+    #[arg(long, conflicts_with = "svg")]
+    pub text: bool,
+    /// The diagram with this name in the file [default: the main one]. Sentences are those of the diagram and of the
+    /// subprograms that it calls.
+    #[arg(long, value_name = "NAME")]
+    pub diagram: Option<String>,
+    /// Overwrite OUT.svg if it exists.
+    #[arg(long, requires = "svg")]
+    pub force: bool,
+    /// Language of sentences and messages: en or ru.
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
+    pub language: Locale,
 }
 
-fn shown(args: &ShowArgs) -> Result<u8, Refusal> {
+/// Shows it.
+///
+/// # Errors
+/// The save cannot be read, it is not clear what the diagram does, or the picture cannot be written.
+pub(crate) fn run(args: &ShowArgs) -> Result<u8, Refusal> {
     let mut opened = must_open(&args.file, args.language)?;
     let chosen = choose(&opened.project, args.diagram.as_deref())?;
     if let Some(svg) = &args.svg {
@@ -27,7 +53,7 @@ fn shown(args: &ShowArgs) -> Result<u8, Refusal> {
             force: args.force,
             source: &args.file,
         };
-        output.look()?;
+        output.refuse_present()?;
         let picture = picture(&opened.project.diagrams[chosen], args.language);
         output.write(picture.as_bytes())?;
         return Ok(0);
@@ -35,9 +61,9 @@ fn shown(args: &ShowArgs) -> Result<u8, Refusal> {
     // The program begins there.
     opened.project.main = Some(chosen);
     let text = outline(&opened.project, args.language).map_err(|mut problems| {
-        let teller = Teller::new(&args.file, Some(&opened.project), args.language);
-        teller.sort(&mut problems);
-        let mut lines = teller.lines(&problems);
+        let reporter = Reporter::new(&args.file, Some(&opened.project), args.language);
+        reporter.sort(&mut problems);
+        let mut lines = reporter.lines(&problems);
         lines.push("trik: it is not clear what this diagram does: --svg shows it as it is".into());
         Refusal {
             lines,

@@ -1,6 +1,6 @@
 //! What `trik lint` says itself, in English and Russian.
 
-use super::telling::Count;
+use super::report::Count;
 use lang_text::problem::{Locale, Severity};
 
 /// How bad a problem is.

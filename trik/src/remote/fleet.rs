@@ -2,21 +2,47 @@
 //!
 //! Owns a thread for each robot, the lines about their progress and the table at the end.
 
-use super::link::Message;
+use super::link::{Message, ms};
+use super::output::{harmless, say};
 use super::run::percent;
-use super::{Target, Upload, harmless, ms, start, tell};
-use crate::cli::{FleetArgs, SendArgs};
+use super::target::{Target, target, the_one};
+use super::upload::{Upload, start};
+use crate::error::Error;
 use crate::limits;
+use crate::refusal::Refusal;
+use clap::Args;
 use std::fmt::Write as _;
 use std::io::{self, Write as _};
-use std::process::ExitCode;
+use std::path::PathBuf;
 use std::time::Instant;
 use trikd::program::rest::is_explained;
 
+/// What `trik stop` and `trik status` can be told.
+#[derive(Args, Clone, Debug, PartialEq, Eq)]
+pub(crate) struct FleetArgs {
+    /// Names or addresses of robots [default: the virtual robot that runs on this computer, or else 127.0.0.1].
+    #[arg(long, value_name = "HOST[:PORT]", value_parser = target, value_delimiter = ',')]
+    pub robot: Vec<Target>,
+}
+
+/// What `trik send` can be told.
+#[derive(Args, Clone, Debug, PartialEq, Eq)]
+pub(crate) struct SendArgs {
+    /// Programs, and files that they need.
+    #[arg(required = true)]
+    pub files: Vec<PathBuf>,
+    /// Names or addresses of robots [default: the virtual robot that runs on this computer, or else 127.0.0.1].
+    #[arg(long, value_name = "HOST[:PORT]", value_parser = target, value_delimiter = ',')]
+    pub robot: Vec<Target>,
+    /// Run this program when all files are there.
+    #[arg(long, value_name = "NAME")]
+    pub run: Option<String>,
+}
+
 /// Those that were named, each once; else the one that is meant without a name.
-fn fleet(named: &[Target]) -> Result<Vec<Target>, String> {
+fn fleet(named: &[Target]) -> Result<Vec<Target>, Error> {
     if named.is_empty() {
-        return Ok(vec![super::the_one()?]);
+        return Ok(vec![the_one()?]);
     }
     let mut all: Vec<Target> = Vec::new();
     for target in named {
@@ -26,7 +52,9 @@ fn fleet(named: &[Target]) -> Result<Vec<Target>, String> {
     }
     let most = limits::FLEET_MAX;
     match all.len() {
-        count if count > most => Err(format!("{count} robots: at most {most} at once")),
+        count if count > most => Err(Error::Refused(format!(
+            "{count} robots: at most {most} at once"
+        ))),
         _ => Ok(all),
     }
 }
@@ -58,7 +86,7 @@ struct Answer {
     status: Option<String>,
 }
 
-fn ask(target: &Target, request: Option<&[u8]>) -> Result<Answer, String> {
+fn ask(target: &Target, request: Option<&[u8]>) -> Result<Answer, Error> {
     let mut link = target.connect()?;
     if let Some(request) = request {
         link.ask(&[request]);
@@ -88,7 +116,7 @@ fn ask(target: &Target, request: Option<&[u8]>) -> Result<Answer, String> {
 
 /// Ends the programs of robots and brings all that moves to rest. The exit code: 0 all rest, 1 one does not say so,
 /// 2 one could not be told.
-pub(crate) fn stop(args: &FleetArgs) -> ExitCode {
+pub(crate) fn stop(args: &FleetArgs) -> u8 {
     ask_all(args, |target| {
         let answer = ask(target, Some(b"stop"))?;
         let failure = answer.errors.iter().find(|text| is_explained(text));
@@ -110,7 +138,7 @@ pub(crate) fn stop(args: &FleetArgs) -> ExitCode {
 }
 
 /// Shows what runs on robots. The exit code: 0 all have told, 2 one could not be asked.
-pub(crate) fn status(args: &FleetArgs) -> ExitCode {
+pub(crate) fn status(args: &FleetArgs) -> u8 {
     ask_all(args, |target| match ask(target, None)?.status {
         Some(text) => Ok((
             0,
@@ -118,22 +146,19 @@ pub(crate) fn status(args: &FleetArgs) -> ExitCode {
                 .map(|line| format!("{target}: {line}\n"))
                 .collect(),
         )),
-        None => Err(format!(
+        None => Err(Error::Robot(format!(
             "{target} does not know the question: its software is older than trikd"
-        )),
+        ))),
     })
 }
 
 /// Prints what each says, and gives the greatest of the codes.
-fn ask_all(
-    args: &FleetArgs,
-    work: impl Fn(&Target) -> Result<(u8, String), String> + Sync,
-) -> ExitCode {
+fn ask_all(args: &FleetArgs, work: impl Fn(&Target) -> Result<(u8, String), Error> + Sync) -> u8 {
     let all = match fleet(&args.robot) {
         Ok(all) => all,
-        Err(reason) => {
-            tell(&reason);
-            return ExitCode::from(2);
+        Err(error) => {
+            say(&error.to_string());
+            return 2;
         }
     };
     let mut worst = 0;
@@ -144,39 +169,42 @@ fn ask_all(
                 let _ = io::stdout().write_all(harmless(&text).as_bytes());
                 code
             }
-            Err(reason) => {
-                tell(&reason);
+            Err(error) => {
+                say(&error.to_string());
                 2
             }
         };
         worst = worst.max(code);
     }
-    ExitCode::from(worst)
+    worst
 }
 
 /// How it went with one robot.
 struct Sent {
     count: usize,
-    result: Result<String, String>,
+    result: Result<String, Error>,
 }
 
-/// Sends files to robots and perhaps runs one of them. The exit code: 0 all have got everything, 1 one has not.
-pub(crate) fn send(args: &SendArgs) -> Result<(), String> {
+/// Sends files to robots and perhaps runs one of them.
+///
+/// # Errors
+/// A file cannot be sent, or a robot has not got everything.
+pub(crate) fn send(args: &SendArgs) -> Result<u8, Refusal> {
     let files = read(args)?;
     let all = fleet(&args.robot)?;
     let results = each(&all, |target| send_to(target, &files, args.run.as_deref()));
     let _ = io::stdout().write_all(table(&all, &results, files.len()).as_bytes());
     let failed = results.iter().filter(|sent| sent.result.is_err()).count();
     match failed {
-        0 => Ok(()),
-        _ => Err(format!(
+        0 => Ok(0),
+        _ => Err(Refusal::new(format!(
             "{failed} of {} robots have not got everything",
             all.len()
-        )),
+        ))),
     }
 }
 
-fn read(args: &SendArgs) -> Result<Vec<Upload>, String> {
+fn read(args: &SendArgs) -> Result<Vec<Upload>, Error> {
     let files: Vec<_> = args
         .files
         .iter()
@@ -184,10 +212,10 @@ fn read(args: &SendArgs) -> Result<Vec<Upload>, String> {
         .collect::<Result<_, _>>()?;
     for (index, file) in files.iter().enumerate() {
         if files[..index].iter().any(|other| other.name == file.name) {
-            return Err(format!(
+            return Err(Error::Refused(format!(
                 "two files are called {}: on a robot all are in one folder",
                 file.name
-            ));
+            )));
         }
     }
     Ok(files)
@@ -232,7 +260,7 @@ fn table(all: &[Target], results: &[Sent], files: usize) -> String {
         let files = format!("{} of {files}", sent.count);
         let result = match &sent.result {
             Ok(done) => harmless(done),
-            Err(why) => format!("FAILED: {}", harmless(why).replace('\n', " ")),
+            Err(why) => format!("FAILED: {}", harmless(&why.to_string()).replace('\n', " ")),
         };
         // Writing to a text cannot fail.
         let _ = writeln!(text, "{name:<width$}  {files:<8}  {result}");
@@ -243,7 +271,6 @@ fn table(all: &[Target], results: &[Sent], files: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::remote::target;
 
     #[test]
     fn a_robot_that_is_named_twice_is_one() {
@@ -262,7 +289,7 @@ mod tests {
             .collect();
         assert_eq!(
             fleet(&many),
-            Err("65 robots: at most 64 at once".to_owned())
+            Err(Error::Refused("65 robots: at most 64 at once".to_owned()))
         );
     }
 
@@ -279,7 +306,7 @@ mod tests {
             },
             Sent {
                 count: 0,
-                result: Err("it\nburns".to_owned()),
+                result: Err(Error::Robot("it\nburns".to_owned())),
             },
         ];
         assert_eq!(

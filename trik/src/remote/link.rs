@@ -2,7 +2,7 @@
 //!
 //! Owns the socket and both buffers. The frames themselves are those of trikd; what to ask is not known here.
 
-use super::ms;
+use crate::error::Error;
 use crate::limits;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::io::{self, Read, Write};
@@ -10,6 +10,11 @@ use std::net::{SocketAddr, TcpStream};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::time::{Duration, Instant};
 use trikd::protocol::frame::{Decoder, encode};
+
+/// A duration of `limits`.
+pub(super) fn ms(ms: u32) -> Duration {
+    Duration::from_millis(ms.into())
+}
 
 /// Something that a robot says.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -54,7 +59,7 @@ pub(super) struct Link {
     sent: Instant,
     heard: Instant,
     /// The last failure that the robot told of: why a connection ends is said before its end.
-    told: Option<String>,
+    last_error: Option<String>,
     /// The other side has closed it; what came before may not all be taken.
     lost: Option<String>,
 }
@@ -74,7 +79,7 @@ impl Link {
             gone: 0,
             sent: now,
             heard: now,
-            told: None,
+            last_error: None,
             lost: None,
         })
     }
@@ -91,7 +96,7 @@ impl Link {
 
     /// Keeps a failure, in case the connection ends because of it.
     pub(super) fn remember(&mut self, text: &str) {
-        self.told = Some(text.to_owned());
+        self.last_error = Some(text.to_owned());
     }
 
     /// Puts one message of several parts behind what is still to be sent.
@@ -133,14 +138,14 @@ impl Link {
         pause: Duration,
         also: Option<BorrowedFd<'_>>,
         listens: bool,
-    ) -> Result<(), String> {
+    ) -> Result<(), Error> {
         if let Some(why) = &self.lost {
             let name = &self.name;
             // What it said last is the better reason.
-            return Err(match &self.told {
-                Some(told) => format!("{name} has closed the connection: {told}"),
+            return Err(Error::Unreachable(match &self.last_error {
+                Some(error) => format!("{name} has closed the connection: {error}"),
                 None => format!("the connection to {name} is lost: {why}"),
-            });
+            }));
         }
         if self.unsent() == 0 && self.sent.elapsed() >= ms(limits::KEEPALIVE_MS) {
             let frame = encode(b"keepalive");
@@ -154,7 +159,7 @@ impl Link {
         let pause: PollTimeout = pause.try_into().unwrap_or(PollTimeout::MAX);
         match poll(&mut watched, pause) {
             Ok(_) | Err(nix::Error::EINTR) => {}
-            Err(error) => return Err(format!("waiting for {}: {error}", self.name)),
+            Err(error) => return Err(Error::system(format!("waiting for {}", self.name), error)),
         }
         drop(watched);
         self.write();
@@ -228,7 +233,7 @@ mod tests {
         (robot, link)
     }
 
-    fn heard(link: &mut Link) -> Result<Message, String> {
+    fn heard(link: &mut Link) -> Result<Message, Error> {
         loop {
             if let Some(message) = link.next() {
                 return Ok(message);
@@ -277,7 +282,7 @@ mod tests {
         assert_eq!(heard(&mut link), Ok(Message::Error("e".to_owned())));
         let why = heard(&mut link).expect_err("the end");
         assert_eq!(
-            why,
+            why.to_string(),
             "the connection to robby is lost: the robot has closed it"
         );
     }
@@ -286,7 +291,7 @@ mod tests {
     fn what_is_no_robot_is_told_from_one() {
         let (mut robot, mut link) = pair();
         robot.write_all(&[b'x'; 5000]).expect("sent");
-        let why = heard(&mut link).expect_err("the end");
+        let why = heard(&mut link).expect_err("the end").to_string();
         assert!(why.contains("does not speak as robots do"), "{why}");
     }
 }

@@ -1,7 +1,7 @@
 //! Where the output of a program goes: a thread of its own writes it, because whoever reads it may take its time, and the
 //! connection to the robot must not wait for that.
 //!
-//! Owns that thread and what waits for it, which is bounded.
+//! Owns that thread and what waits for it, which is bounded; and lines for the person, without what a terminal would obey.
 
 use crate::limits;
 use std::io::Write;
@@ -72,6 +72,17 @@ impl Output {
             }
         }
     }
+}
+
+/// A line for the person; nobody may be there.
+pub(super) fn say(text: &str) {
+    let _ = writeln!(std::io::stderr(), "trik: {}", harmless(text).trim_end());
+}
+
+/// Text of a robot that cannot command a terminal.
+pub(super) fn harmless(text: &str) -> String {
+    let fits = |c: &char| matches!(c, '\n' | '\t') || !c.is_control();
+    text.chars().filter(fits).collect()
 }
 
 #[cfg(test)]

@@ -2,18 +2,31 @@
 //!
 //! Owns the person in front of it: progress, Ctrl-C, standard output and standard error.
 
-use super::link::{Link, Message};
-use super::output::Output;
-use super::{Upload, harmless, ms, start, tell};
-use crate::cli::RunArgs;
+use super::link::{Link, Message, ms};
+use super::output::{Output, harmless, say};
+use super::target::{Target, target, the_one};
+use super::upload::{Upload, start};
+use crate::error::Error;
 use crate::limits;
+use clap::Args;
 use nix::sys::signal::{SigSet, Signal};
 use nix::sys::signalfd::{SfdFlags, SignalFd};
 use std::io::{self, IsTerminal, Write};
 use std::os::fd::AsFd;
-use std::process::ExitCode;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use trikd::protocol::news::{self, End};
+
+/// What `trik run` can be told.
+#[derive(Args, Clone, Debug, PartialEq, Eq)]
+pub(crate) struct RunArgs {
+    /// The program.
+    pub file: PathBuf,
+    /// Name or address of the robot, and its port if that is not 8888 [default: the virtual robot that runs on this
+    /// computer, or else 127.0.0.1].
+    #[arg(long, value_name = "HOST[:PORT]", value_parser = target)]
+    pub robot: Option<Target>,
+}
 
 /// The program has failed, or was stopped.
 const FAILED: u8 = 1;
@@ -22,19 +35,18 @@ const COULD_NOT: u8 = 2;
 
 /// Runs a program on a robot until it ends. The exit code: 0 it has ended, 1 it has failed or was stopped, 2 it could not
 /// be run, or nobody knows how it ended.
-pub(crate) fn run(args: &RunArgs) -> ExitCode {
-    let code = follow(args).unwrap_or_else(|reason| {
-        tell(&reason);
+pub(crate) fn run(args: &RunArgs) -> u8 {
+    follow(args).unwrap_or_else(|error| {
+        say(&error.to_string());
         COULD_NOT
-    });
-    ExitCode::from(code)
+    })
 }
 
-fn follow(args: &RunArgs) -> Result<u8, String> {
+fn follow(args: &RunArgs) -> Result<u8, Error> {
     let upload = Upload::read(&args.file)?;
     let target = match &args.robot {
         Some(target) => target.clone(),
-        None => super::the_one()?,
+        None => the_one()?,
     };
     let mut link = target.connect()?;
     let mut progress = Progress::new(&upload.name);
@@ -45,7 +57,7 @@ fn follow(args: &RunArgs) -> Result<u8, String> {
     let mask: SigSet = [Signal::SIGINT, Signal::SIGTERM, Signal::SIGHUP]
         .into_iter()
         .collect();
-    let own = |error: nix::Error| format!("signals: {error}");
+    let own = |error: nix::Error| Error::system("signals", error);
     mask.thread_block().map_err(own)?;
     let flags = SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC;
     let signals = SignalFd::with_flags(&mask, flags).map_err(own)?;
@@ -79,7 +91,7 @@ struct Session {
 }
 
 impl Session {
-    fn run(&mut self) -> Result<u8, String> {
+    fn run(&mut self) -> Result<u8, Error> {
         loop {
             while self.output.has_room()
                 && let Some(message) = self.link.next()
@@ -90,14 +102,14 @@ impl Session {
             }
             while let Ok(Some(_)) = self.signals.read_signal() {
                 if self.stopping.is_some() {
-                    tell(&format!(
+                    say(&format!(
                         "left; {} may still run on {}: trik stop ends it",
                         self.name,
                         self.link.name()
                     ));
                     return Ok(FAILED);
                 }
-                tell(&format!(
+                say(&format!(
                     "stopping {} on {}; a second Ctrl-C does not wait",
                     self.name,
                     self.link.name()
@@ -109,17 +121,17 @@ impl Session {
                 self.stop();
             }
             if self.stopping.is_some_and(|until| Instant::now() >= until) {
-                return Err(format!(
+                return Err(Error::Robot(format!(
                     "{} does not say that {} has stopped: look at the robot",
                     self.link.name(),
                     self.name
-                ));
+                )));
             }
             self.turn()?;
         }
     }
 
-    fn turn(&mut self) -> Result<(), String> {
+    fn turn(&mut self) -> Result<(), Error> {
         let listens = self.output.has_room();
         let pause = ms(if listens {
             limits::TURN_MS
@@ -128,10 +140,10 @@ impl Session {
         });
         let turned = self.link.turn(pause, Some(self.signals.as_fd()), listens);
         turned.map_err(|why| {
-            format!(
+            Error::Unreachable(format!(
                 "{why}; {} may still run: trik stop ends it, once the robot can be reached",
                 self.name
-            )
+            ))
         })
     }
 
@@ -158,14 +170,14 @@ impl Session {
                     let _ = writeln!(io::stderr(), "{}", text.trim_end());
                 }
             }
-            Message::Status(text) => return self.look(&text),
+            Message::Status(text) => return self.compare(&text),
             Message::Version => {}
         }
         None
     }
 
     /// What runs now. None if that is still this program.
-    fn look(&self, text: &str) -> Option<u8> {
+    fn compare(&self, text: &str) -> Option<u8> {
         let status = news::status(text);
         if status.is_of(&self.name) {
             return None;
@@ -174,7 +186,7 @@ impl Session {
         Some(match news::ended(last, &self.name) {
             Some(end) => self.judge(end, last),
             None => {
-                tell(&format!("{} does not run any more", self.name));
+                say(&format!("{} does not run any more", self.name));
                 FAILED
             }
         })
@@ -186,7 +198,7 @@ impl Session {
         }
         // Who has closed the output knows that.
         if !self.output.is_closed() {
-            tell(text);
+            say(text);
         }
         FAILED
     }

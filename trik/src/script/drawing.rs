@@ -2,17 +2,18 @@
 //!
 //! Pure: one line in, at most one command out. What orders there are is in `screen::order`.
 
+use crate::error::Error;
 use lang_diagram::brick::{Command, Figure};
 
 /// Height of letters that nobody has chosen.
 const LETTERS: i32 = 20;
 
-fn numbers<const N: usize>(words: &[&str]) -> Result<[i32; N], String> {
+fn numbers<const N: usize>(words: &[&str]) -> Result<[i32; N], Error> {
     let mut found = [0; N];
     for (index, number) in found.iter_mut().enumerate() {
         let word = words.get(index).copied().unwrap_or("");
         let parsed = word.parse::<f64>().ok().filter(|number| number.is_finite());
-        let parsed = parsed.ok_or_else(|| format!("{word:?} is no number"))?;
+        let parsed = parsed.ok_or_else(|| Error::Refused(format!("{word:?} is no number")))?;
         *number = parsed as i32;
     }
     Ok(found)
@@ -22,7 +23,7 @@ fn numbers<const N: usize>(words: &[&str]) -> Result<[i32; N], String> {
 ///
 /// # Errors
 /// The line makes no sense.
-pub fn order(line: &str, mut tell: impl FnMut(Command<'_>)) -> Result<(), String> {
+pub fn order(line: &str, mut tell: impl FnMut(Command<'_>)) -> Result<(), Error> {
     let (verb, rest) = line.split_once(' ').unwrap_or((line, ""));
     let words: Vec<&str> = rest.split_ascii_whitespace().collect();
     let is_filled = |at: usize| words.get(at).is_some_and(|word| *word == "1");
@@ -53,9 +54,10 @@ pub fn order(line: &str, mut tell: impl FnMut(Command<'_>)) -> Result<(), String
         "redraw" => Command::Redraw,
         "hide" => return Ok(()),
         "removelabels" => {
-            return Err("the simulated display forgets labels only with clear()".to_owned());
+            let why = "the simulated display forgets labels only with clear()";
+            return Err(Error::Refused(why.to_owned()));
         }
-        _ => return Err(format!("nobody knows the order {verb:?}")),
+        _ => return Err(Error::Refused(format!("nobody knows the order {verb:?}"))),
     });
     Ok(())
 }

@@ -7,6 +7,7 @@ use super::input::{GAMEPAD, KEYS};
 use super::refresh::Readings;
 use super::stage::{Ear, Heard, Here, Stage, Wish};
 use super::{START_MS, problem};
+use crate::error::Error;
 use generator::{Generator, Gn};
 use lang_diagram::brick::{Brick, Command};
 use lang_diagram::machine::{STEP_MS, Status};
@@ -62,12 +63,12 @@ impl JavaScript {
     ///
     /// # Errors
     /// No more descriptors.
-    pub fn new(file: &Path, text: &str) -> Result<Self, String> {
+    pub fn new(file: &Path, text: &str) -> Result<Self, Error> {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let file = std::path::absolute(file)
-            .map_err(|error| format!("{}: where is it? {error}", file.display()))?;
+            .map_err(|error| Error::file(file, format!("where is it? {error}")))?;
         let folder = file.parent().unwrap_or(Path::new("/")).to_owned();
-        let failed = |reason: String| format!("{name}: cannot be started: {reason}");
+        let failed = |reason: String| Error::system(format!("{name}: cannot be started"), reason);
         let ear = Ear::default();
         let shared = Shared::new(PathBuf::new(), folder, Box::new(ear.clone()))
             .map_err(|error| failed(error.to_string()))?;
@@ -113,8 +114,8 @@ impl JavaScript {
             let (shared, own) = (self.shared.clone(), slot.clone());
             let words: usize = (JS_STACK_BYTES + JS_STACK_SPARE_BYTES) / size_of::<usize>();
             let start: Start = Box::new(move || {
-                let ground = Rc::new(here);
-                let outcome = unbroken(|| machine::run_on(ground, &job, &shared, &own));
+                let platform = Rc::new(here);
+                let outcome = unbroken(|| machine::run_on(platform, &job, &shared, &own));
                 shared.finish(&own, outcome);
             });
             let body = Gn::<Start>::new_opt(words, || {

@@ -8,6 +8,7 @@ use super::input::{GAMEPAD, Input, KEYS};
 use super::refresh::Readings;
 use super::tree::Tree;
 use super::{START_MS, drawing, problem};
+use crate::error::Error;
 use crate::limits;
 use lang_diagram::brick::{Answer, Brick, Command, Question};
 use lang_diagram::machine::Status;
@@ -23,6 +24,7 @@ use std::time::{Duration, Instant};
 use trikd::js::events::Record;
 use trikd::program::python::MODULE;
 use trikd::protocol::frame::{Decoder, encode};
+use trikd::protocol::program::FromProgram;
 
 const BOOT: &str = include_str!("virtual.py");
 /// Numbers of errors that Python makes exceptions of.
@@ -69,10 +71,10 @@ impl Python {
     ///
     /// # Errors
     /// The file is nowhere.
-    pub fn new(file: &Path, text: &str, seed: u32, longest: Duration) -> Result<Self, String> {
+    pub fn new(file: &Path, text: &str, seed: u32, longest: Duration) -> Result<Self, Error> {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let absolute = std::path::absolute(file)
-            .map_err(|error| format!("{}: where is it? {error}", file.display()))?;
+            .map_err(|error| Error::file(file, format!("where is it? {error}")))?;
         Ok(Self {
             name: name.into_owned(),
             file: absolute,
@@ -185,10 +187,12 @@ impl Python {
         let text = match answer {
             Ok(text) => format!("ok:{now}:{text}"),
             Err(error) => {
-                let number = match error.kind() {
-                    io::ErrorKind::WouldBlock => EAGAIN,
-                    io::ErrorKind::NotFound => ENOENT,
-                    _ => EIO,
+                let number = if error.kind() == io::ErrorKind::WouldBlock {
+                    EAGAIN
+                } else if error.kind() == io::ErrorKind::NotFound {
+                    ENOENT
+                } else {
+                    EIO
                 };
                 format!("no:{now}:{number}:{error}")
             }
@@ -236,6 +240,30 @@ impl Python {
         }
     }
 
+    /// What every program says to whoever runs it; only a question to the mailbox has an answer.
+    fn hear_message(
+        &mut self,
+        message: FromProgram<'_>,
+        robot: &mut dyn Brick,
+    ) -> Option<io::Result<String>> {
+        match message {
+            FromProgram::Print(text) => {
+                let text = text.strip_suffix('\n').unwrap_or(text);
+                robot.tell(Command::Console { text });
+            }
+            FromProgram::Error(text) => self.fail(text.trim_end()),
+            FromProgram::Info(text) => {
+                if self.remarks.len() < limits::SCRIPT_REMARKS {
+                    self.remarks.push(text.to_owned());
+                }
+            }
+            FromProgram::Mailbox(question) => return Some(Ok(self.mailbox(question, robot))),
+            // Nobody talks to a judged program, or looks at its variables and blocks.
+            FromProgram::Events | FromProgram::Web(_) | FromProgram::Watch { .. } => {}
+        }
+        None
+    }
+
     /// What can be answered at once; what has no answer gives None.
     fn reply(
         &mut self,
@@ -246,22 +274,6 @@ impl Python {
         let (first, rest) = text.split_once('\n').unwrap_or((text, ""));
         let flag = |value: bool| Ok(u8::from(value).to_string());
         Some(match word {
-            "print" => {
-                let text = text.strip_suffix('\n').unwrap_or(text);
-                robot.tell(Command::Console { text });
-                return None;
-            }
-            "error" => {
-                self.fail(text.trim_end());
-                return None;
-            }
-            "info" => {
-                if self.remarks.len() < limits::SCRIPT_REMARKS {
-                    self.remarks.push(text.to_owned());
-                }
-                return None;
-            }
-            "events" | "web" => return None,
             "has" => flag(match text.trim_end_matches('/') {
                 "display/device" => true,
                 path => self.tree.has(robot, path),
@@ -274,7 +286,6 @@ impl Python {
                 .map(|()| String::new())
                 .map_err(io::Error::other),
             "mail" => robot.mail().ok_or_else(|| io::ErrorKind::WouldBlock.into()),
-            "mailbox" => Ok(self.mailbox(text, robot)),
             "random" => {
                 let (low, high) = text.split_once(' ').unwrap_or((text, text));
                 let number = |text: &str| text.parse::<i64>().unwrap_or(0);
@@ -296,6 +307,7 @@ impl Python {
                 Ok(String::new())
             }
             "file" => self.read_file(text),
+            // A look is only counted; so is what a program writes to its channel by itself.
             _ => Ok(String::new()),
         })
     }
@@ -395,7 +407,10 @@ impl Python {
                 "look" => calls += limits::SCRIPT_LOOK_CALLS,
                 _ => calls += 1,
             }
-            let answer = self.reply(word, text, robot);
+            let answer = match FromProgram::parse(&frame) {
+                Some(message) => self.hear_message(message, robot),
+                None => self.reply(word, text, robot),
+            };
             if calls > limits::SCRIPT_CALLS || self.tree.has_cleared(self.now) {
                 // Who asks and asks has used up his tick.
                 self.pending = Some(Pending::Answer(answer));

@@ -53,7 +53,36 @@ impl Brick for Refreshed<'_> {
                 self.readings.scalars.remove(&port);
             }
             Command::Detect { .. } => self.readings.vectors.clear(),
-            _ => {}
+            // No reading is another one at once after these.
+            Command::Power { .. }
+            | Command::Off { .. }
+            | Command::Servo { .. }
+            | Command::Sound { .. }
+            | Command::Tone { .. }
+            | Command::Say { .. }
+            | Command::Led { .. }
+            | Command::System { .. }
+            | Command::Append { .. }
+            | Command::Remove { .. }
+            | Command::StartCamera { .. }
+            | Command::StopCamera { .. }
+            | Command::StartVideo { .. }
+            | Command::StopVideo
+            | Command::Send { .. }
+            | Command::Join { .. }
+            | Command::CalibrateGyroscope
+            | Command::Console { .. }
+            | Command::PenColor { .. }
+            | Command::PenWidth { .. }
+            | Command::Background { .. }
+            | Command::Draw(_)
+            | Command::Label { .. }
+            | Command::Smile { .. }
+            | Command::ClearScreen
+            | Command::Redraw
+            | Command::MarkerDown { .. }
+            | Command::MarkerUp
+            | Command::Rest => {}
         }
         self.robot.tell(command);
     }

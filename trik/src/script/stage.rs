@@ -16,9 +16,9 @@ use std::io;
 use std::rc::Rc;
 use std::sync::{Arc, Mutex, PoisonError};
 use trikd::js::events::Record;
-use trikd::js::ground::{Ground, Shown};
 use trikd::js::machine::Job;
 use trikd::js::outside::Output;
+use trikd::js::platform::{Platform, Shown};
 use trikd::js::shared::{Shared, Slot};
 use trikd::tree::Answers;
 
@@ -252,7 +252,7 @@ impl Answers for Here {
     }
 }
 
-impl Ground for Here {
+impl Platform for Here {
     fn brick(&self) -> trikd::brick::Brick {
         trikd::brick::Brick::answered(Rc::new(self.clone()))
     }
@@ -343,7 +343,7 @@ impl Ground for Here {
         let done = self
             .stage
             .with(move |brick| drawing::order(&line, |command| brick.tell(command)));
-        done.unwrap_or(Ok(()))
+        done.unwrap_or(Ok(())).map_err(|error| error.to_string())
     }
 
     fn photo(&self, _shared: &Shared) -> Result<screen::Pixels, String> {

@@ -229,18 +229,6 @@ fn the_display_and_the_marker_tell_what_blocks_tell() {
     );
 }
 
-/// Whether there is a Python to run.
-fn has_python(test: &str) -> bool {
-    let found = std::process::Command::new("python3")
-        .arg("--version")
-        .output()
-        .is_ok_and(|output| output.status.success());
-    if !found {
-        println!("skipped {test}: no python3");
-    }
-    found
-}
-
 fn python(text: &str, ms: u32, robot: &mut StandIn) -> (Status, String) {
     let wall = Duration::from_secs(60);
     let mut program = Python::new(Path::new("/nowhere/p.py"), text, 1, wall).unwrap();
@@ -260,7 +248,7 @@ fn python_log(text: &str) -> Vec<String> {
 
 #[test]
 fn python_waits_in_model_time_too() {
-    if !has_python("python_waits_in_model_time_too") {
+    if !needs::tool("python3") {
         return;
     }
     let text = "
@@ -309,7 +297,7 @@ brick.motor('M3').powerOff()
 
 #[test]
 fn python_does_the_same_each_time() {
-    if !has_python("python_does_the_same_each_time") {
+    if !needs::tool("python3") {
         return;
     }
     let text = "
@@ -329,7 +317,7 @@ for name in 'abc': threading.Thread(target=work, args=(name,)).start()
 
 #[test]
 fn python_that_never_ends_or_fails_is_ended_and_says_where() {
-    if !has_python("python_that_never_ends_or_fails_is_ended_and_says_where") {
+    if !needs::tool("python3") {
         return;
     }
     for text in [
@@ -375,4 +363,22 @@ fn python_that_never_ends_or_fails_is_ended_and_says_where() {
     .unwrap();
     let (_, error) = drive(&mut slow, 1000, &mut robot());
     assert!(error.contains("does not wait"), "{error}");
+}
+
+#[test]
+fn what_the_child_process_says_is_what_is_heard_here() {
+    use trikd::protocol::program::FROM_PROGRAM;
+    let child = include_str!("virtual.py");
+    let parts = ["link.ask('", "link.send('"].map(|mark| child.split(mark).skip(1));
+    let words: Vec<_> = parts
+        .into_iter()
+        .flatten()
+        .filter_map(|rest| rest.split('\'').next())
+        .collect();
+    assert!(words.len() > 15, "{words:?}");
+    let here = include_str!("python.rs");
+    for word in words {
+        let is_heard = FROM_PROGRAM.contains(&word) || here.contains(&format!("\"{word}\" =>"));
+        assert!(is_heard, "{word}");
+    }
 }

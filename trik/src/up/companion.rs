@@ -4,18 +4,18 @@
 //! Owns its start, its words and its end. Knows no device; `tree` is how such a process is started, `ev3dev` and `trikd`
 //! say which ones there are.
 
-use super::after;
 use super::tree::Tree;
+use crate::error::Error;
 use crate::limits;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::ffi::OsString;
 use std::os::fd::BorrowedFd;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// A process that is wanted.
 pub(super) struct Companion {
     /// What a person calls it.
-    what: &'static str,
+    name: &'static str,
     /// The name that it is started under.
     program: &'static str,
     /// What is in the line that it says when it can be used.
@@ -23,25 +23,25 @@ pub(super) struct Companion {
     arguments: Vec<OsString>,
     process: Option<Tree>,
     restarts: usize,
-    told: Option<String>,
+    ready_line: Option<String>,
 }
 
 impl Companion {
     /// It does not run yet.
     pub(super) fn new(
-        what: &'static str,
+        name: &'static str,
         program: &'static str,
         ready: &'static str,
         arguments: Vec<OsString>,
     ) -> Self {
         Self {
-            what,
+            name,
             program,
             ready,
             arguments,
             process: None,
             restarts: 0,
-            told: None,
+            ready_line: None,
         }
     }
 
@@ -49,15 +49,15 @@ impl Companion {
     ///
     /// # Errors
     /// Why it does not run.
-    pub(super) fn start(&mut self) -> Result<(), String> {
-        let what = self.what;
-        let failed = |error: std::io::Error| format!("{what}: {error}");
+    pub(super) fn start(&mut self) -> Result<(), Error> {
+        let name = self.name;
+        let failed = |error: std::io::Error| Error::system(name, error);
         let mut process = Tree::start(self.program, &self.arguments).map_err(failed)?;
         let deadline = after(limits::START_MS);
         loop {
             let lines = process.said.hear();
             if let Some(line) = lines.into_iter().find(|line| line.contains(self.ready)) {
-                self.told = Some(line);
+                self.ready_line = Some(line);
                 self.process = Some(process);
                 return Ok(());
             }
@@ -68,15 +68,15 @@ impl Companion {
                 }
                 wait_for_end(&mut process);
                 let reason = process.complaints.hear().join("\n");
-                return Err(format!("{what} does not run: {reason}"));
+                return Err(Error::Process(format!("{name} does not run: {reason}")));
             }
             wait(process.said.fd(), deadline);
         }
     }
 
     /// What it said last when it could be used, until somebody has taken it.
-    pub(super) fn take_told(&mut self) -> Option<String> {
-        self.told.take()
+    pub(super) fn take_ready_line(&mut self) -> Option<String> {
+        self.ready_line.take()
     }
 
     /// Whether it is there.
@@ -102,18 +102,18 @@ impl Companion {
         let said = process.said.hear();
         let ready = said.into_iter().rfind(|line| line.contains(self.ready));
         if ready.is_some() {
-            self.told = ready;
+            self.ready_line = ready;
         }
         if process.said.is_over() && process.complaints.is_over() {
             wait_for_end(process);
             self.process = None;
             self.restarts += 1;
-            let what = self.what;
+            let name = self.name;
             lines.push(if self.restarts > limits::RESTARTS_MAX {
-                format!("trik: {what} has ended too often; giving it up")
+                format!("trik: {name} has ended too often; giving it up")
             } else {
                 match self.start() {
-                    Ok(()) => format!("trik: {what} has ended; started again"),
+                    Ok(()) => format!("trik: {name} has ended; started again"),
                     Err(reason) => format!("trik: {reason}"),
                 }
             });
@@ -149,11 +149,15 @@ impl Companion {
     }
 }
 
+/// When so much time is over.
+pub(super) fn after(ms: u32) -> Instant {
+    Instant::now() + Duration::from_millis(ms.into())
+}
+
 /// Waits until there is something to hear, at most that long.
 fn wait(fd: Option<BorrowedFd<'_>>, until: Instant) {
     let Some(fd) = fd else { return };
-    let left =
-        until.saturating_duration_since(Instant::now()) + std::time::Duration::from_millis(1);
+    let left = until.saturating_duration_since(Instant::now()) + Duration::from_millis(1);
     let patience = left.try_into().unwrap_or(PollTimeout::MAX);
     // A signal is looked at by the one who calls.
     let _ = poll(&mut [PollFd::new(fd, PollFlags::POLLIN)], patience);

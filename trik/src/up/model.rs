@@ -2,24 +2,11 @@
 //!
 //! Owns what `--robot` takes beside names of robots. What a model means is `lang`'s part, how it moves `sim`'s.
 
-use crate::cli::UpArgs;
-use lang_dcml::models;
+use super::args::UpArgs;
+use crate::error::Error;
 use sim::body::Body;
 use sim::body::rolling::{Rolling, Said};
 use sim::robots;
-
-/// How the names of models' files end.
-const ENDING: &str = ".dcml";
-
-/// Whether a robot of this name is a model: a file or a shipped one.
-pub(super) fn is_named(text: &str) -> bool {
-    text.ends_with(ENDING) || models::named(text).is_some()
-}
-
-/// The names of the shipped models.
-pub(super) fn shipped() -> impl Iterator<Item = &'static str> {
-    models::ALL.iter().map(|one| one.name)
-}
 
 /// An option that only a model takes.
 pub(super) fn stray(args: &UpArgs) -> Option<&'static str> {
@@ -37,19 +24,19 @@ pub(super) fn stray(args: &UpArgs) -> Option<&'static str> {
 ///
 /// # Errors
 /// Why there is none, for the person; what is wrong with the text has been told.
-pub(super) fn robot(args: &UpArgs) -> Result<(Box<dyn Body>, String), String> {
-    let loaded = crate::dcml::load(args.robot.as_ref(), args.model.as_deref());
+pub(super) fn robot(args: &UpArgs) -> Result<(Box<dyn Body>, String), Error> {
+    let loaded = crate::dcml::load::load(args.robot.as_ref(), args.model.as_deref());
     let (text, model) = loaded.map_err(|refusal| {
         let lines: Vec<&str> = refusal.lines.iter().map(String::as_str).collect();
         let text = lines.join("\n");
-        text.strip_prefix("trik: ").unwrap_or(&text).to_owned()
+        Error::Refused(text.strip_prefix("trik: ").unwrap_or(&text).to_owned())
     })?;
     let said = Said {
         params: args.params.clone(),
         drive: args.drive.clone(),
         start: args.start.clone(),
     };
-    let about = |reason: String| format!("{}: {reason}", args.robot);
+    let about = |reason| Error::file(args.robot.as_ref(), reason);
     let rolling = Rolling::new(&model, &said, robots::MODEL_START).map_err(about)?;
     Ok(robots::modelled(rolling, one(&text, &model.name), &said))
 }

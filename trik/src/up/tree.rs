@@ -5,6 +5,7 @@
 //! parent dies without a word the kernel tells the child, which then unmounts as after any SIGTERM.
 //! Knows nothing of boards.
 
+use crate::error::Error;
 use crate::limits;
 use nix::fcntl::{FcntlArg, OFlag, fcntl};
 use nix::sys::prctl::set_pdeathsig;
@@ -21,18 +22,18 @@ const SELF: &str = "/proc/self/exe";
 
 /// What the hidden command `tree` does: replaces this process by the program of this name, which ends with `parent`.
 /// Returns why not.
-pub(crate) fn become_program(parent: u32, name: &str, arguments: &[OsString]) -> String {
+pub(crate) fn become_program(parent: u32, name: &str, arguments: &[OsString]) -> Error {
     // The parent waits for these; a program begins without.
     let reset = SigSet::empty().thread_swap_mask(SigmaskHow::SIG_SETMASK);
     if let Err(error) = reset.and_then(|_| set_pdeathsig(Signal::SIGTERM)) {
-        return format!("tree: {error}");
+        return Error::system("tree", error);
     }
     // It may have died before the line above, and then no signal comes.
     if u32::try_from(getppid().as_raw()) != Ok(parent) {
-        return "tree: the process that started this one is gone".to_owned();
+        return Error::system("tree", "the process that started this one is gone");
     }
     let error = Command::new(SELF).arg0(name).args(arguments).exec();
-    format!("tree: {SELF}: {error}")
+    Error::system(format!("tree: {SELF}"), error)
 }
 
 /// A running guardian. Dropping it kills it, and its daemon then cleans up by itself.

@@ -4,8 +4,9 @@
 //! machine alone unless somebody names other addresses, because whoever reaches it runs programs with the rights of the
 //! person who started the robot.
 
+use super::args::{UpArgs, absolute};
 use super::companion::Companion;
-use crate::cli::UpArgs;
+use crate::error::Error;
 use crate::place::Place;
 use nix::unistd::{User, geteuid};
 use std::ffi::{OsStr, OsString};
@@ -33,13 +34,13 @@ impl Trikd {
     ///
     /// # Errors
     /// The ports that are wanted do not exist.
-    pub(super) fn of(args: &UpArgs, place: &Place) -> Result<Self, String> {
+    pub(super) fn of(args: &UpArgs, place: &Place) -> Result<Self, Error> {
         let addresses = match &args.trikd_address[..] {
             [] => vec![own_address(place.number)],
             named => named.to_vec(),
         };
         let scripts = match &args.scripts {
-            Some(path) => super::absolute(path)?,
+            Some(path) => absolute(path)?,
             None => place.trikd.join("scripts"),
         };
         let mut list: Vec<OsString> = vec!["serve".into()];
@@ -84,19 +85,20 @@ impl Trikd {
     ///
     /// # Errors
     /// One line: why it does not run, and what to do.
-    pub(super) fn start(&mut self) -> Result<(), String> {
-        self.process.start().map_err(|reason| {
+    pub(super) fn start(&mut self) -> Result<(), Error> {
+        self.process.start().map_err(|error| {
+            let reason = error.to_string();
             let reason = reason.split(ADVICE).next().unwrap_or_default();
             let reason = reason.replace("trikd: ", "").replace('\n', "; ");
-            format!(
+            Error::Process(format!(
                 "{reason}; or start the robot with other ports, --trikd-ports=18888, or without trikd, --no-trikd. The robot itself runs"
-            )
+            ))
         })
     }
 
     /// Where programs are uploaded, if it has told that since the last call: the ports of a new start may be others.
     pub(super) fn take_address(&mut self) -> Option<SocketAddr> {
-        let line = self.process.take_told()?;
+        let line = self.process.take_ready_line()?;
         let words = line.split_once(READY)?.1;
         let port = words.split(", ").find_map(|word| {
             let (name, number) = word.split_once(' ')?;
@@ -122,7 +124,7 @@ fn reachable(ip: IpAddr) -> IpAddr {
 }
 
 /// Six ports in a row; the mailbox is last, because it may take one of the next four.
-fn ports(first: u16) -> Result<impl Iterator<Item = String>, String> {
+fn ports(first: u16) -> Result<impl Iterator<Item = String>, Error> {
     let names = [
         "control",
         "telemetry",
@@ -134,9 +136,9 @@ fn ports(first: u16) -> Result<impl Iterator<Item = String>, String> {
     // From 0 on the system chooses each.
     let step = u16::from(first > 0);
     if first.checked_add(9).is_none() {
-        return Err(format!(
+        return Err(Error::Refused(format!(
             "--trikd-ports {first}: there are no ten ports from there on: at most 65526"
-        ));
+        )));
     }
     Ok((0..).zip(names).map(move |(index, name)| {
         let number = first + step * index;
@@ -183,7 +185,13 @@ mod tests {
         assert_eq!(list[5], "--mailbox-port=18893");
         assert!(ports(0).unwrap().all(|word| word.ends_with("-port=0")));
         assert!(ports(65526).is_ok());
-        assert!(ports(65527).err().unwrap().contains("at most 65526"));
+        assert!(
+            ports(65527)
+                .err()
+                .unwrap()
+                .to_string()
+                .contains("at most 65526")
+        );
     }
 
     #[test]

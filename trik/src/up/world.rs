@@ -2,11 +2,11 @@
 //!
 //! Owns which files have worlds and what is said when one has none. Knows no simulation.
 
-use std::io::Read;
-use std::path::Path;
-
+use crate::error::Error;
+use crate::input::{self, Unread};
 use lang_text::problem::Problem;
 use sim::field::{Field, Locks};
+use std::path::Path;
 
 /// Bytes of a file that are read at most: more than any save may have.
 const BYTES: u64 = 64 << 20;
@@ -15,21 +15,18 @@ const BYTES: u64 = 64 << 20;
 ///
 /// # Errors
 /// The file cannot be read, or there is no world in it.
-pub(crate) fn read(path: &Path) -> Result<(Field, Locks), String> {
+pub(crate) fn read(path: &Path) -> Result<(Field, Locks), Error> {
     let say = |problem: &dyn std::fmt::Display| format!("{}: {problem}", path.display());
-    let mut bytes = Vec::new();
-    std::fs::File::open(path)
-        .and_then(|file| file.take(BYTES).read_to_end(&mut bytes))
-        .map_err(|error| match error.kind() {
-            std::io::ErrorKind::NotFound => say(&"there is no such file"),
-            std::io::ErrorKind::IsADirectory => {
-                say(&"this is a directory: name a world or a project")
-            }
-            _ => say(&error),
-        })?;
+    let refused = |why: &dyn std::fmt::Display| Error::file(path, why);
+    let bytes = input::read(path, BYTES).map_err(|unread| match unread {
+        Unread::Missing => refused(&"there is no such file"),
+        Unread::Directory => refused(&"this is a directory: name a world or a project"),
+        Unread::TooLong => refused(&format!("longer than {} MiB", BYTES >> 20)),
+        Unread::Failed(error) => refused(&error),
+    })?;
     let all = |problems: Vec<Problem>| {
         let lines: Vec<String> = problems.iter().map(|one| say(one)).collect();
-        lines.join("\n")
+        Error::Refused(lines.join("\n"))
     };
     let is_text = bytes
         .iter()
@@ -37,13 +34,13 @@ pub(crate) fn read(path: &Path) -> Result<(Field, Locks), String> {
         == Some(&b'<');
     let mut locks = Locks::default();
     let (text, blobs) = if is_text {
-        let text = String::from_utf8(bytes).map_err(|error| say(&error))?;
+        let text = String::from_utf8(bytes).map_err(|error| refused(&error))?;
         (text, None)
     } else {
         let project = lang_diagram::read::read(&bytes).map_err(all)?.project;
         locks = Locks::of(&project.meta);
         let none = "there is no world in this project; give a world model, FILE.xml";
-        (project.world.ok_or_else(|| say(&none))?, project.blobs)
+        (project.world.ok_or_else(|| refused(&none))?, project.blobs)
     };
     let mut opened = Field::read(&text).map_err(all)?;
     let mut problems = std::mem::take(&mut opened.problems);

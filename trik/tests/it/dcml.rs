@@ -83,14 +83,14 @@ fn exit_codes_tell_good_models_wrong_ones_and_files_that_cannot_be_read() {
             String::from_utf8_lossy(&output.stderr).into_owned(),
         )
     };
-    assert_eq!(code(&["check", "good.dcml"]), (Some(0), String::new()));
-    let (status, told) = code(&["check", "good.dcml", "wrong.dcml"]);
+    assert_eq!(code(&["lint", "good.dcml"]), (Some(0), String::new()));
+    let (status, told) = code(&["lint", "good.dcml", "wrong.dcml"]);
     assert_eq!(status, Some(1));
     assert!(
         told.contains("wrong.dcml:4:10") && told.is_ascii(),
         "{told}"
     );
-    let (status, told) = code(&["check", "wrong.dcml", "none.dcml", "bytes.dcml"]);
+    let (status, told) = code(&["lint", "wrong.dcml", "none.dcml", "bytes.dcml"]);
     assert_eq!(status, Some(2));
     assert!(
         told.contains("trik: none.dcml: there is no such file"),
@@ -100,8 +100,8 @@ fn exit_codes_tell_good_models_wrong_ones_and_files_that_cannot_be_read() {
         told.contains("trik: bytes.dcml:1:7: the byte 0xff is no text in UTF-8"),
         "{told}"
     );
-    assert_eq!(code(&["check", "--paper", "good.dcml"]).0, Some(0));
-    assert_eq!(code(&["check", "."]).0, Some(2));
+    assert_eq!(code(&["lint", "--paper", "good.dcml"]).0, Some(0));
+    assert_eq!(code(&["lint", "."]).0, Some(2));
     assert_eq!(code(&["doc", "good.dcml"]).0, Some(0));
 }
 
@@ -154,7 +154,7 @@ fn a_layout_is_written_in_place_and_checked_without_writing() {
         "trik: bicycle: there is no such file\n2\n1\n"
     );
     // A line that no screen can show is told in part.
-    let told = sh(&board, "trik dcml check long.dcml");
+    let told = sh(&board, "trik dcml lint long.dcml");
     assert!(
         told.contains("long.dcml:1:1639: not declared") && told.len() < 1000,
         "{told}"

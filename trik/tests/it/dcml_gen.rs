@@ -21,7 +21,7 @@ fn generated(board: &Board, words: &[&str]) -> Output {
 fn a_text_goes_to_standard_output_or_to_a_new_file() {
     let board = Board::new();
     board.file("two.dcml", TWO);
-    let shown = generated(&board, &["--target", "c", "--model", "B", "two.dcml"]);
+    let shown = generated(&board, &["--lang", "c", "--model", "B", "two.dcml"]);
     assert_eq!(shown.code(), 0, "{}", shown.stderr);
     assert!(
         shown.stdout.contains("derivative[0] = 2.0 * u;"),
@@ -29,7 +29,7 @@ fn a_text_goes_to_standard_output_or_to_a_new_file() {
         shown.stdout
     );
     assert!(!shown.stdout.contains("jacobian"));
-    let words = ["--target", "c", "--model", "B", "two.dcml", "-o", "b.h"];
+    let words = ["--lang", "c", "--model", "B", "two.dcml", "-o", "b.h"];
     assert_eq!(generated(&board, &words).code(), 0);
     let written = fs::read_to_string(board.dir().join("b.h")).unwrap();
     assert_eq!(written, shown.stdout);
@@ -42,7 +42,7 @@ fn a_text_goes_to_standard_output_or_to_a_new_file() {
     let written = fs::read_to_string(board.dir().join("b.h")).unwrap();
     assert!(written.contains("B_action_jacobian"));
     let words = [
-        "--target", "c", "--model", "B", "two.dcml", "-o", "two.dcml", "--force",
+        "--lang", "c", "--model", "B", "two.dcml", "-o", "two.dcml", "--force",
     ];
     assert!(
         generated(&board, &words)
@@ -61,17 +61,17 @@ fn what_cannot_be_written_is_told() {
     board.file("two.dcml", TWO);
     for (words, code, part) in [
         (
-            &["--target", "fortran", "two.dcml"] as &[&str],
+            &["--lang", "fortran", "two.dcml"] as &[&str],
             2,
             "there are rust, c, java",
         ),
-        (&["two.dcml"], 2, "--target"),
+        (&["two.dcml"], 2, "--lang"),
         (
-            &["--target", "c", "two.dcml"],
+            &["--lang", "c", "two.dcml"],
             1,
             "name one with --model: A, B",
         ),
-        (&["--target", "c", "no.dcml"], 2, "no.dcml"),
+        (&["--lang", "c", "no.dcml"], 2, "no.dcml"),
     ] {
         let output = generated(&board, words);
         assert_eq!(output.code(), code, "{words:?}: {}", output.stderr);
@@ -92,17 +92,14 @@ fn what_cannot_be_written_is_told() {
         })
         .collect();
     board.file("long.dcml", format!("{long}; {more} END;"));
-    let output = generated(&board, &["--target", "java", "long.dcml"]);
+    let output = generated(&board, &["--lang", "java", "long.dcml"]);
     assert_eq!(output.code(), 1, "{}", output.stderr);
     assert!(
         output.stderr.contains("a function in java holds 3000"),
         "{}",
         output.stderr
     );
-    assert_eq!(
-        generated(&board, &["--target", "lua", "long.dcml"]).code(),
-        0
-    );
+    assert_eq!(generated(&board, &["--lang", "lua", "long.dcml"]).code(), 0);
 }
 
 #[test]

@@ -2,7 +2,6 @@
 //!
 //! Models, rooms and small worlds are made here; the labyrinth is real data.
 
-use crate::diagrams::root;
 use crate::documents::section_of_dcml_holds;
 use crate::rig::TRIK;
 use harness::{Board, Output, tools};
@@ -159,11 +158,10 @@ fn sst_finds_shorter_paths_the_longer_it_searches() {
 
 #[test]
 fn the_labyrinth_of_trik_is_left() {
-    let path = root().join("../shared/data/worlds/labyrinth-without-sensors.xml");
-    if !path.exists() {
-        println!("skipped the_labyrinth_of_trik_is_left: no ../shared");
+    let Some(data) = needs::data() else {
         return;
-    }
+    };
+    let path = data.join("worlds/labyrinth-without-sensors.xml");
     let board = board();
     fs::copy(&path, board.path("labyrinth.xml")).unwrap();
     // Its numbers count as centimetres. From beside the walls to the finish on the other side.

@@ -126,9 +126,7 @@ fn a_picture_is_a_new_file_and_replaces_none() {
         "u_l = 1 + sin(t); u_r = 2",
         "--t",
         "9",
-        "--out",
-        "svg",
-        "-o",
+        "--svg",
         "path.svg",
     ];
     let output = drive(&board, &words);
@@ -152,6 +150,25 @@ fn a_picture_is_a_new_file_and_replaces_none() {
         "{}",
         again.stderr
     );
+}
+
+#[test]
+fn a_picture_may_stand_beside_a_table_and_is_asked_for_in_two_ways() {
+    let board = Board::new();
+    let words = ["--actions", "u_l = 1; u_r = 2", "--t", "2"];
+    let read = |name: &str| fs::read_to_string(board.dir().join(name)).expect(name);
+    let both = [&words[..], &["--svg", "a.svg", "-o", "a.csv"]].concat();
+    assert_eq!(drive(&board, &both).code(), 0);
+    assert!(read("a.csv").starts_with("t,x,y,theta,u_l,u_r\n"));
+    let old = [&words[..], &["--out", "svg", "-o", "b.svg"]].concat();
+    assert_eq!(drive(&board, &old).code(), 0);
+    assert_eq!(read("a.svg"), read("b.svg"));
+    let table = [&words[..], &["--out", "csv"]].concat();
+    assert_eq!(drive(&board, &table).stdout, read("a.csv"));
+    let same = [&words[..], &["--svg", "c", "-o", "c"]].concat();
+    let refused = drive(&board, &same);
+    assert_eq!(refused.code(), 1);
+    assert!(refused.stderr.contains("is needed for something else"));
 }
 
 #[test]
@@ -302,7 +319,7 @@ fn shipped_models_are_listed_and_printed_and_are_files_for_other_commands() {
     for name in names {
         let printed = dcml(&board, &["models", name]);
         assert!(printed.stdout.contains("BEGIN "), "{name}");
-        assert_eq!(dcml(&board, &["check", name]).code(), 0, "{name}");
+        assert_eq!(dcml(&board, &["lint", name]).code(), 0, "{name}");
     }
     let none = dcml(&board, &["models", "tank"]);
     assert_eq!(none.code(), 1);

@@ -356,11 +356,7 @@ fn a_reader_that_has_seen_enough_is_no_failure() {
 
 /// A project whose blocks an editor of old has lost.
 fn lost() -> Option<PathBuf> {
-    let path = root().join("../shared/data");
-    if !path.exists() {
-        println!("skipped lost_blocks_are_put_back: no ../shared");
-        return None;
-    }
+    let path = needs::data()?;
     let mut found: Option<(usize, PathBuf)> = None;
     for entry in fs::read_dir(path.join("examples")).expect("projects") {
         let path = entry.expect("a file").path();

@@ -203,7 +203,7 @@ fn two_robots_live_side_by_side_and_end_one_by_one() {
     assert!(
         refusal
             .stderr
-            .starts_with("trik: several robots run: say which with --at; there are "),
+            .starts_with("trik: several robots run: say which with --robot; there are "),
         "{}",
         refusal.stderr
     );

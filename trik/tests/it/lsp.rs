@@ -72,7 +72,7 @@ impl Server {
             &json!({"processId": null, "capabilities": capabilities}),
         );
         assert!(answer.get("result").is_some(), "{answer}");
-        server.tell("initialized", &json!({}));
+        server.notify("initialized", &json!({}));
         server
     }
 
@@ -95,7 +95,7 @@ impl Server {
         self.raw(&framed(message));
     }
 
-    fn tell(&mut self, method: &str, params: &Value) {
+    fn notify(&mut self, method: &str, params: &Value) {
         self.send(&json!({"jsonrpc": "2.0", "method": method, "params": params}));
     }
 
@@ -126,12 +126,12 @@ impl Server {
 
     fn open(&mut self, text: &str) {
         let document = json!({"uri": URI, "languageId": "dcml", "version": 1, "text": text});
-        self.tell("textDocument/didOpen", &json!({ "textDocument": document }));
+        self.notify("textDocument/didOpen", &json!({ "textDocument": document }));
     }
 
     fn change(&mut self, version: i64, changes: &Value) {
         let document = json!({"uri": URI, "version": version});
-        self.tell(
+        self.notify(
             "textDocument/didChange",
             &json!({"textDocument": document, "contentChanges": changes}),
         );
@@ -164,7 +164,7 @@ impl Server {
     /// Says goodbye as an editor does: the exit status is 0, and standard error has this.
     fn goodbye(mut self) -> String {
         assert_eq!(self.result("shutdown", &Value::Null), Value::Null);
-        self.tell("exit", &Value::Null);
+        self.notify("exit", &Value::Null);
         let (code, said) = self.end();
         assert_eq!(code, Some(0), "{said}");
         said

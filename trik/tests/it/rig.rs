@@ -292,7 +292,7 @@ impl Robot {
 
     /// `trik fault` with these words, which must succeed.
     pub fn fault(&self, words: &[&str]) -> String {
-        let mut all = vec!["fault", "--at", self.root.to_str().expect("UTF-8")];
+        let mut all = vec!["fault", "--robot", self.root.to_str().expect("UTF-8")];
         all.extend(words);
         self.home.run(&all).good()
     }

@@ -1,9 +1,8 @@
 //! Programs with text as solutions: the verdicts of the diagrams that they were written from, the same each time.
 
-use crate::diagrams::root;
 use crate::rig::TRIK;
 use harness::{Board, Output, tools};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 /// Solutions of the course and where they are tried.
@@ -35,26 +34,6 @@ fn verdict(output: &Output) -> (String, f64) {
     let (verdict, rest) = told.split_once(", ").unwrap_or((told, ""));
     let seconds = rest.split(' ').next().and_then(|text| text.parse().ok());
     (verdict.to_owned(), seconds.unwrap_or(f64::NAN))
-}
-
-fn data(test: &str) -> Option<PathBuf> {
-    let path = root().join("../shared/data");
-    if path.is_dir() {
-        return Some(path);
-    }
-    println!("skipped {test}: no ../shared");
-    None
-}
-
-fn has_python(test: &str) -> bool {
-    let found = Command::new("python3")
-        .arg("--version")
-        .output()
-        .is_ok_and(|output| output.status.success());
-    if !found {
-        println!("skipped {test}: no python3");
-    }
-    found
 }
 
 /// Judges all solutions of the course as diagrams and as programs.
@@ -91,16 +70,15 @@ fn compare(data: &Path, language: &str, ending: &str) {
 
 #[test]
 fn javascript_has_the_verdicts_of_its_diagrams() {
-    if let Some(data) = data("javascript_has_the_verdicts_of_its_diagrams") {
+    if let Some(data) = needs::data() {
         compare(&data, "javascript", "js");
     }
 }
 
 #[test]
 fn python_has_the_verdicts_of_its_diagrams() {
-    let test = "python_has_the_verdicts_of_its_diagrams";
-    if let Some(data) = data(test)
-        && has_python(test)
+    if let Some(data) = needs::data()
+        && needs::tool("python3")
     {
         compare(&data, "python", "py");
     }
@@ -149,7 +127,7 @@ fn programs_do_the_same_each_time_also_on_a_busy_computer() {
     board.file("p.js", JAVASCRIPT);
     board.file("p.py", PYTHON);
     let mut programs = vec!["p.js"];
-    if has_python("programs_do_the_same_each_time_also_on_a_busy_computer: Python") {
+    if needs::tool("python3") {
         programs.push("p.py");
     }
     for program in programs {

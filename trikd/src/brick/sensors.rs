@@ -226,7 +226,7 @@ pub struct Camera {
     hsv_write: Rc<Node>,
     video_out: Rc<Node>,
     /// Whether the picture shall be shown, until the sensor has been told.
-    untold: Rc<Cell<Option<bool>>>,
+    unsent: Rc<Cell<Option<bool>>>,
 }
 
 /// The program of the sensor takes no lines: it was not started, or it has no pipe yet.
@@ -243,7 +243,7 @@ impl Camera {
             hsv_read: node("hsv", Access::ReadNow),
             hsv_write: node("hsv", Access::Write),
             video_out: node("video_out", Access::Write),
-            untold: Rc::default(),
+            unsent: Rc::default(),
         }
     }
 
@@ -258,19 +258,19 @@ impl Camera {
             _ => {}
         }
         let _ = self.hsv_read.bytes(&mut [0; 1]);
-        self.untold.set(Some(shows));
-        self.tell()
+        self.unsent.set(Some(shows));
+        self.send_video_out()
     }
 
     /// Says whether to show the picture, if the sensor can hear it by now.
-    fn tell(&self) -> io::Result<()> {
-        let Some(shows) = self.untold.get() else {
+    fn send_video_out(&self) -> io::Result<()> {
+        let Some(shows) = self.unsent.get() else {
             return Ok(());
         };
         match self.video_out.write(if shows { "1\n" } else { "0\n" }) {
             Err(error) if is_absent(&error) => Ok(()),
             done => {
-                self.untold.set(None);
+                self.unsent.set(None);
                 done
             }
         }
@@ -315,7 +315,7 @@ impl Camera {
     /// # Errors
     /// Those of the tree; EAGAIN before the first picture.
     pub fn read(&self) -> io::Result<Vec<f64>> {
-        self.tell()?;
+        self.send_video_out()?;
         let mut numbers = vec![0.0; 9];
         let count = self.value.numbers(&mut numbers)?;
         numbers.truncate(count);
@@ -324,7 +324,7 @@ impl Camera {
 
     /// Stops the sensor.
     pub fn stop(&self) {
-        self.untold.set(None);
+        self.unsent.set(None);
         for node in [&self.value, &self.hsv_read] {
             node.close();
         }

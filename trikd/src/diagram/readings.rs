@@ -158,9 +158,10 @@ impl<'a> Readings<'a> {
 
     /// The encoder begins at 0 again.
     pub(super) fn reset(&mut self, port: Port) -> io::Result<()> {
-        match self.from(port) {
-            From::Encoder(encoder) => encoder.reset(),
-            _ => Err(io::Error::other("the robot has no such encoder")),
+        if let From::Encoder(encoder) = self.from(port) {
+            encoder.reset()
+        } else {
+            Err(io::Error::other("the robot has no such encoder"))
         }
     }
 
@@ -200,7 +201,12 @@ impl<'a> Readings<'a> {
             From::Wheel => Some(self.gamepad.wheel()),
             From::Button(number) => Some(f64::from(self.gamepad.button(number))),
             From::Connected => Some(f64::from(self.gamepad.is_connected())),
-            _ => None,
+            From::Gyroscope(_)
+            | From::Accelerometer(_)
+            | From::Camera(_)
+            | From::Lidar
+            | From::Pad(_)
+            | From::Nothing => None,
         };
         read.map(whole)
     }
@@ -232,7 +238,15 @@ impl<'a> Readings<'a> {
                     .unwrap_or((NOT_PRESSED, NOT_PRESSED));
                 Some(vec![x, y])
             }
-            _ => None,
+            From::Sensor(_)
+            | From::Encoder(_)
+            | From::Object(_)
+            | From::Key(_)
+            | From::PadPressed(_)
+            | From::Wheel
+            | From::Button(_)
+            | From::Connected
+            | From::Nothing => None,
         };
         match numbers {
             Some(numbers) => {

@@ -10,6 +10,7 @@ use crate::display::Display;
 use crate::host::Host;
 use crate::limits;
 use crate::program::child;
+use crate::protocol::program::mailbox::Question;
 use lang_diagram::brick::{self, Command, Figure};
 use lang_diagram::ports::Port;
 use std::collections::{HashMap, HashSet, VecDeque};
@@ -122,7 +123,7 @@ impl<'a> Robot<'a> {
         self.note(port.name(), result);
     }
 
-    /// Gives the display an order.
+    /// What changes the display.
     fn show(&mut self, order: &str) {
         let result = self.display.order(order);
         self.note("display", result);
@@ -165,16 +166,10 @@ impl<'a> Robot<'a> {
         self.note(file, result);
     }
 
-    fn mailbox(&mut self, words: &str) {
-        let result = self.host.post(words);
+    fn mailbox(&mut self, question: Question<'_>) {
+        let result = self.host.post(question);
         self.note("mailbox", result);
     }
-}
-
-/// A label as an order for the display.
-fn label([x, y, size]: [i32; 3], text: &str) -> String {
-    let text = text.replace('\n', "\\n");
-    format!("label {x} {y} {size} {text}")
 }
 
 /// A figure as an order for the display.
@@ -210,18 +205,9 @@ impl brick::Brick for Robot<'_> {
                 let result = self.readings.reset(port);
                 self.note(port.name(), result);
             }
-            Command::Sound { file } => {
-                let result = self.brick.sound().play(file);
-                self.note("sound", result);
-            }
-            Command::Tone { hertz, ms } => {
-                let result = self.brick.sound().tone(hertz, ms);
-                self.note("sound", result);
-            }
-            Command::Say { text } => {
-                let result = self.brick.sound().say(text);
-                self.note("sound", result);
-            }
+            Command::Sound { file } => self.note("sound", self.brick.sound().play(file)),
+            Command::Tone { hertz, ms } => self.note("sound", self.brick.sound().tone(hertz, ms)),
+            Command::Say { text } => self.note("sound", self.brick.sound().say(text)),
             Command::Led { color } => self.light(color),
             Command::System { command, code } => self.start(command, code),
             Command::Append { file, text } => self.append(file, text),
@@ -238,21 +224,29 @@ impl brick::Brick for Robot<'_> {
                 let result = self.readings.detect(mode);
                 self.note("camera", result);
             }
-            Command::Send { message, hull } => {
-                self.mailbox(&format!("send {} {message}", hull.unwrap_or(-1)));
-            }
+            Command::Send { message, hull } => self.mailbox(Question::Send {
+                hull: hull.or(Some(-1)),
+                text: message,
+            }),
             Command::Join {
                 address,
                 port,
                 hull,
-            } => self.mailbox(&format!("join {address} {port} {hull}")),
+            } => self.mailbox(Question::Join {
+                address,
+                port,
+                hull,
+            }),
             Command::CalibrateGyroscope => self.readings.calibrate(),
             Command::Console { text } => {
                 // As above.
                 let _ = self.host.print(&format!("{text}\n"));
             }
             Command::Draw(figure) => self.show(&order(figure)),
-            Command::Label { x, y, size, text } => self.show(&label([x, y, size], text)),
+            Command::Label { x, y, size, text } => {
+                let text = text.replace('\n', "\\n");
+                self.show(&format!("label {x} {y} {size} {text}"));
+            }
             Command::PenColor { color } => self.show(&format!("color {color}")),
             Command::PenWidth { width } => self.show(&format!("width {width}")),
             Command::Background { color } => self.show(&format!("background {color}")),

@@ -26,7 +26,7 @@ pub struct Watch {
     changed: BTreeSet<String>,
     /// Not told yet.
     errors: Vec<String>,
-    told_at: Option<u32>,
+    reported_at: Option<u32>,
 }
 
 impl Watch {
@@ -38,7 +38,7 @@ impl Watch {
             has_moved: false,
             changed: BTreeSet::new(),
             errors: Vec::new(),
-            told_at: None,
+            reported_at: None,
         }
     }
 
@@ -50,12 +50,14 @@ impl Watch {
     }
 
     /// Tells what is new, if it is time.
-    pub(super) fn tell(&mut self, machine: &Machine, now: u32, host: &Host) -> io::Result<()> {
+    pub(super) fn report(&mut self, machine: &Machine, now: u32, host: &Host) -> io::Result<()> {
         let errors = std::mem::take(&mut self.errors);
         for error in &errors {
             host.error(error)?;
         }
-        let is_due = self.told_at.is_none_or(|at| now - at >= limits::WATCH_MS);
+        let is_due = self
+            .reported_at
+            .is_none_or(|at| now - at >= limits::WATCH_MS);
         let is_news = self.is_new || self.has_moved || !self.changed.is_empty();
         if !self.is_wanted || !is_due && errors.is_empty() || !is_news && errors.is_empty() {
             return Ok(());
@@ -68,7 +70,7 @@ impl Watch {
             &line(machine, &variables),
             &json(machine, now, &variables, &errors),
         )?;
-        self.told_at = Some(now);
+        self.reported_at = Some(now);
         self.is_new = false;
         self.has_moved = false;
         self.changed.clear();

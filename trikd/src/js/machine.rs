@@ -3,8 +3,8 @@
 //! Owns the order of things in a thread of a program, and what makes it end: its text, a failure, the end of all.
 
 use super::failure::Failure;
-use super::ground::{Ground, Mounted};
 use super::natives::{self, Own};
+use super::platform::{Mounted, Platform};
 use super::shared::{Shared, Slot};
 use super::source;
 use crate::engine::Outcome;
@@ -84,12 +84,12 @@ pub fn run(job: &Job, shared: &Arc<Shared>, slot: &Arc<Slot>) -> Outcome {
     run_on(Rc::new(Mounted::new(&shared.root)), job, shared, slot)
 }
 
-/// Runs one engine to its end, on any ground.
+/// Runs one engine to its end, on any platform.
 ///
 /// # Errors
 /// As [`run`].
 pub fn run_on(
-    ground: Rc<dyn Ground>,
+    platform: Rc<dyn Platform>,
     job: &Job,
     shared: &Arc<Shared>,
     slot: &Arc<Slot>,
@@ -98,9 +98,9 @@ pub fn run_on(
     let runtime = Runtime::new().map_err(broken)?;
     runtime.set_memory_limit(limits::JS_MEMORY_BYTES);
     runtime.set_max_stack_size(limits::JS_STACK_BYTES);
-    let (asked, under) = (slot.clone(), ground.clone());
+    let (asked, under) = (slot.clone(), platform.clone());
     runtime.set_interrupt_handler(Some(Box::new(move || under.stops(&asked))));
-    let own = Rc::new(Own::new(ground, shared.clone(), slot.clone(), &job.text));
+    let own = Rc::new(Own::new(platform, shared.clone(), slot.clone(), &job.text));
     let (lost, text) = (own.clone(), job.text.clone());
     runtime.set_host_promise_rejection_tracker(Some(Box::new(
         move |ctx, _promise, reason, is_handled| {

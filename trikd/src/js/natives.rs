@@ -9,8 +9,8 @@ pub mod system;
 
 use super::events::Record;
 use super::failure::Failure;
-use super::ground::Ground;
 use super::machine::run_jobs;
+use super::platform::Platform;
 use super::shared::{Event, Shared, Slot};
 use crate::brick::Brick;
 use crate::limits;
@@ -21,8 +21,8 @@ use std::sync::Arc;
 
 /// What an engine has.
 pub struct Own {
-    /// What it stands on.
-    pub ground: Rc<dyn Ground>,
+    /// What it runs on.
+    pub platform: Rc<dyn Platform>,
     /// The robot.
     pub brick: Brick,
     /// The program.
@@ -39,14 +39,14 @@ pub struct Own {
 impl Own {
     /// For one thread of a program with this text.
     pub fn new(
-        ground: Rc<dyn Ground>,
+        platform: Rc<dyn Platform>,
         shared: Arc<Shared>,
         slot: Arc<Slot>,
         text: &Arc<str>,
     ) -> Self {
         Self {
-            brick: ground.brick(),
-            ground,
+            brick: platform.brick(),
+            platform,
             shared,
             slot,
             events: Cell::new(false),
@@ -87,7 +87,7 @@ pub fn make<'js>(ctx: &Ctx<'js>, own: &Rc<Own>) -> rquickjs::Result<Object<'js>>
 fn events<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     let with = || own.clone();
     let o = with();
-    put(native, "clock", move || o.ground.clock_ms())?;
+    put(native, "clock", move || o.platform.clock_ms())?;
     let o = with();
     put(native, "next", move |ctx: Ctx<'js>, until_ms: f64| {
         next(&ctx, &o, until_ms)
@@ -97,23 +97,23 @@ fn events<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
         native,
         "listen",
         move |ctx: Ctx<'js>, path: String, numbers: usize| {
-            o.ground
+            o.platform
                 .listen(&o.brick, &path, numbers)
                 .map_err(|error| robot::unreadable(&ctx, &o.brick, &path, &error))
         },
     )?;
     let o = with();
     put(native, "tryListen", move |path: String, numbers: usize| {
-        o.ground.listen(&o.brick, &path, numbers).is_ok()
+        o.platform.listen(&o.brick, &path, numbers).is_ok()
     })?;
     let o = with();
     put(native, "forget", move |path: String| {
-        o.ground.forget(&path);
+        o.platform.forget(&path);
     })?;
     let o = with();
     put(native, "drain", move |ctx: Ctx<'js>, path: String| {
         let all = Array::new(ctx.clone())?;
-        for (index, record) in o.ground.drain(&path).into_iter().enumerate() {
+        for (index, record) in o.platform.drain(&path).into_iter().enumerate() {
             all.set(index, value(&ctx, record)?)?;
         }
         Ok::<_, rquickjs::Error>(all)
@@ -131,10 +131,10 @@ fn events<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     let o = with();
     put(native, "quit", move || o.shared.quit(Some(&o.slot)))?;
     let o = with();
-    put(native, "date", move || o.ground.date_ms())?;
+    put(native, "date", move || o.platform.date_ms())?;
     let o = with();
     put(native, "random", move |low: f64, high: f64| {
-        o.ground.random(low as i32, high as i32)
+        o.platform.random(low as i32, high as i32)
     })
 }
 
@@ -177,13 +177,13 @@ fn next<'js>(ctx: &Ctx<'js>, own: &Own, until_ms: f64) -> rquickjs::Result<Value
                 Event::Web => event(ctx, "web", []),
             };
         }
-        if let Some((path, record)) = own.ground.next() {
+        if let Some((path, record)) = own.platform.next() {
             return event(ctx, &path, [value(ctx, record)?]);
         }
         if woken {
             return Ok(Value::new_null(ctx.clone()));
         }
-        let waited = own.ground.wait(&own.slot, until_ms);
+        let waited = own.platform.wait(&own.slot, until_ms);
         waited.map_err(|error| failed(ctx, &format!("nothing can be waited for: {error}")))?;
         woken = true;
     }

@@ -3,6 +3,7 @@
 //! Owns the two ways in which output leaves and messages come in. Knows no engines.
 
 use crate::host::{Host, Incoming};
+use crate::protocol::program::mailbox::Question;
 use std::cell::{Cell, RefCell};
 use std::collections::VecDeque;
 use std::io::{self, Write};
@@ -133,32 +134,34 @@ impl Outside for Alone {
     }
 
     fn mailbox(&self, words: &str) -> io::Result<String> {
-        let (word, rest) = words.split_once(' ').unwrap_or((words, ""));
-        let number = |text: &str| text.parse::<i32>().ok();
-        match word {
-            "send" => {
-                let (hull, text) = rest.split_once(' ').unwrap_or((rest, ""));
-                if number(hull).is_some_and(|hull| hull == -1 || hull == self.hull.get()) {
-                    self.mail
-                        .borrow_mut()
-                        .push_back((self.hull.get(), text.to_owned()));
+        let Some(question) = Question::parse(words) else {
+            return Ok(String::new());
+        };
+        Ok(match question {
+            Question::Send { hull, text } => {
+                let own = self.hull.get();
+                if hull.is_some_and(|hull| hull == -1 || hull == own) {
+                    self.mail.borrow_mut().push_back((own, text.to_owned()));
                 }
+                String::new()
             }
-            "join" => {
-                let hull = rest.rsplit(' ').next().and_then(number);
-                self.hull
-                    .set(hull.filter(|hull| *hull >= 0).unwrap_or(self.hull.get()));
+            Question::Join { hull, .. } => {
+                if hull >= 0 {
+                    self.hull.set(hull);
+                }
+                String::new()
             }
-            "hull" => match number(rest) {
-                Some(hull) => self.hull.set(hull),
-                None => return Ok(self.hull.get().to_string()),
-            },
-            "ip" => return Ok("127.0.0.1".to_owned()),
-            "connected" => return Ok("0".to_owned()),
-            "enabled" => return Ok("1".to_owned()),
-            _ => {}
-        }
-        Ok(String::new())
+            Question::SetHull(hull) => {
+                self.hull.set(hull);
+                String::new()
+            }
+            Question::Hull => self.hull.get().to_string(),
+            Question::Ip => "127.0.0.1".to_owned(),
+            Question::Connected => "0".to_owned(),
+            Question::Enabled => "1".to_owned(),
+            // There is no other robot.
+            Question::Connect { .. } | Question::Server | Question::Renew => String::new(),
+        })
     }
 }
 

@@ -53,9 +53,9 @@ fn serve(shared: &Shared, outside: &dyn Outside) -> io::Result<()> {
     while shared.runs(None) && !shared.quits() {
         while let Some(message) = outside.receive()? {
             match message {
-                Incoming::Direct(text) => shared.tell(Some(MAIN), &Event::Direct(text)),
+                Incoming::Direct(text) => shared.deliver(Some(MAIN), &Event::Direct(text)),
                 Incoming::Mail(hull, text) => shared.post(hull, text),
-                Incoming::Web => shared.tell(Some(MAIN), &Event::Web),
+                Incoming::Web => shared.deliver(Some(MAIN), &Event::Web),
                 // A program in a language of text has no blocks.
                 Incoming::Watch(_) => {}
                 Incoming::Gone => return Ok(()),

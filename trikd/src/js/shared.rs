@@ -103,7 +103,7 @@ impl Slot {
     }
 
     /// Tells it something; lost when it does not listen for too long.
-    pub fn tell(&self, event: Event) {
+    pub fn deliver(&self, event: Event) {
         let mut inbox = lock(&self.inbox);
         if inbox.len() < limits::JS_EVENTS {
             inbox.push_back(event);
@@ -276,10 +276,10 @@ impl Shared {
     }
 
     /// Tells something to one thread, or to all.
-    pub fn tell(&self, name: Option<&str>, event: &Event) {
+    pub fn deliver(&self, name: Option<&str>, event: &Event) {
         for slot in lock(&self.running).values() {
             if name.is_none_or(|name| name == slot.name) {
-                slot.tell(event.clone());
+                slot.deliver(event.clone());
             }
         }
     }
@@ -297,7 +297,7 @@ impl Shared {
             mail.pop_front();
         }
         drop(mail);
-        self.tell(None, &Event::Mail(hull, text));
+        self.deliver(None, &Event::Mail(hull, text));
     }
 
     /// The oldest message of the mailbox.

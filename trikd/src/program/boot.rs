@@ -3,8 +3,8 @@
 //! Owns the count of starts that did not go well: a program that takes the robot down, with its power or with trikd, is
 //! not run again and again.
 
-use super::Command;
-use crate::daemon::Daemon;
+use super::{Command, Programs};
+use crate::sampler::Sampler;
 use crate::{limits, log, scripts};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -42,25 +42,37 @@ fn choose(folder: &Path, count: u32, restarts: u32) -> Option<Result<PathBuf, St
     Some(Err(format!("{} is not run: {why}", path.display())))
 }
 
+/// What the start works with.
+#[derive(Debug)]
+pub struct Autorun {
+    /// The folder of programs.
+    pub scripts: PathBuf,
+    /// Where starts are counted.
+    pub state: PathBuf,
+    /// What the robot senses: a key that is held down.
+    pub sampler: Rc<Sampler>,
+    /// Whoever runs programs.
+    pub programs: Rc<Programs>,
+}
+
 /// Runs the program some time after the start. `restarts`: how often trikd was started again after crashes.
-pub async fn autorun(daemon: Rc<Daemon>, restarts: u32) {
-    let settings = &daemon.settings;
-    let file = settings.state.join("autorun-starts");
+pub async fn autorun(parts: Autorun, restarts: u32) {
+    let file = parts.state.join("autorun-starts");
     sleep(Duration::from_millis(limits::AUTORUN_MS)).await;
     let count = begun(&file);
-    let path = match choose(&settings.scripts, count, restarts) {
+    let path = match choose(&parts.scripts, count, restarts) {
         None => return,
         Some(Ok(path)) => path,
         Some(Err(why)) => return tracing::warn!(target: log::PROGRAMS, "{why}"),
     };
-    if daemon.sampler.snapshot().await.keys.contains(&true) {
+    if parts.sampler.snapshot().await.keys.contains(&true) {
         return tracing::warn!(
             target: log::PROGRAMS,
             "{} is not run: a key is held down",
             path.display()
         );
     }
-    if daemon.programs.runs() {
+    if parts.programs.runs() {
         return tracing::warn!(
             target: log::PROGRAMS,
             "{} is not run: another program runs already",
@@ -73,7 +85,7 @@ pub async fn autorun(daemon: Rc<Daemon>, restarts: u32) {
         }
     };
     note(count + 1);
-    daemon.programs.tell(Command::Run(path)).await;
+    parts.programs.send(Command::Run(path)).await;
     // The robot has survived this long, so the program is not what takes it down.
     sleep(Duration::from_millis(limits::AUTORUN_PROOF_MS)).await;
     note(0);

@@ -6,6 +6,7 @@ use super::output::Lines;
 use super::reaper::{Ended, Reaper};
 use crate::limits;
 use crate::protocol::frame::{Decoder, encode};
+use crate::protocol::program::ToProgram;
 use crate::settings::Settings;
 use nix::unistd::{Pid, User};
 use std::ffi::OsString;
@@ -121,7 +122,7 @@ pub fn this_program() -> Command {
 
 /// Something that a child did.
 #[derive(Debug)]
-pub enum Said {
+pub enum Event {
     /// A line of output.
     Line(String),
     /// A frame on its channel.
@@ -148,8 +149,8 @@ pub struct Child {
     /// Frames that the child has not taken yet.
     unsent: Vec<u8>,
     end: Option<oneshot::Receiver<Ended>>,
-    /// What was heard and not taken yet.
-    heard: std::collections::VecDeque<Said>,
+    /// What has happened and was not taken yet.
+    events: std::collections::VecDeque<Event>,
 }
 
 /// Words of the command that becomes the program.
@@ -165,7 +166,7 @@ fn words(settings: &Settings, language: Language, path: Option<&Path>) -> Vec<Os
             ]
         }
         (Language::Diagram, _) => vec![SELF.into(), "diagram".into()],
-        _ => vec![SELF.into(), "js".into()],
+        (Language::JavaScript, _) | (Language::Native, None) => vec![SELF.into(), "js".into()],
     }
 }
 
@@ -247,7 +248,7 @@ pub fn start(
         decoder: Decoder::new(limits::CHANNEL_FRAME_BYTES),
         unsent: Vec::new(),
         end: Some(end),
-        heard: std::collections::VecDeque::new(),
+        events: std::collections::VecDeque::new(),
     })
 }
 
@@ -269,9 +270,9 @@ impl Pipe {
     fn hear(
         &mut self,
         (bytes, is_over): (Vec<u8>, bool),
-        heard: &mut std::collections::VecDeque<Said>,
+        events: &mut std::collections::VecDeque<Event>,
     ) {
-        let mut take = |line: &str| heard.push_back(Said::Line(line.to_owned()));
+        let mut take = |line: &str| events.push_back(Event::Line(line.to_owned()));
         self.lines.feed(&bytes, &mut take);
         if is_over {
             self.lines.finish(&mut take);
@@ -305,13 +306,14 @@ async fn ended(end: &mut Option<oneshot::Receiver<Ended>>) -> Ended {
 }
 
 impl Child {
-    /// Sends a frame when the child has room for it. False: it has not read for so long that this one is dropped.
-    pub fn tell(&mut self, payload: &[u8]) -> bool {
+    /// Sends a message when the child has room for it. False: it has not read for so long that this one is dropped.
+    pub fn send(&mut self, message: ToProgram<'_>) -> bool {
+        let payload = message.encode();
         if self.channel.is_none() || self.unsent.len() + payload.len() > limits::CHANNEL_FRAME_BYTES
         {
             return false;
         }
-        self.unsent.extend_from_slice(&encode(payload));
+        self.unsent.extend_from_slice(&encode(&payload));
         self.flush();
         true
     }
@@ -331,7 +333,7 @@ impl Child {
         self.stdout.end.is_none()
             && self.stderr.end.is_none()
             && self.channel.is_none()
-            && self.heard.is_empty()
+            && self.events.is_empty()
     }
 
     fn flush(&mut self) {
@@ -358,8 +360,8 @@ impl Child {
                 loop {
                     match self.decoder.next() {
                         Ok(Some(frame)) => self
-                            .heard
-                            .push_back(Said::Frame(String::from_utf8_lossy(frame).into_owned())),
+                            .events
+                            .push_back(Event::Frame(String::from_utf8_lossy(frame).into_owned())),
                         Ok(None) => return,
                         Err(_) => break,
                     }
@@ -371,12 +373,12 @@ impl Child {
     }
 
     /// The next thing that the child does. Can be given up at any point without loss.
-    pub async fn said(&mut self) -> Said {
+    pub async fn next_event(&mut self) -> Event {
         // Who says much in one breath leaves others their turn.
         tokio::task::coop::consume_budget().await;
         loop {
-            if let Some(said) = self.heard.pop_front() {
-                return said;
+            if let Some(event) = self.events.pop_front() {
+                return event;
             }
             let Self {
                 stdout,
@@ -388,10 +390,10 @@ impl Child {
             } = self;
             tokio::select! {
                 biased;
-                got = from_pipe(stdout) => stdout.hear(got, &mut self.heard),
-                got = from_pipe(stderr) => stderr.hear(got, &mut self.heard),
+                got = from_pipe(stdout) => stdout.hear(got, &mut self.events),
+                got = from_pipe(stderr) => stderr.hear(got, &mut self.events),
                 () = moved(channel.as_ref(), !unsent.is_empty()) => self.hear_channel(),
-                ended = ended(end) => return Said::Ended(ended),
+                ended = ended(end) => return Event::Ended(ended),
             }
         }
     }

@@ -3,6 +3,7 @@
 //! This process is the subreaper of all programs: whoever loses its parent becomes our child, so what lives below us is
 //! what has to go. A program with a user of its own cannot even outrun the search: one kill(2) takes all of that user.
 
+use crate::error::Error;
 use crate::limits;
 use nix::errno::Errno;
 use nix::sys::prctl;
@@ -16,16 +17,16 @@ use std::os::unix::fs::MetadataExt;
 /// may not: there the robot works all the same, and says what it cannot promise.
 ///
 /// # Errors
-/// In words: the kernel refuses.
-pub fn adopt_orphans() -> Result<(), String> {
+/// The kernel refuses.
+pub fn adopt_orphans() -> Result<(), Error> {
     match prctl::set_child_subreaper(true) {
         Err(Errno::EINVAL) => {
-            crate::log::tell(
+            crate::log::report(
                 "this system has no PR_SET_CHILD_SUBREAPER: processes that leave their program outlive it",
             );
             Ok(())
         }
-        other => other.map_err(|error| format!("no subreaper: {error}")),
+        other => other.map_err(|error| Error::Subreaper(error.into())),
     }
 }
 
@@ -140,13 +141,13 @@ pub fn sweep(ancestor: Pid, spared: &[Pid]) -> usize {
 ///
 /// # Errors
 /// This process is root: then everything on the machine would go.
-pub fn own_user() -> Result<(), String> {
+pub fn own_user() -> Result<(), Error> {
     if Uid::effective().is_root() || Uid::current().is_root() {
-        return Err("kill-user is for the user of programs, and never for root".to_owned());
+        return Err(Error::KillUserAsRoot);
     }
     match kill(Pid::from_raw(-1), Signal::SIGKILL) {
         Ok(()) | Err(Errno::ESRCH) => Ok(()),
-        Err(error) => Err(format!("kill-user: {error}")),
+        Err(error) => Err(Error::KillUser(error.into())),
     }
 }
 

@@ -3,6 +3,7 @@
 //! What the hidden command `launch` does. Owns what a program may have; knows no languages.
 
 use super::{child, kill};
+use crate::error::Error;
 use crate::priority::{self, Rank};
 use clap::Args;
 use nix::sys::prctl;
@@ -43,31 +44,22 @@ pub struct Launch {
 
 impl Launch {
     /// Becomes the program; returns only why not.
-    pub fn become_program(&self) -> String {
+    pub fn become_program(&self) -> Error {
         if let Err(error) = self.prepare() {
-            return format!("the program cannot be given its limits: {error}");
+            return Error::Launch(error.into());
         }
         if getppid().as_raw() != self.parent {
-            return "the daemon that started this program is gone".to_owned();
+            return Error::DaemonGone;
         }
         let Some((program, arguments)) = self.program.split_first() else {
-            return "no program is named".to_owned();
+            return Error::NoProgram;
         };
         let mut command = Command::new(program);
         if program == child::SELF {
             command.arg0(child::NAME);
         }
         let error = command.args(arguments).exec();
-        let hint = match error.raw_os_error() {
-            Some(libc::ENOEXEC) => ": it is made for another processor, or is no program",
-            Some(libc::ENOENT) => ": it is not there, or what its first line names is not",
-            Some(libc::EACCES) => ": it may not be executed by the user of programs",
-            _ => "",
-        };
-        format!(
-            "{} cannot be started: {error}{hint}",
-            program.to_string_lossy()
-        )
+        Error::Execute(program.to_string_lossy().into_owned(), error.into())
     }
 
     fn prepare(&self) -> nix::Result<()> {

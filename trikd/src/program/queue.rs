@@ -72,7 +72,7 @@ pub struct Programs {
 
 impl Programs {
     /// Asks for something; waits while too much is asked for already. A stop makes everything before it pointless.
-    pub async fn tell(&self, command: Command) {
+    pub async fn send(&self, command: Command) {
         if matches!(command, Command::Stop(_) | Command::Quit(_)) {
             self.queue
                 .borrow_mut()
@@ -86,8 +86,8 @@ impl Programs {
         self.filled.notify_one();
     }
 
-    /// As [`Programs::tell`] for what may be lost when too much is asked for.
-    pub fn offer(&self, command: Command) {
+    /// As [`Programs::send`] for what may be lost when too much is asked for.
+    pub fn try_send(&self, command: Command) {
         let mut queue = self.queue.borrow_mut();
         if queue.len() < limits::COMMANDS {
             queue.push_back(command);
@@ -153,10 +153,10 @@ mod tests {
             .build()
             .unwrap();
         runtime.block_on(async {
-            programs.tell(Command::Run("a".into())).await;
-            programs.tell(Command::Direct("b".to_owned())).await;
-            programs.tell(Command::Stop("somebody")).await;
-            programs.tell(Command::Script("c".to_owned())).await;
+            programs.send(Command::Run("a".into())).await;
+            programs.send(Command::Direct("b".to_owned())).await;
+            programs.send(Command::Stop("somebody")).await;
+            programs.send(Command::Script("c".to_owned())).await;
         });
         assert_eq!(waiting(&programs), ["Stop(\"somebody\")", "Script(\"c\")"]);
     }
@@ -164,7 +164,7 @@ mod tests {
     #[test]
     fn what_may_be_lost_is_lost_when_too_much_waits() {
         let programs = Programs::default();
-        (0..2 * limits::COMMANDS).for_each(|_| programs.offer(Command::Mail(1, String::new())));
+        (0..2 * limits::COMMANDS).for_each(|_| programs.try_send(Command::Mail(1, String::new())));
         assert_eq!(waiting(&programs).len(), limits::COMMANDS);
     }
 }

@@ -3,16 +3,71 @@
 //! Owns that thread and the open file `stop`. A device that hangs delays the thread, and others wait for it as long as
 //! they like.
 
+use crate::error::Os;
 use crate::limits;
 use crate::priority::{self, Rank};
 use crate::tree::{Access, Tree};
+use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::Duration;
 use tokio::sync::oneshot;
 
-type Answer = oneshot::Sender<Result<(), String>>;
+type Answer = oneshot::Sender<Result<(), Failure>>;
+
+/// Why not everything is at rest, as far as anybody knows. The tree, or its mount, is to blame.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum Failure {
+    /// None is mounted there.
+    NoTree(PathBuf),
+    /// It is not served any more.
+    Gone(PathBuf),
+    /// An actuator, or the tree itself.
+    Tree(PathBuf, Os),
+    /// It has not answered within so many milliseconds.
+    Late(u64),
+}
+
+impl Failure {
+    /// What a failed write of `stop` means.
+    pub fn of(root: &Path, error: io::Error) -> Self {
+        let root = root.to_owned();
+        match error.raw_os_error() {
+            Some(libc::ENOENT) => Self::NoTree(root),
+            Some(libc::ENOTCONN | libc::ECONNABORTED | libc::ENODEV) => Self::Gone(root),
+            Some(_) | None => Self::Tree(root, error.into()),
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoTree(root) => write!(
+                out,
+                "there is no tree at {}: start it with `trikfs mount`",
+                root.display()
+            ),
+            Self::Gone(root) => write!(
+                out,
+                "the tree at {} is gone: its guardian brings the motors to rest",
+                root.display()
+            ),
+            Self::Tree(root, os) => {
+                write!(
+                    out,
+                    "not everything is at rest: {}/stop: {os}",
+                    root.display()
+                )
+            }
+            Self::Late(wait_ms) => write!(
+                out,
+                "the tree has not brought the motors to rest within {wait_ms} ms"
+            ),
+        }
+    }
+}
 
 /// The way to the thread.
 #[derive(Debug)]
@@ -37,14 +92,10 @@ impl Rest {
     /// Brings everything that moves to rest; returns when it is there, or after `wait_ms`, when it is still on its way.
     ///
     /// # Errors
-    /// In words: there is no tree, it does not answer, an actuator fails.
-    pub async fn now(&self, wait_ms: u64) -> Result<(), String> {
+    /// There is no tree, it does not answer, an actuator fails.
+    pub async fn now(&self, wait_ms: u64) -> Result<(), Failure> {
         let (answer, done) = oneshot::channel();
-        let late = || {
-            Err(format!(
-                "the tree has not brought the motors to rest within {wait_ms} ms"
-            ))
-        };
+        let late = || Err(Failure::Late(wait_ms));
         if self.ask.try_send(answer).is_err() {
             return late();
         }
@@ -62,26 +113,14 @@ fn serve(root: &Path, asked: &Receiver<Answer>) {
     while let Ok(first) = asked.recv() {
         // Whoever asked meanwhile is served by the same write.
         let others: Vec<_> = asked.try_iter().collect();
-        let done = stop.write("1\n").map_err(|error| explain(root, &error));
+        let done = stop.write("1\n").map_err(|error| Failure::of(root, error));
         for answer in std::iter::once(first).chain(others) {
             let _ = answer.send(done.clone());
         }
     }
 }
 
-/// What a failed write of `stop` means.
-pub fn explain(root: &Path, error: &io::Error) -> String {
-    let root = root.display();
-    match error.raw_os_error() {
-        Some(libc::ENOENT) => format!("there is no tree at {root}: start it with `trikfs mount`"),
-        Some(libc::ENOTCONN | libc::ECONNABORTED | libc::ENODEV) => {
-            format!("the tree at {root} is gone: its guardian brings the motors to rest")
-        }
-        _ => format!("not everything is at rest: {root}/stop: {error}"),
-    }
-}
-
-/// Whether a text is one of [`explain`]: after a stop something may still move.
+/// Whether a text is one of [`Failure::of`]: after a stop something may still move.
 pub fn is_explained(text: &str) -> bool {
     let beginnings = [
         "there is no tree at ",
@@ -99,7 +138,8 @@ mod tests {
     #[test]
     fn every_failure_is_told_so_that_it_is_known_as_one() {
         for code in [libc::ENOENT, libc::ENOTCONN, libc::EIO] {
-            let text = explain(Path::new("/t"), &io::Error::from_raw_os_error(code));
+            let error = io::Error::from_raw_os_error(code);
+            let text = Failure::of(Path::new("/t"), error).to_string();
             assert!(is_explained(&text), "{text}");
         }
         assert!(!is_explained("x.js was stopped by a client after 0.1 s"));
@@ -116,7 +156,7 @@ mod tests {
         let why = runtime
             .block_on(rest.now(limits::REST_LAST_MS))
             .unwrap_err();
-        assert!(why.contains("there is no tree at"), "{why}");
+        assert_eq!(why, Failure::NoTree(scratch.path().to_owned()));
         let stop = scratch.file("stop", "");
         runtime.block_on(rest.now(limits::REST_LAST_MS)).unwrap();
         assert_eq!(std::fs::read_to_string(stop).unwrap(), "1\n");

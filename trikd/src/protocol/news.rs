@@ -40,7 +40,7 @@ impl End<'_> {
     }
 
     /// The sentence about a program of this name that has run for so long.
-    pub fn tell(self, name: &str, seconds: f64) -> String {
+    pub fn describe(self, name: &str, seconds: f64) -> String {
         let after = Seconds(seconds);
         match self {
             Self::Well => format!("{name} has ended {after}"),
@@ -64,7 +64,7 @@ impl fmt::Display for Seconds {
     }
 }
 
-/// What [`End::tell`] said about the program of this name; None: it is about something else.
+/// What [`End::describe`] said about the program of this name; None: it is about something else.
 pub fn ended<'a>(text: &'a str, name: &str) -> Option<End<'a>> {
     let rest = text.strip_prefix(name)?.strip_prefix(' ')?;
     if let Some(why) = rest.strip_prefix("was stopped after ") {
@@ -107,7 +107,7 @@ pub fn last(end: &str) -> String {
 pub struct Status<'a> {
     /// The program that runs: its name, and more about it.
     pub runs: Option<&'a str>,
-    /// How the last one ended, as [`End::tell`] said it.
+    /// How the last one ended, as [`End::describe`] said it.
     pub last: Option<&'a str>,
 }
 
@@ -145,12 +145,15 @@ mod tests {
             End::Stopped("the day after 3 s"),
             End::Greedy("it had 70 processes, and 64 are allowed"),
         ] {
-            let text = end.tell("a b.js", 1.25);
+            let text = end.describe("a b.js", 1.25);
             assert_eq!(ended(&text, "a b.js"), Some(end), "{text}");
             assert_eq!(ended(&text, "b.js"), None, "{text}");
             assert_eq!(ended(&text, "a"), None, "{text}");
         }
-        assert_eq!(End::Well.tell("x.js", 1.26), "x.js has ended after 1.3 s");
+        assert_eq!(
+            End::Well.describe("x.js", 1.26),
+            "x.js has ended after 1.3 s"
+        );
         let text = format!("{}{}", running(NONE), last("x.js has ended after 1.0 s"));
         let idle = Status {
             runs: None,

@@ -454,8 +454,8 @@ class _Helper:
                                                  stdin=subprocess.PIPE, stdout=subprocess.PIPE)
             self._process.stdin.write(line)
             self._process.stdin.flush()
-            word, _, rest = self._process.stdout.readline().decode('utf-8', 'replace').strip().partition(' ')
-            if word == 'ok':
+            state, _, rest = self._process.stdout.readline().decode('utf-8', 'replace').strip().partition(' ')
+            if state == 'ok':
                 return self._process.stdout.read(int(rest))
         raise OSError(rest or 'trikd draw has ended')
 

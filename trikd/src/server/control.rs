@@ -1,31 +1,54 @@
 //! Port 8888: programs come, are started and stopped; what they say goes to all clients here.
 
 use super::Guest;
-use crate::clients::{Client, Watching};
-use crate::connection::{self, Handler, VERSION};
-use crate::daemon::Daemon;
-use crate::feedback::Moment;
+use crate::access::Access;
+use crate::clients::{Client, Clients, Watching};
+use crate::connection::{self, Handler, Held, VERSION};
+use crate::feedback::{Feedback, Moment};
 use crate::outbox::Outbox;
-use crate::program::Command;
+use crate::program::{Command, Programs};
 use crate::protocol::control::Request;
 use crate::protocol::news;
 use crate::{limits, log, scripts};
+use std::path::PathBuf;
 use std::rc::Rc;
 use tokio::sync::oneshot;
 
-struct Control {
-    daemon: Rc<Daemon>,
+/// What this port works with.
+#[derive(Debug)]
+pub struct Control {
+    /// Who is paired.
+    pub access: Rc<Access>,
+    /// The register of connections.
+    pub clients: Rc<Clients>,
+    /// Bytes of half frames.
+    pub held: Rc<Held>,
+    /// Whoever runs programs.
+    pub programs: Rc<Programs>,
+    /// Who beeps after an upload.
+    pub feedback: Rc<Feedback>,
+    /// The folder of programs.
+    pub scripts: PathBuf,
+    /// The greatest frame.
+    pub upload_bytes: usize,
+    /// The model of the controller.
+    pub config_version: String,
+}
+
+/// One connection.
+struct Session {
+    control: Rc<Control>,
     client: Rc<Client>,
 }
 
-impl Control {
+impl Session {
     fn error(&self, text: &str) {
         self.client.outbox.send(format!("error: {text}").as_bytes());
     }
 
     /// Whether this computer may do more than look; says so if not.
     fn may_control(&self) -> bool {
-        let may = self.daemon.access.may_control(self.client.peer.ip());
+        let may = self.control.access.may_control(self.client.peer.ip());
         if !may {
             tracing::warn!(target: log::CLIENTS, "control: {} is not paired", self.client.peer);
             self.error(news::NOT_PAIRED);
@@ -35,14 +58,14 @@ impl Control {
 
     /// Programs in the order in which they came.
     async fn command(&self, command: Command) {
-        self.daemon.clients.takes_control(self.client.peer);
-        self.daemon.programs.tell(command).await;
+        self.control.clients.takes_control(self.client.peer);
+        self.control.programs.send(command).await;
     }
 
     /// What runs, when everything is done that was asked for before.
     async fn status(&self) {
         let (answer, told) = oneshot::channel();
-        self.daemon.programs.tell(Command::Ask(answer)).await;
+        self.control.programs.send(Command::Ask(answer)).await;
         if let Ok(text) = told.await {
             self.client
                 .outbox
@@ -50,15 +73,26 @@ impl Control {
         }
     }
 
+    async fn run(&self, name: &[u8]) {
+        match scripts::find(&self.control.scripts, name) {
+            Ok(path) => self.command(Command::Run(path)).await,
+            Err(why) => {
+                // What runs ends all the same: the person wants to see something else.
+                self.command(Command::Stop("a client")).await;
+                self.error(&why.to_string());
+            }
+        }
+    }
+
     async fn keep(&self, name: &[u8], content: &[u8]) {
-        let folder = self.daemon.settings.scripts.clone();
+        let folder = self.control.scripts.clone();
         let (name, content) = (name.to_owned(), content.to_owned());
         // A disk may be slow; everybody else is served meanwhile.
         let kept =
             tokio::task::spawn_blocking(move || scripts::keep(&folder, &name, &content)).await;
         match kept {
             Ok(Ok(path)) => {
-                self.daemon.feedback.show(Moment::Uploaded);
+                self.control.feedback.show(Moment::Uploaded);
                 tracing::info!(
                     target: log::PROGRAMS,
                     "{} is uploaded by {}",
@@ -68,7 +102,7 @@ impl Control {
             }
             Ok(Err(why)) => {
                 tracing::warn!(target: log::PROGRAMS, "an upload by {} is refused: {why}", self.client.peer);
-                self.error(&why);
+                self.error(&why.to_string());
             }
             Err(error) => self.error(&format!("{}{error}", news::UPLOAD_FAILED)),
         }
@@ -79,7 +113,7 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-impl Handler for Control {
+impl Handler for Session {
     async fn frame(&mut self, frame: &[u8]) {
         self.client.count();
         let request = Request::parse(frame);
@@ -91,41 +125,44 @@ impl Handler for Control {
             String::from_utf8_lossy(begin)
         );
         match request {
-            Request::Keepalive | Request::Unknown => return,
-            Request::Version => return self.client.outbox.send(VERSION),
+            // What is unknown has no answer, as on the robots of old.
+            Request::Keepalive | Request::Unknown => {}
+            Request::Version => self.client.outbox.send(VERSION),
             Request::ConfigVersion => {
-                let answer = format!("configVersion: {}", self.daemon.settings.config_version);
-                return self.client.outbox.send(answer.as_bytes());
+                let answer = format!("configVersion: {}", self.control.config_version);
+                self.client.outbox.send(answer.as_bytes());
             }
-            Request::Status => return self.status().await,
+            Request::Status => self.status().await,
             Request::Watch(is_wanted) => {
                 let watching = if is_wanted {
                     Watching::Lines
                 } else {
                     Watching::No
                 };
-                return self.client.watch(watching);
+                self.client.watch(watching);
             }
             // Whoever sees danger may stop the robot.
-            Request::Stop => return self.command(Command::Stop("a client")).await,
-            _ => {}
-        }
-        if !self.may_control() {
-            return;
-        }
-        match request {
-            Request::File { name, content } => self.keep(name, content).await,
-            Request::Run(name) => match scripts::find(&self.daemon.settings.scripts, name) {
-                Ok(path) => self.command(Command::Run(path)).await,
-                Err(why) => {
-                    // What runs ends all the same: the person wants to see something else.
-                    self.command(Command::Stop("a client")).await;
-                    self.error(&why);
+            Request::Stop => self.command(Command::Stop("a client")).await,
+            Request::File { name, content } => {
+                if self.may_control() {
+                    self.keep(name, content).await;
                 }
-            },
-            Request::DirectScript(code) => self.command(Command::Script(text(code))).await,
-            Request::Direct(code) => self.command(Command::Direct(text(code))).await,
-            _ => {}
+            }
+            Request::Run(name) => {
+                if self.may_control() {
+                    self.run(name).await;
+                }
+            }
+            Request::DirectScript(code) => {
+                if self.may_control() {
+                    self.command(Command::Script(text(code))).await;
+                }
+            }
+            Request::Direct(code) => {
+                if self.may_control() {
+                    self.command(Command::Direct(text(code))).await;
+                }
+            }
         }
     }
 
@@ -135,19 +172,18 @@ impl Handler for Control {
 }
 
 /// Serves one client.
-pub async fn serve(daemon: Rc<Daemon>, guest: Guest) {
+pub async fn serve(control: Rc<Control>, guest: Guest) {
     let outbox = Rc::new(Outbox::new(limits::OUTBOX_BYTES));
-    let client = daemon.clients.add("control", guest.peer, outbox.clone());
+    let client = control.clients.add("control", guest.peer, outbox.clone());
     tracing::info!(target: log::CLIENTS, "control: {} has come", guest.peer);
-    let frame_bytes = usize::from(daemon.settings.upload_mib) << 20;
-    let mut handler = Control {
-        daemon: daemon.clone(),
+    let mut handler = Session {
+        control: control.clone(),
         client,
     };
     let why = connection::serve(
         guest.stream,
-        frame_bytes,
-        &daemon.held,
+        control.upload_bytes,
+        &control.held,
         &outbox,
         &mut handler,
     )

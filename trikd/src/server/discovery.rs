@@ -3,12 +3,10 @@
 //! Owns one socket and its memberships. Without it everything else works: addresses can be typed.
 
 use super::mailbox::local_ip;
-use crate::daemon::Daemon;
 use crate::protocol::dns::{Robot, label, questions};
 use socket2::{Domain, InterfaceIndexOrAddress, Protocol, SockRef, Socket, Type};
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, SocketAddrV4};
-use std::rc::Rc;
 use std::time::Duration;
 use tokio::net::UdpSocket;
 
@@ -42,21 +40,31 @@ fn join(socket: &UdpSocket) {
     }
 }
 
+/// What is told of this robot.
+#[derive(Clone, Debug)]
+pub struct About {
+    /// Its name; None: the name of the host.
+    pub name: Option<String>,
+    /// The model of the controller.
+    pub config_version: String,
+    /// The control port.
+    pub port: u16,
+}
+
 /// Answers for ever.
 ///
 /// # Errors
 /// There is no socket.
-pub async fn answer(daemon: Rc<Daemon>, port: u16) -> io::Result<()> {
+pub async fn answer(about: About) -> io::Result<()> {
     let socket = open()?;
-    let name = daemon.settings.name.clone();
     let host = || {
         let name = std::fs::read_to_string("/proc/sys/kernel/hostname").ok()?;
         Some(name.trim().to_owned())
     };
-    let name = label(&name.or_else(host).unwrap_or_default());
-    let about = vec![
+    let name = label(&about.name.or_else(host).unwrap_or_default());
+    let records = vec![
         "version=3.1.4".to_owned(),
-        format!("config={}", daemon.settings.config_version),
+        format!("config={}", about.config_version),
     ];
     let mut buffer = [0; 1500];
     let mut networks = tokio::time::interval(Duration::from_millis(JOIN_MS));
@@ -80,8 +88,8 @@ pub async fn answer(daemon: Rc<Daemon>, port: u16) -> io::Result<()> {
         let robot = Robot {
             name: name.clone(),
             ip,
-            port,
-            about: about.clone(),
+            port: about.port,
+            about: records.clone(),
         };
         // Who asks from another port is no responder and takes an answer with the number of its question (RFC 6762, 6.7).
         let is_simple = from.port() != PORT;

@@ -4,8 +4,8 @@
 //! when it leaves or falls silent. Every line winds the clock, and any number of gamepads may be there.
 
 use super::Guest;
-use crate::clients::Client;
-use crate::daemon::Daemon;
+use crate::access::Access;
+use crate::clients::{Client, Clients};
 use crate::outbox::Outbox;
 use crate::protocol::gamepad::{Line, Lines};
 use crate::{limits, log};
@@ -65,9 +65,20 @@ impl Pipe {
     }
 }
 
+/// What this port works with.
+#[derive(Debug)]
+pub struct Gamepads {
+    /// Who is paired.
+    pub access: Rc<Access>,
+    /// The register of connections.
+    pub clients: Rc<Clients>,
+    /// Where the lines go.
+    pub pipe: Pipe,
+}
+
 /// What one gamepad does and holds.
 struct Gamepad {
-    daemon: Rc<Daemon>,
+    gamepads: Rc<Gamepads>,
     client: Rc<Client>,
     /// When each button is released.
     buttons: [Option<Instant>; 5],
@@ -82,11 +93,11 @@ struct Gamepad {
 
 impl Gamepad {
     fn pass(&mut self, text: &str) {
-        if let Err(error) = self.daemon.gamepad_pipe.line(text)
+        if let Err(error) = self.gamepads.pipe.line(text)
             && !self.complained
         {
             self.complained = true;
-            let path = self.daemon.settings.gamepad_fifo.display();
+            let path = self.gamepads.pipe.path.display();
             let hint = if error.raw_os_error() == Some(libc::ENXIO) {
                 ": nobody reads it; is the tree mounted?"
             } else {
@@ -188,25 +199,27 @@ impl Gamepad {
 }
 
 /// Serves one gamepad.
-pub async fn serve(daemon: Rc<Daemon>, guest: Guest) {
+pub async fn serve(gamepads: Rc<Gamepads>, guest: Guest) {
     let Guest {
         mut stream,
         peer,
         seat,
     } = guest;
     // Driving is control.
-    if !daemon.access.may_control(peer.ip()) {
+    if !gamepads.access.may_control(peer.ip()) {
         tracing::warn!(
             target: log::CLIENTS,
             "gamepad: {peer} is not paired: press Enter on the robot, then connect again"
         );
         return;
     }
-    let client = daemon.clients.add("gamepad", peer, Rc::new(Outbox::new(0)));
+    let client = gamepads
+        .clients
+        .add("gamepad", peer, Rc::new(Outbox::new(0)));
     tracing::info!(target: log::CLIENTS, "gamepad: {peer} has come");
     let now = Instant::now();
     let mut gamepad = Gamepad {
-        daemon: daemon.clone(),
+        gamepads: gamepads.clone(),
         client,
         buttons: [None; 5],
         pads: [false; 2],

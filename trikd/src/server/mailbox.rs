@@ -3,12 +3,13 @@
 //! Owns the list of known robots, the open links to them, our hull number, and what is remembered of these. A robot is
 //! known by the address of its server; hull numbers need not be unique.
 
-use super::Guest;
-use crate::connection::{self, Handler, VERSION};
-use crate::daemon::Daemon;
+use super::{Guest, Seats};
+use crate::clients::Clients;
+use crate::connection::{self, Handler, Held, VERSION};
 use crate::outbox::Outbox;
-use crate::program::Command;
+use crate::program::{Command, Programs};
 use crate::protocol::mail::{Message, NOWHERE, plain};
+use crate::protocol::program::mailbox::Question;
 use crate::scripts;
 use crate::{limits, log};
 use std::cell::{Cell, RefCell};
@@ -16,7 +17,7 @@ use std::collections::VecDeque;
 use std::fmt::Write;
 use std::net::{IpAddr, SocketAddr, UdpSocket};
 use std::path::{Path, PathBuf};
-use std::rc::{Rc, Weak};
+use std::rc::Rc;
 use std::time::Duration;
 use tokio::net::{TcpSocket, TcpStream};
 use tokio::time::{Instant, sleep, timeout};
@@ -41,12 +42,27 @@ struct Robot {
     link: Option<Rc<Link>>,
 }
 
+/// What the mailbox works with.
+#[derive(Debug)]
+pub struct Surroundings {
+    /// The register of connections, and who hears of messages.
+    pub clients: Rc<Clients>,
+    /// Bytes of half frames.
+    pub held: Rc<Held>,
+    /// Connections on all ports.
+    pub seats: Rc<Seats>,
+    /// Whoever runs programs, to which messages go.
+    pub programs: Rc<Programs>,
+    /// Addresses that this robot serves at; none: all.
+    pub addresses: Vec<IpAddr>,
+}
+
 /// The mailbox of this robot.
 #[derive(Debug)]
 pub struct Mailbox {
-    /// Whom tasks belong to; set when the daemon is whole.
-    daemon: RefCell<Weak<Daemon>>,
+    around: Surroundings,
     file: PathBuf,
+    /// Of its server; None: this robot has none, sends nothing and remembers nothing.
     port: Cell<Option<u16>>,
     hull: Cell<i32>,
     /// The robot that was joined.
@@ -99,11 +115,11 @@ fn read(file: &Path) -> (i32, Option<SocketAddr>) {
 }
 
 impl Mailbox {
-    /// Remembers in `file`.
-    pub fn new(file: &Path) -> Self {
+    /// Remembers in `file`. Nothing is sent before [`Mailbox::open`].
+    pub fn new(file: &Path, around: Surroundings) -> Self {
         let (hull, server) = read(file);
         Self {
-            daemon: RefCell::new(Weak::new()),
+            around,
             file: file.to_owned(),
             port: Cell::new(None),
             hull: Cell::new(hull),
@@ -116,8 +132,7 @@ impl Mailbox {
     }
 
     /// Begins to work, and joins again whom it had joined.
-    pub fn open(&self, daemon: &Rc<Daemon>, port: u16) {
-        *self.daemon.borrow_mut() = Rc::downgrade(daemon);
+    pub fn open(self: &Rc<Self>, port: u16) {
         self.port.set(Some(port));
         if let Some(server) = self.server.get() {
             self.join(server, limits::REJOIN_TRIES);
@@ -126,7 +141,7 @@ impl Mailbox {
 
     /// Remembers the hull number and the robot that was joined, if they are others than before. A disk may be slow and a
     /// program may change them all the time, so a task writes what is newest then, and nobody waits for it.
-    fn save(&self) {
+    fn save(self: &Rc<Self>) {
         let mut text = format!("hullNumber={}\n", self.hull.get());
         if let Some(server) = self.server.get() {
             let _ = writeln!(text, "server={server}");
@@ -135,11 +150,9 @@ impl Mailbox {
             return;
         }
         self.saved.replace(text);
-        let Some(daemon) = self.daemon.borrow().upgrade() else {
-            return;
-        };
-        if !self.is_saving.replace(true) {
-            tokio::task::spawn_local(async move { daemon.mailbox.write().await });
+        if self.port.get().is_some() && !self.is_saving.replace(true) {
+            let mailbox = self.clone();
+            tokio::task::spawn_local(async move { mailbox.write().await });
         }
     }
 
@@ -196,67 +209,58 @@ impl Mailbox {
     }
 
     /// The answer to a question of a program; empty if there is nothing to say.
-    pub fn answer(&self, words: &str) -> String {
-        let (word, rest) = words.split_once(' ').unwrap_or((words, ""));
-        let mut fields = rest.split_ascii_whitespace();
-        match word {
-            "send" => {
-                let (hull, text) = rest.split_once(' ').unwrap_or((rest, ""));
-                self.send(hull.parse().unwrap_or(UNKNOWN_HULL), text);
-            }
-            "connect" | "join" => {
-                let ip = fields.next().and_then(|ip| ip.parse().ok());
-                // Without a port, that of our own server, as on the robots of old.
-                let port = fields
-                    .next()
-                    .and_then(|port| port.parse().ok())
-                    .or(self.port.get());
-                if let Some(hull) = fields
-                    .next()
-                    .and_then(|hull| hull.parse().ok())
-                    .filter(|hull| *hull >= 0)
-                {
+    pub fn answer(self: &Rc<Self>, words: &str) -> String {
+        let flag = |holds: bool| u8::from(holds).to_string();
+        let Some(question) = Question::parse(words) else {
+            return String::new();
+        };
+        match question {
+            Question::Send { hull, text } => self.send(hull.unwrap_or(UNKNOWN_HULL), text),
+            Question::Connect { address, port } => self.join_new(address, port),
+            Question::Join {
+                address,
+                port,
+                hull,
+            } => {
+                if hull >= 0 {
                     self.set_hull(hull);
                 }
-                if let (Some(ip), Some(port)) = (ip, port) {
-                    let server = SocketAddr::new(plain(ip), port);
-                    self.server.set(Some(server));
-                    self.save();
-                    self.join(server, limits::JOIN_TRIES);
-                }
+                self.join_new(address, u16::try_from(port).ok());
             }
-            "hull" => match fields.next().map(str::parse) {
-                Some(Ok(hull)) => self.set_hull(hull),
-                _ => return self.hull.get().to_string(),
-            },
-            "server" => {
-                return self
-                    .server
-                    .get()
-                    .map_or_else(String::new, |server| server.ip().to_string());
+            Question::SetHull(hull) => self.set_hull(hull),
+            Question::Hull => return self.hull.get().to_string(),
+            Question::Server => {
+                let server = self.server.get();
+                return server.map_or_else(String::new, |server| server.ip().to_string());
             }
-            "ip" => {
-                let daemon = self.daemon.borrow().upgrade();
-                let named = daemon.and_then(|daemon| daemon.settings.address.first().copied());
+            Question::Ip => {
+                let named = self.port.get().and(self.around.addresses.first().copied());
                 let named = named.filter(|ip| !ip.is_unspecified());
                 return named.unwrap_or_else(own_ip).to_string();
             }
-            "connected" => {
-                return u8::from(
-                    self.robots
-                        .borrow()
-                        .iter()
-                        .any(|robot| robot.link.is_some()),
-                )
-                .to_string();
+            Question::Connected => {
+                let robots = self.robots.borrow();
+                return flag(robots.iter().any(|robot| robot.link.is_some()));
             }
-            "enabled" => return u8::from(self.port.get().is_some()).to_string(),
-            _ => {}
+            Question::Enabled => return flag(self.port.get().is_some()),
+            // Our own address is looked for whenever somebody asks.
+            Question::Renew => {}
         }
         String::new()
     }
 
-    fn set_hull(&self, hull: i32) {
+    /// Joins a robot and remembers that; without a port, that of our own server, as on the robots of old.
+    fn join_new(self: &Rc<Self>, address: &str, port: Option<u16>) {
+        let ip = address.parse().ok();
+        if let (Some(ip), Some(port)) = (ip, port.or(self.port.get())) {
+            let server = SocketAddr::new(plain(ip), port);
+            self.server.set(Some(server));
+            self.save();
+            self.join(server, limits::JOIN_TRIES);
+        }
+    }
+
+    fn set_hull(self: &Rc<Self>, hull: i32) {
         self.hull.set(hull);
         self.save();
         let Some(port) = self.port.get() else { return };
@@ -273,7 +277,7 @@ impl Mailbox {
     }
 
     /// Sends to all robots with this hull number, or to all.
-    fn send(&self, hull: i32, text: &str) {
+    fn send(self: &Rc<Self>, hull: i32, text: &str) {
         let fits = |robot: &Robot| hull == UNKNOWN_HULL || robot.hull == hull;
         let all: Vec<_> = self
             .robots
@@ -288,19 +292,19 @@ impl Mailbox {
     }
 
     /// Says something to one robot, over a new connection if there is none.
-    fn say(&self, server: SocketAddr, message: &Message) {
+    fn say(self: &Rc<Self>, server: SocketAddr, message: &Message) {
         if let Some(outbox) = self.link(server, limits::JOIN_TRIES) {
             outbox.send(message.to_string().as_bytes());
         }
     }
 
-    fn join(&self, server: SocketAddr, tries: u32) {
+    fn join(self: &Rc<Self>, server: SocketAddr, tries: u32) {
         let _ = self.link(server, tries);
     }
 
     /// What waits for one robot: of the open link, or of one that is made now and begins with `register`.
-    fn link(&self, server: SocketAddr, tries: u32) -> Option<Rc<Outbox>> {
-        let (daemon, port) = (self.daemon.borrow().upgrade()?, self.port.get()?);
+    fn link(self: &Rc<Self>, server: SocketAddr, tries: u32) -> Option<Rc<Outbox>> {
+        let port = self.port.get()?;
         let index = self.meet(server, None)?;
         let mut robots = self.robots.borrow_mut();
         if let Some(link) = &robots[index].link {
@@ -320,7 +324,7 @@ impl Mailbox {
             local: Cell::new(NOWHERE),
         });
         robots[index].link = Some(link.clone());
-        tokio::task::spawn_local(connect(daemon, server, link, tries));
+        tokio::task::spawn_local(connect(self.clone(), server, link, tries));
         Some(outbox)
     }
 
@@ -357,7 +361,7 @@ impl Mailbox {
     }
 
     /// A robot has come and says who it is.
-    fn register(&self, server: SocketAddr, hull: i32, link: &Rc<Link>) {
+    fn register(self: &Rc<Self>, server: SocketAddr, hull: i32, link: &Rc<Link>) {
         // Behind one connection is one robot: a crowd of them would have everybody connect to everybody.
         if self.is_another(server, link) {
             return;
@@ -466,7 +470,7 @@ impl Mailbox {
 }
 
 struct Mails {
-    daemon: Rc<Daemon>,
+    mailbox: Rc<Mailbox>,
     link: Rc<Link>,
     /// The other end of the connection.
     peer: SocketAddr,
@@ -477,50 +481,56 @@ impl Handler for Mails {
         if frame == b"version" {
             return self.link.outbox.send(VERSION);
         }
-        let mailbox = &self.daemon.mailbox;
+        let mailbox = &self.mailbox;
         let port = mailbox.port.get().unwrap_or_default();
         let is_self = |ip: IpAddr, other: u16| ip == self.link.local.get() && other == port;
         match Message::parse(frame) {
-            Message::Register { port, hull } if !is_self(self.peer.ip(), port) => {
-                mailbox.register(SocketAddr::new(self.peer.ip(), port), hull, &self.link);
+            Message::Register { port, hull } => {
+                if !is_self(self.peer.ip(), port) {
+                    mailbox.register(SocketAddr::new(self.peer.ip(), port), hull, &self.link);
+                }
             }
-            Message::Connection { ip, port, hull } if !is_self(ip, port) => {
-                mailbox.meet(SocketAddr::new(plain(ip), port), Some(hull));
+            Message::Connection { ip, port, hull } => {
+                if !is_self(ip, port) {
+                    mailbox.meet(SocketAddr::new(plain(ip), port), Some(hull));
+                }
             }
             Message::Own(hull) => mailbox.learn_hull(&self.link, hull),
             Message::Data(text) => {
                 let hull = mailbox.hull_of(&self.link);
-                self.daemon
+                let around = &mailbox.around;
+                around
                     .clients
                     .broadcast(format!("mail: sender: {hull} contents: {text}").as_bytes());
-                self.daemon.programs.offer(Command::Mail(hull, text));
+                around.programs.try_send(Command::Mail(hull, text));
             }
-            _ => {}
+            Message::Unknown => {}
         }
     }
 }
 
-async fn converse(daemon: &Rc<Daemon>, stream: TcpStream, peer: SocketAddr, link: &Rc<Link>) {
+async fn converse(mailbox: &Rc<Mailbox>, stream: TcpStream, peer: SocketAddr, link: &Rc<Link>) {
     if let Ok(local) = stream.local_addr() {
         link.local.set(plain(local.ip()));
     }
-    let client = daemon.clients.add("mailbox", peer, link.outbox.clone());
+    let around = &mailbox.around;
+    let client = around.clients.add("mailbox", peer, link.outbox.clone());
     tracing::info!(target: log::CLIENTS, "mailbox: {peer} is connected");
     let mut handler = Mails {
-        daemon: daemon.clone(),
+        mailbox: mailbox.clone(),
         link: link.clone(),
         peer,
     };
     let why = connection::serve(
         stream,
         limits::SMALL_FRAME_BYTES,
-        &daemon.held,
+        &around.held,
         &link.outbox,
         &mut handler,
     )
     .await;
     tracing::info!(target: log::CLIENTS, "mailbox: {peer} has left: {why}");
-    daemon.mailbox.forget(link);
+    mailbox.forget(link);
     drop(client);
 }
 
@@ -542,17 +552,16 @@ async fn reach(own: &[IpAddr], server: SocketAddr) -> std::io::Result<TcpStream>
 }
 
 /// Connects to a robot; what waits for it is lost when it does not answer for so many tries.
-async fn connect(daemon: Rc<Daemon>, server: SocketAddr, link: Rc<Link>, tries: u32) {
+async fn connect(mailbox: Rc<Mailbox>, server: SocketAddr, link: Rc<Link>, tries: u32) {
     let wait = Duration::from_millis(limits::CONNECT_MS);
     for _ in 0..tries {
-        match timeout(wait, reach(&daemon.settings.address, server)).await {
+        match timeout(wait, reach(&mailbox.around.addresses, server)).await {
             Ok(Ok(stream)) => {
                 let _ = stream.set_nodelay(true);
-                let limit = usize::from(daemon.settings.connections);
-                let Ok(seat) = daemon.seats.take(limit, server.ip()) else {
+                let Ok(seat) = mailbox.around.seats.take(server.ip()) else {
                     break;
                 };
-                converse(&daemon, stream, server, &link).await;
+                converse(&mailbox, stream, server, &link).await;
                 return drop(seat);
             }
             Ok(Err(_)) => sleep(wait).await,
@@ -563,16 +572,16 @@ async fn connect(daemon: Rc<Daemon>, server: SocketAddr, link: Rc<Link>, tries: 
         target: log::CLIENTS,
         "mailbox: {server} does not answer: messages for it are lost"
     );
-    daemon.mailbox.forget(&link);
+    mailbox.forget(&link);
 }
 
 /// Serves a robot that has come.
-pub async fn serve(daemon: Rc<Daemon>, guest: Guest) {
+pub async fn serve(mailbox: Rc<Mailbox>, guest: Guest) {
     let outbox = Rc::new(Outbox::new(limits::OUTBOX_BYTES));
     let link = Rc::new(Link {
         outbox,
         local: Cell::new(NOWHERE),
     });
-    converse(&daemon, guest.stream, guest.peer, &link).await;
+    converse(&mailbox, guest.stream, guest.peer, &link).await;
     drop(guest.seat);
 }

@@ -1,11 +1,10 @@
 //! Port 10000, for this machine only: variables that the program shows to web pages, and where a diagram is.
 
 use super::Guest;
-use crate::clients::Watching;
-use crate::daemon::Daemon;
+use crate::clients::{Clients, Watching};
 use crate::limits;
 use crate::outbox::Outbox;
-use crate::program::Command;
+use crate::program::{Command, Programs};
 use crate::protocol::http::{Head, answer, parse};
 use std::io;
 use std::net::SocketAddr;
@@ -29,7 +28,7 @@ pub async fn head(stream: &mut TcpStream) -> Head {
             match parse(&bytes) {
                 Head::Partial if bytes.len() < limits::HTTP_HEAD_BYTES => {}
                 Head::Partial => return Head::Nonsense,
-                head => return head,
+                head @ (Head::Get { .. } | Head::OtherMethod | Head::Nonsense) => return head,
             }
         }
     };
@@ -39,14 +38,14 @@ pub async fn head(stream: &mut TcpStream) -> Head {
 }
 
 /// Tells where the running diagram is, one JSON object on each line, until the client leaves.
-async fn diagram(daemon: &Daemon, stream: &mut TcpStream, peer: SocketAddr) -> io::Result<()> {
+async fn diagram(clients: &Clients, stream: &mut TcpStream, peer: SocketAddr) -> io::Result<()> {
     stream
         .write_all(
             b"HTTP/1.0 200 OK\r\nContent-Type: application/x-ndjson\r\nConnection: close\r\n\r\n",
         )
         .await?;
     let outbox = Rc::new(Outbox::new(limits::OUTBOX_BYTES));
-    let client = daemon.clients.add("diagram", peer, outbox.clone());
+    let client = clients.add("diagram", peer, outbox.clone());
     client.watch(Watching::Objects);
     let mut rest = [0; 64];
     loop {
@@ -67,8 +66,17 @@ async fn diagram(daemon: &Daemon, stream: &mut TcpStream, peer: SocketAddr) -> i
     }
 }
 
+/// What this port works with.
+#[derive(Debug)]
+pub struct Variables {
+    /// The register of connections.
+    pub clients: Rc<Clients>,
+    /// Whoever runs programs.
+    pub programs: Rc<Programs>,
+}
+
 /// Serves one request.
-pub async fn serve(daemon: Rc<Daemon>, guest: Guest) {
+pub async fn serve(variables: Rc<Variables>, guest: Guest) {
     let Guest {
         mut stream,
         peer,
@@ -77,9 +85,9 @@ pub async fn serve(daemon: Rc<Daemon>, guest: Guest) {
     let text = |status: &str, body: &str| answer(status, "text/plain; charset=utf-8", body);
     let reply = match head(&mut stream).await {
         Head::Get { path, .. } if path == "/web/" || path == "/web" => {
-            if daemon.programs.runs() {
+            if variables.programs.runs() {
                 let (ask, told) = oneshot::channel();
-                daemon.programs.offer(Command::Web(ask));
+                variables.programs.try_send(Command::Web(ask));
                 match timeout(Duration::from_millis(limits::WEB_MS), told).await {
                     Ok(Ok(json)) => answer("200 OK", "text/plain, charset=us-ascii", &json),
                     Ok(Err(_)) => text(
@@ -96,7 +104,7 @@ pub async fn serve(daemon: Rc<Daemon>, guest: Guest) {
             }
         }
         Head::Get { path, .. } if path == "/diagram" => {
-            let _ = diagram(&daemon, &mut stream, peer).await;
+            let _ = diagram(&variables.clients, &mut stream, peer).await;
             return drop(seat);
         }
         Head::Get { .. } => text("404 Not Found", "there are only /web/ and /diagram\n"),

@@ -4,9 +4,9 @@
 
 use super::Guest;
 use super::variables::head;
-use crate::daemon::Daemon;
+use crate::clients::Clients;
 use crate::limits;
-use crate::pictures::Newest;
+use crate::pictures::{Newest, Pictures};
 use crate::protocol::http::{Head, answer};
 use std::io;
 use std::rc::Rc;
@@ -69,8 +69,17 @@ async fn stream_pictures(
     }
 }
 
+/// What this port works with.
+#[derive(Debug)]
+pub struct Video {
+    /// The register of connections.
+    pub clients: Rc<Clients>,
+    /// What the camera sees.
+    pub pictures: Pictures,
+}
+
 /// Serves one client.
-pub async fn serve(daemon: Rc<Daemon>, guest: Guest) {
+pub async fn serve(video: Rc<Video>, guest: Guest) {
     let Guest {
         mut stream,
         peer,
@@ -79,7 +88,7 @@ pub async fn serve(daemon: Rc<Daemon>, guest: Guest) {
     let text = |status: &str, body: &str| answer(status, "text/plain; charset=utf-8", body);
     let reply = match head(&mut stream).await {
         Head::Get { path: asked, query } if asked == "/" => {
-            let first = match daemon.pictures.watch() {
+            let first = match video.pictures.watch() {
                 Ok(mut watcher) => tokio::select! {
                     picture = next(&mut watcher) => picture.map(|picture| (picture, watcher)),
                     () = gone(&mut stream) => return drop(seat),
@@ -102,7 +111,7 @@ pub async fn serve(daemon: Rc<Daemon>, guest: Guest) {
                 }
                 Ok((picture, watcher)) => {
                     let outbox = Rc::new(crate::outbox::Outbox::new(0));
-                    let _client = daemon.clients.add("video", peer, outbox);
+                    let _client = video.clients.add("video", peer, outbox);
                     let _ = stream_pictures(&mut stream, watcher, picture).await;
                     return drop(seat);
                 }

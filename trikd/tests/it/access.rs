@@ -20,11 +20,7 @@ fn who_is_not_in_the_list_is_not_served() {
         let end = client.stream.read_to_end(&mut bytes);
         assert!(end.is_err() || bytes.is_empty(), "{port}");
     }
-    assert!(
-        robot.log().contains("is not in the list of --allow"),
-        "{}",
-        robot.log()
-    );
+    robot.expect_log("is not in the list of --allow");
     let other = crate::rig::robot(&["--allow", "10.0.0.0/8", "--allow", "127.0.0.1"]);
     other.client("control").sync();
 }

@@ -26,11 +26,7 @@ fn a_killed_serving_process_leaves_rest_and_no_program_and_is_followed_by_anothe
         robot.daemon() != daemon && std::net::TcpStream::connect(("127.0.0.1", 18471)).is_ok()
     });
     robot.client("control").sync();
-    assert!(
-        robot.log().contains("the serving process has crashed"),
-        "{}",
-        robot.log()
-    );
+    robot.expect_log("the serving process has crashed");
     let own = processes::children(robot.guardian());
     assert_eq!(own.len(), 1, "only the serving process is left");
     assert_eq!(robot.end(), Some(0));
@@ -56,12 +52,13 @@ fn the_serving_process_ends_with_its_guardian() {
 fn a_program_that_stops_the_serving_process_is_ended_and_another_one_serves() {
     let robot = robot(&["--control-port", "18473", "--telemetry-port", "18474"]);
     let mut client = robot.client("control");
-    client.send("file:a:#!/bin/sh\necho go\nsleep 1\nkill -STOP $PPID\nexec sleep 1000\n");
+    client.send("file:a:#!/bin/sh\necho go\nwhile ! [ -e known ]; do sleep 0.01; done\nkill -STOP $PPID\nexec sleep 1000\n");
     client.send("run:a");
     client.until("print: go");
     let daemon = robot.daemon();
     let children = processes::children(daemon);
     robot.forget_rest();
+    robot.home.file("scripts/known", "");
     eventually("no program", || {
         children.iter().all(|pid| !processes::is_alive(*pid))
     });
@@ -70,10 +67,6 @@ fn a_program_that_stops_the_serving_process_is_ended_and_another_one_serves() {
         robot.daemon() != daemon && std::net::TcpStream::connect(("127.0.0.1", 18473)).is_ok()
     });
     robot.client("control").sync();
-    assert!(
-        robot.log().contains("was stopped with SIGSTOP"),
-        "{}",
-        robot.log()
-    );
+    robot.expect_log("was stopped with SIGSTOP");
     assert_eq!(robot.end(), Some(0));
 }

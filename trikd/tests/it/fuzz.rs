@@ -29,6 +29,21 @@ fn frames_of_strange_clients_do_no_harm() {
 }
 
 #[test]
+fn a_program_that_says_anything_does_no_harm() {
+    let samples: &[&[u8]] = &[
+        b"print:a\n",
+        b"mail:-1:a:b",
+        b"watch:main: Timer\n{}",
+        b"mailbox:join 127.0.0.1 8889 2",
+        b"send -1 a b",
+        b"join 127.0.0.1 8889 2",
+        b"connect 127.0.0.1",
+        b"hull 7",
+    ];
+    run("channel", trikd::fuzz::fuzz_channel, samples);
+}
+
+#[test]
 fn lines_and_requests_of_strangers_do_no_harm() {
     let lines: &[&[u8]] = &[b"pad 1 0 0\nwheel 5\n", b"\xd0\xb0\n\xff", &[b'x'; 300]];
     run("lines", trikd::fuzz::fuzz_lines, lines);

@@ -34,6 +34,7 @@ fn the_life_of_a_program_and_of_a_client_is_told() {
         format!("warning programs: an upload by {peer} is refused: '../b.py' cannot be"),
         format!("info clients: control: {peer} has left: closed by the client"),
     ] {
+        robot.expect_log(&told);
         assert_eq!(lines(&robot, &told).len(), 1, "{told}:\n{}", robot.log());
     }
     assert!(lines(&robot, "asks: run").is_empty());
@@ -46,6 +47,7 @@ fn levels_choose_what_is_told() {
     client.send("file:a.py:print(1)");
     client.send("run:a.py");
     client.until("info: a.py has ended");
+    robot.expect_log("asks: run:a.py");
     assert_eq!(lines(&robot, "asks: run:a.py").len(), 1);
     assert!(
         robot.log().lines().all(|line| line.contains(" clients: ")),

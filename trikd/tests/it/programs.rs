@@ -393,7 +393,8 @@ fn programs_of_another_user_have_its_rights_and_leave_nobody_behind() {
         "bomb",
         "#!/bin/sh\nbomb() { setsid $0 & setsid $0 & }\nbomb 2>/dev/null\nsleep 1000\n",
     );
-    std::thread::sleep(std::time::Duration::from_millis(300));
+    let user = nix::unistd::User::from_name("games").unwrap().unwrap();
+    eventually("a bomb", || trikd::program::kill::of_user(user.uid) > 10);
     client.send("stop");
     client.until("info: bomb was stopped by a client");
     eventually("nobody is left", || {

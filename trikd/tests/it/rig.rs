@@ -172,6 +172,12 @@ impl Robot {
             .clone()
     }
 
+    /// Waits until it has written a line with this to standard error: lines come through a pipe and a thread, later than
+    /// what a client sees.
+    pub fn expect_log(&self, part: &str) {
+        eventually(part, || self.log().contains(part));
+    }
+
     /// The number of a port by its name.
     pub fn port(&self, name: &str) -> u16 {
         let words: Vec<&str> = self.ready.split([' ', ',']).collect();
@@ -265,6 +271,7 @@ pub struct Client {
     pub stream: TcpStream,
     buffer: Vec<u8>,
     sent: Instant,
+    kept_alive: Arc<()>,
 }
 
 /// A frame of a payload.
@@ -286,7 +293,19 @@ impl Client {
             stream,
             buffer: Vec::new(),
             sent: Instant::now(),
+            kept_alive: Arc::new(()),
         }
+    }
+
+    /// From now on it is not silent, whatever else the test does; whoever calls this sends small frames only.
+    pub fn keep_alive(&self) {
+        let mut stream = self.stream.try_clone().expect("a descriptor");
+        let lives = Arc::downgrade(&self.kept_alive);
+        std::thread::spawn(move || {
+            while lives.strong_count() > 0 && stream.write_all(&frame("keepalive")).is_ok() {
+                std::thread::sleep(Duration::from_millis(500));
+            }
+        });
     }
 
     /// Sends bytes as they are.

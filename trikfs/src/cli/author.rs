@@ -8,7 +8,7 @@ use crate::limits::RECORDING_BYTES_MAX;
 use crate::trial::stream::{self, Input, Shape, Wishes};
 use crate::trial::{self, Random, Subject};
 use clap::{Args, ValueEnum};
-use config::program::Direction;
+use converter::Direction;
 use converter::limits::TRIAL_TUPLES_MAX;
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -19,17 +19,17 @@ use std::path::{Path, PathBuf};
 pub(super) struct ConvertArgs {
     #[command(flatten)]
     search: SearchArgs,
-    /// Print a line for each tuple, as the file `value` of the node would have it.
+    /// Print a line for each tuple, as the file `value` of the node would show it.
     #[arg(long)]
     text: bool,
     /// Print each tuple as a line in hexadecimal.
     #[arg(long, conflicts_with = "text")]
     hex: bool,
-    /// Say on standard error how long the conversions took: median, 99th percentile, greatest, and tuples per second. A
-    /// call of the clock is counted with each.
+    /// Print on standard error how long the conversions took: median, 99th percentile, maximum, and tuples per second.
+    /// Each time includes one reading of the clock.
     #[arg(long)]
     timing: bool,
-    /// Go on behind a tuple that is refused, and report all of them at the end; the exit status is 1 then as well.
+    /// Go on after a refused tuple, and report all of them at the end; the exit status is then still 1.
     #[arg(long)]
     keep_going: bool,
     /// From the program to the device: the input is what programs write, the output what the device gets.
@@ -38,33 +38,33 @@ pub(super) struct ConvertArgs {
     /// The input is a recording, lines `TIME_MS HEX` as `replay` takes them; lines of output begin with the time.
     #[arg(long)]
     replay: bool,
-    /// Check the converter against a file of vectors instead of converting: which bytes must become of which.
+    /// Check the converter against a file of vectors instead of converting: which input must give which output.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["text", "hex", "timing", "keep_going", "replay", "input"])]
     vectors: Option<PathBuf>,
-    /// Try the converter with so many random, extreme and (from INPUT) damaged tuples instead of converting: numbers
-    /// stay finite, nothing is written beside the output, and opened again it gives the same.
+    /// Test the converter with TUPLES random, extreme and (from INPUT) damaged tuples instead of converting: numbers
+    /// stay finite, nothing is written outside the output, and after opening again it gives the same.
     #[arg(long, value_name = "TUPLES", value_parser = clap::value_parser!(u32).range(1..=TRIAL_TUPLES_MAX as i64),
         conflicts_with_all = ["text", "hex", "timing", "keep_going", "replay", "vectors"])]
     random: Option<u32>,
-    /// Repeat the random tuples of an earlier trial.
+    /// Repeat the random tuples of an earlier run.
     #[arg(long, value_name = "NUMBER", requires = "random")]
     seed: Option<u32>,
     /// The configuration.
     file: PathBuf,
     /// Path of the node in the tree, for example motors/M1.
     node: String,
-    /// Recorded bytes; - or nothing for standard input.
+    /// Recorded bytes; standard input if it is - or not given.
     input: Option<PathBuf>,
 }
 
 #[derive(Args)]
 pub(super) struct NewConverterArgs {
-    /// The language. Lua needs no build and cannot crash anything; the others are quicker.
+    /// The language. Lua needs no build and cannot crash anything; the others are faster.
     #[arg(long, value_enum)]
     lang: LanguageName,
     /// Name of the converter and of the node that shows it: a-z, 0-9 and _.
     name: String,
-    /// Folder to make for it [default: NAME].
+    /// Folder to create for it [default: NAME].
     #[arg(long, value_name = "DIR")]
     dir: Option<PathBuf>,
 }

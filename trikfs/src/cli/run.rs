@@ -20,7 +20,7 @@ use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// Longest line that the guardian in the background says.
+/// Longest line that the guardian in the background prints.
 const LINE_BYTES_MAX: u64 = 16 << 10;
 
 /// `trikfs mount`.
@@ -48,7 +48,7 @@ fn name_process() {
     let _ = prctl::set_name(c"trikfs");
 }
 
-/// Makes the directory if nothing is there; it stays when the tree is gone.
+/// Creates the directory if it does not exist; it stays when the tree is gone.
 fn make_mountpoint(path: &Path) -> Result<(), Failure> {
     // Anything else than "not there" (a stale mount, no permission) is the mounting's to tell.
     if matches!(path.symlink_metadata(), Err(error) if error.kind() == io::ErrorKind::NotFound) {
@@ -155,8 +155,8 @@ fn count(nodes: usize) -> String {
     }
 }
 
-/// Lets go of a terminal or pipe, so that nobody waits for its end and nobody gets text from a process long forgotten.
-/// Messages go on into a regular file: somebody wants them there.
+/// Closes a terminal or pipe, so that no program waits for its end or gets text from a process long forgotten.
+/// Messages still go to a regular file, because they were directed there on purpose.
 fn detach_output() {
     let Ok(nowhere) = File::options().write(true).open("/dev/null") else {
         return;

@@ -19,9 +19,8 @@ pub use cache::Cache;
 use crate::hash::Hash;
 use crate::limits;
 use config::nearest::suggestion;
-use config::program::Direction;
-use converter::Conversion;
 use converter::abi::{self, Descriptor, Instance};
+use converter::{Conversion, Direction};
 use libloading::os::unix as dl;
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -117,10 +116,7 @@ impl Library {
     /// The converter's own refusal (parameters, sizes), in its words.
     pub fn open(&self, info: &OpenInfo<'_>) -> Result<NativeStage, String> {
         let raw = converter::OpenInfo {
-            direction: match info.direction {
-                Direction::Read => converter::Direction::Read,
-                Direction::Write => converter::Direction::Write,
-            },
+            direction: info.direction,
             input_size: info.input_size,
             output_size: info.output_size,
             node: info.node,

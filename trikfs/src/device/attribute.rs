@@ -3,12 +3,28 @@
 //! Owns reading afresh from an offset and writing at offset 0. An attribute's text is shorter or longer from
 //! one reading to the next, so it fills its tuple up with zero bytes; a regular file holds tuples one after the other.
 
-use super::{Sink, State, device_error};
+use super::{Device, Kind, Sink, State, Surroundings, device_error};
 use crate::errno::Error;
+use config::description::AttributeDescription;
 use nix::sys::statfs::statfs;
 use std::fs::{File, OpenOptions};
 use std::os::unix::fs::{FileExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
+
+impl Kind for AttributeDescription {
+    fn open(&self, _tuple_size: usize, _around: &Surroundings) -> Result<Device, Error> {
+        let state = Attribute::open(&self.path, true)?;
+        Ok(Device::State(Box::new(state)))
+    }
+
+    fn open_sink(&self, _around: &Surroundings) -> Result<Box<dyn Sink>, Error> {
+        Ok(Box::new(AttributeSink::open(&self.path, true)?))
+    }
+
+    fn is_shared(&self) -> Result<bool, Error> {
+        Ok(false)
+    }
+}
 
 /// Filesystems whose files are made at the moment of reading (linux/magic.h).
 const GENERATED: [i64; 5] = [

@@ -6,7 +6,7 @@
 
 mod present;
 
-use super::{Got, Stream, chardev, fifo};
+use super::{Device, Got, Kind, Stream, Surroundings, chardev, fifo};
 use crate::errno::Error;
 use config::description::{EvdevDescription, EvdevLayout};
 use std::os::fd::BorrowedFd;
@@ -16,6 +16,16 @@ use std::time::Instant;
 const EV_SYN: u16 = 0;
 const SYN_REPORT: u16 = 0;
 const SYN_DROPPED: u16 = 3;
+
+impl Kind for EvdevDescription {
+    fn open(&self, _tuple_size: usize, _around: &Surroundings) -> Result<Device, Error> {
+        Ok(Device::Stream(Box::new(Evdev::open(self)?)))
+    }
+
+    fn is_shared(&self) -> Result<bool, Error> {
+        Ok(true)
+    }
+}
 
 /// A decoder in front of the device's bytes.
 pub struct Evdev {

@@ -2,15 +2,25 @@
 //!
 //! Owns the turn and the timing. For trying things with no device at hand, and for tests.
 
-use super::{Device, Got, State, Stream};
+use super::{Device, Got, Kind, State, Stream, Surroundings};
 use crate::bytes::copy_at;
 use crate::errno::Error;
 use config::description::FakeDescription;
 use std::os::fd::BorrowedFd;
 use std::time::{Duration, Instant};
 
+impl Kind for FakeDescription {
+    fn open(&self, tuple_size: usize, _around: &Surroundings) -> Result<Device, Error> {
+        Ok(open(self, tuple_size))
+    }
+
+    fn is_shared(&self) -> Result<bool, Error> {
+        Ok(self.period_ms > 0)
+    }
+}
+
 /// A state without a period, a stream with one.
-pub fn open(description: &FakeDescription, tuple_size: usize) -> Device {
+fn open(description: &FakeDescription, tuple_size: usize) -> Device {
     let turn = Turn {
         data: description.data.clone(),
         tuple_size,

@@ -2,19 +2,41 @@
 //!
 //! Owns counting the reads and choosing the failure. The source behind it knows nothing of this.
 
-use super::{Device, Got, Sink, State, Stream};
+use super::{Device, Got, Kind, Sink, State, Stream, Surroundings, kinds};
 use crate::errno::Error;
 use config::description::FaultyDescription;
+use std::collections::BTreeSet;
 use std::os::fd::BorrowedFd;
+use std::path::PathBuf;
 use std::time::Instant;
 
+impl Kind for FaultyDescription {
+    fn open(&self, tuple_size: usize, around: &Surroundings) -> Result<Device, Error> {
+        let device = kinds::open(&self.source, tuple_size, around)?;
+        Ok(put_before(self, device))
+    }
+
+    fn open_sink(&self, around: &Surroundings) -> Result<Box<dyn Sink>, Error> {
+        let sink = kinds::open_sink(&self.source, around)?;
+        Ok(Box::new(FaultySink::new(self, sink)))
+    }
+
+    fn is_shared(&self) -> Result<bool, Error> {
+        kinds::is_shared(&self.source)
+    }
+
+    fn add_buses(&self, around: &Surroundings, buses: &mut BTreeSet<PathBuf>) {
+        kinds::add_buses(&self.source, around, buses);
+    }
+}
+
 /// Puts the failures in front of an open source.
-pub fn open(description: &FaultyDescription, device: Device) -> Result<Device, Error> {
+fn put_before(description: &FaultyDescription, device: Device) -> Device {
     let plan = Plan::new(description);
-    Ok(match device {
+    match device {
         Device::State(state) => Device::State(Box::new(FaultyState { state, plan })),
         Device::Stream(stream) => Device::Stream(Box::new(FaultyStream { stream, plan })),
-    })
+    }
 }
 
 /// Which call fails, and how.
@@ -168,7 +190,7 @@ mod tests {
             short: 3,
         };
         let zero = super::super::chardev::CharDevice::open("/dev/zero".as_ref()).unwrap();
-        let Ok(Device::Stream(mut stream)) = open(&plan, Device::Stream(Box::new(zero))) else {
+        let Device::Stream(mut stream) = put_before(&plan, Device::Stream(Box::new(zero))) else {
             panic!("not a stream")
         };
         let mut buf = [0; 8];

@@ -3,14 +3,30 @@
 //! Owns the rule for their ends: readers see one end of file when the last writer has left, and what the next
 //! writer sends after that. Opening does not wait for a writer, and no writer yet is not an end.
 
-use super::{Got, Stream, device_error, is_same_file};
+use super::chardev::CharSink;
+use super::{Device, Got, Kind, Sink, Stream, Surroundings, device_error, is_same_file};
 use crate::errno::Error;
+use config::description::FifoDescription;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Read};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
+
+impl Kind for FifoDescription {
+    fn open(&self, _tuple_size: usize, _around: &Surroundings) -> Result<Device, Error> {
+        Ok(Device::Stream(Box::new(Fifo::open(&self.path)?)))
+    }
+
+    fn open_sink(&self, around: &Surroundings) -> Result<Box<dyn Sink>, Error> {
+        Ok(Box::new(CharSink::open(&self.path, around.timeout_ms)?))
+    }
+
+    fn is_shared(&self) -> Result<bool, Error> {
+        Ok(true)
+    }
+}
 
 /// A FIFO open for reading.
 pub struct Fifo {

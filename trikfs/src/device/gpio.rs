@@ -3,11 +3,28 @@
 //! Owns its export, its direction, and the meaning of its value: a tuple is one byte, 0 or 1. A line that goes out
 //! already is left as it is, since something may hang on it. Knows nothing of what is wired to it.
 
-use super::{Sink, State, sysfs};
+use super::{Device, Kind, Sink, State, Surroundings, sysfs};
 use crate::bytes::copy_at;
 use crate::errno::Error;
 use config::description::{GpioDescription, GpioDirection};
 use std::path::{Path, PathBuf};
+
+impl Kind for GpioDescription {
+    fn open(&self, _tuple_size: usize, _around: &Surroundings) -> Result<Device, Error> {
+        Ok(Device::State(Box::new(Gpio::open(self)?)))
+    }
+
+    fn open_sink(&self, _around: &Surroundings) -> Result<Box<dyn Sink>, Error> {
+        if self.direction == GpioDirection::In {
+            return Err(Error::AccessDenied);
+        }
+        Ok(Box::new(Gpio::open(self)?))
+    }
+
+    fn is_shared(&self) -> Result<bool, Error> {
+        Ok(false)
+    }
+}
 
 /// One line, exported and with its direction.
 pub struct Gpio {

@@ -9,13 +9,36 @@ pub mod bus;
 pub mod devices;
 mod virtual_bus;
 
-use super::{Sink, State};
+use super::{Device, Kind, Sink, State, Surroundings};
 use crate::bytes::copy_at;
 use crate::errno::Error;
 use bus::{Bus, Buses, Key};
 use config::description::{I2cDescription, I2cTransfer};
+use std::collections::BTreeSet;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
+
+impl Kind for I2cDescription {
+    fn open(&self, tuple_size: usize, around: &Surroundings) -> Result<Device, Error> {
+        let register = Register::open(self, tuple_size, around.timeout_ms, &around.buses)?;
+        Ok(Device::State(Box::new(register)))
+    }
+
+    fn open_sink(&self, around: &Surroundings) -> Result<Box<dyn Sink>, Error> {
+        // The size only matters for reading.
+        let register = Register::open(self, 0, around.timeout_ms, &around.buses)?;
+        Ok(Box::new(register))
+    }
+
+    fn is_shared(&self) -> Result<bool, Error> {
+        Ok(false)
+    }
+
+    fn add_buses(&self, _around: &Surroundings, buses: &mut BTreeSet<PathBuf>) {
+        buses.insert(self.path.clone());
+    }
+}
 
 /// What one transfer moves.
 pub(super) enum Data<'a> {

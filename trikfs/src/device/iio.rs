@@ -7,7 +7,7 @@
 mod scan;
 
 use super::cutter::{Cut, Cutter};
-use super::{Got, Stream, chardev, device_error, fifo, sysfs};
+use super::{Device, Got, Kind, Stream, Surroundings, chardev, device_error, fifo, sysfs};
 use crate::convert::LogSink;
 use crate::errno::Error;
 use crate::limits;
@@ -19,6 +19,17 @@ use std::os::unix::fs::FileTypeExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
+
+impl Kind for IioDescription {
+    fn open(&self, _tuple_size: usize, around: &Surroundings) -> Result<Device, Error> {
+        let iio = Iio::open(self, around.damaged.clone(), &around.log)?;
+        Ok(Device::Stream(Box::new(iio)))
+    }
+
+    fn is_shared(&self) -> Result<bool, Error> {
+        Ok(true)
+    }
+}
 
 /// A device that samples.
 pub struct Iio {

@@ -2,16 +2,35 @@
 //!
 //! Owns keeping the other nodes' sources open meanwhile, and taking several of their samples at one moment.
 
-use super::{Device, State};
+use super::linked::LinkedNode;
+use super::{Device, Kind, State, Surroundings};
 use crate::bytes::copy_at;
 use crate::clock::Stamp;
 use crate::errno::Error;
-use crate::newest::{Newest, Sample};
-use crate::node::Node;
+use crate::latch::{Latch, Sample};
+use config::description::NewestDescription;
+use std::collections::BTreeSet;
+use std::path::PathBuf;
 use std::sync::Arc;
 
+impl Kind for NewestDescription {
+    fn open(&self, _tuple_size: usize, around: &Surroundings) -> Result<Device, Error> {
+        open(around.link(&self.path)?)
+    }
+
+    fn is_shared(&self) -> Result<bool, Error> {
+        Ok(false)
+    }
+
+    fn add_buses(&self, around: &Surroundings, buses: &mut BTreeSet<PathBuf>) {
+        if let Ok(node) = around.link(&self.path) {
+            node.add_buses(buses);
+        }
+    }
+}
+
 /// Opens the newest sample of one node as a state.
-pub fn open(other: &Arc<Node>) -> Result<Device, Error> {
+fn open(other: &Arc<dyn LinkedNode>) -> Result<Device, Error> {
     let latched = Latched::open(other)?;
     Ok(Device::State(Box::new(LatchedState {
         latched,
@@ -20,26 +39,19 @@ pub fn open(other: &Arc<Node>) -> Result<Device, Error> {
 }
 
 /// One other node whose newest sample is used. Without background sampling its source is open for as long.
-pub struct Latched(Arc<Node>);
+pub struct Latched(Arc<dyn LinkedNode>);
 
 impl Latched {
     /// Joins those who read the other node's newest value.
-    pub fn open(other: &Arc<Node>) -> Result<Self, Error> {
-        if other.is_retired() {
-            return Err(Error::Stale);
-        }
-        match other.newest.join() {
-            // A device that is gone now may come back: the samples tell.
-            Ok(_) => Ok(Self(other.clone())),
-            Err(Error::NoDevice(_)) if other.newest.is_in_background() => Ok(Self(other.clone())),
-            Err(error) => Err(error),
-        }
+    pub fn open(other: &Arc<dyn LinkedNode>) -> Result<Self, Error> {
+        other.join_newest()?;
+        Ok(Self(other.clone()))
     }
 }
 
 impl Drop for Latched {
     fn drop(&mut self) {
-        self.0.newest.leave();
+        self.0.leave_newest();
     }
 }
 
@@ -53,22 +65,22 @@ pub fn sample_all(
     into: &mut Vec<Vec<u8>>,
     taken: &mut Vec<Stamp>,
 ) -> Result<bool, Error> {
-    let named = |node: &Node, error: Error| match error {
-        Error::NoDevice(what) => Error::NoDevice(format!("{}: {what}", node.path())),
-        Error::TimedOut(what) => Error::TimedOut(format!("{}: {what}", node.path())),
+    let named = |one: &Latched, error: Error| match error {
+        Error::NoDevice(what) => Error::NoDevice(format!("{}: {what}", one.0.path())),
+        Error::TimedOut(what) => Error::TimedOut(format!("{}: {what}", one.0.path())),
         other => other,
     };
     for one in all {
-        one.0
-            .newest
-            .refresh()
-            .map_err(|error| named(&one.0, error))?;
+        one.0.refresh_newest().map_err(|error| named(one, error))?;
     }
-    let nodes: Vec<&Newest> = all.iter().map(|one| &one.0.newest).collect();
-    let samples = Newest::of_all(&nodes);
+    let latches: Vec<_> = all
+        .iter()
+        .map(|one| (one.0.latch(), one.0.too_old()))
+        .collect();
+    let samples = Latch::of_all(&latches);
     let mut found = Vec::with_capacity(samples.len());
     for (one, sample) in all.iter().zip(samples) {
-        match sample.map_err(|error| named(&one.0, error))? {
+        match sample.map_err(|error| named(one, error))? {
             Some(sample) => found.push(sample),
             None => return Ok(false),
         }

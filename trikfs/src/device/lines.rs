@@ -7,7 +7,7 @@ pub mod answer;
 mod picture;
 
 use super::cutter::{Cut, Cutter, fill};
-use super::{Got, Sink, Stream, chardev, device_error, fifo};
+use super::{Device, Got, Kind, Sink, Stream, Surroundings, chardev, device_error, fifo};
 use crate::errno::Error;
 use crate::limits;
 use crate::programs::{Commands, Programs, Progress, Use};
@@ -21,6 +21,23 @@ use std::os::unix::fs::FileTypeExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
+
+impl Kind for LinesDescription {
+    fn open(&self, tuple_size: usize, around: &Surroundings) -> Result<Device, Error> {
+        let damaged = around.damaged.clone();
+        let lines = Lines::open(self, tuple_size, &around.programs, damaged)?;
+        Ok(Device::Stream(Box::new(lines)))
+    }
+
+    fn open_sink(&self, around: &Surroundings) -> Result<Box<dyn Sink>, Error> {
+        let answer = around.answer.clone();
+        Ok(Box::new(LinesSink::open(self, around.timeout_ms, answer)?))
+    }
+
+    fn is_shared(&self) -> Result<bool, Error> {
+        Ok(true)
+    }
+}
 
 /// A sensor that is read.
 pub struct Lines {

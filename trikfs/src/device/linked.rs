@@ -1,88 +1,75 @@
-//! Another node of the same tree as a source (`trikfs:other`), without a round trip through the kernel.
+//! Other nodes of the same tree as sources and sinks (`trikfs:other`), without a round trip through the kernel.
 //!
-//! Owns the bridge only: converted tuples of the other node come out here as raw ones, and readiness becomes
-//! that of an eventfd, so that a linked stream looks like any other to whoever waits for it.
+//! Owns the border: all that devices know of nodes is the trait [`LinkedNode`]. How a node answers is its own business.
 
-use super::{Device, Got, Sink, State, Stream};
+use super::{Device, Kind, Sink, Surroundings};
 use crate::errno::Error;
-use crate::events::Ready;
-use crate::node::{Feed, Node};
-use crate::reader::Reader;
-use crate::state_reader::StateReader;
-use crate::writer::Writer;
-use nix::sys::eventfd::{EfdFlags, EventFd};
-use std::os::fd::{AsFd, BorrowedFd};
+use crate::latch::Latch;
+use config::description::LinkDescription;
+use std::collections::BTreeSet;
+use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 
-/// Opens the other node as this node's source.
-pub fn open(other: &Arc<Node>) -> Result<Device, Error> {
-    if other.is_retired() {
-        return Err(Error::Stale);
+impl Kind for LinkDescription {
+    fn open(&self, _tuple_size: usize, around: &Surroundings) -> Result<Device, Error> {
+        around.link(&self.path)?.clone().open()
     }
-    let bell = EventFd::from_flags(EfdFlags::EFD_NONBLOCK | EfdFlags::EFD_CLOEXEC);
-    let bell =
-        Arc::new(Bell(bell.map_err(|errno| {
-            Error::Device(errno as i32, "eventfd".to_owned())
-        })?));
-    let listener: Arc<dyn Ready> = bell.clone();
-    Ok(match other.open_feed(&listener)? {
-        Feed::State(reader) => Device::State(Box::new(LinkedState(reader))),
-        Feed::Stream(reader) => Device::Stream(Box::new(LinkedStream { reader, bell })),
-    })
-}
 
-/// Turns "something may have arrived" into readability of a descriptor.
-struct Bell(EventFd);
-
-impl Ready for Bell {
-    fn ready(&self) {
-        // A full counter is readable already.
-        let _ = self.0.write(1);
+    fn open_sink(&self, around: &Surroundings) -> Result<Box<dyn Sink>, Error> {
+        around.link(&self.path)?.clone().open_sink()
     }
-}
 
-struct LinkedState(StateReader);
-
-impl State for LinkedState {
-    fn read_at(&mut self, offset: u64, buf: &mut [u8]) -> Result<usize, Error> {
-        self.0.read_at(offset, buf)
+    fn is_shared(&self) -> Result<bool, Error> {
+        Ok(false)
     }
-}
 
-struct LinkedStream {
-    reader: Arc<Reader>,
-    bell: Arc<Bell>,
-}
-
-impl Stream for LinkedStream {
-    fn read(&mut self, buf: &mut [u8]) -> Result<Got, Error> {
-        let first = self.reader.read(buf)?;
-        if first != Got::Nothing {
-            return Ok(first);
+    fn add_buses(&self, around: &Surroundings, buses: &mut BTreeSet<PathBuf>) {
+        if let Ok(node) = around.link(&self.path) {
+            node.add_buses(buses);
         }
-        // Silence the bell before looking again: what arrives in between rings it anew.
-        let _ = self.bell.0.read();
-        self.reader.arm()?;
-        self.reader.read(buf)
-    }
-
-    fn fd(&self) -> Option<BorrowedFd<'_>> {
-        Some(self.bell.0.as_fd())
     }
 }
 
-/// Writes to the other node as a program would.
-pub struct LinkedSink(Writer);
+/// A node that others read or drive.
+pub trait LinkedNode: Send + Sync {
+    /// Path below the mount point.
+    fn path(&self) -> &str;
 
-impl LinkedSink {
-    /// Opens the other node for writing.
-    pub fn open(other: &Arc<Node>) -> Result<Self, Error> {
-        Ok(Self(other.open_writer(None)?))
-    }
-}
+    /// Opens the node for reading: its converted tuples.
+    ///
+    /// # Errors
+    /// [`Error::Stale`] for a node that a reload has changed or removed; what opening its source says.
+    fn open(self: Arc<Self>) -> Result<Device, Error>;
 
-impl Sink for LinkedSink {
-    fn write(&mut self, tuple: &[u8], waits: bool) -> Result<(), Error> {
-        self.0.write_whole(tuple, waits)
-    }
+    /// Opens the node for writing, as a program would.
+    ///
+    /// # Errors
+    /// What opening its sink says.
+    fn open_sink(self: Arc<Self>) -> Result<Box<dyn Sink>, Error>;
+
+    /// Joins those who read the newest value; without background sampling the node's source is open from here on. A
+    /// device that is gone and is sampled in the background may come back: that is no error.
+    ///
+    /// # Errors
+    /// As for [`open`](Self::open).
+    fn join_newest(&self) -> Result<(), Error>;
+
+    /// The opposite of [`join_newest`](Self::join_newest).
+    fn leave_newest(&self);
+
+    /// Brings the latch up to date: samples now unless the background does.
+    ///
+    /// # Errors
+    /// A node that cannot be entered.
+    fn refresh_newest(&self) -> Result<(), Error>;
+
+    /// The newest sample.
+    fn latch(&self) -> &Latch;
+
+    /// The age from which the newest sample is not to be used. None: it is never too old.
+    fn too_old(&self) -> Option<Duration>;
+
+    /// Adds the buses whose transfers a reading or writing of the node waits for.
+    fn add_buses(&self, buses: &mut BTreeSet<PathBuf>);
 }

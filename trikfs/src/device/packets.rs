@@ -6,7 +6,7 @@
 mod framer;
 
 use super::cutter::Cutter;
-use super::{Got, Stream, chardev, device_error, fifo};
+use super::{Device, Got, Kind, Stream, Surroundings, chardev, device_error, fifo};
 use crate::errno::Error;
 use crate::limits;
 use crate::stats::Counter;
@@ -20,6 +20,17 @@ use std::os::unix::fs::FileTypeExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
+
+impl Kind for PacketsDescription {
+    fn open(&self, tuple_size: usize, around: &Surroundings) -> Result<Device, Error> {
+        let packets = Packets::open(self, tuple_size, around.damaged.clone())?;
+        Ok(Device::Stream(Box::new(packets)))
+    }
+
+    fn is_shared(&self) -> Result<bool, Error> {
+        Ok(true)
+    }
+}
 
 /// A framer in front of the bytes of a line.
 pub struct Packets {

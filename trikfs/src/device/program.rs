@@ -2,11 +2,26 @@
 //!
 //! Owns what a text may be for that. When it runs, and for how long, is the business of `programs`.
 
-use super::Sink;
+use super::{Device, Kind, Sink, Surroundings};
 use crate::errno::Error;
 use crate::programs::Programs;
-use config::description::CommandDescription;
+use config::description::{CommandDescription, ProgramDescription};
 use std::sync::Arc;
+
+impl Kind for ProgramDescription {
+    fn open(&self, _tuple_size: usize, _around: &Surroundings) -> Result<Device, Error> {
+        Err(Error::AccessDenied)
+    }
+
+    fn open_sink(&self, around: &Surroundings) -> Result<Box<dyn Sink>, Error> {
+        let programs = around.programs.clone();
+        Ok(Box::new(ProgramSink::new(&self.run, programs)))
+    }
+
+    fn is_shared(&self) -> Result<bool, Error> {
+        Ok(false)
+    }
+}
 
 /// One way to a program.
 pub struct ProgramSink {

@@ -4,11 +4,25 @@
 //! never falls below the pulse, a pulse is given only when the channel is on, and a channel goes off before its pulse
 //! becomes 0. A tuple is the pulse in ns, u32 little endian; 0 means off. Knows no angle.
 
-use super::{Sink, State, sysfs};
+use super::{Device, Kind, Sink, State, Surroundings, sysfs};
 use crate::bytes::copy_at;
 use crate::errno::Error;
 use config::description::PwmDescription;
 use std::path::PathBuf;
+
+impl Kind for PwmDescription {
+    fn open(&self, _tuple_size: usize, _around: &Surroundings) -> Result<Device, Error> {
+        Ok(Device::State(Box::new(Pwm::open(self)?)))
+    }
+
+    fn open_sink(&self, _around: &Surroundings) -> Result<Box<dyn Sink>, Error> {
+        Ok(Box::new(Pwm::open(self)?))
+    }
+
+    fn is_shared(&self) -> Result<bool, Error> {
+        Ok(false)
+    }
+}
 
 /// One channel, exported and with its period.
 pub struct Pwm {

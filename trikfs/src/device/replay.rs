@@ -3,7 +3,7 @@
 //! Owns the format of a recording: lines `TIME_MS HEX`, times from the start and never falling, `#` to the end of
 //! a line is a comment. `trikfs` reads such files; anything can write them.
 
-use super::{Got, Stream, device_error};
+use super::{Device, Got, Kind, Stream, Surroundings, device_error};
 use crate::errno::Error;
 use crate::limits;
 use config::description::ReplayDescription;
@@ -11,6 +11,16 @@ use std::io::Read;
 use std::os::fd::BorrowedFd;
 use std::path::Path;
 use std::time::{Duration, Instant};
+
+impl Kind for ReplayDescription {
+    fn open(&self, _tuple_size: usize, _around: &Surroundings) -> Result<Device, Error> {
+        Ok(Device::Stream(Box::new(Replay::open(self)?)))
+    }
+
+    fn is_shared(&self) -> Result<bool, Error> {
+        Ok(true)
+    }
+}
 
 /// A recording that runs.
 pub struct Replay {

@@ -6,23 +6,52 @@
 //! Only states: each reading samples all of them.
 
 use super::latched::{self, Latched};
-use super::{Device, Got, State, Stream, Surroundings};
+use super::{Device, Got, Kind, State, Stream, Surroundings, kinds};
 use crate::bytes::copy_at;
 use crate::clock::Stamp;
 use crate::errno::Error;
-use crate::state_reader::whole_tuple;
 use config::description::{PartDescription, SeveralDescription, SourceDescription};
 use nix::sys::epoll::{Epoll, EpollCreateFlags, EpollEvent, EpollFlags, EpollTimeout};
+use std::collections::BTreeSet;
 use std::os::fd::{AsFd, BorrowedFd};
+use std::path::PathBuf;
 use std::time::Instant;
 
+impl Kind for SeveralDescription {
+    fn open(&self, _tuple_size: usize, around: &Surroundings) -> Result<Device, Error> {
+        open(self, around)
+    }
+
+    fn is_shared(&self) -> Result<bool, Error> {
+        let mut shared = false;
+        for part in &self.parts {
+            let is_shared = kinds::is_shared(&part.source);
+            shared |= is_shared.map_err(|error| part_error(&part.name, error))?;
+        }
+        Ok(shared)
+    }
+
+    fn add_buses(&self, around: &Surroundings, buses: &mut BTreeSet<PathBuf>) {
+        for part in &self.parts {
+            kinds::add_buses(&part.source, around, buses);
+        }
+    }
+}
+
+/// The error of one of several sources, with its name.
+fn part_error(name: &str, error: Error) -> Error {
+    match error {
+        Error::NoDevice(what) => Error::NoDevice(format!("source {name}: {what}")),
+        other => other,
+    }
+}
+
 /// Opens all parts.
-pub fn open(several: &SeveralDescription, around: &Surroundings) -> Result<Device, Error> {
+fn open(several: &SeveralDescription, around: &Surroundings) -> Result<Device, Error> {
     let mut inputs = Vec::with_capacity(several.parts.len());
     let mut streams = false;
     for part in &several.parts {
-        let input =
-            Input::open(part, around).map_err(|error| super::part_error(&part.name, error))?;
+        let input = Input::open(part, around).map_err(|error| part_error(&part.name, error))?;
         streams |= matches!(input.origin, From::Stream(_));
         inputs.push(input);
     }
@@ -89,8 +118,10 @@ struct Input {
 impl Input {
     fn open(part: &PartDescription, around: &Surroundings) -> Result<Self, Error> {
         let origin = match &part.source {
-            SourceDescription::Newest(path) => From::Newest(Latched::open(around.link(path)?)?),
-            source => match super::open(source, part.tuple_size, around)? {
+            SourceDescription::Newest(newest) => {
+                From::Newest(Latched::open(around.link(&newest.path)?)?)
+            }
+            source => match kinds::open(source, part.tuple_size, around)? {
                 Device::State(state) => From::State(state),
                 Device::Stream(stream) => From::Stream(stream),
             },
@@ -123,7 +154,7 @@ impl Joint {
     fn join(&mut self, into: &mut Vec<u8>) -> Result<bool, Error> {
         for input in &mut self.inputs {
             if let From::State(state) = &mut input.origin {
-                whole_tuple(state.as_mut(), &mut input.newest)?;
+                state.whole_tuple(&mut input.newest)?;
                 input.taken = Stamp::now();
             }
         }

@@ -5,7 +5,7 @@
 use super::ownership::Ownership;
 use super::{OpenFile, READABLE, WRITABLE};
 use crate::crew::lock_patiently;
-use crate::device::Got;
+use crate::device::{Got, State};
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::{Ready, lock};

@@ -6,7 +6,7 @@
 
 use super::actions::RestAction;
 use crate::device::i2c::bus::Buses;
-use crate::device::{self, Surroundings};
+use crate::device::{Surroundings, kinds};
 use crate::errno::Error;
 use crate::limits;
 use std::collections::VecDeque;
@@ -93,12 +93,12 @@ fn start_worker(
 
 fn perform(action: &RestAction, buses: &Arc<Buses>) -> Result<(), Error> {
     let around = Surroundings::alone(action.timeout_ms.min(limits::REST_MS_MAX), buses);
-    device::open_sink(&action.sink, &around)?.write(&action.tuple, true)
+    kinds::open_sink(&action.sink, &around)?.write(&action.tuple, true)
 }
 
 /// The path of the device.
 fn shown(action: &RestAction) -> String {
-    let paths = device::paths(&action.sink);
+    let paths = action.sink.needed_paths();
     let path = paths.first().map(|path| path.display().to_string());
     path.unwrap_or_default()
 }
@@ -115,7 +115,7 @@ mod tests {
 
     fn action(path: PathBuf, bytes: &[u8]) -> RestAction {
         RestAction {
-            sink: SourceDescription::Path(path),
+            sink: SourceDescription::Path(path.as_path().into()),
             tuple: bytes.to_vec(),
             timeout_ms: 1000,
         }

@@ -24,15 +24,11 @@ impl Drop for Scratch {
 }
 
 /// False, with a named skip, where nothing can be mounted.
-fn can_mount(test: &str) -> bool {
+fn can_mount() -> bool {
     if Path::new(DEVICE).exists() && geteuid().is_root() {
         return true;
     }
-    assert!(
-        std::env::var_os("TRIK_REQUIRE_FUSE").is_none(),
-        "{test}: mounting is required"
-    );
-    println!("{test}: skipped, no {DEVICE} or not root");
+    needs::Need::Fuse.missing(format_args!("no {DEVICE} or not root"));
     false
 }
 
@@ -157,7 +153,7 @@ fn nothing_but_a_trikfs_is_unmounted() {
 
 #[test]
 fn a_mount_is_served_found_and_unmounted() {
-    if !can_mount("a_mount_is_served_found_and_unmounted") {
+    if !can_mount() {
         return;
     }
     let scratch = Scratch::new("served dir");
@@ -184,7 +180,7 @@ fn a_mount_is_served_found_and_unmounted() {
 
 #[test]
 fn a_read_only_mount_refuses_writers() {
-    if !can_mount("a_read_only_mount_refuses_writers") {
+    if !can_mount() {
         return;
     }
     let scratch = Scratch::new("read-only");
@@ -204,7 +200,7 @@ fn a_read_only_mount_refuses_writers() {
 
 #[test]
 fn a_busy_mount_is_detached_and_ends_with_its_last_file() {
-    if !can_mount("a_busy_mount_is_detached_and_ends_with_its_last_file") {
+    if !can_mount() {
         return;
     }
     let scratch = Scratch::new("busy");
@@ -221,7 +217,7 @@ fn a_busy_mount_is_detached_and_ends_with_its_last_file() {
 
 #[test]
 fn a_stale_mount_is_replaced() {
-    if !can_mount("a_stale_mount_is_replaced") {
+    if !can_mount() {
         return;
     }
     let scratch = Scratch::new("stale");
@@ -243,16 +239,11 @@ fn a_stale_mount_is_replaced() {
 
 #[test]
 fn the_helper_mounts_and_hands_the_device_over() {
-    let test = "the_helper_mounts_and_hands_the_device_over";
-    if !can_mount(test) {
+    if !can_mount() {
         return;
     }
     if Command::new(HELPER).arg("--version").output().is_err() {
-        assert!(
-            std::env::var_os("TRIK_REQUIRE_FUSE").is_none(),
-            "{test}: {HELPER} is required"
-        );
-        println!("{test}: skipped, no {HELPER}");
+        needs::Need::Fuse.missing(format_args!("no {HELPER}"));
         return;
     }
     let scratch = Scratch::new("helper");

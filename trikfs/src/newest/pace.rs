@@ -3,7 +3,6 @@
 //! Owns the due times. What a sample is and who hears of it is `newest`'s business.
 
 use super::Source;
-use crate::errno::Error;
 use crate::events::{Due, lock};
 use crate::limits;
 use crate::node::Node;
@@ -13,7 +12,7 @@ use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
 
 /// The age from which a sample taken in the background is no longer shown. None: it is never too old.
-pub(super) fn too_old(node: &Node) -> Option<Duration> {
+pub fn too_old(node: &Node) -> Option<Duration> {
     let description = &node.description;
     let ms = match (description.max_age_ms, description.pace) {
         (Some(ms), _) => u64::from(ms),
@@ -23,17 +22,6 @@ pub(super) fn too_old(node: &Node) -> Option<Duration> {
         (None, Pace::OnEvent | Pace::OnRead) => return None,
     };
     Some(Duration::from_millis(ms))
-}
-
-/// Refuses a sample that is too old to be shown.
-pub(super) fn check_age(node: &Node, age_ns: u64) -> Result<(), Error> {
-    if too_old(node).is_some_and(|limit| u128::from(age_ns) > limit.as_nanos()) {
-        let age_ms = age_ns / 1_000_000;
-        return Err(Error::TimedOut(format!(
-            "the newest sample is {age_ms} ms old"
-        )));
-    }
-    Ok(())
 }
 
 /// Background sampling by the clock.

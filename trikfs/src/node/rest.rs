@@ -3,12 +3,11 @@
 //! Owns the rest as a tuple and as an action of the guardian. When that happens is the business of others.
 
 use super::Node;
-use crate::device;
 use crate::errno::Error;
 use crate::events::lock;
 use crate::guardian::actions::RestAction;
-use config::description::SourceDescription;
-use config::program::Direction;
+use config::source::rest::Resting;
+use converter::Direction;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -36,7 +35,7 @@ impl Node {
         let Some(tuple) = self.rest_tuple()? else {
             return Ok(());
         };
-        if matches!(self.description.source, SourceDescription::Absent(_)) {
+        if self.description.source.resting() == Resting::Absent {
             return Ok(());
         }
         let deadline = Instant::now() + Duration::from_millis(self.description.timeout_ms.into());
@@ -98,21 +97,18 @@ impl Node {
         if produced == 0 {
             return Ok(None);
         }
-        let mut sink = &self.description.source;
-        while let SourceDescription::Faulty(faulty) = sink {
-            sink = &faulty.source;
-        }
-        match sink {
-            SourceDescription::Node(path) => {
-                let other = self.around.links.iter().find(|(name, _)| name == path);
+        let sink = self.description.source.innermost();
+        match sink.resting() {
+            Resting::Node(path) => {
+                let other = self.links.iter().find(|(name, _)| name == path);
                 other.map_or(Ok(None), |(_, other)| other.action_of(&converted))
             }
-            _ if !device::takes_bytes(sink) => Ok(None),
-            _ => Ok(Some(RestAction {
+            Resting::Device => Ok(Some(RestAction {
                 sink: sink.clone(),
                 tuple: converted,
                 timeout_ms: self.description.timeout_ms,
             })),
+            Resting::ReadOnly | Resting::Absent | Resting::NoDevice | Resting::Within => Ok(None),
         }
     }
 }

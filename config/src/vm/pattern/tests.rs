@@ -1,4 +1,4 @@
-//! Tests of the matcher: the manual of Lua 5.1, and patterns that would take for ever.
+//! Tests of the matcher: the manual of Lua 5.1, and patterns that would take forever.
 
 use super::*;
 use proptest::prelude::*;

@@ -24,9 +24,17 @@ impl Checker<'_, '_> {
         targets: &[Option<SymbolId>],
         uses: &[Vec<SymbolId>],
     ) -> Vec<usize> {
-        let is_value = |at: usize| targets[at].is_some() && !self.text.equations[at].is_derivative;
-        let value_of =
-            |id: SymbolId| self.equation_of[id].filter(|at| *at < targets.len() && is_value(*at));
+        // A derivative that an expression has is a value too.
+        let is_value = |at: usize| {
+            targets[at].is_some_and(|id| {
+                !self.text.equations[at].is_derivative || self.rates.contains_key(&id)
+            })
+        };
+        let value_of = |id: SymbolId| {
+            let at = self.equation_of[id].filter(|at| *at < targets.len() && is_value(*at))?;
+            // The state itself is given, whatever its derivative needs.
+            (!self.text.equations[at].is_derivative || self.is_rate(id)).then_some(at)
+        };
         let mut marks = vec![Mark::New; targets.len()];
         let mut circles: Vec<Vec<usize>> = Vec::new();
         let mut in_circle = vec![false; targets.len()];
@@ -66,7 +74,9 @@ impl Checker<'_, '_> {
         for circle in circles {
             self.circle(&circle);
         }
-        let derivatives = self.equation_of.iter().flatten().copied();
+        let of_states = self.equation_of.iter().enumerate();
+        let of_states = of_states.filter(|(id, _)| !self.is_rate(*id));
+        let derivatives = of_states.filter_map(|(_, at)| *at);
         order.extend(derivatives.filter(|at| {
             let equation = self.text.equations.get(*at);
             equation.is_some_and(|one| one.is_derivative)
@@ -78,7 +88,15 @@ impl Checker<'_, '_> {
         let Some(first) = circle.first() else {
             return;
         };
-        let name = |at: &usize| shown(&self.text.equations[*at].target.text);
+        let name = |at: &usize| {
+            let equation = &self.text.equations[*at];
+            let name = shown(&equation.target.text);
+            if equation.is_derivative {
+                format!("d({name})")
+            } else {
+                name
+            }
+        };
         let mut names: Vec<String> = circle.iter().take(DCML_SHOWN).map(name).collect();
         if circle.len() > DCML_SHOWN {
             names.push(format!("({} more)", circle.len() - DCML_SHOWN));
@@ -101,8 +119,14 @@ impl Checker<'_, '_> {
             let text = format!("needs `{}`", name(next));
             found = found.note(self.text.equations[*at].target.span, text);
         }
-        let hint =
-            "write one of them without the others, or make it a state with an equation `d(...)`";
+        let is_of_rates = circle
+            .iter()
+            .any(|at| self.text.equations[*at].is_derivative);
+        let hint = if is_of_rates {
+            "solve these equations for one of the derivatives by hand, and write that without the others"
+        } else {
+            "write one of them without the others, or make it a state with an equation `d(...)`"
+        };
         self.findings.add(found.hint(hint));
     }
 }

@@ -36,6 +36,9 @@ impl<'a> Checker<'a, '_> {
             Node::Call(name, arguments) if name.text == "piecewise" => {
                 self.piecewise(text, arguments, used)
             }
+            Node::Call(name, arguments) if name.text == "d" && !self.ids.contains_key("d") => {
+                self.derivative(text, arguments, used)
+            }
             Node::Call(name, arguments) => self.call(text, name, arguments, used),
             Node::Compare(_, left, right) => {
                 let found = Diagnostic::new(
@@ -132,8 +135,6 @@ impl<'a> Checker<'a, '_> {
                 "`{0}` is a value: to multiply write `{0} * (...)`",
                 shown(word)
             )
-        } else if word == "d" {
-            "a derivative stands only on the left side: `d(x) = ...;`; give its right side a name with `VAR`".to_owned()
         } else if let Some(known) = known_elsewhere(word) {
             format!("write `{known}`")
         } else if let Some(meant) = nearest(word, all.into_iter().chain(["piecewise"])) {

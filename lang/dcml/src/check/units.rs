@@ -187,6 +187,9 @@ impl Checker<'_, '_> {
                 if name.text == "piecewise" {
                     return self.choice(&values);
                 }
+                if let ("d", [(_, Known(unit))]) = (name.text.as_str(), values.as_slice()) {
+                    return unit.over(Unit::SECOND).map_or(Unknown, Known);
+                }
                 match (Function::named(&name.text), values.as_slice()) {
                     (Some(function), [x]) => self.of_call(function, *x, *x),
                     (Some(Function::Pow), [x, y]) => self.power(*x, *y, &arguments[1]),

@@ -3,10 +3,11 @@
 //!
 //! Owns how Java writes it, the two libraries' interfaces, and letters: a file of Java is ASCII here.
 
+use super::about;
 use super::graph::Scene;
 use super::names::letters;
 use super::plan::{Body, Dialect, Level, Planner, Text, digits, sign};
-use super::{Row, about};
+use super::row::Row;
 use crate::function::Function;
 use crate::model::Symbol;
 use crate::syntax::Comparison;

@@ -2,10 +2,11 @@
 //!
 //! Owns how JavaScript writes it.
 
+use super::about;
 use super::graph::Scene;
 use super::names::letters;
 use super::plan::{Body, Dialect, Level, Planner, Text, digits, sign};
-use super::{Row, about};
+use super::row::Row;
 use crate::function::Function;
 use crate::model::Symbol;
 use crate::syntax::{Comparison, Domain};

@@ -2,10 +2,11 @@
 //!
 //! Owns how mathematics is set: Greek letters, indices, fractions. The text is a fragment that needs amsmath.
 
+use super::about;
 use super::graph::Scene;
 use super::names::letters;
 use super::plan::{Body, Dialect, Level, Planner, Text, digits};
-use super::{Row, about};
+use super::row::Row;
 use crate::function::Function;
 use crate::model::{Condition, Expr, Symbol};
 use crate::syntax::{Comparison, Kind, Operator};

@@ -3,10 +3,11 @@
 //! Owns how Lua writes it. Nothing but `math` is asked of the host, and a call whose caller brings the result's array
 //! makes no garbage.
 
+use super::about;
 use super::graph::Scene;
 use super::names::letters;
 use super::plan::{Body, Dialect, Level, Planner, Text, digits, sign};
-use super::{Row, about};
+use super::row::Row;
 use crate::function::Function;
 use crate::model::Symbol;
 use crate::syntax::{Comparison, Domain};

@@ -2,9 +2,10 @@
 //!
 //! Owns how Python writes it.
 
+use super::about;
 use super::graph::Scene;
 use super::plan::{Body, Dialect, Level, Planner, Text, digits, sign};
-use super::{Row, about};
+use super::row::Row;
 use crate::function::Function;
 use crate::syntax::{Comparison, Domain, Operator};
 use crate::tape::{Input, ValueId};

@@ -2,7 +2,7 @@
 
 use crate::models;
 use crate::outcome::{Case, DT, cases, expected};
-use crate::tools::{has, has_file, python, run, scratch};
+use crate::tools::{has_file, python, run, scratch};
 use lang_dcml::generate::{Options, Target, generate};
 use lang_dcml::model::Model;
 use lang_dcml::syntax::Kind;
@@ -116,7 +116,7 @@ const C_MAIN: &str = "static double number(FILE *in) { char word[64]; if (fscanf
 #[test]
 fn c_agrees_as_c_and_as_cpp() {
     let test = "dcml-c";
-    if !has(test, "gcc") || !has(test, "g++") {
+    if !needs::tool("gcc") || !needs::tool("g++") {
         return;
     }
     let (folder, models) = (scratch(test), all());
@@ -183,7 +183,7 @@ fn c_agrees_as_c_and_as_cpp() {
 #[test]
 fn rust_agrees() {
     let test = "dcml-rust";
-    if !has(test, "rustc") {
+    if !needs::tool("rustc") {
         return;
     }
     let (folder, models) = (scratch(test), all());
@@ -237,7 +237,7 @@ fn rust_agrees() {
 #[test]
 fn python_agrees_on_single_states_and_on_many_at_once() {
     let test = "dcml-python";
-    let Some(python) = python(test) else {
+    let Some(python) = python() else {
         return;
     };
     let (folder, models) = (scratch(test), all());
@@ -274,7 +274,7 @@ fn python_agrees_on_single_states_and_on_many_at_once() {
 #[test]
 fn lua_agrees() {
     let test = "dcml-lua";
-    if !has(test, "luajit") {
+    if !needs::tool("luajit") {
         return;
     }
     let (folder, models) = (scratch(test), all());
@@ -309,7 +309,7 @@ fn lua_agrees() {
 #[test]
 fn javascript_agrees() {
     let test = "dcml-javascript";
-    if !has(test, "node") {
+    if !needs::tool("node") {
         return;
     }
     let (folder, models) = (scratch(test), all());
@@ -350,7 +350,7 @@ const HIPPARCHUS: &str = "package org.hipparchus.ode;\npublic interface Ordinary
 #[test]
 fn java_agrees_for_both_libraries() {
     let test = "dcml-java";
-    if !has(test, "javac") || !has_file(test, COMMONS_MATH) {
+    if !needs::tool("javac") || !has_file(COMMONS_MATH) {
         return;
     }
     let models = all();
@@ -446,7 +446,7 @@ fn compile_java(folder: &Path) {
 #[test]
 fn latex_compiles() {
     let test = "dcml-latex";
-    if !has(test, "pdflatex") {
+    if !needs::tool("pdflatex") {
         return;
     }
     let folder = scratch(test);

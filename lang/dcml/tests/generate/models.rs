@@ -17,12 +17,13 @@ BEGIN Everything
 ACTION: push [N] in -2 .. 2, turn [rad/s];
 PARAM: mass [kg], drag;
 CONST: g = 9.81, soft = 0.125;
-CONFIG: theta [rad] in S1, v;
+CONFIG: theta [rad] in S1, v, felt;
 VAR: slope, force;
 slope = sin(theta) * g;
 force = piecewise(v < 0, push * soft, v > 2, max(push, -1), push);
 d(theta) = turn + atan(v) * soft;
 d(v) = force / mass - slope - drag * v * abs(v) + sign(push) * floor(v) - pow(soft, 2);
+felt = d(v) + slope * d(theta);
 END;
 ";
 

@@ -1,26 +1,17 @@
 //! The tools of other languages: found, or skipped by name; run with their complaints shown.
 
+use needs::Need;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Whether a tool is there; says by name that a test is skipped if not. With `TRIK_REQUIRE_TOOLS=1` that is a failure.
-pub fn has(test: &str, tool: &str) -> bool {
-    let answers = |word| Command::new(tool).arg(word).output().is_ok();
-    is_there(test, tool, answers("--version") || answers("-v"))
+/// Whether a file that comes with a tool is there; if not, the test is skipped.
+pub fn has_file(path: &str) -> bool {
+    is_there(path, Path::new(path).exists())
 }
 
-/// The same for a file.
-pub fn has_file(test: &str, path: &str) -> bool {
-    is_there(test, path, Path::new(path).exists())
-}
-
-fn is_there(test: &str, what: &str, is_there: bool) -> bool {
+fn is_there(what: &str, is_there: bool) -> bool {
     if !is_there {
-        assert!(
-            std::env::var_os("TRIK_REQUIRE_TOOLS").is_none(),
-            "{test} needs {what}, which is missing"
-        );
-        println!("skipped {test}: no {what}");
+        Need::Tools.missing(format_args!("no {what}"));
     }
     is_there
 }
@@ -56,10 +47,10 @@ pub fn run(folder: &Path, words: &[&str]) -> String {
 }
 
 /// A Python that has NumPy: the one of `.ci/run`, or the system's.
-pub fn python(test: &str) -> Option<String> {
+pub fn python() -> Option<String> {
     let python = std::env::var("TRIK_NUMPY_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     let mut command = Command::new(&python);
     let has_numpy = command.args(["-c", "import numpy, scipy"]).output();
     let is_good = has_numpy.is_ok_and(|output| output.status.success());
-    is_there(test, "python3 with numpy and scipy", is_good).then_some(python)
+    is_there("python3 with numpy and scipy", is_good).then_some(python)
 }

@@ -61,14 +61,14 @@ pub(super) const ROWS: &[Row] = &[
         "Motors Forward",
         &Act::of(Effect::Drive(1)).icon(UP).examples(&[example(&[("Power", "150")], &["power M3 100", "power M4 100"])]),
         &[MOTORS, POWER],
-        "Gives power to motors, in percent from -100 to 100; more counts as 100. The program goes on at once.",
+        "Sets the power of motors, in percent from -100 to 100; more counts as 100. The program goes on at once.",
     ),
     row(
         "TrikV6EnginesBackward",
         "Motors Backward",
         &Act::of(Effect::Drive(-1)).icon("<path class=\"i\" d=\"M0 -14V12M-9 3L0 12L9 3\"/>").examples(&[example(&[("Power", "50")], &["power M3 -50", "power M4 -50"])]),
         &[MOTORS, POWER],
-        "Gives power to motors in the other direction.",
+        "Sets the power of motors in the other direction.",
     ),
     row(
         "TrikV6EnginesStop",
@@ -167,7 +167,7 @@ pub(super) const ROWS: &[Row] = &[
                 flag("Code", "Code", "false"),
                 EVALUATE,
             ],
-            "Runs a command of the shell on the robot, or a line of a program if `Code` is set. In the simulator it does nothing.",
+            "Runs a shell command on the robot, or a line of a program if `Code` is set. In the simulator it does nothing.",
         )
     },
     row(
@@ -178,7 +178,7 @@ pub(super) const ROWS: &[Row] = &[
             property("File", "File", Raw, "output.txt"),
             expression("Text", "Text", Text, ""),
         ],
-        "Appends the value of an expression to a file, without a new line.",
+        "Appends the value of an expression to a file, without a newline.",
     ),
     row(
         "TrikRemoveFile",
@@ -268,7 +268,7 @@ pub(super) const ROWS: &[Row] = &[
                 property("Message", "Message", Raw, ""),
                 expression("HullNumber", "Hull Number", Whole, ""),
             ],
-            "Sends a text as it stands to the robot with a hull number; without a number, to all.",
+            "Sends a text unchanged to the robot with a hull number; without a number, to all.",
         )
     },
     Row {
@@ -278,7 +278,7 @@ pub(super) const ROWS: &[Row] = &[
             "Calibrate gyroscope",
             &Act::command(|_| Command::CalibrateGyroscope, &[script(&[], "brick.gyroscope().calibrate(1)")]).icon(DRUM).russian("Калибровать гироскоп").dispensable().examples(&[example(&[], &["calibrate"])]),
             &[],
-            "The present heading becomes 0.",
+            "Sets the present heading to 0.",
         )
     },
     Row {

@@ -80,14 +80,14 @@ pub(super) const ROWS: &[Row] = &[
         "Loop",
         Does::Loop,
         &[expression("Iterations", "Iterations", Whole, "10")],
-        "Runs its body a number of times. The link into the body has the guard `iteration`, the other one is blank. The counter belongs to the block, not to the thread: who leaves the body by another way finds it half way when he comes again.",
+        "Runs its body a number of times. The link into the body has the guard `iteration`, the other one is blank. The counter belongs to the block, not to the thread: a thread that leaves the body by another link finds it part-way when it comes back.",
     ),
     row(
         "SwitchBlock",
         "Switch",
         Does::Switch,
         &[expression("Expression", "Expression", Text, "x")],
-        "Takes the link whose guard is the value of the expression, else the blank one. Guards are taken in lower case and values as they are, so a guard with capitals meets no text.",
+        "Takes the link whose guard is the value of the expression, otherwise the blank one. Guards are converted to lower case and values are not, so a guard with capitals never matches a text.",
     ),
     row(
         "Function",
@@ -101,14 +101,14 @@ pub(super) const ROWS: &[Row] = &[
         "Subprogram",
         Does::Call,
         &[],
-        "Runs another diagram and goes on after it. Arguments are assigned to variables with the names of the parameters; when the subprogram returns, these variables have their former values again.",
+        "Runs another diagram and then goes on. Arguments are assigned to variables with the names of the parameters; when the subprogram returns, these variables get their previous values back.",
     ),
     row(
         "Fork",
         "Fork",
         Does::Fork,
         &[],
-        "Begins a thread for each link; the guard is the name of the thread. One link has the name of the present thread, or is blank, and continues it.",
+        "Starts a thread for each link; the guard is the name of the thread. One link has the name of the present thread, or is blank, and continues it.",
     ),
     row(
         "Join",
@@ -133,7 +133,7 @@ pub(super) const ROWS: &[Row] = &[
             expression("LowerBound", "From", Whole, "0"),
             expression("UpperBound", "To", Whole, "10"),
         ],
-        "Assigns a random whole number between two bounds, both included.",
+        "Assigns a random integer between two bounds, both included.",
     ),
     row(
         "Input",
@@ -144,7 +144,7 @@ pub(super) const ROWS: &[Row] = &[
             property("default", "Default value", Raw, ""),
             property("prompt", "Prompt", Raw, ""),
         ],
-        "Asks a person for a value; what is typed is an expression. A link with the guard `cancel` is taken if the person does not answer.",
+        "Asks the user for a value; the answer is an expression. A link with the guard `cancel` is taken if there is no answer.",
     ),
     row(
         "CommentBlock",
@@ -156,7 +156,7 @@ pub(super) const ROWS: &[Row] = &[
             Raw,
             "Enter some text here...",
         )],
-        "A note for people. No link may end at it.",
+        "A comment. No link may end at it.",
     ),
     Row {
         category: Category::Actions,
@@ -168,7 +168,7 @@ pub(super) const ROWS: &[Row] = &[
                 property("Thread", "Thread", Raw, ""),
                 expression("Message", "Message", Text, ""),
             ],
-            "Sends a message to a thread by its name. A message to a thread that is not there is lost.",
+            "Sends a message to a thread by its name. A message to a thread that does not exist is lost.",
         )
     },
     Row {
@@ -178,7 +178,7 @@ pub(super) const ROWS: &[Row] = &[
             "Get Button Code",
             Does::AnyButton,
             &[variable("Variable", "x"), flag("Wait", "Wait", "true")],
-            "Assigns the code of a pressed button: Left 105, Right 106, Up 103, Down 108, Enter 28, Power 116, Esc 1. Without `Wait` it assigns -1 if none is pressed. It looks every 20 ms, the first time after 20 ms.",
+            "Assigns the code of a pressed button: Left 105, Right 106, Up 103, Down 108, Enter 28, Power 116, Esc 1. Without `Wait` it assigns -1 if none is pressed. It checks every 20 ms, the first time after 20 ms.",
         )
     },
     Row {
@@ -188,7 +188,7 @@ pub(super) const ROWS: &[Row] = &[
             "Timer",
             Does::Timer,
             &[expression("Delay", "Delay (ms)", Whole, "1000")],
-            "Waits for a number of milliseconds, which counts up to the next multiple of 10 and is at least 10.",
+            "Waits for a number of milliseconds, rounded up to a multiple of 10, at least 10.",
         )
     },
     Row {
@@ -201,7 +201,7 @@ pub(super) const ROWS: &[Row] = &[
                 variable("Variable", ""),
                 flag("Synchronized", "Synchronized", "true"),
             ],
-            "Takes the next message for the present thread. The message is an expression: a text must have come with its quotes. If there is none, it waits, or goes on if it is not synchronized.",
+            "Takes the next message for the present thread. The message is an expression: a text must have been sent with its quotes. If there is none, it waits, or goes on if it is not synchronized.",
         )
     },
     Row {
@@ -215,7 +215,7 @@ pub(super) const ROWS: &[Row] = &[
                 variable("Variable", ""),
                 flag("Synchronized", "Synchronized", "true"),
             ],
-            "Assigns the next message of another robot, as a text. It looks every 100 ms. If it is not synchronized and there is none, it assigns an empty text.",
+            "Assigns the next message of another robot, as a text. It checks every 100 ms. If it is not synchronized and there is none, it assigns an empty text.",
         )
     },
     Row {

@@ -83,7 +83,7 @@ pub(super) const ROWS: &[Row] = &[
             REDRAW,
             whole("FontSize", "Font size", "20"),
         ],
-        "Prints a text on the screen, or the value of an expression if `Evaluate` is set. Numbers are shown with at most six digits behind the point. A text at the same place replaces the former one.",
+        "Prints a text on the screen, or the value of an expression if `Evaluate` is set. Numbers are shown with at most six digits after the point. A text at the same place replaces the previous one.",
     ),
     Row {
         silent: Silent::Always,
@@ -98,7 +98,7 @@ pub(super) const ROWS: &[Row] = &[
                 EVALUATE,
                 REDRAW,
             ],
-            "The former Print Text, which does nothing on TRIK. Old saves are converted to TrikPrintText when they are read.",
+            "The old Print Text, which does nothing on TRIK. Old saves are converted to TrikPrintText when they are read.",
         )
     },
     row(
@@ -106,7 +106,7 @@ pub(super) const ROWS: &[Row] = &[
         "Clear Screen",
         &Act::command(|_| Command::ClearScreen, &[script(&[], "brick.display().clear()")]).icon(SCREEN).dispensable().examples(&[example(&[], &["clear", "redraw"])]),
         &[REDRAW],
-        "Takes everything from the screen but the background.",
+        "Removes everything from the screen except the background.",
     ),
     row(
         "TrikSetPainterColor",

@@ -35,7 +35,7 @@ const ANALOG: Property = property(
 const DISTANCE: Property = expression("Distance", "Distance", Whole, "0");
 const LIMIT: Property = expression("TachoLimit", "Tacho Limit", Whole, "");
 const ENCODER_TEXT: &str =
-    "Waits until an encoder has passed a number of degrees. It looks every 10 ms.";
+    "Waits until an encoder has passed a number of degrees. It checks every 10 ms.";
 
 pub(super) const ROWS: &[Row] = &[
     row(
@@ -153,7 +153,7 @@ pub(super) const ROWS: &[Row] = &[
             "Wait Gamepad Button",
             Watch::PadButton,
             &[property("Button", "Button", Number, "1")],
-            "Waits until a button of the gamepad, 1 to 5, is pressed. It looks every 200 ms.",
+            "Waits until a button of the gamepad, 1 to 5, is pressed. It checks every 200 ms.",
         )
     },
     Row {
@@ -183,7 +183,7 @@ pub(super) const ROWS: &[Row] = &[
             "Wait for Gamepad Disconnect",
             Watch::Disconnected,
             &[],
-            "Waits until the gamepad is gone.",
+            "Waits until the gamepad is disconnected.",
         )
     },
     Row {
@@ -193,7 +193,7 @@ pub(super) const ROWS: &[Row] = &[
             "Wait for Gamepad Connect",
             Watch::Connected,
             &[],
-            "Waits until a gamepad is there.",
+            "Waits until a gamepad is connected.",
         )
     },
 ];

@@ -93,7 +93,7 @@ impl Machine {
                 let source = *action.sources.get(1)?;
                 let value = self.evaluate(node, source, Type::Whole, env)?;
                 let power = value.to_int().saturating_mul(sign);
-                self.to_motors(node, action, env, |port| match port.sort() {
+                self.for_motors(node, action, env, |port| match port.sort() {
                     Sort::Servo => Command::Servo {
                         port,
                         degrees: power,
@@ -106,7 +106,7 @@ impl Machine {
             }
             Effect::Stop => {
                 let brake = action.texts.first().is_some_and(|mode| &**mode == "brake");
-                self.to_motors(node, action, env, |port| Command::Off { port, brake })?;
+                self.for_motors(node, action, env, |port| Command::Off { port, brake })?;
             }
             Effect::ResetEncoders => {
                 for &port in &action.ports {
@@ -127,7 +127,7 @@ impl Machine {
     }
 
     /// A command to each port of the list.
-    fn to_motors(
+    fn for_motors(
         &mut self,
         node: Node,
         action: &Action,

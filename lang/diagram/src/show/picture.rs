@@ -75,18 +75,7 @@ fn middle(block: &Block) -> (f64, f64) {
 
 /// Text that stands between tags.
 fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for letter in super::shortened(text).chars() {
-        match letter {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\u{fffe}' | '\u{ffff}' => {}
-            letter => out.push(letter),
-        }
-    }
-    out
+    lang_text::escape::escaped(&super::shortened(text))
 }
 
 /// Where the way from the middle of a block to another place leaves its box.

@@ -118,14 +118,14 @@ fn shim(name: &str) -> PathBuf {
 
 /// Runs all projects in a language beside the machine.
 fn compare(test: &str, language: Language, tool: &str, shim_name: &str) {
-    if !crate::has_tool(test, tool) {
+    if !needs::tool(tool) {
         return;
     }
     let folder = crate::scratch(test);
     let shim = shim(shim_name);
     let mut complaints = Vec::new();
     let drawn = crate::drawn::projects();
-    for (name, project) in drawn.into_iter().chain(crate::projects(test)) {
+    for (name, project) in drawn.into_iter().chain(crate::projects()) {
         let options = Options {
             world: WORLD,
             ..Options::default()

@@ -15,13 +15,11 @@ fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
 }
 
-/// All real projects with names; none, and a word of it, where there is no such folder.
-fn projects(test: &str) -> Vec<(String, Project)> {
-    let data = root().join("../shared/data");
-    if !data.is_dir() {
-        println!("skipped {test}: no ../shared");
+/// All real projects with names; none, and a skip, if they are not there.
+fn projects() -> Vec<(String, Project)> {
+    let Some(data) = needs::data() else {
         return Vec::new();
-    }
+    };
     let mut paths: Vec<PathBuf> = ["course", "examples", "grading", "structure"]
         .iter()
         .flat_map(|folder| std::fs::read_dir(data.join(folder)).unwrap())
@@ -37,20 +35,6 @@ fn projects(test: &str) -> Vec<(String, Project)> {
         (name, opened.project)
     };
     paths.into_iter().map(open).collect()
-}
-
-/// Whether a tool is there; says by name that a test is skipped if not. With `TRIK_REQUIRE_TOOLS=1` that is a failure.
-fn has_tool(test: &str, tool: &str) -> bool {
-    let answers = |word| std::process::Command::new(tool).arg(word).output().is_ok();
-    let is_there = answers("--version") || answers("-v");
-    if !is_there {
-        assert!(
-            std::env::var_os("TRIK_REQUIRE_TOOLS").is_none(),
-            "{test} needs {tool}, which is missing"
-        );
-        println!("skipped {test}: no {tool}");
-    }
-    is_there
 }
 
 /// A new empty folder for the files of one test.
@@ -110,7 +94,7 @@ fn all_real_projects_have_pictures_and_outlines() {
     use lang_diagram::show::{outline::outline, picture::picture};
     use lang_text::problem::Locale;
 
-    for (name, project) in projects("pictures") {
+    for (name, project) in projects() {
         for locale in [Locale::English, Locale::Russian] {
             for diagram in &project.diagrams {
                 let svg = picture(diagram, locale);

@@ -103,7 +103,7 @@ pub fn projects() -> Vec<(String, Project)> {
 }
 
 fn check(test: &str, language: Language, tool: &[&str], last: &[&str]) {
-    if !crate::has_tool(test, tool[0]) {
+    if !needs::tool(tool[0]) {
         return;
     }
     let folder = crate::scratch(test);

@@ -13,13 +13,13 @@ fn check(test: &str, language: Language, tool: &[&str]) {
     } else {
         &[]
     };
-    if !crate::has_tool(test, tool[0]) {
+    if !needs::tool(tool[0]) {
         return;
     }
     let folder = crate::scratch(test);
     let mut complaints = Vec::new();
     let (mut good, mut refused) = (0, Vec::new());
-    for (name, project) in crate::projects(test) {
+    for (name, project) in crate::projects() {
         let generated = match generate(&project, language, Options::default()) {
             Ok(generated) => generated,
             Err(problems) => {
@@ -89,7 +89,7 @@ fn c_is_compiled_without_warnings() {
 #[test]
 fn fsharp_is_taken_by_its_compiler() {
     let Some(modules) = std::env::var_os("TRIK_FABLE") else {
-        println!("skipped fsharp: TRIK_FABLE names no node_modules with fable-standalone");
+        needs::Need::Extra.missing("TRIK_FABLE names no node_modules with fable-standalone");
         return;
     };
     let folder = crate::scratch("fsharp");
@@ -99,7 +99,7 @@ fn fsharp_is_taken_by_its_compiler() {
     command.arg(modules).arg(here.join("stub.fs"));
     let mut count = 0;
     let hurting = crate::names::projects();
-    for (at, (_, project)) in crate::projects("fsharp").iter().chain(&hurting).enumerate() {
+    for (at, (_, project)) in crate::projects().iter().chain(&hurting).enumerate() {
         if let Ok(generated) = generate(project, Language::FSharp, Options::default()) {
             let path = folder.join(format!("{at}.fs"));
             std::fs::write(&path, generated.text).unwrap();

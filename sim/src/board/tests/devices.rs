@@ -3,11 +3,11 @@
 use super::{board, read, wait, write};
 use crate::board::Board;
 use crate::limits::SAYINGS_MAX;
-use crate::scratch::Scratch;
 use std::fs::File;
 use std::io::Read;
 use std::os::unix::fs::OpenOptionsExt;
 use std::process::Command;
+use tempfile::tempdir;
 
 /// Opens a FIFO without waiting for the board.
 fn open(board: &Board, name: &str) -> Option<File> {
@@ -59,7 +59,7 @@ fn enable(board: &Board, device: &str, channel: &str) {
 
 #[test]
 fn the_accelerometer_gives_gravity_in_its_own_bytes() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "board");
     let name = read(&board, "sys/bus/iio/devices/iio:device0/name").unwrap();
     assert_eq!(name, "mma8451\n");
@@ -78,7 +78,7 @@ fn the_accelerometer_gives_gravity_in_its_own_bytes() {
 
 #[test]
 fn the_gyroscope_turns_with_the_robot_and_rests_while_its_buffer_is_off() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "board");
     let mut file = open(&board, "dev/iio:device1").unwrap();
     enable(&board, "iio:device1", "anglvel");
@@ -104,7 +104,7 @@ fn the_gyroscope_turns_with_the_robot_and_rests_while_its_buffer_is_off() {
 
 #[test]
 fn an_unplugged_gyroscope_has_no_node_and_garbage_is_no_sample() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "board");
     write(&board, "faults/gyroscope", "unplug");
     wait("end of the node", || {
@@ -139,7 +139,7 @@ fn packet(file: &mut File) -> Vec<(u16, u16, i32)> {
 #[test]
 #[cfg(target_pointer_width = "64")]
 fn an_ultrasonic_sensor_tells_its_distance_first_and_then_only_changes() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "board");
     let expected = board.view().ultrasonic_m[0].unwrap() * 100.0;
     let mut file = open(&board, "dev/input/by-path/platform-trik_jd1-event").unwrap();
@@ -165,7 +165,7 @@ fn an_ultrasonic_sensor_tells_its_distance_first_and_then_only_changes() {
 #[test]
 #[cfg(target_pointer_width = "64")]
 fn keys_are_pressed_from_outside() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "board");
     let mut file = open(
         &board,
@@ -221,7 +221,7 @@ fn keys_are_pressed_from_outside() {
 
 #[test]
 fn the_lidar_sends_whole_packets_and_sees_the_room() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "board");
     let mut file = open(&board, "dev/ttyS1").unwrap();
     let mut seen = Vec::new();
@@ -255,9 +255,14 @@ fn sensor(board: &Board, name: &str, order: &str) -> std::process::ExitStatus {
 
 #[test]
 fn a_line_sensor_is_started_read_told_and_stopped() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let body = crate::robots::by_name("line-follower").unwrap().body();
-    let board = Board::start(&scratch.path("board"), body, super::Options::default()).unwrap();
+    let board = Board::start(
+        &scratch.path().join("board"),
+        body,
+        super::Options::default(),
+    )
+    .unwrap();
     assert!(open(&board, "run/line-sensor.out.fifo").is_none());
     assert!(sensor(&board, "line", "start").success());
     let mut file = open(&board, "run/line-sensor.out.fifo").unwrap();
@@ -301,7 +306,7 @@ fn a_line_sensor_is_started_read_told_and_stopped() {
 
 #[test]
 fn a_colour_sensor_tells_a_grid_and_an_unplugged_camera_ends_it() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "board");
     assert!(sensor(&board, "mxn", "start").success());
     let mut file = open(&board, "run/mxn-sensor.out.fifo").unwrap();
@@ -327,7 +332,7 @@ fn a_colour_sensor_tells_a_grid_and_an_unplugged_camera_ends_it() {
 
 #[test]
 fn the_gamepad_and_speech_go_through() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "board");
     let mut file = open(&board, "run/gamepad-service.out.fifo").unwrap();
     // The board finds its new reader within its tick.
@@ -373,7 +378,7 @@ fn the_gamepad_and_speech_go_through() {
 
 #[test]
 fn a_reader_that_never_reads_stops_nobody() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "board");
     let _lazy: Vec<File> = ["dev/ttyS1", "dev/iio:device0", "dev/iio:device1"]
         .map(|name| open(&board, name).unwrap())
@@ -395,7 +400,7 @@ fn a_reader_that_never_reads_stops_nobody() {
 
 #[test]
 fn what_is_written_to_the_frame_buffer_can_be_seen_as_a_picture() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "bare");
     let picture = board.root().join("display.ppm");
     let head = b"P6\n320 240\n255\n";
@@ -415,7 +420,7 @@ fn what_is_written_to_the_frame_buffer_can_be_seen_as_a_picture() {
 
 #[test]
 fn the_encoder_gives_pictures_of_what_the_camera_sees() {
-    let scratch = Scratch::new();
+    let scratch = tempdir().unwrap();
     let board = board(&scratch, "two-wheels");
     let script = board.root().join("etc/init.d/mjpg-encoder-ov7670");
     let run = |word: &str| {

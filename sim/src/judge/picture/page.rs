@@ -3,7 +3,6 @@
 //! Owns the page, which needs no network and no other file. Its frame is `page.html`; every text of a run comes into it as
 //! data, never as a tag.
 
-use super::shapes::escaped;
 use super::{body, head, marker, shapes, way};
 use crate::field::Field;
 use crate::judge::json;
@@ -11,6 +10,7 @@ use crate::judge::trajectory::Trajectory;
 use crate::judge::words;
 use crate::limits;
 use lang_constraint::{Entry, Level};
+use lang_text::escape::escaped;
 use lang_text::problem::Locale;
 use std::fmt::Write as _;
 

@@ -6,6 +6,7 @@ use super::is_near;
 use crate::field::{Blob, Drawn, Field, Pen, Region, Shape, Solid, SolidKind};
 use crate::geometry::Point;
 use crate::limits;
+use lang_text::escape::escaped;
 use std::fmt::Write as _;
 
 /// A rectangle around points.
@@ -49,22 +50,6 @@ pub(super) fn colour(text: &str, other: &str) -> String {
         }
         _ => other.to_owned(),
     }
-}
-
-/// A text in a page.
-pub(super) fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '&' => out.push_str("&amp;"),
-            '"' => out.push_str("&quot;"),
-            c if c.is_control() => out.push(' '),
-            c => out.push(c),
-        }
-    }
-    out
 }
 
 /// How far a field reaches.

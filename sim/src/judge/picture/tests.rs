@@ -47,7 +47,7 @@ fn drive() -> Trajectory {
                 .push(told(990, "isDown", Value::Bool(true)));
             trajectory
                 .records
-                .push(told(990, "color", Value::Text("#0000ff".into())));
+                .push(told(990, "color", "#0000ff".into()));
         }
         trajectory.records.push(Record::Pose {
             robot,

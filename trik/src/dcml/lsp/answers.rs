@@ -6,10 +6,10 @@ mod marks;
 mod offers;
 mod places;
 
+use super::document::{Document, Encoding};
 use super::message::{FAILED, METHOD_NOT_FOUND, Refusal};
 use super::params::{self, range_json};
 use super::session::Client;
-use super::sheet::{Encoding, Sheet};
 use lang_dcml::diagnostic::{Code, Diagnostic, Severity};
 use lang_dcml::syntax::Span;
 use lang_editor::Edit;
@@ -44,46 +44,46 @@ pub fn kind(method: &str) -> Option<Of> {
 pub fn answer(
     method: &str,
     uri: &str,
-    sheet: &Sheet,
+    document: &Document,
     params: &Value,
     client: &Client,
 ) -> Result<Value, Refusal> {
     let encoding = client.encoding;
-    let offset = || Ok(sheet.offset(params::position(params)?, encoding));
-    let span = || Ok(sheet.span(params::range(params)?, encoding));
-    let reading = sheet.reading();
+    let offset = || Ok(document.offset(params::position(params)?, encoding));
+    let span = || Ok(document.span(params::range(params)?, encoding));
+    let reading = document.reading();
     Ok(match method.trim_start_matches("textDocument/") {
-        "hover" => offers::hover(sheet, offset()?, client),
-        "completion" => offers::completion(sheet, offset()?, client),
-        "signatureHelp" => offers::signature(sheet, offset()?, client),
-        "definition" => places::definition(uri, sheet, offset()?, encoding),
+        "hover" => offers::hover(document, offset()?, client),
+        "completion" => offers::completion(document, offset()?, client),
+        "signatureHelp" => offers::signature(document, offset()?, client),
+        "definition" => places::definition(uri, document, offset()?, encoding),
         "references" => {
             let with_declaration =
                 params.pointer("/context/includeDeclaration") != Some(&json!(false));
-            places::references(uri, sheet, offset()?, with_declaration, encoding)
+            places::references(uri, document, offset()?, with_declaration, encoding)
         }
-        "documentHighlight" => places::highlights(sheet, offset()?, encoding),
+        "documentHighlight" => places::highlights(document, offset()?, encoding),
         "prepareRename" => {
             let span = reading.renamable(offset()?).map_err(failed)?;
-            range_json(sheet, span, encoding)
+            range_json(document, span, encoding)
         }
         "rename" => {
             let name = params::text(params, "newName")?;
             let edits = reading.rename(offset()?, name).map_err(failed)?;
-            workspace_edit(uri, sheet, &edits, client)
+            workspace_edit(uri, document, &edits, client)
         }
-        "documentSymbol" => places::symbols(uri, sheet, client),
-        "foldingRange" => places::folds(sheet, encoding),
+        "documentSymbol" => places::symbols(uri, document, client),
+        "foldingRange" => places::folds(document, encoding),
         "formatting" => {
             let edit = reading.formatted().map_err(failed)?;
-            edits_json(sheet, edit.as_slice(), encoding)
+            edits_json(document, edit.as_slice(), encoding)
         }
-        "codeAction" => offers::fixes(uri, sheet, span()?, params, client),
+        "codeAction" => offers::fixes(uri, document, span()?, params, client),
         "semanticTokens/full" => {
             let end = u32::try_from(reading.text().len()).unwrap_or(u32::MAX);
-            marks::tokens(sheet, Span { start: 0, end }, encoding)
+            marks::tokens(document, Span { start: 0, end }, encoding)
         }
-        "semanticTokens/range" => marks::tokens(sheet, span()?, encoding),
+        "semanticTokens/range" => marks::tokens(document, span()?, encoding),
         _ => {
             return Err(Refusal::new(
                 METHOD_NOT_FOUND,
@@ -125,25 +125,28 @@ pub fn capabilities(encoding: Encoding) -> Value {
 }
 
 /// The diagnostics of a document.
-pub fn diagnostics(uri: &str, sheet: &Sheet, client: &Client) -> Value {
-    if sheet.is_too_long() {
+pub fn diagnostics(uri: &str, document: &Document, client: &Client) -> Value {
+    if document.is_too_long() {
         let message = "this document is too long, or a change of it was not understood: close it and open it again";
         return json!([{
-            "range": range_json(sheet, Span::default(), client.encoding),
+            "range": range_json(document, Span::default(), client.encoding),
             "severity": 1,
             "code": Code::TooLong.name(),
             "source": "dcml",
             "message": message,
         }]);
     }
-    let all = sheet.reading().diagnostics().iter();
-    Value::Array(all.map(|one| diagnostic(uri, sheet, one, client)).collect())
+    let all = document.reading().diagnostics().iter();
+    Value::Array(
+        all.map(|one| diagnostic(uri, document, one, client))
+            .collect(),
+    )
 }
 
-fn diagnostic(uri: &str, sheet: &Sheet, one: &Diagnostic, client: &Client) -> Value {
+fn diagnostic(uri: &str, document: &Document, one: &Diagnostic, client: &Client) -> Value {
     let hint = one.hint.as_ref().map(|hint| format!("\n{hint}"));
     let mut found = json!({
-        "range": range_json(sheet, one.span, client.encoding),
+        "range": range_json(document, one.span, client.encoding),
         "severity": match one.severity {
             Severity::Error => 1,
             Severity::Warning => 2,
@@ -154,7 +157,7 @@ fn diagnostic(uri: &str, sheet: &Sheet, one: &Diagnostic, client: &Client) -> Va
     });
     if client.has_related && !one.notes.is_empty() {
         let notes = one.notes.iter().map(|(span, text)| {
-            json!({"location": {"uri": uri, "range": range_json(sheet, *span, client.encoding)}, "message": text})
+            json!({"location": {"uri": uri, "range": range_json(document, *span, client.encoding)}, "message": text})
         });
         found["relatedInformation"] = notes.collect();
     }
@@ -165,17 +168,17 @@ fn diagnostic(uri: &str, sheet: &Sheet, one: &Diagnostic, client: &Client) -> Va
     found
 }
 
-fn edits_json(sheet: &Sheet, edits: &[Edit], encoding: Encoding) -> Value {
+fn edits_json(document: &Document, edits: &[Edit], encoding: Encoding) -> Value {
     let edits = edits.iter();
     edits
-        .map(|one| json!({"range": range_json(sheet, one.span, encoding), "newText": one.text}))
+        .map(|one| json!({"range": range_json(document, one.span, encoding), "newText": one.text}))
         .collect()
 }
 
-fn workspace_edit(uri: &str, sheet: &Sheet, edits: &[Edit], client: &Client) -> Value {
-    let edits = edits_json(sheet, edits, client.encoding);
+fn workspace_edit(uri: &str, document: &Document, edits: &[Edit], client: &Client) -> Value {
+    let edits = edits_json(document, edits, client.encoding);
     if client.has_versions {
-        let document = json!({"uri": uri, "version": sheet.version});
+        let document = json!({"uri": uri, "version": document.version});
         return json!({"documentChanges": [{"textDocument": document, "edits": edits}]});
     }
     let mut changes = serde_json::Map::new();

@@ -126,25 +126,28 @@ impl State {
 
 /// The request that a message takes back.
 fn cancels(message: &Message) -> Option<&Value> {
-    match message {
-        Message::Notification { method, params } if method == "$/cancelRequest" => params.get("id"),
-        _ => None,
+    let Message::Notification { method, params } = message else {
+        return None;
+    };
+    if method != "$/cancelRequest" {
+        return None;
     }
+    params.get("id")
 }
 
 /// The document that a message changes.
 fn changes(message: &Message) -> Option<&str> {
-    match message {
-        Message::Notification { method, params }
-            if matches!(
-                method.as_str(),
-                "textDocument/didChange" | "textDocument/didClose" | "textDocument/didOpen"
-            ) =>
-        {
-            params.get("textDocument")?.get("uri")?.as_str()
-        }
-        _ => None,
+    let Message::Notification { method, params } = message else {
+        return None;
+    };
+    let is_change = matches!(
+        method.as_str(),
+        "textDocument/didChange" | "textDocument/didClose" | "textDocument/didOpen"
+    );
+    if !is_change {
+        return None;
     }
+    params.get("textDocument")?.get("uri")?.as_str()
 }
 
 #[cfg(test)]
@@ -170,7 +173,7 @@ mod tests {
     fn taken(inbox: &Inbox) -> (Message, bool) {
         match inbox.take(Duration::ZERO) {
             Taken::Message(message, is_cancelled) => (message, is_cancelled),
-            other => panic!("{other:?}"),
+            other @ (Taken::Nothing | Taken::End) => panic!("{other:?}"),
         }
     }
 

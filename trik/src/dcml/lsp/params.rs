@@ -2,8 +2,8 @@
 //!
 //! Owns the names of their parts, and what is said of parts that are missing.
 
+use super::document::{Change, Document, Encoding, Position};
 use super::message::{INVALID_PARAMS, Refusal};
-use super::sheet::{Change, Encoding, Position, Sheet};
 use lang_dcml::syntax::Span;
 use serde_json::{Value, json};
 
@@ -83,7 +83,7 @@ pub fn place_json(at: Position) -> Value {
 }
 
 /// A stretch of a document as JSON.
-pub fn range_json(sheet: &Sheet, span: Span, encoding: Encoding) -> Value {
-    let (from, to) = sheet.range(span, encoding);
+pub fn range_json(document: &Document, span: Span, encoding: Encoding) -> Value {
+    let (from, to) = document.range(span, encoding);
     json!({"start": place_json(from), "end": place_json(to)})
 }

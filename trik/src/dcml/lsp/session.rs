@@ -3,12 +3,12 @@
 //! Owns which documents are open and what may be said when. Messages in, messages out: it knows no stream and no thread.
 
 use super::answers;
+use super::document::{Document, Encoding};
 use super::message::{
     CANCELLED, CONTENT_MODIFIED, INVALID_PARAMS, INVALID_REQUEST, METHOD_NOT_FOUND, Message,
     NOT_INITIALIZED, Refusal, answer, notification,
 };
 use super::params;
-use super::sheet::{Encoding, Sheet};
 use crate::limits;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -49,7 +49,7 @@ enum Phase {
 pub struct Session {
     phase: Phase,
     client: Client,
-    sheets: BTreeMap<String, Sheet>,
+    documents: BTreeMap<String, Document>,
     parent: Option<i32>,
 }
 
@@ -111,11 +111,11 @@ impl Session {
     /// Tells the diagnostics of documents that have changed and will not at once change again.
     pub fn settle(&mut self, will_change: WillChange<'_>, out: &mut Vec<Value>) {
         let mut last = None;
-        for (uri, sheet) in &mut self.sheets {
-            if sheet.is_new && !will_change(uri) {
-                sheet.is_new = false;
-                let mut params = json!({"uri": uri, "diagnostics": answers::diagnostics(uri, sheet, &self.client)});
-                if let Some(version) = sheet.version {
+        for (uri, document) in &mut self.documents {
+            if document.is_new && !will_change(uri) {
+                document.is_new = false;
+                let mut params = json!({"uri": uri, "diagnostics": answers::diagnostics(uri, document, &self.client)});
+                if let Some(version) = document.version {
                     params["version"] = json!(version);
                 }
                 out.push(notification("textDocument/publishDiagnostics", params));
@@ -142,7 +142,7 @@ impl Session {
             }
             (Phase::Ready, "shutdown") => {
                 self.phase = Phase::Down;
-                self.sheets.clear();
+                self.documents.clear();
                 Ok(Value::Null)
             }
             (Phase::Ready, _) => {
@@ -152,19 +152,19 @@ impl Session {
                 };
                 let uri = params::document(params)?;
                 self.rest_others(uri);
-                let sheet = self.sheets.get(uri);
+                let document = self.documents.get(uri);
 
-                let sheet = sheet.ok_or_else(|| not_open(uri))?;
+                let document = document.ok_or_else(|| not_open(uri))?;
                 if kind == answers::Of::All && will_change(uri) {
                     return Err(Refusal::new(
                         CONTENT_MODIFIED,
                         "the document has changed since",
                     ));
                 }
-                if sheet.is_too_long() {
+                if document.is_too_long() {
                     return Ok(Value::Null);
                 }
-                answers::answer(method, uri, sheet, params, &self.client)
+                answers::answer(method, uri, document, params, &self.client)
             }
         }
     }
@@ -222,7 +222,7 @@ impl Session {
             "textDocument/didChange" => self.change(params),
             "textDocument/didClose" => {
                 let uri = params::document(params)?;
-                if self.sheets.remove(uri).is_none() {
+                if self.documents.remove(uri).is_none() {
                     return Err(not_open(uri));
                 }
                 let nothing = json!({"uri": uri, "diagnostics": []});
@@ -242,15 +242,15 @@ impl Session {
                 "the name of the document is too long",
             ));
         }
-        if self.sheets.len() >= limits::LSP_DOCUMENTS && !self.sheets.contains_key(uri) {
+        if self.documents.len() >= limits::LSP_DOCUMENTS && !self.documents.contains_key(uri) {
             let why = format!("{} documents are open already", limits::LSP_DOCUMENTS);
             return Err(Refusal::new(INVALID_PARAMS, why));
         }
         let document = params.get("textDocument").unwrap_or(&Value::Null);
         let text = params::text(document, "text")?;
         let version = document.get("version").and_then(Value::as_i64);
-        self.sheets
-            .insert(uri.to_owned(), Sheet::new(text, version));
+        self.documents
+            .insert(uri.to_owned(), Document::new(text, version));
         self.keep_within(uri);
         Ok(())
     }
@@ -261,18 +261,18 @@ impl Session {
             .and_then(Value::as_i64);
         let changes = params::changes(params);
         let uri = params::document(params)?;
-        let sheet = self.sheets.get_mut(uri).ok_or_else(|| not_open(uri))?;
-        sheet.version = version;
+        let document = self.documents.get_mut(uri).ok_or_else(|| not_open(uri))?;
+        document.version = version;
         match changes {
             Ok(changes) => {
                 for change in &changes {
-                    sheet.change(change, self.client.encoding);
+                    document.change(change, self.client.encoding);
                 }
             }
             Err(refusal) => {
                 // What the editor shows is not known any more; better nothing is said than something wrong.
-                sheet.forget();
-                sheet.is_new = true;
+                document.forget();
+                document.is_new = true;
                 return Err(refusal);
             }
         }
@@ -283,21 +283,25 @@ impl Session {
     /// Lets go what is known of other documents if that is much.
     fn rest_others(&mut self, uri: &str) {
         let mut bytes = 0;
-        for (_, sheet) in self.sheets.iter_mut().filter(|(other, _)| *other != uri) {
-            bytes += if sheet.is_read() { sheet.bytes() } else { 0 };
+        for (_, document) in self.documents.iter_mut().filter(|(other, _)| *other != uri) {
+            bytes += if document.is_read() {
+                document.bytes()
+            } else {
+                0
+            };
             if bytes > limits::LSP_READ_BYTES {
-                sheet.rest();
+                document.rest();
             }
         }
     }
 
     /// Forgets the text of a document if all together are too long.
     fn keep_within(&mut self, uri: &str) {
-        let bytes: usize = self.sheets.values().map(Sheet::bytes).sum();
+        let bytes: usize = self.documents.values().map(Document::bytes).sum();
         if bytes > limits::LSP_TEXT_BYTES
-            && let Some(sheet) = self.sheets.get_mut(uri)
+            && let Some(document) = self.documents.get_mut(uri)
         {
-            sheet.forget();
+            document.forget();
         }
     }
 }

@@ -2,10 +2,10 @@
 //!
 //! Owns the defaults, and the names of states, outputs and actions.
 
-use super::PlanArgs;
+use super::args::PlanArgs;
 use super::field::Stand;
 use super::forms::{Given, Named, Ranges};
-use crate::diagrams::Refusal;
+use crate::refusal::Refusal;
 use lang_dcml::robot::{Part, Robot};
 use lang_dcml::syntax::Domain;
 use lang_plan::obstacles::{Footprint, Obstacles};

@@ -2,6 +2,7 @@
 //!
 //! Owns the forms. What the names mean is known to whoever asks.
 
+use crate::error::Error;
 use lang_plan::obstacles::Footprint;
 
 /// A name and what it was given.
@@ -22,48 +23,50 @@ pub(crate) struct Footing(pub Footprint);
 /// Numbers beyond this are no place, angle or speed.
 const MOST: f64 = 1e9;
 
-fn number(text: &str) -> Result<f64, String> {
+fn number(text: &str) -> Result<f64, Error> {
     let number = text.trim().parse::<f64>();
-    let number = number.map_err(|_| format!("{text:?} is no number"))?;
+    let number = number.map_err(|_| Error::Refused(format!("{text:?} is no number")))?;
     if number.abs() <= MOST {
         Ok(number)
     } else {
-        Err(format!("{text} is not from -{MOST:e} to {MOST:e}"))
+        Err(Error::Refused(format!(
+            "{text} is not from -{MOST:e} to {MOST:e}"
+        )))
     }
 }
 
 /// A number above 0.
-pub(crate) fn positive(text: &str) -> Result<f64, String> {
+pub(crate) fn positive(text: &str) -> Result<f64, Error> {
     let number = number(text)?;
     if number > 0.0 {
         Ok(number)
     } else {
-        Err(format!("{text} is not above 0"))
+        Err(Error::Refused(format!("{text} is not above 0")))
     }
 }
 
 /// `LOW..HIGH`
-pub(crate) fn range(text: &str) -> Result<(f64, f64), String> {
+pub(crate) fn range(text: &str) -> Result<(f64, f64), Error> {
     let (low, high) = text
         .split_once("..")
-        .ok_or_else(|| format!("{text:?} is no range: write LOW..HIGH"))?;
+        .ok_or_else(|| Error::Refused(format!("{text:?} is no range: write LOW..HIGH")))?;
     let (low, high) = (number(low)?, number(high)?);
     if low <= high {
         Ok((low, high))
     } else {
-        Err(format!("{low} is above {high}"))
+        Err(Error::Refused(format!("{low} is above {high}")))
     }
 }
 
 fn named<T>(
     text: &str,
-    value: impl Fn(&str) -> Result<T, String>,
+    value: impl Fn(&str) -> Result<T, Error>,
     form: &str,
-) -> Result<Vec<Named<T>>, String> {
+) -> Result<Vec<Named<T>>, Error> {
     let one = |part: &str| {
         let (name, rest) = part
             .split_once('=')
-            .ok_or_else(|| format!("{part:?}: write NAME={form}"))?;
+            .ok_or_else(|| Error::Refused(format!("{part:?}: write NAME={form}")))?;
         Ok((name.trim().to_owned(), value(rest)?))
     };
     text.split(',')
@@ -73,35 +76,36 @@ fn named<T>(
 }
 
 /// `NAME=NUMBER,...`
-pub(crate) fn given(text: &str) -> Result<Given, String> {
+pub(crate) fn given(text: &str) -> Result<Given, Error> {
     named(text, number, "NUMBER").map(Given)
 }
 
 /// `NAME=LOW..HIGH,...`
-pub(crate) fn ranges(text: &str) -> Result<Ranges, String> {
+pub(crate) fn ranges(text: &str) -> Result<Ranges, Error> {
     named(text, range, "LOW..HIGH").map(Ranges)
 }
 
 /// `circle:RADIUS` or `polygon:X,Y,X,Y,...`
-pub(crate) fn footing(text: &str) -> Result<Footing, String> {
+pub(crate) fn footing(text: &str) -> Result<Footing, Error> {
     let (kind, rest) = text.split_once(':').unwrap_or((text, ""));
     let numbers = rest
         .split([',', ' ', ';'])
         .filter(|part| !part.is_empty())
         .map(number)
-        .collect::<Result<Vec<f64>, String>>();
+        .collect::<Result<Vec<f64>, Error>>();
     let footprint = match (kind, numbers?.as_slice()) {
         ("circle", &[radius]) => Footprint::circle(radius),
         ("polygon", all) if all.len() >= 6 && all.len() % 2 == 0 => {
             Footprint::polygon(all.chunks_exact(2).map(|one| [one[0], one[1]]).collect())
         }
         _ => {
-            return Err(
-                "write circle:RADIUS, or polygon: and x, y of three corners or more".to_owned(),
-            );
+            let why = "write circle:RADIUS, or polygon: and x, y of three corners or more";
+            return Err(Error::Refused(why.to_owned()));
         }
     };
-    footprint.map(Footing).map_err(|fault| fault.to_string())
+    footprint
+        .map(Footing)
+        .map_err(|why| Error::Refused(why.to_string()))
 }
 
 #[cfg(test)]
@@ -118,18 +122,21 @@ mod tests {
             ranges("u=-1..1").unwrap().0,
             [("u".to_owned(), (-1.0, 1.0))]
         );
-        assert_eq!(given("x").unwrap_err(), "\"x\": write NAME=NUMBER");
-        assert_eq!(given("x=y").unwrap_err(), "\"y\" is no number");
+        assert_eq!(
+            given("x").unwrap_err().to_string(),
+            "\"x\": write NAME=NUMBER"
+        );
+        assert_eq!(given("x=y").unwrap_err().to_string(), "\"y\" is no number");
         for bad in ["NaN", "inf", "1e308"] {
-            let told = given(&format!("x={bad}")).unwrap_err();
+            let told = given(&format!("x={bad}")).unwrap_err().to_string();
             assert_eq!(told, format!("{bad} is not from -1e9 to 1e9"));
         }
-        assert_eq!(ranges("u=1..-1").unwrap_err(), "1 is above -1");
+        assert_eq!(ranges("u=1..-1").unwrap_err().to_string(), "1 is above -1");
         assert_eq!(
-            ranges("u=1").unwrap_err(),
+            ranges("u=1").unwrap_err().to_string(),
             "\"1\" is no range: write LOW..HIGH"
         );
-        assert_eq!(positive("0").unwrap_err(), "0 is not above 0");
+        assert_eq!(positive("0").unwrap_err().to_string(), "0 is not above 0");
     }
 
     #[test]
@@ -137,8 +144,16 @@ mod tests {
         assert_eq!(footing("circle:0.1").unwrap().0.reach(), 0.1);
         assert_eq!(footing("polygon:0,0 3,0 3,4").unwrap().0.reach(), 5.0);
         for bad in ["circle", "circle:1,2", "polygon:0,0,1,1", "box:1"] {
-            assert!(footing(bad).unwrap_err().starts_with("write circle:"));
+            assert!(
+                footing(bad)
+                    .unwrap_err()
+                    .to_string()
+                    .starts_with("write circle:")
+            );
         }
-        assert_eq!(footing("circle:-1").unwrap_err(), "-1 is no radius");
+        assert_eq!(
+            footing("circle:-1").unwrap_err().to_string(),
+            "-1 is no radius"
+        );
     }
 }

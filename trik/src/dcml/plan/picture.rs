@@ -1,6 +1,6 @@
 //! The answer of a planner as a picture in SVG: obstacles, goal, the search faintly, the path and the robot along it.
 //!
-//! Owns the look. x goes to the right and y up, as in the model.
+//! Owns the style. x goes to the right and y up, as in the model.
 
 use super::ask::Asked;
 use lang_dcml::robot::Robot;
@@ -40,19 +40,19 @@ impl View {
         }
     }
 
-    fn circle(&self, text: &mut String, at: Point, radius: f64, look: &str) {
+    fn circle(&self, text: &mut String, at: Point, radius: f64, style: &str) {
         let (x, y) = self.point(at);
         let radius = radius * self.scale;
         let _ = writeln!(
             text,
-            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius:.1}\" {look}/>"
+            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius:.1}\" {style}/>"
         );
     }
 
-    fn polygon(&self, text: &mut String, corners: &[Point], look: &str) {
+    fn polygon(&self, text: &mut String, corners: &[Point], style: &str) {
         let _ = write!(text, "<path d=\"");
         self.line(text, corners.iter().copied());
-        let _ = writeln!(text, "Z\" {look}/>");
+        let _ = writeln!(text, "Z\" {style}/>");
     }
 }
 
@@ -83,16 +83,18 @@ pub(super) fn draw(
         &[[a, b], [c, b], [c, d], [a, d]],
         "fill=\"none\" stroke=\"#bbb\" stroke-dasharray=\"6 4\"",
     );
-    let look = "fill=\"#667\" stroke=\"#667\"";
+    let style = "fill=\"#667\" stroke=\"#667\"";
     for shape in obstacles.shapes().iter().take(SHAPES) {
         match shape {
-            Shape::Circle(at, radius) => view.circle(&mut text, *at, *radius, look),
-            other => view.polygon(&mut text, &other.corners(), look),
+            Shape::Circle(at, radius) => view.circle(&mut text, *at, *radius, style),
+            Shape::Rectangle(..) | Shape::Polygon(_) | Shape::Wall(..) => {
+                view.polygon(&mut text, &shape.corners(), style);
+            }
         }
     }
     if let ([Some(x), Some(y)], radius) = asked.goal {
-        let look = "fill=\"#2a2\" fill-opacity=\"0.25\" stroke=\"#2a2\"";
-        view.circle(&mut text, [x, y], radius, look);
+        let style = "fill=\"#2a2\" fill-opacity=\"0.25\" stroke=\"#2a2\"";
+        view.circle(&mut text, [x, y], radius, style);
     }
     branches(&mut text, &view, robot, asked, outcome);
     path(&mut text, &view, robot, asked, outcome);
@@ -120,13 +122,13 @@ fn branches(text: &mut String, view: &View, robot: &mut Robot, asked: &Asked, ou
 }
 
 fn path(text: &mut String, view: &View, robot: &mut Robot, asked: &Asked, outcome: &Outcome) {
-    let mut draw_robot = |place: &[f64], look: &str| {
+    let mut draw_robot = |place: &[f64], style: &str| {
         let pose = asked.parts.pose(place);
         let corners = asked.footprint.corners_at(pose);
         if corners.is_empty() {
-            view.circle(text, pose.at, asked.footprint.reach(), look);
+            view.circle(text, pose.at, asked.footprint.reach(), style);
         } else {
-            view.polygon(text, &corners, look);
+            view.polygon(text, &corners, style);
         }
     };
     let Some(path) = &outcome.path else {

@@ -3,14 +3,15 @@
 //! Owns the form of the table: names in the first line, then rising times in s, each with what is done from then on.
 //! Columns of states are left out, so that tables of other commands can be given.
 
-use crate::dcml::{Source, report};
-use crate::diagrams::{REFUSED, Refusal, UNREADABLE};
+use crate::dcml::report;
+use crate::dcml::source::Source;
+use crate::input::{self, Unread};
 use crate::limits;
+use crate::refusal::{REFUSED, Refusal, UNREADABLE};
 use lang_dcml::formulas::{Formulas, Wrong};
 use lang_dcml::robot::Robot;
 use lang_dcml::syntax::Domain;
-use std::fs::File;
-use std::io::{self, Read};
+use std::path::Path;
 
 /// Actions at any time.
 #[derive(Clone)]
@@ -127,21 +128,17 @@ fn read(path: &str) -> Result<String, Refusal> {
         lines: vec![format!("trik: {path}: {why}")],
         code: UNREADABLE,
     };
-    let mut bytes = Vec::new();
     let most = limits::DCML_ACTIONS_BYTES_MAX;
-    let found = File::open(path).and_then(|file| file.take(most + 1).read_to_end(&mut bytes));
-    found.map_err(|error| {
-        unreadable(match error.kind() {
-            io::ErrorKind::NotFound => {
+    let bytes = input::read(Path::new(path), most).map_err(|unread| {
+        unreadable(match unread {
+            Unread::Missing => {
                 "there is no such table of actions; formulas are NAME = FORMULA".to_owned()
             }
-            io::ErrorKind::IsADirectory => "this is a directory: name a table".to_owned(),
-            _ => format!("cannot be read: {error}"),
+            Unread::Directory => "this is a directory: name a table".to_owned(),
+            Unread::TooLong => format!("longer than {} MiB", most >> 20),
+            Unread::Failed(error) => format!("cannot be read: {error}"),
         })
     })?;
-    if bytes.len() as u64 > most {
-        return Err(unreadable(format!("longer than {} MiB", most >> 20)));
-    }
     lang_dcml::decode(bytes).map_err(|why| Refusal {
         lines: vec![format!("trik: {path}:{why}")],
         code: UNREADABLE,

@@ -2,8 +2,9 @@
 //!
 //! Owns the layout. Writes SVG as text, with names of the model escaped.
 
-use super::{Column, Table};
+use super::table::{Column, Table};
 use crate::limits;
+use lang_text::escape::escaped;
 use std::fmt::Write as _;
 
 /// Size of the path's panel and of those below it, without their margins, in px.
@@ -228,13 +229,6 @@ fn short(number: f64) -> String {
 fn label(column: &Column) -> String {
     let unit = column.unit.as_ref().map(|unit| format!(", {unit}"));
     escaped(&format!("{}{}", column.name, unit.unwrap_or_default()))
-}
-
-/// Text between tags.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
 }
 
 #[cfg(test)]

@@ -5,7 +5,8 @@
 
 use super::{View, seen};
 use harness::tools;
-use harness::wait::{LIFE, note_skip};
+use harness::wait::LIFE;
+use needs::Need;
 use std::process::Command;
 
 /// What every program begins with.
@@ -24,10 +25,7 @@ fn python() -> Option<String> {
     if tools::run(command.args(["-c", "import ev3dev2.motor"]), b"").code() == 0 {
         return Some(python);
     }
-    let why = format!("{python} has no python-ev3dev2");
-    let is_required = std::env::var_os("TRIK_REQUIRE_EV3DEV").is_some_and(|value| value == "1");
-    assert!(!is_required, "{why}");
-    note_skip(&why);
+    Need::Ev3dev.missing(format_args!("{python} has no python-ev3dev2"));
     None
 }
 

@@ -159,12 +159,12 @@ fn changes_of_any_place_are_put_in_as_editors_do() {
     server.change(4, &json!([{"text": DRIVE}]));
     assert_eq!(server.diagnostics(4), json!([]));
     let other = json!({"uri": "file:///other", "version": 9});
-    server.tell(
+    server.notify(
         "textDocument/didChange",
         &json!({"textDocument": other, "contentChanges": []}),
     );
-    server.tell("textDocument/didClose", &json!({"textDocument": other}));
-    server.tell(
+    server.notify("textDocument/didClose", &json!({"textDocument": other}));
+    server.notify(
         "textDocument/didOpen",
         &json!({"textDocument": {"uri": "x".repeat(100_000), "text": ""}}),
     );

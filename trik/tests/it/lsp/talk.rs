@@ -106,7 +106,7 @@ fn diagnostics_follow_each_change_with_code_place_and_other_places() {
     server.change(5, &json!([{"text": "BEGIN"}]));
     assert_ne!(server.diagnostics(5), json!([]));
     let closed = json!({"textDocument": {"uri": URI}});
-    server.tell("textDocument/didClose", &closed);
+    server.notify("textDocument/didClose", &closed);
     let last = server.wait(|message| message["method"] == "textDocument/publishDiagnostics");
     assert_eq!(last["params"], json!({"uri": URI, "diagnostics": []}));
     let gone = server.ask("textDocument/documentSymbol", &closed);
@@ -265,7 +265,7 @@ fn columns_are_bytes_if_the_editor_counts_bytes() {
     let mut server = Server::start();
     let begun = server.result("initialize", &json!({"capabilities": capabilities}));
     assert_eq!(begun["capabilities"]["positionEncoding"], "utf-8");
-    server.tell("initialized", &json!({}));
+    server.notify("initialized", &json!({}));
     server.open(DRIVE);
     assert_eq!(server.diagnostics(1), json!([]));
     let line = DRIVE.lines().nth(6).unwrap();
@@ -296,8 +296,8 @@ fn the_order_of_a_life_is_kept() {
         -32601
     );
     assert_eq!(server.ask("$/nosuch", &json!({}))["error"]["code"], -32601);
-    server.tell("$/setTrace", &json!({"value": "off"}));
-    server.tell(
+    server.notify("$/setTrace", &json!({"value": "off"}));
+    server.notify(
         "workspace/didChangeConfiguration",
         &json!({"settings": null}),
     );
@@ -306,12 +306,12 @@ fn the_order_of_a_life_is_kept() {
         server.ask("shutdown", &Value::Null)["error"]["code"],
         -32600
     );
-    server.tell("exit", &Value::Null);
+    server.notify("exit", &Value::Null);
     assert!(server.kept.is_empty(), "{:?}", server.kept);
     assert_eq!(server.end(), (Some(0), String::new()));
     // Without shutdown, and without a word.
     let mut server = Server::ready(&json!({}));
-    server.tell("exit", &Value::Null);
+    server.notify("exit", &Value::Null);
     assert_eq!(server.end().0, Some(1));
     assert_eq!(Server::ready(&json!({})).end().0, Some(1));
 }

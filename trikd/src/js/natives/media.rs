@@ -4,7 +4,7 @@
 //! as a text, because a program goes on without it.
 
 use super::{Own, failed, put};
-use crate::js::ground::Shown;
+use crate::js::platform::Shown;
 use rquickjs::{Ctx, Object};
 use std::rc::Rc;
 
@@ -16,11 +16,11 @@ pub fn install<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()>
     let told = |done: Result<(), String>| done.err().unwrap_or_default();
     let o = own.clone();
     put(native, "draw", move |line: String| {
-        told(o.ground.show(&o.shared, Shown::Order(&line)))
+        told(o.platform.show(&o.shared, Shown::Order(&line)))
     })?;
     let o = own.clone();
     put(native, "showFile", move |file: String| {
-        told(o.ground.show(&o.shared, Shown::File(&file)))
+        told(o.platform.show(&o.shared, Shown::File(&file)))
     })?;
     let o = own.clone();
     put(
@@ -28,7 +28,7 @@ pub fn install<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()>
         "showNumbers",
         move |numbers: Vec<i32>, width: i32, height: i32, format: String| {
             let shown = Shown::Numbers(&numbers, width, height, &format);
-            told(o.ground.show(&o.shared, shown))
+            told(o.platform.show(&o.shared, shown))
         },
     )?;
     let o = own.clone();
@@ -36,7 +36,7 @@ pub fn install<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()>
         native,
         "photo",
         move |ctx: Ctx<'js>, width: u16, height: u16| {
-            let seen = o.ground.photo(&o.shared);
+            let seen = o.platform.photo(&o.shared);
             let seen = seen.map_err(|reason| failed(&ctx, &reason))?;
             let sized = seen.scaled(width, height);
             Ok::<_, rquickjs::Error>(sized.to_rgb())

@@ -26,7 +26,7 @@ fn output<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     let o = own.clone();
     put(native, "print", move |text: String| {
         o.shared.say(|output| output.print(&text));
-        o.ground.has_spoken();
+        o.platform.has_spoken();
     })?;
     let o = own.clone();
     put(native, "info", move |text: String| {
@@ -42,7 +42,7 @@ fn output<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
 fn texts<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     let o = own.clone();
     put(native, "include", move |ctx: Ctx<'js>, file: String| {
-        let text = o.ground.include(&o.shared, &file);
+        let text = o.platform.include(&o.shared, &file);
         let text = text.map_err(|reason| failed(&ctx, &format!("include: {reason}")))?;
         evaluate(&ctx, &text, &file).map(drop)
     })?;
@@ -84,7 +84,7 @@ fn files<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
         native,
         "append",
         move |ctx: Ctx<'js>, file: String, text: String| {
-            let done = o.ground.append(&o.shared, &file, text.as_bytes());
+            let done = o.platform.append(&o.shared, &file, text.as_bytes());
             done.map_err(|error| told(&ctx, &file, &error))
         },
     )?;
@@ -93,20 +93,20 @@ fn files<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
         native,
         "appendBytes",
         move |ctx: Ctx<'js>, file: String, bytes: Vec<u8>| {
-            let done = o.ground.append(&o.shared, &file, &bytes);
+            let done = o.platform.append(&o.shared, &file, &bytes);
             done.map_err(|error| told(&ctx, &file, &error))
         },
     )?;
     let o = own.clone();
     put(native, "readAll", move |ctx: Ctx<'js>, file: String| {
-        let text = o.ground.read_file(&o.shared, &file);
+        let text = o.platform.read_file(&o.shared, &file);
         let text = text.map_err(|reason| failed(&ctx, &reason))?;
         let lines = text.split_inclusive('\n').map(str::to_owned);
         Ok::<_, Error>(lines.collect::<Vec<_>>())
     })?;
     let o = own.clone();
     put(native, "remove", move |ctx: Ctx<'js>, file: String| {
-        let done = o.ground.remove(&o.shared, &file);
+        let done = o.platform.remove(&o.shared, &file);
         done.map_err(|error| told(&ctx, &file, &error))
     })?;
     let o = own.clone();
@@ -114,7 +114,7 @@ fn files<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
         native,
         "system",
         move |ctx: Ctx<'js>, command: String, waits: bool| {
-            let code = o.ground.system(&o.shared, &command, waits);
+            let code = o.platform.system(&o.shared, &command, waits);
             code.map_err(|error| failed(&ctx, &format!("script.system: {error}")))
         },
     )
@@ -123,7 +123,7 @@ fn files<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
 fn mailbox<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     let o = own.clone();
     put(native, "mailbox", move |ctx: Ctx<'js>, words: String| {
-        let answer = o.ground.mailbox(&o.shared, words);
+        let answer = o.platform.mailbox(&o.shared, words);
         answer.map_err(|error| failed(&ctx, &format!("mailbox: {error}")))
     })?;
     let o = own.clone();
@@ -143,7 +143,7 @@ fn threads<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
                 text: Arc::clone(&o.text),
                 kind: Kind::Thread { globals, call },
             };
-            o.ground
+            o.platform
                 .start(&o.shared, job)
                 .map_err(|reason| failed(&ctx, &format!("Threading: {reason}")))
         },
@@ -161,18 +161,18 @@ fn threads<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     let o = own.clone();
     put(native, "killThread", move |name: String| {
         o.shared.kill(|other| other == name);
-        o.ground.give_way();
+        o.platform.give_way();
     })?;
     let o = own.clone();
     put(native, "killOthers", move || {
         o.shared
             .kill(|other| other != o.slot.name && other != crate::js::shared::MAIN);
-        o.ground.give_way();
+        o.platform.give_way();
     })?;
     let o = own.clone();
     put(native, "sendMessage", move |name: String, text: String| {
         o.shared.leave_note(&name, text);
-        o.ground.give_way();
+        o.platform.give_way();
     })?;
     let o = own.clone();
     put(native, "takeMessage", move || {

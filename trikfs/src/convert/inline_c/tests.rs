@@ -19,7 +19,7 @@ fn place() -> Place {
 fn compiler() -> Option<Compiler> {
     let found = Compiler::find();
     if found.is_none() {
-        eprintln!("skipped: no C compiler on this machine");
+        needs::Need::Tools.missing("no C compiler");
     }
     found
 }

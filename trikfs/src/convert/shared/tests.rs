@@ -49,7 +49,7 @@ const trikfs_library *trikfs_library_entry(void) { return &library; }
 /// Compiles C and puts the library where a user would have it.
 fn library(scratch: &Scratch, name: &str, code: &str) -> Option<PathBuf> {
     if Compiler::find().is_none() {
-        eprintln!("skipped: no C compiler on this machine");
+        needs::Need::Tools.missing("no C compiler");
         return None;
     }
     let compiled = Compiler::compile_with_any(code, &Place::default(), &scratch.cache(), &|_| {})

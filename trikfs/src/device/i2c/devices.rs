@@ -4,6 +4,7 @@
 //! [`WIDE`] for registers whose number has two bytes on the wire. Bytes travel as plain messages, in the order of the
 //! wire. Knows no open file and no program.
 
+use super::super::{Device, Kind, Sink, Surroundings};
 use super::bus::Bus;
 use super::{Data, Transfer};
 use crate::engine::Engine;
@@ -16,8 +17,22 @@ use std::time::Duration;
 /// In a position: the number of the register has two bytes on the wire, the high one first.
 pub const WIDE: u64 = 1 << 24;
 
+impl Kind for I2cBusDescription {
+    fn open(&self, _tuple_size: usize, _around: &Surroundings) -> Result<Device, Error> {
+        Err(only_device())
+    }
+
+    fn open_sink(&self, _around: &Surroundings) -> Result<Box<dyn Sink>, Error> {
+        Err(only_device())
+    }
+
+    fn is_shared(&self) -> Result<bool, Error> {
+        Ok(false)
+    }
+}
+
 /// What all other files of such a node say.
-pub fn only_device() -> Error {
+fn only_device() -> Error {
     Error::Invalid(
         "all devices of a bus: only the file `device` can be read and written, at the position of a register"
             .to_owned(),

@@ -36,9 +36,8 @@ impl Answer {
 }
 
 fn expected(source: &SourceDescription) -> Option<&AnswerDescription> {
-    match source {
-        SourceDescription::Lines(lines) => lines.answer.as_ref(),
-        SourceDescription::Faulty(faulty) => expected(&faulty.source),
-        _ => None,
-    }
+    let SourceDescription::Lines(lines) = source.innermost() else {
+        return None;
+    };
+    lines.answer.as_ref()
 }

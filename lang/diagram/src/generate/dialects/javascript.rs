@@ -349,7 +349,7 @@ var toText = function(value) {
     (
         "toPrinted",
         "
-// A text as the display shows it: numbers with at most six digits behind the point.
+// A text as the display shows it: numbers with at most six digits after the point.
 var toPrinted = function(text) {
     if (!/^\\s*[+-]?(\\d+\\.?\\d*|\\.\\d+)([eE][+-]?\\d+)?\\s*$/.test(text))
         return text;
@@ -446,7 +446,7 @@ var copy = function(value) {
     (
         "again",
         "
-// Whether a loop goes on. Its counter lives as long as the program: who leaves half way finds it so.
+// Whether a loop goes on. Its counter lives as long as the program: leaving part-way does not reset it.
 var __counters = [];
 var again = function(loop, times) {
     var left = (__counters[loop] === undefined ? times : __counters[loop]) - 1;

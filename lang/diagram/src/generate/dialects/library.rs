@@ -58,7 +58,7 @@ function ToTruth(text: string) := (text <> '') and (text <> '0') and (text.ToLow
 // A number as a text, with as few digits as it needs.
 function ToText(number: real) := number.ToString('R', System.Globalization.CultureInfo.InvariantCulture);"),
     ("ToPrinted", "
-// A text as a display shows it: numbers with at most six digits behind the point.
+// A text as a display shows it: numbers with at most six digits after the point.
 function ToPrinted(text: string): string;
 begin
   var number: real;
@@ -76,7 +76,7 @@ end;"),
 var
   counters := new Dictionary<integer, integer>;
 
-// Whether a loop goes on. Its counter lives as long as the program: who leaves half way finds it so.
+// Whether a loop goes on. Its counter lives as long as the program: leaving part-way does not reset it.
 function Again(index, times: integer): boolean;
 begin
   if not counters.ContainsKey(index) then counters[index] := times;
@@ -190,7 +190,7 @@ let toTruth (text: string) = text <> \"\" && text <> \"0\" && text.ToLower () <>
 // A number as a text, with as few digits as it needs.
 let toText (number: float) = number.ToString (\"R\", Globalization.CultureInfo.InvariantCulture)"),
     ("toPrinted", "
-// A text as a display shows it: numbers with at most six digits behind the point.
+// A text as a display shows it: numbers with at most six digits after the point.
 let toPrinted (text: string) =
     match Double.TryParse text with
     | true, number -> number.ToString (\"0.######\", Globalization.CultureInfo.InvariantCulture)
@@ -205,7 +205,7 @@ let randomWhole (low: int, high: int) = generator.Next (low, high + 1)"),
     ("again", "
 let counters = System.Collections.Generic.Dictionary<int, int> ()
 
-// Whether a loop goes on. Its counter lives as long as the program: who leaves half way finds it so.
+// Whether a loop goes on. Its counter lives as long as the program: leaving part-way does not reset it.
 let again (index: int, times: int) =
     let left = (if counters.ContainsKey index then counters.[index] else times) - 1
     if left < 0 then counters.Remove index |> ignore else counters.[index] <- left

@@ -269,7 +269,7 @@ def to_text(value):
         "to_printed",
         "
 def to_printed(text):
-  \"\"\"A text as the display shows it: numbers with at most six digits behind the point.\"\"\"
+  \"\"\"A text as the display shows it: numbers with at most six digits after the point.\"\"\"
   try:
     number = float(text)
   except ValueError:
@@ -371,7 +371,7 @@ _counters = {}
 
 
 def again(loop, times):
-  \"\"\"Whether a loop goes on. Its counter lives as long as the program: who leaves half way finds it so.\"\"\"
+  \"\"\"Whether a loop goes on. Its counter lives as long as the program: leaving part-way does not reset it.\"\"\"
   left = _counters.pop(loop, times) - 1
   if left >= 0:
     _counters[loop] = left

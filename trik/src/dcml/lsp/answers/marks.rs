@@ -2,7 +2,7 @@
 //!
 //! Owns that form and the names of colours.
 
-use super::super::sheet::{Encoding, Sheet};
+use super::super::document::{Document, Encoding};
 use lang_dcml::syntax::Span;
 use lang_editor::limits::DCML_EDITOR_PLACES;
 use lang_editor::{Colour, Painted};
@@ -32,19 +32,20 @@ fn name(colour: Colour) -> &'static str {
 }
 
 /// The words of a stretch.
-pub fn tokens(sheet: &Sheet, stretch: Span, encoding: Encoding) -> Value {
-    let mut walk = Walk::new(sheet.reading().text(), encoding);
+pub fn tokens(document: &Document, stretch: Span, encoding: Encoding) -> Value {
+    let mut walk = Walk::new(document.reading().text(), encoding);
     let mut data: Vec<Value> = Vec::new();
     let (mut line, mut unit) = (0, 0);
-    for one in sheet.reading().colours(stretch) {
+    for one in document.reading().colours(stretch) {
         // Only comments have several lines; others are one part of one.
-        let parts = sheet
+        let parts = document
             .by_lines(one.span)
             .take(DCML_EDITOR_PLACES - data.len() / 5);
         let whole = std::iter::once(one.span);
-        let parts: &mut dyn Iterator<Item = Span> = match one.colour {
-            Colour::Comment => &mut { parts },
-            _ => &mut { whole },
+        let parts: &mut dyn Iterator<Item = Span> = if one.colour == Colour::Comment {
+            &mut { parts }
+        } else {
+            &mut { whole }
         };
         for part in parts {
             walk.to(part.start);

@@ -2,17 +2,17 @@
 //!
 //! Owns their shapes, and the marks of Markdown.
 
+use super::super::document::Document;
 use super::super::params::range_json;
 use super::super::session::Client;
-use super::super::sheet::Sheet;
 use super::workspace_edit;
 use lang_dcml::syntax::{Kind, Span};
 use lang_editor::{Completion, Hover, Item};
 use serde_json::{Value, json};
 
 /// What is shown of a word.
-pub fn hover(sheet: &Sheet, offset: u32, client: &Client) -> Value {
-    let Some(hover) = sheet.reading().hover(offset) else {
+pub fn hover(document: &Document, offset: u32, client: &Client) -> Value {
+    let Some(hover) = document.reading().hover(offset) else {
         return Value::Null;
     };
     let contents = if client.has_markdown {
@@ -20,7 +20,7 @@ pub fn hover(sheet: &Sheet, offset: u32, client: &Client) -> Value {
     } else {
         json!({"kind": "plaintext", "value": plain(&hover)})
     };
-    json!({"contents": contents, "range": range_json(sheet, hover.span, client.encoding)})
+    json!({"contents": contents, "range": range_json(document, hover.span, client.encoding)})
 }
 
 fn markdown(hover: &Hover) -> String {
@@ -58,16 +58,16 @@ fn plain(hover: &Hover) -> String {
 }
 
 /// What may be written at a place.
-pub fn completion(sheet: &Sheet, offset: u32, client: &Client) -> Value {
-    let (all, is_whole) = sheet.reading().complete(offset);
+pub fn completion(document: &Document, offset: u32, client: &Client) -> Value {
+    let (all, is_whole) = document.reading().complete(offset);
     let entries = all.iter().enumerate();
     let items: Vec<Value> = entries
-        .map(|(at, one)| offer(sheet, at, one, client))
+        .map(|(at, one)| offer(document, at, one, client))
         .collect();
     json!({"isIncomplete": !is_whole, "items": items})
 }
 
-fn offer(sheet: &Sheet, at: usize, one: &Completion, client: &Client) -> Value {
+fn offer(document: &Document, at: usize, one: &Completion, client: &Client) -> Value {
     // The numbers of the protocol.
     let kind = match one.item {
         Item::Function => 3,
@@ -87,7 +87,7 @@ fn offer(sheet: &Sheet, at: usize, one: &Completion, client: &Client) -> Value {
         "sortText": format!("{at:05}"),
         "insertTextFormat": if snippet.is_some() { 2 } else { 1 },
         "textEdit": {
-            "range": range_json(sheet, one.span, client.encoding),
+            "range": range_json(document, one.span, client.encoding),
             "newText": snippet.unwrap_or(&one.insert),
         },
     });
@@ -101,8 +101,8 @@ fn offer(sheet: &Sheet, at: usize, one: &Completion, client: &Client) -> Value {
 }
 
 /// The function whose arguments are written.
-pub fn signature(sheet: &Sheet, offset: u32, client: &Client) -> Value {
-    let Some(found) = sheet.reading().signature(offset) else {
+pub fn signature(document: &Document, offset: u32, client: &Client) -> Value {
+    let Some(found) = document.reading().signature(offset) else {
         return Value::Null;
     };
     let arguments = found.arguments.iter().map(|one| {
@@ -124,18 +124,18 @@ pub fn signature(sheet: &Sheet, offset: u32, client: &Client) -> Value {
 }
 
 /// Edits that mend what is told of a stretch.
-pub fn fixes(uri: &str, sheet: &Sheet, span: Span, params: &Value, client: &Client) -> Value {
+pub fn fixes(uri: &str, document: &Document, span: Span, params: &Value, client: &Client) -> Value {
     let only = params.pointer("/context/only").and_then(Value::as_array);
     let is_wanted =
         only.is_none_or(|only| only.iter().any(|kind| kind == "quickfix" || kind == ""));
     if !is_wanted || !client.has_fixes {
         return json!([]);
     }
-    let reading = sheet.reading();
+    let reading = document.reading();
     let all = reading.fixes(span).into_iter().map(|fix| {
         let found = reading.diagnostics().get(fix.of);
         let diagnostics: Vec<Value> = found
-            .map(|one| super::diagnostic(uri, sheet, one, client))
+            .map(|one| super::diagnostic(uri, document, one, client))
             .into_iter()
             .collect();
         json!({
@@ -143,7 +143,7 @@ pub fn fixes(uri: &str, sheet: &Sheet, span: Span, params: &Value, client: &Clie
             "kind": "quickfix",
             "diagnostics": diagnostics,
             "isPreferred": fix.is_preferred,
-            "edit": workspace_edit(uri, sheet, &fix.edits, client),
+            "edit": workspace_edit(uri, document, &fix.edits, client),
         })
     });
     all.collect()

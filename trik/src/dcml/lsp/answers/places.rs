@@ -2,16 +2,16 @@
 //!
 //! Owns their shapes.
 
+use super::super::document::{Document, Encoding};
 use super::super::params::range_json;
 use super::super::session::Client;
-use super::super::sheet::{Encoding, Sheet};
 use crate::limits;
 use lang_dcml::syntax::{Kind, Span};
 use lang_editor::{Symbol, SymbolKind};
 use serde_json::{Value, json};
 
-fn location(uri: &str, sheet: &Sheet, span: Span, encoding: Encoding) -> Value {
-    json!({"uri": uri, "range": range_json(sheet, span, encoding)})
+fn location(uri: &str, document: &Document, span: Span, encoding: Encoding) -> Value {
+    json!({"uri": uri, "range": range_json(document, span, encoding)})
 }
 
 /// How many places an answer has, each with the name of the document.
@@ -20,31 +20,31 @@ fn most(uri: &str) -> usize {
 }
 
 /// Where a name is declared.
-pub fn definition(uri: &str, sheet: &Sheet, offset: u32, encoding: Encoding) -> Value {
-    let found = sheet.reading().definition(offset);
-    found.map_or(Value::Null, |span| location(uri, sheet, span, encoding))
+pub fn definition(uri: &str, document: &Document, offset: u32, encoding: Encoding) -> Value {
+    let found = document.reading().definition(offset);
+    found.map_or(Value::Null, |span| location(uri, document, span, encoding))
 }
 
 /// Where a name stands.
 pub fn references(
     uri: &str,
-    sheet: &Sheet,
+    document: &Document,
     offset: u32,
     with_declaration: bool,
     encoding: Encoding,
 ) -> Value {
-    let all = sheet.reading().references(offset).into_iter();
+    let all = document.reading().references(offset).into_iter();
     let wanted = all.filter(|(_, is_declaration)| with_declaration || !is_declaration);
     wanted
         .take(most(uri))
-        .map(|(span, _)| location(uri, sheet, span, encoding))
+        .map(|(span, _)| location(uri, document, span, encoding))
         .collect()
 }
 
 /// The same in one document, and whether the name gets its value there.
-pub fn highlights(sheet: &Sheet, offset: u32, encoding: Encoding) -> Value {
-    let writes = sheet.reading().writes(offset);
-    let all = sheet.reading().references(offset).into_iter();
+pub fn highlights(document: &Document, offset: u32, encoding: Encoding) -> Value {
+    let writes = document.reading().writes(offset);
+    let all = document.reading().references(offset).into_iter();
     all.map(|(span, _)| {
         // 3 writes, 2 reads.
         let kind = if writes.binary_search(&span).is_ok() {
@@ -52,25 +52,25 @@ pub fn highlights(sheet: &Sheet, offset: u32, encoding: Encoding) -> Value {
         } else {
             2
         };
-        json!({"range": range_json(sheet, span, encoding), "kind": kind})
+        json!({"range": range_json(document, span, encoding), "kind": kind})
     })
     .collect()
 }
 
 /// The outline, as a tree or as a list.
-pub fn symbols(uri: &str, sheet: &Sheet, client: &Client) -> Value {
-    let symbols = sheet.reading().symbols();
+pub fn symbols(uri: &str, document: &Document, client: &Client) -> Value {
+    let symbols = document.reading().symbols();
     if client.has_tree {
         return symbols
             .iter()
-            .map(|one| tree(sheet, one, client.encoding))
+            .map(|one| tree(document, one, client.encoding))
             .collect();
     }
     let flat = |one: &Symbol, container: Option<&str>| {
         let mut entry = json!({
             "name": one.name,
             "kind": number(one.kind),
-            "location": location(uri, sheet, one.span, client.encoding),
+            "location": location(uri, document, one.span, client.encoding),
         });
         if let Some(container) = container {
             entry["containerName"] = json!(container);
@@ -86,18 +86,18 @@ pub fn symbols(uri: &str, sheet: &Sheet, client: &Client) -> Value {
     Value::Array(all)
 }
 
-fn tree(sheet: &Sheet, one: &Symbol, encoding: Encoding) -> Value {
+fn tree(document: &Document, one: &Symbol, encoding: Encoding) -> Value {
     let children: Vec<Value> = one
         .inside
         .iter()
-        .map(|one| tree(sheet, one, encoding))
+        .map(|one| tree(document, one, encoding))
         .collect();
     json!({
         "name": one.name,
         "detail": one.detail,
         "kind": number(one.kind),
-        "range": range_json(sheet, one.span, encoding),
-        "selectionRange": range_json(sheet, one.selection, encoding),
+        "range": range_json(document, one.span, encoding),
+        "selectionRange": range_json(document, one.selection, encoding),
         "children": children,
     })
 }
@@ -119,10 +119,10 @@ fn number(kind: SymbolKind) -> u8 {
 }
 
 /// What can be folded, in whole lines.
-pub fn folds(sheet: &Sheet, encoding: Encoding) -> Value {
-    let reading = sheet.reading();
+pub fn folds(document: &Document, encoding: Encoding) -> Value {
+    let reading = document.reading();
     let all = reading.folds().into_iter().filter_map(|fold| {
-        let (from, to) = sheet.range(fold.span, encoding);
+        let (from, to) = document.range(fold.span, encoding);
         if from.line >= to.line {
             return None;
         }

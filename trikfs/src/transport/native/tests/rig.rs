@@ -356,11 +356,7 @@ impl Rig {
     ) -> Option<Self> {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         if !Path::new("/dev/fuse").exists() || !nix::unistd::geteuid().is_root() {
-            assert!(
-                std::env::var_os("TRIK_REQUIRE_FUSE").is_none(),
-                "{test}: mounting is required"
-            );
-            println!("{test}: skipped, no /dev/fuse or not root");
+            needs::Need::Fuse.missing(format_args!("no /dev/fuse or not root, for {test}"));
             return None;
         }
         let number = COUNT.fetch_add(1, Ordering::Relaxed);

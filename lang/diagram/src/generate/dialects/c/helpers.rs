@@ -356,7 +356,7 @@ static Text toText(double number)
     (
         "toPrinted",
         "
-/* A text as a display shows it: numbers with at most six digits behind the point. */
+/* A text as a display shows it: numbers with at most six digits after the point. */
 static Text toPrinted(Text from)
 {
     char *end;
@@ -436,7 +436,7 @@ static Whole modulo(Whole left, Whole right)
     (
         "again",
         "
-/* Whether a loop goes on. Its counter lives as long as the program: who leaves half way finds it so. */
+/* Whether a loop goes on. Its counter lives as long as the program: leaving part-way does not reset it. */
 static struct Counter { Whole left; int isSet; } counters[1000];
 static int again(struct Counter *counter, Whole times)
 {

@@ -206,7 +206,7 @@ end",
     (
         "toPrinted",
         "
--- A text as a display shows it: numbers with at most six digits behind the point.
+-- A text as a display shows it: numbers with at most six digits after the point.
 function toPrinted(text)
   local number = tonumber(text)
   if not number then return text end
@@ -309,7 +309,7 @@ end",
     (
         "again",
         "
--- Whether a loop goes on. Its counter lives as long as the program: who leaves half way finds it so.
+-- Whether a loop goes on. Its counter lives as long as the program: leaving part-way does not reset it.
 local counters = {}
 function again(loop, times)
   local left = (counters[loop] or times) - 1

@@ -1,0 +1,393 @@
+//! Words, lengths, places of unsafe code and of names: rules for single files and documents.
+
+use std::path::{Path, PathBuf};
+
+/// Rules between crates and files.
+mod crates;
+/// Rules of the documents.
+mod prose;
+
+const CRATES: [&str; 19] = [
+    "config",
+    "converter",
+    "ev3dev",
+    "filters",
+    "lang/constraint",
+    "lang/dcml",
+    "lang/diagram",
+    "lang/editor",
+    "lang/expr",
+    "lang/plan",
+    "lang/text",
+    "sample-bus",
+    "screen",
+    "sim",
+    "tests",
+    "tests/needs",
+    "trik",
+    "trikd",
+    "trikfs",
+];
+/// Files that may hold `unsafe`, as beginnings of paths.
+const UNSAFE: [&str; 11] = [
+    "config/src/vm",
+    "config/src/watchdog",
+    "converter/src/abi",
+    "converter/src/export",
+    "trikfs/src/command/signals",
+    "sample-bus/src/map",
+    "trikfs/src/convert/shared",
+    "trikfs/src/device/evdev/present",
+    "trikfs/src/device/i2c/adapter",
+    "trikfs/src/transport/native",
+    "converter/templates/",
+];
+
+struct Source {
+    /// From the root of the workspace.
+    path: String,
+    text: String,
+}
+
+impl Source {
+    /// Without the module of tests at the end.
+    fn product(&self) -> &str {
+        let end = self
+            .text
+            .find("\n#[cfg(test)]\nmod tests {")
+            .unwrap_or(self.text.len());
+        &self.text[..end]
+    }
+
+    fn is_test(&self) -> bool {
+        self.path.starts_with("tests/")
+            || self.path.ends_with("/tests.rs")
+            || self.path.contains("/tests/")
+    }
+
+    /// Lines that are no comments, with their numbers.
+    fn code(&self) -> impl Iterator<Item = (usize, &str)> {
+        let lines = self
+            .text
+            .lines()
+            .enumerate()
+            .map(|(index, line)| (index + 1, line));
+        lines.filter(|(_, line)| !line.trim_start().starts_with("//"))
+    }
+}
+
+pub(crate) fn root() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+}
+
+pub(crate) fn files(folder: &Path, ending: &str, found: &mut Vec<PathBuf>) {
+    for entry in
+        std::fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
+    {
+        let path = entry.unwrap().path();
+        let name = path
+            .file_name()
+            .and_then(|name| name.to_str())
+            .unwrap_or_default();
+        if path.is_dir() && name != "target" && !name.starts_with('.') {
+            files(&path, ending, found);
+        } else if path.extension().is_some_and(|other| other == ending) {
+            found.push(path);
+        }
+    }
+}
+
+fn sources() -> Vec<Source> {
+    let mut found = Vec::new();
+    for name in CRATES {
+        files(&root().join(name), "rs", &mut found);
+    }
+    found.sort();
+    // A crate may stand inside of another one.
+    found.dedup();
+    let read = |path: PathBuf| Source {
+        text: std::fs::read_to_string(&path)
+            .unwrap_or_else(|error| panic!("{}: {error}", path.display())),
+        path: path
+            .strip_prefix(root())
+            .unwrap()
+            .to_str()
+            .unwrap()
+            .to_owned(),
+    };
+    let all: Vec<_> = found.into_iter().map(read).collect();
+    assert!(all.len() > 60, "only {} sources", all.len());
+    all
+}
+
+/// Fails with all complaints at once.
+fn none(complaints: &[String]) {
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+}
+
+#[test]
+fn every_file_says_what_it_is() {
+    let bad = |source: &Source| !source.text.starts_with("//! ");
+    none(
+        &sources()
+            .iter()
+            .filter(|source| bad(source))
+            .map(|source| format!("{}: does not open with //!", source.path))
+            .collect::<Vec<_>>(),
+    );
+}
+
+#[test]
+fn no_file_is_longer_than_six_hundred_lines() {
+    let long = |source: &Source| {
+        let lines = source.product().lines().count();
+        (lines > 600 && !source.path.ends_with("/tests.rs"))
+            .then(|| format!("{}: {lines} lines", source.path))
+    };
+    none(&sources().iter().filter_map(long).collect::<Vec<_>>());
+}
+
+#[test]
+fn long_tests_stand_in_a_file_of_their_own() {
+    let long = |source: &Source| {
+        let lines = source.text.lines().count() - source.product().lines().count();
+        (lines > 160).then(|| format!("{}: {lines} lines of tests", source.path))
+    };
+    none(&sources().iter().filter_map(long).collect::<Vec<_>>());
+}
+
+#[test]
+fn nothing_is_left_to_be_done() {
+    let words = ["todo!", "unimplemented!", "dbg!", "FIXME", "TODO", "XXX"];
+    let mut complaints = Vec::new();
+    for source in sources()
+        .iter()
+        .filter(|source| source.path != "tests/tidy/tidy.rs")
+    {
+        for (index, line) in source.text.lines().enumerate() {
+            for word in words.iter().filter(|word| line.contains(**word)) {
+                complaints.push(format!("{}:{}: {word}", source.path, index + 1));
+            }
+        }
+    }
+    none(&complaints);
+}
+
+#[test]
+fn sources_and_documents_are_ascii() {
+    let mut found = Vec::new();
+    for name in CRATES.iter().chain(&["docs", "examples"]) {
+        for ending in ["rs", "md", "lua", "h", "c", "toml", "py", "js", "sh"] {
+            files(&root().join(name), ending, &mut found);
+        }
+    }
+    found.extend(
+        [
+            "README.md",
+            "ARCHITECTURE.md",
+            "CONTRIBUTING.md",
+            "CHANGELOG.md",
+            "Cargo.toml",
+        ]
+        .map(|name| root().join(name)),
+    );
+    // What programs of pupils print, in any language.
+    let programs = root().join("trikd/tests/js");
+    found.retain(|path| !path.starts_with(&programs));
+    // Messages for pupils, in Russian too.
+    let speaks_russian = ["lang", "sim/src", "trik/src"].map(|part| root().join(part));
+    let is_words = |path: &Path| {
+        path.ends_with("words.rs") && speaks_russian.iter().any(|part| path.starts_with(part))
+    };
+    found.retain(|path| !path.starts_with(&programs) && !is_words(path));
+    let mut complaints = Vec::new();
+    for path in found {
+        let bytes =
+            std::fs::read(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        if let Some(at) = bytes.iter().position(|byte| !byte.is_ascii()) {
+            let line = bytes[..at].iter().filter(|&&byte| byte == b'\n').count() + 1;
+            complaints.push(format!("{}:{line}: not ASCII", path.display()));
+        }
+    }
+    none(&complaints);
+}
+
+#[test]
+fn unsafe_code_stands_only_where_it_may_and_says_why_it_is_sound() {
+    let mut complaints = Vec::new();
+    for source in sources() {
+        let allowed = UNSAFE.iter().any(|start| source.path.starts_with(start));
+        let lines: Vec<&str> = source.text.lines().collect();
+        for (number, line) in source.code() {
+            let code = line.split("//").next().unwrap_or_default();
+            let words: Vec<&str> = code
+                .split(|c: char| !c.is_alphanumeric() && c != '_')
+                .collect();
+            // As a word of a message or an attribute it is harmless.
+            if !words.contains(&"unsafe")
+                || code.contains("unsafe\"")
+                || code.contains("\"unsafe")
+                || source.path == "tests/tidy/tidy.rs"
+            {
+                continue;
+            }
+            if !allowed {
+                complaints.push(format!("{}:{number}: unsafe", source.path));
+            }
+            let opens_block = code.contains("unsafe {");
+            let from = number.saturating_sub(12);
+            if opens_block
+                && !lines[from..number]
+                    .iter()
+                    .any(|line| line.contains("SAFETY:"))
+            {
+                complaints.push(format!("{}:{number}: no SAFETY comment", source.path));
+            }
+        }
+    }
+    none(&complaints);
+}
+
+#[test]
+fn only_the_transport_knows_fuse_and_only_devices_open_devices() {
+    let mut complaints = Vec::new();
+    for source in sources()
+        .iter()
+        .filter(|source| source.path.starts_with("trikfs/src/"))
+    {
+        let in_folder = |folder: &str| source.path.starts_with(&format!("trikfs/src/{folder}"));
+        for (number, line) in source.code() {
+            let place = format!("{}:{number}", source.path);
+            let knows_protocol = line.contains("fuser::") || line.contains("FUSE_");
+            if knows_protocol
+                && !in_folder("transport")
+                && !in_folder("mount")
+                && !line.contains("cfg(feature")
+                && !line.contains("transport::fuser")
+                && !line.contains("_FUSE_COMMFD")
+            {
+                complaints.push(format!("{place}: knows the protocol: {}", line.trim()));
+            }
+            let words = line.split(|c: char| !c.is_alphanumeric() && c != ':' && c != '_');
+            let opens = words.into_iter().any(|word| {
+                word.starts_with("OpenOptions::")
+                    || ["File::open", "File::options", "fs::File::open"].contains(&word)
+            });
+            let of_ours = [
+                "device",
+                "mount",
+                "guardian",
+                "cli",
+                "check.rs",
+                "convert",
+                "transport",
+                "scratch",
+                "reload",
+            ]
+            .iter()
+            .any(|part| in_folder(part));
+            if opens && !of_ours && !source.is_test() {
+                complaints.push(format!("{place}: opens a file: {}", line.trim()));
+            }
+        }
+    }
+    none(&complaints);
+}
+
+#[test]
+fn there_are_no_atomics_that_the_controller_lacks() {
+    let mut complaints = Vec::new();
+    for source in sources()
+        .iter()
+        .filter(|source| source.path != "tests/tidy/tidy.rs")
+    {
+        for (number, line) in source.code() {
+            if line.contains("AtomicU64") || line.contains("AtomicI64") {
+                complaints.push(format!("{}:{number}: a 64-bit atomic", source.path));
+            }
+        }
+    }
+    none(&complaints);
+}
+
+#[test]
+fn what_is_pure_knows_no_files_network_threads_or_clocks() {
+    let mut complaints = Vec::new();
+    for source in sources().iter().filter(|source| !source.is_test()) {
+        let is_pure = ["lang/", "screen/", "filters/"]
+            .iter()
+            .any(|part| source.path.starts_with(part))
+            && source.path.contains("/src/");
+        // Reads vectors, for tests.
+        if !is_pure || source.path == "filters/src/golden.rs" {
+            continue;
+        }
+        for (number, line) in source.code() {
+            if [
+                "std::fs",
+                "std::net",
+                "std::thread",
+                "std::time",
+                "std::process",
+            ]
+            .iter()
+            .any(|part| line.contains(part))
+            {
+                complaints.push(format!("{}:{number}: {}", source.path, line.trim()));
+            }
+        }
+    }
+    none(&complaints);
+}
+
+#[test]
+fn only_the_cross_build_names_its_target() {
+    // In two pieces, so that this file does not name it either.
+    let name = ["arm", "v5te"].concat();
+    let mut complaints = Vec::new();
+    let manifests = CRATES.map(|name| root().join(name).join("Cargo.toml"));
+    let others = ["Cargo.toml", ".cargo/config.toml", ".ci/run"].map(|name| root().join(name));
+    let here = root().join("cross");
+    let documents = harness::documents::documents();
+    let documents = documents.iter().filter(|path| !path.starts_with(&here));
+    let mut files: Vec<PathBuf> = manifests.into_iter().chain(others).collect();
+    files.extend(documents.cloned());
+    files.extend(sources().iter().map(|source| root().join(&source.path)));
+    for path in files {
+        let text = std::fs::read_to_string(&path)
+            .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        if text.contains(&name) {
+            complaints.push(format!("{}: names the cross target", path.display()));
+        }
+    }
+    none(&complaints);
+}
+
+#[test]
+fn every_path_that_a_document_names_exists() {
+    let mut complaints = Vec::new();
+    for document in harness::documents::documents() {
+        let text = std::fs::read_to_string(&document)
+            .unwrap_or_else(|error| panic!("{}: {error}", document.display()));
+        let names_paths = |path: &Path| path.file_name().is_some_and(|name| name != "CHANGELOG.md");
+        if !names_paths(&document) {
+            continue;
+        }
+        for (index, line) in text.lines().enumerate() {
+            for quoted in line.split('`').skip(1).step_by(2) {
+                let looks_like_ours = CRATES
+                    .iter()
+                    .chain(&["docs", "cross", "editors", "examples", ".ci"])
+                    .any(|name| quoted.starts_with(&format!("{name}/")));
+                let is_plain = quoted
+                    .chars()
+                    .all(|c| c.is_ascii_alphanumeric() || "_./-".contains(c))
+                    && !quoted.contains("NAME");
+                if looks_like_ours && is_plain && !root().join(quoted).exists() {
+                    complaints.push(format!("{}:{}: {quoted}", document.display(), index + 1));
+                }
+            }
+        }
+    }
+    none(&complaints);
+}

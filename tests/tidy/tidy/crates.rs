@@ -1,0 +1,260 @@
+//! Rules between crates and files: who may depend on whom, no file that nobody compiles, a map that is up to date.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use super::{CRATES, files, none, root};
+
+/// Libraries that stand behind a border, and the only crates that may name them.
+const BEHIND_A_BORDER: [(&str, &[&str]); 9] = [
+    ("clap", &["trik", "trikd", "trikfs", "trikfs-ev3dev"]),
+    ("flate2", &["lang-diagram"]),
+    ("fuser", &["trikfs"]),
+    ("libloading", &["converter", "trikfs"]),
+    ("mlua-sys", &["config"]),
+    ("rapier2d-f64", &["sim"]),
+    ("rquickjs", &["trikd"]),
+    ("tokio", &["trikd"]),
+    ("zip", &["lang-diagram"]),
+];
+
+/// What a crate's manifest says, as far as the rules need it.
+struct Manifest {
+    name: String,
+    /// Names of crates that it is linked with, ours and others; not those of its tests alone.
+    dependencies: BTreeSet<String>,
+    /// Names of all crates that it names, those of tests and build scripts too.
+    all: BTreeSet<String>,
+}
+
+fn text(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+fn manifest(folder: &str) -> Manifest {
+    let text = text(&root().join(folder).join("Cargo.toml"));
+    let mut section = "";
+    let mut found = Manifest {
+        name: String::new(),
+        dependencies: BTreeSet::new(),
+        all: BTreeSet::new(),
+    };
+    for line in text.lines() {
+        if line.starts_with('[') {
+            section = line;
+        }
+        let Some((key, value)) = line.split_once('=') else {
+            continue;
+        };
+        let key = key.trim();
+        let key = key.strip_suffix(".workspace").unwrap_or(key).to_owned();
+        match section {
+            "[package]" if key == "name" => found.name = value.trim().trim_matches('"').to_owned(),
+            "[dependencies]" => {
+                found.dependencies.insert(key.clone());
+                found.all.insert(key);
+            }
+            "[dev-dependencies]" | "[build-dependencies]" => {
+                found.all.insert(key);
+            }
+            _ => (),
+        }
+    }
+    assert!(!found.name.is_empty(), "{folder}/Cargo.toml has no name");
+    found
+}
+
+fn quoted(cell: &str) -> BTreeSet<String> {
+    cell.split('`')
+        .skip(1)
+        .step_by(2)
+        .map(str::to_owned)
+        .collect()
+}
+
+/// The table of ARCHITECTURE.md: each crate with those that it depends on.
+fn rules() -> BTreeMap<String, BTreeSet<String>> {
+    let map = text(&root().join("ARCHITECTURE.md"));
+    let table = map
+        .split_once("| crate | depends on |\n| --- | --- |\n")
+        .expect("ARCHITECTURE.md has a table of crates")
+        .1;
+    let mut rules = BTreeMap::new();
+    for line in table.lines().take_while(|line| line.starts_with('|')) {
+        let mut cells = line.split('|').skip(1);
+        let (crates, allowed) = (cells.next().unwrap(), cells.next().unwrap());
+        // What stands in parentheses is for readers.
+        let crates = crates.split('(').next().unwrap_or_default();
+        for name in quoted(crates) {
+            rules.insert(name, quoted(allowed));
+        }
+    }
+    rules
+}
+
+#[test]
+fn crates_depend_on_each_other_as_the_table_says() {
+    let rules = rules();
+    let manifests = CRATES.map(manifest);
+    let ours: BTreeSet<String> = manifests.iter().map(|crate_| crate_.name.clone()).collect();
+    let mut complaints = Vec::new();
+    for name in rules.keys().filter(|name| !ours.contains(*name)) {
+        complaints.push(format!("ARCHITECTURE.md: there is no crate {name}"));
+    }
+    for Manifest {
+        name, dependencies, ..
+    } in &manifests
+    {
+        let linked: BTreeSet<String> = dependencies.intersection(&ours).cloned().collect();
+        match rules.get(name) {
+            None => complaints.push(format!("ARCHITECTURE.md: no row for {name}")),
+            Some(allowed) if *allowed != linked => complaints.push(format!(
+                "{name} depends on {linked:?}, and ARCHITECTURE.md has {allowed:?}"
+            )),
+            Some(_) => (),
+        }
+    }
+    none(&complaints);
+}
+
+#[test]
+fn nothing_for_the_controller_links_what_is_for_a_pc() {
+    let rules = rules();
+    let mut linked: Vec<&str> = vec!["trikfs", "trikfs-ev3dev", "trikd"];
+    let mut next = 0;
+    while let Some(name) = linked.get(next).copied() {
+        next += 1;
+        for other in &rules[name] {
+            if !linked.contains(&other.as_str()) {
+                linked.push(other);
+            }
+        }
+    }
+    for name in ["sim", "trik", "lang-constraint", "lang-plan", "lang-editor"] {
+        assert!(!linked.contains(&name), "the controller links {name}");
+    }
+}
+
+#[test]
+fn libraries_behind_a_border_are_named_by_nobody_else() {
+    let mut complaints = Vec::new();
+    for Manifest { name, all, .. } in CRATES.map(manifest) {
+        for (library, owners) in BEHIND_A_BORDER {
+            if all.contains(library) && !owners.contains(&name.as_str()) {
+                complaints.push(format!("{name} names {library}, which is for {owners:?}"));
+            }
+        }
+    }
+    none(&complaints);
+}
+
+/// Files that may declare the module of `path`: beside or above it, up to the folder of the crate.
+fn parents(path: &Path, folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for above in path
+        .ancestors()
+        .skip(1)
+        .take_while(|above| above.starts_with(folder))
+    {
+        found.extend(["lib.rs", "main.rs", "mod.rs"].map(|name| above.join(name)));
+        found.push(above.with_extension("rs"));
+    }
+    found.retain(|parent| parent != path && parent.is_file());
+    found
+}
+
+#[test]
+fn every_source_is_compiled() {
+    let mut complaints = Vec::new();
+    for name in CRATES {
+        let folder = root().join(name);
+        let manifest = text(&folder.join("Cargo.toml"));
+        let mut found = Vec::new();
+        files(&folder, "rs", &mut found);
+        let texts: Vec<String> = found.iter().map(|path| text(path)).collect();
+        for path in &found {
+            let inside = path.strip_prefix(&folder).unwrap().to_str().unwrap();
+            let parts: Vec<&str> = inside.split('/').collect();
+            // What cargo finds by itself, and projects that are copied.
+            let is_root = matches!(
+                parts.as_slice(),
+                ["build.rs"]
+                    | ["src", "lib.rs" | "main.rs"]
+                    | ["tests" | "benches" | "examples", _]
+                    | ["tests" | "benches" | "examples", _, "main.rs"]
+                    | ["templates", ..]
+            );
+            if is_root || manifest.contains(&format!("path = \"{inside}\"")) {
+                continue;
+            }
+            let stem = path.file_stem().unwrap().to_str().unwrap();
+            let declares = |text: &str| {
+                text.lines()
+                    .any(|line| line.trim_end().ends_with(&format!("mod {stem};")))
+            };
+            let by_parent = || {
+                parents(path, &folder)
+                    .iter()
+                    .any(|path| declares(&text(path)))
+            };
+            let by_path = || {
+                let quoted = format!("{stem}.rs\"");
+                texts.iter().any(|text| text.contains(&quoted))
+            };
+            if !by_parent() && !by_path() {
+                complaints.push(format!("{name}/{inside}: no module, nobody compiles it"));
+            }
+        }
+    }
+    none(&complaints);
+}
+
+#[test]
+fn the_map_is_short() {
+    let lines = text(&root().join("ARCHITECTURE.md")).lines().count();
+    assert!(
+        lines <= 300,
+        "ARCHITECTURE.md has {lines} lines: it keeps crates and flows; what a module is, its first line says"
+    );
+}
+
+#[test]
+fn the_list_of_modules_is_up_to_date() {
+    let made = std::process::Command::new(root().join(".ci/modules"))
+        .arg("--check")
+        .output()
+        .unwrap();
+    assert!(
+        made.status.success(),
+        "{}",
+        String::from_utf8_lossy(&made.stderr)
+    );
+}
+
+#[test]
+fn what_the_emulated_controller_leaves_out_starts_no_program() {
+    let script = text(&root().join("cross/test.sh"));
+    let modules = script
+        .split_once("for module in ")
+        .and_then(|(_, rest)| rest.split_once("; do"))
+        .expect("cross/test.sh names modules that are native")
+        .0;
+    let mut complaints = Vec::new();
+    for module in modules.split_whitespace() {
+        let path = format!("tests/it/{}.rs", module.replace("::", "/"));
+        let code = text(&root().join(&path));
+        for starts in [
+            "mount(",
+            "mount_on(",
+            "mount_with(",
+            "trikfs(",
+            "program()",
+            "Setting {",
+        ] {
+            if code.contains(starts) {
+                complaints.push(format!("{path}: {starts} starts the program under test, and cross/test.sh leaves it out"));
+            }
+        }
+    }
+    none(&complaints);
+}

@@ -1,0 +1,97 @@
+//! Rules of the documents' prose: tables are whole, and old turns of phrase do not come back.
+
+use std::path::PathBuf;
+
+use super::none;
+use harness::documents::documents;
+
+/// Phrases that a reader stumbles over, in small letters, with what to write instead.
+const BANNED: [(&str, &str); 12] = [
+    ("who is not", "if you are not"),
+    ("whoever", "if you, anyone who, a program that"),
+    ("may have so much", "is at most"),
+    ("may have so many", "has at most"),
+    ("in the place of", "instead of"),
+    ("one behind the other", "one after the other"),
+    ("thereof", "of it"),
+    ("gives itself", "takes"),
+    ("what is more is", "what exceeds that is"),
+    ("of long ago", "outdated"),
+    ("robots of old", "earlier robots"),
+    ("if it is not said", "by default"),
+];
+
+/// Lines of prose of all documents, without examples, with their places. Not the list of modules: `.ci/modules` makes it
+/// from the sources.
+fn prose() -> Vec<(PathBuf, Vec<(usize, String)>)> {
+    let read = |path: PathBuf| {
+        let text = std::fs::read_to_string(&path)
+            .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        let mut inside = false;
+        let mut lines = Vec::new();
+        for (index, line) in text.lines().enumerate() {
+            if line.trim_start().starts_with("```") {
+                inside = !inside;
+            } else if !inside {
+                lines.push((index + 1, line.to_owned()));
+            }
+        }
+        (path, lines)
+    };
+    let is_written = |path: &PathBuf| !path.ends_with("maintainer/modules.md");
+    documents()
+        .into_iter()
+        .filter(is_written)
+        .map(read)
+        .collect()
+}
+
+/// Cells of a row of a table: what stands between bars, except bars after a backslash.
+fn cells(row: &str) -> usize {
+    let row = row.trim().replace("\\|", "");
+    row.trim_start_matches('|')
+        .trim_end_matches('|')
+        .matches('|')
+        .count()
+        + 1
+}
+
+#[test]
+fn every_row_of_a_table_has_as_many_cells_as_its_header() {
+    let mut complaints = Vec::new();
+    for (path, lines) in prose() {
+        let mut header = None;
+        for (number, line) in lines {
+            if !line.starts_with('|') {
+                header = None;
+                continue;
+            }
+            let wanted = *header.get_or_insert(cells(&line));
+            if cells(&line) != wanted || !line.trim_end().ends_with('|') {
+                let found = cells(&line);
+                complaints.push(format!(
+                    "{}:{number}: {found} cells, not {wanted}",
+                    path.display()
+                ));
+            }
+        }
+    }
+    none(&complaints);
+}
+
+#[test]
+fn documents_are_written_in_plain_words() {
+    let mut complaints = Vec::new();
+    for (path, lines) in prose() {
+        for (number, line) in lines {
+            let line = line.to_lowercase();
+            for (phrase, better) in BANNED.iter().filter(|(phrase, _)| line.contains(phrase)) {
+                complaints.push(format!(
+                    "{}:{number}: '{phrase}': write {better}",
+                    path.display()
+                ));
+            }
+        }
+    }
+    none(&complaints);
+}

@@ -1,0 +1,165 @@
+//! Problems of a diagram as lines for a person: file, how bad, diagram, block with its place, property, words.
+//!
+//! Owns the order of problems and the form of a line.
+
+use super::words;
+use crate::terminal::{harmless, named};
+use lang_diagram::blocks::{self, Row, words::russian};
+use lang_diagram::project::{Block, Project};
+use lang_text::problem::{Locale, Problem, Severity};
+use std::cmp::Reverse;
+use std::collections::HashMap;
+use std::path::Path;
+
+/// How many problems of each kind.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Count {
+    pub errors: usize,
+    pub warnings: usize,
+    pub notes: usize,
+}
+
+impl Count {
+    /// Adds problems.
+    pub fn add(&mut self, problems: &[Problem]) {
+        for problem in problems {
+            match problem.severity {
+                Severity::Error => self.errors += 1,
+                Severity::Warning => self.warnings += 1,
+                Severity::Note => self.notes += 1,
+            }
+        }
+    }
+}
+
+/// Problems of one save as lines.
+pub(super) struct Reporter<'a> {
+    file: String,
+    blocks: HashMap<&'a str, (usize, usize, &'a Block)>,
+    locale: Locale,
+}
+
+impl<'a> Reporter<'a> {
+    /// For a save, with its project if it could be read.
+    pub fn new(file: &Path, project: Option<&'a Project>, locale: Locale) -> Self {
+        let mut blocks = HashMap::new();
+        for (at, diagram) in project
+            .iter()
+            .flat_map(|one| one.diagrams.iter().enumerate())
+        {
+            for (place, block) in diagram.blocks.iter().enumerate() {
+                blocks.entry(&*block.id).or_insert((at, place, block));
+            }
+        }
+        Self {
+            file: named(file),
+            blocks,
+            locale,
+        }
+    }
+
+    /// The worst first, then diagram after diagram, block after block, and each only once.
+    pub fn sort(&self, problems: &mut Vec<Problem>) {
+        let place = |problem: &Problem| {
+            let block = self.block(problem);
+            let (diagram, at) = block.map_or((usize::MAX, 0), |&(diagram, at, _)| (diagram, at));
+            (diagram, at, problem.place.position)
+        };
+        problems.sort_by_key(|problem| (Reverse(problem.severity), place(problem)));
+        problems.dedup();
+    }
+
+    /// A line for each.
+    pub fn lines(&self, problems: &[Problem]) -> Vec<String> {
+        problems.iter().map(|problem| self.line(problem)).collect()
+    }
+
+    fn block(&self, problem: &Problem) -> Option<&(usize, usize, &'a Block)> {
+        self.blocks.get(problem.place.object.as_deref()?)
+    }
+
+    fn line(&self, problem: &Problem) -> String {
+        let place = &problem.place;
+        let mut line = format!(
+            "{}: {}: ",
+            self.file,
+            words::severity(problem.severity, self.locale)
+        );
+        for part in [&place.file, &place.diagram].into_iter().flatten() {
+            line.push_str(&format!("{}: ", harmless(part)));
+        }
+        let found = self.block(problem).map(|(_, _, block)| *block);
+        let row = found.and_then(|block| blocks::find(&block.kind));
+        if let Some(block) = found {
+            let (x, y) = block.position;
+            let name = row.map_or(&*block.kind, |row| self.translated(row.shown));
+            line.push_str(&format!("{} ({x:.0}, {y:.0}): ", harmless(name)));
+        } else if let Some(block) = &place.block {
+            line.push_str(&format!("{}: ", harmless(block)));
+        }
+        let property = place.property.as_deref().filter(|name| !name.is_empty());
+        let property = property.map(|name| harmless(self.property(row, name)));
+        match (property, place.position) {
+            (Some(name), Some(at)) => {
+                line.push_str(&format!("'{name}' {}:{}: ", at.line, at.column));
+            }
+            (Some(name), None) => line.push_str(&format!("'{name}': ")),
+            (None, Some(at)) => line.push_str(&format!("{}:{}: ", at.line, at.column)),
+            (None, None) => {}
+        }
+        line.push_str(&harmless(problem.words.in_locale(self.locale)));
+        line
+    }
+
+    fn translated(&self, shown: &'static str) -> &'static str {
+        match self.locale {
+            Locale::English => shown,
+            Locale::Russian => russian(shown),
+        }
+    }
+
+    /// A property as the editor shows it.
+    fn property<'b>(&self, row: Option<&'static Row>, name: &'b str) -> &'b str {
+        let shown = row.and_then(|row| {
+            let mut all = row.properties.iter();
+            all.find(|one| one.name == name || one.shown == name)
+        });
+        shown.map_or(name, |property| self.translated(property.shown))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use lang_diagram::check::check;
+    use lang_diagram::lower::World;
+    use lang_diagram::sketch::Sketch;
+
+    #[test]
+    fn problems_stand_at_their_blocks_the_worst_first_and_once() {
+        let mut sketch = Sketch::new();
+        let start = sketch.block("InitialNode", &[]);
+        let wait = sketch.block("Timer", &[("Delay", "1 +")]);
+        let end = sketch.block("FinalNode", &[]);
+        let lost = sketch.block("Timer", &[("Delay", "5")]);
+        sketch.chain(&[start, wait, end]);
+        sketch.link(lost, end);
+        let project = sketch.project();
+        let reporter = Reporter::new(Path::new("a.qrs"), Some(&project), Locale::English);
+        let mut problems = check(&project, World::Robot);
+        problems.reverse();
+        problems.extend(problems.clone());
+        reporter.sort(&mut problems);
+        let lines = reporter.lines(&problems);
+        let mut count = Count::default();
+        count.add(&problems);
+        assert_eq!((count.errors, count.notes), (1, 1), "{lines:?}");
+        let first = "a.qrs: error: main: Timer (100, 0): 'Delay (ms)' 1:";
+        assert!(lines[0].starts_with(first), "{lines:?}");
+        let last = lines.last().map_or("", |line| line);
+        assert!(
+            last.starts_with("a.qrs: note: main: Timer (300, 0): "),
+            "{lines:?}"
+        );
+    }
+}

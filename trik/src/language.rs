@@ -1,0 +1,33 @@
+//! The language of messages, as `--language` and the system say it.
+//!
+//! Owns the short names. What is said in each language is known where it is said.
+
+use crate::error::Error;
+use lang_text::problem::Locale;
+
+/// The language of messages by its short name.
+pub(crate) fn locale(name: &str) -> Result<Locale, Error> {
+    match name {
+        "en" => Ok(Locale::English),
+        "ru" => Ok(Locale::Russian),
+        _ => Err(Error::Refused("there are en and ru".to_owned())),
+    }
+}
+
+/// Its short name.
+pub(crate) fn name(locale: Locale) -> &'static str {
+    match locale {
+        Locale::English => "en",
+        Locale::Russian => "ru",
+    }
+}
+
+/// That of the system, as its environment has it.
+pub(crate) fn of_system() -> Locale {
+    let names = ["LC_ALL", "LC_MESSAGES", "LANG"];
+    let mut values = names.into_iter().filter_map(std::env::var_os);
+    match values.find(|value| !value.is_empty()) {
+        Some(value) if value.to_string_lossy().starts_with("ru") => Locale::Russian,
+        _ => Locale::English,
+    }
+}

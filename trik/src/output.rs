@@ -1,0 +1,146 @@
+//! Files that commands write: never over another one by mistake, and whole or not at all.
+//!
+//! Owns the choice between standard output, a new file and one that is replaced. Knows nothing of what is written.
+
+use crate::refusal::Refusal;
+use crate::terminal::named;
+use std::fs::{self, File, Metadata};
+use std::io::{self, Write};
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+
+/// Where a result goes.
+pub(crate) struct Output<'a> {
+    /// `None` and `-` are standard output.
+    pub path: Option<&'a Path>,
+    /// Whether a file that is there may be replaced.
+    pub force: bool,
+    /// The file that was read, which is never replaced.
+    pub source: &'a Path,
+}
+
+impl Output<'_> {
+    /// The file, or `None` for standard output.
+    fn file(&self) -> Option<&Path> {
+        self.path.filter(|path| *path != Path::new("-"))
+    }
+
+    /// Whether it goes to standard output.
+    pub fn is_standard(&self) -> bool {
+        self.file().is_none()
+    }
+
+    /// Refuses what must not be replaced: better before the work than after it.
+    ///
+    /// # Errors
+    /// It is the file that was read; it is there and `force` is not given.
+    pub fn refuse_present(&self) -> Result<(), Refusal> {
+        let Some(path) = self.file() else {
+            return Ok(());
+        };
+        let name = named(path);
+        if is_same(path, self.source) {
+            let why = format!("{name} is the file that is read: name another one");
+            return Err(Refusal::new(why));
+        }
+        if !self.force && path.symlink_metadata().is_ok() {
+            let why = format!("{name} is there already: --force replaces it");
+            return Err(Refusal::new(why));
+        }
+        Ok(())
+    }
+
+    /// Refuses to replace other files that are read, and files that are written beside it.
+    ///
+    /// # Errors
+    /// It is one of them.
+    pub fn spare(&self, others: &[&Path]) -> Result<(), Refusal> {
+        let Some(path) = self.file() else {
+            return Ok(());
+        };
+        let is_used = |other: &&&Path| path == **other || is_same(path, other);
+        match others.iter().find(is_used) {
+            Some(_) => Err(Refusal::new(format!(
+                "{} is needed for something else here: name another file",
+                named(path)
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    /// Writes it. A reader of standard output that has seen enough is no failure.
+    ///
+    /// # Errors
+    /// As [`Self::refuse_present`], and what the system says.
+    pub fn write(&self, bytes: &[u8]) -> Result<(), Refusal> {
+        self.refuse_present()?;
+        let Some(path) = self.file() else {
+            return standard(bytes);
+        };
+        let written = match fs::metadata(path) {
+            // A device or a pipe takes bytes and cannot be replaced.
+            Ok(there) if !there.is_file() => File::options()
+                .write(true)
+                .open(path)
+                .and_then(|mut file| file.write_all(bytes)),
+            Ok(there) => replace(path, Some(&there), bytes),
+            Err(_) if self.force => replace(path, None, bytes),
+            Err(_) => create(path, bytes),
+        };
+        written.map_err(|error| {
+            let name = named(path);
+            Refusal::new(if error.kind() == io::ErrorKind::AlreadyExists {
+                format!("{name} is there already: --force replaces it")
+            } else if error.kind() == io::ErrorKind::NotFound {
+                format!("{name}: there is no such directory")
+            } else {
+                format!("{name} cannot be written: {error}")
+            })
+        })
+    }
+}
+
+/// Bytes to standard output.
+pub(crate) fn standard(bytes: &[u8]) -> Result<(), Refusal> {
+    let mut out = io::stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Refusal::new(format!("standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Whether two names are one file.
+fn is_same(one: &Path, other: &Path) -> bool {
+    let id = |path: &Path| fs::metadata(path).map(|file| (file.dev(), file.ino())).ok();
+    id(one).is_some_and(|one| Some(one) == id(other))
+}
+
+/// A new file; what could not be finished is taken away again.
+fn create(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut file = File::create_new(path)?;
+    let written = file.write_all(bytes);
+    if written.is_err() {
+        let _ = fs::remove_file(path);
+    }
+    written
+}
+
+/// Puts a new file into the place of another at one stroke, with its rights.
+pub(crate) fn replace(path: &Path, there: Option<&Metadata>, bytes: &[u8]) -> io::Result<()> {
+    // Behind a link is the file that is meant.
+    let path = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let mut fresh = path.clone().into_os_string();
+    fresh.push(format!(".{}.new", std::process::id()));
+    let fresh = PathBuf::from(fresh);
+    create(&fresh, bytes)?;
+    let rights = there.map_or(Ok(()), |there| {
+        fs::set_permissions(&fresh, there.permissions())
+    });
+    let placed = rights.and_then(|()| fs::rename(&fresh, &path));
+    if placed.is_err() {
+        let _ = fs::remove_file(&fresh);
+    }
+    placed
+}

@@ -1,0 +1,230 @@
+//! Which robot is meant: its name or address, and the one that is meant without a name.
+//!
+//! Owns the forms of names, and what is said of a robot that cannot be reached. `link` is the connection.
+
+use super::link::Link;
+use crate::error::Error;
+use crate::limits;
+use crate::place::{self, Running};
+use std::fmt;
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, ToSocketAddrs};
+
+/// The port on which robots take programs.
+const PORT: u16 = 8888;
+
+/// A robot as somebody has named it.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Target {
+    /// A name or an address.
+    host: String,
+    port: u16,
+}
+
+impl fmt::Display for Target {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.port, self.host.contains(':')) {
+            (PORT, _) => write!(out, "{}", self.host),
+            (port, true) => write!(out, "[{}]:{port}", self.host),
+            (port, false) => write!(out, "{}:{port}", self.host),
+        }
+    }
+}
+
+impl From<SocketAddr> for Target {
+    fn from(address: SocketAddr) -> Self {
+        Self {
+            host: address.ip().to_string(),
+            port: address.port(),
+        }
+    }
+}
+
+/// `HOST`, `HOST:PORT`, `[IPv6]:PORT` or a plain IPv6 address.
+pub(crate) fn target(text: &str) -> Result<Target, Error> {
+    if let Ok(address) = text.parse::<SocketAddr>() {
+        return Ok(address.into());
+    }
+    if let Ok(address) = text.parse::<IpAddr>() {
+        return Ok(SocketAddr::new(address, PORT).into());
+    }
+    let (host, port) = match text.split_once(':') {
+        None => (text, PORT),
+        Some((host, port)) => match port.parse() {
+            Ok(port) if port > 0 => (host, port),
+            _ => {
+                let why = format!("'{port}' is no port: a number from 1 to 65535");
+                return Err(Error::Refused(why));
+            }
+        },
+    };
+    let fits = |c: char| c.is_alphanumeric() || "-._".contains(c);
+    if host.is_empty() || host.len() > limits::HOST_BYTES_MAX || !host.chars().all(fits) {
+        let why = "no address: the name or the IP of a robot, such as 192.168.77.1";
+        return Err(Error::Refused(why.to_owned()));
+    }
+    Ok(Target {
+        host: host.to_owned(),
+        port,
+    })
+}
+
+/// The robot of whoever names none: the virtual one that runs here, or what listens on this machine.
+pub(super) fn the_one() -> Result<Target, Error> {
+    let base = place::base()?;
+    let all = place::running(&base).map_err(|error| Error::file(&base, error));
+    // Looking makes the directory; nobody needs it if no robot does.
+    let _ = std::fs::remove_dir(&base);
+    choose(&all?)
+}
+
+fn choose(all: &[Running]) -> Result<Target, Error> {
+    let reachable: Vec<_> = all
+        .iter()
+        .filter_map(|robot| Some((Target::from(robot.trikd?), robot)))
+        .collect();
+    match (&reachable[..], all) {
+        ([(one, _)], _) => Ok(one.clone()),
+        ([], []) => Ok(SocketAddr::new(Ipv4Addr::LOCALHOST.into(), PORT).into()),
+        ([], [robot, ..]) => Err(Error::Refused(format!(
+            "the virtual robot at {} has no trikd, which takes programs: it told why when it started, or was started with --no-trikd",
+            robot.mountpoint.display()
+        ))),
+        (several, _) => {
+            let list: Vec<_> = several
+                .iter()
+                .map(|(target, robot)| format!("{target} ({})", robot.mountpoint.display()))
+                .collect();
+            Err(Error::Refused(format!(
+                "several robots run: say which with --robot: {}",
+                list.join(", ")
+            )))
+        }
+    }
+}
+
+impl Target {
+    /// Connects, trying all addresses that the name has.
+    ///
+    /// # Errors
+    /// A sentence with what to do.
+    pub(super) fn connect(&self) -> Result<Link, Error> {
+        let found = (self.host.as_str(), self.port).to_socket_addrs();
+        let addresses: Vec<_> = match found {
+            Ok(found) => found.take(limits::ADDRESSES_MAX).collect(),
+            Err(_) => Vec::new(),
+        };
+        let mut why = format!(
+            "there is no robot '{}' in this network: take its IP address, which the robot shows in its network settings",
+            self.host
+        );
+        for address in addresses {
+            match Link::connect(address, &self.to_string()) {
+                Ok(link) => return Ok(link),
+                Err(error) => why = self.explain(&error),
+            }
+        }
+        Err(Error::Unreachable(why))
+    }
+
+    // Kinds of errors of the system are not ours to list.
+    #[allow(clippy::wildcard_enum_match_arm)]
+    fn explain(&self, error: &std::io::Error) -> String {
+        use std::io::ErrorKind;
+        let seconds = limits::CONNECT_MS / 1000;
+        match error.kind() {
+            ErrorKind::ConnectionRefused => {
+                let port = self.port;
+                let hint = match self.host.parse::<IpAddr>() {
+                    Ok(ip) if ip.is_loopback() => "start a virtual robot with trik up",
+                    _ => "start trikd on the robot",
+                };
+                format!(
+                    "nothing takes programs at {}, port {port}: {hint}",
+                    self.host
+                )
+            }
+            ErrorKind::TimedOut | ErrorKind::WouldBlock => format!(
+                "{self} does not answer within {seconds} s: is it switched on, and in the same network?"
+            ),
+            ErrorKind::HostUnreachable | ErrorKind::NetworkUnreachable => format!(
+                "there is no way to {self} ({error}): is this computer in the network of the robot?"
+            ),
+            _ => format!("no connection to {self}: {error}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn robots_are_named_as_people_name_computers() {
+        for (text, shown, port) in [
+            ("192.168.77.1", "192.168.77.1", 8888),
+            ("192.168.77.1:9", "192.168.77.1:9", 9),
+            ("trik-1.local", "trik-1.local", 8888),
+            ("trik:8888", "trik", 8888),
+            ("::1", "::1", 8888),
+            ("[::1]:9", "[::1]:9", 9),
+        ] {
+            let target = target(text).expect(text);
+            assert_eq!((target.to_string(), target.port), (shown.to_owned(), port));
+        }
+        for text in [
+            "",
+            ":9",
+            "a b",
+            "trik:",
+            "trik:0",
+            "trik:65536",
+            "trik:x",
+            "a/b",
+            "a:b:c",
+        ] {
+            assert!(target(text).is_err(), "{text}");
+        }
+        assert!(
+            target("trik:99999")
+                .unwrap_err()
+                .to_string()
+                .contains("'99999' is no port")
+        );
+    }
+
+    #[test]
+    fn without_a_name_the_only_robot_that_takes_programs_is_meant() {
+        let robot = |mountpoint: &str, trikd: Option<&str>| Running {
+            mountpoint: mountpoint.into(),
+            board: "/none".into(),
+            trikd: trikd.map(|text| text.parse().expect("an address")),
+        };
+        let chosen = |all: &[Running]| {
+            choose(all)
+                .map(|target| target.to_string())
+                .map_err(|error| error.to_string())
+        };
+        assert_eq!(chosen(&[]).as_deref(), Ok("127.0.0.1"));
+        let one = robot("/a", Some("127.0.0.2:8888"));
+        assert_eq!(
+            chosen(std::slice::from_ref(&one)).as_deref(),
+            Ok("127.0.0.2")
+        );
+        assert_eq!(
+            chosen(&[robot("/b", None), one.clone()]).as_deref(),
+            Ok("127.0.0.2")
+        );
+        let refusal = chosen(&[robot("/b", None)]).unwrap_err();
+        assert!(
+            refusal.starts_with("the virtual robot at /b has no trikd"),
+            "{refusal}"
+        );
+        assert_eq!(
+            chosen(&[one, robot("/c", Some("127.0.0.1:4000"))]),
+            Err(
+                "several robots run: say which with --robot: 127.0.0.2 (/a), 127.0.0.1:4000 (/c)"
+                    .to_owned()
+            )
+        );
+    }
+}

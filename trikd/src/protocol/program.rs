@@ -1,0 +1,262 @@
+//! The channel between the daemon and a program: what either side says, as types, and the only place that knows how it
+//! is written.
+//!
+//! Owns the words of both directions and their order within a payload; `mailbox` has the questions to the mailbox. A
+//! payload travels in a frame ([`super::frame`]) on the program's standard input. Knows no sockets and no processes:
+//! `program` is the daemon's end, `host` the program's, and `trik.py` speaks the same words in Python.
+
+pub mod mailbox;
+
+/// Something that the daemon sends to a program.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum ToProgram<'a> {
+    /// Begin with the program in this file; its absolute path.
+    File(&'a str),
+    /// Begin with this text.
+    Script(&'a str),
+    /// Begin without a program: direct texts will come.
+    Start,
+    /// The next direct text.
+    Direct(&'a str),
+    /// A message of the mailbox.
+    Mail {
+        /// Hull number of the sender, -1 if it is unknown.
+        hull: i32,
+        /// What it says.
+        text: &'a str,
+    },
+    /// The answer to a question to the mailbox.
+    Answer(&'a str),
+    /// Asks for the variables that the program shows.
+    Web,
+    /// Whether somebody wants to see where the program is.
+    Watch(bool),
+}
+
+/// Something that a program sends to the daemon.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum FromProgram<'a> {
+    /// Output, as it shall be shown, with its newline.
+    Print(&'a str),
+    /// A failure; the daemon puts nothing before it.
+    Error(&'a str),
+    /// Something a person may want to know.
+    Info(&'a str),
+    /// The program is event-driven from now on: direct texts may come in between.
+    Events,
+    /// A question to the mailbox, as [`mailbox::Question`] is written.
+    Mailbox(&'a str),
+    /// The variables that the program shows, a JSON object.
+    Web(&'a str),
+    /// Where the program is.
+    Watch {
+        /// For people, without a newline.
+        line: &'a str,
+        /// For programs, a JSON object.
+        json: &'a str,
+    },
+}
+
+/// The words of [`ToProgram`], in the order of the document.
+pub const TO_PROGRAM: [&str; 8] = [
+    "file", "script", "start", "direct", "mail", "answer", "web", "watch",
+];
+
+/// The words of [`FromProgram`], in the order of the document.
+pub const FROM_PROGRAM: [&str; 7] = [
+    "print", "error", "info", "events", "mailbox", "web", "watch",
+];
+
+impl<'a> ToProgram<'a> {
+    /// The payload of its frame.
+    pub fn encode(self) -> Vec<u8> {
+        let text = match self {
+            Self::File(path) => format!("file:{path}"),
+            Self::Script(code) => format!("script:{code}"),
+            Self::Start => "start:".to_owned(),
+            Self::Direct(code) => format!("direct:{code}"),
+            Self::Mail { hull, text } => format!("mail:{hull}:{text}"),
+            Self::Answer(text) => format!("answer:{text}"),
+            Self::Web => "web:".to_owned(),
+            Self::Watch(is_wanted) => format!("watch:{}", u8::from(is_wanted)),
+        };
+        text.into_bytes()
+    }
+
+    /// What a payload says. None: it is from a daemon that knows more than this program, which passes over it.
+    pub fn parse(payload: &'a str) -> Option<Self> {
+        let (word, rest) = split(payload);
+        Some(match word {
+            "file" => Self::File(rest),
+            "script" => Self::Script(rest),
+            "start" => Self::Start,
+            "direct" => Self::Direct(rest),
+            "mail" => {
+                let (hull, text) = rest.split_once(':')?;
+                Self::Mail {
+                    hull: hull.parse().ok()?,
+                    text,
+                }
+            }
+            "answer" => Self::Answer(rest),
+            "web" => Self::Web,
+            "watch" => Self::Watch(rest == "1"),
+            _ => return None,
+        })
+    }
+}
+
+impl<'a> FromProgram<'a> {
+    /// The payload of its frame.
+    pub fn encode(self) -> Vec<u8> {
+        let text = match self {
+            Self::Print(text) => format!("print:{text}"),
+            Self::Error(text) => format!("error:{text}"),
+            Self::Info(text) => format!("info:{text}"),
+            Self::Events => "events:".to_owned(),
+            Self::Mailbox(question) => format!("mailbox:{question}"),
+            Self::Web(json) => format!("web:{json}"),
+            Self::Watch { line, json } => format!("watch:{line}\n{json}"),
+        };
+        text.into_bytes()
+    }
+
+    /// What a payload says. None: a program may write what it likes to its channel, and this means nothing.
+    pub fn parse(payload: &'a str) -> Option<Self> {
+        let (word, rest) = split(payload);
+        Some(match word {
+            "print" => Self::Print(rest),
+            "error" => Self::Error(rest),
+            "info" => Self::Info(rest),
+            "events" => Self::Events,
+            "mailbox" => Self::Mailbox(rest),
+            "web" => Self::Web(rest),
+            "watch" => {
+                let (line, json) = rest.split_once('\n').unwrap_or((rest, "{}"));
+                Self::Watch { line, json }
+            }
+            _ => return None,
+        })
+    }
+}
+
+/// The word of a payload and what follows its colon.
+fn split(payload: &str) -> (&str, &str) {
+    payload.split_once(':').unwrap_or((payload, ""))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::mailbox::QUESTIONS;
+    use super::*;
+    use proptest::prelude::*;
+    use std::collections::BTreeSet;
+
+    proptest! {
+        #[test]
+        fn what_the_daemon_says_is_understood_by_programs(
+            text in "(?s).{0,40}",
+            hull: i32,
+            is_wanted: bool,
+        ) {
+            let text = text.as_str();
+            for said in [
+                ToProgram::File(text),
+                ToProgram::Script(text),
+                ToProgram::Start,
+                ToProgram::Direct(text),
+                ToProgram::Mail { hull, text },
+                ToProgram::Answer(text),
+                ToProgram::Web,
+                ToProgram::Watch(is_wanted),
+            ] {
+                let payload = String::from_utf8(said.encode()).unwrap();
+                prop_assert_eq!(ToProgram::parse(&payload), Some(said));
+            }
+        }
+
+        #[test]
+        fn what_programs_say_is_understood_by_the_daemon(text in "(?s).{0,40}", line in "[^\n]{0,40}") {
+            let text = text.as_str();
+            for said in [
+                FromProgram::Print(text),
+                FromProgram::Error(text),
+                FromProgram::Info(text),
+                FromProgram::Events,
+                FromProgram::Mailbox(text),
+                FromProgram::Web(text),
+                FromProgram::Watch { line: &line, json: text },
+            ] {
+                let payload = String::from_utf8(said.encode()).unwrap();
+                prop_assert_eq!(FromProgram::parse(&payload), Some(said));
+            }
+        }
+
+        #[test]
+        fn rubbish_is_passed_over_or_means_the_same_when_it_is_sent_again(payload in "(?s)[a-z]{0,8}:?.{0,40}") {
+            crate::fuzz::fuzz_channel(payload.as_bytes());
+        }
+    }
+
+    #[test]
+    fn the_lists_of_words_are_whole() {
+        for word in TO_PROGRAM {
+            assert!(ToProgram::parse(&format!("{word}:1:x")).is_some(), "{word}");
+        }
+        for word in FROM_PROGRAM {
+            assert!(FromProgram::parse(&format!("{word}:")).is_some(), "{word}");
+        }
+    }
+
+    /// The first word behind each mark in a text, up to a blank, a colon or a quotation mark.
+    fn words_behind<'a>(text: &'a str, mark: &str) -> BTreeSet<&'a str> {
+        let words = text.split(mark).skip(1);
+        words
+            .filter_map(|rest| rest.split([' ', ':', '\'', '"', '`']).next())
+            .collect()
+    }
+
+    #[test]
+    fn the_module_for_python_speaks_these_words_and_no_others() {
+        let module = crate::program::python::MODULE;
+        let said = words_behind(module, "_channel.send('");
+        // A diagram alone tells where it is.
+        let expected: BTreeSet<_> = FROM_PROGRAM
+            .into_iter()
+            .filter(|word| *word != "watch")
+            .collect();
+        assert_eq!(said, expected);
+        let heard = words_behind(module, "word == '");
+        // All other first messages name a file, and nobody watches a program without blocks.
+        let expected: BTreeSet<_> = TO_PROGRAM
+            .into_iter()
+            .filter(|word| !["file", "script", "watch"].contains(word))
+            .collect();
+        assert_eq!(heard, expected);
+        let asked = words_behind(module, "_ask('");
+        assert_eq!(asked, BTreeSet::from(QUESTIONS));
+    }
+
+    #[test]
+    fn the_scripts_for_javascript_ask_the_mailbox_what_it_answers() {
+        let script = include_str!("../../js/talk.js");
+        let asked = &words_behind(script, "ask('") | &words_behind(script, "flag('");
+        assert_eq!(asked, BTreeSet::from(QUESTIONS));
+    }
+
+    #[test]
+    fn the_document_lists_all_words() {
+        let document = include_str!("../../../docs/maintainer/channel.md");
+        let rows = |title: &str| -> Vec<&str> {
+            let table = document.split(title).nth(1).unwrap_or_default();
+            let table = table.split("\n#").next().unwrap_or_default();
+            let rows = table.lines().filter_map(|line| line.strip_prefix("| `"));
+            rows.filter_map(|row| row.split([':', ' ', '`']).next())
+                .collect()
+        };
+        assert_eq!(rows("## Daemon to program"), TO_PROGRAM);
+        assert_eq!(rows("## Program to daemon"), FROM_PROGRAM);
+        let questions: BTreeSet<_> = rows("## Questions to the mailbox").into_iter().collect();
+        assert_eq!(questions, BTreeSet::from(QUESTIONS));
+    }
+}
