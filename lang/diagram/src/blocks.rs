@@ -6,6 +6,7 @@
 //!
 //! Names, defaults and choices are those of the editor's metamodels (`robotsMetamodel`, `trikMetamodel`).
 
+pub mod act;
 mod actions;
 mod core;
 mod drawing;
@@ -18,6 +19,7 @@ pub mod words;
 mod tests;
 
 use super::ports::Kit;
+pub use act::Act;
 
 /// One type of block.
 #[derive(Debug)]
@@ -137,7 +139,7 @@ pub enum Type {
 }
 
 /// What a block does, as far as the table knows.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub enum Does {
     /// The program or subprogram begins here.
     Start,
@@ -184,7 +186,7 @@ pub enum Does {
     /// Copies a sensor into a variable.
     Copy(Copied),
     /// Tells a device something and goes on.
-    Act(Act),
+    Act(&'static Act),
     /// Waits until a device says something.
     Watch(Watch),
 }
@@ -196,77 +198,6 @@ pub enum Copied {
     Line,
     /// All distances of the lidar.
     Lidar,
-}
-
-/// What a device is told.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Act {
-    /// Power of motors.
-    Forward,
-    /// Power of motors with the other sign.
-    Backward,
-    /// Motors off.
-    Stop,
-    /// Encoders to 0; the flow goes on after the present events.
-    ClearEncoders,
-    /// A sound file.
-    Sound,
-    /// A tone.
-    Tone,
-    /// Speech.
-    Say,
-    /// The light of the board.
-    Led,
-    /// A command of the system.
-    System,
-    /// Text at the end of a file.
-    WriteFile,
-    /// A file away.
-    RemoveFile,
-    /// A camera sensor on.
-    StartCamera,
-    /// A camera sensor off.
-    StopCamera,
-    /// Video on.
-    StartVideo,
-    /// Video off.
-    StopVideo,
-    /// A camera sensor learns a colour.
-    Detect,
-    /// A message to another robot.
-    SendMail,
-    /// Another robot's mailbox.
-    JoinNetwork,
-    /// The heading becomes 0.
-    CalibrateGyroscope,
-    /// Text on the screen.
-    Print,
-    /// Empty screen.
-    Clear,
-    /// Colour of the pen.
-    PenColor,
-    /// Width of the pen.
-    PenWidth,
-    /// Colour behind everything.
-    Background,
-    /// A point.
-    Pixel,
-    /// A line.
-    Line,
-    /// A rectangle.
-    Rectangle,
-    /// An ellipse.
-    Ellipse,
-    /// An arc.
-    Arc,
-    /// A happy face.
-    Smile,
-    /// A sad face.
-    SadSmile,
-    /// The marker down.
-    MarkerDown,
-    /// The marker up.
-    MarkerUp,
 }
 
 /// What is waited for.
@@ -371,8 +302,10 @@ const fn variable(name: &'static str, default: &'static str) -> Property {
 /// How a reading is compared.
 const SIGN: Property = property("Sign", "Sign", Content::Choice(SIGNS), "greater");
 const SIGNS: &[&str] = &["greater", "less", "notLess", "notGreater", "equals"];
-const REDRAW: Property = flag("Redraw", "Redraw", "true");
-const EVALUATE: Property = flag("Evaluate", "Evaluate", "false");
+/// The sign of blocks that send.
+const ENVELOPE: &str = "<rect class=\"i\" x=\"-14\" y=\"-9\" width=\"28\" height=\"19\"/><path class=\"i\" d=\"M-14 -9L0 3L14 -9\"/>";
+pub(crate) const REDRAW: Property = flag("Redraw", "Redraw", "true");
+pub(crate) const EVALUATE: Property = flag("Evaluate", "Evaluate", "false");
 const COLORS: &[&str] = &[
     "white",
     "black",

@@ -245,30 +245,10 @@ fn missing(printer: &Printer<'_>) -> Vec<What> {
 
 /// Whether a program is still one without this.
 fn may_be_left_out(what: What) -> bool {
-    use What::*;
-    matches!(
-        what,
-        Redraw
-            | Clear
-            | PenColor
-            | PenWidth
-            | Background
-            | Pixel
-            | Line
-            | Rectangle
-            | Ellipse
-            | Arc
-            | Smile
-            | SadSmile
-            | MarkerDown
-            | MarkerUp
-            | StartCamera(_)
-            | StopCamera(_)
-            | StartVideo
-            | StopVideo
-            | Calibrate
-            | Finish
-    )
+    match what {
+        What::Command(command) => command.is_dispensable,
+        what => matches!(what, What::Redraw | What::Finish),
+    }
 }
 
 fn each_code(list: &[Statement], seen: &mut dyn FnMut(&Code)) {

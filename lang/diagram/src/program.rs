@@ -233,14 +233,16 @@ pub(crate) struct Assignment {
 /// A device command with its texts.
 #[derive(Clone, Debug)]
 pub(crate) struct Action {
-    pub act: Act,
+    pub act: &'static Act,
+    /// Whether the picture is shown afterwards.
+    pub redraws: bool,
     /// Expressions in the order of the row.
     pub sources: Box<[Source]>,
     /// Texts that stand as they are, in the order of the row.
     pub texts: Box<[Box<str>]>,
     /// Plain numbers, in the order of the row.
     pub numbers: Box<[i32]>,
-    /// Flags in the order of the row, without `Evaluate`.
+    /// Flags in the order of the row, without `Evaluate` and `Redraw`.
     pub flags: Box<[bool]>,
     /// Ports that are known beforehand; for motors none if the list has to be evaluated.
     pub ports: Box<[Port]>,

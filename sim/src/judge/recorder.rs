@@ -78,7 +78,28 @@ impl Recorder<'_> {
                 let list = Value::Array(some.collect());
                 self.told(DISPLAY, "objects", list);
             }
-            _ => {}
+            // What moves is recorded as a trajectory; the rest leaves nothing on a device that can be seen.
+            Command::Power { .. }
+            | Command::Off { .. }
+            | Command::Servo { .. }
+            | Command::ResetEncoder { .. }
+            | Command::Sound { .. }
+            | Command::Tone { .. }
+            | Command::System { .. }
+            | Command::Append { .. }
+            | Command::Remove { .. }
+            | Command::StartCamera { .. }
+            | Command::StopCamera { .. }
+            | Command::StartVideo { .. }
+            | Command::StopVideo
+            | Command::Detect { .. }
+            | Command::Send { .. }
+            | Command::Join { .. }
+            | Command::CalibrateGyroscope
+            | Command::PenColor { .. }
+            | Command::PenWidth { .. }
+            | Command::Redraw
+            | Command::Rest => {}
         }
     }
 

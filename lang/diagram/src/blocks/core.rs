@@ -4,8 +4,11 @@
 
 use super::Content::{Number, Raw};
 use super::Type::{Statements, Text, Truth, Whole};
-use super::{Category, Does, Kits, Property, Row, Silent};
+use super::act::Operand::{self, Written};
+use super::act::{Act, example, script};
+use super::{Category, Does, ENVELOPE, Kits, Property, Row, Silent};
 use super::{expression, flag, property, variable};
+use crate::brick::Command;
 
 const fn row(
     kind: &'static str,
@@ -221,7 +224,21 @@ pub(super) const ROWS: &[Row] = &[
         ..row(
             "TrikJoinNetwork",
             "Join Network",
-            Does::Act(super::Act::JoinNetwork),
+            Does::Act(
+                &Act::command(
+                    |with| Command::Join {
+                        address: with.written,
+                        port: with.number(0),
+                        hull: with.wholes[0],
+                    },
+                    &[script(
+                        &[Written, Operand::Number(0), Operand::Whole(0)],
+                        "mailbox.joinNetwork($1, $2, $3)",
+                    )],
+                )
+                .icon(ENVELOPE)
+                .examples(&[example(&[], &["join 192.168.77.1 8889 1"])]),
+            ),
             &[
                 property("Address", "Address", Raw, "192.168.77.1"),
                 property("IPPort", "Port", Number, "8889"),

@@ -7,7 +7,7 @@
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use super::code::{Camera, Code, Kind, Typed, What};
+use super::code::{Code, Kind, Typed, What};
 use super::words;
 use crate::limits;
 use crate::ports::{Kit, Port, Sort, Way};
@@ -539,15 +539,6 @@ pub(super) fn reading(port: Port) -> Typed {
         _ if name.ends_with("PressedPort") => int(What::PadPressed, [digit()]),
         _ if name.starts_with("GamepadButton") => int(What::PadButton, [digit()]),
         _ => int(What::Sensor, [operand()]),
-    }
-}
-
-/// A sensor of the camera by the word of the save.
-pub(super) fn camera(mode: &str) -> Camera {
-    match mode {
-        "object" => Camera::Object,
-        "color" => Camera::Color,
-        _ => Camera::Line,
     }
 }
 

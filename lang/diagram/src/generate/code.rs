@@ -1,8 +1,10 @@
 //! Expressions and statements between the diagram and the languages: what is computed and told, with types, in no
 //! language.
 //!
-//! Owns the list of everything that a language must be able to say ([`What`]); each dialect has one row for each.
+//! Owns the list of everything that a language must be able to say ([`What`]); each dialect has one row for each, but for
+//! commands of blocks, whose words stand in the row of the block.
 
+use crate::blocks::act::Phrase;
 use std::rc::Rc;
 
 /// What is known of a value before the program runs.
@@ -32,21 +34,16 @@ impl Kind {
     }
 }
 
-/// A sensor of the camera.
+/// A command of a block, as its row has it.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub(super) enum Camera {
-    Line,
-    Object,
-    Color,
-}
-
-/// A colour of the light.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub(super) enum Light {
-    Red,
-    Green,
-    Orange,
-    Off,
+pub(super) struct Command {
+    /// Its words in each language.
+    pub(super) phrase: &'static Phrase,
+    /// What messages call the block.
+    pub(super) english: &'static str,
+    pub(super) russian: &'static str,
+    /// Whether a program is still one without it.
+    pub(super) is_dispensable: bool,
 }
 
 /// Everything that is said with operands; the comment names them.
@@ -174,49 +171,11 @@ pub(super) enum What {
     Servo,
     /// port
     ResetEncoder,
-    Calibrate,
-    /// file
-    PlaySound,
-    /// Hz, ms
-    PlayTone,
-    /// text
-    Say,
-    Led(Light),
-    /// command
-    System,
-    /// file, text
-    Append,
-    /// file
-    Remove,
-    StartCamera(Camera),
-    StopCamera(Camera),
-    Detect(Camera),
-    StartVideo,
-    StopVideo,
-    /// hull number, text
-    SendMail,
-    /// text
-    SendMailToAll,
-    /// address, port, hull number
-    JoinNetwork,
+    /// What the row of its block says.
+    Command(Command),
     /// anything
     Print,
-    /// text, x, y, size
-    Label,
     Redraw,
-    Clear,
-    PenColor,
-    PenWidth,
-    Background,
-    Pixel,
-    Line,
-    Rectangle,
-    Ellipse,
-    Arc,
-    Smile,
-    SadSmile,
-    MarkerDown,
-    MarkerUp,
     /// ms
     Wait,
     /// Everything to rest, at the end of the program.

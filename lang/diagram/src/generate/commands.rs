@@ -1,28 +1,26 @@
 //! What one block tells a device: an action with its properties as statements.
 //!
-//! Owns the meaning of each action, which is the machine's. Adding a block that tells a device something means a line
-//! here and a row in each dialect.
+//! Owns the order in which properties are evaluated, which is the machine's. What a block says stands in its row.
 
-use super::build::{self, text, whole};
-use super::code::{Code, Kind, Light, Statement, Typed, What};
+use super::build::{text, whole};
+use super::code::{Code, Command, Kind, Statement, Typed, What};
 use super::routines::Lowerer;
 use super::steps::{plain, tell};
 use super::words;
-use crate::blocks::Act;
+use crate::blocks::Type;
+use crate::blocks::act::{Effect, FONT_SIZE, Operand, Phrase, When};
+use crate::blocks::words::russian;
 use crate::ports::{Port, Sort, Way};
-use crate::program::{Action, Node};
-
-/// Height of letters when a block asks for none.
-const FONT_SIZE: i64 = 20;
+use crate::program::{Action, Node, Source};
 
 impl Lowerer<'_> {
     pub(super) fn act(&mut self, node: Node, action: &Action, out: &mut Vec<Statement>) {
-        match action.act {
-            Act::Forward | Act::Backward | Act::Stop => {
-                self.motors(node, action, out);
-                return;
+        match action.act.effect {
+            Effect::Drive(sign) => {
+                self.motors(node, action, Some(sign), out);
             }
-            Act::ClearEncoders => {
+            Effect::Stop => self.motors(node, action, None, out),
+            Effect::ResetEncoders => {
                 let encoders = action
                     .ports
                     .iter()
@@ -30,147 +28,75 @@ impl Lowerer<'_> {
                 for port in encoders {
                     tell(out, What::ResetEncoder, [Code::Port(port.name().into())]);
                 }
-                return;
             }
-            _ => {}
-        }
-        let wholes = self.wholes(node, action);
-        let written = action.texts.first().map_or("", |text| &**text);
-        let number = |at: usize| Code::Int(action.numbers.get(at).copied().unwrap_or(0).into());
-        let flag = |at: usize| action.flags.get(at).copied().unwrap_or(false);
-        let first = |wholes: &[Code]| wholes.first().cloned().unwrap_or(Code::Int(0));
-        let (what, operands) = match action.act {
-            Act::Sound => (What::PlaySound, vec![plain(written)]),
-            Act::Tone => (What::PlayTone, vec![number(0), number(1)]),
-            Act::Say => (What::Say, vec![self.told(node, action, 0)]),
-            Act::Led => (What::Led(light(written)), Vec::new()),
-            Act::System if flag(0) => {
+            Effect::Command(_) if action.act.may_be_code && action.flags.first() == Some(&true) => {
                 self.fail(node, words::no_line_of_code());
-                return;
             }
-            Act::System => (What::System, vec![self.told(node, action, 0)]),
-            Act::WriteFile => {
-                let value = action
-                    .sources
-                    .first()
-                    .map(|&source| self.value(node, source));
-                let value = value.map_or(plain(""), text);
-                (What::Append, vec![plain(written), value])
+            Effect::Command(_) => {
+                self.phrase(node, action, out);
+                if action.redraws {
+                    tell(out, What::Redraw, []);
+                }
             }
-            Act::RemoveFile => (What::Remove, vec![plain(written)]),
-            Act::StartCamera => {
-                let show = Code::Bool(flag(0));
-                (What::StartCamera(build::camera(written)), vec![show])
-            }
-            Act::StopCamera => (What::StopCamera(build::camera(written)), Vec::new()),
-            Act::Detect => (What::Detect(build::camera(written)), Vec::new()),
-            Act::StartVideo => {
-                let quality = Code::Int(written.parse().unwrap_or(0));
-                (What::StartVideo, vec![quality, Code::Bool(flag(0))])
-            }
-            Act::StopVideo => (What::StopVideo, Vec::new()),
-            Act::SendMail if action.sources.is_empty() => {
-                (What::SendMailToAll, vec![plain(written)])
-            }
-            Act::SendMail => (What::SendMail, vec![first(&wholes), plain(written)]),
-            Act::JoinNetwork => {
-                let operands = vec![plain(written), number(0), first(&wholes)];
-                (What::JoinNetwork, operands)
-            }
-            Act::CalibrateGyroscope => (What::Calibrate, Vec::new()),
-            _ => self.shown(node, action, wholes),
-        };
-        tell(out, what, operands);
-        if draws(action.act) && action.flags.last() == Some(&true) {
-            tell(out, What::Redraw, []);
         }
     }
 
-    /// What happens on the screen or with the marker.
-    fn shown(&mut self, node: Node, action: &Action, wholes: Vec<Code>) -> (What, Vec<Code>) {
+    /// The phrase of the row that holds, with its operands.
+    fn phrase(&mut self, node: Node, action: &Action, out: &mut Vec<Statement>) {
+        let is_whole = |source: &Source| {
+            let text = self.program.sources.get(*source as usize);
+            text.is_some_and(|text| text.wanted == Type::Whole)
+        };
+        let (numbers, texts): (Vec<Source>, Vec<Source>) =
+            action.sources.iter().copied().partition(is_whole);
+        let wholes: Vec<Code> = numbers
+            .into_iter()
+            .map(|source| whole(self.value(node, source)))
+            .collect();
+        let computed = texts.first().map(|&source| self.value(node, source));
         let written = action.texts.first().map_or("", |text| &**text);
-        let is_filled = action.flags.len() > 1 && action.flags.first() == Some(&true);
-        let filled = |mut wholes: Vec<Code>| {
-            wholes.push(Code::Bool(is_filled));
-            wholes
+        let holds = |phrase: &&Phrase| match phrase.when {
+            When::Always => true,
+            When::Choice(choice) => choice == written,
+            When::NoWhole => wholes.is_empty(),
         };
-        match action.act {
-            Act::Print => (What::Label, self.label(node, action)),
-            Act::PenColor => (What::PenColor, vec![plain(written)]),
-            Act::PenWidth => (What::PenWidth, wholes),
-            Act::Background => (What::Background, vec![plain(written)]),
-            Act::Pixel => (What::Pixel, wholes),
-            Act::Line => (What::Line, wholes),
-            Act::Rectangle => (What::Rectangle, filled(wholes)),
-            Act::Ellipse => (What::Ellipse, filled(wholes)),
-            Act::Arc => (What::Arc, wholes),
-            Act::Smile => (What::Smile, Vec::new()),
-            Act::SadSmile => (What::SadSmile, Vec::new()),
-            Act::MarkerDown => (What::MarkerDown, vec![plain(written)]),
-            Act::MarkerUp => (What::MarkerUp, Vec::new()),
-            _ => (What::Clear, Vec::new()),
-        }
-    }
-
-    /// All expressions of an action as whole numbers, if its block has only such ones.
-    fn wholes(&mut self, node: Node, action: &Action) -> Vec<Code> {
-        match action.act {
-            Act::SendMail
-            | Act::JoinNetwork
-            | Act::PenWidth
-            | Act::Pixel
-            | Act::Line
-            | Act::Rectangle
-            | Act::Ellipse
-            | Act::Arc => {
-                let sources = action.sources.iter();
-                sources
-                    .map(|&source| whole(self.value(node, source)))
-                    .collect()
-            }
-            _ => Vec::new(),
-        }
-    }
-
-    /// A text that stands as it is, or is computed.
-    fn told(&mut self, node: Node, action: &Action, at: usize) -> Code {
-        match action.texts.first() {
-            Some(text) => plain(text),
-            None => match action.sources.get(at) {
-                Some(&source) => text(self.value(node, source)),
-                None => plain(""),
+        let Some(phrase) = action.act.phrases.iter().find(holds) else {
+            return;
+        };
+        let whole_at = |at: usize| wholes.get(at).cloned();
+        let operands = phrase.operands.iter().map(|operand| match *operand {
+            Operand::Whole(at) => whole_at(at).unwrap_or(Code::Int(0)),
+            Operand::FontSize => match whole_at(2) {
+                None => Code::Int(FONT_SIZE.into()),
+                Some(Code::Int(size)) if size <= 0 => Code::Int(FONT_SIZE.into()),
+                Some(size) => size,
             },
-        }
+            Operand::Written => plain(written),
+            Operand::WrittenWhole => Code::Int(written.parse().unwrap_or(0)),
+            Operand::Text => match computed.clone() {
+                None => plain(written),
+                Some(value) if action.act.is_label => printed(value),
+                Some(value) => text(value),
+            },
+            Operand::Number(at) => Code::Int(action.numbers.get(at).copied().unwrap_or(0).into()),
+            Operand::Flag(at) => Code::Bool(action.flags.get(at).copied().unwrap_or(false)),
+        });
+        let operands: Vec<Code> = operands.collect();
+        let shown = self.program.row(node).map_or("", |row| row.shown);
+        let command = Command {
+            phrase,
+            english: shown,
+            russian: match action.act.russian {
+                "" => russian(shown),
+                other => other,
+            },
+            is_dispensable: action.act.is_dispensable,
+        };
+        tell(out, What::Command(command), operands);
     }
 
-    fn label(&mut self, node: Node, action: &Action) -> Vec<Code> {
-        let mut number = |at: usize| match action.sources.get(at) {
-            Some(&source) => whole(self.value(node, source)),
-            None => Code::Int(0),
-        };
-        let (x, y) = (number(0), number(1));
-        let size = match action.sources.len() {
-            0..=2 => Code::Int(FONT_SIZE),
-            count => number(count - 1),
-        };
-        let size = match size {
-            Code::Int(size) if size <= 0 => Code::Int(FONT_SIZE),
-            size => size,
-        };
-        let shown = match action.texts.first() {
-            Some(text) => plain(text),
-            None => {
-                let value = action
-                    .sources
-                    .get(2)
-                    .map(|&source| self.value(node, source));
-                value.map_or(plain(""), printed)
-            }
-        };
-        vec![shown, x, y, size]
-    }
-
-    fn motors(&mut self, node: Node, action: &Action, out: &mut Vec<Statement>) {
+    /// Power times a sign to each port of the list; without a sign they are switched off.
+    fn motors(&mut self, node: Node, action: &Action, sign: Option<i32>, out: &mut Vec<Statement>) {
         let ports = action
             .sources
             .first()
@@ -183,22 +109,18 @@ impl Lowerer<'_> {
                 return;
             }
         };
-        let mut power = match action.sources.get(1) {
-            Some(&source) if action.act != Act::Stop => whole(self.value(node, source)),
-            _ => Code::Int(0),
-        };
-        if action.act == Act::Backward {
-            power = match power {
-                Code::Int(power) => Code::Int(-power),
-                Code::Do(What::Negate, mut inner) if inner.len() == 1 => inner.remove(0),
-                power => Code::does(What::Negate, [power]),
+        let power = sign.map(|sign| {
+            let power = match action.sources.get(1) {
+                Some(&source) => signed(whole(self.value(node, source)), sign),
+                None => Code::Int(0),
             };
-        }
-        if power.is_fickle() && ports.len() > 1 {
+            if !power.is_fickle() || ports.len() < 2 {
+                return power;
+            }
             let place = self.place(Kind::Int);
             out.push(Statement::Set(place.clone(), power));
-            power = place;
-        }
+            place
+        });
         for port in ports {
             let (Code::Port(name) | Code::Text(name)) = port else {
                 self.fail(node, words::ports_must_be_plain());
@@ -209,12 +131,24 @@ impl Lowerer<'_> {
                 continue;
             };
             let operand = Code::Port(port.name().into());
-            match (action.act, port.sort()) {
-                (Act::Stop, _) => tell(out, What::PowerOff, [operand]),
-                (_, Sort::Servo) => tell(out, What::Servo, [operand, power.clone()]),
-                _ => tell(out, What::SetPower, [operand, power.clone()]),
+            match (&power, port.sort()) {
+                (None, _) => tell(out, What::PowerOff, [operand]),
+                (Some(power), Sort::Servo) => tell(out, What::Servo, [operand, power.clone()]),
+                (Some(power), _) => tell(out, What::SetPower, [operand, power.clone()]),
             }
         }
+    }
+}
+
+/// Power in the direction of a block.
+fn signed(power: Code, sign: i32) -> Code {
+    if sign > 0 {
+        return power;
+    }
+    match power {
+        Code::Int(power) => Code::Int(-power),
+        Code::Do(What::Negate, mut inner) if inner.len() == 1 => inner.remove(0),
+        power => Code::does(What::Negate, [power]),
     }
 }
 
@@ -228,22 +162,4 @@ fn printed(value: Typed) -> Code {
         },
         _ => Code::does(What::Printed, [text(value)]),
     }
-}
-
-fn light(color: &str) -> Light {
-    match color {
-        "red" => Light::Red,
-        "green" => Light::Green,
-        "orange" => Light::Orange,
-        _ => Light::Off,
-    }
-}
-
-/// Whether the last flag of an action asks for the picture to be shown.
-fn draws(act: Act) -> bool {
-    use Act::{Arc, Background, Clear, Ellipse, Line, Pixel, Print, Rectangle};
-    matches!(
-        act,
-        Arc | Background | Clear | Ellipse | Line | Pixel | Print | Rectangle
-    )
 }

@@ -6,7 +6,7 @@ use super::{
     Act, Action, Assignment, At, Axis, Copied, Lowering, Port, Sign, Source, Text, Watching, Way,
     words,
 };
-use crate::blocks::{Content, Type, Watch};
+use crate::blocks::{Content, EVALUATE, REDRAW, Type, Watch};
 
 /// The text of a property, or its default.
 pub(super) fn text<'a>(at: At<'a>, name: &str) -> &'a str {
@@ -114,9 +114,10 @@ impl<'a> Lowering<'a> {
     }
 
     /// A command with everything that the row says it has.
-    pub(super) fn action(&mut self, at: At<'a>, act: Act) -> u32 {
+    pub(super) fn action(&mut self, at: At<'a>, act: &'static Act) -> u32 {
         let mut action = Action {
             act,
+            redraws: at.row.property(REDRAW.name).is_some() && flag(at, REDRAW.name),
             sources: Box::default(),
             texts: Box::default(),
             numbers: Box::default(),
@@ -128,20 +129,21 @@ impl<'a> Lowering<'a> {
         for property in at.row.properties {
             let value = text(at, property.name);
             match property.content {
-                // Nobody asks for the number of nobody.
-                Content::Expression(_) if act == Act::SendMail && value.trim().is_empty() => {}
+                Content::Expression(_) if act.is_optional && value.trim().is_empty() => {}
                 Content::Expression(wanted) => {
                     if wanted == Type::List {
                         action.ports = motors(value);
                     }
                     sources.push(self.source(value, wanted, property.shown));
                 }
-                Content::Evaluated if flag(at, "Evaluate") => {
+                Content::Evaluated if flag(at, EVALUATE.name) => {
                     sources.push(self.source(value, Type::Printed, property.shown));
                 }
                 Content::Evaluated | Content::Raw | Content::Choice(_) => texts.push(value.into()),
                 Content::Number => numbers.push(number(at, property.name)),
-                Content::Flag if property.name != "Evaluate" => flags.push(flag(at, property.name)),
+                Content::Flag if ![EVALUATE.name, REDRAW.name].contains(&property.name) => {
+                    flags.push(flag(at, property.name))
+                }
                 Content::Flag | Content::Variable | Content::Port(_) => {}
                 Content::Ports => action.ports = self.ports(value, property.shown),
             }

@@ -5,7 +5,7 @@
 use std::fmt::Write as _;
 
 use super::{details, name};
-use crate::blocks::{self, Act, Category, Does};
+use crate::blocks::{self, Category, Does};
 use crate::limits::{PICTURE_BLOCKS_MAX, PICTURE_CORNERS_MAX};
 use crate::project::{Block, Diagram, Link};
 use lang_text::problem::Locale;
@@ -190,51 +190,6 @@ fn icon(does: Option<Does>) -> &'static str {
         Does::Watch(_) => {
             "<path class=\"i\" d=\"M-14 0q14 -15 28 0q-14 15 -28 0z\"/><circle class=\"f\" r=\"4\"/>"
         }
-        Does::Act(act) => act_icon(act),
-    }
-}
-
-fn act_icon(act: Act) -> &'static str {
-    match act {
-        Act::Forward => "<path class=\"i\" d=\"M0 14V-12M-9 -3L0 -12L9 -3\"/>",
-        Act::Backward => "<path class=\"i\" d=\"M0 -14V12M-9 3L0 12L9 3\"/>",
-        Act::Stop | Act::StopCamera | Act::StopVideo => {
-            "<path class=\"i\" d=\"M-6 -14h12L14 -6v12L6 14h-12L-14 6v-12z\"/>"
-        }
-        Act::ClearEncoders | Act::CalibrateGyroscope => "<ellipse class=\"i\" rx=\"8\" ry=\"12\"/>",
-        Act::Sound | Act::Tone | Act::Say => {
-            "<path class=\"f\" d=\"M-13 -5h6L1 -12v24L-7 5h-6z\"/><path class=\"i\" d=\"M7 -7q6 7 0 14\"/>"
-        }
-        Act::Led => {
-            "<circle class=\"f\" r=\"7\"/><path class=\"i\" d=\"M0 -14v1M0 13v1M-14 0h1M13 0h1\"/>"
-        }
-        Act::System => "<path class=\"i\" d=\"M-12 -8L-4 0L-12 8M0 9h12\"/>",
-        Act::WriteFile | Act::RemoveFile => {
-            "<path class=\"i\" d=\"M-9 -13h12L10 -6V13h-19zM-4 0h9M-4 6h9\"/>"
-        }
-        Act::StartCamera | Act::StartVideo | Act::Detect => {
-            "<rect class=\"i\" x=\"-14\" y=\"-9\" width=\"20\" height=\"18\" rx=\"3\"/><path class=\"f\" d=\"M7 -2L14 -8V8L7 2z\"/>"
-        }
-        Act::SendMail | Act::JoinNetwork => {
-            "<rect class=\"i\" x=\"-14\" y=\"-9\" width=\"28\" height=\"19\"/><path class=\"i\" d=\"M-14 -9L0 3L14 -9\"/>"
-        }
-        Act::Print => "<path class=\"i\" d=\"M-11 -11h22M0 -11v24\"/>",
-        Act::Clear | Act::Background => {
-            "<rect class=\"i\" x=\"-13\" y=\"-10\" width=\"26\" height=\"20\"/>"
-        }
-        Act::PenColor | Act::PenWidth | Act::MarkerDown | Act::MarkerUp => {
-            "<path class=\"i\" d=\"M-12 12l3 -9L7 -13l6 6L-3 9z\"/>"
-        }
-        Act::Pixel => "<circle class=\"f\" r=\"3\"/>",
-        Act::Line => "<path class=\"i\" d=\"M-12 10L12 -10\"/>",
-        Act::Rectangle => "<rect class=\"i\" x=\"-12\" y=\"-8\" width=\"24\" height=\"16\"/>",
-        Act::Ellipse => "<ellipse class=\"i\" rx=\"14\" ry=\"9\"/>",
-        Act::Arc => "<path class=\"i\" d=\"M-13 6a14 14 0 0 1 26 0\"/>",
-        Act::Smile => {
-            "<circle class=\"i\" r=\"13\"/><path class=\"i\" d=\"M-6 3q6 7 12 0M-5 -4v1M5 -4v1\"/>"
-        }
-        Act::SadSmile => {
-            "<circle class=\"i\" r=\"13\"/><path class=\"i\" d=\"M-6 7q6 -7 12 0M-5 -4v1M5 -4v1\"/>"
-        }
+        Does::Act(act) => act.icon,
     }
 }

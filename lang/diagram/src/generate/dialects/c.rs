@@ -253,7 +253,7 @@ fn row(what: What) -> Row {
         NotEqual => apart("$1 != $2", 9),
         EqualText => call("sameText($1, $2)"),
         NotEqualText => prefix("!sameText($1, $2)", 15),
-        EqualAny | NotEqualAny | Mail | SendMail | SendMailToAll | ValueOf => NONE,
+        EqualAny | NotEqualAny | Mail | ValueOf => NONE,
         Join => call("joinText($1, $2)"),
         Length => call("letters($1)"),
         FloatOfInt => call("$1"),
@@ -301,7 +301,7 @@ fn functions(what: What) -> Row {
         KillThread => call("killThread($1)"),
         SendThread | ReceiveThread | ReceiveThreadNow => NONE,
         Again => call("again(&counters[$1], $2)"),
-        System => call("runCommand($1)"),
+        Command(command) => call(command.phrase.c),
         other => robot(other),
     }
 }

@@ -4,7 +4,7 @@
 
 pub(in super::super) mod turns;
 
-use super::super::code::{Camera, Light, Own, What};
+use super::super::code::{Own, What};
 use super::super::names::Rules;
 use super::super::plan::Owner;
 use super::super::print::{
@@ -298,61 +298,12 @@ fn commands(what: What, is_python: bool) -> Row {
         SetPower | Servo => call("brick.motor($1).setPower($2)"),
         PowerOff => call("brick.motor($1).powerOff()"),
         ResetEncoder => call("brick.encoder($1).reset()"),
-        Calibrate => call("brick.gyroscope().calibrate(1)"),
-        PlaySound => call("brick.playSound($1)"),
-        PlayTone => call("brick.playTone($1, $2)"),
-        Say => call("brick.say($1)"),
-        Led(Light::Red) => call("brick.led().red()"),
-        Led(Light::Green) => call("brick.led().green()"),
-        Led(Light::Orange) => call("brick.led().orange()"),
-        Led(Light::Off) => call("brick.led().off()"),
-        System => call("script.system($1)"),
-        Append => call("script.writeToFile($1, $2)"),
-        Remove => call("script.removeFile($1)"),
-        StartCamera(Camera::Line) => call("brick.lineSensor(\"video2\").init($1)"),
-        StartCamera(Camera::Object) => call("brick.objectSensor(\"video2\").init($1)"),
-        StartCamera(Camera::Color) => call("brick.colorSensor(\"video2\").init($1)"),
-        StopCamera(Camera::Line) => call("brick.lineSensor(\"video2\").stop()"),
-        StopCamera(Camera::Object) => call("brick.objectSensor(\"video2\").stop()"),
-        StopCamera(Camera::Color) => call("brick.colorSensor(\"video2\").stop()"),
-        Detect(Camera::Object) => call("brick.objectSensor(\"video2\").detect()"),
-        Detect(_) => call("brick.lineSensor(\"video2\").detect()"),
-        StartVideo if is_python => {
-            call("script.system(\"/etc/init.d/mjpg-encoder-ov7670 start --jpeg-qual \" + str($1))")
-        }
-        StartVideo => {
-            call("script.system(\"/etc/init.d/mjpg-encoder-ov7670 start --jpeg-qual \" + $1)")
-        }
-        StopVideo => call("script.system(\"/etc/init.d/mjpg-encoder-ov7670 stop\")"),
-        SendMail => call("mailbox.send($1, $2)"),
-        SendMailToAll => call("mailbox.send($1)"),
-        JoinNetwork => call("mailbox.joinNetwork($1, $2, $3)"),
+        Command(command) if is_python => call(command.phrase.python),
+        Command(command) => call(command.phrase.javascript),
         Print => call("print($1)"),
+        Redraw => call("brick.display().redraw()"),
         Wait => call("script.wait($1)"),
         Finish => call("brick.stop()"),
-        other => display(other),
-    }
-}
-
-/// What the screen and the marker are told.
-fn display(what: What) -> Row {
-    use What::*;
-    match what {
-        Label => call("brick.display().addLabel($1, $2, $3, $4)"),
-        Redraw => call("brick.display().redraw()"),
-        Clear => call("brick.display().clear()"),
-        PenColor => call("brick.display().setPainterColor($1)"),
-        PenWidth => call("brick.display().setPainterWidth($1)"),
-        Background => call("brick.display().setBackground($1)"),
-        Pixel => call("brick.display().drawPoint($1, $2)"),
-        Line => call("brick.display().drawLine($1, $2, $3, $4)"),
-        Rectangle => call("brick.display().drawRect($1, $2, $3, $4, $5)"),
-        Ellipse => call("brick.display().drawEllipse($1, $2, $3, $4, $5)"),
-        Arc => call("brick.display().drawArc($1, $2, $3, $4, $5, $6)"),
-        Smile => call("brick.smile()"),
-        SadSmile => call("brick.sadSmile()"),
-        MarkerDown => call("brick.marker().down($1)"),
-        MarkerUp => call("brick.marker().up()"),
         _ => NONE,
     }
 }

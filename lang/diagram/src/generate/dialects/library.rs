@@ -2,7 +2,7 @@
 //!
 //! Owns the few calls of that library that are used, each in one helper. Knows no statements.
 
-use super::super::code::{Light, What};
+use super::super::code::What;
 use super::super::print::{NONE, Row, call};
 
 /// What the robot tells and is told, the same in both languages.
@@ -20,17 +20,8 @@ pub(super) fn commands(what: What) -> Row {
         PowerOff => call("powerOff($1)"),
         Servo => call("setServo($1, $2)"),
         ResetEncoder => call("resetEncoder($1)"),
-        PlaySound => call("run(\"aplay --quiet \" + $1)"),
-        Say => call("run(\"espeak -v russian_test -s 100 \" + $1)"),
-        Led(Light::Red) => call("model.Led.SetColor(LedColor.Red)"),
-        Led(Light::Green) => call("model.Led.SetColor(LedColor.Green)"),
-        Led(Light::Orange) => call("model.Led.SetColor(LedColor.Orange)"),
-        Led(Light::Off) => call("model.Led.PowerOff()"),
-        System => call("run($1)"),
-        Append => call("IO.File.AppendAllText($1, $2)"),
-        Remove => call("IO.File.Delete($1)"),
+        Command(command) => call(command.phrase.dotnet),
         Print => call("Console.WriteLine($1)"),
-        Label => call("label($1, $2, $3, $4)"),
         Wait => call("wait($1)"),
         _ => NONE,
     }

@@ -4,7 +4,7 @@
 
 mod helpers;
 
-use super::super::code::{Camera, Light, Own, What};
+use super::super::code::{Own, What};
 use super::super::names::Rules;
 use super::super::plan::Owner;
 use super::super::print::{
@@ -219,6 +219,7 @@ fn functions(what: What) -> Row {
         ReceiveThread => call("receiveMessage(true)"),
         ReceiveThreadNow => call("receiveMessage(false)"),
         Again => call("again($1, $2)"),
+        Command(command) => call(command.phrase.lua),
         other => robot(other),
     }
 }
@@ -247,20 +248,7 @@ pub(super) fn robot(what: What) -> Row {
         PowerOff => call("powerOff($1)"),
         Servo => call("setServo($1, $2)"),
         ResetEncoder => call("resetEncoder($1)"),
-        PlaySound => call("playSound($1)"),
-        PlayTone => call("playTone($1, $2)"),
-        Say => call("say($1)"),
-        Led(Light::Red) => call("light(1, 0)"),
-        Led(Light::Green) => call("light(0, 1)"),
-        Led(Light::Orange) => call("light(1, 1)"),
-        Led(Light::Off) => call("light(0, 0)"),
-        System => call("system($1)"),
-        Append => call("append($1, $2)"),
-        Remove => call("removeFile($1)"),
-        Detect(Camera::Object) => call("detect(\"object\")"),
-        Detect(_) => call("detect(\"line\")"),
         Print => call("say_text($1)"),
-        Label => call("label($1, $2, $3, $4)"),
         Wait => call("wait($1)"),
         Finish => call("rest()"),
         _ => NONE,

@@ -1,9 +1,10 @@
 //! Motors, encoders, sensors, buttons, screen, files: against numbers that the real program gave.
 
 use super::{Ran, Sketch, chain, code, run, run_with};
+use crate::blocks::{Does, Row, Silent, table};
 use crate::lower::World;
 use crate::machine::Options;
-use crate::ports::Port;
+use crate::ports::{Kit, Port};
 use crate::stand_in::StandIn;
 
 fn near(ran: &Ran, x: f64, y: f64, degrees: f64) {
@@ -377,112 +378,70 @@ fn a_person_is_asked_until_he_answers() {
     assert!(asked("nonsense").errors()[0].contains("Undeclared identifier"));
 }
 
-const BLOCKS: &[(&str, &[(&str, &str)])] = &[
-    ("TrikPrintText", &[("PrintText", "1 + 1")]),
-    (
-        "TrikPrintText",
-        &[
-            ("PrintText", "2 / 3"),
-            ("Evaluate", "true"),
-            ("FontSize", "-1"),
-            ("Redraw", "false"),
-        ],
-    ),
-    ("TrikSetPainterColor", &[("Color", "darkYellow")]),
-    ("TrikSetPainterWidth", &[("Width", "1 + 2")]),
-    ("TrikDrawPixel", &[("Redraw", "false")]),
-    ("TrikDrawLine", &[]),
-    ("TrikDrawRect", &[("Filled", "true"), ("Redraw", "false")]),
-    ("TrikDrawEllipse", &[("XCoordinateEllipse", "7")]),
-    ("TrikDrawArc", &[("Redraw", "false")]),
-    ("TrikSmile", &[]),
-    ("TrikSadSmile", &[]),
-    ("TrikSetBackground", &[("Redraw", "false")]),
-    ("ClearScreen", &[]),
-    ("TrikLed", &[("Color", "orange")]),
-    ("TrikPlayTone", &[]),
-    ("TrikPlayToneHz", &[("Frequency", "x")]),
-    ("TrikSay", &[("Text", "1 + 1")]),
-    ("TrikSay", &[("Text", "1 + 1"), ("Evaluate", "true")]),
-    ("TrikWriteToFile", &[("Text", "'a' .. 5")]),
-    ("TrikRemoveFile", &[]),
-    ("TrikInitCamera", &[("DrawStream", "false")]),
-    ("TrikDetect", &[]),
-    ("MarkerDown", &[]),
-    ("MarkerUp", &[]),
-    ("TrikCalibrateGyroscope", &[]),
-    ("Function", &[("Body", "print(1 .. 'x')")]),
-    ("TrikSystem", &[]),
-    ("TrikStopCamera", &[]),
-    ("TrikInitVideoStreaming", &[]),
-    ("TrikStopVideoStreaming", &[]),
-];
-
-const SHOWN: &[&str] = &[
-    "label 1 1 20 \"1 + 1\"",
-    "redraw",
-    "label 1 1 20 \"0.666667\"",
-    "pen darkYellow",
-    "pen 3",
-    "pixel 5 5",
-    "line 0 0 10 10",
-    "redraw",
-    "rectangle 0 0 5 5 filled",
-    "ellipse 7 0 5 5",
-    "redraw",
-    "arc 0 0 5 5 20 20",
-    "smile",
-    "smile sad",
-    "background white",
-    "clear",
-    "redraw",
-    "led orange",
-    "sound \"media/beep.wav\"",
-    "tone 0 1000",
-    "say \"1 + 1\"",
-    "say \"2\"",
-    "append \"output.txt\" \"a5\"",
-    "remove \"output.txt\"",
-    "camera line show=false",
-    "detect line",
-    "marker blue",
-    "marker up",
-    "calibrate",
-    "print \"1x\"",
-    "rest",
-];
+/// Where a block does what its examples say: not where it is silent.
+fn world(row: &Row) -> World {
+    match row.silent {
+        Silent::Simulated | Silent::WithoutMailbox | Silent::WithoutGamepad => World::Robot,
+        Silent::Never | Silent::Real | Silent::Always => World::default(),
+    }
+}
 
 #[test]
-fn everything_that_is_shown_and_told() {
-    let ran = run(&chain(BLOCKS), 100);
-    let lines: Vec<_> = ran
-        .robot
-        .log
-        .iter()
-        .map(|(_, line)| line.as_str())
-        .collect();
-    assert_eq!((lines, ran.errors().len()), (SHOWN.to_vec(), 0));
-    let real = run_with(
-        &chain(BLOCKS),
-        100,
-        Options::of(World::Robot),
-        World::Robot,
-        |_| {},
-    );
-    let lines: Vec<_> = real
-        .robot
-        .log
-        .iter()
-        .map(|(_, line)| line.as_str())
-        .collect();
-    assert!(!lines.contains(&"calibrate"));
-    let more = [
-        "system \"echo 123\" code=false",
-        "video gray=false 30",
-        "video off",
-        "rest",
-    ];
-    assert_eq!(lines[lines.len() - 4..], more);
+fn every_block_that_tells_something_tells_what_its_examples_say() {
+    for row in table() {
+        let Does::Act(act) = row.does else {
+            continue;
+        };
+        assert!(!act.examples.is_empty(), "{} has no example", row.kind);
+        for example in act.examples {
+            let mut sketch = chain(&[(row.kind, example.properties)]);
+            let kit = if row.is_of(Kit::V62) {
+                "trikV62Kit"
+            } else {
+                "trikV6Kit"
+            };
+            sketch.meta("lastKitId", kit);
+            let world = world(row);
+            let ran = run_with(&sketch, 100, Options::of(world), world, |_| {});
+            let log = ran.robot.log.iter().map(|(_, line)| line.as_str());
+            let lines: Vec<_> = log.collect();
+            let mut told = example.told.to_vec();
+            if row.silent == Silent::Always {
+                // A former block shares the row of the present one.
+                told.clear();
+            }
+            told.push("rest");
+            assert_eq!(
+                (lines, ran.errors()),
+                (told, vec![]),
+                "{} {:?}",
+                row.kind,
+                example.properties
+            );
+        }
+    }
+}
+
+#[test]
+fn what_is_silent_somewhere_tells_nothing_there() {
+    for row in table() {
+        let silent = match row.silent {
+            Silent::Never => continue,
+            Silent::Simulated | Silent::WithoutMailbox | Silent::WithoutGamepad => World::default(),
+            Silent::Real | Silent::Always => World::Robot,
+        };
+        let sketch = chain(&[(row.kind, &[]), ("Function", &[("Body", "print(1)")])]);
+        let ran = run_with(&sketch, 100, Options::of(silent), silent, |_| {});
+        let log = ran.robot.log.iter().map(|(_, line)| line.as_str());
+        let lines: Vec<_> = log.collect();
+        assert_eq!(lines, ["print \"1\"", "rest"], "{}", row.kind);
+    }
+}
+
+#[test]
+fn what_is_printed_comes_to_the_console() {
+    let ran = run(&chain(&[("Function", &[("Body", "print(1 .. 'x')")])]), 100);
+    assert_eq!(ran.robot.log[0].1, "print \"1x\"");
 }
 
 #[test]
