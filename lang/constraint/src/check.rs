@@ -568,6 +568,13 @@ fn json(value: &Value) -> String {
             json.push('"');
             json
         }
-        _ => "null".to_owned(),
+        Value::Null
+        | Value::Double(_)
+        | Value::Point(_)
+        | Value::Rect(_)
+        | Value::Colour(_)
+        | Value::List(_)
+        | Value::Record(_)
+        | Value::Object(_) => "null".to_owned(),
     }
 }

@@ -47,9 +47,10 @@ impl Scene for Anything {
             7 => Value::Object(Object(0)),
             _ => return Err(Missing::Property(0)),
         };
-        match value {
-            Value::Object(_) => Ok(value),
-            value => value.descend(chain, 1),
+        if matches!(value, Value::Object(_)) {
+            Ok(value)
+        } else {
+            value.descend(chain, 1)
         }
     }
 

@@ -7,6 +7,8 @@
 //! UTF-16 does; an event without an id has a random one in braces there, and stands here where a brace stands, among its
 //! like in the order of the text. `init` has the empty id, and so comes last.
 
+// A kind of value or comparison that is forgotten must not compile.
+#![deny(clippy::wildcard_enum_match_arm)]
 // Problems are rare, and their size costs nothing where none is.
 #![allow(clippy::result_large_err)]
 

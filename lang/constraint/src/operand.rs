@@ -100,7 +100,10 @@ impl Context<'_> {
             match comparison {
                 Comparison::Equals => return class == &**wanted,
                 Comparison::NotEqual => return class != &**wanted,
-                _ => {}
+                Comparison::Greater
+                | Comparison::Less
+                | Comparison::NotLess
+                | Comparison::NotGreater => {}
             }
         }
         let left = self.value(left);
@@ -162,9 +165,10 @@ impl Context<'_> {
         if chain.is_empty() {
             return value;
         }
-        let found = match value {
-            Value::Object(object) => self.scene.property(object, chain),
-            value => value.descend(chain, 0),
+        let found = if let Value::Object(object) = value {
+            self.scene.property(object, chain)
+        } else {
+            value.descend(chain, 0)
         };
         match found {
             Ok(value) => value,
@@ -188,12 +192,11 @@ impl Context<'_> {
         let mut bounds: Option<Bounds> = None;
         let one = std::slice::from_ref(value);
         let items: Rc<[Value]>;
-        let items = match value {
-            Value::List(list) => {
-                items = Rc::clone(list);
-                &items[..]
-            }
-            _ => one,
+        let items = if let Value::List(list) = value {
+            items = Rc::clone(list);
+            &items[..]
+        } else {
+            one
         };
         for item in items {
             let found = match item {
@@ -201,7 +204,13 @@ impl Context<'_> {
                 Value::Rect(rect) => Some(Bounds::around(rect.x, rect.y)),
                 Value::Point(Point { x, y }) => Some(Bounds::around(*x, *y)),
                 Value::Record(_) => record_bounds(item),
-                _ => None,
+                Value::Null
+                | Value::Bool(_)
+                | Value::Int(_)
+                | Value::Double(_)
+                | Value::Text(_)
+                | Value::Colour(_)
+                | Value::List(_) => None,
             };
             bounds = match (bounds, found) {
                 (Some(all), Some(more)) => Some(all.with(more)),

@@ -95,7 +95,13 @@ impl Value {
             #[allow(clippy::cast_possible_truncation)]
             Self::Double(number) => (number + 0.5).floor() as i32,
             Self::Text(text) => text.trim().parse().unwrap_or(0),
-            _ => 0,
+            Self::Null
+            | Self::Point(_)
+            | Self::Rect(_)
+            | Self::Colour(_)
+            | Self::List(_)
+            | Self::Record(_)
+            | Self::Object(_) => 0,
         }
     }
 
@@ -103,7 +109,16 @@ impl Value {
     pub fn to_point(&self) -> Point {
         match self {
             Self::Point(point) => *point,
-            _ => Point::default(),
+            Self::Null
+            | Self::Bool(_)
+            | Self::Int(_)
+            | Self::Double(_)
+            | Self::Text(_)
+            | Self::Rect(_)
+            | Self::Colour(_)
+            | Self::List(_)
+            | Self::Record(_)
+            | Self::Object(_) => Point::default(),
         }
     }
 
@@ -115,7 +130,12 @@ impl Value {
             Self::Double(number) => shown(*number),
             Self::Text(text) => text.to_string(),
             Self::Colour(rgb) => format!("#{rgb:06x}"),
-            _ => String::new(),
+            Self::Null
+            | Self::Point(_)
+            | Self::Rect(_)
+            | Self::List(_)
+            | Self::Record(_)
+            | Self::Object(_) => String::new(),
         }
     }
 
@@ -140,7 +160,14 @@ impl Value {
             Self::Bool(yes) => Some(f64::from(u8::from(*yes))),
             Self::Int(number) => Some(f64::from(*number)),
             Self::Double(number) => Some(*number),
-            _ => None,
+            Self::Null
+            | Self::Text(_)
+            | Self::Point(_)
+            | Self::Rect(_)
+            | Self::Colour(_)
+            | Self::List(_)
+            | Self::Record(_)
+            | Self::Object(_) => None,
         }
     }
 
@@ -260,7 +287,13 @@ impl Value {
                 .iter()
                 .find(|(field, _)| *field == name)
                 .map(|(_, value)| value.clone()),
-            _ => return None,
+            Self::Null
+            | Self::Bool(_)
+            | Self::Int(_)
+            | Self::Double(_)
+            | Self::Text(_)
+            | Self::Colour(_)
+            | Self::Object(_) => return None,
         })
     }
 }
