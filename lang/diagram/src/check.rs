@@ -3,6 +3,9 @@
 //! Owns the order: links and properties as `lower` finds them, expressions as far as types can be known beforehand, and
 //! what no way leads to. The machine tells only what the flow comes to; this tells all.
 
+// A kind of block, operation or value that is forgotten must not compile.
+#![deny(clippy::wildcard_enum_match_arm)]
+
 use std::collections::{HashMap, HashSet, VecDeque};
 use std::rc::Rc;
 
@@ -52,7 +55,7 @@ fn soften(problems: &mut [Problem], program: &Program, flow: &Flow) {
         if node.is_some_and(|&node| !flow.is_reached[node]) {
             problem.severity = match problem.severity {
                 Severity::Error => Severity::Warning,
-                _ => Severity::Note,
+                Severity::Note | Severity::Warning => Severity::Note,
             };
         }
     }
@@ -126,7 +129,19 @@ pub(super) fn successors(program: &Program, node: Node, tell: &mut dyn FnMut(Nod
             }
             tell(next);
         }
-        op => op.next().into_iter().for_each(tell),
+        op @ (Op::Pass { .. }
+        | Op::Run { .. }
+        | Op::Join { .. }
+        | Op::Kill { .. }
+        | Op::Send { .. }
+        | Op::Receive { .. }
+        | Op::Timer { .. }
+        | Op::Random { .. }
+        | Op::AnyButton { .. }
+        | Op::Mail { .. }
+        | Op::Copy { .. }
+        | Op::Act { .. }
+        | Op::Watch { .. }) => op.next().into_iter().for_each(tell),
     }
 }
 
@@ -166,7 +181,16 @@ fn sources(program: &Program, node: Node, tell: &mut dyn FnMut(u32)) {
             .source
             .into_iter()
             .for_each(tell),
-        _ => {}
+        Op::Pass { .. }
+        | Op::End
+        | Op::Fault { .. }
+        | Op::Fork { .. }
+        | Op::Join { .. }
+        | Op::Kill { .. }
+        | Op::Receive { .. }
+        | Op::Ask { .. }
+        | Op::AnyButton { .. }
+        | Op::Mail { .. } => {}
     }
 }
 

@@ -4,6 +4,9 @@
 //! no expressions: it only keeps their texts. What the original says when the flow reaches a bad block is told here at
 //! once, and the machine tells it then.
 
+// A kind of block, operation or value that is forgotten must not compile.
+#![deny(clippy::wildcard_enum_match_arm)]
+
 mod links;
 mod properties;
 
@@ -293,9 +296,20 @@ impl<'a> Lowering<'a> {
             Does::End => Ok(Op::End),
             Does::Comment if at.block.incoming.is_empty() => Ok(Op::End),
             Does::Comment => Err(words::comment_in_flow()),
-            Does::If | Does::Loop | Does::While | Does::Switch | Does::Fork | Does::Join => {
-                self.branching(at)
+            Does::If => {
+                let (yes, no) = links::two_branches(at)?;
+                let source = self.expression(at, "Condition");
+                Ok(Op::If { source, yes, no })
             }
+            Does::While => {
+                let (yes, no) = self.loop_links(at)?;
+                let source = self.expression(at, "Condition");
+                Ok(Op::If { source, yes, no })
+            }
+            Does::Loop => self.counted(at),
+            Does::Switch => self.switch(at),
+            Does::Fork => self.fork(at),
+            Does::Join => self.join(at),
             Does::Ask => {
                 let (next, cancel) = links::question(at)?;
                 Ok(Op::Ask {
@@ -304,68 +318,65 @@ impl<'a> Lowering<'a> {
                     cancel,
                 })
             }
-            _ => {
+            Does::Start
+            | Does::Merge
+            | Does::Statements
+            | Does::Assign
+            | Does::Random
+            | Does::Kill
+            | Does::Send
+            | Does::Receive
+            | Does::Call
+            | Does::Timer
+            | Does::AnyButton
+            | Does::Mail
+            | Does::Copy(_)
+            | Does::Act(_)
+            | Does::Watch(_) => {
                 let next = links::single(at.diagram, at.block, at.base)?;
                 self.straight(at, next)
             }
         }
     }
 
-    fn branching(&mut self, at: At<'a>) -> Result<Op, Words> {
-        match at.row.does {
-            Does::If => {
-                let (yes, no) = links::two_branches(at)?;
-                let source = self.expression(at, "Condition");
-                Ok(Op::If { source, yes, no })
-            }
-            Does::While => {
-                let (body, next) = self.loop_links(at)?;
-                let source = self.expression(at, "Condition");
-                Ok(Op::If {
-                    source,
-                    yes: body,
-                    no: next,
-                })
-            }
-            Does::Loop => {
-                let (body, next) = self.loop_links(at)?;
-                let source = self.expression(at, "Iterations");
-                self.loops += 1;
-                Ok(Op::Loop {
-                    source,
-                    body,
-                    next,
-                    counter: self.loops - 1,
-                })
-            }
-            Does::Switch => self.switch(at),
-            Does::Fork => {
-                let branches = links::threads(at)?;
-                self.forks.push(super::program::Fork {
-                    branches: branches.into(),
-                });
-                Ok(Op::Fork {
-                    fork: self.forks.len() as u32 - 1,
-                })
-            }
-            _ => {
-                let next = links::single(at.diagram, at.block, at.base)?;
-                let guard = at.block.outgoing.first();
-                let guard = guard.and_then(|&link| at.diagram.links.get(link));
-                let survivor = guard.map_or("", |link| link.guard.as_str());
-                if survivor.is_empty() {
-                    return Err(words::join_needs_name());
-                }
-                self.joins.push(super::program::Join {
-                    survivor: survivor.into(),
-                    incoming: at.block.incoming.len() as u32,
-                });
-                Ok(Op::Join {
-                    join: self.joins.len() as u32 - 1,
-                    next,
-                })
-            }
+    fn counted(&mut self, at: At<'a>) -> Result<Op, Words> {
+        let (body, next) = self.loop_links(at)?;
+        let source = self.expression(at, "Iterations");
+        self.loops += 1;
+        Ok(Op::Loop {
+            source,
+            body,
+            next,
+            counter: self.loops - 1,
+        })
+    }
+
+    fn fork(&mut self, at: At<'a>) -> Result<Op, Words> {
+        let branches = links::threads(at)?;
+        self.forks.push(super::program::Fork {
+            branches: branches.into(),
+        });
+        Ok(Op::Fork {
+            fork: self.forks.len() as u32 - 1,
+        })
+    }
+
+    fn join(&mut self, at: At<'a>) -> Result<Op, Words> {
+        let next = links::single(at.diagram, at.block, at.base)?;
+        let guard = at.block.outgoing.first();
+        let guard = guard.and_then(|&link| at.diagram.links.get(link));
+        let survivor = guard.map_or("", |link| link.guard.as_str());
+        if survivor.is_empty() {
+            return Err(words::join_needs_name());
         }
+        self.joins.push(super::program::Join {
+            survivor: survivor.into(),
+            incoming: at.block.incoming.len() as u32,
+        });
+        Ok(Op::Join {
+            join: self.joins.len() as u32 - 1,
+            next,
+        })
     }
 
     fn switch(&mut self, at: At<'a>) -> Result<Op, Words> {
@@ -430,31 +441,9 @@ impl<'a> Lowering<'a> {
                 copied,
                 next,
             },
-            Does::Receive => {
-                if text(at, "Variable").is_empty() {
-                    return Err(words::nothing_to_receive_into());
-                }
-                Op::Receive {
-                    assignment: self.assignment(at),
-                    next,
-                }
-            }
-            Does::Kill => {
-                let message = self.message(at, false);
-                if text(at, "Thread").is_empty() {
-                    return Err(words::nobody_to_kill());
-                }
-                Op::Kill { message, next }
-            }
-            Does::Send => {
-                if text(at, "Thread").is_empty() {
-                    return Err(words::nobody_to_send_to());
-                }
-                Op::Send {
-                    message: self.message(at, true),
-                    next,
-                }
-            }
+            Does::Receive => self.receive(at, next)?,
+            Does::Kill => self.kill(at, next)?,
+            Does::Send => self.send(at, next)?,
             Does::Call => Op::Call {
                 call: self.call(at)?,
                 next,
@@ -467,7 +456,45 @@ impl<'a> Lowering<'a> {
                 watch: self.watch(at, watch),
                 next,
             },
-            _ => Op::Pass { next },
+            Does::Start
+            | Does::End
+            | Does::Comment
+            | Does::Merge
+            | Does::Ask
+            | Does::If
+            | Does::Switch
+            | Does::Loop
+            | Does::While
+            | Does::Fork
+            | Does::Join => Op::Pass { next },
+        })
+    }
+
+    fn receive(&mut self, at: At<'a>, next: Node) -> Result<Op, Words> {
+        if text(at, "Variable").is_empty() {
+            return Err(words::nothing_to_receive_into());
+        }
+        Ok(Op::Receive {
+            assignment: self.assignment(at),
+            next,
+        })
+    }
+
+    fn kill(&mut self, at: At<'a>, next: Node) -> Result<Op, Words> {
+        let message = self.message(at, false);
+        if text(at, "Thread").is_empty() {
+            return Err(words::nobody_to_kill());
+        }
+        Ok(Op::Kill { message, next })
+    }
+
+    fn send(&mut self, at: At<'a>, next: Node) -> Result<Op, Words> {
+        if text(at, "Thread").is_empty() {
+            return Err(words::nobody_to_send_to());
+        }
+        Ok(Op::Send {
+            message: self.message(at, true),
+            next,
         })
     }
 

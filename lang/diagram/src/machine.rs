@@ -4,6 +4,9 @@
 //! order of blocks, then sensor variables, then what has been put off. Knows no robot and no clock: the caller gives both.
 //! The same program with the same readings does the same.
 
+// A kind of block, operation or value that is forgotten must not compile.
+#![deny(clippy::wildcard_enum_match_arm)]
+
 mod clocks;
 mod flow;
 mod formulas;

@@ -2,6 +2,9 @@
 //!
 //! Owns the shape of such a program. Knows blocks as numbers only: what a block does is known to who prints it.
 
+// A kind of block, operation or value that is forgotten must not compile.
+#![deny(clippy::wildcard_enum_match_arm)]
+
 /// A condition made of blocks that decide between two ways, evaluated from left to right and no further than needed.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub enum Condition {
@@ -92,7 +95,7 @@ impl Condition {
     pub fn negated(self) -> Self {
         match self {
             Self::Not(inner) => *inner,
-            other => Self::Not(Box::new(other)),
+            other @ (Self::Test(_) | Self::And(..) | Self::Or(..)) => Self::Not(Box::new(other)),
         }
     }
 
@@ -136,7 +139,13 @@ impl Tree {
             Self::Loop { body, .. } | Self::While { body, .. } | Self::DoWhile { body, .. } => {
                 vec![body]
             }
-            _ => Vec::new(),
+            Self::Step(_)
+            | Self::Break(_)
+            | Self::Continue(_)
+            | Self::End(_)
+            | Self::Set { .. }
+            | Self::Goto(_)
+            | Self::Label(_) => Vec::new(),
         }
     }
 
@@ -147,7 +156,12 @@ impl Tree {
             Self::If { yes, no, .. } => leave(yes) && leave(no),
             Self::Switch { branches, .. } => branches.iter().all(|(_, body)| leave(body)),
             Self::Loop { label, body } => !body.iter().any(|part| part.breaks(*label)),
-            _ => false,
+            Self::Step(_)
+            | Self::While { .. }
+            | Self::DoWhile { .. }
+            | Self::Set { .. }
+            | Self::Choice { .. }
+            | Self::Label(_) => false,
         }
     }
 

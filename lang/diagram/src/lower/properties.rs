@@ -177,7 +177,13 @@ impl<'a> Lowering<'a> {
             | Watch::Gyroscope(name)
             | Watch::Acceleration(name)
             | Watch::Wheel(name) => Some(self.expression(at, name)),
-            _ => None,
+            Watch::Touch
+            | Watch::Motion
+            | Watch::Button
+            | Watch::PadButton
+            | Watch::Pad
+            | Watch::Connected
+            | Watch::Disconnected => None,
         };
         let port = match watch {
             Watch::Button => text(at, "Button"),

@@ -82,6 +82,8 @@ impl Machine {
     }
 
     /// Runs blocks of a thread until it leaves.
+    // What is not here goes on to `special` and `device`, which name all operations.
+    #[expect(clippy::wildcard_enum_match_arm)]
     fn execute(&mut self, handle: Handle, mut is_entered: bool, env: &mut Env<'_>) {
         let program = self.program.clone();
         let Some(thread) = self.threads.get(handle) else {
@@ -250,7 +252,18 @@ impl Machine {
                 }
             }
             Op::Call { call, .. } => self.call(program, handle, node, call as usize, env),
-            ref op => self.device(program, handle, node, op, env),
+            ref op @ (Op::Pass { .. }
+            | Op::Run { .. }
+            | Op::If { .. }
+            | Op::Loop { .. }
+            | Op::Timer { .. }
+            | Op::Random { .. }
+            | Op::Ask { .. }
+            | Op::AnyButton { .. }
+            | Op::Mail { .. }
+            | Op::Copy { .. }
+            | Op::Act { .. }
+            | Op::Watch { .. }) => self.device(program, handle, node, op, env),
         }
     }
 
@@ -305,7 +318,23 @@ impl Machine {
                 let statement = super::waits::mail(program, assignment, &message);
                 self.splice(handle, node, &statement, next, env)
             }
-            _ => {
+            Op::Pass { .. }
+            | Op::End
+            | Op::Fault { .. }
+            | Op::Run { .. }
+            | Op::If { .. }
+            | Op::Loop { .. }
+            | Op::Switch { .. }
+            | Op::Fork { .. }
+            | Op::Join { .. }
+            | Op::Kill { .. }
+            | Op::Send { .. }
+            | Op::Receive { .. }
+            | Op::Call { .. }
+            | Op::Ask { .. }
+            | Op::AnyButton { .. }
+            | Op::Mail { .. }
+            | Op::Watch { .. } => {
                 self.threads.wait(handle, node);
                 match self.start_waiting(program, node, op, env) {
                     true => Flow::Leave,

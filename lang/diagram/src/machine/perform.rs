@@ -29,7 +29,9 @@ impl Machine {
         let value = match wanted {
             Type::Truth => self.formulas.truth(source, &mut robot).map(Value::Bool),
             Type::Whole => self.formulas.whole(source, &mut robot).map(Value::Int),
-            _ => self.formulas.evaluate(source, &mut robot),
+            Type::Statements | Type::Number | Type::Text | Type::Printed | Type::List => {
+                self.formulas.evaluate(source, &mut robot)
+            }
         };
         match value {
             Ok(value) => Some(value),
@@ -98,10 +100,12 @@ impl Machine {
                         port,
                         degrees: power,
                     },
-                    _ => Command::Power {
-                        port,
-                        percent: power.clamp(-100, 100),
-                    },
+                    Sort::Motor | Sort::Encoder | Sort::Scalar | Sort::Vector | Sort::Button(_) => {
+                        Command::Power {
+                            port,
+                            percent: power.clamp(-100, 100),
+                        }
+                    }
                 })?;
             }
             Effect::Stop => {

@@ -52,7 +52,16 @@ impl Machine {
                 let interval = match watching.watch {
                     Watch::Encoder(_) => 1,
                     Watch::PadButton => 200,
-                    _ => 20,
+                    Watch::Sensor(_)
+                    | Watch::Gyroscope(_)
+                    | Watch::Acceleration(_)
+                    | Watch::Touch
+                    | Watch::Motion
+                    | Watch::Button
+                    | Watch::Pad
+                    | Watch::Wheel(_)
+                    | Watch::Connected
+                    | Watch::Disconnected => 20,
                 };
                 self.set_clock(node, Purpose::Watch, interval);
                 match self.look(node, watching, env) {
@@ -84,7 +93,23 @@ impl Machine {
                 self.set_clock(node, Purpose::Ask, 1);
                 true
             }
-            _ => true,
+            Op::Pass { .. }
+            | Op::End
+            | Op::Fault { .. }
+            | Op::Run { .. }
+            | Op::If { .. }
+            | Op::Loop { .. }
+            | Op::Switch { .. }
+            | Op::Fork { .. }
+            | Op::Join { .. }
+            | Op::Kill { .. }
+            | Op::Send { .. }
+            | Op::Receive { .. }
+            | Op::Call { .. }
+            | Op::Timer { .. }
+            | Op::Random { .. }
+            | Op::Copy { .. }
+            | Op::Act { .. } => true,
         }
     }
 
@@ -201,7 +226,12 @@ impl Machine {
         };
         let pressed = Port::all().find_map(|port| match port.sort() {
             Sort::Button(code) if env.brick.scalar(port).unwrap_or(0) != 0 => Some(code),
-            _ => None,
+            Sort::Motor
+            | Sort::Servo
+            | Sort::Encoder
+            | Sort::Scalar
+            | Sort::Vector
+            | Sort::Button(_) => None,
         });
         let code = match pressed {
             Some(code) => code,
@@ -298,6 +328,10 @@ fn absent(watching: &Watching) -> Words {
         Watch::Touch => words::not_configured("Touch sensor", port),
         Watch::Motion => words::not_configured("Motion sensor", port),
         Watch::Sensor(_) => words::not_configured("Sensor", port),
-        _ => words::not_configured("Gamepad", port),
+        Watch::PadButton
+        | Watch::Pad
+        | Watch::Wheel(_)
+        | Watch::Connected
+        | Watch::Disconnected => words::not_configured("Gamepad", port),
     }
 }

@@ -123,7 +123,12 @@ impl<'a> Writer<'a> {
                     Condition::Test(block) if self.is_counted(*block) => {
                         format!("{} {}", self.word(Word::Times), self.test(*block))
                     }
-                    _ => format!("{} {}", self.word(Word::While), self.condition(when)),
+                    Condition::Test(_)
+                    | Condition::Not(_)
+                    | Condition::And(..)
+                    | Condition::Or(..) => {
+                        format!("{} {}", self.word(Word::While), self.condition(when))
+                    }
                 };
                 self.body(&head, body, depth);
             }

@@ -45,7 +45,15 @@ pub(super) fn shape(list: Vec<Tree>) -> Vec<Tree> {
                 });
             }
             Tree::Loop { label, body } => shaped.push(looped(label, shape(body))),
-            other => shaped.push(other),
+            other @ (Tree::Step(_)
+            | Tree::While { .. }
+            | Tree::DoWhile { .. }
+            | Tree::Break(_)
+            | Tree::Continue(_)
+            | Tree::End(_)
+            | Tree::Set { .. }
+            | Tree::Goto(_)
+            | Tree::Label(_)) => shaped.push(other),
         }
     }
     shaped
@@ -55,7 +63,18 @@ fn looped(label: usize, mut body: Vec<Tree>) -> Tree {
     strip(&mut body, label);
     let leaves_loop = |tree: &Tree| match tree {
         Tree::If { yes, no, .. } => yes[..] == [Tree::Break(label)] && no.is_empty(),
-        _ => false,
+        Tree::Step(_)
+        | Tree::Switch { .. }
+        | Tree::Loop { .. }
+        | Tree::While { .. }
+        | Tree::DoWhile { .. }
+        | Tree::Break(_)
+        | Tree::Continue(_)
+        | Tree::End(_)
+        | Tree::Set { .. }
+        | Tree::Choice { .. }
+        | Tree::Goto(_)
+        | Tree::Label(_) => false,
     };
     if body.first().is_some_and(leaves_loop)
         && let Tree::If { when, .. } = body.remove(0)
@@ -120,7 +139,14 @@ fn each_block(list: &[Tree], seen: &mut dyn FnMut(usize)) {
                 when.tests(seen);
             }
             Tree::Switch { on, .. } => seen(*on),
-            _ => {}
+            Tree::Loop { .. }
+            | Tree::Break(_)
+            | Tree::Continue(_)
+            | Tree::End(_)
+            | Tree::Set { .. }
+            | Tree::Choice { .. }
+            | Tree::Goto(_)
+            | Tree::Label(_) => {}
         }
         for part in tree.parts() {
             each_block(part, seen);
