@@ -83,7 +83,8 @@ make_docs() {
     "$view" completions fish >"$share/fish/vendor_completions.d/trikfs-ev3dev.fish"
     install -m 644 "$from/copyright" "$doc"
     # Debian has this one on every system.
-    rm "$doc/LICENSE"
+    rm "$share/trikfs/LICENSE"
+    mv "$share/trikfs/NOTICE" "$doc"
     gzip -9n <"$work/debian/changelog" >"$doc/changelog.gz"
     install -m 644 "$root"/docs/user/*.md "$doc"
 }

@@ -21,7 +21,7 @@ stage() {
     done
     # What is inside the programs, with the licences that must go with it.
     for file in LICENSE NOTICE; do
-        install -D -m 644 "$root/$file" "$prefix/share/doc/trikfs/$file"
+        install -D -m 644 "$root/$file" "$prefix/share/trikfs/$file"
     done
     install -D -m 644 "$root/converter/include/trikfs_converter.h" "$prefix/include/trikfs_converter.h"
 }

@@ -54,8 +54,8 @@ usr/lib/trikfs/libtrikfs_filters.so
 usr/lib/trikfs/respawn
 usr/lib/trikfs/respawn-trikd
 usr/lib/trikfs/tone
-usr/share/doc/trikfs/LICENSE
-usr/share/doc/trikfs/NOTICE
+usr/share/trikfs/LICENSE
+usr/share/trikfs/NOTICE
 usr/share/trikfs/lua/filters.lua
 usr/share/trikfs/lua/hello.lua
 FILES

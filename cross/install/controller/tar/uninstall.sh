@@ -42,7 +42,7 @@ done <"$lib/tar-files"
 rm -f "$lib/tar-files" "$lib/tar-conffiles" "$lib/uninstall"
 # Those of this program alone.
 for dir in usr/lib/trikfs usr/share/trikfs/lua/robots usr/share/trikfs/lua/trik usr/share/trikfs/lua usr/share/trikfs \
-    usr/share/doc/trikfs etc/trikfs; do
+    etc/trikfs; do
     rmdir "$ROOT/$dir" 2>/dev/null || true
 done
 echo "trikfs is uninstalled"
