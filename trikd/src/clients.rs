@@ -1,4 +1,4 @@
-//! Who is connected: the register that messages to all go through and that the status shows.
+//! The register of connected clients, through which messages to all go and which the status shows.
 //!
 //! Knows no sockets and no frames.
 
