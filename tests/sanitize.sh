@@ -3,7 +3,8 @@
 #
 # usage: tests/sanitize.sh [address|loom]
 #
-# address: unit tests of the crates with foreign pointers and mapped memory under AddressSanitizer, with the stable compiler.
+# address: unit tests of the crates with foreign pointers and mapped memory, and those that run Lua states of `config`, under
+#   AddressSanitizer, with the stable compiler. LuaJIT itself is not instrumented.
 # loom: the ring of the sample bus in all orders in which a reader can see what the publisher stores.
 # Without arguments: both. What they build is below target/sanitize.
 set -euo pipefail
@@ -17,6 +18,8 @@ address() {
     export RUSTC_BOOTSTRAP=1 RUSTFLAGS=-Zsanitizer=address CARGO_TARGET_DIR=target/sanitize/address
     export ASAN_OPTIONS=detect_leaks=0
     cargo test --target "$host" -p converter -p sample-bus --lib
+    # All that the allocator of Lua states, the calls into them and the buffers that both sides share are tried by.
+    cargo test --target "$host" -p config --lib -- vm:: program::
 }
 
 loom() {

@@ -41,7 +41,11 @@ fn each(time: Duration) -> f64 {
 }
 
 /// Makes the states, uses each `conversions` times on `node`, and reports.
-fn states(program: &Program, node: Option<&str>, conversions: usize) -> Result<(), String> {
+fn states(
+    program: &Program,
+    node: Option<&str>,
+    conversions: usize,
+) -> Result<(), Box<dyn std::error::Error>> {
     let mut vms: Vec<Vm> = Vec::with_capacity(STATES);
     let (memory, start) = (resident_kib(), Instant::now());
     for _ in 0..STATES {
@@ -74,7 +78,7 @@ fn states(program: &Program, node: Option<&str>, conversions: usize) -> Result<(
     Ok(())
 }
 
-fn speed(program: &Program, node: &str) -> Result<(), String> {
+fn speed(program: &Program, node: &str) -> Result<(), Box<dyn std::error::Error>> {
     let mut vm = program.prepare()?;
     let stage = vm.bind(node, Direction::Read, 0, 8, 8)?;
     let (input, mut output) = (vec![7; TUPLES * 8], vec![0; TUPLES * 8]);
@@ -83,12 +87,12 @@ fn speed(program: &Program, node: &str) -> Result<(), String> {
     let rate = produced as f64 / start.elapsed().as_secs_f64() / 1e6;
     println!(
         "{node:8} {rate:.1} million 8-byte tuples/s {}",
-        fault.unwrap_or_default()
+        fault.map_or_else(String::new, |fault| fault.to_string())
     );
     Ok(())
 }
 
-fn main() -> Result<(), String> {
+fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let Some(node) = arguments.next() else {
         return every_case();
@@ -119,7 +123,7 @@ fn main() -> Result<(), String> {
 }
 
 /// Each case in a process of its own: memory that another case freed would hide what this one takes.
-fn every_case() -> Result<(), String> {
+fn every_case() -> Result<(), Box<dyn std::error::Error>> {
     let program = std::env::current_exe().map_err(|error| error.to_string())?;
     let cases = [
         "- 0",

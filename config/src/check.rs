@@ -15,7 +15,7 @@ mod stages;
 use crate::description::{Alias, Config, NodeDescription, SetupAction, SourceDescription};
 use crate::fields::extended;
 use crate::format::Format;
-use crate::limits::{GROUP_DEPTH_MAX, NAME_BYTES_MAX, NODES_MAX, SOURCES_MAX};
+use crate::limits::{GROUP_DEPTH_MAX, LINKS_MAX, NAME_BYTES_MAX, NODES_MAX};
 use crate::nearest::{nearest, suggestion};
 use crate::problem::Problem;
 use crate::search::Search;
@@ -32,8 +32,6 @@ const RESERVED_ATTRIBUTES: [&str; 10] = [
     "bin_data", "device", "fault", "format", "owner", "params", "poll_ms", "stats", "units",
     "value",
 ];
-/// Nodes that read each other in a row; bounds the recursion of `build`.
-const LINKS_MAX: usize = SOURCES_MAX;
 
 /// Checks everything that a program left. Gives the configuration and what is suspicious in it.
 ///

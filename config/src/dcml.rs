@@ -3,6 +3,8 @@
 //! Owns what a name means (a file, a shipped model, a text in the configuration itself) and how what is wrong with a text
 //! is told. The language is `lang`'s; the global `dcml` makes a node of what the chunk gives.
 
+use crate::error::Error;
+use crate::limits::MODEL_PROBLEMS_MAX;
 use lang_dcml::diagnostic::{Diagnostic, Severity};
 use lang_dcml::generate::{Options, Target, generate};
 use lang_dcml::lines::Lines;
@@ -12,8 +14,6 @@ use std::fmt::Write;
 
 /// What stands before the name of a model where the global `dcml` asks for a chunk.
 pub(crate) const PREFIX: &[u8] = b"dcml:";
-/// Problems of one text that are told.
-const TOLD_MAX: usize = 8;
 
 /// What a name of a model means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,18 +50,18 @@ pub(crate) fn chunk(
     wanted: Option<&str>,
     shown: &str,
     place: impl Fn(usize, usize) -> String,
-) -> Result<String, String> {
+) -> Result<String, Error> {
     let understood = lang_dcml::understand(text);
     // Errors of another model are no hindrance.
     let is_good =
         wanted.is_some_and(|wanted| understood.models.iter().any(|one| one.name == wanted));
     let errors = told(text, &understood.diagnostics, place);
     if !errors.is_empty() && !is_good {
-        return Err(errors);
+        return Err(Error::Named(errors));
     }
     let model = pick(&understood.models, wanted, shown)?;
     let code = generate(model, Target::Lua, &Options::default())
-        .map_err(|refused| format!("{shown}: {refused}"))?;
+        .map_err(|refused| Error::Named(format!("{shown}: {refused}")))?;
     Ok(adapted(model, &code))
 }
 
@@ -83,15 +83,15 @@ fn told(text: &str, diagnostics: &[Diagnostic], place: impl Fn(usize, usize) -> 
             )
         })
         .collect();
-    let more = told.len().saturating_sub(TOLD_MAX);
-    told.truncate(TOLD_MAX);
+    let more = told.len().saturating_sub(MODEL_PROBLEMS_MAX);
+    told.truncate(MODEL_PROBLEMS_MAX);
     if more > 0 {
         told.push(format!("and {more} more"));
     }
     told.join("\n")
 }
 
-fn pick<'m>(models: &'m [Model], wanted: Option<&str>, shown: &str) -> Result<&'m Model, String> {
+fn pick<'m>(models: &'m [Model], wanted: Option<&str>, shown: &str) -> Result<&'m Model, Error> {
     let names = || {
         let all: Vec<&str> = models.iter().map(|one| one.name.as_str()).collect();
         all.join(", ")
@@ -99,14 +99,19 @@ fn pick<'m>(models: &'m [Model], wanted: Option<&str>, shown: &str) -> Result<&'
     match (wanted, models) {
         (Some(wanted), _) => {
             let found = models.iter().find(|one| one.name == wanted);
-            found.ok_or_else(|| format!("{shown} has no model '{wanted}'; it has {}", names()))
+            found.ok_or_else(|| {
+                Error::Named(format!(
+                    "{shown} has no model '{wanted}'; it has {}",
+                    names()
+                ))
+            })
         }
         (None, [one]) => Ok(one),
-        (None, []) => Err(format!("{shown} has no model")),
-        (None, _) => Err(format!(
+        (None, []) => Err(Error::Named(format!("{shown} has no model"))),
+        (None, _) => Err(Error::Named(format!(
             "{shown} has several models: say which, '{shown}#NAME', with {}",
             names()
-        )),
+        ))),
     }
 }
 

@@ -2,18 +2,19 @@
 //!
 //! Pure data, sorted by name for the search.
 
+use crate::error::Error;
 use crate::nearest::suggestion;
 
 /// Type and code of an event by the kernel's name, for example `ABS_X` -> (3, 0).
 ///
 /// # Errors
 /// An unknown name, with the nearest known one.
-pub(crate) fn event_code(name: &str) -> Result<(u16, u16), String> {
+pub(crate) fn event_code(name: &str) -> Result<(u16, u16), Error> {
     match CODES.binary_search_by_key(&name, |(known, _, _)| known) {
         Ok(index) => CODES
             .get(index)
             .map(|(_, kind, code)| (*kind, *code))
-            .ok_or_else(String::new),
+            .ok_or(Error::Ours("an event code without a number")),
         Err(_) => {
             let hint = suggestion(name, CODES.iter().map(|(known, _, _)| *known));
             let shown: String = name
@@ -21,7 +22,7 @@ pub(crate) fn event_code(name: &str) -> Result<(u16, u16), String> {
                 .take(40)
                 .flat_map(char::escape_default)
                 .collect();
-            Err(format!("unknown event code '{shown}'{hint}"))
+            Err(Error::Text(format!("unknown event code '{shown}'{hint}")))
         }
     }
 }
@@ -274,9 +275,14 @@ mod tests {
         assert_eq!(event_code("REL_WHEEL"), Ok((2, 8)));
         assert_eq!(
             event_code("ABS_HAT0Z"),
-            Err("unknown event code 'ABS_HAT0Z', did you mean 'ABS_HAT0X'".into())
+            Err(Error::Text(
+                "unknown event code 'ABS_HAT0Z', did you mean 'ABS_HAT0X'".into()
+            ))
         );
-        assert_eq!(event_code("x"), Err("unknown event code 'x'".into()));
+        assert_eq!(
+            event_code("x"),
+            Err(Error::Text("unknown event code 'x'".into()))
+        );
     }
 
     #[test]

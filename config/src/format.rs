@@ -2,6 +2,11 @@
 //!
 //! Owns the text of the `value` files. Little endian unless a field's type is preceded by `>`. Pure.
 
+mod error;
+
+pub use error::{EncodeError, RenderError};
+
+use crate::error::Error;
 use crate::limits::{FIELDS_MAX, TUPLE_BYTES_MAX};
 use crate::nearest::suggestion;
 use std::fmt::{self, Write};
@@ -89,41 +94,28 @@ impl FieldKind {
     }
 }
 
-/// Why text could not become a tuple.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum EncodeError {
-    /// Not numbers, or not as many as the format has.
-    Syntax(String),
-    /// A number that its field cannot hold.
-    Range(String),
-}
-
-impl fmt::Display for EncodeError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (Self::Syntax(text) | Self::Range(text)) = self;
-        f.write_str(text)
-    }
-}
-
-impl std::error::Error for EncodeError {}
-
 impl Format {
     /// Reads `'TYPE NAME, TYPE NAME'`, a type perhaps preceded by `>` for big endian, or `'text BYTES'`.
     ///
     /// # Errors
     /// The reason in lower case, naming the field.
-    pub fn parse(text: &str) -> Result<Self, String> {
+    pub fn parse(text: &str) -> Result<Self, Error> {
         if let Some(size) = text.trim().strip_prefix("text ") {
             return Self::text(size.trim());
         }
         let mut fields: Vec<Field> = Vec::new();
         for part in text.split(',') {
             if fields.len() == FIELDS_MAX {
-                return Err(format!("format has more than {FIELDS_MAX} fields"));
+                return Err(Error::Text(format!(
+                    "format has more than {FIELDS_MAX} fields"
+                )));
             }
             let field = Field::parse(part)?;
             if fields.iter().any(|f| f.name == field.name) {
-                return Err(format!("format names the field '{}' twice", field.name));
+                return Err(Error::Text(format!(
+                    "format names the field '{}' twice",
+                    field.name
+                )));
             }
             fields.push(field);
         }
@@ -150,7 +142,7 @@ impl Format {
         }
     }
 
-    fn text(size: &str) -> Result<Self, String> {
+    fn text(size: &str) -> Result<Self, Error> {
         let bytes: usize = size.parse().unwrap_or(0);
         if (1..=TUPLE_BYTES_MAX).contains(&bytes) {
             return Ok(Self {
@@ -160,9 +152,9 @@ impl Format {
             });
         }
         let shown: String = size.chars().take(20).flat_map(char::escape_debug).collect();
-        Err(format!(
+        Err(Error::Text(format!(
             "format: a text has 1 to {TUPLE_BYTES_MAX} bytes ('text 64'), not '{shown}'"
-        ))
+        )))
     }
 
     /// The tuple is one text.
@@ -201,13 +193,13 @@ impl Format {
     ///
     /// # Errors
     /// A number that is not finite, or a tuple of another size. `out` then holds a part.
-    pub fn render(&self, tuple: &[u8], out: &mut String) -> Result<(), String> {
+    pub fn render(&self, tuple: &[u8], out: &mut String) -> Result<(), RenderError> {
         self.check_size(tuple.len())?;
         if self.is_text {
             let end = tuple.iter().position(|&byte| byte == 0);
             let text = std::str::from_utf8(&tuple[..end.unwrap_or(tuple.len())]);
             let text = text.ok().filter(|text| !text.chars().any(char::is_control));
-            out.push_str(text.ok_or("the text is no UTF-8, or has control characters")?);
+            out.push_str(text.ok_or(RenderError::NotText)?);
             return Ok(());
         }
         for index in 0..self.len() {
@@ -223,7 +215,12 @@ impl Format {
     ///
     /// # Errors
     /// As [`render`](Self::render), or no such field.
-    pub fn render_field(&self, index: usize, tuple: &[u8], out: &mut String) -> Result<(), String> {
+    pub fn render_field(
+        &self,
+        index: usize,
+        tuple: &[u8],
+        out: &mut String,
+    ) -> Result<(), RenderError> {
         let (kind, big_endian, range) = self.at(index)?;
         let bytes = tuple
             .get(range)
@@ -232,17 +229,19 @@ impl Format {
             Number::Signed(n) => write!(out, "{n}"),
             Number::Unsigned(n) => write!(out, "{n}"),
             Number::Single(x) if !x.is_finite() => {
-                return Err(format!("{} is {x}", self.title(index)));
+                return Err(RenderError::NotFinite(self.title(index), x.into()));
             }
             Number::Double(x) if !x.is_finite() => {
-                return Err(format!("{} is {x}", self.title(index)));
+                return Err(RenderError::NotFinite(self.title(index), x));
             }
             Number::Single(x) if plain(x.into()) => write!(out, "{x}"),
             Number::Single(x) => write!(out, "{x:e}"),
             Number::Double(x) if plain(x) => write!(out, "{x}"),
             Number::Double(x) => write!(out, "{x:e}"),
         };
-        written.map_err(|e| e.to_string())
+        // Writing to a string cannot fail.
+        let _ = written;
+        Ok(())
     }
 
     /// Reads text as [`render`](Self::render) writes it; any white space separates, hexadecimal integers (`0x1f`) are
@@ -251,7 +250,7 @@ impl Format {
     /// # Errors
     /// `out` may then hold a part.
     pub fn encode(&self, text: &str, out: &mut [u8]) -> Result<(), EncodeError> {
-        self.check_size(out.len()).map_err(EncodeError::Syntax)?;
+        self.check_size(out.len())?;
         if self.is_text {
             return encode_text(text, out);
         }
@@ -276,11 +275,9 @@ impl Format {
         text: &str,
         out: &mut [u8],
     ) -> Result<(), EncodeError> {
-        let (kind, big_endian, range) = self.at(index).map_err(EncodeError::Syntax)?;
+        let (kind, big_endian, range) = self.at(index)?;
         let size = out.len();
-        let place = out
-            .get_mut(range)
-            .ok_or_else(|| EncodeError::Syntax(self.wrong_size(size)))?;
+        let place = out.get_mut(range).ok_or_else(|| self.wrong_size(size))?;
         let number = Number::parse(kind, text.trim()).map_err(|error| match error {
             EncodeError::Syntax(what) => {
                 EncodeError::Syntax(format!("{}: {what}", self.title(index)))
@@ -311,7 +308,7 @@ impl Format {
         self.encode(&text, out)
     }
 
-    fn at(&self, index: usize) -> Result<(FieldKind, bool, Range<usize>), String> {
+    fn at(&self, index: usize) -> Result<(FieldKind, bool, Range<usize>), RenderError> {
         if let (Some(field), Some(start)) = (self.fields.get(index), self.offsets.get(index)) {
             return Ok((
                 field.kind,
@@ -322,10 +319,10 @@ impl Format {
         if index < self.len() {
             return Ok((FieldKind::U8, false, index..index + 1));
         }
-        Err(format!(
-            "value{index} does not exist: the tuple has {} numbers",
-            self.len()
-        ))
+        Err(RenderError::NoField {
+            index,
+            numbers: self.len(),
+        })
     }
 
     fn title(&self, index: usize) -> String {
@@ -335,7 +332,7 @@ impl Format {
         }
     }
 
-    fn check_size(&self, size: usize) -> Result<(), String> {
+    fn check_size(&self, size: usize) -> Result<(), RenderError> {
         if size == self.size() {
             Ok(())
         } else {
@@ -343,8 +340,11 @@ impl Format {
         }
     }
 
-    fn wrong_size(&self, size: usize) -> String {
-        format!("the tuple has {size} bytes, the format {}", self.size())
+    fn wrong_size(&self, size: usize) -> RenderError {
+        RenderError::Size {
+            tuple: size,
+            format: self.size(),
+        }
     }
 
     fn wrong_count(&self, count: usize) -> EncodeError {
@@ -372,38 +372,41 @@ impl fmt::Display for Format {
 }
 
 impl Field {
-    fn parse(text: &str) -> Result<Self, String> {
+    fn parse(text: &str) -> Result<Self, Error> {
         let text = text.trim();
         let (big_endian, rest) = match text.strip_prefix('>') {
             Some(rest) => (true, rest),
             None => (false, text),
         };
         let mut words = rest.split_whitespace();
-        let word = words
-            .next()
-            .ok_or("format has an empty field; write for example 'i16 x, i16 y'")?;
+        let word = words.next().ok_or_else(|| {
+            Error::Text("format has an empty field; write for example 'i16 x, i16 y'".into())
+        })?;
         let Some((_, kind)) = FieldKind::WORDS.iter().find(|(known, _)| *known == word) else {
             let hint = suggestion(word, FieldKind::WORDS.iter().map(|(known, _)| *known));
-            return Err(format!(
+            return Err(Error::Text(format!(
                 "format has an unknown type '{}'{hint}",
                 shorten(word)
-            ));
+            )));
         };
         let name = words
             .next()
-            .ok_or_else(|| format!("format has a field '{word}' without a name"))?;
+            .ok_or_else(|| Error::Text(format!("format has a field '{word}' without a name")))?;
         if let Some(more) = words.next() {
-            return Err(format!("format wants a comma before '{}'", shorten(more)));
+            return Err(Error::Text(format!(
+                "format wants a comma before '{}'",
+                shorten(more)
+            )));
         }
         let mut letters = name.chars();
         let first = letters
             .next()
             .is_some_and(|c| c.is_ascii_alphabetic() || c == '_');
         if !first || !letters.all(|c| c.is_ascii_alphanumeric() || c == '_') || name.len() > 64 {
-            return Err(format!(
+            return Err(Error::Text(format!(
                 "format has a field with the bad name '{}'",
                 shorten(name)
-            ));
+            )));
         }
         Ok(Self {
             name: name.to_owned(),

@@ -3,18 +3,15 @@
 //! Run by the integration tests of the project with a printed seed, and by anybody's fuzzer.
 
 use crate::format::Format;
+use crate::limits::{FUZZ_MEMORY_BYTES, FUZZ_TIME_MS};
 use crate::load::Loader;
 use crate::vm::pattern;
-
-/// Milliseconds for one configuration.
-const TIME_MS: u32 = 50;
-/// Bytes of Lua memory for one configuration.
-const MEMORY_BYTES: usize = 4 << 20;
 
 /// Loads the bytes as a configuration; if it is good, prepares a state and converts a tuple with each Lua stage.
 pub fn fuzz_load(bytes: &[u8]) {
     use converter::Direction;
-    let Ok(loaded) = Loader::default().load_within("fuzz.lua", None, bytes, TIME_MS, MEMORY_BYTES)
+    let Ok(loaded) =
+        Loader::default().load_within("fuzz.lua", None, bytes, FUZZ_TIME_MS, FUZZ_MEMORY_BYTES)
     else {
         return;
     };

@@ -94,3 +94,40 @@ pub const BAUD_RATES: [u32; 19] = [
     1_200, 2_400, 4_800, 9_600, 19_200, 38_400, 57_600, 115_200, 230_400, 460_800, 500_000,
     576_000, 921_600, 1_000_000, 1_152_000, 1_500_000, 2_000_000, 2_500_000, 3_000_000,
 ];
+
+/// Problems of the text of one model that are reported.
+pub const MODEL_PROBLEMS_MAX: usize = 8;
+/// Milliseconds that a fuzz target gives one configuration.
+pub const FUZZ_TIME_MS: u32 = 50;
+/// Bytes of Lua memory that it gives.
+pub const FUZZ_MEMORY_BYTES: usize = 4 << 20;
+/// Longest chunk name that Lua does not shorten in messages (LUA_IDSIZE less the terminator).
+pub const CHUNK_NAME_BYTES_MAX: usize = 59;
+/// Longest word, in bytes, that is compared with known ones; longer ones are not typing errors.
+pub const WORD_BYTES_MAX: usize = 64;
+/// Keys whose lines are remembered; a text with more was not written by hand.
+pub const KEYS_MAX: usize = 1 << 16;
+/// Nesting of keys whose lines are remembered.
+pub const KEY_DEPTH_MAX: usize = 64;
+/// Captures of one pattern, as in the reference implementation.
+pub const CAPTURES_MAX: usize = 32;
+/// Nested attempts of one pattern match, as in the reference implementation; keeps the machine stack small.
+pub const PATTERN_DEPTH_MAX: u32 = 200;
+/// Nested tables of a program: groups, and inside a node its attributes, their fields, and lists in these.
+pub const TABLE_DEPTH_MAX: usize = GROUP_DEPTH_MAX + 8;
+/// Values in all tables that a program leaves.
+pub const VALUES_MAX: usize = 1 << 18;
+/// Bytes of all strings in these tables together.
+pub const TEXT_BYTES_MAX: usize = 8 * CONFIG_BYTES_MAX;
+/// Names of undefined globals that are remembered for a warning.
+pub const UNDEFINED_MAX: usize = 16;
+/// Log lines of one load that are kept.
+pub const LOG_LINES_MAX: usize = 1000;
+/// Smallest `memory_kb`: a state with the program takes about 50 KiB, and with less than this no converter would ever run.
+pub const MEMORY_KB_MIN: u32 = 128;
+/// Bytes of `units`.
+pub const UNITS_BYTES_MAX: usize = 64;
+/// Bytes of `about`.
+pub const ABOUT_BYTES_MAX: usize = 200;
+/// Nodes that read each other in a row; bounds the recursion of the checks.
+pub const LINKS_MAX: usize = SOURCES_MAX;

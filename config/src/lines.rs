@@ -4,17 +4,14 @@
 //! table constructors and remembers every `name =` with the names around it. What is not found so is not an error: the
 //! message then points at the nearest enclosing key. Pure.
 
+use crate::limits::{KEY_DEPTH_MAX, KEYS_MAX};
+
 /// Keys of one text.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Lines {
     /// Names from the outside in, and the line from 1.
     keys: Vec<(Vec<String>, u32)>,
 }
-
-/// Keys that are remembered; beyond that the text was not written by hand.
-const KEYS_MAX: usize = 1 << 16;
-/// Nesting that is remembered.
-const DEPTH_MAX: usize = 64;
 
 impl Lines {
     /// Reads a text. Anything is a text: what makes no sense is passed over.
@@ -53,7 +50,7 @@ impl Lines {
                 Token::Assign => {
                     if !candidate.is_empty()
                         && lines.keys.len() < KEYS_MAX
-                        && names.len() < DEPTH_MAX
+                        && names.len() < KEY_DEPTH_MAX
                     {
                         let depth = names.len();
                         names.append(&mut candidate);

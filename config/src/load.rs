@@ -5,7 +5,10 @@
 use crate::check::check;
 use crate::dcml::{self, Named};
 use crate::description::Config;
-use crate::limits::{CONFIG_BYTES_MAX, INCLUDES_MAX, LOAD_MEMORY_BYTES, LOAD_TIME_MS};
+use crate::error::Error;
+use crate::limits::{
+    CONFIG_BYTES_MAX, INCLUDES_MAX, LOAD_MEMORY_BYTES, LOAD_TIME_MS, LOG_LINES_MAX,
+};
 use crate::problem::Problem;
 use crate::program::Program;
 use crate::search::Search;
@@ -17,9 +20,6 @@ use crate::vm::state::{Include, LogSink, State};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
-/// Log lines of one load that are kept.
-const LOG_LINES_MAX: usize = 1000;
 
 /// Where a configuration finds other files.
 #[derive(Clone, Debug, Default)]
@@ -91,7 +91,7 @@ impl Loader {
             log: Vec::new(),
         }));
         // The lock is taken for a moment each time: callbacks of the state take it, too.
-        let problem = |message: String| locked(&run).texts.problem(&message);
+        let problem = |error: Error| locked(&run).texts.problem(&error.to_string());
         let compiled = locked(&run).compile(name, source);
         let code = compiled.map_err(problem)?;
         let mut state = new_state(&run, memory_bytes).map_err(problem)?;
@@ -170,7 +170,7 @@ fn locked(run: &Mutex<Run>) -> MutexGuard<'_, Run> {
     run.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn new_state(run: &Arc<Mutex<Run>>, memory_bytes: usize) -> Result<State, String> {
+fn new_state(run: &Arc<Mutex<Run>>, memory_bytes: usize) -> Result<State, Error> {
     let logged = Arc::clone(run);
     let log: LogSink = Arc::new(move |line| {
         let mut run = locked(&logged);
@@ -187,13 +187,13 @@ fn new_state(run: &Arc<Mutex<Run>>, memory_bytes: usize) -> Result<State, String
 
 impl Run {
     /// Compiles a file after the checks that need no parser.
-    fn compile(&mut self, name: &str, source: &[u8]) -> Result<Code, String> {
+    fn compile(&mut self, name: &str, source: &[u8]) -> Result<Code, Error> {
         let chunk = self.texts.add(name, source);
         if source.first() == Some(&0x1b) {
-            return Err(format!(
+            return Err(Error::Script(format!(
                 "{}:1: bytecode is not loaded, only text",
                 &chunk[1..]
-            ));
+            )));
         }
         if let Some(at) = source.iter().position(|byte| *byte == 0) {
             let line = source
@@ -202,21 +202,23 @@ impl Run {
                 .filter(|byte| **byte == b'\n')
                 .count()
                 + 1;
-            return Err(format!(
+            return Err(Error::Script(format!(
                 "{}:{line}: the file contains a zero byte and is no text",
                 &chunk[1..]
-            ));
+            )));
         }
         compile(&chunk, source, false)
     }
 
     /// Finds and compiles an included file; each is read once.
-    fn include(&mut self, name: &[u8]) -> Result<Code, String> {
+    fn include(&mut self, name: &[u8]) -> Result<Code, Error> {
         if let Some(code) = self.files.get(name) {
             return Ok(Arc::clone(code));
         }
         if self.files.len() == INCLUDES_MAX {
-            return Err(format!("more than {INCLUDES_MAX} files are included"));
+            return Err(Error::Script(format!(
+                "more than {INCLUDES_MAX} files are included"
+            )));
         }
         if let Some(model) = name.strip_prefix(dcml::PREFIX) {
             let code = self.model(Named::of(model))?;
@@ -231,7 +233,7 @@ impl Run {
     }
 
     /// Finds and translates a model in DCML.
-    fn model(&mut self, named: Named<'_>) -> Result<Code, String> {
+    fn model(&mut self, named: Named<'_>) -> Result<Code, Error> {
         let (shown, source, wanted, place) = match named {
             Named::Text(text) => {
                 let place = self.texts.of_text(text).unwrap_or_default();
@@ -248,7 +250,8 @@ impl Run {
             }
         };
         self.salt ^= hash(&source).rotate_left(2);
-        let text = lang_dcml::decode(source).map_err(|reason| format!("{shown}:{reason}"))?;
+        let text = lang_dcml::decode(source)
+            .map_err(|reason| Error::Named(format!("{shown}:{reason}")))?;
         let wanted = wanted.map(String::from_utf8_lossy);
         let lua = dcml::chunk(
             &text,

@@ -3,10 +3,8 @@
 //! Distance: optimal string alignment (Damerau 1964, Levenshtein 1966): insertions, deletions, substitutions and
 //! swaps of neighbours each count one. Pure.
 
+use crate::limits::WORD_BYTES_MAX;
 use strsim::osa_distance;
-
-/// Longest word that is looked at, in bytes; longer ones are not typing errors.
-const WORD_BYTES_MAX: usize = 64;
 
 /// The nearest of `known` if it is near enough: at most a third of the word's letters, at least one, are wrong.
 pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {

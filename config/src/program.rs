@@ -3,11 +3,12 @@
 //! Owns the compiled text of the program and of everything it included. Closures cannot move between Lua states, so each
 //! state runs the whole program again, silently and with the same files, and takes the converters of its own run.
 
+use crate::error::Error;
 use crate::limits::{BUDGET_US, LOAD_MEMORY_BYTES, LOAD_TIME_MS, MEMORY_KB};
 use crate::vm::bytecode::Code;
 use crate::vm::stage::Stages;
 use crate::vm::state::{Include, State};
-use converter::{Conversion, Direction};
+use converter::{Conversion, Direction, Fault};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
@@ -44,15 +45,15 @@ impl Program {
     ///
     /// # Errors
     /// The Lua error, if the program fails this time; no memory.
-    pub fn prepare(&self) -> Result<Vm, String> {
+    pub fn prepare(&self) -> Result<Vm, Error> {
         let files = Arc::clone(&self.files);
         let include: Include = Box::new(move |name| {
             let code = files.get(name).map(Arc::clone);
             code.ok_or_else(|| {
-                format!(
+                Error::Script(format!(
                     "'{}' was not included when the configuration was loaded",
                     String::from_utf8_lossy(name)
-                )
+                ))
             })
         });
         let mut state = State::new(LOAD_MEMORY_BYTES, None, Some(include))?;
@@ -111,7 +112,7 @@ impl Vm {
     ///
     /// # Errors
     /// No memory.
-    pub fn set_params(&mut self, node: &str, params: &BTreeMap<String, f64>) -> Result<(), String> {
+    pub fn set_params(&mut self, node: &str, params: &BTreeMap<String, f64>) -> Result<(), Error> {
         self.stages.set_params(node, params)
     }
 
@@ -128,7 +129,7 @@ impl Vm {
         position: usize,
         input_size: usize,
         output_size: usize,
-    ) -> Result<StageId, String> {
+    ) -> Result<StageId, Error> {
         self.stages
             .bind(node, direction, position, input_size, output_size)
             .map(StageId)
@@ -139,7 +140,7 @@ impl Vm {
     ///
     /// # Errors
     /// No memory.
-    pub fn keep_only(&mut self, node: &str) -> Result<(), String> {
+    pub fn keep_only(&mut self, node: &str) -> Result<(), Error> {
         self.stages.keep_only(node)
     }
 
@@ -154,7 +155,7 @@ impl Vm {
         stage: StageId,
         input: &[u8],
         output: &mut [u8],
-    ) -> Result<Conversion, String> {
+    ) -> Result<Conversion, Fault> {
         self.stages.convert(stage.0, input, output, self.budget_us)
     }
 
@@ -165,7 +166,7 @@ impl Vm {
         stage: StageId,
         input: &[u8],
         output: &mut [u8],
-    ) -> (usize, usize, Option<String>) {
+    ) -> (usize, usize, Option<Fault>) {
         let Some((input_size, output_size)) = self.stages.sizes(stage.0) else {
             return (0, 0, Some("no such stage in this state".into()));
         };

@@ -2,9 +2,10 @@
 //!
 //! Owns the rule that nothing outside the search path can be included. Reads files, never device nodes.
 
+use crate::error::Error;
 use crate::limits::CONFIG_BYTES_MAX;
 use std::fs::{File, OpenOptions};
-use std::io::Read;
+use std::io::{self, Read};
 use std::os::unix::ffi::OsStrExt;
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Component, Path, PathBuf};
@@ -26,23 +27,25 @@ impl Search {
     ///
     /// # Errors
     /// A name that leads outside, a file that is none, too large or unreadable, or nothing found.
-    pub(crate) fn include(&self, name: &[u8]) -> Result<(String, Vec<u8>), String> {
+    pub(crate) fn include(&self, name: &[u8]) -> Result<(String, Vec<u8>), Error> {
         self.read(name, &["", ".lua"])
     }
 
     /// Reads a file inside one of the include folders.
-    fn read(&self, name: &[u8], endings: &[&str]) -> Result<(String, Vec<u8>), String> {
+    fn read(&self, name: &[u8], endings: &[&str]) -> Result<(String, Vec<u8>), Error> {
         let (path, ending) = self.inside(name, endings)?;
         let shown = String::from_utf8_lossy(name);
         let mut source = Vec::new();
-        let file =
-            open_regular(&path).map_err(|reason| format!("'{shown}' cannot be read: {reason}"))?;
+        let file = open_regular(&path)
+            .map_err(|reason| Error::Named(format!("'{shown}' cannot be read: {reason}")))?;
         let limit = u64::try_from(CONFIG_BYTES_MAX).unwrap_or(u64::MAX) + 1;
         file.take(limit)
             .read_to_end(&mut source)
-            .map_err(|error| format!("'{shown}' cannot be read: {error}"))?;
+            .map_err(|error| Error::Named(format!("'{shown}' cannot be read: {error}")))?;
         if source.len() > CONFIG_BYTES_MAX {
-            return Err(format!("'{shown}' has more than {CONFIG_BYTES_MAX} bytes"));
+            return Err(Error::Named(format!(
+                "'{shown}' has more than {CONFIG_BYTES_MAX} bytes"
+            )));
         }
         Ok((format!("{shown}{ending}"), source))
     }
@@ -52,7 +55,7 @@ impl Search {
     ///
     /// # Errors
     /// As `include`.
-    pub(crate) fn model(&self, name: &[u8]) -> Result<(String, Vec<u8>), String> {
+    pub(crate) fn model(&self, name: &[u8]) -> Result<(String, Vec<u8>), Error> {
         let mut dirs: Vec<PathBuf> = self.base_dir.iter().cloned().collect();
         dirs.extend_from_slice(&self.include_dirs);
         let all = Self {
@@ -66,7 +69,7 @@ impl Search {
                 let shipped = name.strip_suffix(".dcml").unwrap_or(&name);
                 match lang_dcml::models::named(shipped) {
                     Some(found) => Ok((shipped.to_owned(), found.text.as_bytes().to_vec())),
-                    None => Err(format!("model {reason}")),
+                    None => Err(Error::Named(format!("model {reason}"))),
                 }
             }
         }
@@ -76,7 +79,7 @@ impl Search {
     ///
     /// # Errors
     /// As `include`.
-    pub(crate) fn recording(&self, name: &[u8]) -> Result<PathBuf, String> {
+    pub(crate) fn recording(&self, name: &[u8]) -> Result<PathBuf, Error> {
         if name.first() == Some(&b'/') {
             return Ok(path_of(name));
         }
@@ -88,7 +91,7 @@ impl Search {
     ///
     /// # Errors
     /// Nothing found, with the folders that were looked at.
-    pub(crate) fn library(&self, name: &[u8]) -> Result<PathBuf, String> {
+    pub(crate) fn library(&self, name: &[u8]) -> Result<PathBuf, Error> {
         let shown = String::from_utf8_lossy(name);
         let wanted = path_of(name);
         let folders: Vec<&PathBuf> = self.base_dir.iter().chain(&self.library_dirs).collect();
@@ -100,28 +103,30 @@ impl Search {
         for path in &candidates {
             if path.is_file() {
                 return std::path::absolute(path)
-                    .map_err(|error| format!("library '{shown}': {error}"));
+                    .map_err(|error| Error::Named(format!("library '{shown}': {error}")));
             }
         }
         if name.first() == Some(&b'/') {
-            return Err(format!("library '{shown}' does not exist"));
+            return Err(Error::Named(format!("library '{shown}' does not exist")));
         }
         let folders: Vec<String> = folders.iter().map(|folder| shown_folder(folder)).collect();
-        Err(format!(
+        Err(Error::Named(format!(
             "library '{shown}' was not found in {}",
             list(&folders)
-        ))
+        )))
     }
 
     /// A file inside one of the include folders, and which of the endings it has.
-    fn inside<'e>(&self, name: &[u8], endings: &[&'e str]) -> Result<(PathBuf, &'e str), String> {
+    fn inside<'e>(&self, name: &[u8], endings: &[&'e str]) -> Result<(PathBuf, &'e str), Error> {
         let shown = String::from_utf8_lossy(name);
         let wanted = path_of(name);
         let plain = wanted
             .components()
             .all(|part| matches!(part, Component::Normal(_)));
         if name.is_empty() || name.contains(&0) || !plain {
-            return Err(format!("'{shown}' leads outside the search path"));
+            return Err(Error::Named(format!(
+                "'{shown}' leads outside the search path"
+            )));
         }
         for folder in &self.include_dirs {
             for ending in endings {
@@ -132,9 +137,9 @@ impl Search {
                     continue;
                 };
                 if !real.starts_with(&root) {
-                    return Err(format!(
+                    return Err(Error::Named(format!(
                         "'{shown}' is a link that leads outside the search path"
-                    ));
+                    )));
                 }
                 if real.is_file() {
                     return Ok((real, ending));
@@ -146,7 +151,10 @@ impl Search {
             .iter()
             .map(|folder| shown_folder(folder))
             .collect();
-        Err(format!("'{shown}' was not found in {}", list(&folders)))
+        Err(Error::Named(format!(
+            "'{shown}' was not found in {}",
+            list(&folders)
+        )))
     }
 }
 
@@ -165,17 +173,16 @@ pub(crate) fn path_of(bytes: &[u8]) -> PathBuf {
 }
 
 /// Opens a regular file without waiting, whatever has taken its place since it was looked at.
-fn open_regular(path: &Path) -> Result<File, String> {
+fn open_regular(path: &Path) -> io::Result<File> {
     let flags = libc::O_NONBLOCK | libc::O_CLOEXEC | libc::O_NOCTTY;
     let file = OpenOptions::new()
         .read(true)
         .custom_flags(flags)
-        .open(path)
-        .map_err(|error| error.to_string())?;
-    match file.metadata() {
-        Ok(data) if data.is_file() => Ok(file),
-        Ok(_) => Err("not a regular file".into()),
-        Err(error) => Err(error.to_string()),
+        .open(path)?;
+    if file.metadata()?.is_file() {
+        Ok(file)
+    } else {
+        Err(io::Error::other("not a regular file"))
     }
 }
 
@@ -188,156 +195,4 @@ fn list(folders: &[String]) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use std::fs;
-    use std::os::unix::fs::symlink;
-
-    /// A folder of this test, removed with the value.
-    struct Folder(PathBuf);
-
-    impl Folder {
-        fn new(name: &str) -> Self {
-            let path =
-                std::env::temp_dir().join(format!("trikfs-search-{name}-{}", std::process::id()));
-            let _ = fs::remove_dir_all(&path);
-            fs::create_dir_all(path.join("inside")).unwrap();
-            Self(path)
-        }
-
-        fn search(&self) -> Search {
-            Search {
-                base_dir: Some(self.0.join("base")),
-                include_dirs: vec![self.0.join("nowhere"), self.0.join("inside")],
-                library_dirs: vec![self.0.join("inside")],
-            }
-        }
-    }
-
-    impl Drop for Folder {
-        fn drop(&mut self) {
-            let _ = fs::remove_dir_all(&self.0);
-        }
-    }
-
-    #[test]
-    fn a_file_is_found_with_or_without_its_ending() {
-        let folder = Folder::new("found");
-        fs::write(folder.0.join("inside/board.lua"), "x = 1").unwrap();
-        assert_eq!(
-            folder.search().include(b"board"),
-            Ok(("board.lua".to_owned(), b"x = 1".to_vec()))
-        );
-        assert_eq!(
-            folder.search().include(b"board.lua"),
-            Ok(("board.lua".to_owned(), b"x = 1".to_vec()))
-        );
-        let error = folder.search().include(b"bord").unwrap_err();
-        assert!(
-            error.starts_with("'bord' was not found in ") && error.ends_with("/inside"),
-            "{error}"
-        );
-    }
-
-    #[test]
-    fn nothing_outside_the_search_path_is_included() {
-        let folder = Folder::new("outside");
-        fs::write(folder.0.join("secret.lua"), "x = 1").unwrap();
-        symlink(
-            folder.0.join("secret.lua"),
-            folder.0.join("inside/link.lua"),
-        )
-        .unwrap();
-        fs::write(folder.0.join("inside/own.lua"), "x = 2").unwrap();
-        symlink("own.lua", folder.0.join("inside/alias.lua")).unwrap();
-        let refused = |name: &str| folder.search().include(name.as_bytes()).unwrap_err();
-        assert_eq!(
-            refused("../secret.lua"),
-            "'../secret.lua' leads outside the search path"
-        );
-        assert_eq!(
-            refused("x/../../secret"),
-            "'x/../../secret' leads outside the search path"
-        );
-        assert_eq!(
-            refused("/etc/passwd"),
-            "'/etc/passwd' leads outside the search path"
-        );
-        assert_eq!(refused("a\0b"), "'a\0b' leads outside the search path");
-        assert_eq!(refused(""), "'' leads outside the search path");
-        assert_eq!(refused("."), "'.' leads outside the search path");
-        assert_eq!(
-            refused("link"),
-            "'link' is a link that leads outside the search path"
-        );
-        assert_eq!(
-            folder.search().include(b"alias"),
-            Ok(("alias.lua".to_owned(), b"x = 2".to_vec()))
-        );
-        assert_eq!(
-            folder.search().recording(b"/tmp/run.rec"),
-            Ok("/tmp/run.rec".into())
-        );
-    }
-
-    #[test]
-    fn what_is_no_file_or_too_large_is_refused() {
-        let folder = Folder::new("kinds");
-        fs::create_dir(folder.0.join("inside/folder.lua")).unwrap();
-        nix::unistd::mkfifo(
-            &folder.0.join("inside/pipe.lua"),
-            nix::sys::stat::Mode::S_IRWXU,
-        )
-        .unwrap();
-        fs::write(
-            folder.0.join("inside/large.lua"),
-            vec![b' '; CONFIG_BYTES_MAX + 1],
-        )
-        .unwrap();
-        assert!(
-            folder
-                .search()
-                .include(b"folder")
-                .unwrap_err()
-                .starts_with("'folder' was not found in ")
-        );
-        assert!(
-            folder
-                .search()
-                .include(b"pipe")
-                .unwrap_err()
-                .starts_with("'pipe' was not found in ")
-        );
-        assert_eq!(
-            folder.search().include(b"large").unwrap_err(),
-            "'large' has more than 1048576 bytes"
-        );
-    }
-
-    #[test]
-    fn a_library_is_found_beside_the_file_and_then_in_the_library_folder() {
-        let folder = Folder::new("library");
-        fs::create_dir_all(folder.0.join("base")).unwrap();
-        fs::write(folder.0.join("inside/x.so"), "1").unwrap();
-        assert_eq!(
-            folder.search().library(b"x.so"),
-            Ok(folder.0.join("inside/x.so"))
-        );
-        fs::write(folder.0.join("base/x.so"), "2").unwrap();
-        assert_eq!(
-            folder.search().library(b"x.so"),
-            Ok(folder.0.join("base/x.so"))
-        );
-        assert_eq!(
-            folder.search().library(b"/nowhere/x.so"),
-            Err("library '/nowhere/x.so' does not exist".into())
-        );
-        assert!(
-            folder
-                .search()
-                .library(b"y.so")
-                .unwrap_err()
-                .starts_with("library 'y.so' was not found in ")
-        );
-    }
-}
+mod tests;

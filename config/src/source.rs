@@ -4,6 +4,9 @@
 //! its description, the word and the keys of its constructor, sizes, paths, delivery, and how it comes to rest.
 //! Opens nothing.
 
+// A kind of source that is forgotten must not be another one in silence.
+#![deny(clippy::wildcard_enum_match_arm)]
+
 mod absent;
 mod attribute;
 mod command;

@@ -2,12 +2,10 @@
 //!
 //! Owns the translation between Lua's chunk names and the names that users gave. Opens nothing.
 
+use crate::limits::CHUNK_NAME_BYTES_MAX;
 use crate::lines::{Lines, line_of};
 use crate::place::Place;
 use crate::problem::Problem;
-
-/// Longest chunk name that Lua does not shorten in messages (LUA_IDSIZE less the terminator).
-const CHUNK_BYTES_MAX: usize = 59;
 
 /// One file of a configuration.
 #[derive(Debug)]
@@ -32,9 +30,9 @@ impl Texts {
             .map(|c| if c.is_control() { '?' } else { c })
             .collect();
         let mut chunk = clean.clone();
-        if chunk.len() > CHUNK_BYTES_MAX {
+        if chunk.len() > CHUNK_NAME_BYTES_MAX {
             // The end of a path says more than its beginning.
-            let from = chunk.len() - CHUNK_BYTES_MAX + 3;
+            let from = chunk.len() - CHUNK_NAME_BYTES_MAX + 3;
             let from = (from..chunk.len())
                 .find(|i| chunk.is_char_boundary(*i))
                 .unwrap_or(0);
@@ -187,7 +185,7 @@ mod tests {
         );
         let chunk = texts.add(&name, b"");
         assert!(
-            chunk.len() <= CHUNK_BYTES_MAX + 1 && chunk.ends_with("/robot.lua"),
+            chunk.len() <= CHUNK_NAME_BYTES_MAX + 1 && chunk.ends_with("/robot.lua"),
             "{chunk}"
         );
         assert_eq!(

@@ -10,7 +10,7 @@
 //! running call with the one that the watchdog saw and only then arms a hook on every instruction, which raises an
 //! error. The hook stays armed until the outermost call has returned, so a loop around `pcall` cannot swallow it.
 //! The signal is repeated each tick, because it may have arrived while LuaJIT was rewriting its own dispatch table.
-//! Hooks do not run inside the message handler of `xpcall` for an error that a hook raised: whoever uses this must not
+//! Hooks do not run inside the message handler of `xpcall` for an error that a hook raised: a caller must not
 //! give Lua code the real `xpcall`.
 //! Compiled loops look at the hook only if LuaJIT was built with LUAJIT_ENABLE_CHECKHOOK; a test of this file checks it.
 

@@ -21,7 +21,8 @@ pub use instance::Instance;
 pub use validate::fuzz_library;
 pub(crate) use validate::is_name_byte;
 
-use crate::{Conversion, Fault, OpenInfo, limits};
+use crate::error::{Error, LibraryFault, Part, Side};
+use crate::{Conversion, OpenInfo, limits};
 use std::ffi::{c_char, c_int, c_void};
 use validate::{ConverterFields, Header};
 
@@ -157,23 +158,23 @@ impl Descriptor {
     /// Checks the tuple sizes of a configuration against those that the converter insists on, without calling it.
     ///
     /// # Errors
-    /// A text that names the converter, what it wants and what it would get.
-    pub fn check_sizes(&self, input_size: usize, output_size: usize) -> Result<(), String> {
-        let name = &self.name;
-        for (way, wanted, given) in [
-            ("input", self.input_size, input_size),
-            ("output", self.output_size, output_size),
+    /// [`Error::Size`].
+    pub fn check_sizes(&self, input_size: usize, output_size: usize) -> Result<(), Error> {
+        for (side, wanted, given) in [
+            (Side::Input, self.input_size, input_size),
+            (Side::Output, self.output_size, output_size),
         ] {
+            let refused = |wanted| Error::Size {
+                converter: self.name.clone(),
+                side,
+                wanted,
+                given,
+            };
             if given == 0 || given > limits::TUPLE_BYTES_MAX {
-                return Err(format!(
-                    "converter '{name}': {way} tuples of {given} bytes, the limit is 1 to {}",
-                    limits::TUPLE_BYTES_MAX
-                ));
+                return Err(refused(None));
             }
             if wanted != 0 && wanted as usize != given {
-                return Err(format!(
-                    "converter '{name}': {way} tuples must have {wanted} bytes, not {given}"
-                ));
+                return Err(refused(Some(wanted)));
             }
         }
         Ok(())
@@ -183,27 +184,27 @@ impl Descriptor {
     ///
     /// # Errors
     /// Sizes that [`Descriptor::check_sizes`] refuses, names that C cannot hold, or the converter's own refusal.
-    pub fn open(&self, info: &OpenInfo<'_>) -> Result<Instance, Fault> {
+    pub fn open(&self, info: &OpenInfo<'_>) -> Result<Instance, Error> {
         self.check_sizes(info.input_size, info.output_size)?;
-        Instance::open(self, info)
+        Ok(Instance::open(self, info)?)
     }
 }
 
 /// Checks what a library's entry returned and copies every descriptor out of it.
 ///
 /// # Errors
-/// A text that says what is wrong with the library; it does not name the library.
+/// What is wrong with the library.
 ///
 /// # Safety
 /// `library` is null or the value that the entry of a loaded library returned, and that library is never unloaded.
 /// Every field is checked, but no check can tell a wild pointer from a good one: a library is trusted code.
-pub unsafe fn read_library(library: *const RawLibrary) -> Result<Vec<Descriptor>, String> {
+pub unsafe fn read_library(library: *const RawLibrary) -> Result<Vec<Descriptor>, LibraryFault> {
     if library.is_null() || !library.is_aligned() {
-        return Err("the entry of the library returned no library".to_owned());
+        return Err(LibraryFault::Nothing);
     }
     // SAFETY: the caller vouches for the pointer; only the two fields that every version begins with are read.
     let header = unsafe { read_header(library.cast()) };
-    header.check("library", size_of::<RawLibrary>())?;
+    header.check(Part::Library, size_of::<RawLibrary>())?;
     // SAFETY: `Header::check` saw that the library's struct is at least as long as ours.
     let raw = unsafe { library.read() };
     validate::check_count(
@@ -225,7 +226,7 @@ pub unsafe fn read_library(library: *const RawLibrary) -> Result<Vec<Descriptor>
 ///
 /// # Errors
 /// As [`read_library`], though a library made by the macro has no reason to fail.
-pub fn descriptors(library: &'static RawLibrary) -> Result<Vec<Descriptor>, String> {
+pub fn descriptors(library: &'static RawLibrary) -> Result<Vec<Descriptor>, LibraryFault> {
     // SAFETY: the fields are private, so `export::library` made the value, from 'static parts.
     unsafe { read_library(library) }
 }
@@ -237,14 +238,14 @@ pub fn descriptors(library: &'static RawLibrary) -> Result<Vec<Descriptor>, Stri
 unsafe fn read_converter(
     index: usize,
     converter: *const RawConverter,
-) -> Result<Descriptor, String> {
-    let what = format!("converter {index} of the library");
+) -> Result<Descriptor, LibraryFault> {
+    let part = Part::Converter(index);
     if converter.is_null() || !converter.is_aligned() {
-        return Err(format!("{what} is missing"));
+        return Err(LibraryFault::Missing(index));
     }
     // SAFETY: the caller vouches for the pointer; only the two fields that every version begins with are read.
     let header = unsafe { read_header(converter.cast()) };
-    header.check(&what, size_of::<RawConverter>())?;
+    header.check(part, size_of::<RawConverter>())?;
     // SAFETY: `Header::check` saw that the struct is at least as long as ours.
     let raw = unsafe { converter.read() };
     // SAFETY: texts of a descriptor end with a zero byte, says the header; no more than the limit is looked at.
@@ -257,10 +258,10 @@ unsafe fn read_converter(
         output_size: raw.output_size,
         has_convert: raw.convert.is_some(),
     };
-    let name = fields.check(&what)?;
-    let convert = raw
-        .convert
-        .ok_or_else(|| format!("{what} has no convert function"))?;
+    let name = fields.check(part)?;
+    let Some(convert) = raw.convert else {
+        return Err(LibraryFault::NoConvert(name));
+    };
     Ok(Descriptor {
         name,
         description: one_line(description.as_deref().unwrap_or_default()),

@@ -9,6 +9,7 @@
 //! To load one: `abi.rs` begins with the steps.
 
 pub mod abi;
+pub mod error;
 pub mod export;
 pub mod limits;
 pub mod trial;

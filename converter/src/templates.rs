@@ -51,7 +51,7 @@ pub(crate) fn build_c(folder: &str, name: &str) -> PathBuf {
 pub(crate) fn build_rust() -> PathBuf {
     let target = build_directory("rust");
     let manifest = crate_root().join("templates/rust/Cargo.toml");
-    // In a copy, with this crate in the place of the one that `trikfs new-converter` writes beside it.
+    // In a copy, with this crate instead of the one that `trikfs new-converter` writes beside it.
     let copy = target.join("project");
     fs::create_dir_all(copy.join("src")).unwrap();
     let text = fs::read_to_string(manifest).unwrap();

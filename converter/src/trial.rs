@@ -3,24 +3,25 @@
 //! Owns the bytes that are tried and the comparisons. Knows no language and no file: it is given a function that opens
 //! the converter, so that one in Lua, one in C and one in Rust are judged alike.
 
+use crate::error::{Error, TrialFault};
 use crate::limits::{TRIAL_REASONS_MAX, TRIAL_TUPLES_MAX};
 use crate::vectors::{Expected, Vectors};
-use crate::{Conversion, Converter, Direction, OpenInfo};
+use crate::{Conversion, Converter, Direction, Fault, OpenInfo};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// One opened converter: input and output of the sizes of the opening; a fault is its text.
-pub type Opened = Box<dyn FnMut(&[u8], &mut [u8]) -> Result<Conversion, String>>;
+/// One opened converter: input and output of the sizes of the opening.
+pub type Opened = Box<dyn FnMut(&[u8], &mut [u8]) -> Result<Conversion, Fault>>;
 
 /// Opens a new converter, or says why it refuses.
-pub type Open<'a> = dyn FnMut() -> Result<Opened, String> + 'a;
+pub type Open<'a> = dyn FnMut() -> Result<Opened, Fault> + 'a;
 
 /// What opens a converter in Rust, for the other functions of this module.
 pub fn opener<C: Converter + 'static>(
     input_size: usize,
     output_size: usize,
     params: &BTreeMap<String, f64>,
-) -> impl FnMut() -> Result<Opened, String> {
+) -> impl FnMut() -> Result<Opened, Fault> {
     let params = params.clone();
     move || {
         let info = OpenInfo {
@@ -31,11 +32,9 @@ pub fn opener<C: Converter + 'static>(
             params: &params,
             log: &|text| println!("{text}"),
         };
-        let mut converter = C::open(&info).map_err(|fault| fault.to_string())?;
+        let mut converter = C::open(&info)?;
         Ok(Box::new(move |input: &[u8], output: &mut [u8]| {
-            converter
-                .convert(input, output)
-                .map_err(|fault| fault.to_string())
+            converter.convert(input, output)
         }))
     }
 }
@@ -54,7 +53,7 @@ impl Outcome {
         match opened(input, output) {
             Ok(Conversion::Produced) => Self::Output(output.to_vec()),
             Ok(Conversion::Consumed) => Self::Consumed,
-            Err(text) => Self::Fault(text),
+            Err(fault) => Self::Fault(fault.to_string()),
         }
     }
 
@@ -91,8 +90,8 @@ pub fn hex(bytes: &[u8]) -> String {
 /// Opens the converter and gives it all vectors in order. Returns how many there were.
 ///
 /// # Errors
-/// `line N: ...` for the first vector that is not met, or why it cannot be opened.
-pub fn check_vectors(vectors: &Vectors, open: &mut Open<'_>) -> Result<usize, String> {
+/// The first vector that is not met, or why it cannot be opened.
+pub fn check_vectors(vectors: &Vectors, open: &mut Open<'_>) -> Result<usize, Error> {
     let mut opened = open()?;
     let mut output = vec![0; vectors.output_size];
     for step in &vectors.steps {
@@ -108,12 +107,12 @@ pub fn check_vectors(vectors: &Vectors, open: &mut Open<'_>) -> Result<usize, St
             _ => false,
         };
         if !is_met {
-            return Err(format!(
-                "line {}: {} gives {}, not {expected}",
-                step.line,
-                hex(&step.input),
-                outcome.show()
-            ));
+            return Err(Error::Unmet {
+                line: step.line,
+                input: hex(&step.input),
+                got: outcome.show(),
+                expected,
+            });
         }
     }
     Ok(vectors.steps.len())
@@ -132,7 +131,7 @@ pub struct Trial<'a> {
     /// Recorded tuples, one after the other; some are tried as they are and with a few bits changed. May be empty.
     pub recorded: &'a [u8],
     /// What an output must be, for example that its floats are finite; see [`finite_f32`].
-    pub check: &'a dyn Fn(&[u8]) -> Result<(), String>,
+    pub check: &'a dyn Fn(&[u8]) -> Result<(), Fault>,
 }
 
 /// What became of the tuples.
@@ -161,29 +160,37 @@ const GUARD_BYTE: u8 = 0xa5;
 /// # Errors
 /// What was not true, of which tuple, and the seed; also a converter that refused every tuple, because then nothing was
 /// tried.
-pub fn check_properties(trial: &Trial<'_>, open: &mut Open<'_>) -> Result<Report, String> {
-    let seed = trial.seed;
+pub fn check_properties(trial: &Trial<'_>, open: &mut Open<'_>) -> Result<Report, Error> {
+    let failed = |why| Error::Trial {
+        seed: trial.seed,
+        why,
+    };
     let tuples = trial.tuples.clamp(1, TRIAL_TUPLES_MAX);
     let mut report = Report::default();
     let mut digests = Vec::with_capacity(tuples);
     let mut output = vec![GUARD_BYTE; trial.output_size + 2 * GUARD];
-    let (mut first, mut bytes) = (open()?, Bytes::new(trial, seed));
+    let (mut first, mut bytes) = (open()?, Bytes::new(trial, trial.seed));
     for number in 1..=tuples {
         let input = bytes.next_tuple();
-        let place = || format!("seed {seed}, tuple {number} ({})", hex(&input));
         let inner = &mut output[GUARD..GUARD + trial.output_size];
         let outcome = Outcome::of(&mut first, &input, inner);
         let (before, rest) = output.split_at(GUARD);
         let behind = &rest[trial.output_size..];
         if before.iter().chain(behind).any(|&byte| byte != GUARD_BYTE) {
-            return Err(format!("{}: wrote outside its output", place()));
+            return Err(failed(TrialFault::WroteOutside(number, hex(&input))));
         }
         digests.push(outcome.digest());
         match outcome {
             Outcome::Output(bytes) => {
                 report.produced += 1;
-                (trial.check)(&bytes)
-                    .map_err(|reason| format!("{} gives {}: {reason}", place(), hex(&bytes)))?;
+                (trial.check)(&bytes).map_err(|why| {
+                    failed(TrialFault::BadOutput {
+                        tuple: number,
+                        input: hex(&input),
+                        output: hex(&bytes),
+                        why,
+                    })
+                })?;
             }
             Outcome::Consumed => report.consumed += 1,
             Outcome::Fault(text) => report.count(text),
@@ -191,10 +198,9 @@ pub fn check_properties(trial: &Trial<'_>, open: &mut Open<'_>) -> Result<Report
     }
     repeat(trial, open, &digests)?;
     if report.produced + report.consumed == 0 {
-        let reason = report.faults.keys().next().map_or("", String::as_str);
-        return Err(format!(
-            "seed {seed}: all {tuples} tuples were refused, so nothing was tried: {reason}"
-        ));
+        let reason = report.faults.keys().next().cloned();
+        let reason = reason.unwrap_or_default();
+        return Err(failed(TrialFault::NothingTried(tuples, reason)));
     }
     Ok(report)
 }
@@ -212,7 +218,7 @@ impl Report {
 }
 
 /// The same tuples to a fresh opening, with another one beside it that gets different tuples.
-fn repeat(trial: &Trial<'_>, open: &mut Open<'_>, digests: &[u64]) -> Result<(), String> {
+fn repeat(trial: &Trial<'_>, open: &mut Open<'_>, digests: &[u64]) -> Result<(), Error> {
     let seed = trial.seed;
     let mut output = vec![0; trial.output_size];
     let (mut again, mut same) = (open()?, Bytes::new(trial, seed));
@@ -222,13 +228,12 @@ fn repeat(trial: &Trial<'_>, open: &mut Open<'_>, digests: &[u64]) -> Result<(),
         let input = same.next_tuple();
         let outcome = Outcome::of(&mut again, &input, &mut output);
         if outcome.digest() != digest {
-            return Err(format!(
-                "seed {seed}, tuple {} ({}): opened again it gives something else than the first time: {}; \
-                 is a state shared by all openings, or never set?",
-                index + 1,
-                hex(&input),
-                outcome.show()
-            ));
+            let why = TrialFault::NotRepeated {
+                tuple: index + 1,
+                input: hex(&input),
+                got: outcome.show(),
+            };
+            return Err(Error::Trial { seed, why });
         }
     }
     Ok(())
@@ -238,12 +243,12 @@ fn repeat(trial: &Trial<'_>, open: &mut Open<'_>, digests: &[u64]) -> Result<(),
 ///
 /// # Errors
 /// Which number is not, and what it is.
-pub fn finite_f32(output: &[u8]) -> Result<(), String> {
+pub fn finite_f32(output: &[u8]) -> Result<(), Fault> {
     let (numbers, _) = output.as_chunks::<4>();
     for (index, &bytes) in numbers.iter().enumerate() {
         let number = f32::from_le_bytes(bytes);
         if !number.is_finite() {
-            return Err(format!("number {index} is {number}"));
+            return Err(Fault::new(format!("number {index} is {number}")));
         }
     }
     Ok(())

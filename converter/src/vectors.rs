@@ -12,6 +12,7 @@
 //! ```
 //! Bytes are hexadecimal. `params` may be empty or left out. Knows nothing of files; it is given the text.
 
+use crate::error::{Error, VectorsFault};
 use crate::limits::{TUPLE_BYTES_MAX, VECTORS_BYTES_MAX};
 use std::collections::BTreeMap;
 
@@ -53,30 +54,30 @@ pub enum Expected {
 /// Parses a file of vectors.
 ///
 /// # Errors
-/// `line N: reason` for the first line that is none.
-pub fn parse(text: &str) -> Result<Vectors, String> {
+/// [`Error::Vectors`] for the first line that is none.
+pub fn parse(text: &str) -> Result<Vectors, Error> {
+    let refused = |line, why| Error::Vectors { line, why };
     if text.len() > VECTORS_BYTES_MAX {
-        return Err(format!("line 0: more than {VECTORS_BYTES_MAX} bytes"));
+        return Err(refused(0, VectorsFault::TooLong));
     }
     let mut vectors = Vectors::default();
     for (index, line) in text.lines().enumerate() {
-        parse_line(&mut vectors, index + 1, line.trim())
-            .map_err(|reason| format!("line {}: {reason}", index + 1))?;
+        parse_line(&mut vectors, index + 1, line.trim()).map_err(|why| refused(index + 1, why))?;
     }
     if vectors.steps.is_empty() {
-        return Err("line 0: no vectors".to_owned());
+        return Err(refused(0, VectorsFault::None));
     }
     Ok(vectors)
 }
 
 /// Parses one line into `vectors`.
-fn parse_line(vectors: &mut Vectors, number: usize, line: &str) -> Result<(), String> {
+fn parse_line(vectors: &mut Vectors, number: usize, line: &str) -> Result<(), VectorsFault> {
     if line.is_empty() || line.starts_with('#') {
         return Ok(());
     }
     if let Some((input, expected)) = line.split_once('>') {
         if vectors.input_size == 0 {
-            return Err("the size must stand before the first vector".to_owned());
+            return Err(VectorsFault::NoSize);
         }
         let expected = match expected.trim() {
             "consumed" => Expected::Consumed,
@@ -97,10 +98,10 @@ fn parse_line(vectors: &mut Vectors, number: usize, line: &str) -> Result<(), St
             for word in words {
                 let (name, value) = word
                     .split_once('=')
-                    .ok_or_else(|| format!("'{word}' is not name=number"))?;
+                    .ok_or_else(|| VectorsFault::NotAParam(word.to_owned()))?;
                 let value = value
                     .parse()
-                    .map_err(|_| format!("'{value}' is not a number"))?;
+                    .map_err(|_| VectorsFault::NotANumber(value.to_owned()))?;
                 vectors.params.insert(name.to_owned(), value);
             }
         }
@@ -109,33 +110,33 @@ fn parse_line(vectors: &mut Vectors, number: usize, line: &str) -> Result<(), St
                 words
                     .next()
                     .and_then(|word| word.parse().ok())
-                    .ok_or("a size is a number of bytes")
+                    .ok_or(VectorsFault::NotASize)
             };
             let sizes = (size()?, size()?);
             if [sizes.0, sizes.1]
                 .iter()
                 .any(|size| !(1..=TUPLE_BYTES_MAX).contains(size))
             {
-                return Err(format!("a tuple has 1 to {TUPLE_BYTES_MAX} bytes"));
+                return Err(VectorsFault::SizeRange);
             }
             if !vectors.steps.is_empty() {
-                return Err("the size stands before the first vector".to_owned());
+                return Err(VectorsFault::LateSize);
             }
             (vectors.input_size, vectors.output_size) = sizes;
         }
-        _ => return Err("neither params, size nor a vector".to_owned()),
+        _ => return Err(VectorsFault::Unknown),
     }
     Ok(())
 }
 
 /// Decodes a hexadecimal tuple of the given size.
-fn sized(hex: &str, size: usize) -> Result<Vec<u8>, String> {
+fn sized(hex: &str, size: usize) -> Result<Vec<u8>, VectorsFault> {
     let digits: Option<Vec<u8>> = hex
         .chars()
         .map(|c| c.to_digit(16).map(|digit| digit as u8))
         .collect();
     let digits = digits.filter(|digits| digits.len() == 2 * size);
-    let digits = digits.ok_or_else(|| format!("'{hex}' is not {size} bytes in hexadecimal"))?;
+    let digits = digits.ok_or_else(|| VectorsFault::NotHex(hex.to_owned(), size))?;
     Ok(digits
         .chunks_exact(2)
         .map(|pair| pair[0] << 4 | pair[1])
@@ -171,7 +172,7 @@ mod tests {
 
     #[test]
     fn a_line_that_is_no_vector_is_named() {
-        let refused = |text| parse(text).unwrap_err();
+        let refused = |text| parse(text).unwrap_err().to_string();
         assert_eq!(
             refused("size 1 1\n0g > 00"),
             "line 2: '0g' is not 1 bytes in hexadecimal"

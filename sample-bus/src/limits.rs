@@ -20,3 +20,5 @@ pub const ATTEMPTS: usize = 8;
 pub const DIRECTORY_ATTEMPTS: usize = 16;
 /// Pause between two of them: who cleans up has a directory for a moment only.
 pub const DIRECTORY_PAUSE: Duration = Duration::from_millis(2);
+/// Bytes of the longest name of a file, as in the kernel.
+pub const NAME_BYTES_MAX: usize = 255;

@@ -16,8 +16,6 @@ use std::path::{Path, PathBuf};
 pub const SHARED_MEMORY: &str = "/dev/shm";
 /// What the names of all directories begin with.
 const PREFIX: &str = "trikfs";
-/// Longest name of a file.
-const NAME_BYTES_MAX: usize = 255;
 
 /// The directory of the tree at a mount point, which is absolute and without links: `/mnt/robot` is
 /// `trikfs+mnt+robot`.
@@ -47,7 +45,7 @@ pub fn file_name(node: &str) -> io::Result<String> {
 }
 
 fn fitting(name: String) -> io::Result<String> {
-    if name.len() > NAME_BYTES_MAX {
+    if name.len() > limits::NAME_BYTES_MAX {
         return Err(io::Error::new(
             io::ErrorKind::InvalidInput,
             format!(

@@ -38,7 +38,7 @@ pub(crate) trait Memory {
 pub(crate) fn write(memory: &impl Memory, layout: &Layout, event: Event, tuple: &[u8]) {
     let slot = layout.slot_at(event.sequence);
     memory.set(slot + layout::AT_BEGIN, event.sequence);
-    // Whoever sees a byte of what follows also sees that it has begun.
+    // A reader that sees a byte of what follows also sees that it has begun.
     memory.fence(Ordering::Release);
     let size = u32::try_from(tuple.len()).unwrap_or(0);
     let mut head = [0; 16];
@@ -47,7 +47,7 @@ pub(crate) fn write(memory: &impl Memory, layout: &Layout, event: Event, tuple: 
     head[8..].copy_from_slice(&event.time_ns.to_ne_bytes());
     memory.copy_in(slot + layout::AT_SIZE, &head);
     memory.copy_in(slot + layout::SLOT_HEADER_BYTES, tuple);
-    // Whoever sees the end also sees what came before.
+    // A reader that sees the end also sees what came before.
     memory.fence(Ordering::Release);
     memory.set(slot + layout::AT_END, event.sequence);
     memory.set(layout::AT_NEWEST, event.sequence);

@@ -1,7 +1,9 @@
 //! Colours and their names.
 //!
-//! Owns the names that programs of TRIK robots use. Their values are those of the web's colours, because the robot's own
-//! runtime asks Qt for them by name; `darkYellow`, which the web does not have, is that of Qt.
+//! Owns what a colour is and how a text says it. `names` has the names: those of Qt, because the robot's own runtime asks
+//! Qt for them.
+
+mod names;
 
 use crate::fault::Fault;
 use embedded_graphics::pixelcolor::{Rgb888, RgbColor};
@@ -21,37 +23,6 @@ pub struct Colour {
 pub const BLACK: Colour = colour(0, 0, 0);
 /// The background of a drawing whose program names none.
 pub const WHITE: Colour = colour(255, 255, 255);
-
-/// Names in lower case.
-const NAMES: [(&str, u32); 27] = [
-    ("white", 0xff_ff_ff),
-    ("black", 0),
-    ("red", 0xff_00_00),
-    ("darkred", 0x8b_00_00),
-    ("green", 0x00_80_00),
-    ("darkgreen", 0x00_64_00),
-    ("blue", 0x00_00_ff),
-    ("darkblue", 0x00_00_8b),
-    ("cyan", 0x00_ff_ff),
-    ("darkcyan", 0x00_8b_8b),
-    ("magenta", 0xff_00_ff),
-    ("darkmagenta", 0x8b_00_8b),
-    ("yellow", 0xff_ff_00),
-    ("darkyellow", 0x80_80_00),
-    ("gray", 0x80_80_80),
-    ("darkgray", 0xa9_a9_a9),
-    ("lightgray", 0xd3_d3_d3),
-    ("grey", 0x80_80_80),
-    ("orange", 0xff_a5_00),
-    ("brown", 0xa5_2a_2a),
-    ("pink", 0xff_c0_cb),
-    ("purple", 0x80_00_80),
-    ("violet", 0xee_82_ee),
-    ("navy", 0x00_00_80),
-    ("lime", 0x00_ff_00),
-    ("olive", 0x80_80_00),
-    ("silver", 0xc0_c0_c0),
-];
 
 /// A colour from its parts.
 pub const fn colour(red: u8, green: u8, blue: u8) -> Colour {
@@ -79,14 +50,9 @@ impl Colour {
         if let Some(number) = wanted.strip_prefix('#').and_then(hexadecimal) {
             return Ok(Self::from_number(number));
         }
-        let known = NAMES.iter().find(|(name, _)| *name == wanted);
-        known.map_or_else(
-            || {
-                let names: Vec<_> = NAMES.iter().map(|(name, _)| *name).collect();
-                Err(Fault::Colour(name.to_owned(), names.join(", ")))
-            },
-            |(_, number)| Ok(Self::from_number(*number)),
-        )
+        names::number(&wanted)
+            .map(Self::from_number)
+            .ok_or_else(|| Fault::Colour(name.to_owned(), names::USUAL))
     }
 
     /// As the display has it: 5 bits red, 6 green, 5 blue.

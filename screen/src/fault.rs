@@ -12,14 +12,14 @@ pub enum Fault {
     LongOrder,
     /// A word that is no order, and the orders.
     Order(String, &'static str),
-    /// A word in the place of one of the numbers that an order has first: the order, how many numbers, the word.
+    /// A word instead of one of the numbers that an order has first: the order, how many numbers, the word.
     Number(String, usize, String),
     /// Words after all numbers of an order: the order, how many numbers, the words.
     MoreWords(String, usize, String),
     /// More texts than [`limits::LABELS_MAX`].
     Labels,
-    /// A name of no colour, and the names.
-    Colour(String, String),
+    /// A name of no colour, and the usual names.
+    Colour(String, &'static str),
     /// A file that is no picture.
     NoPicture,
     /// A JPEG file that is damaged, in the words of its reader.

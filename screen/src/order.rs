@@ -14,7 +14,7 @@
 //! | `redraw` | shows what was drawn |
 //! | `clear`, `hide` | the display is empty |
 
-use crate::colour::{BLACK, Colour, colour};
+use crate::colour::{BLACK, Colour, WHITE, colour};
 use crate::drawing::{Drawing, Outline};
 use crate::fault::Fault;
 use crate::limits;
@@ -57,6 +57,10 @@ fn all<const N: usize>(verb: &str, words: &str) -> Result<[i32; N], Fault> {
     }
 }
 
+fn is_transparent(name: &str) -> bool {
+    name.trim().eq_ignore_ascii_case("transparent")
+}
+
 impl Drawing {
     /// Does what one line says.
     ///
@@ -88,13 +92,20 @@ impl Drawing {
                 let height = u16::try_from(height).ok().filter(|height| *height > 0);
                 self.add_label(&text.replace("\\n", "\n"), x, y, height)?;
             }
+            // A drawing lies on its background alone, so that is what is seen through it.
+            "color" if is_transparent(words) => self.set_pen(self.background()),
             "color" => self.set_pen(Colour::named(words)?),
             "width" => {
                 let [width] = all(verb, words)?;
                 self.set_pen_width(width);
             }
             "background" => {
-                self.set_background(Colour::named(words)?);
+                let colour = if is_transparent(words) {
+                    WHITE
+                } else {
+                    Colour::named(words)?
+                };
+                self.set_background(colour);
                 return Ok(Effect::Show);
             }
             "removelabels" => {

@@ -9,8 +9,10 @@
 mod brick;
 mod dynamics;
 pub mod floor;
+pub mod graphic;
 pub mod outline;
 pub(crate) mod ranges;
+mod readings;
 mod robot;
 pub mod screen;
 pub mod solids;
@@ -19,6 +21,7 @@ mod timeline;
 pub use brick::Handle;
 pub use floor::Floor;
 pub use outline::{Bounds, Outline};
+pub use readings::Readings;
 pub use robot::{Dice, Gamepad, Marker, Pad, Robot};
 pub use solids::Solids;
 pub use timeline::Timeline;
@@ -27,6 +30,7 @@ use std::collections::VecDeque;
 
 use self::dynamics::Dynamics;
 
+use lang_diagram::brick::Brick as _;
 use lang_diagram::devices;
 use lang_diagram::machine::STEP_MS;
 use lang_diagram::ports::Port;
@@ -47,6 +51,11 @@ pub struct Setup {
     pub others: Vec<field::Robot>,
     /// What a person answers when a program asks, in order.
     pub answers: VecDeque<String>,
+    /// Whether people watch it. Then things that robots push are where they were pushed to; without it sensors and rules
+    /// see them where they stood, as in the original's background mode.
+    pub is_watched: bool,
+    /// Whether markers leave nothing: the original draws what they leave with its window, and without one there is none.
+    pub is_unmarked: bool,
 }
 
 impl Setup {
@@ -69,6 +78,19 @@ impl Setup {
     }
 }
 
+/// What of a robot's devices was changed from outside its program.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Change {
+    /// The colour of the light.
+    Led,
+    /// What the shell said.
+    Phrase,
+    /// The marker.
+    Marker,
+    /// The colour behind the display.
+    Background,
+}
+
 /// A field on which robots drive.
 #[derive(Debug)]
 pub struct Arena {
@@ -78,6 +100,12 @@ pub struct Arena {
     solids: Solids,
     robots: Vec<Robot>,
     answers: VecDeque<String>,
+    is_watched: bool,
+    is_unmarked: bool,
+    /// What rules have changed of things as they are drawn.
+    pub graphics: graphic::Graphics,
+    /// What rules have told robots since somebody asked.
+    changes: Vec<(usize, Change)>,
     /// Laid when somebody looks at it or leaves something on it.
     floor: Option<Box<Floor>>,
     /// In place of ideal physics, made at the first tick.
@@ -94,6 +122,8 @@ impl Arena {
         let mut first = field.robot().cloned().unwrap_or_else(|| field::Robot {
             // Another kit's robot: only where it stands is ours.
             sensors: Vec::new(),
+            left: field::Robot::default().left,
+            right: field::Robot::default().right,
             ..field.robots.first().cloned().unwrap_or_default()
         });
         for &(port, kind) in &setup.sensors {
@@ -114,6 +144,10 @@ impl Arena {
             now: 0,
             robots,
             answers: setup.answers,
+            is_watched: setup.is_watched,
+            is_unmarked: setup.is_unmarked,
+            graphics: graphic::Graphics::default(),
+            changes: Vec::new(),
             floor: None,
             dynamics: None,
             window: floor::Window::default(),
@@ -127,17 +161,18 @@ impl Arena {
         if self.field.settings.realistic_physics {
             let made = || Box::new(Dynamics::new(&self.field, &self.robots));
             let dynamics = self.dynamics.get_or_insert_with(made);
-            let solids = &mut self.solids;
-            dynamics.tick(&mut self.robots, &mut self.field, |index, solid| {
-                solids.moved(index, solid);
-            });
+            dynamics.tick(&mut self.robots);
+            if self.is_watched {
+                let solids = &mut self.solids;
+                dynamics.read_back(&mut self.field, |index, solid| solids.moved(index, solid));
+            }
         } else {
             self.ideal();
         }
         for robot in &mut self.robots {
             let begin = robot.centre();
             robot.advance(&self.field.settings);
-            if robot.marker.is_down && robot.centre() != begin {
+            if robot.marker.is_down && robot.centre() != begin && !self.is_unmarked {
                 let rgb = screen::named(&robot.marker.colour);
                 let stroke = floor::Stroke {
                     begin,
@@ -161,9 +196,33 @@ impl Arena {
                     turn: -turn,
                 }
             } else {
-                motion(robot.chosen, robot.pose.degrees)
+                motion(&robot.rolling, robot.chosen, robot.pose.degrees)
             };
         }
+    }
+
+    /// Reads sensors that rules have asked for and nobody else has read, every 20 ms and after the step of the program.
+    pub fn renew(&mut self) {
+        if self.now == 0 || !self.now.is_multiple_of(readings::RENEWAL_MS) {
+            return;
+        }
+        for index in 0..self.robots.len() {
+            for port in self.robots[index].readings.due(self.now) {
+                self.robot(index).scalar(port);
+            }
+        }
+    }
+
+    /// A rule has told a robot something that records have.
+    pub fn note(&mut self, robot: usize, change: Change) {
+        if self.changes.len() < limits::RECORDS {
+            self.changes.push((robot, change));
+        }
+    }
+
+    /// What rules have told robots since the last call.
+    pub fn take_changes(&mut self) -> Vec<(usize, Change)> {
+        std::mem::take(&mut self.changes)
     }
 
     /// Milliseconds since the beginning.

@@ -1,4 +1,4 @@
-//! Plain files in the place of sysfs attributes, and the news when one is written.
+//! Plain files instead of sysfs attributes, and the news when one is written.
 //!
 //! Owns files, their watches (inotify) and the reading of short texts; what a text means is for others.
 //! A file is no attribute: it keeps what was there behind a shorter text, so only the first line counts, and a writer

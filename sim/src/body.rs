@@ -11,7 +11,9 @@ pub mod studio;
 pub mod two_wheels;
 
 use crate::geometry::Pose;
+use crate::limits;
 use crate::world::Colour;
+use std::fmt;
 
 /// What one power motor gets.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,6 +67,52 @@ pub struct Senses {
     pub bumps: u32,
 }
 
+/// Why an order to the world is not done.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum BadOrder {
+    /// The world takes none: the person who started it chose this one.
+    NoOrders,
+    /// The words are no order.
+    Unknown(String),
+    /// A count of ticks that cannot be.
+    Ticks,
+    /// A speed that cannot be.
+    Speed(String),
+    /// The author of the project locks its world.
+    Locked,
+    /// A file of a world that cannot be read, and what the system says.
+    Unread(String, String),
+    /// A file that is no world, and the first thing that is wrong in it.
+    Field(String, String),
+}
+
+impl fmt::Display for BadOrder {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        const ORDERS: &str = "pause, go, step, step NUMBER, speed NUMBER or field FILE";
+        match self {
+            Self::NoOrders => {
+                out.write_str("this world takes no orders; one of `trik up --world` does")
+            }
+            Self::Unknown(words) => write!(out, "'{words}' is no order: there are {ORDERS}"),
+            Self::Ticks => {
+                write!(
+                    out,
+                    "step takes 1 to {} ticks of 10 ms",
+                    limits::STEPS_ORDERED
+                )
+            }
+            Self::Speed(word) => {
+                let (least, most) = (limits::MIN_SPEED, limits::MAX_SPEED);
+                write!(out, "speed takes {least} to {most}, not '{word}'")
+            }
+            Self::Locked => out.write_str("the project of this world locks it: its walls stay"),
+            Self::Unread(file, why) | Self::Field(file, why) => write!(out, "{file}: {why}"),
+        }
+    }
+}
+
+impl std::error::Error for BadOrder {}
+
 /// A robot in its world.
 pub trait Body: Send {
     /// Time goes on; `dt_s` is at most [`crate::limits::STEP_S`].
@@ -92,8 +140,8 @@ pub trait Body: Send {
     ///
     /// # Errors
     /// What is wrong with the words, for this person.
-    fn order(&mut self, _words: &str) -> Result<(), String> {
-        Err("this world takes no orders; one of `trik up --world` does".to_owned())
+    fn order(&mut self, _words: &str) -> Result<(), BadOrder> {
+        Err(BadOrder::NoOrders)
     }
 
     /// What a camera sees: `right` and `down` from -1 to 1 across its picture. Nothing without a camera.

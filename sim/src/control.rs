@@ -72,7 +72,7 @@ impl Part for Control {
             // Who cannot be told has lost the folder of the board.
             match shared.machine().order(&words) {
                 Ok(()) => drop(std::fs::remove_file(self.root.join(name))),
-                Err(reason) => drop(appear(&self.root, &name, &reason)),
+                Err(reason) => drop(appear(&self.root, &name, &reason.to_string())),
             }
         }
         f64::INFINITY

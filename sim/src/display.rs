@@ -1,4 +1,4 @@
-//! The display: a plain file in the place of the frame buffer, and a picture of it for whoever stands beside the robot.
+//! The display: a plain file instead of the frame buffer, and a picture of it for people beside the robot.
 //!
 //! Owns both files. Nothing is written to the second before the first has changed.
 

@@ -4,7 +4,7 @@
 //! fault does to its device is decided where the device is.
 
 use crate::limits::{MAX_NOISE, MAX_SAG_V, MAX_SLOW_MS};
-use std::fmt::Write;
+use std::fmt;
 
 /// Index of the coprocessor.
 pub const MSP430: usize = 0;
@@ -58,6 +58,58 @@ const NAMES: [&str; COUNT] = [
     "M4",
 ];
 
+/// Why a text is refused. Its author can change that.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Refusal {
+    /// It is no short text.
+    NoText,
+    /// No device has this name.
+    NoDevice(String),
+    /// A line of more than two words.
+    TooManyWords(String),
+    /// A kind that the device cannot have, and those that it can have.
+    NoKind(String, &'static [&'static str]),
+    /// A kind without the number that it needs, and the greatest one.
+    NeedsNumber(String, f64),
+    /// A kind with a number that it has not.
+    HasNoNumber(String),
+    /// A word instead of a number.
+    NotNumber(String),
+    /// A number beyond its bounds: the kind, the word, the greatest one.
+    OutOfRange(String, String, f64),
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoText => out.write_str("is no short text"),
+            Self::NoDevice(name) => {
+                write!(out, "there is no device '{name}' on this board; there are")?;
+                NAMES.iter().try_for_each(|name| write!(out, " {name}"))
+            }
+            Self::TooManyWords(line) => write!(
+                out,
+                "'{line}' has too many words; write a kind and at most one number"
+            ),
+            Self::NoKind(kind, kinds) => write!(
+                out,
+                "there is no fault '{kind}' here; possible are {}",
+                kinds.join(", ")
+            ),
+            Self::NeedsNumber(kind, most) => {
+                write!(out, "'{kind}' needs a number from 0 to {most}")
+            }
+            Self::HasNoNumber(kind) => write!(out, "'{kind}' has no number"),
+            Self::NotNumber(word) => write!(out, "'{word}' is no number"),
+            Self::OutOfRange(kind, word, most) => {
+                write!(out, "{kind} {word} is not between 0 and {most}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for Refusal {}
+
 /// What is wrong with one device.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Fault {
@@ -95,38 +147,35 @@ impl Fault {
     }
 
     /// From a text; `kinds` are those that the device can have.
-    pub fn parse(text: &str, kinds: &[&str]) -> Result<Self, String> {
+    pub fn parse(text: &str, kinds: &'static [&'static str]) -> Result<Self, Refusal> {
         let mut fault = Self::default();
         for line in text.lines().map(str::trim).filter(|line| !line.is_empty()) {
             let mut words = line.split_whitespace();
             let kind = words.next().unwrap_or_default();
             let number = words.next();
             if words.next().is_some() {
-                return Err(format!(
-                    "'{line}' has too many words; write a kind and at most one number"
-                ));
+                return Err(Refusal::TooManyWords(line.to_owned()));
             }
             if !kinds.contains(&kind) {
-                return Err(format!(
-                    "there is no fault '{kind}' here; possible are {}",
-                    kinds.join(", ")
-                ));
+                return Err(Refusal::NoKind(kind.to_owned(), kinds));
             }
             fault.add(kind, number)?;
         }
         Ok(fault)
     }
 
-    fn add(&mut self, kind: &str, number: Option<&str>) -> Result<(), String> {
-        let value = |default: Option<f64>, most: f64| -> Result<f64, String> {
+    fn add(&mut self, kind: &str, number: Option<&str>) -> Result<(), Refusal> {
+        let value = |default: Option<f64>, most: f64| -> Result<f64, Refusal> {
             let Some(text) = number else {
-                return default.ok_or(format!("'{kind}' needs a number from 0 to {most}"));
+                return default.ok_or_else(|| Refusal::NeedsNumber(kind.to_owned(), most));
             };
-            let value: f64 = text.parse().map_err(|_| format!("'{text}' is no number"))?;
+            let value: f64 = text
+                .parse()
+                .map_err(|_| Refusal::NotNumber(text.to_owned()))?;
             if (0.0..=most).contains(&value) {
                 Ok(value)
             } else {
-                Err(format!("{kind} {text} is not between 0 and {most}"))
+                Err(Refusal::OutOfRange(kind.to_owned(), text.to_owned(), most))
             }
         };
         match kind {
@@ -135,7 +184,7 @@ impl Fault {
             "noise" => self.noise = value(None, MAX_NOISE)?,
             "drop" => self.drop = value(None, 1.0)?,
             "sag" => self.sag_v = value(None, MAX_SAG_V)?,
-            _ if number.is_some() => return Err(format!("'{kind}' has no number")),
+            _ if number.is_some() => return Err(Refusal::HasNoNumber(kind.to_owned())),
             "unplug" => self.unplug = true,
             "stuck" => self.stuck = true,
             _ => self.garbage = true,
@@ -164,13 +213,9 @@ impl std::ops::Index<usize> for Faults {
 
 impl Faults {
     /// Puts the faults of `text` into the device `name`; an empty text makes it whole.
-    pub fn set(&mut self, name: &str, text: &str) -> Result<(), String> {
+    pub fn set(&mut self, name: &str, text: &str) -> Result<(), Refusal> {
         let Some(index) = NAMES.iter().position(|other| *other == name) else {
-            let mut reason = format!("there is no device '{name}' on this board; there are");
-            for name in NAMES {
-                let _ = write!(reason, " {name}");
-            }
-            return Err(reason);
+            return Err(Refusal::NoDevice(name.to_owned()));
         };
         self.0[index] = Fault::parse(text, kinds(index))?;
         Ok(())
@@ -246,7 +291,7 @@ mod tests {
                 "'drop 1 2' has too many words; write a kind and at most one number",
             ),
         ] {
-            let got = faults.set(name, text).unwrap_err();
+            let got = faults.set(name, text).unwrap_err().to_string();
             assert!(got.starts_with(reason), "{got}");
         }
         assert!(faults[ANALOG].stuck);

@@ -1,4 +1,4 @@
-//! FIFOs in the place of character devices: an end that is written to whoever reads, and an end that takes lines.
+//! FIFOs instead of character devices: one end that is written for readers, and one that takes lines.
 //!
 //! Nothing here waits: without a reader nothing is sent, and a full FIFO drops the whole piece.
 

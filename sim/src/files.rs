@@ -6,7 +6,7 @@ use crate::attributes::Attributes;
 use crate::bus::Bus;
 use crate::control::Control;
 use crate::display::Display;
-use crate::faults;
+use crate::faults::{self, Refusal};
 use crate::input::{Keys, Ultrasonic};
 use crate::lidar::Lidar;
 use crate::limits::TICK_MS;
@@ -172,14 +172,14 @@ impl Work {
         let text = self.attributes.text(&path);
         let result = match text {
             Some(text) => self.shared.machine().faults.set(device, &text),
-            None if is_there => Err("is no short text".to_owned()),
+            None if is_there => Err(Refusal::NoText),
             // A file of another name has gone: nothing is wrong any more.
             None => self.shared.machine().faults.set(device, "").or(Ok(())),
         };
         match result {
             Ok(()) => self.attributes.remove(&complaint),
             Err(reason) => {
-                let _ = self.attributes.appear(&complaint, &reason);
+                let _ = self.attributes.appear(&complaint, &reason.to_string());
             }
         }
         for bus in &self.buses {

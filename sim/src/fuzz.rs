@@ -29,7 +29,7 @@ pub fn field(bytes: &[u8]) {
     for tick in 0..TICKS {
         for (name, percent) in [("M3", 100), ("M4", 90 - 20 * tick as i32)] {
             if let Some(port) = Port::named(name) {
-                arena.robot(0).tell(Command::Power { port, percent });
+                arena.robot(0).command(Command::Power { port, percent });
             }
         }
         arena.tick();

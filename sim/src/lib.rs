@@ -1,7 +1,7 @@
 //! A virtual TRIK controller in a small world, for work without hardware.
 //!
-//! [`board::Board`] makes a directory with the devices of a controller below it, down to the bytes on its buses; whoever
-//! opens them cannot tell them from the real ones but by their kind of file. Behind the connectors is a
+//! [`board::Board`] makes a directory with the devices of a controller below it, down to the bytes on its buses; a
+//! program that opens them can tell them from the real ones only by their kind of file. Behind the connectors is a
 //! [`body::Body`]. This crate knows no filesystem of ours: the devices are the contract.
 //!
 //! Beside it, without files: [`field`] is a world of TRIK Studio as it is saved, [`arena`] that world while it runs, and

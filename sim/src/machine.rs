@@ -3,7 +3,7 @@
 //! Time runs on when somebody looks: [`Machine::advance`] makes the steps that are due. So a value that is read is never
 //! older than a step, and a board at which nobody looks costs nothing.
 
-use crate::body::{Body, Drive, Power, Senses};
+use crate::body::{BadOrder, Body, Drive, Power, Senses};
 use crate::faults::{self, Faults};
 use crate::limits::{MAX_CATCH_UP_S, SAYINGS_MAX, STEP_S};
 use crate::mlx90640::{self, Mlx90640};
@@ -130,7 +130,7 @@ impl Machine {
     }
 
     /// Orders the world something, see [`Body::order`].
-    pub fn order(&mut self, words: &str) -> Result<(), String> {
+    pub fn order(&mut self, words: &str) -> Result<(), BadOrder> {
         self.body.order(words)
     }
 

@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn new_data_is_cleared_by_whoever_read_it_and_comes_at_the_rate_that_was_set() {
+    fn new_data_is_cleared_by_the_read_and_comes_at_the_rate_that_was_set() {
         let mut camera = Mlx90640::new(1);
         let mut random = Random::new(2);
         let body = robots::by_name("bare").unwrap().body();

@@ -1,4 +1,4 @@
-//! Where the robot truly is, for whoever stands beside it: the file `pose`.
+//! Where the robot truly is, for people beside it: the file `pose`.
 //!
 //! One line, written anew while the robot moves: x and y in metres, heading in degrees counter-clockwise, simulated
 //! seconds, and how often it has run into a wall. No sensor, no noise, no fault.

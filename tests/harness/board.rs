@@ -1,4 +1,4 @@
-//! A scratch folder that plays the board: regular files, named pipes and libraries in the place of devices.
+//! A scratch folder that plays the board: regular files, named pipes and libraries instead of devices.
 //!
 //! Owns the folder: unique, removed with the board, never while something is mounted in it. Folders that earlier
 //! runs left behind (they were killed) are unmounted and removed when the first board is made.

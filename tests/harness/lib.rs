@@ -15,5 +15,5 @@ pub mod wait;
 pub use board::Board;
 pub use i2c_bus::I2cBus;
 pub use mount::{Mount, Setting};
-pub use tools::{Output, run};
+pub use tools::{Output, put, run};
 pub use wait::{eventually, skip};

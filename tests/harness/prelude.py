@@ -62,6 +62,18 @@ def asleep(pid):
         return file.read().rsplit(')', 1)[1].split()[0] in 'SD'
 
 
+def has_open(pid, path):
+    """Whether a process has a file open whose path ends so. A descriptor that closes between the two looks is none."""
+    folder = '/proc/%d/fd' % pid
+    for number in os.listdir(folder):
+        try:
+            if os.readlink(os.path.join(folder, number)).endswith(path):
+                return True
+        except FileNotFoundError:
+            pass
+    return False
+
+
 def ready(fd, events=select.POLLIN, ms=0):
     poller = select.poll()
     poller.register(fd, events)

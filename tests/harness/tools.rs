@@ -14,6 +14,17 @@ use std::sync::OnceLock;
 use std::sync::mpsc::channel;
 use std::time::Duration;
 
+/// Writes a file below a folder, with the folders that it needs; its path.
+///
+/// # Panics
+/// It cannot be written.
+pub fn put(folder: &Path, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+    let path = folder.join(name);
+    std::fs::create_dir_all(path.parent().expect("a parent")).expect("a folder");
+    std::fs::write(&path, content).expect("a file");
+    path
+}
+
 /// What a program said and how it ended.
 #[derive(Debug)]
 pub struct Output {

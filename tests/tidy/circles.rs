@@ -15,7 +15,7 @@ const LARGEST: [(&str, usize); 17] = [
     ("filters", 1),
     ("lang/constraint", 2),
     ("lang/dcml", 4),
-    ("lang/diagram", 11),
+    ("lang/diagram", 9),
     ("lang/editor", 1),
     ("lang/expr", 1),
     ("lang/plan", 1),
@@ -24,8 +24,8 @@ const LARGEST: [(&str, usize); 17] = [
     ("screen", 3),
     ("sim", 8),
     ("trik", 4),
-    ("trikd", 11),
-    ("trikfs", 13),
+    ("trikd", 9),
+    ("trikfs", 12),
 ];
 
 /// The way to a module from the root of its crate.

@@ -1,4 +1,4 @@
-//! The command line of `trik`: what can be said, and which part of the crate does it.
+//! The command line of `trik`: the commands and options, and which part of the crate does each.
 //!
 //! Owns the words, the help and the exit codes: 0 done, 1 refused or failed, 2 not understood, or a robot that could not
 //! be reached.
@@ -209,9 +209,11 @@ fn run(command: Command) -> Result<u8, Refusal> {
         Command::Completions { shell } => {
             standard(&manual::completions(shell, Cli::command())).map(|()| 0)
         }
-        Command::Man { command } => {
-            standard(&manual::page(&command, Cli::command()).map_err(Refusal::new)?).map(|()| 0)
-        }
+        Command::Man { command } => standard(
+            &manual::page(&command, Cli::command())
+                .map_err(|error| Refusal::new(error.to_string()))?,
+        )
+        .map(|()| 0),
         Command::Tree {
             parent,
             name,
@@ -239,6 +241,25 @@ mod tests {
     #[test]
     fn the_definition_is_consistent() {
         Cli::command().debug_assert();
+    }
+
+    /// What `--help` says of a command and of those below it that a person is shown.
+    fn help(command: &mut clap::Command) -> String {
+        let mut text = format!("{}\n", command.render_long_help());
+        for one in command.get_subcommands_mut() {
+            if !one.is_hide_set() && one.get_name() != "help" {
+                text.push_str(&format!("\n==== {}\n\n", one.get_name()));
+                text.push_str(&help(one));
+            }
+        }
+        text
+    }
+
+    #[test]
+    fn help_has_these_words() {
+        let mut command = Cli::command().term_width(100);
+        command.build();
+        insta::assert_snapshot!("help", help(&mut command));
     }
 
     #[test]

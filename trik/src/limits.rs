@@ -50,7 +50,7 @@ pub const SILENCE_MS: u32 = 10_000;
 pub const TURN_MS: u32 = 250;
 /// Wait while the reader of the output has no room.
 pub const ROOM_MS: u32 = 20;
-/// Pieces of output that wait for whoever reads it.
+/// Pieces of output that wait for the reader.
 pub const OUTPUT_PIECES: usize = 64;
 /// Calls to the robot in one tick of a judged world: who asks without waiting is charged a tick for so many.
 pub const SCRIPT_CALLS: u32 = 100;

@@ -116,7 +116,7 @@ impl Place {
                 lock,
                 held,
             };
-            // The default one is ours, whoever of us made it.
+            // The default one is ours, whichever process of ours made it.
             place.made_mountpoint = make_mountpoint(&place.mountpoint)? || mountpoint.is_none();
             place
                 .record()
@@ -143,7 +143,7 @@ impl Place {
                 ))
             })?,
         };
-        // The one in our own directory is ours, whoever of us made it.
+        // The one in our own directory is ours, whichever process of ours made it.
         if make_mountpoint(&path)? || path == self.lock.with_extension(VIEW) {
             self.made_view = Some(path.clone());
         }

@@ -1,4 +1,4 @@
-//! How a command ends that cannot do what it was told: lines for standard error, and an exit code.
+//! How a command ends that cannot do its work: lines for standard error, and an exit code.
 //!
 //! Owns the codes that commands share, and the way to standard error. Knows no command.
 

@@ -19,7 +19,7 @@ pub use python::Python;
 use lang_diagram::brick::Command;
 use lang_text::problem::{Place, Position, Problem, Words};
 use std::path::{Component, Path};
-use trikd::js::read_text;
+use trikd::js::files::{Unread, read_text};
 use trikd::protocol::program::mailbox::Question;
 
 /// When a program begins, in milliseconds of model time: as late as a diagram does in the original's simulator, so that
@@ -27,14 +27,12 @@ use trikd::protocol::program::mailbox::Question;
 const START_MS: u32 = 30;
 
 /// A file of the program's folder: programs under a judge see nothing else.
-fn beside(folder: &Path, file: &str) -> Result<String, String> {
+fn beside(folder: &Path, file: &str) -> Result<String, Unread> {
     let is_plain = Path::new(file)
         .components()
         .all(|part| matches!(part, Component::Normal(_)));
     if !is_plain {
-        return Err(format!(
-            "{file}: a judged program reads only files of its own folder"
-        ));
+        return Err(Unread::Outside(file.to_owned()));
     }
     read_text(&folder.join(file))
 }

@@ -3,6 +3,7 @@
 //! Run by `cargo bench -p trikd --bench javascript`. With TREE=DIR the reads are of a mounted tree, else of a plain
 //! directory. Each round measures both sides once, the ratio is taken inside the round, and the median is printed.
 
+use harness::put;
 use std::fs::File;
 use std::hint::black_box;
 use std::io::{self, Read};
@@ -11,10 +12,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
+use tempfile::tempdir;
 use trikd::engine::Start;
 use trikd::js::outside::{Alone, Output};
 use trikd::js::session;
-use trikd::scratch::Scratch;
 
 const ROUNDS: usize = 15;
 const READS: u32 = 20_000;
@@ -101,8 +102,8 @@ fn start_ms(tree: &Path, program: &Path) -> f64 {
 }
 
 fn main() {
-    let scratch = Scratch::new("bench");
-    scratch.file("sensors/A1/value", "42\n");
+    let scratch = tempdir().unwrap();
+    put(scratch.path(), "sensors/A1/value", "42\n");
     let mounted = std::env::var_os("TREE").map(PathBuf::from);
     let tree = mounted.as_deref().unwrap_or(scratch.path());
     let file = tree.join("sensors/A1/value");
@@ -124,7 +125,7 @@ fn main() {
         let ratio = median(rounds.iter().map(|round| round.2).collect());
         println!("{call:<44}{script:>10.0}{ratio:>8.2}x");
     }
-    let program = scratch.file("first.js", "print(1)");
+    let program = put(scratch.path(), "first.js", "print(1)");
     let starts = (0..STARTS).map(|_| start_ms(tree, &program)).collect();
     println!(
         "from the start of the process to its first statement, median of {STARTS}: {:.2} ms (goal <= 30 ms)",

@@ -3,6 +3,7 @@
 //! Frames against memcpy, answers to many clients against the processor's time, a stop against the way of the bytes
 //! alone, memory. Needs no tree: a plain directory stands for it.
 
+use harness::put;
 use std::fs;
 use std::hint::black_box;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -10,8 +11,8 @@ use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
+use tempfile::{TempDir, tempdir};
 use trikd::protocol::frame::{Decoder, encode};
-use trikd::scratch::Scratch;
 
 const CLIENTS: usize = 100;
 const PERIOD: Duration = Duration::from_millis(20);
@@ -62,23 +63,35 @@ fn frames() {
 
 /// A daemon over a plain directory.
 struct Robot {
-    scratch: Scratch,
+    scratch: TempDir,
     process: Child,
     ready: String,
 }
 
 impl Robot {
     fn start() -> Self {
-        let scratch = Scratch::new("bench");
+        let scratch = tempdir().unwrap();
         for port in ["A1", "A2", "A3", "A4", "A5", "A6"] {
-            scratch.file(&format!("tree/sensors/{port}/value"), "27\n");
-            scratch.file(&format!("tree/sensors/{port}/raw"), "281\n");
+            put(
+                scratch.path(),
+                &format!("tree/sensors/{port}/value"),
+                "27\n",
+            );
+            put(scratch.path(), &format!("tree/sensors/{port}/raw"), "281\n");
         }
         for port in ["E1", "E2", "E3", "E4"] {
-            scratch.file(&format!("tree/encoders/{port}/value"), "90\n");
-            scratch.file(&format!("tree/encoders/{port}/raw"), "384\n");
+            put(
+                scratch.path(),
+                &format!("tree/encoders/{port}/value"),
+                "90\n",
+            );
+            put(
+                scratch.path(),
+                &format!("tree/encoders/{port}/raw"),
+                "384\n",
+            );
         }
-        scratch.file("tree/stop", "");
+        put(scratch.path(), "tree/stop", "");
         let mut command = Command::new(env!("CARGO_BIN_EXE_trikd"));
         command
             .arg("serve")

@@ -10,8 +10,8 @@ use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
+use tempfile::tempdir;
 use trikd::protocol::frame::encode;
-use trikd::scratch::Scratch;
 
 const STOPS: usize = 40;
 const START: &str = "brick.motor(M3).setPower(60)\nbrick.motor(M4).setPower(60)\n";
@@ -155,7 +155,7 @@ fn main() {
     if std::env::args().any(|word| word == "--test") {
         return;
     }
-    let scratch = Scratch::new("stop-bench");
+    let scratch = tempdir().unwrap();
     let Some(_board) = board(scratch.path()) else {
         return;
     };

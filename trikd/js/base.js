@@ -13,6 +13,36 @@ kit.hold = hold;
 const text = (value) => String(value).toWellFormed();
 kit.text = text;
 
+// Arguments as the controller's own engine takes them. A whole number is cut towards zero, and 0 is made of what is no
+// number; beyond 32 bits it stays at their end, because a number that changes its sign would turn a robot around.
+const LEAST = -(2 ** 31), MOST = 2 ** 31 - 1;
+kit.whole = (value) => {
+    const number = Number(value);
+    return Number.isFinite(number) ? Math.max(LEAST, Math.min(MOST, Math.trunc(number))) + 0 : 0;
+};
+// Nothing is an empty text.
+kit.words = (value) => value === undefined || value === null ? '' : text(value);
+
+// The methods of a part of the robot: they keep their object when a program takes them off it, and say when arguments
+// are missing. A method can do without those that have a usual value.
+kit.part = (part) => {
+    for (let level = part; level !== Object.prototype; level = Object.getPrototypeOf(level)) {
+        for (const name of Object.getOwnPropertyNames(level)) {
+            const { value } = Object.getOwnPropertyDescriptor(level, name);
+            if (typeof value !== 'function' || name === 'constructor' || name.startsWith('_')
+                || level !== part && Object.hasOwn(part, name))
+                continue;
+            const method = (...values) => {
+                if (values.length < value.length)
+                    throw new SyntaxError(`too few arguments in call to ${name}(): it takes ${value.length}`);
+                return value.apply(part, values);
+            };
+            Object.defineProperty(part, name, { value: method, writable: true, enumerable: true, configurable: true });
+        }
+    }
+    return part;
+};
+
 // A thing that the robot does not have: programs go on, and a person is told once.
 const told = new Set();
 kit.absent = (what, why) => {
@@ -26,7 +56,11 @@ kit.refuse = (what, why) => { throw new TypeError(`${what}: ${why}`); };
 
 class Signal {
     // `started` is called before the first connection.
-    constructor(started) { this._started = started; this._slots = []; }
+    constructor(started) {
+        this._started = started;
+        this._slots = [];
+        kit.part(this);
+    }
     _slot(first, second) {
         const [self, slot] = second === undefined ? [undefined, first] : [first, second];
         const called = typeof slot === 'string' && self ? self[slot] : slot;
@@ -34,7 +68,7 @@ class Signal {
             throw new TypeError('Function.prototype.connect: target is not a function');
         return { self, called };
     }
-    connect(first, second) {
+    connect(first, second = undefined) {
         const slot = this._slot(first, second);
         if (this._started) {
             this._started();
@@ -42,7 +76,7 @@ class Signal {
         }
         this._slots.push(slot);
     }
-    disconnect(first, second) {
+    disconnect(first = undefined, second = undefined) {
         if (first === undefined) {
             this._slots = [];
             return;
@@ -70,19 +104,20 @@ class Timer {
         this.interval = 0;
         this._due = Infinity;
         this._busy = false;
+        kit.part(this);
         this.start(ms);
     }
     get active() { return timers.has(this); }
     isActive() { return this.active; }
     setInterval(ms) {
-        this.interval = Math.max(0, Number(ms) || 0);
+        this.interval = Math.max(0, kit.whole(ms));
         if (this.active)
             this._due = native.clock() + this.interval;
     }
     setSingleShot(on) { this.singleShot = Boolean(on); }
-    start(ms) {
+    start(ms = undefined) {
         if (ms !== undefined)
-            this.interval = Math.max(0, Number(ms) || 0);
+            this.interval = Math.max(0, kit.whole(ms));
         if (!this.active && timers.size >= native.timersMax)
             throw new RangeError(`more than ${native.timersMax} timers: stop those that are no longer needed`);
         timers.add(this);
@@ -151,7 +186,7 @@ function step(until) {
 }
 kit.step = step;
 kit.wait = (ms) => {
-    const end = native.clock() + Math.max(0, Number(ms) || 0);
+    const end = native.clock() + Math.max(0, kit.whole(ms));
     do step(end); while (native.clock() < end);
 };
 // Until the condition gives something.
@@ -196,12 +231,13 @@ const getPhoto = () => {
 };
 hold('getPhoto', getPhoto);
 
-hold('script', {
+hold('script', kit.part({
     wait(ms) { kit.wait(ms); },
     time() { return Date.now(); },
-    timeInterval(first, second) { return (Number(second) - Number(first)) & 0x7fffffff; },
+    timeInterval(first, second) { return (kit.whole(second) - kit.whole(first)) & 0x7fffffff; },
     random(a, b) {
-        const least = Math.ceil(Math.min(a, b)), most = Math.floor(Math.max(a, b));
+        const [first, second] = [kit.whole(a), kit.whole(b)];
+        const least = Math.min(first, second), most = Math.max(first, second);
         const drawn = native.random(least, most);
         if (drawn !== undefined)
             return drawn;
@@ -215,14 +251,14 @@ hold('script', {
     },
     run() { native.run(); },
     quit() { native.quit(); },
-    system(command, synchronously) { return native.system(text(command), Boolean(synchronously)); },
-    writeToFile(file, what) { native.append(text(file), text(what)); },
+    system(command, synchronously = false) { return native.system(text(command), Boolean(synchronously)); },
+    writeToFile(file, what) { native.append(text(file), kit.words(what)); },
     writeData(file, bytes) { native.appendBytes(text(file), Array.from(bytes, (byte) => byte & 0xff)); },
     readAll(file) { return native.readAll(text(file)); },
     removeFile(file) { native.remove(text(file)); },
     getPhoto,
     reset() { timers.clear(); },
-});
+}));
 
 Object.defineProperty(String.prototype, 'format', {
     value(...values) {

@@ -3,20 +3,24 @@
 'use strict';
 
 const { native, Signal, emit, absent, refuse, never } = kit;
-const { text } = kit;
-const port = text;
+const { text, whole, part } = kit;
+const port = kit.words;
 
-// An object for each port; null where nothing is plugged in, which is asked again the next time.
-function plugged(find, make) {
+// An object for each port; null where nothing is plugged in, which is told once and asked again the next time: what is
+// called on null is an error that names no port.
+function plugged(what, groups, find, make) {
     const known = new Map();
     return (name) => {
         const found = known.get(name);
         if (found !== undefined)
             return found;
         const handle = find(port(name));
-        if (handle < 0)
+        if (handle < 0) {
+            const there = groups.flatMap((group) => native.ports(group)).join(', ') || 'none';
+            absent(`brick.${what}(${port(name)})`, `nothing is plugged in there; plugged in are ${there}`);
             return null;
-        const made = make(handle);
+        }
+        const made = part(make(handle));
         known.set(name, made);
         return made;
     };
@@ -24,7 +28,12 @@ function plugged(find, make) {
 
 class Motor {
     constructor(handle) { this._handle = handle; }
-    setPower(power) { native.motorSet(this._handle, Number(power)); }
+    setPower(power, constrain = true) {
+        const number = Number(power);
+        if (!Number.isFinite(number))
+            absent('motor.setPower', `${text(power)} is no number: a motor stands still, a servo stays where it is`);
+        native.motorSet(this._handle, Number.isFinite(number) ? whole(number) : NaN);
+    }
     power() { return native.motorGet(this._handle); }
     powerOff() { native.motorOff(this._handle); }
     brake(ms = 500) {
@@ -58,14 +67,16 @@ function watched(read) {
     return signal;
 }
 
-const accelerometer = { read() { return native.vector('accelerometer'); } };
+const accelerometer = part({
+    read() { return native.vector('accelerometer'); },
+    readRawData() { return native.vectorRaw('accelerometer'); },
+});
 accelerometer.newData = watched(accelerometer.read);
-accelerometer.readRawData = () => native.vectorRaw('accelerometer');
 
 const HALF_TURN = 180000, HEADING = 6;
 const NO_CALIBRATION = 'the gyroscope calibrates itself whenever the robot rests; its bias stands in the robot file';
 let forward = 0, calibratedAt = 0;
-const gyroscope = {
+const gyroscope = part({
     read() {
         const values = native.vector('gyroscope');
         const turned = values[HEADING] - forward;
@@ -89,9 +100,9 @@ const gyroscope = {
         return native.isReady('gyroscope');
     },
     getCalibrationValues() { return refuse('gyroscope.getCalibrationValues', NO_CALIBRATION); },
-    setCalibrationValues() { return refuse('gyroscope.setCalibrationValues', NO_CALIBRATION); },
+    setCalibrationValues(values) { return refuse('gyroscope.setCalibrationValues', NO_CALIBRATION); },
     calibrationFinished: new Signal(),
-};
+});
 gyroscope.newData = watched(() => gyroscope.read());
 
 const KEY_ORDER = [116, 103, 1, 105, 106, 108, 28];
@@ -121,7 +132,7 @@ function newestKeys() {
     listenToKeys();
     drainKeys();
 }
-const keys = {
+const keys = part({
     buttonPressed: new Signal(listenToKeys),
     wasPressed(code) {
         newestKeys();
@@ -139,18 +150,18 @@ const keys = {
         latched.clear();
         codes.length = 0;
     },
-};
+});
 
-const led = {
+const led = part({
     red() { native.led(false, true); },
     green() { native.led(true, false); },
     orange() { native.led(true, true); },
     off() { native.led(false, false); },
-};
-const battery = {
+});
+const battery = part({
     readVoltage() { return native.voltage(); },
     readRawDataVoltage() { return native.rawVoltage(); },
-};
+});
 
 // What goes wrong on the display is told once and never ends a program.
 const draw = (name, reason) => {
@@ -158,32 +169,32 @@ const draw = (name, reason) => {
         absent(`display.${name}`, reason);
 };
 const order = (name, verb, ...words) => draw(name, native.draw(text([verb, ...words].join(' '))));
-const display = {
+const display = part({
     addLabel(label, x, y, height = -1) {
-        order('addLabel', 'label', Number(x), Number(y), Number(height), String(label).replaceAll('\n', '\\n'));
+        order('addLabel', 'label', whole(x), whole(y), whole(height), kit.words(label).replaceAll('\n', '\\n'));
     },
     removeLabels() { order('removeLabels', 'removelabels'); },
     showImage(file) { draw('showImage', native.showFile(text(file))); },
     show(pixels, width, height, format = 'rgb32') {
-        draw('show', native.showNumbers(Array.from(pixels, (part) => part | 0), Number(width) | 0, Number(height) | 0, text(format)));
+        draw('show', native.showNumbers(Array.from(pixels, (pixel) => pixel | 0), whole(width), whole(height), text(format)));
     },
-    drawLine(...ends) { order('drawLine', 'line', ...ends.map(Number)); },
-    drawPoint(...place) { order('drawPoint', 'point', ...place.map(Number)); },
+    drawLine(x1, y1, x2, y2) { order('drawLine', 'line', ...[x1, y1, x2, y2].map(whole)); },
+    drawPoint(x, y) { order('drawPoint', 'point', whole(x), whole(y)); },
     drawRect(x, y, width, height, filled = false) {
-        order('drawRect', 'rect', Number(x), Number(y), Number(width), Number(height), Number(Boolean(filled)));
+        order('drawRect', 'rect', ...[x, y, width, height].map(whole), Number(Boolean(filled)));
     },
     drawEllipse(x, y, width, height, filled = false) {
-        order('drawEllipse', 'ellipse', Number(x), Number(y), Number(width), Number(height), Number(Boolean(filled)));
+        order('drawEllipse', 'ellipse', ...[x, y, width, height].map(whole), Number(Boolean(filled)));
     },
-    drawArc(...numbers) { order('drawArc', 'arc', ...numbers.map(Number)); },
-    setPainterColor(name) { order('setPainterColor', 'color', name); },
-    setPainterWidth(pixels) { order('setPainterWidth', 'width', Number(pixels)); },
-    setBackground(color) { order('setBackground', 'background', color); },
+    drawArc(x, y, width, height, start, span) { order('drawArc', 'arc', ...[x, y, width, height, start, span].map(whole)); },
+    setPainterColor(name) { order('setPainterColor', 'color', kit.words(name)); },
+    setPainterWidth(pixels) { order('setPainterWidth', 'width', whole(pixels)); },
+    setBackground(color) { order('setBackground', 'background', kit.words(color)); },
     redraw() { order('redraw', 'redraw'); },
     clear() { order('clear', 'clear'); },
     hide() { order('hide', 'hide'); },
     reset() { order('reset', 'clear'); },
-};
+});
 
 // Part of a stop, where there is a display.
 const darken = () => {
@@ -230,9 +241,10 @@ class Detector extends Camera {
 }
 const cell = (values, row, column, what) => {
     const side = Math.round(Math.sqrt(values.length));
+    [row, column] = [whole(row), whole(column)];
     if (!(row >= 1 && row <= side && column >= 1 && column <= side))
         throw new RangeError(`${what} has cells 1 to ${side}, not ${row}, ${column}`);
-    return values[(Math.trunc(row) - 1) * side + Math.trunc(column) - 1];
+    return values[(row - 1) * side + column - 1];
 };
 class Colors extends Camera {
     read(row = 1, column = 1) {
@@ -244,7 +256,7 @@ class Colors extends Camera {
 const cameras = new Map();
 const camera = (name, Kind) => () => {
     if (!cameras.has(name) && native.hasCamera(name))
-        cameras.set(name, new Kind(name));
+        cameras.set(name, part(new Kind(name)));
     return cameras.get(name) ?? null;
 };
 
@@ -252,7 +264,7 @@ const values = (node) => native.numbers(`${node}/value`);
 const NO_PICTURE = 'the tree has no picture of the infrared camera; readSensor() gives its cells';
 // Three numbers for each point.
 const STILL = [320, 240];
-const irCamera = {
+const irCamera = part({
     init() { values('ir_camera'); },
     stop() {},
     readSensor(row, column) { return cell(values('ir_camera'), row, column, 'irCamera'); },
@@ -260,8 +272,8 @@ const irCamera = {
     imageUpdated: never('irCamera.imageUpdated', NO_PICTURE),
     sensorUpdated: never('irCamera.sensorUpdated', 'the tree tells no changes of the infrared camera; use a timer'),
     stopped: never('irCamera.stopped', 'the infrared camera does not stop'),
-};
-const lidar = { read() { return values('lidar'); } };
+});
+const lidar = part({ read() { return values('lidar'); } });
 
 class Fifo {
     constructor(path) {
@@ -273,6 +285,7 @@ class Fifo {
             emit(this.newData, Array.from(line, (character) => character.charCodeAt(0)));
         });
         native.listen(path, 0);
+        part(this);
     }
     read() {
         this._newest();
@@ -293,7 +306,10 @@ const fifos = new Map();
 // A servo port that the robot file makes a measuring one.
 const measures = (name) => native.isFile(`servos/${name}/duty_cycle`);
 class PwmCapture {
-    constructor(name) { this._node = `servos/${name}`; }
+    constructor(name) {
+        this._node = `servos/${name}`;
+        part(this);
+    }
     frequency() { return native.numbers(`${this._node}/raw`); }
     duty() { return native.numbers(`${this._node}/duty_cycle`)[0]; }
     dutyRaw() { return refuse('pwmCapture.dutyRaw', 'the driver tells no raw width of pulses; duty() gives percent'); }
@@ -309,6 +325,7 @@ class I2c {
         this._high = high;
         if (!native.isFile(this._path))
             throw new RangeError(`there is no bus ${bus}: the tree has no i2c/bus${bus}`);
+        part(this);
     }
     _place(register) {
         const most = this._base >= WIDE ? 0xffff : 0xff;
@@ -348,6 +365,7 @@ class EventType {
     constructor() {
         this.on = new Signal();
         this._codes = new Map();
+        part(this);
     }
     code(code) {
         code = Number(code);
@@ -363,6 +381,7 @@ class EventDevice {
         kit.onRecord(path, () => {}, ([kind, value, low, high]) => this._tell(kind & 0xffff, kind >>> 16, value,
             high * 2 ** 32 + (low >>> 0)));
         native.listen(path, EVENT_NUMBERS);
+        part(this);
     }
     _tell(type, code, value, time) {
         emit(this.on, type, code, value, time);
@@ -389,10 +408,10 @@ class Sound extends Camera {
         if (!native.cameraDetect(this._name))
             throw new Error('sound sensor: it does not run: was init() called before?');
     }
-    volume(coefficient) { native.write('microphones/volume', `${Math.round(coefficient)}\n`); }
+    volume(coefficient) { native.write('microphones/volume', `${Math.max(0, Math.min(100, whole(coefficient)))}\n`); }
 }
 
-const marker = {
+const marker = part({
     _down: false,
     down(color = 'black') {
         native.mark(text(color));
@@ -404,12 +423,13 @@ const marker = {
     },
     isDown() { return marker._down; },
     setDown(on) { on ? marker.down() : marker.up(); },
-};
+});
+const TONE_HZ = [20, 7000], TONE_MS_MAX = 10000;
 const configurable = ['lineSensor', 'objectSensor', 'colorSensor'];
-kit.hold('brick', {
-    motor: plugged(native.motor, (handle) => new Motor(handle)),
-    sensor: plugged(native.sensor, (handle) => new Sensor(handle)),
-    encoder: plugged(native.encoder, (handle) => new Encoder(handle)),
+kit.hold('brick', part({
+    motor: plugged('motor', ['motors', 'servos'], native.motor, (handle) => new Motor(handle)),
+    sensor: plugged('sensor', ['sensors'], native.sensor, (handle) => new Sensor(handle)),
+    encoder: plugged('encoder', ['encoders'], native.encoder, (handle) => new Encoder(handle)),
     keys() { return keys; },
     display() { return display; },
     led() { return led; },
@@ -453,10 +473,11 @@ kit.hold('brick', {
     },
     playSound(file) { native.playSound(kit.text(file)); },
     playTone(hz, ms) {
-        if (hz >= 0 && ms >= 0)
-            native.tone(Math.round(hz), Math.round(ms));
+        [hz, ms] = [whole(hz), whole(ms)];
+        if (hz >= 0 && ms > 0)
+            native.tone(Math.max(TONE_HZ[0], Math.min(TONE_HZ[1], hz)), Math.min(TONE_MS_MAX, ms));
     },
-    say(text) { native.say(kit.text(text)); },
+    say(words) { native.say(kit.words(words)); },
     stop() {
         native.stop();
         darken();
@@ -468,11 +489,11 @@ kit.hold('brick', {
         keys.reset();
         emit(this.resetCompleted);
     },
-    motorPorts(type) {
+    motorPorts(type = undefined) {
         const all = { powerMotor: ['motors'], servoMotor: ['servos'] }[type] ?? ['motors', 'servos'];
         return all.flatMap((group) => native.ports(group));
     },
-    sensorPorts(type) {
+    sensorPorts(type = undefined) {
         const begins = { analogSensor: 'A', digitalSensor: 'D', rangeSensor: 'D' }[type] ?? '';
         return native.ports('sensors').filter((name) => name.startsWith(begins));
     },
@@ -482,5 +503,5 @@ kit.hold('brick', {
     sadSmile() { order('sadSmile', 'sadsmile'); },
     stopped: new Signal(),
     resetCompleted: new Signal(),
-});
+}));
 })

@@ -60,7 +60,7 @@ function newest() {
         drain();
 }
 const DISCONNECT_LOOK_MS = 500;
-const gamepad = {
+const gamepad = kit.part({
     isPadPressed(number) { return pad(number) !== undefined; },
     padX(number) { return pad(number)?.[0] ?? RELEASED; },
     padY(number) { return pad(number)?.[1] ?? RELEASED; },
@@ -95,7 +95,7 @@ const gamepad = {
             was = is;
         });
     }),
-};
+});
 kit.hold('gamepad', gamepad);
 // Files of newest values begin to listen when they are opened, so they are opened before they are needed.
 if (native.mentions('gamepad')) {
@@ -111,16 +111,16 @@ if (native.mentions('keys'))
 let stopsWaiting = false;
 const ask = (...words) => native.mailbox(kit.text(words.join(' ')));
 const flag = (word) => ask(word) === '1';
-const hull = (number) => Math.trunc(Number(number)) || 0;
+const hull = kit.whole;
 const address = (ip) => String(ip).trim() || '-';
-const mailbox = {
-    connect(ip, port) { ask('connect', address(ip), ...port === undefined ? [] : [hull(port)]); },
+const mailbox = kit.part({
+    connect(ip, port = undefined) { ask('connect', address(ip), ...port === undefined ? [] : [hull(port)]); },
     joinNetwork(ip, port = -1, number = -1) { ask('join', address(ip), hull(port), hull(number)); },
-    send(to, text) {
+    send(to, text = undefined) {
         if (text === undefined)
-            ask('send', -1, String(to));
+            ask('send', -1, kit.words(to));
         else
-            ask('send', hull(to), String(text));
+            ask('send', hull(to), kit.words(text));
     },
     receive(wait = true) {
         stopsWaiting = false;
@@ -140,7 +140,7 @@ const mailbox = {
     isEnabled() { return flag('enabled'); },
     renewIp() { ask('renew'); },
     newMessage: new Signal(),
-};
+});
 kit.hold('mailbox', mailbox);
 kit.onEvent('mail', (sender, text) => emit(mailbox.newMessage, sender, text));
 
@@ -166,7 +166,7 @@ function plainGlobals() {
 kit.takeGlobals = (json) => { Object.assign(globalThis, JSON.parse(json)); };
 
 const { text } = kit;
-kit.hold('Threading', {
+kit.hold('Threading', kit.part({
     startThread(id, called) {
         if (typeof called !== 'function') {
             native.startThread(text(id), plainGlobals(), text(`${called}();`));
@@ -184,5 +184,5 @@ kit.hold('Threading', {
         return kit.until(() => native.takeMessage());
     },
     reset() { native.killOthers(); },
-});
+}));
 })

@@ -234,7 +234,7 @@ fn read(file: &Path) -> io::Result<BTreeSet<IpAddr>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scratch::Scratch;
+    use tempfile::tempdir;
 
     #[test]
     fn networks_are_addresses_with_equal_first_bits() {
@@ -261,7 +261,7 @@ mod tests {
 
     #[test]
     fn a_key_pairs_nobody_when_two_computers_have_asked() {
-        let scratch = Scratch::new("access");
+        let scratch = tempdir().unwrap();
         let access = Access::new(Vec::new(), true, &scratch.path().join("paired")).unwrap();
         let (owner, thief): (IpAddr, IpAddr) =
             ("10.0.0.7".parse().unwrap(), "10.0.0.8".parse().unwrap());
@@ -280,7 +280,7 @@ mod tests {
 
     #[test]
     fn a_paired_computer_is_remembered() {
-        let scratch = Scratch::new("access");
+        let scratch = tempdir().unwrap();
         let file = scratch.path().join("paired");
         let ip: IpAddr = "::ffff:10.0.0.7".parse().unwrap();
         let access = Access::new(Vec::new(), true, &file).unwrap();

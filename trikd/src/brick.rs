@@ -40,6 +40,15 @@ impl Group {
     }
 }
 
+/// Whether a name is that of a connector, as `M1`: one or two capital letters, then one or two digits.
+fn is_connector(name: &str) -> bool {
+    let number = name.trim_start_matches(|letter: char| letter.is_ascii_uppercase());
+    let letters = name.len() - number.len();
+    (1..=2).contains(&letters)
+        && (1..=2).contains(&number.len())
+        && number.bytes().all(|digit| digit.is_ascii_digit())
+}
+
 /// All peripherals of one robot.
 #[derive(Debug)]
 pub struct Brick {
@@ -154,10 +163,14 @@ impl Brick {
             .numbers(distances)
     }
 
-    /// Names of the ports of a group, sorted.
+    /// Names of the ports of a group, sorted. The second names that a robot file gives them count only where a group has
+    /// no others.
     pub fn ports(&self, group: Group) -> Vec<String> {
         let mut names = self.tree.names(group.directory());
         names.retain(|name| is_name(name));
+        if names.iter().any(|name| is_connector(name)) {
+            names.retain(|name| is_connector(name));
+        }
         names
     }
 
@@ -185,14 +198,16 @@ impl Brick {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scratch::Scratch;
+    use harness::put;
+    use std::cell::RefCell;
+    use tempfile::tempdir;
 
     #[test]
     fn ports_without_a_device_are_none_and_power_motors_come_before_servos() {
-        let scratch = Scratch::new("brick");
+        let scratch = tempdir().unwrap();
         for port in ["motors/M1", "servos/M1", "servos/S1"] {
-            scratch.file(&format!("{port}/value"), "0\n");
-            scratch.file(&format!("{port}/units"), "deg\n");
+            put(scratch.path(), &format!("{port}/value"), "0\n");
+            put(scratch.path(), &format!("{port}/units"), "deg\n");
         }
         let brick = Brick::new(scratch.path());
         assert!(!brick.motor("M1").unwrap().is_servo());
@@ -205,16 +220,67 @@ mod tests {
 
     #[test]
     fn power_is_cut_to_what_the_motor_can_do() {
-        let scratch = Scratch::new("brick");
-        let motor = scratch.file("motors/M1/value", "");
-        let servo = scratch.file("servos/S1/value", "");
-        scratch.file("servos/S1/units", "deg\n");
+        let scratch = tempdir().unwrap();
+        let motor = put(scratch.path(), "motors/M1/value", "");
+        let servo = put(scratch.path(), "servos/S1/value", "");
+        put(scratch.path(), "servos/S1/units", "deg\n");
         let brick = Brick::new(scratch.path());
         let told = |path: &Path| std::fs::read_to_string(path).unwrap();
         brick.motor("M1").unwrap().set_power(250.0).unwrap();
         assert_eq!(told(&motor), "100\n");
         brick.motor("S1").unwrap().set_power(-250.0).unwrap();
         assert_eq!(told(&servo), "-90\n");
-        assert!(brick.motor("M1").unwrap().set_power(f64::NAN).is_err());
+        for wrong in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            put(scratch.path(), "motors/M1/value", "7\n");
+            brick.motor("M1").unwrap().set_power(wrong).unwrap();
+            brick.motor("S1").unwrap().set_power(wrong).unwrap();
+            assert_eq!((told(&motor), told(&servo)), ("0\n".into(), "-90\n".into()));
+        }
+    }
+
+    /// A servo that has nothing below the middle.
+    #[derive(Debug, Default)]
+    struct Gripper(RefCell<String>);
+
+    impl Answers for Gripper {
+        fn has(&self, directory: &str) -> bool {
+            directory == "servos/S6"
+        }
+
+        fn is_file(&self, _path: &str) -> bool {
+            false
+        }
+
+        fn names(&self, _directory: &str) -> Vec<String> {
+            ["S6", "arm", "S12x", "s6"].map(str::to_owned).to_vec()
+        }
+
+        fn read(&self, _path: &str) -> io::Result<String> {
+            Ok("%".to_owned())
+        }
+
+        fn write(&self, _path: &str, text: &str) -> io::Result<()> {
+            match text.trim().parse::<i32>().unwrap() {
+                0..=100 => *self.0.borrow_mut() = text.to_owned(),
+                _ => return Err(io::Error::from_raw_os_error(libc::ERANGE)),
+            }
+            Ok(())
+        }
+
+        fn now_us(&self) -> u128 {
+            0
+        }
+    }
+
+    #[test]
+    fn a_servo_goes_to_its_end_and_ports_have_no_second_names() {
+        let gripper = Rc::new(Gripper::default());
+        let brick = Brick::answered(gripper.clone());
+        let servo = brick.motor("S6").unwrap();
+        for (power, wanted) in [(50.4, "50\n"), (-50.0, "0\n"), (400.0, "100\n")] {
+            servo.set_power(power).unwrap();
+            assert_eq!(*gripper.0.borrow(), wanted);
+        }
+        assert_eq!(brick.ports(Group::Servos), ["S6"]);
     }
 }

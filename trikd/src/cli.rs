@@ -4,7 +4,7 @@
 //! what `trikd` starts itself as: each is one child process.
 
 use crate::brick::Brick;
-use crate::engine::Engine;
+use crate::engine::{Engine, Failure};
 use crate::error::Error;
 use crate::host::Host;
 use crate::log::report;
@@ -162,7 +162,7 @@ fn perform(command: Command) -> Result<ExitCode, Error> {
         Command::Launch(launch) => return Err(launch.become_program()),
         Command::KillUser => kill::own_user()?,
         Command::Draw { tree, answers } => {
-            display::serve(&tree, &mut std::io::stdin().lock(), answers).map_err(Error::Program)?;
+            display::serve(&tree, &mut std::io::stdin().lock(), answers).map_err(Error::Display)?;
         }
         Command::Js {
             tree,
@@ -209,15 +209,14 @@ fn run_engine(engine: &mut impl Engine, tree: &std::path::Path) -> ExitCode {
     let brick = Brick::new(tree);
     let outcome = match host.start() {
         Ok(start) => engine.run(start, &brick, &host),
-        Err(error) => Err(format!("the daemon does not say what to run: {error}")),
+        Err(error) => Err(Failure::NoStart(error.into())),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,
-        Err(text) => {
+        Err(Failure::Told) => ExitCode::FAILURE,
+        Err(failure) => {
             // The daemon that would show it may be gone.
-            if !text.is_empty() {
-                let _ = host.error(&text);
-            }
+            let _ = host.error(&failure.to_string());
             ExitCode::FAILURE
         }
     }
@@ -232,6 +231,27 @@ mod tests {
     #[test]
     fn the_definition_is_consistent() {
         Cli::command().debug_assert();
+    }
+
+    #[cfg(feature = "manual")]
+    /// What `--help` says of a command and of those below it that a person is shown.
+    fn help(command: &mut clap::Command) -> String {
+        let mut text = format!("{}\n", command.render_long_help());
+        for one in command.get_subcommands_mut() {
+            if !one.is_hide_set() && one.get_name() != "help" {
+                text.push_str(&format!("\n==== {}\n\n", one.get_name()));
+                text.push_str(&help(one));
+            }
+        }
+        text
+    }
+
+    #[cfg(feature = "manual")]
+    #[test]
+    fn help_has_these_words() {
+        let mut command = Cli::command().term_width(100);
+        command.build();
+        insta::assert_snapshot!("help", help(&mut command));
     }
 
     #[cfg(feature = "manual")]

@@ -372,7 +372,7 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), Error> {
     program::python::install(&python).map_err(|error| unusable(&python, error))?;
     let listener = status::listen(&settings.run).map_err(|error| unusable(&settings.run, error))?;
     let owner = owner(&settings)?;
-    // Whoever loses its parent becomes a child of this process, and cannot outlive its program.
+    // A process that loses its parent becomes a child of this process, and cannot outlive its program.
     program::kill::adopt_orphans()?;
     let listen = |kind| signal(kind).map_err(|error| Error::Signals(error.into()));
     let mut terminate = listen(SignalKind::terminate())?;
@@ -408,7 +408,7 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), Error> {
         spawn_local(boot::autorun(parts.autorun(), restarts));
     }
     tracing::info!(target: log::DAEMON, "serves {words}");
-    // Whoever started this may not listen.
+    // The process that started this may not listen.
     let _ = writeln!(std::io::stdout(), "trikd: ready: {words}");
     tokio::select! {
         _ = terminate.recv() => {}

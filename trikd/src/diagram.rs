@@ -11,7 +11,7 @@ mod robot;
 mod watch;
 
 use crate::brick::Brick;
-use crate::engine::{Engine, Outcome, Start};
+use crate::engine::{Engine, Failure, NoDiagram, Outcome, Start};
 use crate::host::{Host, Incoming};
 use crate::{limits, settings};
 use lang_diagram::lower::{World, lower};
@@ -60,35 +60,35 @@ pub fn locale(name: &str) -> Locale {
 impl Engine for Diagram {
     fn run(&mut self, start: Start, brick: &Brick, host: &Host) -> Outcome {
         let Start::File(path) = start else {
-            return Err("a diagram is a file".to_owned());
+            return Err(Failure::NoFile);
         };
         let mut machine = self.load(&path, host)?;
         let mut robot = Robot::new(brick, host);
         let mut watch = Watch::new(self.locale);
         let ran = run(&mut machine, &mut robot, &mut watch, host);
         machine.stop(&mut robot, &mut watch);
-        ran.map_err(|error| format!("the daemon cannot be heard: {error}"))?;
+        ran.map_err(|error| Failure::Deaf(error.into()))?;
         if machine.errors().is_empty() {
             Ok(())
         } else {
             // They were told when they happened.
-            Err(String::new())
+            Err(Failure::Told)
         }
     }
 }
 
 impl Diagram {
     /// A machine with the program of a save; tells on the way what is wrong with it.
-    fn load(&self, path: &Path, host: &Host) -> Result<Machine, String> {
+    fn load(&self, path: &Path, host: &Host) -> Result<Machine, Failure> {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let bytes = read_save(path).map_err(|error| format!("{name}: {error}"))?;
+        let failed = |why| Failure::Diagram(name.clone().into_owned(), why);
+        let bytes = read_save(path).map_err(failed)?;
         let told = |problems: &[Problem]| {
-            let lines: Vec<_> = problems
+            let errors = problems
                 .iter()
-                .filter(|problem| problem.severity == Severity::Error)
-                .map(|problem| problem.in_locale(self.locale))
-                .collect();
-            format!("{name}: {}", lines.join("\n"))
+                .filter(|problem| problem.severity == Severity::Error);
+            let lines = errors.map(|problem| problem.in_locale(self.locale));
+            failed(NoDiagram::Problems(lines.collect()))
         };
         let opened = read::read(&bytes).map_err(|problems| told(&problems))?;
         let lowered = lower(&opened.project, World::Robot).map_err(|problem| told(&[problem]))?;
@@ -108,8 +108,8 @@ impl Diagram {
 }
 
 /// A file that is no longer than a save may be.
-fn read_save(path: &Path) -> Result<Vec<u8>, String> {
-    let failed = |error: io::Error| format!("cannot be read: {error}");
+fn read_save(path: &Path) -> Result<Vec<u8>, NoDiagram> {
+    let failed = |error: io::Error| NoDiagram::Unread(error.into());
     let limit = lang_diagram::limits::SAVE_BYTES as u64;
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(failed)?;
@@ -117,7 +117,7 @@ fn read_save(path: &Path) -> Result<Vec<u8>, String> {
         .read_to_end(&mut bytes)
         .map_err(failed)?;
     if bytes.len() as u64 > limit {
-        return Err(format!("is longer than {} MiB", limit >> 20));
+        return Err(NoDiagram::TooLong(limit));
     }
     Ok(bytes)
 }
@@ -149,7 +149,7 @@ fn run(
                     Incoming::Mail(_, text) => robot.post(text),
                     Incoming::Web => host.web(&watch::variables(machine))?,
                     Incoming::Watch(is_wanted) => watch.set_wanted(is_wanted),
-                    // The daemon starts another program for them; whoever sends one all the same learns that it is lost.
+                    // The daemon starts another program for them; a client that sends one all the same learns that it is lost.
                     Incoming::Direct(_) => host.error("a diagram takes no direct commands")?,
                     Incoming::Gone => return Ok(()),
                 }

@@ -2,10 +2,14 @@
 //!
 //! Owns the file of the tree and when it is written. What orders mean and how things look is in the crate `screen`.
 
-use crate::{limits, pictures};
+use crate::blame::{Blame, Os};
+use crate::limits;
+use crate::pictures::{self, NoPicture};
+use screen::Fault;
 use screen::order::Effect;
 use screen::picture::{self, RawFormat};
 use screen::{Drawing, Pixels};
+use std::fmt;
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufRead, Read, Seek, Write};
 use std::path::{Path, PathBuf};
@@ -13,7 +17,126 @@ use std::path::{Path, PathBuf};
 /// Where the tree takes pictures: 320 x 240 pixels, RGB565, the low byte first.
 pub const DISPLAY: &str = "display/device";
 
-/// A drawing and the display that it is shown on. Each failure is a text for a person.
+/// Why something is not shown, or an order is not done.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum Unshown {
+    /// An order or a picture makes no sense.
+    Fault(Fault),
+    /// A file that is to be shown cannot be read.
+    File(PathBuf, Os),
+    /// It has more bytes than [`screen::limits::FILE_BYTES`].
+    LongFile(PathBuf),
+    /// It is no picture.
+    NotPicture(PathBuf, Fault),
+    /// The tree has no display at this path.
+    NoDisplay(PathBuf),
+    /// The tree does not take a picture: its file, and what it says of the fault, if anything.
+    Tree(PathBuf, Os, String),
+    /// Orders in a simulator, in its own words.
+    Simulated(String),
+    /// A photo.
+    NoPhoto(NoPicture),
+    /// An order in no UTF-8.
+    NoText,
+    /// A word where an order has a whole number: the order, the word.
+    NotWhole(String, String),
+    /// `show` with other words.
+    ShowWords,
+    /// `photo` with other words.
+    PhotoWords,
+    /// A width or height that no photo has.
+    PhotoSide(String),
+    /// More numbers than [`limits::SHOWN_NUMBERS`], or fewer than none.
+    ManyNumbers,
+    /// The input ends within numbers.
+    FewNumbers,
+    /// Numbers cannot be read.
+    Numbers(Os),
+    /// Orders cannot be read.
+    Orders(Os),
+    /// Answers cannot be written.
+    Answers(Os),
+    /// So many orders have failed, and each was told.
+    Failed(u32),
+}
+
+impl Unshown {
+    /// Who can change something about it.
+    pub fn blame(&self) -> Blame {
+        match self {
+            Self::Fault(_)
+            | Self::File(..)
+            | Self::LongFile(_)
+            | Self::NotPicture(..)
+            | Self::Simulated(_)
+            | Self::NoText
+            | Self::NotWhole(..)
+            | Self::ShowWords
+            | Self::PhotoWords
+            | Self::PhotoSide(_)
+            | Self::ManyNumbers
+            | Self::FewNumbers
+            | Self::Failed(_) => Blame::Client,
+            Self::NoDisplay(_) | Self::Tree(..) => Blame::Tree,
+            Self::NoPhoto(why) => why.blame(),
+            Self::Numbers(_) | Self::Orders(_) | Self::Answers(_) => Blame::System,
+        }
+    }
+}
+
+impl fmt::Display for Unshown {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Fault(why) => write!(out, "{why}"),
+            Self::File(path, os) => write!(out, "{}: {os}", path.display()),
+            Self::LongFile(path) => {
+                let most = screen::limits::FILE_BYTES >> 20;
+                write!(out, "{}: is larger than {most} MiB", path.display())
+            }
+            Self::NotPicture(path, why) => write!(out, "{}: {why}", path.display()),
+            Self::NoDisplay(path) => {
+                let path = path.display();
+                write!(out, "the tree has no display ({path}); nothing is shown")
+            }
+            Self::Tree(path, os, fault) => {
+                write!(out, "{}: {os}", path.display())?;
+                if !fault.is_empty() {
+                    write!(out, " ({fault})")?;
+                }
+                out.write_str("; nothing is shown")
+            }
+            Self::Simulated(why) => out.write_str(why),
+            Self::NoPhoto(why) => write!(out, "{why}"),
+            Self::NoText => out.write_str("the order is no UTF-8"),
+            Self::NotWhole(verb, word) => {
+                write!(out, "{verb} takes whole numbers, not '{word}'")
+            }
+            Self::ShowWords => {
+                out.write_str("show takes width, height, format and the count of numbers")
+            }
+            Self::PhotoWords => out.write_str("photo takes width and height"),
+            Self::PhotoSide(word) => write!(out, "{word} is no width or height of a photo"),
+            Self::ManyNumbers => {
+                write!(out, "show takes at most {} numbers", limits::SHOWN_NUMBERS)
+            }
+            Self::FewNumbers => out.write_str("the numbers end before their count"),
+            Self::Numbers(os) => write!(out, "{os}"),
+            Self::Orders(os) => write!(out, "orders cannot be read: {os}"),
+            Self::Answers(os) => write!(out, "answers cannot be written: {os}"),
+            Self::Failed(count) => write!(out, "{count} orders failed"),
+        }
+    }
+}
+
+impl std::error::Error for Unshown {}
+
+impl From<Fault> for Unshown {
+    fn from(why: Fault) -> Self {
+        Self::Fault(why)
+    }
+}
+
+/// A drawing and the display that it is shown on.
 #[derive(Debug)]
 pub struct Display {
     drawing: Drawing,
@@ -35,7 +158,7 @@ impl Display {
     ///
     /// # Errors
     /// The line makes no sense, or the tree does not take the picture.
-    pub fn order(&mut self, line: &str) -> Result<(), String> {
+    pub fn order(&mut self, line: &str) -> Result<(), Unshown> {
         match self.drawing.order(line)? {
             Effect::Later => Ok(()),
             Effect::Show => self.put(&self.drawing.paint()),
@@ -50,22 +173,18 @@ impl Display {
     ///
     /// # Errors
     /// It cannot be read, is no such picture, or the tree does not take it.
-    pub fn show_file(&mut self, file: &Path) -> Result<(), String> {
-        let told = |error: io::Error| format!("{}: {error}", file.display());
+    pub fn show_file(&mut self, file: &Path) -> Result<(), Unshown> {
+        let told = |error: io::Error| Unshown::File(file.to_owned(), error.into());
         let mut bytes = Vec::new();
         let limit = screen::limits::FILE_BYTES as u64;
         let opened = File::open(file).map_err(told)?;
         let read = opened.take(limit + 1).read_to_end(&mut bytes);
         read.map_err(told)?;
         if bytes.len() as u64 > limit {
-            return Err(format!(
-                "{}: is larger than {} MiB",
-                file.display(),
-                limit >> 20
-            ));
+            return Err(Unshown::LongFile(file.to_owned()));
         }
         let picture = picture::decode(&bytes);
-        let picture = picture.map_err(|reason| format!("{}: {reason}", file.display()))?;
+        let picture = picture.map_err(|why| Unshown::NotPicture(file.to_owned(), why))?;
         self.show(&picture)
     }
 
@@ -79,19 +198,19 @@ impl Display {
         width: i32,
         height: i32,
         format: &str,
-    ) -> Result<(), String> {
+    ) -> Result<(), Unshown> {
         let format = RawFormat::named(format)?;
         let picture = picture::raw(numbers, width, height, format)?;
         self.show(&picture)
     }
 
-    fn show(&mut self, picture: &Pixels) -> Result<(), String> {
+    fn show(&mut self, picture: &Pixels) -> Result<(), Unshown> {
         self.drawing.show(picture);
         self.put(&self.drawing.paint())
     }
 
     /// Writes one picture. The file stays open, and is opened anew after a failure: the tree may have been mounted again.
-    fn put(&mut self, pixels: &Pixels) -> Result<(), String> {
+    fn put(&mut self, pixels: &Pixels) -> Result<(), Unshown> {
         let bytes = pixels.to_rgb565();
         let had_one = self.file.is_some();
         let mut result = self.write(&bytes);
@@ -106,13 +225,10 @@ impl Display {
             let fault = self.path.with_file_name("fault");
             let fault = std::fs::read_to_string(fault).unwrap_or_default();
             let fault = fault.trim();
-            let path = self.path.display();
+            let path = self.path.clone();
             match (error.kind(), fault) {
-                (io::ErrorKind::NotFound, "") => {
-                    format!("the tree has no display ({path}); nothing is shown")
-                }
-                (_, "") => format!("{path}: {error}; nothing is shown"),
-                _ => format!("{path}: {error} ({fault}); nothing is shown"),
+                (io::ErrorKind::NotFound, "") => Unshown::NoDisplay(path),
+                _ => Unshown::Tree(path, error.into(), fault.to_owned()),
             }
         })
     }
@@ -137,14 +253,14 @@ impl Display {
 ///
 /// # Errors
 /// The input or output fails, or an order has failed and nobody wants answers.
-pub fn serve(root: &Path, input: &mut impl BufRead, answers: bool) -> Result<(), String> {
+pub fn serve(root: &Path, input: &mut impl BufRead, answers: bool) -> Result<(), Unshown> {
     let mut display = Display::new(root);
     let mut failures = 0;
     let mut output = io::stdout();
     loop {
         let mut line = Vec::new();
         let limit = screen::limits::ORDER_BYTES as u64 + 2;
-        let told = |error: io::Error| format!("orders cannot be read: {error}");
+        let told = |error: io::Error| Unshown::Orders(error.into());
         input
             .take(limit)
             .read_until(b'\n', &mut line)
@@ -154,7 +270,7 @@ pub fn serve(root: &Path, input: &mut impl BufRead, answers: bool) -> Result<(),
         }
         let done = match std::str::from_utf8(&line) {
             Ok(text) => perform(&mut display, root, text.trim_end_matches('\n'), input),
-            Err(_) => Err("the order is no UTF-8".to_owned()),
+            Err(_) => Err(Unshown::NoText),
         };
         failures += u32::from(done.is_err());
         if answers {
@@ -163,13 +279,13 @@ pub fn serve(root: &Path, input: &mut impl BufRead, answers: bool) -> Result<(),
                 Err(reason) => format!("error: {reason}\n").into_bytes(),
             };
             let said = output.write_all(&answer).and_then(|()| output.flush());
-            said.map_err(|error| format!("answers cannot be written: {error}"))?;
+            said.map_err(|error| Unshown::Answers(error.into()))?;
         } else if let Err(reason) = done {
             crate::log::report(reason);
         }
     }
     if failures > 0 && !answers {
-        return Err(format!("{failures} orders failed"));
+        return Err(Unshown::Failed(failures));
     }
     Ok(())
 }
@@ -180,12 +296,12 @@ fn perform(
     root: &Path,
     line: &str,
     input: &mut impl Read,
-) -> Result<Vec<u8>, String> {
+) -> Result<Vec<u8>, Unshown> {
     let (verb, rest) = line.split_once(' ').unwrap_or((line, ""));
     let words: Vec<&str> = rest.split(' ').collect();
     let whole = |word: &str| {
         let number = word.parse::<i32>();
-        number.map_err(|_| format!("{verb} takes whole numbers, not '{word}'"))
+        number.map_err(|_| Unshown::NotWhole(verb.to_owned(), word.to_owned()))
     };
     match (verb, &words[..]) {
         ("image", _) => display.show_file(Path::new(rest))?,
@@ -194,39 +310,35 @@ fn perform(
             let numbers = numbers(input, count)?;
             display.show_numbers(&numbers, width, height, format)?;
         }
-        ("show", _) => {
-            return Err("show takes width, height, format and the count of numbers".to_owned());
-        }
+        ("show", _) => return Err(Unshown::ShowWords),
         ("photo", [width, height]) => {
             let side = |word: &str| {
                 let side = u16::try_from(whole(word)?).ok();
                 let side = side.filter(|side| (1..=screen::limits::SIDE_MAX).contains(side));
-                side.ok_or_else(|| format!("{word} is no width or height of a photo"))
+                side.ok_or_else(|| Unshown::PhotoSide(word.to_owned()))
             };
             let (width, height) = (side(width)?, side(height)?);
-            return Ok(pictures::photo(root)?.scaled(width, height).to_rgb());
+            let photo = pictures::photo(root).map_err(Unshown::NoPhoto)?;
+            return Ok(photo.scaled(width, height).to_rgb());
         }
-        ("photo", _) => return Err("photo takes width and height".to_owned()),
+        ("photo", _) => return Err(Unshown::PhotoWords),
         _ => display.order(line)?,
     }
     Ok(Vec::new())
 }
 
 /// So many numbers of four bytes.
-fn numbers(input: &mut impl Read, count: i32) -> Result<Vec<i32>, String> {
+fn numbers(input: &mut impl Read, count: i32) -> Result<Vec<i32>, Unshown> {
     let count = usize::try_from(count).ok();
     let count = count.filter(|count| *count <= limits::SHOWN_NUMBERS);
     let Some(count) = count else {
-        return Err(format!(
-            "show takes at most {} numbers",
-            limits::SHOWN_NUMBERS
-        ));
+        return Err(Unshown::ManyNumbers);
     };
     let mut bytes = Vec::new();
     let size = 4 * count as u64;
     let read = input.take(size).read_to_end(&mut bytes);
-    if read.map_err(|error| error.to_string())? < 4 * count {
-        return Err("the numbers end before their count".to_owned());
+    if read.map_err(|error| Unshown::Numbers(error.into()))? < 4 * count {
+        return Err(Unshown::FewNumbers);
     }
     let four = |four: &[u8]| i32::from_le_bytes([four[0], four[1], four[2], four[3]]);
     Ok(bytes.chunks_exact(4).map(four).collect())
@@ -235,9 +347,10 @@ fn numbers(input: &mut impl Read, count: i32) -> Result<Vec<i32>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scratch::Scratch;
+    use harness::put;
+    use tempfile::{TempDir, tempdir};
 
-    fn pixel(scratch: &Scratch, x: usize, y: usize) -> [u8; 2] {
+    fn pixel(scratch: &TempDir, x: usize, y: usize) -> [u8; 2] {
         let bytes = std::fs::read(scratch.path().join(DISPLAY)).unwrap();
         assert_eq!(bytes.len(), 320 * 240 * 2);
         let at = 2 * (y * 320 + x);
@@ -249,8 +362,8 @@ mod tests {
 
     #[test]
     fn what_is_drawn_is_seen_after_redraw_and_gone_after_hide() {
-        let scratch = Scratch::new("display");
-        scratch.file(DISPLAY, "");
+        let scratch = tempdir().unwrap();
+        put(scratch.path(), DISPLAY, "");
         let mut display = Display::new(scratch.path());
         display.order("color red").unwrap();
         display.order("rect 10 10 20 20 1").unwrap();
@@ -268,19 +381,19 @@ mod tests {
 
     #[test]
     fn a_tree_without_a_display_says_so_and_one_that_comes_later_is_found() {
-        let scratch = Scratch::new("display");
+        let scratch = tempdir().unwrap();
         let mut display = Display::new(scratch.path());
-        let told = display.order("redraw").unwrap_err();
+        let told = display.order("redraw").unwrap_err().to_string();
         assert!(told.starts_with("the tree has no display ("), "{told}");
-        scratch.file(DISPLAY, "");
+        put(scratch.path(), DISPLAY, "");
         display.order("redraw").unwrap();
         assert_eq!(pixel(&scratch, 0, 0), WHITE);
     }
 
     #[test]
     fn orders_come_in_lines_with_numbers_and_files_between_them() {
-        let scratch = Scratch::new("display");
-        scratch.file(DISPLAY, "");
+        let scratch = tempdir().unwrap();
+        put(scratch.path(), DISPLAY, "");
         let mut input = b"show 1 1 rgb32 1\n\x00\x00\xff\x00rect 0 0 10 10 1\nredraw\n".to_vec();
         serve(scratch.path(), &mut &input[..], false).unwrap();
         // The picture of one pixel is as high as the display.
@@ -292,7 +405,7 @@ mod tests {
         input = b"show 2 2 rgb32 1\n\0\0\0\0nonsense\nimage /no/such/file\n\xff\xff\n".to_vec();
         input.extend([b'x'; 9000]);
         let told = serve(scratch.path(), &mut &input[..], false).unwrap_err();
-        assert_eq!(told, "7 orders failed");
+        assert_eq!(told.to_string(), "7 orders failed");
         for bad in [
             "show 1 1 rgb32 -1\n",
             "show 1 1\n",
@@ -308,9 +421,11 @@ mod tests {
 
     #[test]
     fn a_file_that_is_no_picture_is_named() {
-        let scratch = Scratch::new("display");
-        let file = scratch.file("text.png", "hello");
+        let scratch = tempdir().unwrap();
+        let file = put(scratch.path(), "text.png", "hello");
         let told = Display::new(scratch.path()).show_file(&file).unwrap_err();
+        assert_eq!(told.blame(), Blame::Client);
+        let told = told.to_string();
         assert!(
             told.contains("text.png: this is neither a PNG nor a JPEG"),
             "{told}"

@@ -1,65 +1,16 @@
 //! Why the daemon cannot start, serve or end something, and who can change that.
 //!
-//! Owns the failures of the processes of trikd and their words, and what all failures share. Those of an area stand in
-//! its module: names of programs in `scripts`, places in `server`, the tree in `program/rest`. What a program does wrong
-//! is the text of its engine.
+//! Owns the failures of the processes of trikd and their words. Those of an area stand in its module: names of programs
+//! in `scripts`, places in `server`, the tree in `program/rest`, ends of programs in `engine`.
 
+use crate::blame::{Blame, Os};
+use crate::display::Unshown;
+use crate::engine;
 use crate::program::rest;
 use crate::status;
 use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
-
-/// Whoever can change something about a failure.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Blame {
-    /// Whoever starts trikd, or asks it on its machine.
-    Operator,
-    /// A client: what it asks for cannot be done.
-    Client,
-    /// The mounted tree, or its mount.
-    Tree,
-    /// The machine: its kernel, its disk, its memory.
-    System,
-    /// trikd itself.
-    Trikd,
-}
-
-/// A failure of the system. Unlike [`io::Error`] it can be kept, compared and told to several.
-#[derive(Clone, Debug, Eq, PartialEq)]
-pub struct Os {
-    /// Its kind.
-    pub kind: io::ErrorKind,
-    /// Its number, if it is one of the kernel.
-    pub errno: Option<i32>,
-    text: String,
-}
-
-impl From<io::Error> for Os {
-    fn from(error: io::Error) -> Self {
-        Self {
-            kind: error.kind(),
-            errno: error.raw_os_error(),
-            text: error.to_string(),
-        }
-    }
-}
-
-impl From<nix::Error> for Os {
-    fn from(error: nix::Error) -> Self {
-        Self {
-            kind: io::Error::from(error).kind(),
-            errno: Some(error as i32),
-            text: error.to_string(),
-        }
-    }
-}
-
-impl fmt::Display for Os {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(&self.text)
-    }
-}
 
 /// Why programs cannot be run as the user of this name.
 #[derive(Clone, Debug, Eq, PartialEq)]
@@ -125,12 +76,14 @@ pub enum Error {
     Rest(rest::Failure),
     /// A question to the running trikd.
     Ask(status::Unanswered),
-    /// Orders for the display, or a program in this terminal: told in the words of `display` and `js`.
-    Program(String),
+    /// Orders for the display.
+    Display(Unshown),
+    /// A program in this terminal.
+    Program(engine::Failure),
 }
 
 impl Error {
-    /// Whoever can change something about it.
+    /// Who can change something about it.
     pub fn blame(&self) -> Blame {
         match self {
             Self::Directory(..)
@@ -140,7 +93,9 @@ impl Error {
             | Self::NoProgram
             | Self::NoCommand(_)
             | Self::Ask(_) => Blame::Operator,
-            Self::Execute(..) | Self::Program(_) => Blame::Client,
+            Self::Execute(..) => Blame::Client,
+            Self::Display(why) => why.blame(),
+            Self::Program(failure) => failure.blame(),
             Self::Rest(_) => Blame::Tree,
             Self::Os(_)
             | Self::File(..)
@@ -213,7 +168,8 @@ impl fmt::Display for Error {
             Self::NoCommand(name) => write!(out, "there is no command {name}"),
             Self::Rest(failure) => write!(out, "{failure}"),
             Self::Ask(why) => write!(out, "{why}"),
-            Self::Program(text) => out.write_str(text),
+            Self::Display(why) => write!(out, "{why}"),
+            Self::Program(failure) => write!(out, "{failure}"),
         }
     }
 }
@@ -258,13 +214,6 @@ fn user_text(out: &mut fmt::Formatter<'_>, name: &str, why: &BadUser) -> fmt::Re
 }
 
 impl std::error::Error for Error {}
-
-/// For callers whose own errors are texts.
-impl From<Error> for String {
-    fn from(error: Error) -> Self {
-        error.to_string()
-    }
-}
 
 impl From<rest::Failure> for Error {
     fn from(failure: rest::Failure) -> Self {

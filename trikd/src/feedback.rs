@@ -69,12 +69,13 @@ fn serve(root: &Path, shown: &Receiver<Moment>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scratch::Scratch;
+    use harness::put;
+    use tempfile::tempdir;
 
     #[test]
     fn moments_are_shown_in_order_and_what_is_missing_stops_nothing() {
-        let scratch = Scratch::new("feedback");
-        let green = scratch.file("led/green/value", "0\n");
+        let scratch = tempdir().unwrap();
+        let green = put(scratch.path(), "led/green/value", "0\n");
         let (show, shown) = sync_channel(2);
         show.send(Moment::Uploaded).unwrap();
         show.send(Moment::Ended).unwrap();

@@ -5,7 +5,7 @@
 
 pub mod events;
 pub mod failure;
-
+pub mod files;
 pub mod machine;
 pub mod natives;
 pub mod outside;
@@ -16,11 +16,9 @@ pub mod source;
 pub mod wording;
 
 use crate::brick::Brick;
-use crate::engine::{Engine, Outcome, Start};
+use crate::engine::{Engine, Failure, Outcome, Start};
 use crate::host::Host;
-use crate::limits;
 use outside::{Alone, Daemon, Terminal};
-use std::io::Read;
 use std::path::Path;
 
 /// Runs JavaScript.
@@ -32,7 +30,7 @@ impl Engine for JavaScript {
         let daemon = Daemon::new(host);
         let output = daemon
             .output()
-            .map_err(|error| format!("no way to the daemon: {error}"))?;
+            .map_err(|error| Failure::NoWay(error.into()))?;
         session::run(start, brick.tree().root(), &daemon, Box::new(output))
     }
 }
@@ -45,10 +43,10 @@ pub fn engine() -> impl Engine {
 /// Runs a program without a daemon: output goes to the terminal, and the mailbox knows only this robot.
 ///
 /// # Errors
-/// The text of the failure, as a daemon would show it behind `error: `.
+/// The failure, whose text a daemon would show behind `error: `.
 pub fn run_alone(file: &Path, tree: &Path) -> Outcome {
     let file = std::path::absolute(file)
-        .map_err(|error| format!("{}: where is it? {error}", file.display()))?;
+        .map_err(|error| Failure::Nowhere(file.to_owned(), error.into()))?;
     let outcome = session::run(
         Start::File(file),
         tree,
@@ -57,13 +55,8 @@ pub fn run_alone(file: &Path, tree: &Path) -> Outcome {
     );
     let brick = Brick::new(tree);
     if brick.tree().root().join("stop").exists() {
-        let rested = brick.stop().map_err(|error| {
-            format!(
-                "{}/stop: the motors may still turn: {error}",
-                tree.display()
-            )
-        });
-        outcome.and(rested)
+        let rested = brick.stop();
+        outcome.and(rested.map_err(|error| Failure::Stop(tree.to_owned(), error.into())))
     } else {
         outcome
     }
@@ -72,7 +65,7 @@ pub fn run_alone(file: &Path, tree: &Path) -> Outcome {
 /// Runs one line beside another program: nothing is brought to rest at its end.
 ///
 /// # Errors
-/// The text of the failure.
+/// The failure of the program.
 pub fn run_line(line: String, tree: &Path) -> Outcome {
     session::run(
         Start::Script(line),
@@ -80,27 +73,4 @@ pub fn run_line(line: String, tree: &Path) -> Outcome {
         &Alone::default(),
         Box::new(Terminal),
     )
-}
-
-/// The text of a program or of a file that it includes.
-///
-/// # Errors
-/// Why it cannot be read, with its place.
-pub fn read_text(path: &Path) -> Result<String, String> {
-    let place = path.display();
-    let file =
-        std::fs::File::open(path).map_err(|error| format!("{place}: cannot be opened: {error}"))?;
-    let mut bytes = Vec::new();
-    file.take(limits::JS_FILE_BYTES + 1)
-        .read_to_end(&mut bytes)
-        .map_err(|error| format!("{place}: cannot be read: {error}"))?;
-    if bytes.len() as u64 > limits::JS_FILE_BYTES {
-        return Err(format!(
-            "{place}: longer than {} MiB",
-            limits::JS_FILE_BYTES >> 20
-        ));
-    }
-    // Editors of Windows put a mark in front.
-    let text = String::from_utf8_lossy(&bytes);
-    Ok(text.strip_prefix('\u{feff}').unwrap_or(&text).to_owned())
 }

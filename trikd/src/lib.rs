@@ -5,6 +5,7 @@
 //! child's side, `brick` and `tree` are the robot.
 
 pub mod access;
+pub mod blame;
 pub mod brick;
 pub mod cli;
 pub mod clients;
@@ -32,8 +33,6 @@ pub mod priority;
 pub mod program;
 pub mod protocol;
 pub mod sampler;
-#[doc(hidden)]
-pub mod scratch;
 pub mod scripts;
 pub mod server;
 pub mod settings;

@@ -118,7 +118,11 @@ pub const REST_ASKS: usize = 16;
 pub const LINE_BYTES: usize = 4096;
 /// Messages of one program in a second, and how many may come at once.
 pub const OUTPUT_MESSAGES_PER_SECOND: f64 = 1000.0;
+/// Messages beyond that which wait, of which the newest are shown when there is room, or at the end of the program.
+pub const OUTPUT_HELD_MESSAGES: usize = 200;
 /// Bytes of these.
+pub const OUTPUT_HELD_BYTES: usize = 64 << 10;
+/// Bytes of messages in a second.
 pub const OUTPUT_BYTES_PER_SECOND: f64 = 262_144.0;
 /// Commands that wait for the one who runs programs.
 pub const COMMANDS: usize = 32;

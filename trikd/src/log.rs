@@ -39,7 +39,7 @@ impl Default for Filter {
 /// A text that is no filter.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub enum NoFilter {
-    /// A word in the place of a level.
+    /// A word instead of a level.
     Level(String),
     /// Nothing that lines are about.
     Target(String),

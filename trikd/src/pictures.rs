@@ -3,8 +3,11 @@
 //! Owns the thread that reads while somebody watches, so that ten viewers cost the camera and the tree as much as one.
 //! Pictures are JPEG files in [`PICTURES`], which the tree fills up with zero bytes; each reading gives the newest one.
 
+use crate::blame::{Blame, Os};
 use crate::limits;
+use screen::Fault;
 use screen::{Pixels, picture};
+use std::fmt;
 use std::fs::File;
 use std::io;
 use std::os::unix::fs::FileExt;
@@ -16,10 +19,71 @@ use tokio::sync::watch;
 /// Where the tree has the newest picture.
 pub const PICTURES: &str = "camera/picture/bin_data";
 
-/// A JPEG file, or why there is none; nothing before the first.
-pub type Newest = Option<Result<Arc<[u8]>, String>>;
+/// Why there is no picture.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum NoPicture {
+    /// The tree gives none: its file, and what it says of the fault, if anything.
+    Tree(PathBuf, Os, String),
+    /// What it gives is none.
+    Strange(PathBuf, Fault),
+    /// A judge's robot has none.
+    Simulated,
+    /// Nothing has come from the camera yet.
+    NoneYet,
+    /// The camera has given nothing for so many seconds.
+    Silent(u64),
+    /// Nobody can read: there can be no more threads.
+    NoReader(Os),
+    /// trikd ends.
+    End,
+}
 
-/// Whoever wants to watch asks here.
+impl NoPicture {
+    /// A failure with what the tree says of it.
+    fn of(path: &Path, error: io::Error) -> Self {
+        let fault = std::fs::read_to_string(path.with_file_name("fault")).unwrap_or_default();
+        Self::Tree(path.to_owned(), error.into(), fault.trim().to_owned())
+    }
+
+    /// Who can change something about it.
+    pub fn blame(&self) -> Blame {
+        match self {
+            Self::Tree(..) | Self::Strange(..) | Self::NoneYet | Self::Silent(_) => Blame::Tree,
+            Self::Simulated => Blame::Client,
+            Self::NoReader(_) => Blame::System,
+            Self::End => Blame::Operator,
+        }
+    }
+}
+
+impl fmt::Display for NoPicture {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Tree(path, os, fault) => {
+                write!(out, "{}: {os}", path.display())?;
+                match fault.as_str() {
+                    "" => Ok(()),
+                    fault => write!(out, " ({fault})"),
+                }
+            }
+            Self::Strange(path, why) => write!(out, "{}: {why}", path.display()),
+            Self::Simulated => out.write_str("the simulated robot has no picture of its camera"),
+            Self::NoneYet => out.write_str("there is no picture yet"),
+            Self::Silent(seconds) => {
+                write!(out, "the camera has given nothing for {seconds} s")
+            }
+            Self::NoReader(os) => write!(out, "{os}"),
+            Self::End => out.write_str("trikd ends"),
+        }
+    }
+}
+
+impl std::error::Error for NoPicture {}
+
+/// A JPEG file, or why there is none; nothing before the first.
+pub type Newest = Option<Result<Arc<[u8]>, NoPicture>>;
+
+/// A client that wants to watch asks here.
 #[derive(Debug)]
 pub struct Pictures {
     path: PathBuf,
@@ -72,7 +136,7 @@ fn read_for(path: &Path, newest: &watch::Sender<Newest>, reads: &Mutex<bool>) {
         let mut reads = reads.lock().unwrap_or_else(PoisonError::into_inner);
         match read {
             Err(error) => {
-                newest.send_replace(Some(Err(because(path, &error))));
+                newest.send_replace(Some(Err(NoPicture::of(path, error))));
                 *reads = false;
             }
             Ok(bytes) => {
@@ -112,34 +176,26 @@ fn one(file: &File) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// A failure with what the tree says of it.
-fn because(path: &Path, error: &io::Error) -> String {
-    let fault = std::fs::read_to_string(path.with_file_name("fault")).unwrap_or_default();
-    match fault.trim() {
-        "" => format!("{}: {error}", path.display()),
-        fault => format!("{}: {error} ({fault})", path.display()),
-    }
-}
-
 /// One picture for a program. Waits for a camera that has to be started.
 ///
 /// # Errors
 /// The tree has no camera, the camera gives nothing, or what it gives is no picture.
-pub fn photo(root: &Path) -> Result<Pixels, String> {
+pub fn photo(root: &Path) -> Result<Pixels, NoPicture> {
     let path = root.join(PICTURES);
     let read = File::open(&path).and_then(|file| one(&file));
-    let bytes = read.map_err(|error| because(&path, &error))?;
-    picture::decode(&bytes).map_err(|reason| format!("{}: {reason}", path.display()))
+    let bytes = read.map_err(|error| NoPicture::of(&path, error))?;
+    picture::decode(&bytes).map_err(|why| NoPicture::Strange(path, why))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scratch::Scratch;
+    use harness::put;
+    use tempfile::tempdir;
 
     const ONE: &[u8] = b"\xff\xd8one\xff\xd9";
 
-    fn wait(watcher: &mut watch::Receiver<Newest>) -> Result<Arc<[u8]>, String> {
+    fn wait(watcher: &mut watch::Receiver<Newest>) -> Result<Arc<[u8]>, NoPicture> {
         let deadline = Instant::now() + Duration::from_secs(20);
         loop {
             if watcher.has_changed().unwrap() {
@@ -152,8 +208,8 @@ mod tests {
 
     #[test]
     fn all_who_watch_share_one_reader_which_ends_with_the_last() {
-        let scratch = Scratch::new("pictures");
-        scratch.file(PICTURES, [ONE, &[0; 99]].concat());
+        let scratch = tempdir().unwrap();
+        put(scratch.path(), PICTURES, [ONE, &[0; 99]].concat());
         let pictures = Pictures::new(scratch.path());
         let mut watchers: Vec<_> = (0..5).map(|_| pictures.watch().unwrap()).collect();
         for watcher in &mut watchers {
@@ -173,19 +229,26 @@ mod tests {
 
     #[test]
     fn without_a_camera_there_is_a_reason() {
-        let scratch = Scratch::new("pictures");
+        let scratch = tempdir().unwrap();
         let pictures = Pictures::new(scratch.path());
-        let told = wait(&mut pictures.watch().unwrap()).unwrap_err();
+        let told = wait(&mut pictures.watch().unwrap())
+            .unwrap_err()
+            .to_string();
         assert!(told.contains(PICTURES), "{told}");
-        assert!(photo(scratch.path()).unwrap_err().contains(PICTURES));
-        scratch.file("camera/picture/fault", "device: unplugged\n");
-        scratch.file(PICTURES, [0; 10]);
-        let told = photo(scratch.path()).unwrap_err();
+        let why = || photo(scratch.path()).unwrap_err().to_string();
+        assert!(why().contains(PICTURES));
+        put(
+            scratch.path(),
+            "camera/picture/fault",
+            "device: unplugged\n",
+        );
+        put(scratch.path(), PICTURES, [0; 10]);
+        let told = why();
         assert!(
             told.ends_with("the picture is empty (device: unplugged)"),
             "{told}"
         );
-        scratch.file(PICTURES, ONE);
-        assert!(photo(scratch.path()).unwrap_err().contains("JPEG"));
+        put(scratch.path(), PICTURES, ONE);
+        assert!(why().contains("JPEG"));
     }
 }

@@ -128,6 +128,7 @@ impl Supervisor {
                 }
                 _ = period.tick(), if self.current.is_some() => {
                     self.send_watch();
+                    self.show_held();
                     self.count_processes().await;
                 }
             }
@@ -199,7 +200,9 @@ impl Supervisor {
             self.end(Cause::Ordered("a direct command")).await;
             let language = match self.last {
                 Language::Python => Language::Python,
-                Language::JavaScript | Language::Diagram | Language::Native => Language::JavaScript,
+                Language::JavaScript | Language::Diagram | Language::Lua | Language::Native => {
+                    Language::JavaScript
+                }
             };
             self.start(
                 language,
@@ -357,12 +360,25 @@ impl Supervisor {
         while !text.is_char_boundary(end) {
             end -= 1;
         }
+        let message = format!("{kind}: {}", &text[..end]);
+        let shown = current.meter.offer(message, now);
+        self.show_held();
+        if let Some(message) = shown {
+            self.broadcast(&message);
+        }
+    }
+
+    /// Shows what was held back and may be shown by now.
+    fn show_held(&mut self) {
+        let Some(current) = &mut self.current else {
+            return;
+        };
+        let now = Instant::now();
         let dropped = current.meter.take_dropped(now, false);
-        if current.meter.admits(end, now) {
-            self.report_dropped(dropped);
-            self.broadcast(&format!("{kind}: {}", &text[..end]));
-        } else {
-            self.report_dropped(dropped);
+        let held: Vec<_> = std::iter::from_fn(|| current.meter.release(now, false)).collect();
+        self.report_dropped(dropped);
+        for message in held {
+            self.broadcast(&message);
         }
     }
 
@@ -485,8 +501,13 @@ impl Supervisor {
     }
 
     fn show_last(&self, current: &mut Current, kind: &str, text: &str) {
-        if text.len() <= limits::MESSAGE_BYTES && current.meter.admits(text.len(), Instant::now()) {
-            self.broadcast(&format!("{kind}: {text}"));
+        if text.len() <= limits::MESSAGE_BYTES {
+            let shown = current
+                .meter
+                .offer(format!("{kind}: {text}"), Instant::now());
+            if let Some(message) = shown {
+                self.broadcast(&message);
+            }
         }
     }
 
@@ -515,7 +536,11 @@ impl Supervisor {
     }
 
     fn report_end(&self, current: &mut Current, cause: &Cause) {
-        self.report_dropped(current.meter.take_dropped(Instant::now(), true));
+        let now = Instant::now();
+        self.report_dropped(current.meter.take_dropped(now, true));
+        while let Some(message) = current.meter.release(now, true) {
+            self.broadcast(&message);
+        }
         let name = &current.name;
         let seconds = current.since.elapsed().as_secs_f64();
         let end = match cause {

@@ -17,8 +17,9 @@ use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::{Duration, Instant};
 use tokio::sync::watch;
 
-/// A snapshot and when it was taken; None before the first.
-type Newest = Option<(Instant, Arc<Snapshot>)>;
+/// A snapshot and when it was taken; None before the first. One without a time has the names of ports alone: the first
+/// reading takes as long as the slowest device.
+type Newest = Option<(Option<Instant>, Arc<Snapshot>)>;
 
 /// A snapshot and the frame that was made of it.
 type Answer = (Arc<Snapshot>, Rc<[u8]>);
@@ -57,19 +58,20 @@ impl Sampler {
         let fresh = Duration::from_millis(limits::SNAPSHOT_MS);
         let mut newest = self.newest.clone();
         let known = newest.borrow_and_update().clone();
-        if let Some((at, snapshot)) = &known
+        if let Some((Some(at), snapshot)) = &known
             && at.elapsed() < fresh
         {
             return snapshot.clone();
         }
         // Full: it is asked already.
         let _ = self.ask.try_send(());
-        let wait = Duration::from_millis(limits::SNAPSHOT_WAIT_MS);
-        if let Ok(Ok(())) = tokio::time::timeout(wait, newest.changed()).await
-            && let Some((_, snapshot)) = &*newest.borrow()
-        {
-            return snapshot.clone();
+        let until = tokio::time::Instant::now() + Duration::from_millis(limits::SNAPSHOT_WAIT_MS);
+        while let Ok(Ok(())) = tokio::time::timeout_at(until, newest.changed()).await {
+            if let Some((Some(_), snapshot)) = &*newest.borrow_and_update() {
+                return snapshot.clone();
+            }
         }
+        let known = newest.borrow().clone();
         Arc::new(known.map_or_else(Snapshot::default, |(_, snapshot)| without_values(&snapshot)))
     }
 }
@@ -106,6 +108,14 @@ fn without_values(snapshot: &Snapshot) -> Snapshot {
     }
 }
 
+/// Gives clients the names of all ports if they have nothing yet.
+fn name_ports(files: &Files, publish: &watch::Sender<Newest>) {
+    if publish.borrow().is_none() && !files.ports.is_empty() {
+        // Only a daemon that is ending does not take it, and the next snapshot finds that out.
+        let _ = publish.send(Some((None, Arc::new(files.names()))));
+    }
+}
+
 fn sample(root: &Path, asked: &Receiver<()>, publish: &watch::Sender<Newest>) {
     let brick = Brick::new(root);
     let mut files = Files::find(&brick);
@@ -114,13 +124,17 @@ fn sample(root: &Path, asked: &Receiver<()>, publish: &watch::Sender<Newest>) {
         if files.ports.is_empty() {
             files = Files::find(&brick);
         }
+        name_ports(&files, publish);
         let period = Duration::from_millis(limits::RAW_MS);
         let with_raw = raw_at.is_none_or(|at| at.elapsed() >= period);
         if with_raw {
             raw_at = Some(Instant::now());
         }
         let snapshot = Arc::new(files.read(with_raw));
-        if publish.send(Some((Instant::now(), snapshot))).is_err() {
+        if publish
+            .send(Some((Some(Instant::now()), snapshot)))
+            .is_err()
+        {
             return;
         }
     }
@@ -166,6 +180,15 @@ fn all_whole(numbers: &[f64]) -> telemetry::Reading {
     numbers.iter().copied().map(whole).collect()
 }
 
+/// The list of a snapshot to which a port belongs.
+fn list_of<'a>(snapshot: &'a mut Snapshot, port: &str) -> &'a mut Vec<Port> {
+    match port.as_bytes().first() {
+        Some(b'D' | b'F') => &mut snapshot.digital,
+        Some(b'A') => &mut snapshot.analog,
+        _ => &mut snapshot.encoders,
+    }
+}
+
 impl Files {
     fn find(brick: &Brick) -> Self {
         let tree = brick.tree();
@@ -197,6 +220,18 @@ impl Files {
         }
     }
 
+    /// All ports without values.
+    fn names(&self) -> Snapshot {
+        let mut snapshot = Snapshot::default();
+        for port in &self.ports {
+            list_of(&mut snapshot, &port.name).push(Port {
+                name: port.name.clone(),
+                ..Port::default()
+            });
+        }
+        snapshot
+    }
+
     fn read(&mut self, with_raw: bool) -> Snapshot {
         let mut snapshot = Snapshot::default();
         for port in &mut self.ports {
@@ -208,12 +243,7 @@ impl Files {
             if is_distance && value.is_none() && port.last_raw == whole(NO_ECHO) {
                 value = port.last_raw;
             }
-            let list = match port.name.as_bytes()[0] {
-                b'D' | b'F' => &mut snapshot.digital,
-                b'A' => &mut snapshot.analog,
-                _ => &mut snapshot.encoders,
-            };
-            list.push(Port {
+            list_of(&mut snapshot, &port.name).push(Port {
                 name: port.name.clone(),
                 value,
                 raw: port.last_raw,
@@ -259,11 +289,12 @@ impl Files {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scratch::Scratch;
+    use harness::put;
+    use tempfile::tempdir;
 
     #[test]
     fn a_snapshot_has_what_can_be_read_and_leaves_empty_what_cannot() {
-        let scratch = Scratch::new("sampler");
+        let scratch = tempdir().unwrap();
         for (file, content) in [
             ("sensors/A1/value", "27"),
             ("sensors/A1/raw", "281"),
@@ -275,7 +306,7 @@ mod tests {
             ("accelerometer/value", "1 2 1000"),
             ("keys/value", "0 1 0 0 0 0 1"),
         ] {
-            scratch.file(file, content);
+            put(scratch.path(), file, content);
         }
         let runtime = tokio::runtime::Builder::new_current_thread()
             .enable_time()
@@ -291,9 +322,26 @@ mod tests {
         );
     }
 
+    /// A device may take longer than a client waits.
+    #[test]
+    fn ports_have_names_before_any_device_has_answered() {
+        let scratch = tempdir().unwrap();
+        for file in ["sensors/A1/value", "sensors/D2/value", "encoders/E1/value"] {
+            put(scratch.path(), file, "1");
+        }
+        let (publish, newest) = watch::channel(None);
+        name_ports(&Files::find(&Brick::new(scratch.path())), &publish);
+        let (at, snapshot) = newest.borrow().clone().unwrap();
+        assert_eq!(at, None);
+        assert_eq!(
+            snapshot.port_names(),
+            "ports:analog:A1;digital:D2;special:;encoders:E1"
+        );
+    }
+
     #[test]
     fn a_tree_that_comes_later_is_found() {
-        let scratch = Scratch::new("sampler");
+        let scratch = tempdir().unwrap();
         let runtime = tokio::runtime::Builder::new_current_thread()
             .enable_time()
             .build()
@@ -301,8 +349,9 @@ mod tests {
         let sampler = Sampler::start(scratch.path()).unwrap();
         let names = || runtime.block_on(sampler.snapshot()).port_names();
         assert_eq!(names(), "ports:analog:;digital:;special:;encoders:");
-        scratch.file("sensors/A1/value", "1");
-        std::thread::sleep(Duration::from_millis(limits::SNAPSHOT_MS));
-        assert_eq!(names(), "ports:analog:A1;digital:;special:;encoders:");
+        put(scratch.path(), "sensors/A1/value", "1");
+        harness::eventually("the tree is found", || {
+            names() == "ports:analog:A1;digital:;special:;encoders:"
+        });
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Knows nothing of requests and languages.
 
-use crate::error::{Blame, Os};
+use crate::blame::{Blame, Os};
 use crate::limits;
 use std::fmt;
 use std::fs::{self, DirBuilder, File, OpenOptions};
@@ -55,7 +55,7 @@ pub enum Refusal {
 }
 
 impl Refusal {
-    /// Whoever can change something about it.
+    /// Who can change something about it.
     pub fn blame(&self) -> Blame {
         match self {
             Self::Name(..)
@@ -260,7 +260,7 @@ pub fn find(folder: &Path, name: &[u8]) -> Result<PathBuf, Refusal> {
     Ok(path)
 }
 
-/// Replaces a file: whoever reads it finds the old content or the new one, also after a power cut.
+/// Replaces a file: a reader finds the old content or the new one, also after a power cut.
 ///
 /// # Errors
 /// Those of the file system; the old file is as it was.
@@ -292,7 +292,8 @@ fn write(path: &Path, content: &[u8], mode: u32) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scratch::Scratch;
+    use harness::put;
+    use tempfile::tempdir;
 
     #[test]
     fn names_that_lead_elsewhere_are_refused_with_a_reason() {
@@ -328,7 +329,7 @@ mod tests {
 
     #[test]
     fn uploads_are_whole_binary_and_in_folders_that_are_made() {
-        let scratch = Scratch::new("scripts");
+        let scratch = tempdir().unwrap();
         let folder = scratch.path().join("new/scripts");
         let path = keep(&folder, b"a/b.bin", b"x\0\xff").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"x\0\xff");
@@ -360,9 +361,9 @@ mod tests {
 
     #[test]
     fn links_lead_nowhere() {
-        let scratch = Scratch::new("scripts");
+        let scratch = tempdir().unwrap();
         let folder = scratch.path().join("scripts");
-        scratch.file("outside/x.js", "");
+        put(scratch.path(), "outside/x.js", "");
         fs::create_dir_all(&folder).unwrap();
         std::os::unix::fs::symlink(scratch.path().join("outside"), folder.join("l")).unwrap();
         assert!(
@@ -398,7 +399,7 @@ mod tests {
     #[test]
     fn a_folder_that_becomes_a_link_while_an_upload_comes_leads_nowhere() {
         use std::sync::atomic::AtomicBool;
-        let scratch = Scratch::new("scripts");
+        let scratch = tempdir().unwrap();
         let (folder, outside) = (
             scratch.path().join("scripts"),
             scratch.path().join("outside"),
@@ -432,8 +433,8 @@ mod tests {
 
     #[test]
     fn a_file_that_cannot_be_replaced_stays_as_it_was() {
-        let scratch = Scratch::new("scripts");
-        scratch.file("d/keep", "old");
+        let scratch = tempdir().unwrap();
+        put(scratch.path(), "d/keep", "old");
         assert!(replace(&scratch.path().join("d"), b"new", 0o644).is_err());
         assert!(replace(&scratch.path().join("none/x"), b"new", 0o644).is_err());
         assert_eq!(fs::read_dir(scratch.path()).unwrap().count(), 1);

@@ -143,7 +143,7 @@ pub struct Seats {
     limit: usize,
 }
 
-/// Why there is no place for a connection; whoever connects is to blame.
+/// Why there is no place for a connection; the client is to blame.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Full {
     /// All of so many are taken.

@@ -1,10 +1,10 @@
 //! What `trikd status` shows and `trikd pair` asks for, over a socket in the file system.
 //!
-//! Owns that socket: whoever may open it may look and pair.
+//! Owns that socket: a user who may open it may look and pair.
 
 use crate::access::Access;
+use crate::blame::Os;
 use crate::clients::Clients;
-use crate::error::Os;
 use crate::limits;
 use crate::program::Programs;
 use crate::program::child::Owner;
@@ -52,7 +52,7 @@ pub struct Status {
     pub memory_mib: u64,
     /// Processes of one program.
     pub processes: u64,
-    /// Whoever runs programs.
+    /// The part that runs programs.
     pub programs: Rc<Programs>,
     /// Messages between robots.
     pub mailbox: Rc<Mailbox>,
@@ -121,7 +121,7 @@ async fn answer(status: &Status, mut stream: UnixStream) -> io::Result<()> {
     stream.write_all(text.as_bytes()).await
 }
 
-/// Why a question has no answer; whoever asks is to blame.
+/// Why a question has no answer; the caller is to blame.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub enum Unanswered {
     /// The socket of the running trikd.

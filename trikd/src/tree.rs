@@ -58,7 +58,7 @@ pub struct Node {
     path: PathBuf,
     access: Access,
     file: RefCell<Option<File>>,
-    /// Who answers in the place of a file, and the path that he knows.
+    /// Who answers instead of a file, and the path that he knows.
     answers: Option<(Rc<dyn Answers>, String)>,
 }
 
@@ -306,7 +306,7 @@ impl Node {
         }
     }
 
-    /// The time of day of whoever reads the tree, in microseconds of the epoch.
+    /// The time of day of the reader of the tree, in microseconds of the epoch.
     pub fn now_us(&self) -> u128 {
         match &self.answers {
             Some((answers, _)) => answers.now_us(),
@@ -325,12 +325,13 @@ impl Node {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scratch::Scratch;
+    use harness::put;
+    use tempfile::tempdir;
 
     #[test]
     fn numbers_come_fresh_from_a_file_that_stays_open() {
-        let scratch = Scratch::new("tree");
-        let file = scratch.file("g/n/value", "1 -2.5 3\n");
+        let scratch = tempdir().unwrap();
+        let file = put(scratch.path(), "g/n/value", "1 -2.5 3\n");
         let tree = Tree::new(scratch.path());
         let node = tree.node("g/n/value", Access::Read);
         let mut numbers = [0.0; 8];
@@ -345,9 +346,9 @@ mod tests {
 
     #[test]
     fn what_is_no_number_is_an_error_and_no_zero() {
-        let scratch = Scratch::new("tree");
-        scratch.file("value", "fast\n");
-        scratch.file("empty", "");
+        let scratch = tempdir().unwrap();
+        put(scratch.path(), "value", "fast\n");
+        put(scratch.path(), "empty", "");
         let tree = Tree::new(scratch.path());
         assert!(tree.node("value", Access::Read).number().is_err());
         assert!(tree.node("empty", Access::Read).number().is_err());

@@ -2,7 +2,7 @@
 //!
 //! Owns the one copy of that arithmetic.
 
-/// Copies what `content` has from `offset` on; returns how much that was, 0 behind the end.
+/// Copies what `content` has from `offset` on; returns how much that was, 0 after the end.
 pub fn copy_at(content: &[u8], offset: u64, out: &mut [u8]) -> usize {
     let rest = usize::try_from(offset)
         .ok()

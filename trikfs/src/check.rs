@@ -10,7 +10,7 @@ use config::limits::CONFIG_BYTES_MAX;
 use config::load::{Loaded, Loader};
 use config::problem::Problem;
 use std::collections::{BTreeSet, HashMap};
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 /// Where a configuration finds what it names.
@@ -26,27 +26,20 @@ pub struct SearchPaths {
 }
 
 /// Reads a configuration file, no more of it than a configuration may have.
-pub fn read_config(file: &Path) -> Result<Vec<u8>, String> {
-    let failed = |error: std::io::Error| format!("{}: {error}", file.display());
-    let opened = std::fs::File::open(file).map_err(failed)?;
+pub fn read_config(file: &Path) -> io::Result<Vec<u8>> {
+    let opened = std::fs::File::open(file)?;
     let mut bytes = Vec::new();
     opened
         .take(CONFIG_BYTES_MAX as u64 + 1)
-        .read_to_end(&mut bytes)
-        .map_err(failed)?;
+        .read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
 /// Loads a configuration file; libraries are not touched yet.
 pub(crate) fn load(file: &Path, paths: &SearchPaths) -> Result<Loaded, Problem> {
     let name = file.display().to_string();
-    let bytes = read_config(file).map_err(|reason| {
-        let reason = reason
-            .strip_prefix(&format!("{name}: "))
-            .unwrap_or(&reason)
-            .to_owned();
-        Problem::new(name.clone(), 0, reason)
-    })?;
+    let bytes =
+        read_config(file).map_err(|error| Problem::new(name.clone(), 0, error.to_string()))?;
     let loader = Loader {
         include_dirs: paths.include_dirs.clone(),
         library_dirs: paths.library_dirs.clone(),

@@ -1,4 +1,4 @@
-//! The command line: what can be said, and which part of the crate does it.
+//! The command line: the commands and options, and which part of the crate does each.
 //!
 //! Owns the words, the help and the exit codes: 0 done, 1 refused or failed, 2 not understood. `run` mounts and serves,
 //! `author` has the commands for authors of converters, `paths` knows where files are looked for, `edit` changes the
@@ -16,6 +16,7 @@ pub use paths::find_shipped;
 
 use crate::check::SearchPaths;
 use crate::daemon::Transport;
+use crate::failure::Failure;
 use crate::guardian::inherit::Handover;
 use crate::mount::{self, Unmounted};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -197,22 +198,6 @@ struct CheckArgs {
     file: PathBuf,
 }
 
-/// Why a command did not do what it should.
-enum Failure {
-    /// Printed after the name of the program.
-    Reason(String),
-    /// Printed as it is, so that editors find the place.
-    Problem(Problem),
-    /// Another process has printed it.
-    Told,
-}
-
-impl From<String> for Failure {
-    fn from(reason: String) -> Self {
-        Self::Reason(reason)
-    }
-}
-
 /// The program: reads the arguments of the process, does it, gives the exit code.
 pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
@@ -222,13 +207,13 @@ pub fn main() -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
-    let text = match perform(cli.command) {
+    match perform(cli.command) {
         Ok(()) => return ExitCode::SUCCESS,
-        Err(Failure::Reason(reason)) => format!("trikfs: {reason}"),
-        Err(Failure::Problem(problem)) => problem.to_string(),
-        Err(Failure::Told) => return ExitCode::FAILURE,
-    };
-    let _ = writeln!(io::stderr(), "{text}");
+        Err(Failure::Reported) => {}
+        Err(failure) => {
+            let _ = writeln!(io::stderr(), "trikfs: {failure}");
+        }
+    }
     ExitCode::FAILURE
 }
 
@@ -249,9 +234,9 @@ fn perform(command: Command) -> Result<(), Failure> {
                 );
                 Ok(())
             }
-            Err(error) => Err(Failure::Reason(error.to_string())),
+            Err(error) => Err(error.into()),
         },
-        Command::Edit { mountpoint } => edit::edit(&mountpoint).map_err(Failure::Reason),
+        Command::Edit { mountpoint } => edit::edit(&mountpoint),
         #[cfg(feature = "manual")]
         Command::Completions { shell } => print(&manual::completions(shell)),
         #[cfg(feature = "manual")]
@@ -260,8 +245,15 @@ fn perform(command: Command) -> Result<(), Failure> {
 }
 
 fn check(args: CheckArgs) -> Result<(), Failure> {
-    let warnings = crate::check::check(&args.file, &args.search.paths()?, &progress)
-        .map_err(Failure::Problem)?;
+    let paths = args.search.paths()?;
+    let warnings = match crate::check::check(&args.file, &paths, &progress) {
+        Ok(warnings) => warnings,
+        Err(problem) => {
+            // Without the name of the program, so that editors find the place.
+            let _ = writeln!(io::stderr(), "{problem}");
+            return Err(Failure::Reported);
+        }
+    };
     let mut text = String::new();
     for warning in &warnings {
         let reason = format!("warning: {}", warning.reason);
@@ -289,7 +281,7 @@ fn print(text: &[u8]) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     match out.write_all(text).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Failure::Reason(format!("standard output: {error}")))
+            Err(Failure::system("standard output", error))
         }
         _ => Ok(()),
     }
@@ -308,15 +300,19 @@ fn group_id(text: &str) -> Result<u32, String> {
 }
 
 impl SearchArgs {
-    fn paths(&self) -> Result<SearchPaths, String> {
+    fn paths(&self) -> Result<SearchPaths, Failure> {
         let root = self.device_root.as_deref().map(device_root).transpose()?;
-        paths::search_paths(self.include.clone(), self.cache.as_deref(), root)
+        Ok(paths::search_paths(
+            self.include.clone(),
+            self.cache.as_deref(),
+            root,
+        )?)
     }
 }
 
 impl TreeArgs {
     /// The same with paths that mean the same from everywhere.
-    fn absolute(self) -> Result<Self, String> {
+    fn absolute(self) -> Result<Self, Failure> {
         Ok(Self {
             config: self.config.map(|path| absolute(&path)).transpose()?,
             search: SearchArgs {
@@ -374,15 +370,16 @@ impl TreeArgs {
 }
 
 /// The root of a virtual board, which must be there: a mistyped one would make every device a missing one.
-fn device_root(path: &Path) -> Result<PathBuf, String> {
+fn device_root(path: &Path) -> Result<PathBuf, Failure> {
     if !path.is_dir() {
-        return Err(format!("--device-root {}: not a directory", path.display()));
+        let what = format!("--device-root {}: not a directory", path.display());
+        return Err(Failure::Refused(what));
     }
     absolute(path)
 }
 
-fn absolute(path: &Path) -> Result<PathBuf, String> {
-    std::path::absolute(path).map_err(|error| format!("{}: {error}", path.display()))
+fn absolute(path: &Path) -> Result<PathBuf, Failure> {
+    std::path::absolute(path).map_err(|error| Failure::file(path, error))
 }
 
 #[cfg(test)]

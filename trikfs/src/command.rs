@@ -1,10 +1,12 @@
 //! One child process within limits of time, output and memory.
 //!
-//! Compilers and the programs of sensors run through it. Knows nothing of either.
+//! Owns how they are enforced, and the end of all processes that the child has started. Compilers and the programs of
+//! sensors run through it; it knows nothing of either.
 
 mod signals;
 
 use crate::events::lock;
+use crate::limits::{COMMAND_LOOK_MS, COMMAND_SETTLE};
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::signal::{Signal, killpg};
 use nix::unistd::Pid;
@@ -16,18 +18,13 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-/// How often a process that holds its output open is asked whether it has ended.
-const LOOK_MS: u16 = 50;
-/// How often a process that has closed its output is asked whether it has ended; it usually has.
-const SETTLE: Duration = Duration::from_millis(1);
-
 /// What a process may take.
 pub(crate) struct Limits {
     /// From start to end; then its whole process group is killed.
     pub(crate) time: Duration,
     /// Bytes of output that are kept; the rest is read and dropped.
     pub(crate) output_bytes: usize,
-    /// Where its process group is noted while it runs, for who has to end all.
+    /// Where its process group is noted while it runs, for the end of all.
     pub(crate) groups: Option<Arc<Groups>>,
 }
 
@@ -36,7 +33,7 @@ pub(crate) struct Limits {
 pub(crate) struct Groups(Mutex<Vec<i32>>);
 
 impl Groups {
-    /// Kills all of them: nobody is left who would end them when their time is up.
+    /// Kills all of them: nothing is left that would end them when their time is up.
     pub(crate) fn kill_all(&self) {
         for &group in &*lock(&self.0) {
             let _ = killpg(Pid::from_raw(group), Signal::SIGKILL);
@@ -147,9 +144,9 @@ impl Running {
     ) -> io::Result<Option<ExitStatus>> {
         loop {
             if self.reader.is_some() {
-                self.read_some(LOOK_MS)?;
+                self.read_some(COMMAND_LOOK_MS)?;
             } else {
-                std::thread::sleep(SETTLE);
+                std::thread::sleep(COMMAND_SETTLE);
             }
             if let Some(status) = self.try_wait()? {
                 // A grandchild may keep the pipe open for ever: only what is in it now counts.
@@ -188,7 +185,7 @@ impl Running {
             let _ = killpg(Pid::from_raw(group), Signal::SIGKILL);
         }
         while matches!(self.try_wait(), Ok(None)) {
-            std::thread::sleep(SETTLE);
+            std::thread::sleep(COMMAND_SETTLE);
         }
     }
 

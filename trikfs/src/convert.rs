@@ -1,7 +1,7 @@
 //! Converters as the filesystem sees them: a recipe made once per description, a pipeline made once per open file.
 //!
-//! Owns the chain of stages and its scratch buffers. The three languages are behind it, one file each;
-//! nothing else in this crate runs Lua or loads machine code.
+//! Owns the chain of stages and its scratch buffers. Each of the three languages has a file below; nothing else in this
+//! crate runs Lua or loads machine code.
 
 pub mod inline_c;
 pub mod lua;
@@ -17,6 +17,7 @@ use inline_c::Compiler;
 use lua::StatePool;
 use shared::{Cache, Library, NativeStage};
 use std::collections::BTreeMap;
+use std::fmt::Display;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Mutex};
 
@@ -103,11 +104,10 @@ impl Recipe {
         let vm = match &pool {
             None => None,
             Some(pool) => {
-                let mut vm = pool.take().map_err(Error::Converter)?;
+                let mut vm = pool.take().map_err(unusable)?;
                 vm.set_log(log.clone());
-                vm.set_params(&self.node, &params)
-                    .map_err(Error::Converter)?;
-                vm.keep_only(&self.node).map_err(Error::Converter)?;
+                vm.set_params(&self.node, &params).map_err(unusable)?;
+                vm.keep_only(&self.node).map_err(unusable)?;
                 Some(vm)
             }
         };
@@ -166,7 +166,8 @@ impl Recipe {
             if let Some(library) = &plan.library {
                 let log: LogSink = Arc::new(|_| {});
                 let info = self.open_info(plan, direction, &changed, &log);
-                library.open(&info).map_err(Error::Invalid)?;
+                let opened = library.open(&info);
+                opened.map_err(|fault| Error::Invalid(fault.to_string()))?;
             }
         }
         *params = Arc::new(changed);
@@ -183,8 +184,7 @@ impl Recipe {
         }
         let params = lock(&self.params).clone();
         if let Some(vm) = pipeline.vm.as_mut() {
-            vm.set_params(&self.node, &params)
-                .map_err(Error::Converter)?;
+            vm.set_params(&self.node, &params).map_err(unusable)?;
         }
         let log = log();
         let (read, write) = (&mut pipeline.read, pipeline.write.as_mut());
@@ -210,7 +210,7 @@ impl Recipe {
         for (plan, stage) in plans.iter().zip(stages) {
             if let Some(library) = &plan.library {
                 let info = self.open_info(plan, direction, params, log);
-                stage.code = Code::Native(library.open(&info).map_err(Error::Converter)?);
+                stage.code = Code::Native(library.open(&info).map_err(unusable)?);
             }
         }
         Ok(())
@@ -250,7 +250,7 @@ impl Recipe {
             let (input_size, output_size) = (plan.input_size, plan.output_size);
             let code = if let Some(library) = &plan.library {
                 let info = self.open_info(plan, direction, params, log);
-                Code::Native(library.open(&info).map_err(Error::Converter)?)
+                Code::Native(library.open(&info).map_err(unusable)?)
             } else {
                 let Some(vm) = vm.as_mut() else {
                     return Err(Error::Internal(format!(
@@ -260,7 +260,7 @@ impl Recipe {
                 };
                 Code::Lua(
                     vm.bind(&self.node, direction, position, input_size, output_size)
-                        .map_err(Error::Converter)?,
+                        .map_err(unusable)?,
                 )
             };
             stages.push(Stage {
@@ -273,6 +273,11 @@ impl Recipe {
     }
 }
 
+/// A converter that cannot be opened.
+fn unusable(why: impl Display) -> Error {
+    Error::Converter(why.to_string())
+}
+
 fn plan(
     description: &NodeDescription,
     stage: &StageDescription,
@@ -280,7 +285,7 @@ fn plan(
     workshop: &Workshop<'_>,
 ) -> Result<Plan, Problem> {
     let node = &description.path;
-    let refused = |reason: String| {
+    let refused = |reason: &dyn Display| {
         Problem::new(
             stage.place.file.clone(),
             stage.place.line,
@@ -290,12 +295,14 @@ fn plan(
     let library = match &stage.kind {
         StageKind::Lua => None,
         StageKind::Library { path, name } => {
-            Some(Library::load(path, name.as_deref(), workshop.cache).map_err(refused)?)
+            let loaded = Library::load(path, name.as_deref(), workshop.cache);
+            Some(loaded.map_err(|error| refused(&error))?)
         }
         StageKind::InlineC { code } => {
             let tell = |text: &str| (workshop.progress)(&format!("node {node}: {text}"));
             let path = Compiler::compile_with_any(code, &stage.place, workshop.cache, &tell)?;
-            Some(Library::load(&path, None, workshop.cache).map_err(refused)?)
+            let loaded = Library::load(&path, None, workshop.cache);
+            Some(loaded.map_err(|error| refused(&error))?)
         }
     };
     if let Some(library) = &library {
@@ -308,7 +315,7 @@ fn plan(
             params: &description.params,
             log: Arc::new(|_| {}),
         };
-        library.open(&info).map_err(refused)?;
+        library.open(&info).map_err(|fault| refused(&fault))?;
     }
     Ok(Plan {
         library,
@@ -475,12 +482,12 @@ impl Stage {
         let (consumed, produced, fault) = match (&mut self.code, vm) {
             (Code::Native(native), _) => native.convert_many(input, output),
             (Code::Lua(stage), Some(vm)) => vm.convert_many(*stage, input, output),
-            (Code::Lua(_), None) => (0, 0, Some(NO_STATE.to_owned())),
+            (Code::Lua(_), None) => (0, 0, Some(NO_STATE.into())),
         };
         Batch {
             consumed,
             produced,
-            fault: fault.map(Error::of_converter),
+            fault: fault.as_ref().map(Error::of_converter),
         }
     }
 }
@@ -493,10 +500,12 @@ impl Code {
         output: &mut [u8],
     ) -> Result<Conversion, Error> {
         match (self, vm) {
-            (Self::Native(native), _) => native.convert(input, output).map_err(Error::of_converter),
+            (Self::Native(native), _) => native
+                .convert(input, output)
+                .map_err(|fault| Error::of_converter(&fault)),
             (Self::Lua(stage), Some(vm)) => vm
                 .convert(*stage, input, output)
-                .map_err(Error::of_converter),
+                .map_err(|fault| Error::of_converter(&fault)),
             (Self::Lua(_), None) => Err(Error::Converter(NO_STATE.to_owned())),
         }
     }

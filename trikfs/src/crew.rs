@@ -7,10 +7,10 @@
 //!
 //! A crew of one has nobody to step in: it is not watched, and so costs nothing when it wakes.
 //!
-//! Who knows that its work will last, a device before a transfer on a slow bus, calls [`give_way`] and does not make the
-//! others wait for the watchdog.
+//! A thread that knows that its work will last, such as before a transfer on a slow bus, calls [`give_way`] and does not
+//! make the others wait for the watchdog.
 //!
-//! Owns the threads and who has the role. Knows nothing of what the role is; `config::watchdog` measures the time.
+//! Owns the threads and which of them has the role. Knows nothing of what the role is; `config::watchdog` measures the time.
 //!
 //! Why no two threads have the role: it is given away only by the compare-and-swap of `Work::relieve`, which succeeds
 //! between `begin` and `end` alone, and the thread that lost it learns so at `end`, before it could wait for work again.

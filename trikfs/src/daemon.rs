@@ -1,12 +1,13 @@
 //! The process that serves one mount, from its first configuration to its end.
 //!
 //! Owns the order of things: serving starts before the configuration runs, which may take long when it compiles C;
-//! actuators come to rest before the process ends. The
-//! guardian, which is another process, mounts before and unmounts after.
+//! actuators come to rest before the process ends. The guardian, which is another process, mounts before and unmounts after.
+//! Knows no request of the kernel and no kind of device.
 
 use crate::convert::shared::Cache;
 use crate::engine::Engine;
 use crate::errno::Error;
+use crate::failure::Failure;
 use crate::fs::{Forest, Fs, OpenFiles};
 use crate::guardian::ledger::Ledger;
 use crate::node::{Node, rest_all};
@@ -68,14 +69,14 @@ pub struct Options {
 enum End {
     Signal,
     Unmounted,
-    Failed(String),
+    Failed(Failure),
 }
 
 /// Serves until a signal asks to stop or the mount is gone. An error is a refused configuration or a failure.
-pub fn run(options: Options) -> Result<(), String> {
+pub fn run(options: Options) -> Result<(), Failure> {
     let signals = block_signals()?;
     raise_file_limit();
-    let engine = Engine::start().map_err(|error| format!("threads cannot be started: {error}"))?;
+    let engine = Engine::start().map_err(|error| Failure::threads(&error))?;
     let (end, ended) = channel();
     wait_for_signals(signals, end.clone())?;
 
@@ -108,8 +109,7 @@ pub fn run(options: Options) -> Result<(), String> {
         last_ino,
         ledger: options.ledger,
     };
-    let reloader =
-        Reloader::start(setup).map_err(|error| format!("threads cannot be started: {error}"))?;
+    let reloader = Reloader::start(setup).map_err(|error| Failure::threads(&error))?;
     let fs: Arc<dyn Operations> = Arc::new(Fs::new(
         engine.clone(),
         forest.clone(),
@@ -125,7 +125,7 @@ pub fn run(options: Options) -> Result<(), String> {
     let loaded = first_configuration(options.config.as_deref(), options.in_force);
     let applied = loaded.and_then(|(name, bytes)| {
         let applied = reloader.apply(&name, bytes, &options.progress);
-        applied.map_err(|problem| problem.to_string())
+        applied.map_err(Failure::Problem)
     });
     let outcome = match applied {
         Err(reason) => Err(reason),
@@ -146,7 +146,7 @@ pub fn run(options: Options) -> Result<(), String> {
     outcome
 }
 
-/// Readers of shared memory see the end, whoever still holds a node.
+/// Readers of shared memory see the end, even of nodes that something still holds.
 fn leave_bus(engine: &Engine, nodes: &[Arc<Node>]) {
     for node in nodes {
         node.sampling.newest.leave_bus();
@@ -155,13 +155,13 @@ fn leave_bus(engine: &Engine, nodes: &[Arc<Node>]) {
 }
 
 /// Every thread started from here on leaves these signals to the one that waits for them.
-fn block_signals() -> Result<SigSet, String> {
+fn block_signals() -> Result<SigSet, Failure> {
     let mut signals = SigSet::empty();
     for signal in [Signal::SIGTERM, Signal::SIGINT, Signal::SIGHUP] {
         signals.add(signal);
     }
     let blocked = signals.thread_block();
-    blocked.map_err(|errno| format!("signals cannot be blocked: {errno}"))?;
+    blocked.map_err(|errno| Failure::system("signals cannot be blocked", errno))?;
     Ok(signals)
 }
 
@@ -177,7 +177,7 @@ fn raise_file_limit() {
 fn first_configuration(
     file: Option<&Path>,
     in_force: Option<Vec<u8>>,
-) -> Result<(String, Vec<u8>), String> {
+) -> Result<(String, Vec<u8>), Failure> {
     let name = file.map_or_else(|| "config".to_owned(), |file| file.display().to_string());
     if let Some(bytes) = in_force {
         return Ok((name, bytes));
@@ -185,10 +185,11 @@ fn first_configuration(
     let Some(file) = file else {
         return Ok((name, b"trikfs = {}\n".to_vec()));
     };
-    crate::check::read_config(file).map(|bytes| (name, bytes))
+    let bytes = crate::check::read_config(file).map_err(|error| Failure::file(file, error))?;
+    Ok((name, bytes))
 }
 
-fn wait_for_signals(signals: SigSet, end: Sender<End>) -> Result<(), String> {
+fn wait_for_signals(signals: SigSet, end: Sender<End>) -> Result<(), Failure> {
     let thread = std::thread::Builder::new().name("signals".to_owned());
     let spawned = thread.spawn(move || {
         if signals.wait().is_ok() {
@@ -197,7 +198,7 @@ fn wait_for_signals(signals: SigSet, end: Sender<End>) -> Result<(), String> {
     });
     spawned
         .map(|_| ())
-        .map_err(|error| format!("threads cannot be started: {error}"))
+        .map_err(|error| Failure::threads(&error))
 }
 
 fn serve(
@@ -205,7 +206,7 @@ fn serve(
     fs: Arc<dyn Operations>,
     transport: Transport,
     end: Sender<End>,
-) -> Result<(), String> {
+) -> Result<(), Failure> {
     let thread = std::thread::Builder::new().name("kernel".to_owned());
     let spawned = thread.spawn(move || {
         let served = match transport {
@@ -215,10 +216,10 @@ fn serve(
         };
         let _ = end.send(match served {
             Ok(()) => End::Unmounted,
-            Err(error) => End::Failed(format!("the kernel cannot be served: {error}")),
+            Err(error) => End::Failed(Failure::system("the kernel cannot be served", error)),
         });
     });
     spawned
         .map(|_| ())
-        .map_err(|error| format!("threads cannot be started: {error}"))
+        .map_err(|error| Failure::threads(&error))
 }

@@ -1,8 +1,8 @@
 //! Sources and sinks: where a node's bytes come from and go to.
 //!
 //! Owns the traits and what opening needs beside a description. Each kind is one file below that implements [`Kind`] for
-//! its description; only those files open device nodes, and `kinds` lists them. Nothing here knows converters, handles
-//! or the kernel's requests.
+//! its description; only those files open device nodes, and `kinds` lists them. Nothing here converts a tuple, or knows
+//! an open file or a request of the kernel.
 
 mod absent;
 pub mod attribute;
@@ -120,6 +120,15 @@ pub trait Sink: Send {
     fn write(&mut self, tuple: &[u8], waits: bool) -> Result<(), Error>;
 }
 
+/// A device without tuples: each read and write is a transfer of its own, with what a position stands for.
+pub trait Positions: Send + Sync {
+    /// Fills the buffer from a position on.
+    fn read(&self, position: u64, buffer: &mut [u8]) -> Result<(), Error>;
+
+    /// Sends bytes to a position.
+    fn write(&self, position: u64, bytes: &[u8]) -> Result<(), Error>;
+}
+
 /// What opening needs to know beside the description.
 #[derive(Clone)]
 pub struct Surroundings {
@@ -154,7 +163,7 @@ impl Surroundings {
         }
     }
 
-    /// For who has a device and nothing else: no nodes, nobody to talk to.
+    /// For a device and nothing else: no nodes, no log.
     pub fn alone(timeout_ms: u32, buses: &Arc<i2c::bus::Buses>) -> Self {
         Self {
             links: Vec::new(),
@@ -191,6 +200,27 @@ pub trait Kind {
 
     /// The buses whose transfers it waits for, itself or through nodes that it reads or drives.
     fn add_buses(&self, _around: &Surroundings, _buses: &mut BTreeSet<PathBuf>) {}
+
+    /// Opens what has no tuples; None for all that has them.
+    fn open_positions(&self, _around: &Surroundings) -> Result<Option<Box<dyn Positions>>, Error> {
+        Ok(None)
+    }
+
+    /// What moves when it is written.
+    fn drives(&self) -> Drives<'_> {
+        Drives::Itself
+    }
+}
+
+/// What moves when a source is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Drives<'a> {
+    /// What it names itself.
+    Itself,
+    /// The node at this path, which it stands for.
+    Other(&'a str),
+    /// The node at this path, which a regulator drives so that what is written is held.
+    Held(&'a str),
 }
 
 /// Whether a path still leads to the file that is open.

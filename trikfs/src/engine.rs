@@ -73,9 +73,9 @@ impl Engine {
     /// Takes a place in shared memory for the samples, if there are to be any; a failure is told and disturbs nobody.
     pub fn open_sample_bus(&self, mountpoint: &Path, readers: Option<Readers>) {
         if let Some(readers) = readers
-            && let Err(reason) = self.samples.open(mountpoint, readers)
+            && let Err(error) = self.samples.open(mountpoint, readers)
         {
-            self.log.line(&reason);
+            self.log.line(&error.to_string());
         }
     }
 
@@ -120,7 +120,7 @@ impl Engine {
         claimed
     }
 
-    /// Answers everybody who waits, before the end.
+    /// Answers all requests that wait, before the end.
     pub fn refuse_all(&self, error: &Error) {
         let all: Vec<_> = lock(&self.parked).drain().collect();
         for id in all {
@@ -128,7 +128,7 @@ impl Engine {
         }
     }
 
-    /// Wakes whoever polls an open file.
+    /// Wakes the programs that poll an open file.
     pub fn notify(&self, handle: Option<PollHandle>) {
         if let (Some(kernel), Some(handle)) = (self.kernel(), handle) {
             kernel.notify_poll(handle);

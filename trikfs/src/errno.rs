@@ -1,12 +1,14 @@
 //! Errors of the filesystem, who is to blame for each, and the one table that turns them into errno.
 //!
-//! Nothing else in this crate chooses an errno for an outcome of its own; a device's own errno passes through here.
+//! Nothing else in this crate chooses an errno for an outcome of its own; a device's own errno passes through here. Failures
+//! of commands and processes, which no program gets as an errno, are in `failure`.
 
+use converter::Fault;
 use std::fmt;
 use std::io;
 use std::path::Path;
 
-/// Who has to act.
+/// The person or the part that can mend it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Blame {
     /// The program that called.
@@ -93,31 +95,77 @@ pub enum Error {
     NoAttribute,
     /// The caller's buffer is too small for the extended attribute.
     BufferTooSmall,
+    /// An ioctl(2): what a regular file answers; kernels before 6.0 would show the program an ENOSYS.
+    NoControl,
+    /// A request of the kernel that it need not send again: it does without.
+    NotNeeded,
+    /// The kernel speaks a version of its protocol that is too old.
+    OldKernel,
     /// A fault of our own; the text is for the log.
     Internal(String),
+}
+
+/// The first word of what a converter says, if it blames somebody else than itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BlameWord {
+    /// The caller: a number outside the range.
+    OutOfRange,
+    /// The caller: bytes without a meaning.
+    Invalid,
+    /// The device has gone.
+    NoDevice,
+    /// The device does not answer.
+    TimedOut,
+    /// The device gives nonsense.
+    Measurement,
+}
+
+impl BlameWord {
+    const ALL: [Self; 5] = [
+        Self::OutOfRange,
+        Self::Invalid,
+        Self::NoDevice,
+        Self::TimedOut,
+        Self::Measurement,
+    ];
+
+    /// As a converter writes it, with what divides it from the reason.
+    pub fn text(self) -> &'static str {
+        match self {
+            Self::OutOfRange => "ERANGE: ",
+            Self::Invalid => "EINVAL: ",
+            Self::NoDevice => "ENODEV: ",
+            Self::TimedOut => "ETIMEDOUT: ",
+            Self::Measurement => "EIO: ",
+        }
+    }
+}
+
+/// What a converter says, as whom it blames, if not itself, and the reason.
+pub fn blame_and_reason(text: &str) -> (Option<BlameWord>, &str) {
+    BlameWord::ALL
+        .into_iter()
+        .find_map(|word| Some((Some(word), text.strip_prefix(word.text())?)))
+        .unwrap_or((None, text))
 }
 
 impl Error {
     /// What a converter said. A first word tells who is to blame when it is not the converter: `ERANGE: `, `EINVAL: `
     /// the caller, `ENODEV: `, `ETIMEDOUT: `, `EIO: ` the device. See docs/user/config.md.
-    pub fn of_converter(text: String) -> Self {
-        let rest = |word: &str| text.strip_prefix(word).map(str::to_owned);
-        if let Some(reason) = rest("ERANGE: ") {
-            Self::OutOfRange(reason)
-        } else if let Some(reason) = rest("EINVAL: ") {
-            Self::Invalid(reason)
-        } else if let Some(reason) = rest("ENODEV: ") {
-            Self::NoDevice(reason)
-        } else if let Some(reason) = rest("ETIMEDOUT: ") {
-            Self::TimedOut(reason)
-        } else if let Some(reason) = rest("EIO: ") {
-            Self::Measurement(reason)
-        } else {
-            Self::Converter(text)
+    pub fn of_converter(fault: &Fault) -> Self {
+        let (word, rest) = blame_and_reason(fault.text());
+        let reason = rest.to_owned();
+        match word {
+            Some(BlameWord::OutOfRange) => Self::OutOfRange(reason),
+            Some(BlameWord::Invalid) => Self::Invalid(reason),
+            Some(BlameWord::NoDevice) => Self::NoDevice(reason),
+            Some(BlameWord::TimedOut) => Self::TimedOut(reason),
+            Some(BlameWord::Measurement) => Self::Measurement(reason),
+            None => Self::Converter(reason),
         }
     }
 
-    /// A fault of a converter on the way from the device: there is no caller who could have written better.
+    /// A fault of a converter on the way from the device: there is no caller that could have written better.
     pub fn of_reading(self) -> Self {
         match self {
             Self::Invalid(text) | Self::OutOfRange(text) => Self::Converter(text),
@@ -155,6 +203,11 @@ impl Error {
         Self::Device(libc::EREMOTEIO, what)
     }
 
+    /// A transfer that the bus of a device cannot carry.
+    pub fn unfit_transfer(what: String) -> Self {
+        Self::Device(libc::EINVAL, what)
+    }
+
     /// An answer that is against the protocol.
     pub fn against_protocol(what: String) -> Self {
         Self::Device(libc::EPROTO, what)
@@ -190,6 +243,9 @@ impl Error {
             Self::Unsupported => libc::EOPNOTSUPP,
             Self::NoAttribute => libc::ENODATA,
             Self::BufferTooSmall => libc::ERANGE,
+            Self::NoControl => libc::ENOTTY,
+            Self::NotNeeded => libc::ENOSYS,
+            Self::OldKernel => libc::EPROTO,
             Self::Internal(_) => libc::EIO,
         }
     }
@@ -204,7 +260,7 @@ impl Error {
         self.errno() == libc::ENODEV
     }
 
-    /// Who has to act.
+    /// The person or the part that can mend it.
     pub fn blame(&self) -> Blame {
         match self {
             Self::NotFound
@@ -226,7 +282,10 @@ impl Error {
             | Self::NotPermitted
             | Self::Unsupported
             | Self::NoAttribute
-            | Self::BufferTooSmall => Blame::Caller,
+            | Self::BufferTooSmall
+            | Self::NoControl
+            | Self::NotNeeded
+            | Self::OldKernel => Blame::Caller,
             Self::NoDevice(_)
             | Self::TimedOut(_)
             | Self::Device(..)
@@ -291,9 +350,10 @@ impl fmt::Display for Error {
             Self::TooLarge => f.write_str("more bytes than the file can take"),
             Self::Interrupted => f.write_str("interrupted"),
             Self::ShuttingDown => f.write_str("the filesystem is stopping"),
-            Self::NotPermitted | Self::Unsupported => {
+            Self::NotPermitted | Self::Unsupported | Self::NoControl | Self::NotNeeded => {
                 f.write_str("this filesystem has no such operation")
             }
+            Self::OldKernel => f.write_str("the kernel's protocol is too old"),
             Self::NoAttribute => f.write_str("no such extended attribute"),
             Self::BufferTooSmall => f.write_str("the buffer is too small"),
         }

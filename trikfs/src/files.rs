@@ -1,6 +1,9 @@
-//! Open files: one type for each kind of file in the tree, all behind one trait.
+//! Open files: one type for each kind of file in the tree, all with one trait.
 //!
-//! Owns the trait and nothing else.
+//! Owns the trait and nothing else; each type has a file below. Knows no name in the tree.
+
+// A kind of file that is forgotten must not be another one in silence.
+#![deny(clippy::wildcard_enum_match_arm)]
 
 pub mod config;
 pub mod control;
@@ -55,7 +58,7 @@ pub trait OpenFile: Send + Sync {
     /// The last descriptor is gone.
     fn release(&self) {}
 
-    /// The node behind the file was retired: answer whoever waits.
+    /// The node of the file was retired: answer the requests that wait.
     fn retire(&self) {}
 }
 

@@ -24,7 +24,6 @@ use crate::transport::{
     StatFs, Transfer,
 };
 use crate::tree::{Kind, Tree};
-use config::description::SourceDescription;
 use std::sync::{Arc, Mutex};
 
 /// The tree in force, shared between the operations and the reloader.
@@ -169,8 +168,7 @@ impl Fs {
                 ))
             }
             Kind::Device(node) => {
-                if let SourceDescription::I2cBus(bus) = &node.description.source {
-                    let file = DevicesFile::open(node, bus, read, write)?;
+                if let Some(file) = DevicesFile::open(node, read, write)? {
                     return Ok((file, Access::Direct, write));
                 }
                 let (file, access) = DeviceFile::open(node, read, write)?;

@@ -1,12 +1,15 @@
-//! The guardian: a small process that mounts, starts the daemon, outlives it, and cleans up behind it.
+//! The guardian: a small process that mounts, starts the daemon, outlives it, and cleans up after it.
 //!
 //! Owns the order of things at the daemon's end, whatever ended it: actuators come to rest, cached values are taken
 //! back, the mount goes. After a crash it starts the daemon again with the configuration that was in force.
 //! It holds the connection to the kernel, so that the connection cannot end before that is done.
 //! It serves no request, runs no converter and reads no configuration, so it has little to crash of.
 //!
-//! `ledger` is what both processes share (`actions` a part of it), `inherit` the daemon's side of it; `child` starts the daemon, `watch` waits
-//! for its end, `mounted` knows our mount from others at the same place, `rest` stops the actuators.
+//! `ledger` is what both processes share (`actions` a part of it), `inherit` the daemon's side of it; `child` starts the
+//! daemon, `watch` waits for its end, `mounted` knows our mount from others at the same place, `rest` stops the actuators.
+
+// An end of the daemon, or a device to bring to rest, that is forgotten must not pass in silence.
+#![deny(clippy::wildcard_enum_match_arm)]
 
 pub mod actions;
 mod child;
@@ -16,6 +19,7 @@ pub mod mounted;
 pub mod rest;
 mod watch;
 
+use crate::failure::Failure;
 use crate::limits;
 use crate::mount::{self, MountOptions};
 use crate::sample_bus;
@@ -46,23 +50,19 @@ pub struct Plan {
 /// Call it while the process has one thread: SIGTERM, SIGINT and SIGHUP are blocked and waited for from here on.
 ///
 /// # Errors
-/// Why the filesystem does not run, empty if the daemon has told the reason itself.
-pub fn run(plan: &Plan, ready: &mut dyn FnMut(usize)) -> Result<(), String> {
-    let own = |error: std::io::Error| format!("guardian: {error}");
+/// Why the filesystem does not run; [`Failure::Reported`] if the daemon has printed the reason itself.
+pub fn run(plan: &Plan, ready: &mut dyn FnMut(usize)) -> Result<(), Failure> {
+    let own = |error: std::io::Error| Failure::system("guardian", error);
     let watch = Watch::new().map_err(own)?;
     let ledger = Ledger::create().map_err(own)?;
     let mut crashes = Crashes::default();
     loop {
         match serve_once(plan, &watch, &ledger, crashes.any(), ready)? {
             End::Stopped => return Ok(()),
-            End::Failed => return Err(String::new()),
+            End::Failed => return Err(Failure::Reported),
             End::Crashed(how) => {
                 if crashes.note(Instant::now()) {
-                    return Err(format!(
-                        "the daemon crashed {} times within {} seconds, the last time {how}; giving up",
-                        limits::CRASHES_MAX,
-                        limits::CRASH_WINDOW_SECONDS
-                    ));
+                    return Err(Failure::Crashed(how));
                 }
                 complain(&format!("the daemon was {how}; starting it again"));
             }
@@ -77,20 +77,20 @@ fn serve_once(
     ledger: &Ledger,
     again: bool,
     ready: &mut dyn FnMut(usize),
-) -> Result<End, String> {
-    let device = mount::mount(&plan.mountpoint, &plan.mount).map_err(|error| error.to_string())?;
+) -> Result<End, Failure> {
+    let device = mount::mount(&plan.mountpoint, &plan.mount)?;
     let mounted = match Mounted::find(&plan.mountpoint) {
         Ok(mounted) => mounted,
         Err(error) => {
             drop(device);
             let _ = mount::unmount(&plan.mountpoint);
-            return Err(error);
+            return Err(error.into());
         }
     };
     let end = Child::start(&device, ledger, &mounted, &plan.arguments, again)
         .and_then(|mut child| watch.until_end(&mut child, &|| mounted.is_there(), ready));
     clean_up(ledger, &mounted, device);
-    end.map_err(|error| format!("daemon: {error}"))
+    end.map_err(|error| Failure::system("daemon", error))
 }
 
 /// What the guardian is for. Goes on whatever fails, and says what did.

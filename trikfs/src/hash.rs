@@ -1,6 +1,6 @@
 //! One content hash for names in the cache and for the ledger's checksums.
 //!
-//! It finds accidents, not attacks: whoever can choose two contents can make them collide.
+//! It finds accidents, not attacks: two contents can be chosen so that they collide.
 //! Places where that would matter compare the contents as well.
 
 /// 128-bit FNV-1a, fed in pieces. Offset basis and prime are those of the FNV specification

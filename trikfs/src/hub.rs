@@ -281,7 +281,7 @@ impl Hub {
 }
 
 /// Looks after the source of a hub now and then: a FIFO that was deleted and made again is another one, and nothing
-/// wakes whoever has the old one open.
+/// wakes the programs that have the old one open.
 struct Presence(Weak<Hub>);
 
 impl Due for Presence {

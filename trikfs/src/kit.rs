@@ -3,6 +3,8 @@
 //! Owns which files there are and what names they get. The files themselves lie in `converter/templates` and in the
 //! sources of the crate `converter`, and are compiled into the program, so that one installed on a robot has them too.
 
+use crate::failure::Failure;
+use crate::limits::PROJECT_NAME_BYTES_MAX;
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -18,8 +20,6 @@ pub enum Language {
     Rust,
 }
 
-/// Bytes of a name.
-const NAME_BYTES_MAX: usize = 32;
 /// What the templates are called; replaced by the name of the project, in both spellings.
 const TEMPLATE: (&str, &str) = ("battery_mean", "BatteryMean");
 
@@ -138,7 +138,7 @@ const RUST: &[File] = &[
     ("converter/Cargo.toml", template!("rust/converter.toml")),
 ];
 
-/// The crate `converter`, for projects in Rust; its own tests stay behind.
+/// The crate `converter`, for projects in Rust; its own tests are left out.
 const CRATE: &[File] = &[
     (
         "converter/src/lib.rs",
@@ -155,6 +155,10 @@ const CRATE: &[File] = &[
     (
         "converter/src/abi/validate.rs",
         include_str!("../../converter/src/abi/validate.rs"),
+    ),
+    (
+        "converter/src/error.rs",
+        include_str!("../../converter/src/error.rs"),
     ),
     (
         "converter/src/export.rs",
@@ -189,25 +193,24 @@ pub struct Made {
 ///
 /// # Errors
 /// A name that some file of the project could not have, a folder that is there, or one that cannot be written; then
-/// nothing is left behind.
+/// nothing is left.
 pub fn new_converter(
     language: Language,
     name: &str,
     folder: Option<&Path>,
-) -> Result<Made, String> {
+) -> Result<Made, Failure> {
     check_name(name)?;
     let folder = folder.unwrap_or(Path::new(name));
-    let fail = |path: &Path, error: std::io::Error| format!("{}: {error}", path.display());
     fs::create_dir(folder).map_err(|error| match error.kind() {
-        std::io::ErrorKind::AlreadyExists => format!(
+        std::io::ErrorKind::AlreadyExists => Failure::Refused(format!(
             "{} is there already; take another name, or another folder with --dir",
             folder.display()
+        )),
+        std::io::ErrorKind::NotFound => Failure::file(
+            folder,
+            "the folder around it is not there; make it first with mkdir -p",
         ),
-        std::io::ErrorKind::NotFound => format!(
-            "{}: the folder around it is not there; make it first with mkdir -p",
-            folder.display()
-        ),
-        _ => fail(folder, error),
+        _ => Failure::file(folder, error),
     })?;
     let files = files(language, name);
     for (path, text) in &files {
@@ -217,7 +220,7 @@ pub fn new_converter(
         if let Err(error) = written {
             // We made the folder, so everything in it is ours.
             let _ = fs::remove_dir_all(folder);
-            return Err(fail(&path, error));
+            return Err(Failure::file(&path, error));
         }
     }
     Ok(Made {
@@ -283,7 +286,7 @@ fn without_tests(text: &str) -> String {
     let mut lines = text.lines().peekable();
     while let Some(line) = lines.next() {
         if line == "#[cfg(test)]" {
-            // `mod NAME;` and the empty line behind it.
+            // `mod NAME;` and the empty line after it.
             lines.next();
             lines.next_if(|line| line.is_empty());
         } else {
@@ -322,8 +325,8 @@ fn quoted(word: &str) -> String {
 }
 
 /// A name that can be the name of a node, of a library, and part of names in C, Rust and Lua.
-fn check_name(name: &str) -> Result<(), String> {
-    let is_good = name.len() <= NAME_BYTES_MAX
+fn check_name(name: &str) -> Result<(), Failure> {
+    let is_good = name.len() <= PROJECT_NAME_BYTES_MAX
         && name.starts_with(|c: char| c.is_ascii_lowercase())
         && name
             .bytes()
@@ -339,7 +342,7 @@ fn check_name(name: &str) -> Result<(), String> {
                 }
             })
             .skip_while(|c| !c.is_ascii_lowercase())
-            .take(NAME_BYTES_MAX)
+            .take(PROJECT_NAME_BYTES_MAX)
             .collect();
         let near = near.trim_end_matches('_');
         let try_it = match near {
@@ -348,22 +351,22 @@ fn check_name(name: &str) -> Result<(), String> {
         };
         let shown: String = name
             .chars()
-            .take(2 * NAME_BYTES_MAX)
+            .take(2 * PROJECT_NAME_BYTES_MAX)
             .flat_map(char::escape_debug)
             .collect();
-        return Err(format!(
+        return Err(Failure::Refused(format!(
             "the name '{shown}' does not do: a name begins with a letter a-z, goes on with a-z, 0-9 and _, and has at \
-             most {NAME_BYTES_MAX} characters{try_it}"
-        ));
+             most {PROJECT_NAME_BYTES_MAX} characters{try_it}"
+        )));
     }
     let meaning = RESERVED
         .iter()
         .find(|(_, words)| words.contains(&name))
         .map(|(meaning, _)| *meaning);
     match meaning {
-        Some(meaning) => Err(format!(
+        Some(meaning) => Err(Failure::Refused(format!(
             "the name '{name}' does not do: it is {meaning}; try {name}_sensor"
-        )),
+        ))),
         None => Ok(()),
     }
 }
@@ -447,14 +450,14 @@ mod tests {
             ("log", "it is a file of the tree; try log_sensor"),
             ("converter", "it is a library that is there already"),
         ] {
-            let refusal = check_name(name).unwrap_err();
+            let refusal = check_name(name).unwrap_err().to_string();
             assert!(
                 refusal.contains(words) && refusal.is_ascii() | name.contains('\u{e9}'),
                 "{refusal}"
             );
         }
         for name in ["a", "sharp_ir", "gp2y0a21", "result", "free", "open", "x_"] {
-            assert_eq!(check_name(name), Ok(()), "{name}");
+            assert!(check_name(name).is_ok(), "{name}");
         }
     }
 
@@ -465,9 +468,11 @@ mod tests {
         fs::create_dir(&folder).unwrap();
         fs::write(folder.join("robot.lua"), "precious").unwrap();
         let refusal = new_converter(Language::Lua, "x", Some(&folder)).unwrap_err();
+        let refusal = refusal.to_string();
         assert!(refusal.ends_with("another folder with --dir"), "{refusal}");
         assert_eq!(fs::read(folder.join("robot.lua")).unwrap(), b"precious");
         let refusal = new_converter(Language::Lua, "x", Some(&folder.join("a/b"))).unwrap_err();
+        let refusal = refusal.to_string();
         assert!(refusal.contains("mkdir -p"), "{refusal}");
     }
 

@@ -1,19 +1,19 @@
 //! Who may write an actuator: one lease for each directory with a `rest`.
 //!
 //! A *claim* is an open `owner` file; at most one claim at a time holds the lease. While one does, only its process and
-//! what that process started may write the actuator's files, a child with a claim of its own excepted. When it loses the lease by any way, the actuators of the
-//! directory come to rest. A process that has lost the lease and keeps its claim open may not write either, so that a
-//! program that hung does not go on where it was. Without any claim everybody may write.
+//! what that process started may write the actuator's files, a child with a claim of its own excepted. When it
+//! loses the lease in any way, the actuators of the directory come to rest. A process that has lost the lease and keeps its
+//! claim open may not write either, so that a program that hung does not go on where it was. Without any claim every
+//! program may write.
 //!
-//! Owns these rules and the dead-man's clock. Knows no open file and no request; bringing to rest is the nodes' work
-//! and is done with no lock held.
+//! Owns these rules and the dead-man's clock. Knows no node, no open file and no request; bringing to rest is the
+//! work of [`Actuators`] and is done with no lock held.
 
 use crate::crew::give_way;
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::{Due, Ready, lock};
 use crate::limits;
-use crate::node::{Node, rest_all};
 use crate::process::{line_of, name_of};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, Weak};
 use std::time::{Duration, Instant};
@@ -24,10 +24,20 @@ pub struct Lease {
     path: String,
     engine: Arc<Engine>,
     me: Weak<Self>,
-    actuators: Mutex<Vec<Weak<Node>>>,
+    /// None before the first tree with them is in force.
+    actuators: Mutex<Option<Arc<dyn Actuators>>>,
     state: Mutex<State>,
     /// The actuators have come to rest.
     rested: Condvar,
+}
+
+/// What a lease is for, as far as it has to do with it.
+pub trait Actuators: Send + Sync {
+    /// Permission to write any of them, as mode bits.
+    fn write_mode(&self) -> u16;
+
+    /// Brings all of them to rest. Each notes its own failure.
+    fn rest(&self);
 }
 
 #[derive(Default)]
@@ -164,20 +174,15 @@ impl Lease {
         &self.path
     }
 
-    /// Which nodes come to rest at its end.
-    pub fn set_actuators(&self, nodes: Vec<Weak<Node>>) {
-        *lock(&self.actuators) = nodes;
+    /// What comes to rest at its end.
+    pub fn set_actuators(&self, actuators: Arc<dyn Actuators>) {
+        *lock(&self.actuators) = Some(actuators);
     }
 
-    /// Permission to write for all nodes that come to rest at its end.
+    /// Permission to write for all actuators that come to rest at its end.
     pub fn write_mode(&self) -> u16 {
-        let modes = self.nodes().into_iter();
-        modes.fold(0, |mode, node| mode | (node.description.mode & 0o222))
-    }
-
-    fn nodes(&self) -> Vec<Arc<Node>> {
-        let actuators = lock(&self.actuators);
-        actuators.iter().filter_map(Weak::upgrade).collect()
+        let actuators = lock(&self.actuators).clone();
+        actuators.map_or(0, |actuators| actuators.write_mode())
     }
 
     /// The line of `owner`; empty if the lease is free.
@@ -285,7 +290,7 @@ impl Lease {
         }
     }
 
-    /// Lets a thread write, or says who else holds the lease. Gives the generation; `known` is the one in which the
+    /// Lets a thread write, or says which other process holds the lease. Gives the generation; `known` is the one in which the
     /// same thread was let in through the same open file. [`Lease::wrote`] follows.
     pub fn admit(&self, thread: u32, known: Option<u32>) -> Result<u32, Error> {
         {
@@ -304,7 +309,7 @@ impl Lease {
         // With the lock released: /proc is slow.
         let line: Vec<u32> = line_of(thread).collect();
         let mut state = lock(&self.state);
-        // The nearest one with a claim speaks for the thread: who has lost the lease is not let in by a parent's.
+        // The nearest one with a claim speaks for the thread: one that has lost the lease is not let in by a parent's.
         let claims_of = |process| {
             let claims = state.claims.iter();
             claims.filter(move |claim| claim.process == process)
@@ -398,8 +403,10 @@ impl Lease {
     }
 
     fn bring_to_rest(&self) {
-        // Each node has noted its failure: its `fault` and the log tell.
-        let _ = rest_all(&self.nodes());
+        let actuators = lock(&self.actuators).clone();
+        if let Some(actuators) = actuators {
+            actuators.rest();
+        }
         lock(&self.state).resting -= 1;
         self.rested.notify_all();
     }

@@ -1,7 +1,7 @@
 //! The peripheral filesystem: device nodes in, files in physical units out.
 //!
 //! From the kernel inwards: `transport` (the only part that knows FUSE), `fs` (operations), `tree` (names),
-//! `files` (what is open), `node` (what is behind a name), `reader`, `state_reader`, `writer`, `newest` (the ways
+//! `files` (what is open), `node` (what a name stands for), `reader`, `state_reader`, `writer`, `newest` (the ways
 //! data takes), `hub` (one opening for many readers), `device` (sources), `convert` (converters).
 //! Beside them: `reload` and `daemon`, `events` and `engine`, `mount`, `guardian`, `check`, `trial`, `kit`, `cli`.
 
@@ -17,6 +17,7 @@ pub mod device;
 pub mod engine;
 pub mod errno;
 pub mod events;
+pub mod failure;
 pub mod files;
 pub mod fs;
 pub mod guardian;

@@ -2,11 +2,13 @@
 //!
 //! Owns the numbers only; the code that enforces each one names it from here.
 
+use std::time::Duration;
+
 /// Threads that may serve one role (the kernel, events, the schedule) while others of that role are late.
 pub const MAX_THREADS: usize = 64;
 /// Transfers that wait for one bus at once.
 pub const BUS_WAITERS_MAX: usize = 24;
-/// Transfers that may join those who wait for a bus that is stuck. With [`LATE_PER_NODE_MAX`] operations on each of
+/// Transfers that may join those that wait for a bus that is stuck. With [`LATE_PER_NODE_MAX`] operations on each of
 /// their nodes, those of two dead buses leave threads for everything else.
 pub const BUS_WAITERS_STUCK_MAX: usize = 6;
 /// Milliseconds that one transfer may take before a bus counts as stuck.
@@ -23,7 +25,7 @@ pub const BUS_THREADS_MAX: usize = 16;
 pub const BUS_MEMORY_MAX: usize = 4_096;
 /// Milliseconds that the actions of `setup` may keep a configuration from coming into force.
 pub const SETUP_WAIT_MS: u64 = 3_000;
-/// Milliseconds beyond its time limit after which an action that hangs in a device is left behind.
+/// Milliseconds beyond its time limit after which an action that hangs in a device is given up.
 pub const SETUP_GRACE_MS: u64 = 100;
 /// Actions that may hang in a device before no further ones are tried.
 pub const SETUP_STUCK_MAX: usize = 8;
@@ -49,7 +51,7 @@ pub const LOG_BYTES: usize = 64 << 10;
 pub const RECORDING_BYTES_MAX: usize = 16 << 20;
 /// Milliseconds between two looks whether an open source is still at its path.
 pub const PRESENCE_MS: u64 = 500;
-/// Milliseconds that a write to a sampled node waits for the sample behind it.
+/// Milliseconds that a write to a sampled node waits for the next sample.
 pub const RENEWAL_MS: u64 = 100;
 /// Milliseconds between attempts to open a lost device again.
 pub const REOPEN_MS: u64 = 250;
@@ -95,7 +97,7 @@ pub const IIO_BUFFER_SAMPLES: u32 = 128;
 pub const PROGRAM_START_MS_MAX: u32 = 30_000;
 /// Milliseconds that its stop may take.
 pub const PROGRAM_STOP_MS_MAX: u32 = 10_000;
-/// Milliseconds that a program goes on after its last user: who comes back at once finds it running.
+/// Milliseconds that a program goes on after its last user: one that comes back at once finds it running.
 pub const PROGRAM_LINGER_MS: u64 = 1_000;
 /// Milliseconds until a start that has failed is tried again.
 pub const PROGRAM_RETRY_MS: u64 = 5_000;
@@ -148,3 +150,43 @@ pub const MISTAKE_MS: u32 = 1000;
 pub const CONVERT_CHUNK_BYTES: usize = 64 << 10;
 /// Reasons of refusals that `trikfs convert` tells apart.
 pub const FAULT_REASONS_MAX: usize = 16;
+
+/// Time that one rest action may take before the next one is begun beside it.
+pub const REST_PATIENCE: Duration = Duration::from_millis(50);
+/// Longest line that a daemon has to say to its guardian; a longer one is nonsense and is dropped.
+pub const LIFE_LINE_BYTES_MAX: usize = 64;
+/// Milliseconds between two looks whether a process that holds its output open has ended.
+pub const COMMAND_LOOK_MS: u16 = 50;
+/// Time between two looks whether a process that has closed its output has ended; it usually has.
+pub const COMMAND_SETTLE: Duration = Duration::from_millis(1);
+/// Bytes of the complaint of the mounting helper that are passed on.
+pub const HELPER_COMPLAINT_BYTES_MAX: u64 = 4096;
+/// How often a list of mounts that changes while it is read is read again before it is taken as it is.
+pub const MOUNT_TABLE_READS_MAX: usize = 16;
+/// Bytes of the list of mounts that are read; a longer one is not believed.
+pub const MOUNT_TABLE_BYTES_MAX: u64 = 16 << 20;
+/// Age from which an abandoned temporary file is removed from the cache; far above the time limit of a compiler.
+pub const CACHE_TEMPORARY_AGE: Duration = Duration::from_secs(3600);
+/// Generations of processes that are looked at for an ancestor; a longer line does not lead to one.
+pub const GENERATIONS_MAX: usize = 64;
+/// Bytes of the name of a new converter.
+pub const PROJECT_NAME_BYTES_MAX: usize = 32;
+/// Bytes of `status` that are looked at for the reason of a refusal.
+pub const STATUS_BYTES_MAX: u64 = 64 << 10;
+/// Longest line that the guardian in the background prints.
+pub const READY_LINE_BYTES_MAX: u64 = 16 << 10;
+/// Bytes of an attribute of sysfs: one page.
+pub const ATTRIBUTE_BYTES_MAX: u64 = 4096;
+/// Time between two attempts to bring an actuator to rest whose device is busy.
+pub const REST_PAUSE: Duration = Duration::from_millis(1);
+/// Prepared Lua states before any program was seen to need more.
+pub const LUA_STATES_FIRST: usize = 4;
+/// Threads with which the crate fuser serves the mount. More cost every request some 15 %, fewer let a single late
+/// operation stop it.
+pub const FUSER_THREADS: usize = 4;
+/// How long the kernel may keep what does not change by itself; a reload invalidates it.
+pub const KEPT_LONG: Duration = Duration::from_secs(86_400);
+/// How long `stat` of a value may be old.
+pub const KEPT_SHORT: Duration = Duration::from_secs(1);
+/// Bytes of a refused tuple that a message shows.
+pub const FAULT_SHOWN_BYTES: usize = 16;

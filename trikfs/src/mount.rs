@@ -6,6 +6,7 @@
 //!
 //! A directory that is not empty may be mounted over, as fusermount3 allows; what it holds is hidden until the unmount.
 
+use crate::limits::{HELPER_COMPLAINT_BYTES_MAX, MOUNT_TABLE_BYTES_MAX, MOUNT_TABLE_READS_MAX};
 use crate::transport::native::received::receive_descriptor;
 use nix::errno::Errno;
 use nix::mount::{MntFlags, MsFlags, umount2};
@@ -26,18 +27,12 @@ use std::process::{Command, Stdio};
 const DEVICE: &str = "/dev/fuse";
 /// The setuid helper for users who may not mount.
 const HELPER: &str = "fusermount3";
-/// Type of our mounts as /proc/mounts shows it: the kernel's `fuse` with our name behind it.
+/// Type of our mounts as /proc/mounts shows it: the kernel's `fuse` followed by our name.
 const TYPE: &str = "fuse.trikfs";
 /// The name alone, as the helper wants it.
 const SUBTYPE: &str = "trikfs";
-/// Bytes of the helper's complaint that are passed on.
-const COMPLAINT_BYTES_MAX: u64 = 4096;
 /// The list of mounts.
 const TABLE: &str = "/proc/self/mountinfo";
-/// How often a list that changes while it is read is read again before it is taken as it is.
-const TABLE_READS_MAX: usize = 16;
-/// Bytes of the mount table that are read; a longer one is not believed.
-const TABLE_BYTES_MAX: u64 = 16 << 20;
 
 /// How to mount. Permissions are always checked by the kernel; set-user-ID and device nodes never work there.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -77,6 +72,8 @@ pub enum MountError {
     Dead(PathBuf, String),
     /// No trikfs is mounted there.
     NotMounted(PathBuf),
+    /// It was mounted just now, and the list of mounts does not have it.
+    Unlisted(PathBuf),
     /// The helper refused, in its own words.
     Helper(String),
     /// A path or option with a character that a mount option cannot carry.
@@ -110,6 +107,7 @@ impl fmt::Display for MountError {
                 )
             }
             Self::NotMounted(path) => write!(f, "{}: no trikfs is mounted there", path.display()),
+            Self::Unlisted(path) => write!(f, "{}: not in the list of mounts", path.display()),
             Self::Helper(complaint) => f.write_str(complaint),
             Self::BadOption(text) => write!(f, "{text:?}: cannot be part of a mount option"),
             Self::System(path, error) => write!(f, "{}: {error}", path.display()),
@@ -210,10 +208,10 @@ pub fn find(path: &Path) -> Result<Option<MountEntry>, MountError> {
 /// If it cannot be read.
 pub fn table() -> io::Result<Vec<u8>> {
     let mut text = Vec::new();
-    for _ in 0..TABLE_READS_MAX {
+    for _ in 0..MOUNT_TABLE_READS_MAX {
         let file = File::open(TABLE)?;
         text.clear();
-        (&file).take(TABLE_BYTES_MAX).read_to_end(&mut text)?;
+        (&file).take(MOUNT_TABLE_BYTES_MAX).read_to_end(&mut text)?;
         let mut changed = [PollFd::new(file.as_fd(), PollFlags::POLLPRI)];
         if poll(&mut changed, PollTimeout::ZERO)? == 0 {
             break;
@@ -341,8 +339,8 @@ fn clear_mountpoint(path: &Path) -> Result<(), MountError> {
 /// What a mount whose process is gone answers: ENOTCONN, or ECONNABORTED right after it went.
 fn is_dead(error: &io::Error) -> bool {
     matches!(
-        error.raw_os_error(),
-        Some(libc::ENOTCONN | libc::ECONNABORTED)
+        error.raw_os_error().map(Errno::from_raw),
+        Some(Errno::ENOTCONN | Errno::ECONNABORTED)
     )
 }
 
@@ -431,7 +429,9 @@ fn run(mut command: Command) -> Result<(), MountError> {
     let mut child = command.spawn().map_err(failed)?;
     let mut complaint = Vec::new();
     if let Some(stderr) = child.stderr.take() {
-        let _ = stderr.take(COMPLAINT_BYTES_MAX).read_to_end(&mut complaint);
+        let _ = stderr
+            .take(HELPER_COMPLAINT_BYTES_MAX)
+            .read_to_end(&mut complaint);
     }
     let status = child.wait().map_err(failed)?;
     if status.success() {

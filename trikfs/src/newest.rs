@@ -1,9 +1,12 @@
 //! The newest sample of a node: one state for all readers of `bin_data`, `value` and `valueN`.
 //!
-//! Owns the way of a sample into the latch, when samples are taken (on read, by the clock, on event), who waits for the
-//! first one, and when a sample is too old to be shown. `pace` takes samples in the background, `page` is the copy in
+//! Owns the way of a sample into the latch, when samples are taken (on read, by the clock, on event), which reads wait for
+//! the first one, and when a sample is too old to be shown. `pace` takes samples in the background, `page` is the copy in
 //! the kernel's page cache. A failure replaces the sample: what cannot be read is an error with a reason, never the
 //! value of before.
+
+// A pace or a kind of source that is forgotten must not leave a value that grows old in silence.
+#![deny(clippy::wildcard_enum_match_arm)]
 
 mod pace;
 mod page;
@@ -154,7 +157,7 @@ impl Newest {
         }
     }
 
-    /// Stops sampling and answers everybody who waits with ESTALE.
+    /// Stops sampling and answers all reads that wait with ESTALE.
     pub fn stop(&self) {
         lock(&self.jobs).clear();
         self.leave_bus();
@@ -280,7 +283,7 @@ impl Newest {
         }
         let reader = match &lock_patiently(&self.work).source {
             Source::Stream(reader) => reader.clone(),
-            _ => return,
+            Source::Closed | Source::State(_) => return,
         };
         if let Err(error) = reader.arm() {
             node.report(&error);
@@ -385,9 +388,9 @@ impl Newest {
             .fields()
             .iter()
             .any(|field| matches!(field.kind, FieldKind::F32 | FieldKind::F64))
-            && let Err(reason) = node.format.render(tuple, &mut String::new())
+            && let Err(why) = node.format.render(tuple, &mut String::new())
         {
-            let error = Error::Converter(reason);
+            let error = Error::Converter(why.to_string());
             node.report(&error);
             return self.fail(error);
         }
@@ -395,9 +398,7 @@ impl Newest {
         node.stats.samples.add(1);
         self.page.fill(&node.engine, tuple);
         self.tell();
-        if let Some(regulation) = node.driving.regulation() {
-            regulation.step(node, tuple);
-        }
+        node.driving.measured(node, tuple);
     }
 
     fn fail(&self, error: Error) {
@@ -406,9 +407,7 @@ impl Newest {
             if is_new {
                 self.page.drop(&node.engine);
             }
-            if let Some(regulation) = node.driving.regulation() {
-                regulation.fail(&node, &error);
-            }
+            node.driving.not_measured(&node, &error);
         }
         self.tell();
     }

@@ -1,8 +1,11 @@
-//! What stands behind one description: a node.
+//! A node: what one description is at work.
 //!
 //! Owns its identity, its parts, and the flag that a reload sets when the description is gone. Each part has one reason
 //! and a file below: how the device is opened, sampling, driving, converting, quarantine, faults, what was written, rest.
 //! Knows no file of the tree and no request of the kernel.
+
+// What a source drives must not be forgotten in silence.
+#![deny(clippy::wildcard_enum_match_arm)]
 
 mod converting;
 mod driving;
@@ -26,7 +29,7 @@ use config::problem::Problem;
 use driving::Driving;
 use fault::Trouble;
 use quarantine::Quarantine;
-pub use rest::rest_all;
+pub use rest::{LeasedActuators, rest_all};
 use sampling::Sampling;
 pub use source::Feed;
 use source::Source;
@@ -159,7 +162,7 @@ impl Node {
     }
 
     /// Notes a failure. One of the device or the converter is shown by `fault`, `stats` and the log; a mistake of the
-    /// caller, who has the errno, by the log alone.
+    /// caller, which has the errno, by the log alone.
     pub fn report(&self, error: &Error) {
         self.trouble.report(error, &self.stats);
     }

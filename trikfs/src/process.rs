@@ -1,4 +1,4 @@
-//! What /proc tells about the process behind a request.
+//! What /proc tells about the process that made a request.
 //!
 //! Owns the reading of /proc/PID; knows no file of the tree. A process that cannot be seen is not ending.
 //!
@@ -7,12 +7,11 @@
 //! is opened only when `status` shows that the process has given up its memory, as one that exits has done before it
 //! closes its files, and as one inside execve never has.
 
+use crate::limits::GENERATIONS_MAX;
 use std::fs;
 
 /// PF_SIGNALED of include/linux/sched.h: the process was killed by a signal.
 const PF_SIGNALED: u32 = 0x400;
-/// Generations that are looked at for an ancestor; a longer line does not lead to one.
-const GENERATIONS_MAX: usize = 64;
 
 /// The process that a thread belongs to; the thread itself if it cannot be seen.
 pub fn process_of(thread: u32) -> u32 {
@@ -70,7 +69,7 @@ fn number(status: &str, key: &str) -> Option<u32> {
     line.and_then(|number| number.trim().parse().ok())
 }
 
-/// Field 9 of /proc/PID/stat, counted behind the name, which may hold anything (proc(5)).
+/// Field 9 of /proc/PID/stat, counted after the name, which may hold anything (proc(5)).
 fn flags(stat: &str) -> u32 {
     let rest = stat.rsplit(')').next().unwrap_or("");
     let flags = rest.split_whitespace().nth(6);

@@ -1,4 +1,4 @@
-//! Programs that sensors need: started for the first who uses one, stopped a moment after the last.
+//! Programs that sensors need: started for the first user of one, stopped a moment after the last.
 //!
 //! Owns the order of start and stop, which for one program never overlap, and their limits. Each program is started
 //! and stopped by a thread of its own, never by one that serves the kernel or samples. A start that has failed is not
@@ -240,7 +240,7 @@ impl Program {
                     }
                 }
                 Job::Stop => {
-                    // Who begins to use it from here on waits for the start that follows.
+                    // A user that comes from here on waits for the start that follows.
                     state.up_since = None;
                     state.must_restart = false;
                     drop(state);
@@ -345,7 +345,7 @@ impl Use {
         lock(&self.0.state).was_seen = true;
     }
 
-    /// The program is up and makes nothing: for whoever comes next it is started again.
+    /// The program is up and makes nothing: for the next user it is started again.
     pub fn give_up(&self, reason: &str) {
         let mut state = lock(&self.0.state);
         state.failure = Some((Instant::now(), reason.to_owned()));

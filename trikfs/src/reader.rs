@@ -1,8 +1,8 @@
 //! The converted tuples of a stream, for one consumer.
 //!
 //! Owns the assembly of tuples from whatever pieces the source gives, the conversion, and what is left over when
-//! the consumer's buffer ends inside a tuple. Never waits; whoever waits is told through `Ready` when it is worth
-//! trying again. Knows no request of the kernel.
+//! the consumer's buffer ends inside a tuple. Never waits; a consumer that waits is called through `Ready` when
+//! it is worth trying again. Knows no request of the kernel.
 
 use crate::convert::Pipeline;
 use crate::device::{Got, Stream};
@@ -28,7 +28,7 @@ pub struct Reader {
 pub enum Origin {
     /// An opening of our own.
     Own(Box<dyn Stream>),
-    /// A queue behind an opening that all readers share.
+    /// A queue that is filled from an opening that all readers share.
     Shared(Arc<Subscription>),
     /// Our own opening failed; the next read tries to open it again.
     Lost,

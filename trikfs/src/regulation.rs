@@ -1,10 +1,9 @@
 //! Regulators at work: what was ordered of a node is held by driving another one, step by step.
 //!
 //! Owns the order, the control law's pipeline and the way to the driven node. An order lasts until the node or the driven
-//! node comes to rest, the feedback or the law fails, somebody else writes to the driven node, or a lease of
-//! either changes hands. What is measured, and when, is the
-//! business of the node's sampling; the law is a converter like any other. The first step of an order is made when it is
-//! given, with the newest sample, so that whoever gives it hears what the law or the driven node refuses.
+//! node comes to rest, the feedback or the law fails, another program writes to the driven node, or a lease of either
+//! changes hands. What is measured, and when, is the business of the node's sampling; the law is a converter like any other. The first step of an order is made when it is
+//! given, with the newest sample, so that the program that gives it gets the error of the law or of the driven node.
 
 use crate::clock::Stamp;
 use crate::convert::Pipeline;
@@ -27,7 +26,7 @@ pub struct Regulation {
 struct Owed {
     /// Why there is to be a rest.
     why: Error,
-    /// How often the driven node had been written: who drives it since then owes nothing.
+    /// How often the driven node had been written: a program that drives it since then owes nothing.
     writes: u32,
 }
 

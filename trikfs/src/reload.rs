@@ -14,7 +14,7 @@ use crate::guardian::actions::RestAction;
 use crate::guardian::ledger::Ledger;
 use crate::lease::Lease;
 use crate::limits;
-use crate::node::{Node, directory_of, rest_all};
+use crate::node::{LeasedActuators, Node, directory_of, rest_all};
 use crate::setup::SetupRunner;
 use crate::tree::{Owner, Tree};
 use config::description::{
@@ -36,7 +36,7 @@ pub struct Setup {
     pub engine: Arc<Engine>,
     /// Where the tree is put in force.
     pub forest: Arc<Forest>,
-    /// Who must hear of retired nodes.
+    /// What must hear of retired nodes.
     pub files: Arc<OpenFiles>,
     /// Runs configurations.
     pub loader: Loader,
@@ -315,8 +315,8 @@ impl Reloader {
             file.retire();
         }
         // A new node's ring may need the place of a second name that is gone.
-        if let Err(line) = setup.engine.samples.set_aliases(aliases) {
-            setup.engine.log.line(&line);
+        if let Err(error) = setup.engine.samples.set_aliases(aliases) {
+            setup.engine.log.line(&error.to_string());
         }
         for node in &new {
             node.sampling.newest.start();
@@ -348,7 +348,8 @@ fn set_actuators(nodes: &[Arc<Node>]) {
     }
     for node in nodes {
         if let Some(of_directory) = actuators.remove(node.driving.lease.path()) {
-            node.driving.lease.set_actuators(of_directory);
+            let actuators = LeasedActuators(of_directory);
+            node.driving.lease.set_actuators(Arc::new(actuators));
         }
     }
 }
@@ -377,7 +378,7 @@ fn rest_first(nodes: Vec<Arc<Node>>) {
     }
 }
 
-/// Every description of a configuration, attributes behind their node.
+/// Every description of a configuration, attributes after their node.
 pub fn all(config: &Config) -> impl Iterator<Item = &NodeDescription> {
     config
         .nodes

@@ -27,7 +27,7 @@ pub struct SetupRunner {
     turn: Mutex<Done>,
     /// Number and reason of each action of the newest list that failed.
     failures: Mutex<Vec<(usize, String)>>,
-    /// Actions that hang in a device and were left behind.
+    /// Actions that hang in a device and were given up.
     stuck: Arc<AtomicUsize>,
 }
 

@@ -19,7 +19,7 @@ pub struct StateReader {
     raw: Vec<u8>,
     /// What is left of the converted tuple that the last read ended in.
     rest: Vec<u8>,
-    /// The offset behind the last read, and the tuple of the source that comes next there.
+    /// The offset after the last read, and the tuple of the source that comes next there.
     next_at: u64,
     next_tuple: u64,
 }
@@ -47,7 +47,7 @@ impl StateReader {
         self.raw.resize(self.node.description.input_tuple_size, 0);
         for _ in 0..limits::CONSUMED_TUPLES_MAX {
             match self.device.whole_tuple(&mut self.raw) {
-                // The clock asks again soon, and whoever reads waits for that.
+                // The clock asks again soon, and reads wait for that.
                 Err(Error::WouldBlock) if self.node.sampling.newest.is_in_background() => {
                     return Ok(false);
                 }
@@ -68,7 +68,7 @@ impl StateReader {
         Ok(false)
     }
 
-    /// A failure of the source, reported. One that only has nothing yet is late for whoever asks now.
+    /// A failure of the source, reported. One that only has nothing yet is too late for the read at hand.
     fn failed(&self, error: Error) -> Error {
         let error = match error {
             Error::WouldBlock => Error::TimedOut("not every source has a sample yet".to_owned()),

@@ -1,6 +1,6 @@
 //! Counts and times of one node, for its `stats` file.
 //!
-//! Owns 64-bit counters for a processor that has no 64-bit atomics, and the logarithmic histograms behind mean and p99.
+//! Owns 64-bit counters for a processor that has no 64-bit atomics, and the logarithmic histograms that mean and p99 are computed from.
 
 use std::fmt::Write;
 use std::sync::Arc;

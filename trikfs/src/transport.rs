@@ -17,11 +17,11 @@ use std::time::{Duration, SystemTime};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct RequestId(pub u64);
 
-/// The kernel's name for somebody who polls an open file; valid until that file is released.
+/// The kernel's name for a program that polls an open file; valid until that file is released.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PollHandle(pub u64);
 
-/// Who asks.
+/// The process that asks.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Caller {
     /// Effective user.
@@ -113,7 +113,7 @@ pub struct Transfer {
     pub append: bool,
     /// The kernel reads for its page cache (splice, sendfile, a mapping), not for a read(2) of a program.
     pub paged: bool,
-    /// Who asks.
+    /// The process that asks.
     pub caller: Caller,
 }
 
@@ -126,7 +126,7 @@ pub struct DirEntry<'a> {
     pub kind: FileKind,
     /// Name.
     pub name: &'a str,
-    /// Position to continue behind this entry.
+    /// Position to continue after this entry.
     pub next: u64,
 }
 
@@ -199,7 +199,7 @@ pub trait Kernel: Send + Sync {
     /// Answers a request for which an operation returned [`Outcome::Wait`]. Data for a read; for a write the
     /// number of bytes taken is `written`; both empty for flush and fsync.
     fn answer(&self, id: RequestId, result: Result<Answer<'_>, Error>);
-    /// Wakes whoever polls this open file.
+    /// Wakes the programs that poll this open file.
     fn notify_poll(&self, handle: PollHandle);
     /// Puts the file's newest bytes into the page cache at offset 0. True if the kernel took them.
     fn store(&self, ino: u64, data: &[u8]) -> bool;

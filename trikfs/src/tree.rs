@@ -6,6 +6,7 @@
 use crate::clock::Stamp;
 use crate::errno::Error;
 use crate::files::value::View;
+use crate::limits::{KEPT_LONG, KEPT_SHORT};
 use crate::node::Node;
 use crate::transport::{Attr, DirEntry, FileKind};
 use config::description::{Alias, Pace};
@@ -16,10 +17,6 @@ use std::time::{Duration, SystemTime};
 /// Number of the root directory, fixed by the kernel.
 pub const ROOT: u64 = 1;
 
-/// How long the kernel may keep what does not change by itself; a reload invalidates it.
-const LONG: Duration = Duration::from_secs(86_400);
-/// How long `stat` of a value may be old.
-const SHORT: Duration = Duration::from_secs(1);
 /// What `stat` shows as the size of a text that is made when it is read, as in sysfs.
 const TEXT_SIZE: u64 = 4096;
 
@@ -67,7 +64,7 @@ pub struct Entry {
     children: BTreeMap<String, u64>,
 }
 
-/// Who owns what, unless a description says otherwise.
+/// Owners and groups of the files, unless a description says otherwise.
 #[derive(Clone, Copy, Debug)]
 pub struct Owner {
     /// The mounting user.
@@ -240,8 +237,8 @@ impl Tree {
             uid,
             gid,
             modified: self.made,
-            attr_ttl: LONG,
-            entry_ttl: LONG,
+            attr_ttl: KEPT_LONG,
+            entry_ttl: KEPT_LONG,
         };
         match &entry.kind {
             Kind::Directory => {
@@ -294,12 +291,12 @@ impl Tree {
         let stamp = node.sampling.newest.stamp();
         attr.mode = node.description.mode;
         attr.modified = stamp.map_or(self.made, Stamp::system_time);
-        attr.attr_ttl = SHORT;
+        attr.attr_ttl = KEPT_SHORT;
         if view == View::Bytes {
             attr.size = node.description.output_tuple_size as u64;
             // A read beyond the size of a cached file asks for attributes that are not kept.
             if node.description.pace != Pace::OnRead {
-                attr.attr_ttl = LONG;
+                attr.attr_ttl = KEPT_LONG;
             }
         }
     }
@@ -328,7 +325,7 @@ fn group_rights(mode: u16) -> u16 {
 }
 
 impl Kind {
-    /// The node behind it.
+    /// Its node.
     pub fn node(&self) -> Option<&Arc<Node>> {
         match self {
             Self::Directory | Self::Config | Self::Status | Self::Log | Self::Stop => None,

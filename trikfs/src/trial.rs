@@ -11,13 +11,15 @@ use crate::check::{self, SearchPaths};
 use crate::convert::lua::{StateMaker, StatePool};
 use crate::convert::{LogSink, Pipeline, Recipe, Workshop};
 use crate::errno::Error;
+use crate::failure::Failure;
 use crate::reload;
 use config::description::NodeDescription;
 use config::format::Format;
 use converter::Direction;
+use converter::error::Blame;
 use converter::limits::VECTORS_BYTES_MAX;
 use converter::trial::{Opened, Report, Trial};
-use converter::{Conversion, trial, vectors};
+use converter::{Conversion, Fault, trial, vectors};
 use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::Path;
@@ -45,8 +47,8 @@ impl Subject {
         direction: Direction,
         paths: &SearchPaths,
         params: &BTreeMap<String, f64>,
-    ) -> Result<Self, String> {
-        let loaded = check::load(file, paths).map_err(|problem| problem.to_string())?;
+    ) -> Result<Self, Failure> {
+        let loaded = check::load(file, paths)?;
         let nodes = || reload::all(&loaded.config);
         let aliases = &loaded.config.aliases;
         let second = aliases.iter().find(|alias| alias.path == node);
@@ -55,11 +57,9 @@ impl Subject {
             let known = nodes().map(|one| one.path.as_str());
             let known = known.chain(aliases.iter().map(|alias| alias.path.as_str()));
             let known: Vec<_> = known.collect();
-            return Err(format!(
-                "{}: there is no node {node}; there are: {}",
-                file.display(),
-                known.join(", ")
-            ));
+            let known = known.join(", ");
+            let why = format!("there is no node {node}; there are: {known}");
+            return Err(Failure::file(file, why));
         };
         description
             .params
@@ -68,12 +68,12 @@ impl Subject {
             cache: &paths.cache,
             progress: &|_| {},
         };
-        let maker = StateMaker::start().map_err(|error| error.to_string())?;
+        let maker = StateMaker::start();
+        let maker = maker.map_err(|error| Failure::Opening(error.to_string()))?;
         let pool: Option<Arc<StatePool>> = description
             .uses_lua()
             .then(|| maker.pool(loaded.program.clone()));
-        let recipe = Recipe::prepare(&description, &workshop, pool)
-            .map_err(|problem| problem.to_string())?;
+        let recipe = Recipe::prepare(&description, &workshop, pool)?;
         let (_, output_size) = sizes(&description, direction);
         let format = description.format.clone();
         let format = format.filter(|_| direction == Direction::Read);
@@ -95,17 +95,18 @@ impl Subject {
     ///
     /// # Errors
     /// What an open file would be told.
-    pub fn open(&self) -> Result<Pipeline, String> {
+    pub fn open(&self) -> Result<Pipeline, Error> {
         let log: LogSink = Arc::new(|text: &str| eprintln!("{text}"));
-        self.recipe.open(&log).map_err(|error| error.to_string())
+        self.recipe.open(&log)
     }
 
-    fn opener(&self) -> impl FnMut() -> Result<Opened, String> {
-        || {
-            let mut pipeline = self.open()?;
+    fn opener(&self) -> impl FnMut() -> Result<Opened, Fault> {
+        let fault = |error: Error| Fault::new(error.to_string());
+        move || {
+            let mut pipeline = self.open().map_err(fault)?;
             let direction = self.direction;
             Ok(Box::new(move |input: &[u8], output: &mut [u8]| {
-                convert(&mut pipeline, direction, input, output).map_err(|error| error.to_string())
+                convert(&mut pipeline, direction, input, output).map_err(fault)
             }))
         }
     }
@@ -138,24 +139,24 @@ pub fn check_vectors(
     direction: Direction,
     paths: &SearchPaths,
     vectors: &Path,
-) -> Result<String, String> {
+) -> Result<String, Failure> {
     let shown = vectors.display();
-    let parsed = read(vectors, VECTORS_BYTES_MAX)
-        .and_then(|bytes| String::from_utf8(bytes).map_err(|error| error.to_string()))
-        .and_then(|text| vectors::parse(&text))
-        .map_err(|reason| format!("{shown}: {reason}"))?;
+    let bytes = read(vectors, VECTORS_BYTES_MAX)?;
+    let text = String::from_utf8(bytes).map_err(|error| Failure::file(vectors, error))?;
+    let parsed = vectors::parse(&text).map_err(|error| Failure::file(vectors, error))?;
     let subject = Subject::load((file, node), direction, paths, &parsed.params)?;
     let shown_sizes = |(input, output)| format!("{input} and {output} bytes");
     let (theirs, ours) = ((parsed.input_size, parsed.output_size), subject.sizes());
     if theirs != ours {
-        return Err(format!(
-            "{shown}: the vectors have tuples of {}, node {node} of {}",
+        let why = format!(
+            "the vectors have tuples of {}, node {node} of {}",
             shown_sizes(theirs),
             shown_sizes(ours)
-        ));
+        );
+        return Err(Failure::file(vectors, why));
     }
     let count = trial::check_vectors(&parsed, &mut subject.opener());
-    let count = count.map_err(|reason| format!("{shown}: {reason}"))?;
+    let count = count.map_err(|error| judged(&error).at(shown.to_string()))?;
     Ok(format!("{shown}: {count} vectors hold\n"))
 }
 
@@ -172,12 +173,19 @@ pub struct Random {
 ///
 /// # Errors
 /// What was not true, of which tuple.
-pub fn check_random(subject: &Subject, random: &Random, recorded: &[u8]) -> Result<String, String> {
+pub fn check_random(
+    subject: &Subject,
+    random: &Random,
+    recorded: &[u8],
+) -> Result<String, Failure> {
     let (input_size, output_size) = subject.sizes();
     let check = |output: &[u8]| match subject.format.is_text() {
         // Any bytes may be a text; its file says so where they are none.
         true => Ok(()),
-        false => subject.format.render(output, &mut String::new()),
+        false => subject
+            .format
+            .render(output, &mut String::new())
+            .map_err(|why| Fault::new(why.to_string())),
     };
     let trial = Trial {
         input_size,
@@ -190,7 +198,16 @@ pub fn check_random(subject: &Subject, random: &Random, recorded: &[u8]) -> Resu
     let node = &subject.description.path;
     trial::check_properties(&trial, &mut subject.opener())
         .map(|report| render(node, random, &report))
-        .map_err(|reason| format!("node {node}: {reason}"))
+        .map_err(|error| judged(&error).at(format!("node {node}")))
+}
+
+/// What a trial of a converter found.
+fn judged(error: &converter::error::Error) -> Failure {
+    match error.blame() {
+        Blame::Author => Failure::Converter(error.to_string()),
+        Blame::Configuration => Failure::Opening(error.to_string()),
+        Blame::Vectors => Failure::Refused(error.to_string()),
+    }
 }
 
 fn render(node: &str, random: &Random, report: &Report) -> String {
@@ -226,16 +243,17 @@ fn sizes(description: &NodeDescription, direction: Direction) -> (usize, usize) 
 /// A file, at most so many bytes of it.
 ///
 /// # Errors
-/// It cannot be read, or is larger; without its name.
-pub fn read(file: &Path, bytes_max: usize) -> Result<Vec<u8>, String> {
-    let opened = std::fs::File::open(file).map_err(|error| error.to_string())?;
+/// It cannot be read, or is larger.
+pub fn read(file: &Path, bytes_max: usize) -> Result<Vec<u8>, Failure> {
+    let failed = |error: std::io::Error| Failure::file(file, error);
+    let opened = std::fs::File::open(file).map_err(failed)?;
     let mut bytes = Vec::new();
     opened
         .take(bytes_max as u64 + 1)
         .read_to_end(&mut bytes)
-        .map_err(|error| error.to_string())?;
+        .map_err(failed)?;
     if bytes.len() > bytes_max {
-        return Err(format!("more than {bytes_max} bytes"));
+        return Err(Failure::file(file, format!("more than {bytes_max} bytes")));
     }
     Ok(bytes)
 }

@@ -94,12 +94,9 @@ impl Writer {
                 tuple.len()
             )));
         }
-        let (sink, pipeline) = match (&mut self.way, self.node.driving.regulation()) {
-            (Way::Device { sink, pipeline }, _) => (sink, pipeline),
-            (Way::Regulation, Some(regulation)) => return regulation.order(&self.node, tuple),
-            (Way::Regulation, None) => {
-                return Err(Error::Internal("an order without a regulator".to_owned()));
-            }
+        let (sink, pipeline) = match &mut self.way {
+            Way::Device { sink, pipeline } => (sink, pipeline),
+            Way::Regulation => return self.node.driving.order(&self.node, tuple),
         };
         let batch = self.node.convert(
             &mut lock(pipeline),

@@ -7,8 +7,8 @@ use crate::description::{
 };
 use crate::format::Format;
 use crate::limits::{
-    BUDGET_US, BUDGET_US_MAX, MEMORY_KB, MEMORY_KB_MAX, NAME_BYTES_MAX, PERIOD_MS_MAX, TIMEOUT_MS,
-    TUPLE_BYTES_MAX,
+    ABOUT_BYTES_MAX, BUDGET_US, BUDGET_US_MAX, MEMORY_KB, MEMORY_KB_MAX, MEMORY_KB_MIN,
+    NAME_BYTES_MAX, PERIOD_MS_MAX, TIMEOUT_MS, TUPLE_BYTES_MAX, UNITS_BYTES_MAX,
 };
 use crate::problem::Problem;
 use crate::value::Value;
@@ -44,11 +44,6 @@ pub(super) const FIELDS: [&str; 26] = [
     "units",
     "write_converter",
 ];
-
-/// A state with the program takes about 50 KiB; with less than this no converter would ever run.
-const MEMORY_KB_MIN: u32 = 128;
-const UNITS_BYTES_MAX: usize = 64;
-const ABOUT_BYTES_MAX: usize = 200;
 
 /// Sizes and what depends on them.
 struct Layout {
@@ -90,7 +85,7 @@ impl NodeFields<'_, '_> {
             .collect();
         let (input_size, output_size) = (layout.input, layout.output);
         let converter = sized(read, input_size, output_size)
-            .map_err(|reason| self.problem("converter", reason))?;
+            .map_err(|error| self.problem("converter", error.to_string()))?;
         let write_converter = self.write_stages(write, &source, &layout)?;
         let (params, param_ranges) = self.params()?;
         let mut node = NodeDescription {
@@ -158,7 +153,7 @@ impl NodeFields<'_, '_> {
         let stages = sized(drafts, before, after);
         stages
             .map(Some)
-            .map_err(|reason| self.problem("write_converter", reason))
+            .map_err(|error| self.problem("write_converter", error.to_string()))
     }
 
     fn own_place(&self) -> crate::description::Place {
@@ -170,9 +165,9 @@ impl NodeFields<'_, '_> {
     fn layout(&self, input: Option<usize>, read: &[StageDraft]) -> Result<Layout, Problem> {
         let format = match self.text("format", 64 << 10)? {
             None => None,
-            Some(text) => {
-                Some(Format::parse(text).map_err(|reason| self.problem("format", reason))?)
-            }
+            Some(text) => Some(
+                Format::parse(text).map_err(|error| self.problem("format", error.to_string()))?,
+            ),
         };
         let format_size = format.as_ref().map(Format::size);
         let given = match self.get("output_tuple_size") {

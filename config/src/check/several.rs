@@ -189,7 +189,8 @@ impl<'a> NodeFields<'_, 'a> {
         let Some(text) = self.text("input_format", 64 << 10)? else {
             return Ok(());
         };
-        let wanted = Format::parse(text).map_err(|reason| self.problem("input_format", reason))?;
+        let wanted =
+            Format::parse(text).map_err(|error| self.problem("input_format", error.to_string()))?;
         let kinds = |format: &Format| -> Vec<_> {
             let all = format.fields().iter();
             all.map(|field| (field.kind, field.big_endian)).collect()

@@ -3,6 +3,7 @@
 //! Owns which size each stage has when the description does not say.
 
 use crate::description::{Place, StageDescription, StageKind};
+use crate::error::Error;
 use crate::fields::Fields;
 use crate::limits::CHAIN_MAX;
 use crate::problem::Problem;
@@ -24,7 +25,7 @@ pub(super) fn sized(
     drafts: Vec<StageDraft>,
     input: usize,
     output: usize,
-) -> Result<Vec<StageDescription>, String> {
+) -> Result<Vec<StageDescription>, Error> {
     let count = drafts.len();
     let mut size = input;
     let mut stages = Vec::with_capacity(count);
@@ -35,9 +36,9 @@ pub(super) fn sized(
             if let Some(said) = draft.output_size
                 && said != output
             {
-                return Err(format!(
+                return Err(Error::Text(format!(
                     "the last stage gives {said} bytes, but the tuple has {output}"
-                ));
+                )));
             }
             size = output;
         }
@@ -181,7 +182,7 @@ impl<'a> Fields<'a> {
         let path = self
             .search
             .library(path)
-            .map_err(|reason| self.problem(field, reason))?;
+            .map_err(|error| self.problem(field, error.to_string()))?;
         Ok(StageKind::Library { path, name })
     }
 

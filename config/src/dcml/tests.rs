@@ -77,7 +77,8 @@ impl Follower {
         let mut input: Vec<u8> = values.iter().flat_map(|one| one.to_le_bytes()).collect();
         input.extend(us.to_le_bytes());
         let mut output = [0; 12];
-        let done = self.0.convert(self.1, &input, &mut output)?;
+        let done = self.0.convert(self.1, &input, &mut output);
+        let done = done.map_err(|fault| fault.to_string())?;
         assert_eq!(done, Conversion::Produced);
         let number = |at: usize| f32::from_le_bytes(output[at..at + 4].try_into().unwrap());
         Ok([number(0), number(4), number(8)])

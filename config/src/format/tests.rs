@@ -9,6 +9,7 @@ fn rendered(format: &str, tuple: &[u8]) -> Result<String, String> {
         .unwrap()
         .render(tuple, &mut out)
         .map(|()| out)
+        .map_err(|error| error.to_string())
 }
 
 fn encoded(format: &str, text: &str) -> Result<Vec<u8>, EncodeError> {
@@ -37,7 +38,7 @@ fn a_format_has_a_size_and_a_canonical_text() {
 
 #[test]
 fn every_mistake_in_a_format_is_named() {
-    let error = |text: &str| Format::parse(text).unwrap_err();
+    let error = |text: &str| Format::parse(text).unwrap_err().to_string();
     assert_eq!(
         error(""),
         "format has an empty field; write for example 'i16 x, i16 y'"
@@ -123,11 +124,11 @@ fn floating_point_text_is_short_and_exact() {
 fn a_number_that_is_none_is_an_error() {
     assert_eq!(
         rendered("f32 speed", &f32::NAN.to_le_bytes()),
-        Err("field 'speed' is NaN".into())
+        Err("field 'speed' is NaN".to_owned())
     );
     assert_eq!(
         rendered("f64 speed", &f64::INFINITY.to_le_bytes()),
-        Err("field 'speed' is inf".into())
+        Err("field 'speed' is inf".to_owned())
     );
     assert_eq!(
         encoded("f32 a", "nan"),
@@ -201,7 +202,10 @@ fn plain_bytes_have_no_names() {
     );
     assert_eq!(
         format.render(&[1], &mut out),
-        Err("the tuple has 1 bytes, the format 3".into())
+        Err(RenderError::Size {
+            tuple: 1,
+            format: 3
+        })
     );
 }
 
@@ -216,7 +220,10 @@ fn one_field_is_read_and_written_alone() {
     assert_eq!(out, "258");
     assert_eq!(
         format.render_field(2, &tuple, &mut out),
-        Err("value2 does not exist: the tuple has 2 numbers".into())
+        Err(RenderError::NoField {
+            index: 2,
+            numbers: 2
+        })
     );
 }
 
@@ -292,7 +299,7 @@ fn a_text_is_one_line_filled_up_with_zero_bytes() {
         "text 8, u8 a",
         "text -1",
     ] {
-        let reason = Format::parse(wrong).unwrap_err();
+        let reason = Format::parse(wrong).unwrap_err().to_string();
         assert!(
             reason.contains("a text has 1 to 4194304 bytes"),
             "{wrong}: {reason}"

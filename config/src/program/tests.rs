@@ -32,7 +32,7 @@ fn converted(converter: &str, input: &[u8], output_size: usize) -> Result<Vec<u8
     for _ in 0..300 {
         assert_eq!(once(), first, "{converter}");
     }
-    first
+    first.map_err(|fault| fault.to_string())
 }
 
 /// The fault of a converter with this body, which has four bytes of input and output.
@@ -54,7 +54,8 @@ fn evaluated(expression: &str) -> String {
     );
     // What is asked is the value, on an emulated processor too.
     vm.limit(1024, 5_000_000);
-    vm.convert(stage, &[0; 4], &mut [0; 4]).unwrap_err()
+    let fault = vm.convert(stage, &[0; 4], &mut [0; 4]).unwrap_err();
+    fault.to_string()
 }
 
 #[test]
@@ -321,6 +322,7 @@ fn two_arrays_of_a_stage_and_two_stages_do_not_mix() {
         assert_eq!(output, [(i + 1).wrapping_mul(2)]);
     }
     let error = vm.convert(first, &[1], &mut [0; 2]).unwrap_err();
+    let error = error.to_string();
     assert_eq!(error, "the stage takes 2 bytes and gives 2, not 1 and 2");
 }
 
@@ -331,9 +333,11 @@ fn a_converter_is_found_through_groups_lists_and_attributes() {
         attributes = { speed = { src = '/dev/null', converter = { converter = f(4) } } } } } }";
     let mut vm = program(source).prepare().unwrap();
     let mut at = |node: &str, direction, position| {
-        let stage = vm.bind(node, direction, position, 1, 1)?;
+        let bound = vm.bind(node, direction, position, 1, 1);
+        let stage = bound.map_err(|error| error.to_string())?;
         let mut output = [0];
-        vm.convert(stage, &[0], &mut output).map(|_| output[0])
+        let done = vm.convert(stage, &[0], &mut output);
+        done.map(|_| output[0]).map_err(|fault| fault.to_string())
     };
     assert_eq!(at("motors/left", Direction::Read, 0), Ok(1));
     assert_eq!(at("motors/left", Direction::Write, 0), Ok(2));
@@ -390,6 +394,7 @@ fn endless_converters_are_ended_and_the_next_tuple_is_converted() {
         let mut output = [0];
         for _ in 0..2 {
             let error = vm.convert(stage, &[1], &mut output).unwrap_err();
+            let error = error.to_string();
             assert!(
                 error.ends_with("time budget spent (5000 us)"),
                 "{body}: {error}"
@@ -424,6 +429,7 @@ fn memory_without_bound_is_refused_and_the_next_tuple_is_converted() {
         vm.limit(1024, 50_000);
         let mut output = [0];
         let error = vm.convert(stage, &[1], &mut output).unwrap_err();
+        let error = error.to_string();
         assert!(
             error.ends_with("not enough memory") || error.contains("time budget"),
             "{body}: {error}"
@@ -782,6 +788,7 @@ fn a_state_can_move_between_threads() {
             assert!(
                 vm.convert(stage, &[1], &mut [0])
                     .unwrap_err()
+                    .text()
                     .contains("time budget spent")
             );
             assert_eq!(vm.convert(stage, &[0], &mut [0]), Ok(Conversion::Produced));
@@ -795,7 +802,10 @@ fn a_state_can_move_between_threads() {
 #[test]
 fn a_program_that_fails_this_time_is_an_error() {
     let program = program("local n = nil\nerror('no luck')");
-    assert_eq!(program.prepare().unwrap_err(), "test.lua:2: no luck");
+    assert_eq!(
+        program.prepare().unwrap_err(),
+        Error::Script("test.lua:2: no luck".to_owned())
+    );
 }
 
 #[test]
@@ -834,11 +844,17 @@ fn of_the_tree_remains_the_way_to_the_own_node() {
     vm.keep_only(node).unwrap();
     vm.stages.state().collect().unwrap();
     assert!(vm.memory() + 200_000 < before, "{} {before}", vm.memory());
-    let mut told = || vm.convert(stage, &[0; 4], &mut [0; 4]).unwrap_err();
+    let mut told = || {
+        let fault = vm.convert(stage, &[0; 4], &mut [0; 4]).unwrap_err();
+        fault.to_string()
+    };
     assert_eq!(told(), "group inner x 3");
     let params = BTreeMap::from([("gain".to_owned(), 7.0)]);
     vm.set_params(node, &params).unwrap();
-    let mut told = || vm.convert(stage, &[0; 4], &mut [0; 4]).unwrap_err();
+    let mut told = || {
+        let fault = vm.convert(stage, &[0; 4], &mut [0; 4]).unwrap_err();
+        fault.to_string()
+    };
     assert_eq!(told(), "group inner x 7");
     // Another node is not there any more, and that is an error and no crash.
     vm.bind("other", direction, 0, 4, 4).unwrap_err();

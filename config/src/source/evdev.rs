@@ -143,7 +143,11 @@ fn codes(fields: &Fields<'_>, field: &str, list: &Table) -> Result<Vec<(u16, u16
                 let found = event_code(&String::from_utf8_lossy(name));
                 found.map_err(|reason| fields.problem("src", format!("evdev: {reason}")))?
             }
-            _ => match fields.table_of(value).map(Table::list).as_deref() {
+            Value::Boolean(_)
+            | Value::Number(_)
+            | Value::Function(_)
+            | Value::Table(_)
+            | Value::Other(_) => match fields.table_of(value).map(Table::list).as_deref() {
                 Some([kind, code]) => {
                     let kind = fields.whole_value(field, kind, 0, 0x1f)?;
                     let code = fields.whole_value(field, code, 0, 0x2ff)?;

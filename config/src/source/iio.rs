@@ -89,7 +89,11 @@ fn read(fields: &Fields<'_>, _nodes: &mut dyn Nodes) -> Result<IioDescription, P
     let gives_position = fields.table_of(name).is_some();
     let names = match name {
         Value::Text(_) => vec![name_of(fields, "name", name)?],
-        _ => names_of(fields, "name", name, IIO_NAMES_MAX)?,
+        Value::Boolean(_)
+        | Value::Number(_)
+        | Value::Function(_)
+        | Value::Table(_)
+        | Value::Other(_) => names_of(fields, "name", name, IIO_NAMES_MAX)?,
     };
     let Some(channels) = fields.get("channels") else {
         return Err(fields.problem(

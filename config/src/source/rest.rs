@@ -57,7 +57,7 @@ pub enum Resting<'a> {
     Node(&'a str),
     /// As the source within it, `innermost` in the end.
     Within,
-    /// By a tuple to its device, whoever sends it.
+    /// By a tuple to its device, from any sender.
     Device,
 }
 

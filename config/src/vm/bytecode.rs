@@ -5,6 +5,7 @@
 
 use super::accessors;
 use super::state::{State, text_of};
+use crate::error::Error;
 use crate::limits::LOAD_MEMORY_BYTES;
 use mlua_sys as lua;
 use std::collections::HashMap;
@@ -62,7 +63,7 @@ impl Part {
     ///
     /// # Errors
     /// No memory.
-    pub(crate) fn code(self) -> Result<Code, String> {
+    pub(crate) fn code(self) -> Result<Code, Error> {
         cached(&format!("{self:?}"), || {
             compile(&format!("={self:?}"), self.source().as_bytes(), true)
         })
@@ -70,12 +71,12 @@ impl Part {
 }
 
 /// Bytecode that makes the typed accessor `ba.NAME`; None if there is no such type.
-pub(crate) fn accessor(name: &str) -> Option<Result<Code, String>> {
+pub(crate) fn accessor(name: &str) -> Option<Result<Code, Error>> {
     let source = accessors::source(name)?;
     Some(cached(name, || compile("=ba", source.as_bytes(), true)))
 }
 
-fn cached(name: &str, make: impl FnOnce() -> Result<Code, String>) -> Result<Code, String> {
+fn cached(name: &str, make: impl FnOnce() -> Result<Code, Error>) -> Result<Code, Error> {
     static CODES: OnceLock<Mutex<HashMap<String, Code>>> = OnceLock::new();
     let mut codes = CODES
         .get_or_init(Mutex::default)
@@ -93,11 +94,12 @@ fn cached(name: &str, make: impl FnOnce() -> Result<Code, String>) -> Result<Cod
 ///
 /// # Errors
 /// Lua's message, `FILE:LINE: REASON`.
-pub(crate) fn compile(chunk_name: &str, source: &[u8], strip: bool) -> Result<Code, String> {
+pub(crate) fn compile(chunk_name: &str, source: &[u8], strip: bool) -> Result<Code, Error> {
     if source.first() == Some(&0x1b) {
-        return Err("bytecode is not loaded, only text".into());
+        return Err(Error::Script("bytecode is not loaded, only text".into()));
     }
-    let chunk_name = CString::new(chunk_name).map_err(|_| "the name holds a zero byte")?;
+    let chunk_name = CString::new(chunk_name);
+    let chunk_name = chunk_name.map_err(|_| Error::Ours("the name holds a zero byte"))?;
     let state = State::bare(LOAD_MEMORY_BYTES)?;
     let mut code: Vec<u8> = Vec::new();
     let target: *mut Vec<u8> = &raw mut code;
@@ -117,7 +119,7 @@ pub(crate) fn compile(chunk_name: &str, source: &[u8], strip: bool) -> Result<Co
         }
     })?;
     if failed {
-        return Err(text_of(&state));
+        return Err(Error::Script(text_of(&state)));
     }
     Ok(code.into())
 }

@@ -3,17 +3,10 @@
 //! Owns the limits of what is copied. Shared tables are copied each time they are met, cycles are refused.
 
 use super::state::{State, TREE_SLOT, type_name};
-use crate::limits::{CONFIG_BYTES_MAX, GROUP_DEPTH_MAX};
+use crate::limits::{TABLE_DEPTH_MAX, TEXT_BYTES_MAX, VALUES_MAX};
 use crate::value::{Function, Key, Table, Value, Values};
 use mlua_sys as lua;
 use std::ffi::{CStr, c_int, c_void};
-
-/// Nested tables: groups, and inside a node its attributes, their fields, and lists in these.
-const DEPTH_MAX: usize = GROUP_DEPTH_MAX + 8;
-/// Values in all.
-const VALUES_MAX: usize = 1 << 18;
-/// Bytes of all strings together.
-const TEXT_BYTES_MAX: usize = 8 * CONFIG_BYTES_MAX;
 
 /// Why a tree could not be copied.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,7 +54,7 @@ pub(crate) fn extract(state: &State) -> Result<Values, Refusal> {
         }),
         Err(reason) => Err(Refusal {
             path: Vec::new(),
-            reason,
+            reason: reason.to_string(),
         }),
     }
 }
@@ -175,7 +168,7 @@ impl Copier {
             if self.open.contains(&identity) {
                 return self.refuse("the table holds itself");
             }
-            if self.open.len() == DEPTH_MAX {
+            if self.open.len() == TABLE_DEPTH_MAX {
                 return self.refuse("tables are nested too deeply");
             }
             let number = self.values.tables.len();

@@ -5,6 +5,7 @@
 use super::bytecode::Part;
 use super::library;
 use super::state::{State, text_of};
+use crate::error::Error;
 use crate::limits::LOAD_TIME_MS;
 use crate::value::Values;
 use mlua_sys as lua;
@@ -26,7 +27,7 @@ pub(crate) fn hash(bytes: &[u8]) -> u128 {
 }
 
 /// Remembers what the globals hold, before the program runs.
-pub(crate) fn keep_pristine(state: &State) -> Result<(), String> {
+pub(crate) fn keep_pristine(state: &State) -> Result<(), Error> {
     state.protect(&[], |l| {
         // SAFETY: inside a protected call; the loop keeps the key in place as `lua_next` wants.
         unsafe {
@@ -57,7 +58,7 @@ pub(crate) fn digest_functions(state: &mut State, values: &mut Values, salt: u12
     }
 }
 
-fn digests(state: &mut State, salt: u128) -> Result<Vec<u8>, String> {
+fn digests(state: &mut State, salt: u128) -> Result<Vec<u8>, Error> {
     let l = state.raw();
     // SAFETY: the state is live.
     let list = unsafe { lua::lua_gettop(l) };
@@ -89,11 +90,11 @@ fn digests(state: &mut State, salt: u128) -> Result<Vec<u8>, String> {
                         let start = lua::lua_tolstring(l, -1, &raw mut size);
                         Ok(std::slice::from_raw_parts(start.cast::<u8>(), size).to_vec())
                     }
-                    _ => Err("no digests".into()),
+                    _ => Err(Error::Ours("no digests")),
                 }
             }
         }
-        Ok(()) => Err(text_of(state)),
+        Ok(()) => Err(Error::Script(text_of(state))),
         Err(reason) => Err(reason),
     };
     // SAFETY: takes off the result and the list.

@@ -7,13 +7,13 @@
 use super::bytecode::{self, Code, Part};
 use super::pattern::{self, Capture, Match};
 use super::state::Host;
+use crate::error::Error;
+use crate::limits::UNDEFINED_MAX;
 use crate::source::is_constructor;
 use mlua_sys as lua;
 use std::ffi::{c_char, c_int};
 use std::panic::catch_unwind;
 
-/// Names of undefined globals that are remembered for a warning.
-const UNDEFINED_MAX: usize = 16;
 /// Chunk name of our own code, which has no lines: messages begin with [`NO_PLACE`].
 const CHUNK: &std::ffi::CStr = c"=trikfs";
 /// What Lua puts before the message of an error in our own code.
@@ -117,7 +117,8 @@ unsafe extern "C-unwind" fn log(l: *mut lua::lua_State) -> c_int {
 }
 
 /// Loads bytecode that `host.code` holds; pushes the function, or nil and the reason.
-unsafe fn push_code(l: *mut lua::lua_State, found: Result<Code, String>) -> c_int {
+unsafe fn push_code(l: *mut lua::lua_State, found: Result<Code, Error>) -> c_int {
+    let found = found.map_err(|error| error.to_string());
     // SAFETY: called from functions that Lua called. The code and the message are moved into the host before anything
     // here can raise an error, and stay there while Lua reads them: nothing else touches them before this returns.
     unsafe {
@@ -148,7 +149,8 @@ unsafe extern "C-unwind" fn chunk(l: *mut lua::lua_State) -> c_int {
     // SAFETY: Lua calls with a live state; the argument stays on the stack.
     unsafe {
         if lua::lua_type(l, 1) != lua::LUA_TSTRING {
-            return push_code(l, Err("include wants the name of a file".to_owned()));
+            let refused = Error::Script("include wants the name of a file".to_owned());
+            return push_code(l, Err(refused));
         }
         let name = argument(l, 1);
         push_code(l, host(l).include(name))

@@ -80,7 +80,7 @@ impl Memory {
         self.free.get(size.div_ceil(GRAIN).checked_sub(1)?)
     }
 
-    /// A block of `size` bytes, not zero, or null. `shrinks`: in the place of a larger one.
+    /// A block of `size` bytes, not zero, or null. `shrinks`: instead of a larger one.
     fn take(&self, size: usize, shrinks: bool) -> *mut c_void {
         let Some(list) = self.list(size) else {
             // SAFETY: the size is not zero.

@@ -3,12 +3,8 @@
 //!
 //! A recursive matcher as in the reference implementation, with the same error texts. Pure; positions are from 0.
 
-use crate::limits::PATTERN_STEPS_MAX;
+use crate::limits::{CAPTURES_MAX, PATTERN_DEPTH_MAX, PATTERN_STEPS_MAX};
 
-/// Captures of one pattern, as in the reference implementation.
-const CAPTURES_MAX: usize = 32;
-/// Nested attempts, as in the reference implementation; keeps the machine stack small.
-const DEPTH_MAX: u32 = 200;
 const ESCAPE: u8 = b'%';
 
 /// Where a pattern matched.
@@ -147,7 +143,7 @@ impl Matcher<'_> {
 
     /// Matches the pattern from `p` at `s`: the end of the match.
     fn attempt(&mut self, s: usize, p: usize) -> Step {
-        if self.depth == DEPTH_MAX {
+        if self.depth == PATTERN_DEPTH_MAX {
             return Err("pattern too complex");
         }
         self.depth += 1;

@@ -5,7 +5,8 @@
 
 use super::library;
 use super::state::{ARRAY_SLOT, PARAMS_SLOT, State, TREE_SLOT, text_of, type_name};
-use converter::{Conversion, Direction};
+use crate::error::{Error, Missing};
+use converter::{Conversion, Direction, Fault};
 use mlua_sys as lua;
 use std::collections::BTreeMap;
 use std::ffi::c_int;
@@ -85,7 +86,7 @@ impl Stages {
     }
 
     /// Does what the first bound converter would have to wait for: opens what byte arrays are made with.
-    pub(crate) fn prepare_arrays(&mut self) -> Result<(), String> {
+    pub(crate) fn prepare_arrays(&mut self) -> Result<(), Error> {
         self.state.protect(&[ARRAY_SLOT], |l| {
             // SAFETY: inside a protected call with the array maker on the stack; of no bytes none are reached.
             unsafe {
@@ -103,7 +104,7 @@ impl Stages {
         position: usize,
         input_size: usize,
         output_size: usize,
-    ) -> Result<usize, String> {
+    ) -> Result<usize, Error> {
         let (mut input, mut output) = (Buffer::new(input_size), Buffer::new(output_size));
         let (from, to) = (input.bytes().as_mut_ptr(), output.bytes().as_mut_ptr());
         let l = self.state.raw();
@@ -121,10 +122,11 @@ impl Stages {
                 found
             }
         })?;
-        if let Err(reason) = found {
+        if let Err(missing) = found {
             // SAFETY: takes off whatever the search left.
             unsafe { lua::lua_settop(l, slot - 1) };
-            return Err(format!("{node}: {reason}"));
+            let node = node.to_owned();
+            return Err(Error::NoConverter { node, missing });
         }
         self.state.protect(&[], |l| {
             // SAFETY: inside a protected call.
@@ -145,7 +147,7 @@ impl Stages {
 
     /// Lets go of all nodes but one: of the tree remains the path to that node. What only the others needed is thrown away
     /// when the state next collects, at the latest when the compiler is turned on.
-    pub(crate) fn keep_only(&mut self, node: &str) -> Result<(), String> {
+    pub(crate) fn keep_only(&mut self, node: &str) -> Result<(), Error> {
         self.state.protect(&[TREE_SLOT], |l| {
             // SAFETY: inside a protected call with the tree as the only value; leaves the new tree above it.
             unsafe {
@@ -174,19 +176,19 @@ impl Stages {
         input: &[u8],
         output: &mut [u8],
         budget_us: u32,
-    ) -> Result<Conversion, String> {
+    ) -> Result<Conversion, Fault> {
         let stage = self
             .stages
             .get_mut(index)
             .ok_or("no such stage in this state")?;
         if input.len() != stage.input.size || output.len() != stage.output.size {
-            return Err(format!(
+            return Err(Fault::new(format!(
                 "the stage takes {} bytes and gives {}, not {} and {}",
                 stage.input.size,
                 stage.output.size,
                 input.len(),
                 output.len()
-            ));
+            )));
         }
         stage.input.bytes().copy_from_slice(input);
         stage.output.bytes().fill(0);
@@ -203,7 +205,7 @@ impl Stages {
         let result = if self.state.call(4, 1, budget_us) {
             self.conversion()
         } else {
-            Err(text_of(&self.state))
+            Err(Fault::new(text_of(&self.state)))
         };
         // SAFETY: takes off the result or the error.
         unsafe { lua::lua_settop(l, -2) };
@@ -219,7 +221,7 @@ impl Stages {
     }
 
     /// The meaning of the value on the top.
-    fn conversion(&self) -> Result<Conversion, String> {
+    fn conversion(&self) -> Result<Conversion, Fault> {
         let l = self.state.raw();
         // SAFETY: the state is live and the result of the call is on its top.
         let (kind, truth) = unsafe { (lua::lua_type(l, -1), lua::lua_toboolean(l, -1) != 0) };
@@ -227,10 +229,10 @@ impl Stages {
             lua::LUA_TNIL => Ok(Conversion::Produced),
             lua::LUA_TBOOLEAN if truth => Ok(Conversion::Produced),
             lua::LUA_TBOOLEAN => Ok(Conversion::Consumed),
-            other => Err(format!(
+            other => Err(Fault::new(format!(
                 "the converter returned a {}, not true, false or nothing",
                 type_name(other)
-            )),
+            ))),
         }
     }
 
@@ -253,7 +255,7 @@ impl Stages {
         &mut self,
         node: &str,
         params: &BTreeMap<String, f64>,
-    ) -> Result<(), String> {
+    ) -> Result<(), Error> {
         self.state.protect(&[PARAMS_SLOT, TREE_SLOT], |l| {
             // SAFETY: inside a protected call with the two given values on the stack; the names are borrowed from the
             // caller, so nothing here has a destructor.
@@ -306,14 +308,13 @@ unsafe fn get_raw(l: *mut lua::lua_State, index: c_int, name: &[u8]) {
 }
 
 /// Pushes the description of a node: a path through groups, and from a node through its attributes.
-unsafe fn push_node(l: *mut lua::lua_State, tree: c_int, node: &str) -> Result<(), &'static str> {
-    const NONE: &str = "the program made no such node this time";
+unsafe fn push_node(l: *mut lua::lua_State, tree: c_int, node: &str) -> Result<(), Missing> {
     // SAFETY: the caller is in a protected call; only tables are indexed.
     unsafe {
         lua::lua_pushvalue(l, tree);
         for segment in node.split('/') {
             if lua::lua_type(l, -1) != lua::LUA_TTABLE {
-                return Err(NONE);
+                return Err(Missing::Node);
             }
             get_raw(l, -1, b"src");
             let is_node = lua::lua_type(l, -1) != lua::LUA_TNIL;
@@ -322,7 +323,7 @@ unsafe fn push_node(l: *mut lua::lua_State, tree: c_int, node: &str) -> Result<(
                 get_raw(l, -1, b"attributes");
                 lua::lua_remove(l, -2);
                 if lua::lua_type(l, -1) != lua::LUA_TTABLE {
-                    return Err(NONE);
+                    return Err(Missing::Node);
                 }
             }
             get_raw(l, -1, segment.as_bytes());
@@ -331,7 +332,7 @@ unsafe fn push_node(l: *mut lua::lua_State, tree: c_int, node: &str) -> Result<(
         if lua::lua_type(l, -1) == lua::LUA_TTABLE {
             Ok(())
         } else {
-            Err(NONE)
+            Err(Missing::Node)
         }
     }
 }
@@ -382,7 +383,7 @@ unsafe fn push_converter(
     node: &str,
     direction: Direction,
     position: usize,
-) -> Result<(), &'static str> {
+) -> Result<(), Missing> {
     // SAFETY: the caller is in a protected call; only tables are indexed.
     unsafe {
         push_node(l, tree, node)?;
@@ -413,7 +414,7 @@ unsafe fn push_converter(
         if lua::lua_type(l, -1) == lua::LUA_TFUNCTION && lua::lua_iscfunction(l, -1) == 0 {
             Ok(())
         } else {
-            Err("the program made no lua converter here this time")
+            Err(Missing::Converter)
         }
     }
 }

@@ -5,6 +5,7 @@
 use super::bytecode::{Code, Part};
 use super::library;
 use super::memory::{Memory, allocate};
+use crate::error::Error;
 use crate::limits::LOG_LINE_BYTES_MAX;
 use crate::watchdog::lua_budget;
 use mlua_sys as lua;
@@ -14,12 +15,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr::{self, NonNull};
 use std::sync::Arc;
 
-const NO_MEMORY: &str = "not enough memory for a lua state";
-
 /// Where log lines go.
 pub(crate) type LogSink = Arc<dyn Fn(&str) + Send + Sync>;
 /// Finds the bytecode of an included file.
-pub(crate) type Include = Box<dyn FnMut(&[u8]) -> Result<Code, String> + Send>;
+pub(crate) type Include = Box<dyn FnMut(&[u8]) -> Result<Code, Error> + Send>;
 
 /// Stack place of the function that makes the proxy of a buffer.
 pub(crate) const ARRAY_SLOT: c_int = 1;
@@ -86,13 +85,13 @@ impl Host {
     }
 
     /// Bytecode of an included file.
-    pub(super) fn include(&self, name: &[u8]) -> Result<Code, String> {
+    pub(super) fn include(&self, name: &[u8]) -> Result<Code, Error> {
         let Some(mut include) = self.include.borrow_mut().take() else {
-            return Err("include is not possible here".into());
+            return Err(Error::Script("include is not possible here".into()));
         };
         let found = catch_unwind(AssertUnwindSafe(|| include(name)));
         *self.include.borrow_mut() = Some(include);
-        found.unwrap_or_else(|_| Err("include failed inside".into()))
+        found.unwrap_or(Err(Error::Ours("include failed inside")))
     }
 }
 
@@ -108,7 +107,7 @@ unsafe impl Send for State {}
 
 impl State {
     /// A state without any library, for compiling.
-    pub(crate) fn bare(memory_limit: usize) -> Result<Self, String> {
+    pub(crate) fn bare(memory_limit: usize) -> Result<Self, Error> {
         let host = NonNull::from(Box::leak(Box::new(Host {
             memory: Memory::new(memory_limit),
             log: RefCell::new(None),
@@ -123,13 +122,13 @@ impl State {
         let Some(lua) = NonNull::new(state) else {
             // SAFETY: leaked above and given to nothing that still exists.
             drop(unsafe { Box::from_raw(host.as_ptr()) });
-            return Err(NO_MEMORY.into());
+            return Err(Error::NoMemory);
         };
         let state = Self { lua, host };
         // SAFETY: the state is live; `settle` needs no argument.
         match unsafe { lua::lua_cpcall(state.raw(), settle, ptr::null_mut()) } {
             lua::LUA_OK => Ok(state),
-            _ => Err(NO_MEMORY.into()),
+            _ => Err(Error::NoMemory),
         }
     }
 
@@ -138,7 +137,7 @@ impl State {
         memory_limit: usize,
         log: Option<LogSink>,
         include: Option<Include>,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, Error> {
         let prelude = Part::Prelude.code()?;
         let state = Self::bare(memory_limit)?;
         *state.host().log.borrow_mut() = log;
@@ -149,7 +148,7 @@ impl State {
             unsafe { library::install(l, code) }
         })?;
         if status != lua::LUA_OK {
-            return Err(text_of(&state));
+            return Err(Error::Script(text_of(&state)));
         }
         Ok(state)
     }
@@ -178,7 +177,7 @@ impl State {
         &self,
         given: &[c_int],
         work: impl FnOnce(*mut lua::lua_State) -> R,
-    ) -> Result<R, String> {
+    ) -> Result<R, Error> {
         let mut result = None;
         let mut work = Some(work);
         let mut pending = |l: *mut lua::lua_State| result = work.take().map(|work| work(l));
@@ -206,7 +205,7 @@ impl State {
             }
             let text = text_at(l, -1);
             lua::lua_settop(l, top);
-            Err(text)
+            Err(Error::Script(text))
         }
     }
 
@@ -224,7 +223,7 @@ impl State {
     ///
     /// # Errors
     /// Lua's message.
-    pub(crate) fn run(&mut self, code: &[u8], budget_us: u32) -> Result<(), String> {
+    pub(crate) fn run(&mut self, code: &[u8], budget_us: u32) -> Result<(), Error> {
         let l = self.raw();
         // SAFETY: the state is live and ours; `luaL_loadbuffer` is protected by itself and the code outlives it.
         let status = unsafe {
@@ -236,11 +235,11 @@ impl State {
         let text = text_of(self);
         // SAFETY: takes off the error that the failed call left.
         unsafe { lua::lua_settop(l, -2) };
-        Err(text)
+        Err(Error::Script(text))
     }
 
     /// Frees what is unreachable. Returns the bytes that are left.
-    pub(crate) fn collect(&self) -> Result<usize, String> {
+    pub(crate) fn collect(&self) -> Result<usize, Error> {
         self.protect(&[], |l| {
             // SAFETY: inside a protected call.
             unsafe { lua::lua_gc(l, lua::LUA_GCCOLLECT, 0) };
@@ -250,7 +249,7 @@ impl State {
     }
 
     /// Keeps the global `trikfs` as it is now in its stack place.
-    pub(crate) fn keep_tree(&mut self) -> Result<(), String> {
+    pub(crate) fn keep_tree(&mut self) -> Result<(), Error> {
         self.protect(&[], |l| {
             // SAFETY: inside a protected call; the globals are a table.
             unsafe {

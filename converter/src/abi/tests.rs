@@ -12,7 +12,7 @@ fn open(
     descriptor: &Descriptor,
     sizes: (usize, usize),
     params: &[(&str, f64)],
-) -> Result<Instance, Fault> {
+) -> Result<Instance, Error> {
     let params: BTreeMap<String, f64> = params
         .iter()
         .map(|(name, value)| ((*name).to_owned(), *value))
@@ -28,9 +28,9 @@ fn open(
 }
 
 /// Loads a library as the steps at the top of `abi.rs` say.
-fn load(path: &std::path::Path) -> Result<Vec<Descriptor>, String> {
+fn load(path: &std::path::Path) -> Result<Vec<Descriptor>, LibraryFault> {
     // SAFETY: the library is a template of this crate, built by the test; it has no initialisers.
-    let library = unsafe { libloading::Library::new(path) }.map_err(|error| error.to_string())?;
+    let library = unsafe { libloading::Library::new(path) }.unwrap();
     // A leaked library is never unloaded.
     let library: &'static libloading::Library = Box::leak(Box::new(library));
     // SAFETY: the symbols have these types in the header that the templates were compiled with.
@@ -45,7 +45,7 @@ fn load(path: &std::path::Path) -> Result<Vec<Descriptor>, String> {
         (Ok(entry), _) => unsafe { read_library(entry()) },
         // SAFETY: the template obeys the header, and the library is leaked.
         (_, Ok(plain)) => Ok(vec![unsafe { Descriptor::plain("plain", *plain) }]),
-        (Err(error), _) => Err(error.to_string()),
+        (Err(error), _) => panic!("{error}"),
     }
 }
 
@@ -69,7 +69,7 @@ fn raw_converter() -> RawConverter {
 }
 
 /// What `read_library` says of a library with these converters.
-fn read(converters: &[*const RawConverter]) -> Result<Vec<Descriptor>, String> {
+fn read(converters: &[*const RawConverter]) -> Result<Vec<Descriptor>, LibraryFault> {
     let library = RawLibrary {
         abi_version: 1,
         size: size_of::<RawLibrary>() as u32,
@@ -84,7 +84,7 @@ fn read(converters: &[*const RawConverter]) -> Result<Vec<Descriptor>, String> {
 fn refusal(spoil: impl FnOnce(&mut RawConverter)) -> String {
     let mut converter = raw_converter();
     spoil(&mut converter);
-    read(&[&raw const converter]).unwrap_err()
+    read(&[&raw const converter]).unwrap_err().to_string()
 }
 
 #[test]
@@ -109,25 +109,29 @@ fn every_broken_rule_is_named() {
     // SAFETY: null is allowed.
     let null = unsafe { read_library(ptr::null()) };
     assert_eq!(
-        null.unwrap_err(),
+        null.unwrap_err().to_string(),
         "the entry of the library returned no library"
     );
     assert_eq!(
-        read(&[]).unwrap_err(),
+        read(&[]).unwrap_err().to_string(),
         "library has 0 converters, the limit is 1 to 256"
     );
     assert_eq!(
-        read(&[ptr::null()]).unwrap_err(),
+        read(&[ptr::null()]).unwrap_err().to_string(),
         "converter 0 of the library is missing"
     );
     let good = raw_converter();
     let misaligned = (&raw const good).cast::<u8>().wrapping_add(1).cast();
     assert_eq!(
-        read(&[&raw const good, misaligned]).unwrap_err(),
+        read(&[&raw const good, misaligned])
+            .unwrap_err()
+            .to_string(),
         "converter 1 of the library is missing"
     );
     assert_eq!(
-        read(&[&raw const good, &raw const good]).unwrap_err(),
+        read(&[&raw const good, &raw const good])
+            .unwrap_err()
+            .to_string(),
         "library has two converters named 'nothing'"
     );
     assert_eq!(
@@ -164,7 +168,7 @@ fn a_library_of_another_version_is_not_read_further_than_its_header() {
     // SAFETY: the two words of the header can be read, and no more is.
     let refused = unsafe { read_library((&raw const library).cast()) };
     assert_eq!(
-        refused.unwrap_err(),
+        refused.unwrap_err().to_string(),
         "library has abi version 2, this trikfs reads version 1"
     );
 }
@@ -235,7 +239,7 @@ fn a_refused_opening_is_explained_and_what_it_logged_is_kept() {
         params: &BTreeMap::new(),
         log: &|text| lines.borrow_mut().push(text.to_owned()),
     });
-    assert_eq!(refused.unwrap_err().text(), "not today");
+    assert_eq!(refused.unwrap_err().to_string(), "not today");
     assert_eq!(lines.into_inner(), ["motors/M1", "two lines \u{fffd}"]);
 }
 
@@ -325,7 +329,10 @@ fn check_battery_mean(descriptors: &[Descriptor]) {
     );
     for count in [0.0, f64::NAN, 1001.0] {
         let refused = open(battery, (2, 4), &[("count", count)]).unwrap_err();
-        assert_eq!(refused.text(), "battery_mean: count must be from 1 to 1000");
+        assert_eq!(
+            refused.to_string(),
+            "battery_mean: count must be from 1 to 1000"
+        );
     }
     let mut output = [0; 4];
     let mut instance = open(battery, (2, 4), &[("count", 2.0), ("other", 1.0)]).unwrap();

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::abi::{Descriptor, Instance, descriptors};
+use crate::error::Error;
 use std::cell::RefCell;
 use std::ffi::CStr;
 
@@ -68,7 +69,7 @@ fn exported(index: usize) -> Descriptor {
         .swap_remove(index)
 }
 
-fn open_sum(params: &[(&str, f64)], log: &dyn Fn(&str)) -> Result<Instance, Fault> {
+fn open_sum(params: &[(&str, f64)], log: &dyn Fn(&str)) -> Result<Instance, Error> {
     let params = params
         .iter()
         .map(|(name, value)| ((*name).to_owned(), *value))

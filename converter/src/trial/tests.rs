@@ -5,7 +5,7 @@ use crate::vectors;
 use std::cell::Cell;
 use std::rc::Rc;
 
-fn trial(check: &dyn Fn(&[u8]) -> Result<(), String>) -> Trial<'_> {
+fn trial(check: &dyn Fn(&[u8]) -> Result<(), Fault>) -> Trial<'_> {
     Trial {
         input_size: 4,
         output_size: 4,
@@ -16,12 +16,12 @@ fn trial(check: &dyn Fn(&[u8]) -> Result<(), String>) -> Trial<'_> {
     }
 }
 
-fn anything(_: &[u8]) -> Result<(), String> {
+fn anything(_: &[u8]) -> Result<(), Fault> {
     Ok(())
 }
 
 /// A converter of its own for each opening, made by `make`.
-fn opens(mut make: impl FnMut() -> Opened) -> impl FnMut() -> Result<Opened, String> {
+fn opens(mut make: impl FnMut() -> Opened) -> impl FnMut() -> Result<Opened, Fault> {
     move || Ok(make())
 }
 
@@ -31,7 +31,7 @@ fn a_good_converter_passes_and_its_faults_are_counted() {
         Box::new(|input, output| {
             output.copy_from_slice(input);
             match input[0] {
-                0xff => Err("no answer".to_owned()),
+                0xff => Err("no answer".into()),
                 0 => Ok(Conversion::Consumed),
                 _ => Ok(Conversion::Produced),
             }
@@ -51,7 +51,9 @@ fn a_number_that_is_not_finite_is_seen() {
             Ok(Conversion::Produced)
         })
     });
-    let refusal = check_properties(&trial(&finite_f32), &mut open).unwrap_err();
+    let refusal = check_properties(&trial(&finite_f32), &mut open)
+        .unwrap_err()
+        .to_string();
     assert!(refusal.starts_with("seed 7, tuple "), "{refusal}");
     assert!(refusal.contains("number 0 is "), "{refusal}");
 }
@@ -67,7 +69,9 @@ fn a_state_that_openings_share_is_seen() {
             Ok(Conversion::Produced)
         })
     });
-    let refusal = check_properties(&trial(&anything), &mut open).unwrap_err();
+    let refusal = check_properties(&trial(&anything), &mut open)
+        .unwrap_err()
+        .to_string();
     assert!(
         refusal.contains("opened again it gives something else"),
         "{refusal}"
@@ -89,9 +93,11 @@ fn a_state_of_ones_own_is_none() {
 
 #[test]
 fn a_converter_that_refuses_everything_has_not_been_tried() {
-    let mut open = opens(|| Box::new(|_, _| Err("bad checksum".to_owned())));
+    let mut open = opens(|| Box::new(|_, _| Err("bad checksum".into())));
     assert_eq!(
-        check_properties(&trial(&anything), &mut open).unwrap_err(),
+        check_properties(&trial(&anything), &mut open)
+            .unwrap_err()
+            .to_string(),
         "seed 7: all 2000 tuples were refused, so nothing was tried: bad checksum"
     );
     let mut open = opens(|| {
@@ -99,7 +105,7 @@ fn a_converter_that_refuses_everything_has_not_been_tried() {
             output.copy_from_slice(input);
             let good = input[0] ^ input[1] ^ input[2] == input[3] && input[0] == 0x55;
             good.then_some(Conversion::Produced)
-                .ok_or_else(|| "bad checksum".to_owned())
+                .ok_or_else(|| "bad checksum".into())
         })
     });
     let recorded = [0x55, 1, 2, 0x56, 0x55, 8, 8, 0x55];
@@ -133,7 +139,7 @@ fn a_vector_that_is_not_met_is_named_with_what_came_instead() {
                 output[0] = input[0] + 1;
                 match input[0] {
                     1 => Ok(Conversion::Consumed),
-                    2 => Err("two".to_owned()),
+                    2 => Err("two".into()),
                     _ => Ok(Conversion::Produced),
                 }
             })
@@ -141,7 +147,7 @@ fn a_vector_that_is_not_met_is_named_with_what_came_instead() {
         check_vectors(&vectors, &mut open)
     };
     assert_eq!(run("size 1 1\n03 > 04\n01 > consumed\n02 > fault\n"), Ok(3));
-    let refused = |text| run(text).unwrap_err();
+    let refused = |text| run(text).unwrap_err().to_string();
     assert_eq!(refused("size 1 1\n03 > 05"), "line 2: 03 gives 04, not 05");
     assert_eq!(
         refused("size 1 1\n01 > 02"),

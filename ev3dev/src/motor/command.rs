@@ -1,4 +1,4 @@
-//! What can be said to a motor and what it says: commands, setpoints, gains, output, flags.
+//! What goes to a motor and comes from it: commands, setpoints, gains, output, flags.
 //!
 //! Owns the defaults. Knows no regulation.
 

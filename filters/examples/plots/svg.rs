@@ -1,6 +1,6 @@
 //! A plot of lines as SVG text.
 
-use std::fmt::Write as _;
+use lang_text::svg::{Svg, Tag, View};
 
 /// Size of the picture and of its margins in pixels.
 const SIZE: (f64, f64) = (680.0, 280.0);
@@ -23,12 +23,16 @@ pub enum Role {
 }
 
 impl Role {
-    fn style(self) -> &'static str {
+    fn put(self, tag: Tag<'_>) -> Tag<'_> {
         match self {
-            Self::Raw => "stroke=\"#b0b0b0\" stroke-width=\"1\"",
-            Self::Filtered => "stroke=\"#0057b8\" stroke-width=\"2\"",
-            Self::Truth => "stroke=\"#2e8b57\" stroke-width=\"1.5\" stroke-dasharray=\"6 3\"",
-            Self::Other => "stroke=\"#d2691e\" stroke-width=\"1.2\"",
+            Self::Raw => tag.style(&[("stroke", "#b0b0b0"), ("stroke-width", "1")]),
+            Self::Filtered => tag.style(&[("stroke", "#0057b8"), ("stroke-width", "2")]),
+            Self::Truth => tag.style(&[
+                ("stroke", "#2e8b57"),
+                ("stroke-width", "1.5"),
+                ("stroke-dasharray", "6 3"),
+            ]),
+            Self::Other => tag.style(&[("stroke", "#d2691e"), ("stroke-width", "1.2")]),
         }
     }
 }
@@ -124,68 +128,60 @@ impl Plot {
         let (width, height) = (SIZE.0 - LEFT - RIGHT, SIZE.1 - TOP - BOTTOM);
         let x_at = |x: f64| LEFT + (x - x0) / (x1 - x0) * width;
         let y_at = |y: f64| TOP + (y1 - y) / (y1 - y0) * height;
-        let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" \
-             font-family=\"sans-serif\" font-size=\"12\">\n<title>{}</title>\n\
-             <rect width=\"{w}\" height=\"{h}\" fill=\"#ffffff\"/>\n",
-            self.title,
-            w = SIZE.0,
-            h = SIZE.1
-        );
+        let mut svg = Svg::new();
+        let view = View {
+            frame: [0.0, 0.0, SIZE.0, SIZE.1],
+            digits: 0,
+            is_sized: true,
+        };
+        svg.picture(view)
+            .style(&[("font-family", "sans-serif"), ("font-size", "12")])
+            .open();
+        svg.tag("title").text(self.title);
+        svg.tag("rect")
+            .numbers(0, [("width", SIZE.0), ("height", SIZE.1)])
+            .with("fill", "#ffffff")
+            .close();
+        let grid = |svg: &mut Svg, path: std::fmt::Arguments<'_>| {
+            svg.tag("path")
+                .with("d", path)
+                .with("stroke", "#eeeeee")
+                .close();
+        };
+        let text = |svg: &mut Svg, x: f64, y: f64, anchor: &str, text: &dyn std::fmt::Display| {
+            svg.tag("text")
+                .numbers(1, [("x", x), ("y", y)])
+                .with("text-anchor", anchor)
+                .text(text);
+        };
         for x in ticks(x0, x1) {
             let at = x_at(x);
             let (top, low) = (TOP, TOP + height);
-            let _ = writeln!(svg, "<path d=\"M{at:.1} {top}V{low}\" stroke=\"#eeeeee\"/>");
-            let _ = writeln!(
-                svg,
-                "<text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{x}</text>",
-                low + 15.0
-            );
+            grid(&mut svg, format_args!("M{at:.1} {top}V{low}"));
+            text(&mut svg, at, low + 15.0, "middle", &x);
         }
         for y in ticks(y0, y1) {
             let at = y_at(y);
             let right = LEFT + width;
-            let _ = writeln!(
-                svg,
-                "<path d=\"M{LEFT} {at:.1}H{right}\" stroke=\"#eeeeee\"/>"
-            );
-            let _ = writeln!(
-                svg,
-                "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{y}</text>",
-                LEFT - 5.0,
-                at + 4.0
-            );
+            grid(&mut svg, format_args!("M{LEFT} {at:.1}H{right}"));
+            text(&mut svg, LEFT - 5.0, at + 4.0, "end", &y);
         }
         let (middle, low) = (LEFT + width / 2.0, SIZE.1 - 6.0);
-        let _ = writeln!(
-            svg,
-            "<text x=\"{middle:.1}\" y=\"{low:.1}\" text-anchor=\"middle\">{}</text>",
-            self.axes.0
-        );
-        let _ = writeln!(svg, "<text x=\"6\" y=\"16\">{}</text>", self.axes.1);
+        text(&mut svg, middle, low, "middle", &self.axes.0);
+        let label = |svg: &mut Svg, x: f64, label: &str| {
+            svg.tag("text").with("x", x).with("y", 16).text(label);
+        };
+        label(&mut svg, 6.0, self.axes.1);
         for (index, line) in self.lines.iter().enumerate() {
-            let points: Vec<String> = line
-                .points
-                .iter()
-                .map(|(x, y)| format!("{:.1},{:.1}", x_at(*x), y_at(*y)))
-                .collect();
-            let style = line.role.style();
-            let _ = writeln!(
-                svg,
-                "<polyline fill=\"none\" {style} points=\"{}\"/>",
-                points.join(" ")
-            );
+            let points = line.points.iter().map(|(x, y)| (x_at(*x), y_at(*y)));
+            let tag = svg.tag("polyline").with("fill", "none");
+            line.role.put(tag).points(points).close();
             let at = LEFT + 70.0 + 180.0 * index as f64;
-            let _ = writeln!(svg, "<path d=\"M{at} 12h22\" {style}/>");
-            let _ = writeln!(
-                svg,
-                "<text x=\"{}\" y=\"16\">{}</text>",
-                at + 27.0,
-                line.label
-            );
+            let tag = svg.tag("path").with("d", format_args!("M{at} 12h22"));
+            line.role.put(tag).close();
+            label(&mut svg, at + 27.0, line.label);
         }
-        svg.push_str("</svg>\n");
-        svg
+        svg.finish()
     }
 }
 

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use std::rc::Rc;
 
 use super::operand::Context;
-use super::rules::{Condition, EventIndex, Message, Named, Rules, Trigger};
+use super::rules::{Condition, EventIndex, Message, Named, Operand, Path, Rules, Trigger};
 use super::scene::{Object, Scene, Unfit};
 use super::value::{Value, shown};
 use super::words;
@@ -35,8 +35,17 @@ pub struct Entry {
     pub level: Level,
     /// When, in milliseconds of model time.
     pub at_ms: u64,
+    /// Where, for people, as the diagram and block of an error; empty for what has no place. The original tells none.
+    pub place: String,
     /// What.
     pub text: String,
+}
+
+impl Entry {
+    /// Place and text, as a person reads them.
+    pub fn line(&self) -> String {
+        format!("{}{}", self.place, self.text)
+    }
 }
 
 /// What a run has come to. A run that is decided is to be stopped.
@@ -85,13 +94,13 @@ pub struct Checker {
     locale: Locale,
     start_ms: u64,
     continues: bool,
-    repeats: bool,
     states: Vec<State>,
     /// Events of the pass that goes on, kept to save memory from being asked for in every tick.
     pass: Vec<EventIndex>,
     variables: HashMap<Box<str>, Value>,
     found: Vec<Option<(Object, usize)>>,
-    complained: Vec<Words>,
+    /// Whether the scene has been asked for all objects of the rules.
+    has_looked: bool,
     /// Entries, counted with those that were left out.
     told: usize,
     /// Whether it was said that entries are left out.
@@ -113,11 +122,10 @@ impl Checker {
             locale,
             start_ms: 0,
             continues: false,
-            repeats: false,
             pass: Vec::with_capacity(rules.events.len()),
             variables: HashMap::from([(SCORE.into(), Value::Int(0))]),
             found: vec![None; rules.slots],
-            complained: Vec::new(),
+            has_looked: false,
             told: 0,
             is_full: false,
             outcome: Outcome::default(),
@@ -141,13 +149,6 @@ impl Checker {
     #[must_use]
     pub fn continuing(mut self) -> Self {
         self.continues = true;
-        self
-    }
-
-    /// The same, telling errors of the rules in each pass anew, as the original does; else each is told once.
-    #[must_use]
-    pub fn repeating(mut self) -> Self {
-        self.repeats = true;
         self
     }
 
@@ -225,6 +226,12 @@ impl Checker {
         let mut pass = std::mem::take(&mut self.pass);
         pass.clear();
         pass.extend((0..self.states.len()).filter(|&event| self.states[event].is_alive));
+        if !std::mem::replace(&mut self.has_looked, true) {
+            // What a rule may ask for later is to be known to the scene from the beginning.
+            for name in &self.rules.objects {
+                let _ = scene.find(name);
+            }
+        }
         let mut run = self.run(now_ms, scene, entries);
         for &event in &pass {
             run.check(event);
@@ -244,10 +251,8 @@ impl Checker {
             start_ms: self.start_ms,
             locale: self.locale,
             continues: self.continues,
-            repeats: self.repeats,
             rules: &self.rules,
             states: &mut self.states,
-            complained: &mut self.complained,
             told: &mut self.told,
             is_full: &mut self.is_full,
             outcome: &mut self.outcome,
@@ -269,10 +274,8 @@ struct Run<'a> {
     start_ms: u64,
     locale: Locale,
     continues: bool,
-    repeats: bool,
     rules: &'a Rules,
     states: &'a mut [State],
-    complained: &'a mut Vec<Words>,
     told: &'a mut usize,
     is_full: &'a mut bool,
     outcome: &'a mut Outcome,
@@ -369,11 +372,11 @@ impl Run<'_> {
             Trigger::Success { deferred: false } => self.accomplish(),
             Trigger::Say(message) => {
                 let text = self.filled(message);
-                self.tell(Level::Info, text, false);
+                self.report(Level::Info, text, false);
             }
             Trigger::Log(message) => {
                 let text = self.filled(message);
-                self.tell(Level::Log, text, false);
+                self.report(Level::Log, text, false);
             }
             Trigger::SetVariable(name, operand) => {
                 let value = self.context.value(operand);
@@ -398,19 +401,25 @@ impl Run<'_> {
                 object,
                 property,
                 value,
-            } => {
-                let target = self.context.state(object, true);
-                let Value::Object(found) = target else {
-                    let words = words::no_state(target.type_name());
-                    self.complain(words);
-                    return;
-                };
-                let value = self.context.value(value);
-                if !self.context.scene.set_property(found, property, &value) {
-                    let words = words::no_settable(target.type_name(), property);
-                    self.complain(words);
-                }
-            }
+            } => self.set_state(object, property, value),
+        }
+    }
+
+    /// Gives a property of an object, or of what stands in one, a value.
+    fn set_state(&mut self, object: &Path, property: &str, value: &Operand) {
+        let target = self.context.state(object, true);
+        let is_set = if let Value::Object(found) = target {
+            let value = self.context.value(value);
+            self.context.scene.set_property(found, property, &value)
+        } else if let Value::Record(_) = target {
+            let value = self.context.value(value);
+            self.context.set_within(object, property, &value)
+        } else {
+            self.complain(words::no_state(target.type_name()));
+            return;
+        };
+        if !is_set {
+            self.complain(words::no_settable(target.type_name(), property));
         }
     }
 
@@ -453,17 +462,9 @@ impl Run<'_> {
     /// Tells what evaluation has complained of.
     fn flush(&mut self) {
         for words in std::mem::take(&mut self.context.complaints) {
-            if !self.repeats {
-                if self.complained.contains(&words) {
-                    continue;
-                }
-                if self.complained.len() < limits::CONSTRAINT_COMPLAINTS_MAX {
-                    self.complained.push(words.clone());
-                }
-            }
             let words = words::in_checker(&words);
             let text = words.in_locale(self.locale).to_owned();
-            self.tell(Level::Critical, text, false);
+            self.report(Level::Critical, text, false);
         }
     }
 
@@ -473,7 +474,7 @@ impl Run<'_> {
         self.outcome.failed = true;
         let unfinished = words::unfinished();
         let message = message.unwrap_or(unfinished.in_locale(self.locale));
-        self.tell(Level::Error, message.to_owned(), is_first);
+        self.report(Level::Error, message.to_owned(), is_first);
         if !self.continues {
             self.outcome.decided = true;
             self.dump();
@@ -487,7 +488,8 @@ impl Run<'_> {
         }
         self.is_succeeding = true;
         let rules = self.rules;
-        for (index, event) in rules.events.iter().enumerate() {
+        // Events stand in descending order of their ids, and these are checked in ascending order.
+        for (index, event) in rules.events.iter().enumerate().rev() {
             if event.id.starts_with(ON_SUCCESS) {
                 self.set_up(index);
                 self.check(index);
@@ -502,7 +504,7 @@ impl Run<'_> {
         }
         let words = words::accomplished(&seconds(self.now_ms.saturating_sub(self.start_ms)));
         let text = words.in_locale(self.locale).to_owned();
-        self.tell(Level::Info, text, is_first);
+        self.report(Level::Info, text, is_first);
         if !self.continues {
             self.dump();
         }
@@ -513,11 +515,11 @@ impl Run<'_> {
         let score = self.context.variables.get(SCORE);
         let value = score.map_or_else(|| "null".to_owned(), json);
         let text = format!(r#"{{"variables":[{{"name":"{SCORE}","value":{value}}}]}}"#);
-        self.tell(Level::Variables, text, true);
+        self.report(Level::Variables, text, true);
     }
 
     /// Adds an entry; one that must be is told however much was told before.
-    fn tell(&mut self, level: Level, text: String, must: bool) {
+    fn report(&mut self, level: Level, text: String, must: bool) {
         if level != Level::Critical {
             self.flush();
         }
@@ -538,6 +540,7 @@ impl Run<'_> {
         self.entries.push(Entry {
             level,
             at_ms: self.now_ms,
+            place: String::new(),
             text,
         });
     }
@@ -570,9 +573,12 @@ fn json(value: &Value) -> String {
         }
         Value::Null
         | Value::Double(_)
+        | Value::NoText
         | Value::Point(_)
+        | Value::Place(_)
         | Value::Rect(_)
         | Value::Colour(_)
+        | Value::Opaque
         | Value::List(_)
         | Value::Record(_)
         | Value::Object(_) => "null".to_owned(),

@@ -1,14 +1,19 @@
 //! Templates put in: `use` and tags named like templates are replaced by what the templates say.
 //!
-//! Owns declarations of templates, substitution and its limits. Knows no meaning of what is put in.
+//! Owns declarations of templates, their name spaces, substitution and its limits. Knows no meaning of what is put in.
 //!
 //! A body is text: `#{name}` stands for a parameter, and parameters are put in from the last to the first, so that one may
-//! mention those before it. A template that stands in itself is an error, also by way of others. The tag `typeof` is a
-//! value of the language, and so the template of that name is used by `use` only.
+//! mention those before it. A template that stands in itself is an error, also by way of others. In the present release
+//! names have prefixes, `ts:` those of the library and `u:` those of the save; constraints that use none of these are of an
+//! older release, whose names stand alone and whose library is another one. There the tag `typeof` is a value of the
+//! language, and so the template of that name is used by `use` only.
+//!
+//! Tags are gone through from the last to the first, and the first error is the only one, as in the original.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
+use super::former::FORMER;
 use super::library::LIBRARY;
 use super::words;
 use crate::limits;
@@ -67,8 +72,10 @@ const LANGUAGE: [&str; 48] = [
     "variablevalue",
 ];
 
-/// Prefixes of tags that are templates: those of the library and those of the field.
-const PREFIXES: [&str; 2] = ["ts:", "u:"];
+/// Prefixes of names: those of the library and those of the save.
+const PREFIXES: [&str; 2] = [SYSTEM, USER];
+const SYSTEM: &str = "ts:";
+const USER: &str = "u:";
 
 #[derive(Debug)]
 struct Template {
@@ -77,33 +84,59 @@ struct Template {
     body: String,
 }
 
-/// Constraints with all templates put in; `None` if there are none to put in.
-pub(super) fn expand(
-    constraints: &Element<'_>,
-    others: Option<&Element<'_>>,
-) -> Result<Option<Element<'static>>, Vec<Problem>> {
-    let library = xml::parse(LIBRARY).map_err(|problem| vec![problem])?;
-    let mut expander = Expander::default();
-    // Cheap words first: most fields use no templates.
-    let declares = constraints.elements().any(is_declaration);
-    if !declares && !mentions(constraints, &names(&library, others)) {
-        return Ok(None);
+/// What has become of constraints.
+pub(super) struct Expanded {
+    /// With all templates put in; `None` if there are none to put in.
+    pub constraints: Option<Element<'static>>,
+    /// What is wrong with templates of the save: they are left out, and the rest works.
+    pub faults: Vec<Problem>,
+}
+
+/// Puts templates in: those of the library, those that the texts of a save declare, and those that the constraints do.
+///
+/// # Errors
+/// What is wrong with templates of the save, and with the first use that is wrong.
+pub(super) fn expand(constraints: &Element<'_>, files: &[&str]) -> Result<Expanded, Vec<Problem>> {
+    let mut expander = Expander {
+        has_plain_names: !uses_prefixes(constraints),
+        ..Expander::default()
+    };
+    for text in files {
+        expander.file(text);
     }
-    expander.declare_all(&library);
-    if let Some(others) = others {
-        expander.declare_all(others);
+    let faults = std::mem::take(&mut expander.problems);
+    let parsed = |text| xml::parse(text).map_err(|problem| vec![problem]);
+    let (library, former) = (parsed(LIBRARY)?, parsed(FORMER)?);
+    // Cheap words first: most fields use no templates.
+    let names: Vec<&str> = expander.templates.keys().map(String::as_str).collect();
+    let former_names = former.elements().filter_map(|one| one.attribute("name"));
+    let names: Vec<&str> = names.into_iter().chain(former_names).collect();
+    if !constraints.elements().any(is_declaration) && !mentions(constraints, &names) {
+        return Ok(Expanded {
+            constraints: None,
+            faults,
+        });
+    }
+    expander.declare_library(&library, SYSTEM);
+    if expander.has_plain_names {
+        expander.declare_library(&former, "");
     }
     for declared in constraints.elements().filter(|one| is_declaration(one)) {
-        expander.declare_all(declared);
+        expander.declare_all(declared, |_| 1, false);
     }
     let mut expanded = Element::new(constraints.name.clone().into_owned());
     if expander.problems.is_empty() {
-        expander.nodes(constraints, &mut expanded, 0);
+        expanded.nodes = expander.nodes(constraints, 1, 0);
     }
     if expander.problems.is_empty() {
-        Ok(Some(expanded))
+        Ok(Expanded {
+            constraints: Some(expanded),
+            faults,
+        })
     } else {
-        Err(expander.problems)
+        let mut all = faults;
+        all.append(&mut expander.problems);
+        Err(all)
     }
 }
 
@@ -111,12 +144,18 @@ fn is_declaration(element: &Element<'_>) -> bool {
     element.name.eq_ignore_ascii_case("templates")
 }
 
-fn names<'a>(library: &'a Element<'_>, others: Option<&'a Element<'_>>) -> Vec<&'a str> {
-    let all = library
-        .elements()
-        .chain(others.into_iter().flat_map(Element::elements));
-    all.filter_map(|template| template.attribute("name"))
-        .collect()
+fn has_prefix(name: &str) -> bool {
+    PREFIXES.iter().any(|prefix| name.starts_with(prefix))
+}
+
+/// Whether a tag in an element names a template of the present release.
+fn uses_prefixes(element: &Element<'_>) -> bool {
+    element.elements().any(|inside| {
+        let used = inside.attribute("template").unwrap_or_default();
+        has_prefix(&inside.name)
+            || (inside.name == "use" && has_prefix(used))
+            || uses_prefixes(inside)
+    })
 }
 
 /// Whether a template may be used in a tag.
@@ -124,7 +163,7 @@ fn mentions(element: &Element<'_>, names: &[&str]) -> bool {
     element.elements().any(|inside| {
         let name = &*inside.name;
         name == "use"
-            || PREFIXES.iter().any(|prefix| name.starts_with(prefix))
+            || has_prefix(name)
             || (names.contains(&name) && !is_language(name))
             || mentions(inside, names)
     })
@@ -134,23 +173,44 @@ fn is_language(tag: &str) -> bool {
     LANGUAGE.contains(&tag.to_ascii_lowercase().as_str())
 }
 
+/// How many lines an element takes where each tag has its own, as the original numbers them.
+fn lines(element: &Element<'_>) -> usize {
+    let inside: usize = element
+        .nodes
+        .iter()
+        .map(|node| match node {
+            Node::Element(element) => lines(element),
+            Node::Comment(text) => 1 + text.matches('\n').count(),
+            Node::Text(text) => text.matches('\n').count(),
+        })
+        .sum();
+    match element.nodes.first() {
+        None => 1,
+        Some(Node::Text(_)) => 1 + inside,
+        Some(Node::Element(_) | Node::Comment(_)) => 2 + inside,
+    }
+}
+
+/// The line of a text in which something stands for the last time.
+fn last_line(text: &str, what: &str) -> usize {
+    let at = text.rfind(what).unwrap_or_default();
+    1 + text[..at].matches('\n').count()
+}
+
 #[derive(Default)]
 struct Expander {
     templates: BTreeMap<String, Template>,
     problems: Vec<Problem>,
-    /// Templates that are being put in, each in the one before.
-    chain: Vec<String>,
+    /// Templates that are being put in, each in the one before, with what their bodies have become.
+    chain: Vec<(String, String)>,
+    /// Whether names without a prefix are templates.
+    has_plain_names: bool,
     tags: usize,
     bytes: usize,
 }
 
 impl Expander {
     fn error(&mut self, block: String, words: Words) {
-        let words = if self.chain.is_empty() {
-            words
-        } else {
-            words::chain(&words, &self.chain.join(" -> "))
-        };
         let problem = Problem {
             severity: Severity::Error,
             place: Place {
@@ -162,54 +222,142 @@ impl Expander {
         keep(&mut self.problems, problem);
     }
 
-    fn declare_all(&mut self, templates: &Element<'_>) {
-        for template in templates.elements() {
-            if !template.name.eq_ignore_ascii_case("template") {
-                self.error(
-                    "templates".to_owned(),
-                    words::not_a_template(&template.name),
-                );
-                continue;
+    /// The first use that is wrong; no other follows it.
+    fn fail(&mut self, block: String, tag: &str, line: usize, words: &Words) {
+        let words = match self.chain.last() {
+            None => words::in_constraints_line(words, line),
+            Some((name, body)) => {
+                words::in_body_line(words, last_line(body, &format!("<{tag}")), name)
             }
-            let Some(name) = template.attribute("name").filter(|name| !name.is_empty()) else {
-                self.error("templates".to_owned(), words::nameless_template());
-                continue;
-            };
-            if self.templates.contains_key(name) {
-                self.error(format!("template '{name}'"), words::template_twice(name));
-                continue;
+        };
+        self.error(block.clone(), words::in_substitution(&words));
+    }
+
+    /// Where a use that is wrong stands in others.
+    fn tell_chain(&mut self, block: String) {
+        if !self.chain.is_empty() {
+            let names: Vec<&str> = self.chain.iter().map(|(name, _)| name.as_str()).collect();
+            let words = words::in_substitution(&words::chain(&names.join(" -> ")));
+            self.error(block, words);
+        }
+    }
+
+    /// Templates of a text of the save.
+    fn file(&mut self, text: &str) {
+        match xml::parse(text) {
+            Ok(root) => {
+                let starts: Vec<usize> = text
+                    .match_indices("<template ")
+                    .chain(text.match_indices("<template>"))
+                    .map(|(at, _)| 1 + text[..at].matches('\n').count())
+                    .collect();
+                let mut starts = starts;
+                starts.sort_unstable();
+                self.declare_all(&root, |index| starts.get(index).copied().unwrap_or(1), true);
             }
-            match declared(name, template) {
-                Ok(template) => {
-                    self.templates.insert(name.to_owned(), template);
-                }
-                Err(words) => self.error(format!("template '{name}'"), words),
+            Err(problem) => keep(&mut self.problems, words::unread(problem)),
+        }
+    }
+
+    fn declare_library(&mut self, library: &Element<'_>, prefix: &str) {
+        for template in library.elements() {
+            let name = template.attribute("name").unwrap_or_default();
+            if let Ok(read) = declared(name, template, false) {
+                self.templates.insert(format!("{prefix}{name}"), read);
             }
         }
     }
 
-    /// Copies what is in a tag, with templates put in.
-    fn nodes(&mut self, from: &Element<'_>, into: &mut Element<'static>, depth: usize) {
+    fn declare_all(
+        &mut self,
+        templates: &Element<'_>,
+        line: impl Fn(usize) -> usize,
+        is_file: bool,
+    ) {
+        for (index, template) in templates.elements().enumerate() {
+            let line = line(index);
+            if let Err((block, words)) = self.declare(template, line, is_file) {
+                self.error(block, words::in_template(&words));
+            }
+        }
+    }
+
+    fn declare(
+        &mut self,
+        template: &Element<'_>,
+        line: usize,
+        is_file: bool,
+    ) -> Result<(), (String, Words)> {
+        let outside = |words: Words| ("templates".to_owned(), words::line(&words, line));
+        if !template.name.eq_ignore_ascii_case("template") {
+            return Err(outside(words::not_a_template(&template.name)));
+        }
+        let name = template.attribute("name").filter(|name| !name.is_empty());
+        let name = name.ok_or_else(|| outside(words::nameless_template()))?;
+        let name = name.strip_prefix(USER).unwrap_or(name);
+        let key = format!("{USER}{name}");
+        if self.templates.contains_key(&key) {
+            let words = words::line(&words::template_twice(name), line);
+            return Err((format!("template '{name}'"), words));
+        }
+        let read = |is_file| {
+            declared(name, template, is_file).map_err(|words| {
+                let words = words::line_of_template(&words, line, name);
+                (format!("template '{name}'"), words)
+            })
+        };
+        self.templates.insert(key, read(is_file)?);
+        if self.has_plain_names {
+            self.templates.insert(name.to_owned(), read(is_file)?);
+        }
+        Ok(())
+    }
+
+    /// Copies of what is in a tag, with templates put in; the tag stands in a line of the constraints.
+    fn nodes(&mut self, from: &Element<'_>, line: usize, depth: usize) -> Vec<Node<'static>> {
         if depth > limits::CONSTRAINT_DEPTH_MAX {
-            self.error(from.name.to_string(), words::too_deep());
-            return;
+            self.error(from.name.to_string(), words::in_rules(&words::too_deep()));
+            return Vec::new();
         }
+        let mut starts = Vec::with_capacity(from.nodes.len());
+        let mut next = line + 1;
         for node in &from.nodes {
+            starts.push(next);
+            next += match node {
+                Node::Element(element) => lines(element),
+                Node::Comment(_) | Node::Text(_) => 1,
+            };
+        }
+        let mut copies: Vec<Node<'static>> = Vec::with_capacity(from.nodes.len());
+        for (node, line) in from.nodes.iter().zip(starts).rev() {
             match node {
-                Node::Comment(text) => into.nodes.push(Node::Comment(owned(text))),
-                Node::Text(text) => into.nodes.push(Node::Text(owned(text))),
+                Node::Comment(text) => copies.push(Node::Comment(owned(text))),
+                Node::Text(text) => copies.push(Node::Text(owned(text))),
                 Node::Element(element) if depth == 0 && is_declaration(element) => {}
-                Node::Element(element) => self.element(element, into, depth),
+                Node::Element(element) => self.element(element, line, depth, &mut copies),
+            }
+            if !self.problems.is_empty() {
+                break;
             }
         }
+        copies.reverse();
+        copies
     }
 
-    fn element(&mut self, element: &Element<'_>, into: &mut Element<'static>, depth: usize) {
+    /// Adds the copy of a tag, or what a template makes of it, the last tag first.
+    fn element(
+        &mut self,
+        element: &Element<'_>,
+        line: usize,
+        depth: usize,
+        into: &mut Vec<Node<'static>>,
+    ) {
         self.tags += 1;
         if self.tags > limits::CONSTRAINT_TAGS_MAX {
-            if self.tags == limits::CONSTRAINT_TAGS_MAX + 1 {
-                self.error(element.name.to_string(), words::too_many_tags());
-            }
+            self.error(
+                element.name.to_string(),
+                words::in_rules(&words::too_many_tags()),
+            );
             return;
         }
         let Some(name) = self.used(element) else {
@@ -218,21 +366,49 @@ impl Expander {
             copy.attributes = attributes
                 .map(|(name, value)| (owned(name), owned(value)))
                 .collect();
-            self.nodes(element, &mut copy, depth + 1);
-            into.nodes.push(Node::Element(copy));
+            copy.nodes = self.nodes(element, line, depth + 1);
+            into.push(Node::Element(copy));
             return;
         };
         match self.substituted(&name, element) {
             Ok(text) => {
-                self.chain.push(name.clone());
-                self.put_in(&name, &text, into, depth);
-                self.chain.pop();
+                let root = format!("<root>{text}</root>");
+                self.chain.push((name.clone(), text));
+                match xml::parse(&root) {
+                    Ok(root) => {
+                        let inside: Vec<_> = root.elements().collect();
+                        for element in inside.into_iter().rev() {
+                            self.element(element, line, depth, into);
+                            if !self.problems.is_empty() {
+                                break;
+                            }
+                        }
+                        self.chain.pop();
+                    }
+                    Err(problem) => {
+                        self.chain.pop();
+                        self.not_xml(&name, element, line, problem);
+                    }
+                }
             }
-            Err(words) => {
-                let place = format!("{} '{name}'", element.name);
-                self.error(place, words);
+            Err(all) => {
+                let block = format!("{} '{name}'", element.name);
+                for words in &all {
+                    self.fail(block.clone(), &element.name, line, words);
+                }
+                self.tell_chain(block);
             }
         }
+    }
+
+    /// A body with its parameters is no XML; why it is not, the original does not say.
+    fn not_xml(&mut self, name: &str, element: &Element<'_>, line: usize, mut problem: Problem) {
+        let block = format!("template '{name}'");
+        self.fail(block.clone(), &element.name, line, &words::not_xml(name));
+        self.tell_chain(block.clone());
+        problem.severity = Severity::Warning;
+        problem.place.block = Some(block);
+        keep(&mut self.problems, problem);
     }
 
     /// The name of the template that a tag uses.
@@ -241,77 +417,61 @@ impl Expander {
         if name == "use" {
             return Some(element.attribute("template").unwrap_or_default().to_owned());
         }
-        let is_ours = self.templates.contains_key(name) && !is_language(name);
-        let has_prefix = PREFIXES.iter().any(|prefix| name.starts_with(prefix));
-        (is_ours || has_prefix).then(|| name.to_owned())
-    }
-
-    fn put_in(&mut self, name: &str, text: &str, into: &mut Element<'static>, depth: usize) {
-        let wrapped = format!("<root>{text}</root>");
-        match xml::parse(&wrapped) {
-            Ok(root) => {
-                for element in root.elements() {
-                    self.element(element, into, depth);
-                }
-            }
-            Err(problem) => {
-                let mut words = problem.words.clone();
-                if let Some(at) = problem.place.position {
-                    let at = format!("{}:{} ", at.line, at.column);
-                    words.english.insert_str(0, &at);
-                    words.russian.insert_str(0, &at);
-                }
-                self.error(format!("template '{name}'"), words::not_xml(name, &words));
-            }
-        }
+        let is_plain = self.has_plain_names && self.templates.contains_key(name);
+        (has_prefix(name) || is_plain && !is_language(name)).then(|| name.to_owned())
     }
 
     /// The body of a template with the parameters of a use.
-    fn substituted(&mut self, name: &str, usage: &Element<'_>) -> Result<String, Words> {
+    fn substituted(&mut self, name: &str, usage: &Element<'_>) -> Result<String, Vec<Words>> {
         if name.is_empty() {
-            return Err(words::nameless_use());
+            return Err(vec![words::nameless_use()]);
         }
-        let plain = PREFIXES
-            .iter()
-            .find_map(|prefix| name.strip_prefix(prefix))
-            .unwrap_or(name);
-        let is_same =
-            |one: &String| one.trim_start_matches("ts:").trim_start_matches("u:") == plain;
-        if self.chain.iter().any(is_same) || self.chain.len() >= limits::TEMPLATE_DEPTH_MAX {
-            return Err(words::recursive(&format!(
-                "{} -> {name}",
-                self.chain.join(" -> ")
-            )));
+        let is_inside = self.chain.iter().any(|(one, _)| one == name);
+        if is_inside || self.chain.len() >= limits::TEMPLATE_DEPTH_MAX {
+            let names: Vec<&str> = self.chain.iter().map(|(name, _)| name.as_str()).collect();
+            let chain = format!("{} -> {name}", names.join(" -> "));
+            return Err(vec![words::recursive(&chain)]);
         }
         let template = self
             .templates
-            .get(plain)
-            .ok_or_else(|| words::no_template(name))?;
-        let given = given(name, template, usage)?;
+            .get(name)
+            .ok_or_else(|| vec![words::no_template(name)])?;
+        let bare = PREFIXES
+            .iter()
+            .find_map(|prefix| name.strip_prefix(prefix))
+            .unwrap_or(name);
+        let given = given(bare, template, usage).map_err(|words| vec![words])?;
+        let mut missing = Vec::new();
         let mut text = template.body.clone();
         for (param, default) in template.params.iter().rev() {
             let value = given
                 .get(param.as_str())
                 .map(Cow::as_ref)
                 .or(default.as_deref());
-            let value = value.ok_or_else(|| words::missing_param(name, param))?;
+            let Some(value) = value else {
+                missing.push(words::missing_param(bare, param));
+                continue;
+            };
             let place = format!("#{{{param}}}");
             let grown = text.matches(&place).count().saturating_mul(value.len());
             if text.len().saturating_add(grown) > limits::TEMPLATE_TEXT_MAX {
-                return Err(words::too_much_text());
+                return Err(vec![words::too_much_text()]);
             }
             text = text.replace(&place, value);
         }
+        if !missing.is_empty() {
+            return Err(missing);
+        }
         self.bytes = self.bytes.saturating_add(text.len());
         if self.bytes > limits::TEMPLATE_TEXT_MAX {
-            return Err(words::too_much_text());
+            return Err(vec![words::too_much_text()]);
         }
         Ok(text)
     }
 }
 
-/// A template as it is declared.
-fn declared(name: &str, element: &Element<'_>) -> Result<Template, Words> {
+/// A template as it is declared; in a text of a save its content is text alone.
+fn declared(name: &str, element: &Element<'_>, is_file: bool) -> Result<Template, Words> {
     let mut params: Vec<(String, Option<String>)> = Vec::new();
     for param in element
         .child("params")
@@ -334,17 +494,18 @@ fn declared(name: &str, element: &Element<'_>) -> Result<Template, Words> {
         .ok_or_else(|| words::no_content(name))?;
     let body = match &body.nodes[..] {
         [Node::Text(text)] => text.to_string(),
+        [] => String::new(),
+        _ if is_file => return Err(words::no_text(name)),
         _ => content(body),
     };
-    for (_, rest) in body
-        .match_indices("#{")
-        .map(|(at, _)| body.split_at(at + 2))
-    {
+    for (at, _) in body.match_indices("#{") {
+        let rest = &body[at + 2..];
         if let Some((param, _)) = rest.split_once('}')
             && !params.iter().any(|(known, _)| known == param)
             && !param.contains(['\n', '<'])
         {
-            return Err(words::undeclared(name, param));
+            let offset = body[..at].chars().count();
+            return Err(words::undeclared(name, param, offset));
         }
     }
     Ok(Template { params, body })

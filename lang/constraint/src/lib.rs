@@ -1,7 +1,7 @@
 //! The language in which a field says what a task is: constraints, events, conditions and triggers of TRIK Studio.
 //!
 //! Owns the border: [`read()`] makes [`Rules`] of the element `constraints`, a [`Checker`] holds one run against them, and a
-//! [`Scene`] is what it sees of a world. Knows no world: whoever simulates or replays one implements [`Scene`].
+//! [`Scene`] is what it sees of a world. Knows no world: code that simulates or replays one implements [`Scene`].
 //!
 //! Semantics are those of the original, to the order in which events are checked: by id, descending, as its sort by
 //! UTF-16 does; an event without an id has a random one in braces there, and stands here where a brace stands, among its
@@ -14,6 +14,7 @@
 
 mod check;
 mod expand;
+mod former;
 pub mod fuzz;
 mod library;
 pub mod limits;
@@ -29,6 +30,7 @@ pub use read::{read, read_with_templates};
 pub use rules::Rules;
 pub use scene::{Missing, Object, ObjectPoint, Scene, Unfit};
 pub use value::{Point, Rect, Value};
+pub use words::unread;
 
 #[cfg(test)]
 mod tests;

@@ -140,7 +140,9 @@ impl Context<'_> {
     /// The state of an object.
     pub fn state(&mut self, path: &Path, loud: bool) -> Value {
         let Some((object, own)) = self.head(path) else {
-            if loud {
+            if loud && path.parts.is_empty() {
+                self.complain(words::empty_path());
+            } else if loud {
                 let name = path.parts.first().map_or("", |name| name);
                 self.complain(words::no_object(name));
             }
@@ -149,13 +151,22 @@ impl Context<'_> {
         self.descend(Value::Object(object), path, own, loud)
     }
 
+    /// Gives a property of what is no object of the scene a value; false if it cannot be.
+    pub fn set_within(&mut self, path: &Path, property: &str, value: &Value) -> bool {
+        let Some((object, own)) = self.head(path) else {
+            return false;
+        };
+        let chain = &path.parts[own..];
+        self.scene.set_within(object, chain, property, value)
+    }
+
     fn either(&mut self, path: &Path) -> Value {
         let mut value = self.variable(path, false);
         if matches!(value, Value::Null) {
             value = self.state(path, false);
         }
-        if matches!(value, Value::Null) {
-            self.complain(words::no_name(&path.parts.join(".")));
+        if matches!(value, Value::Null | Value::NoText) {
+            self.complain(words::no_name(&path.text));
         }
         value
     }
@@ -202,14 +213,19 @@ impl Context<'_> {
             let found = match item {
                 Value::Object(object) => self.scene.bounding_rect(*object).map(Bounds::of),
                 Value::Rect(rect) => Some(Bounds::around(rect.x, rect.y)),
-                Value::Point(Point { x, y }) => Some(Bounds::around(*x, *y)),
+                Value::Point(_) | Value::Place(_) => {
+                    let Point { x, y } = item.to_point();
+                    Some(Bounds::around(x, y))
+                }
                 Value::Record(_) => record_bounds(item),
                 Value::Null
                 | Value::Bool(_)
                 | Value::Int(_)
                 | Value::Double(_)
+                | Value::NoText
                 | Value::Text(_)
                 | Value::Colour(_)
+                | Value::Opaque
                 | Value::List(_) => None,
             };
             bounds = match (bounds, found) {

@@ -11,7 +11,7 @@ mod values;
 use std::cmp::Reverse;
 use std::collections::HashMap;
 
-use super::expand;
+use super::expand::{self, Expanded};
 use super::rules::{Condition, Event, EventIndex, Named, Rules, Trigger};
 use super::words;
 use crate::limits;
@@ -26,23 +26,29 @@ use lang_text::xml::{Element, Node};
 /// templates that are unknown, recursive or no XML, and anything above the limits. Problems of severity warning are with
 /// them.
 pub fn read(constraints: &Element<'_>) -> Result<Rules, Vec<Problem>> {
-    read_with_templates(constraints, None)
+    read_with_templates(constraints, &[])
 }
 
-/// Reads constraints that may use the templates of an element `templates` that stands elsewhere.
+/// Reads constraints that may use the templates which the texts of a save declare. What is wrong with one of those is among
+/// [`Rules::faults`] and keeps nothing else from working.
 ///
 /// # Errors
 /// As those of [`read()`].
 pub fn read_with_templates(
     constraints: &Element<'_>,
-    templates: Option<&Element<'_>>,
+    templates: &[&str],
 ) -> Result<Rules, Vec<Problem>> {
     if !is(constraints, "constraints") {
-        return Err(vec![Problem::error(words::not_constraints())]);
+        let words = words::in_rules(&words::not_constraints());
+        return Err(vec![Problem::error(words)]);
     }
-    match expand::expand(constraints, templates)? {
-        Some(expanded) => Reader::default().constraints(&expanded),
-        None => Reader::default().constraints(constraints),
+    let Expanded {
+        constraints: expanded,
+        faults,
+    } = expand::expand(constraints, templates)?;
+    match Reader::default().constraints(expanded.as_ref().unwrap_or(constraints)) {
+        Ok(rules) => Ok(Rules { faults, ..rules }),
+        Err(problems) => Err(faults.into_iter().chain(problems).collect()),
     }
 }
 
@@ -75,6 +81,7 @@ struct Reader {
     path: Vec<String>,
     /// Events by their ids.
     ids: HashMap<String, EventIndex>,
+    objects: Vec<Box<str>>,
     slots: usize,
     tags: usize,
     time_limit_ms: Option<u32>,
@@ -124,8 +131,10 @@ impl Reader {
         }
         Ok(Rules {
             events: events.into_iter().flatten().collect(),
+            objects: self.objects,
             slots: self.slots,
             warnings: self.problems,
+            faults: Vec::new(),
             time_limit_ms: self.time_limit_ms.unwrap_or_default(),
         })
     }
@@ -179,12 +188,17 @@ impl Reader {
             self.error(words::no_trigger(&trigger.name));
             return None;
         }
+        let initially = self.yes_or_no(element, "settedUpInitially", false);
+        let drops = self.yes_or_no(element, "dropsOnFire", true);
+        // What is wrong with triggers is told before what is wrong with the condition, as there.
+        let trigger = self.trigger(trigger);
+        let condition = self.condition(condition);
         Some(Event {
             id: element.attribute("id").unwrap_or_default().into(),
-            initially: self.yes_or_no(element, "settedUpInitially", false),
-            drops: self.yes_or_no(element, "dropsOnFire", true),
-            condition: self.condition(condition),
-            trigger: self.trigger(trigger),
+            initially,
+            drops,
+            condition,
+            trigger,
         })
     }
 
@@ -262,7 +276,7 @@ impl Reader {
     }
 
     fn error(&mut self, words: Words) {
-        self.problem(Severity::Error, words);
+        self.problem(Severity::Error, words::in_rules(&words));
     }
 
     fn warn(&mut self, words: Words) {
@@ -307,10 +321,14 @@ impl Reader {
         match <[_; N]>::try_from(found) {
             Ok(found) if nodes == N => Some(found),
             _ => {
+                self.error(words::children(&element.name, N));
                 let any = |kind: fn(&Node<'_>) -> bool| element.nodes.iter().any(kind);
-                let comment = any(|node| matches!(node, Node::Comment(_)));
-                let text = any(|node| matches!(node, Node::Text(_)));
-                self.error(words::children(&element.name, N, comment, text));
+                if any(|node| matches!(node, Node::Comment(_))) {
+                    self.warn(words::comment_counts(&element.name));
+                }
+                if any(|node| matches!(node, Node::Text(_))) {
+                    self.warn(words::stray(&element.name));
+                }
                 None
             }
         }

@@ -12,10 +12,14 @@ use lang_text::problem::Problem;
 pub struct Rules {
     /// Events in the order in which they are checked.
     pub(super) events: Vec<Event>,
+    /// Objects that the rules may ask for: the first names of paths, one and two of them.
+    pub(super) objects: Vec<Box<str>>,
     /// How many names are looked up.
     pub(super) slots: usize,
     /// What works, but perhaps not as meant.
     pub(super) warnings: Vec<Problem>,
+    /// What is wrong with templates that nothing else needs.
+    pub(super) faults: Vec<Problem>,
     /// Milliseconds that a program may work.
     pub(super) time_limit_ms: u32,
 }
@@ -24,6 +28,11 @@ impl Rules {
     /// What works, but perhaps not as meant.
     pub fn warnings(&self) -> &[Problem] {
         &self.warnings
+    }
+
+    /// What is wrong with templates of the save although the rules are read: the original tells it and goes on.
+    pub fn faults(&self) -> &[Problem] {
+        &self.faults
     }
 
     /// How many events there are, constraints and the time limit among them.
@@ -64,6 +73,9 @@ pub(super) struct Name {
 /// A property by the names on the way to it, the first of which are those of an object.
 #[derive(Debug)]
 pub(super) struct Path {
+    /// As it is written.
+    pub text: Box<str>,
+    /// Its names; none if nothing but dots is written.
     pub parts: Box<[Box<str>]>,
     /// Where a checker keeps what it found.
     pub slot: usize,

@@ -65,6 +65,18 @@ pub trait Scene {
     /// out, as in the original.
     fn set_property(&mut self, object: Object, property: &str, value: &Value) -> bool;
 
+    /// The same for what stands at the end of a chain of properties of an object and is no object of the scene itself, as
+    /// a figure on a display.
+    fn set_within(
+        &mut self,
+        _object: Object,
+        _chain: &[Box<str>],
+        _property: &str,
+        _value: &Value,
+    ) -> bool {
+        false
+    }
+
     /// Whether an object is in a region.
     ///
     /// # Errors

@@ -152,7 +152,10 @@ fn problems(text: &str) -> Vec<String> {
         } else {
             ""
         };
-        format!("{sign}{problem}")
+        // Each error of the rules begins so.
+        let text = problem.to_string();
+        let text = text.replacen("Error while parsing constraints: ", "", 1);
+        format!("{sign}{text}")
     };
     match read(&element) {
         Ok(rules) => rules.warnings().iter().map(line).collect(),

@@ -42,14 +42,20 @@ pub enum Value {
     Int(i32),
     /// A number.
     Double(f64),
+    /// A text that was never set: it is empty, and asking for it by `${}` is an error.
+    NoText,
     /// A text.
     Text(Rc<str>),
     /// A point.
     Point(Point),
+    /// A place that is not rounded.
+    Place([f64; 2]),
     /// A rectangle.
     Rect(Rect),
-    /// A colour, as 0xrrggbb.
+    /// A colour, as 0xaarrggbb.
     Colour(u32),
+    /// Something that is there but cannot be shown, compared or looked into, as the readings of a gyroscope.
+    Opaque,
     /// Several values.
     List(Rc<[Value]>),
     /// Something with named properties that is no object of the scene, as a figure on a screen.
@@ -58,6 +64,8 @@ pub enum Value {
     Object(Object),
 }
 
+/// The alpha of a colour that hides what is below it.
+const OPAQUE: u32 = 0xff00_0000;
 /// How far two numbers may lie apart, as parts of the smaller one, and still be equal.
 const FUZZY: f64 = 1e-12;
 
@@ -65,6 +73,11 @@ impl Value {
     /// A text.
     pub fn text(text: &str) -> Self {
         Self::Text(text.into())
+    }
+
+    /// A colour that hides what is below it, of 0xrrggbb.
+    pub fn colour(rgb: u32) -> Self {
+        Self::Colour(OPAQUE | rgb)
     }
 
     /// Several values.
@@ -91,14 +104,15 @@ impl Value {
         match self {
             Self::Bool(yes) => i32::from(*yes),
             Self::Int(number) => *number,
-            // Halves go up, also below zero; `as` stops at the ends.
-            #[allow(clippy::cast_possible_truncation)]
-            Self::Double(number) => (number + 0.5).floor() as i32,
+            Self::Double(number) => rounded(*number),
             Self::Text(text) => text.trim().parse().unwrap_or(0),
             Self::Null
             | Self::Point(_)
+            | Self::Place(_)
+            | Self::NoText
             | Self::Rect(_)
             | Self::Colour(_)
+            | Self::Opaque
             | Self::List(_)
             | Self::Record(_)
             | Self::Object(_) => 0,
@@ -109,13 +123,19 @@ impl Value {
     pub fn to_point(&self) -> Point {
         match self {
             Self::Point(point) => *point,
+            Self::Place([x, y]) => Point {
+                x: rounded(*x),
+                y: rounded(*y),
+            },
             Self::Null
             | Self::Bool(_)
             | Self::Int(_)
             | Self::Double(_)
             | Self::Text(_)
+            | Self::NoText
             | Self::Rect(_)
             | Self::Colour(_)
+            | Self::Opaque
             | Self::List(_)
             | Self::Record(_)
             | Self::Object(_) => Point::default(),
@@ -129,10 +149,16 @@ impl Value {
             Self::Int(number) => number.to_string(),
             Self::Double(number) => shown(*number),
             Self::Text(text) => text.to_string(),
-            Self::Colour(rgb) => format!("#{rgb:06x}"),
+            Self::Colour(argb) if argb & OPAQUE == OPAQUE => {
+                format!("#{:06x}", argb & !OPAQUE)
+            }
+            Self::Colour(argb) => format!("#{argb:08x}"),
             Self::Null
             | Self::Point(_)
+            | Self::NoText
+            | Self::Place(_)
             | Self::Rect(_)
+            | Self::Opaque
             | Self::List(_)
             | Self::Record(_)
             | Self::Object(_) => String::new(),
@@ -146,99 +172,110 @@ impl Value {
             Self::Bool(_) => "bool",
             Self::Int(_) => "int",
             Self::Double(_) => "double",
-            Self::Text(_) => "QString",
+            Self::Text(_) | Self::NoText => "QString",
             Self::Point(_) => "QPoint",
+            Self::Place(_) => "QPointF",
             Self::Rect(_) => "QRect",
             Self::Colour(_) => "QColor",
+            Self::Opaque => "QVector<int>",
             Self::List(_) => "QVariantList",
             Self::Record(_) | Self::Object(_) => "QObject*",
         }
     }
 
+    /// As a number, if it is one.
     fn number(&self) -> Option<f64> {
         match self {
-            Self::Bool(yes) => Some(f64::from(u8::from(*yes))),
             Self::Int(number) => Some(f64::from(*number)),
             Self::Double(number) => Some(*number),
             Self::Null
+            | Self::Bool(_)
             | Self::Text(_)
             | Self::Point(_)
+            | Self::Place(_)
+            | Self::NoText
             | Self::Rect(_)
             | Self::Colour(_)
+            | Self::Opaque
             | Self::List(_)
             | Self::Record(_)
             | Self::Object(_) => None,
         }
     }
 
-    /// The other value as the type of this one; `None` if it cannot be.
-    fn converted(&self, other: &Value) -> Option<Value> {
-        match (self, other) {
-            (Self::Text(_), Self::Bool(_) | Self::Int(_) | Self::Double(_) | Self::Colour(_)) => {
-                Some(Self::text(&other.to_text()))
-            }
-            (Self::Colour(_), Self::Text(text)) => colour(text).map(Self::Colour),
-            (Self::Int(_), Self::Text(text)) => text.trim().parse().ok().map(Self::Int),
-            (Self::Double(_), Self::Text(text)) => double(text.trim()).map(Self::Double),
-            (Self::Bool(_), Self::Text(text)) => {
-                let no = ["", "0", "false"].contains(&text.to_lowercase().as_str());
-                Some(Self::Bool(!no))
-            }
-            _ => None,
+    /// As true or false beside a value that is that: any text but those that say no, any number but 0.
+    fn truth(&self) -> Option<bool> {
+        match self {
+            Self::Bool(yes) => Some(*yes),
+            Self::Int(number) => Some(*number != 0),
+            Self::Text(text) => Some(!["", "0", "false"].contains(&text.to_lowercase().as_str())),
+            Self::Null
+            | Self::Double(_)
+            | Self::Point(_)
+            | Self::Place(_)
+            | Self::NoText
+            | Self::Rect(_)
+            | Self::Colour(_)
+            | Self::Opaque
+            | Self::List(_)
+            | Self::Record(_)
+            | Self::Object(_) => None,
         }
     }
 
-    /// Whether two values are equal: numbers as numbers, a text and a number as the type of the left one. Nothing equals
-    /// only nothing.
+    /// Whether two values are equal, by the rules of [`Value::order`].
     pub fn equals(&self, other: &Value) -> bool {
-        if let (Some(left), Some(right)) = (self.number(), other.number()) {
-            return compare_numbers(left, right) == Some(Ordering::Equal);
-        }
         match (self, other) {
-            (Self::Null, Self::Null) => true,
-            (Self::Text(left), Self::Text(right)) => left == right,
             (Self::Point(left), Self::Point(right)) => left == right,
+            (Self::Place(left), Self::Place(right)) => left == right,
             (Self::Rect(left), Self::Rect(right)) => left == right,
             (Self::Object(left), Self::Object(right)) => left == right,
             (Self::Colour(left), Self::Colour(right)) => left == right,
+            (Self::Colour(one), Self::Text(text)) => colour(text) == Some(*one),
+            (Self::Text(text), Self::Colour(_)) => **text == *other.to_text(),
             (Self::List(left), Self::List(right)) => {
-                left.len() == right.len()
-                    && left
-                        .iter()
-                        .zip(right.iter())
-                        .all(|(left, right)| left.equals(right))
+                let mut pairs = left.iter().zip(right.iter());
+                left.len() == right.len() && pairs.all(|(left, right)| left.equals(right))
             }
             (Self::Record(left), Self::Record(right)) => Rc::ptr_eq(left, right),
-            (Self::Text(_), _) | (_, Self::Text(_)) => {
-                self.converted(other).is_some_and(|same| same.equals(self))
-            }
-            _ => false,
+            _ => self.order(other) == Some(Ordering::Equal),
         }
     }
 
-    /// Which of two values is greater: numbers as numbers, texts by letters whatever their case. Nothing is less than
-    /// anything; `None` for what has no order.
+    /// Which of two values is greater; `None` for what has no order.
+    ///
+    /// Nothing is less than anything and equal to nothing alone. Two texts compare letter by letter as UTF-16 has them,
+    /// also if both look like numbers. Beside true or false a whole number or a text is true or false too. A number and a
+    /// text that is one compare as numbers, with any other text as texts.
     pub fn order(&self, other: &Value) -> Option<Ordering> {
-        if let (Some(left), Some(right)) = (self.number(), other.number()) {
-            return compare_numbers(left, right);
-        }
-        if self.equals(other) {
-            return Some(Ordering::Equal);
-        }
         match (self, other) {
-            (Self::Null, _) => Some(Ordering::Less),
-            (_, Self::Null) => Some(Ordering::Greater),
-            (Self::Text(left), Self::Text(right)) => {
-                Some(left.to_lowercase().cmp(&right.to_lowercase()))
+            (Self::NoText, _) => return Self::text("").order(other),
+            (_, Self::NoText) => return self.order(&Self::text("")),
+            (Self::Null, Self::Null) => return Some(Ordering::Equal),
+            (Self::Null, _) => return Some(Ordering::Less),
+            (_, Self::Null) => return Some(Ordering::Greater),
+            (Self::Text(left), Self::Text(right)) => return Some(by_code(left, right)),
+            (Self::Bool(yes), Self::Double(number)) => {
+                return compare_numbers(f64::from(u8::from(*yes)), *number);
             }
-            (Self::Text(_), _) => {
-                let same = self.converted(other)?;
-                self.order(&same)
+            (Self::Double(number), Self::Bool(yes)) => {
+                return compare_numbers(*number, f64::from(u8::from(*yes)));
             }
-            (_, Self::Text(_)) => {
-                let same = self.converted(other)?;
-                self.order(&same)
+            (Self::Bool(_), _) | (_, Self::Bool(_)) => {
+                return Some(self.truth()?.cmp(&other.truth()?));
             }
+            _ => {}
+        }
+        match (self.number(), other.number(), self, other) {
+            (Some(left), Some(right), ..) => compare_numbers(left, right),
+            (Some(left), None, _, Self::Text(text)) => match double(text.trim()) {
+                Some(right) => compare_numbers(left, right),
+                None => Some(by_code(&self.to_text(), text)),
+            },
+            (None, Some(right), Self::Text(text), _) => match double(text.trim()) {
+                Some(left) => compare_numbers(left, right),
+                None => Some(by_code(text, &other.to_text())),
+            },
             _ => None,
         }
     }
@@ -266,6 +303,11 @@ impl Value {
                 "y" => Some(Self::Int(point.y)),
                 _ => None,
             },
+            Self::Place([x, y]) => match name {
+                "x" => Some(Self::Double(*x)),
+                "y" => Some(Self::Double(*y)),
+                _ => None,
+            },
             Self::Rect(rect) => match name {
                 "x" => Some(Self::Int(rect.x)),
                 "y" => Some(Self::Int(rect.y)),
@@ -291,8 +333,10 @@ impl Value {
             | Self::Bool(_)
             | Self::Int(_)
             | Self::Double(_)
+            | Self::NoText
             | Self::Text(_)
             | Self::Colour(_)
+            | Self::Opaque
             | Self::Object(_) => return None,
         })
     }
@@ -322,17 +366,27 @@ const COLOURS: [(&str, u32); 20] = [
     ("yellow", 0xffff00),
 ];
 
+/// To the nearest whole number: halves go up, also below zero; beyond the ends there are the ends.
+#[allow(clippy::cast_possible_truncation)]
+fn rounded(number: f64) -> i32 {
+    (number + 0.5).floor() as i32
+}
+
 /// A colour by its name, or as `#rgb`, `#rrggbb` or `#aarrggbb`.
 fn colour(text: &str) -> Option<u32> {
     let text = text.trim().to_ascii_lowercase();
     let Some(digits) = text.strip_prefix('#') else {
         let found = COLOURS.iter().find(|(name, _)| *name == text);
-        return found.map(|(_, rgb)| *rgb);
+        return found.map(|(_, rgb)| OPAQUE | *rgb);
     };
     let number = u32::from_str_radix(digits, 16).ok()?;
     match digits.len() {
-        3 => Some(((number & 0xf00) << 8 | (number & 0xf0) << 4 | number & 0xf) * 0x11),
-        6 | 8 => Some(number & 0xff_ffff),
+        3 => {
+            let spread = ((number & 0xf00) << 8) | ((number & 0xf0) << 4) | (number & 0xf);
+            Some(OPAQUE | (spread * 0x11))
+        }
+        6 => Some(OPAQUE | number),
+        8 => Some(number),
         _ => None,
     }
 }
@@ -343,6 +397,11 @@ fn compare_numbers(left: f64, right: f64) -> Option<Ordering> {
         return Some(Ordering::Equal);
     }
     left.partial_cmp(&right)
+}
+
+/// Which text comes first by the codes of UTF-16.
+fn by_code(left: &str, right: &str) -> Ordering {
+    left.encode_utf16().cmp(right.encode_utf16())
 }
 
 /// A number as Qt reads it, which knows no infinity.

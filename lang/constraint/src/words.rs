@@ -3,19 +3,19 @@
 //! Owns the words. Where the original program has a text, the English one is that text.
 
 use crate::limits;
-use lang_text::problem::Words;
+use lang_text::problem::{Problem, Words};
 
 pub(super) fn accomplished(seconds: &str) -> Words {
     Words::new(
         format!("The task was accomplished in {seconds} sec!"),
-        format!("Задание выполнено за {seconds} с!"),
+        format!("Задание выполнено за {seconds} сек!"),
     )
 }
 
 pub(super) fn unfinished() -> Words {
     Words::new(
         "Program has finished, but the task is not accomplished.",
-        "Программа закончилась, но задание не выполнено.",
+        "Программа отработала, но задание не выполнено.",
     )
 }
 
@@ -29,7 +29,7 @@ pub(super) fn too_long() -> Words {
 pub(super) fn in_checker(what: &Words) -> Words {
     Words::new(
         format!("Error in checker: {}", what.english),
-        format!("Ошибка в проверке: {}", what.russian),
+        format!("Ошибка в проверяющей программе: {}", what.russian),
     )
 }
 
@@ -43,14 +43,14 @@ pub(super) fn no_object(name: &str) -> Words {
 pub(super) fn no_region(name: &str) -> Words {
     Words::new(
         format!("No such region: {name}"),
-        format!("Нет такой зоны: {name}"),
+        format!("Нет такого региона: {name}"),
     )
 }
 
 pub(super) fn not_a_region(name: &str) -> Words {
     Words::new(
         format!("{name} is not a region"),
-        format!("{name} - не зона"),
+        format!("{name} - не регион"),
     )
 }
 
@@ -78,7 +78,7 @@ pub(super) fn no_property(object: &str, property: &str) -> Words {
 pub(super) fn no_type(object: &str) -> Words {
     Words::new(
         format!("Unknown type of object \"{object}\""),
-        format!("Неизвестен тип объекта \"{object}\""),
+        format!("Неизвестный тип объекта \"{object}\""),
     )
 }
 
@@ -99,7 +99,7 @@ pub(super) fn no_state(type_name: &str) -> Words {
 pub(super) fn no_settable(type_name: &str, property: &str) -> Words {
     Words::new(
         format!("Object {type_name} has no property {property}"),
-        format!("У объекта {type_name} нет свойства {property}"),
+        format!("Объект {type_name} не имеет свойства {property}"),
     )
 }
 
@@ -131,21 +131,21 @@ pub(super) fn not_constraints() -> Words {
 pub(super) fn no_time_limit() -> Words {
     Words::new(
         "There must be a \"timelimit\" constraint.",
-        "Должно быть ограничение времени \"timelimit\".",
+        "Должен иметься тэг \"timelimit\".",
     )
 }
 
 pub(super) fn two_time_limits() -> Words {
     Words::new(
         "There must be only one \"timelimit\" tag.",
-        "Тег \"timelimit\" должен быть только один.",
+        "Тэг \"timelimit\" может быть только один.",
     )
 }
 
 pub(super) fn unknown_tag(tag: &str) -> Words {
     Words::new(
         format!("Unknown tag \"{tag}\"."),
-        format!("Неизвестный тег \"{tag}\"."),
+        format!("Неизвестный тэг \"{tag}\"."),
     )
 }
 
@@ -156,19 +156,24 @@ pub(super) fn unknown_value(tag: &str) -> Words {
     )
 }
 
-pub(super) fn children(tag: &str, count: usize, has_comment: bool, has_text: bool) -> Words {
-    also(
-        has_comment,
-        has_text,
+pub(super) fn children(tag: &str, count: usize) -> Words {
+    Words::new(
         format!("{tag} tag must have exactly {count} child tag(s)"),
-        format!("В теге {tag} должно быть ровно вложенных тегов: {count}"),
+        format!("У тэга \"{tag}\" должно быть ровно {count} дочерних(ий) тэг(а)"),
+    )
+}
+
+pub(super) fn comment_counts(tag: &str) -> Words {
+    Words::new(
+        format!("a comment counts as a child of the tag {tag}: put it outside"),
+        format!("комментарий считается за дочерний тег в теге {tag}: вынесите его наружу"),
     )
 }
 
 pub(super) fn more_children(tag: &str, count: usize) -> Words {
     Words::new(
         format!("{tag} tag must have at least {count} child tag(s)"),
-        format!("В теге {tag} должно быть вложенных тегов не меньше: {count}"),
+        format!("У тэга \"{tag}\" должно быть как минимум {count} дочерних(ий) тэг(а)"),
     )
 }
 
@@ -179,27 +184,13 @@ pub(super) fn stray(tag: &str) -> Words {
     )
 }
 
-fn also(has_comment: bool, has_text: bool, mut english: String, mut russian: String) -> Words {
-    if has_comment {
-        english.push_str("; a comment counts as one, put it outside of this tag");
-        russian.push_str("; комментарий считается за тег, вынесите его наружу");
-    }
-    if has_text {
-        english.push_str("; text counts as one, remove it");
-        russian.push_str("; текст считается за тег, уберите его");
-    }
-    Words::new(english, russian)
-}
-
 pub(super) fn operands(tag: &str, count: usize, found: usize) -> Words {
-    let attributes = if count == 1 { "_1" } else { "_1 and _2" };
-    let russian = if count == 1 { "_1" } else { "_1 и _2" };
     Words::new(
         format!(
-            "{tag} tag must have exactly {count} child tag(s), or attributes {attributes} instead of them; {found} found"
+            "When using the extended form for the {tag} tag, the number of arguments starting with _ must be {count}, {found} was provided"
         ),
         format!(
-            "В теге {tag} должно быть ровно вложенных тегов: {count}, или вместо них атрибуты {russian}; найдено {found}"
+            "При использовании расширенной формы для тега {tag} ожидаемое количество аргументов, начинающихся с _, \u{2014} {count}, было предоставлено {found}"
         ),
     )
 }
@@ -210,7 +201,7 @@ pub(super) fn no_condition(found: &str) -> Words {
             "Event tag must have \"condition\" or \"conditions\" child tag. \"{found}\" found instead."
         ),
         format!(
-            "В теге event должен быть тег \"condition\" или \"conditions\", а найден \"{found}\"."
+            "Тег \"event\" должен иметь дочерний тэг \"condition\" или \"conditions\". Вместо этого найдено \"{found}\"."
         ),
     )
 }
@@ -220,28 +211,31 @@ pub(super) fn no_trigger(found: &str) -> Words {
         format!(
             "Event tag must have \"trigger\" or \"triggers\" child tag. \"{found}\" found instead."
         ),
-        format!("В теге event должен быть тег \"trigger\" или \"triggers\", а найден \"{found}\"."),
+        format!(
+            "Тег \"event\" должен иметь дочерний тэг \"trigger\" или \"triggers\". Вместо этого найдено \"{found}\"."
+        ),
     )
 }
 
 pub(super) fn no_attribute(tag: &str, attribute: &str) -> Words {
     Words::new(
         format!("\"{tag}\" tag must have \"{attribute}\" attribute."),
-        format!("У тега \"{tag}\" должен быть атрибут \"{attribute}\"."),
+        format!("У тэга \"{tag}\" должен быть аттрибут \"{attribute}\"."),
     )
 }
 
+/// The words for the tag and the attribute stand in each other's place, as in the original; the place says which is which.
 pub(super) fn empty_attribute(tag: &str, attribute: &str) -> Words {
     Words::new(
-        format!("Attribute \"{attribute}\" of the tag \"{tag}\" must not be empty."),
-        format!("Атрибут \"{attribute}\" тега \"{tag}\" не должен быть пустым."),
+        format!("Attribute \"{tag}\" of the tag \"{attribute}\" must not be empty."),
+        format!("Атрибут \"{tag}\" тэга \"{attribute}\" не может быть пустым."),
     )
 }
 
 pub(super) fn not_whole(value: &str) -> Words {
     Words::new(
         format!("Invalid integer value \"{value}\""),
-        format!("Неверное целое число \"{value}\""),
+        format!("\"{value}\" - не целое число"),
     )
 }
 
@@ -255,7 +249,7 @@ pub(super) fn not_a_number(value: &str) -> Words {
 pub(super) fn not_yes_or_no(value: &str) -> Words {
     Words::new(
         format!("Invalid boolean value \"{value}\" (expected \"true\" or \"false\")"),
-        format!("Неверное логическое значение \"{value}\" (нужно \"true\" или \"false\")"),
+        format!("\"{value}\" - не логическое значение (ожидалось \"true\" или \"false\")"),
     )
 }
 
@@ -269,28 +263,28 @@ pub(super) fn negative(value: i32) -> Words {
 pub(super) fn glue() -> Words {
     Words::new(
         "\"Glue\" attribute must have value \"and\" or \"or\".",
-        "Атрибут \"glue\" должен быть \"and\" или \"or\".",
+        "Аттрибут \"glue\" должен иметь значение \"and\" или \"or\".",
     )
 }
 
 pub(super) fn two_returns() -> Words {
     Words::new(
         "There must be only one tag \"return\" in \"using\" expression.",
-        "В выражении \"using\" должен быть только один тег \"return\".",
+        "Тэг \"return\" может быть только один.",
     )
 }
 
 pub(super) fn no_return() -> Words {
     Words::new(
         "There must be \"return\" tag in \"using\" expression.",
-        "В выражении \"using\" должен быть тег \"return\".",
+        "В выражении \"using\" должен иметься тэг \"return\".",
     )
 }
 
 pub(super) fn duplicate(id: &str) -> Words {
     Words::new(
         format!("Duplicate id: \"{id}\""),
-        format!("Два события с одним id: \"{id}\""),
+        format!("Переобъявление события \"{id}\""),
     )
 }
 
@@ -342,14 +336,11 @@ pub(super) fn something_in(tag: &str) -> Words {
 }
 
 pub(super) fn empty_path() -> Words {
-    Words::new("Object path is empty!", "Путь к объекту пуст!")
+    Words::new("Object path is empty!", "Путь до объекта пуст!")
 }
 
 pub(super) fn two_inits() -> Words {
-    Words::new(
-        "Duplicate id: \"\": there can be only one \"init\"",
-        "Два события с одним id: \"\": тег \"init\" может быть только один",
-    )
+    Words::new("Duplicate id: \"\"", "Переобъявление события \"\"")
 }
 
 pub(super) fn too_deep() -> Words {
@@ -384,24 +375,99 @@ pub(super) fn too_many_events() -> Words {
     )
 }
 
+/// Something is wrong with rules.
+pub(super) fn in_rules(words: &Words) -> Words {
+    Words::new(
+        format!("Error while parsing constraints: {}", words.english),
+        format!("Ошибка чтения ограничений: {}", words.russian),
+    )
+}
+
+/// Something is wrong with the use of a template.
+pub(super) fn in_substitution(words: &Words) -> Words {
+    Words::new(
+        format!("Error while template substitution: {}", words.english),
+        format!("Ошибка при подстановке шаблона: {}", words.russian),
+    )
+}
+
+/// Something is wrong with the declaration of a template.
+pub(super) fn in_template(words: &Words) -> Words {
+    Words::new(
+        format!("Error while parsing template: {}", words.english),
+        format!("Ошибка при разборе шаблона: {}", words.russian),
+    )
+}
+
+pub(super) fn line(words: &Words, line: usize) -> Words {
+    Words::new(
+        format!("{} line {line}", words.english),
+        format!("{} строка {line}", words.russian),
+    )
+}
+
+pub(super) fn line_of_template(words: &Words, line: usize, name: &str) -> Words {
+    Words::new(
+        format!("{} line {line} template {name}", words.english),
+        format!("{} строка {line} шаблон {name}", words.russian),
+    )
+}
+
+pub(super) fn in_constraints_line(words: &Words, line: usize) -> Words {
+    Words::new(
+        format!(
+            "{} line {line} relative the beginning of the &lt;constraints&gt; tag",
+            words.english
+        ),
+        format!(
+            "{} строка {line} относительно начала тега &lt;constraints&gt;",
+            words.russian
+        ),
+    )
+}
+
+pub(super) fn in_body_line(words: &Words, line: usize, name: &str) -> Words {
+    Words::new(
+        format!(
+            "{} line {line} relative to the beginning of the {name} template body",
+            words.english
+        ),
+        format!(
+            "{} строка {line} относительно начала тела шаблона {name}",
+            words.russian
+        ),
+    )
+}
+
+/// A text that is no XML, in the words of the original where it ends before its tags do.
+pub fn unread(mut problem: Problem) -> Problem {
+    if lang_text::xml::is_cut_short(&problem)
+        && let Some(at) = problem.place.position.take()
+    {
+        let words = format!("{}:{}: unexpected end of file", at.line, at.column);
+        problem.words = Words::new(words.clone(), words);
+    }
+    problem
+}
+
 pub(super) fn nameless_template() -> Words {
     Words::new(
-        "The <template> tag was provided, but the required \"name\" attribute was missing.",
-        "У тега <template> нет обязательного атрибута \"name\".",
+        "The &lt;template&gt; tag was provided, but the required \"name\" attribute was missing.",
+        "У тега &lt;template&gt; нет обязательного атрибута \"name\".",
     )
 }
 
 pub(super) fn template_twice(name: &str) -> Words {
     Words::new(
         format!("Redefinition a template {name} that already exists"),
-        format!("Шаблон {name} уже есть"),
+        format!("Переопределение уже существующего шаблона {name}"),
     )
 }
 
 pub(super) fn not_a_template(tag: &str) -> Words {
     Words::new(
         format!(
-            "the <templates> tag can only contain the <template> tag as a child tag, actual {tag}"
+            "the &lt;templates&gt; tag can only contain the &lt;template&gt; tag as a child tag, actual {tag}"
         ),
         format!("в теге <templates> могут быть только теги <template>, а найден {tag}"),
     )
@@ -410,7 +476,7 @@ pub(super) fn not_a_template(tag: &str) -> Words {
 pub(super) fn not_a_param(template: &str, tag: &str) -> Words {
     Words::new(
         format!(
-            "the <params> tag can only contain the <param> tag as a child tag for template {template}, actual tag is <{tag}>"
+            "the &lt;params&gt; tag can only contain the &lt;param&gt; tag as a child tag for template {template}, actual tag is &lt;{tag}&gt;"
         ),
         format!(
             "в теге <params> шаблона {template} могут быть только теги <param>, а найден <{tag}>"
@@ -421,7 +487,7 @@ pub(super) fn not_a_param(template: &str, tag: &str) -> Words {
 pub(super) fn nameless_param(template: &str) -> Words {
     Words::new(
         format!(
-            "The <param> tag of template {template} was provided, but the required \"name\" attribute was missing."
+            "The &lt;param&gt; tag of template {template} was provided, but the required \"name\" attribute was missing."
         ),
         format!("У тега <param> шаблона {template} нет обязательного атрибута \"name\"."),
     )
@@ -430,24 +496,37 @@ pub(super) fn nameless_param(template: &str) -> Words {
 pub(super) fn no_content(template: &str) -> Words {
     Words::new(
         format!(
-            "The <template> of template {template} tag was provided, but the required child tag <content> was missing"
+            "The &lt;template&gt; of template {template} tag was provided, but the required child tag &lt;content&gt; was missing"
         ),
         format!("В шаблоне {template} нет обязательного тега <content>"),
     )
 }
 
-pub(super) fn undeclared(template: &str, param: &str) -> Words {
+pub(super) fn undeclared(template: &str, param: &str, offset: usize) -> Words {
     Words::new(
         format!(
-            "When defining the template {template}, the syntax #{{{param}}} was used for an undeclared parameter {param}."
+            "When defining the template {template}, the syntax #{{{param}}} was used to substitute an offset {offset} for an undeclared parameter {param}."
         ),
-        format!("В шаблоне {template} стоит #{{{param}}}, а параметр {param} не описан."),
+        format!(
+            "При определении шаблона {template} использован синтаксис #{{{param}}} для подстановки смещения {offset} для необъявленного параметра {param}."
+        ),
+    )
+}
+
+pub(super) fn no_text(template: &str) -> Words {
+    Words::new(
+        format!(
+            "Currently, this method of setting &lt;content&gt; tag for the template {template} is not supported."
+        ),
+        format!(
+            "В настоящее время данный способ задания тега &lt;content&gt; для шаблона {template} не поддерживается."
+        ),
     )
 }
 
 pub(super) fn nameless_use() -> Words {
     Words::new(
-        "The <use> tag must contain a \"template\" attribute",
+        "The &lt;use&gt; tag must contain a \"template\" attribute",
         "У тега <use> должен быть атрибут \"template\"",
     )
 }
@@ -455,23 +534,25 @@ pub(super) fn nameless_use() -> Words {
 pub(super) fn no_template(name: &str) -> Words {
     Words::new(
         format!(
-            "The <use> tag contains a template={name} attribute that is not the name of a declared template"
+            "The &lt;use&gt; tag contains a template={name} attribute that is not the name of a declared template"
         ),
-        format!("В теге <use> указан template={name}, а такого шаблона нет"),
+        format!(
+            "Тег &lt;use&gt; содержит атрибут template={name}, который не соответствует имени объявленного шаблона"
+        ),
     )
 }
 
 pub(super) fn not_with() -> Words {
     Words::new(
-        "The <use> tag can only contain a child tag <with>",
-        "В теге <use> могут быть только теги <with>",
+        "The &lt;use&gt; tag can only contain a child tag &lt;with&gt;",
+        "Тег &lt;use&gt; может содержать только дочерний тег &lt;with&gt;",
     )
 }
 
 pub(super) fn unknown_param(template: &str, param: &str) -> Words {
     Words::new(
         format!("The using an undeclared parameter {param} for template {template}"),
-        format!("У шаблона {template} нет параметра {param}"),
+        format!("Использование необъявленного параметра {param} в шаблоне {template}"),
     )
 }
 
@@ -480,33 +561,33 @@ pub(super) fn missing_param(template: &str, param: &str) -> Words {
         format!(
             "The parameter {param} of template {template} has no default value and was not explicitly specified by the user"
         ),
-        format!("Параметр {param} шаблона {template} не задан, а значения по умолчанию у него нет"),
+        format!(
+            "Параметр {param} шаблона {template} не имеет значения по умолчанию и не был задан пользователем явно"
+        ),
     )
 }
 
 pub(super) fn recursive(chain: &str) -> Words {
     Words::new(
         format!("Recursive template expansion detected: {chain}"),
-        format!("Шаблон подставляет сам себя: {chain}"),
+        format!("Обнаружено рекурсивное раскрытие шаблона: {chain}"),
     )
 }
 
-pub(super) fn not_xml(template: &str, why: &Words) -> Words {
+pub(super) fn not_xml(template: &str) -> Words {
     Words::new(
         format!(
-            "After substituting the parameters for the template {template}, it did not become a valid xml node: {}",
-            why.english
+            "After substituting the parameters for the template {template}, it did not become a valid xml node error occurred while parsing element"
         ),
         format!(
-            "Шаблон {template} с подставленными параметрами перестал быть XML: {}",
-            why.russian
+            "После подстановки параметров в шаблон {template} он не сформировал допустимый XML-узел error occurred while parsing element"
         ),
     )
 }
 
-pub(super) fn chain(what: &Words, chain: &str) -> Words {
+pub(super) fn chain(chain: &str) -> Words {
     Words::new(
-        format!("{} Substitution chain: {chain}.", what.english),
-        format!("{} Цепочка подстановок: {chain}.", what.russian),
+        format!("Substitution chain: {chain}."),
+        format!("Цепочка подстановки: {chain}."),
     )
 }

@@ -115,5 +115,5 @@ fn examples_of_the_document_are_right() {
         assert!(rules.warnings().is_empty(), "{:?}", rules.warnings());
         count += 1;
     }
-    assert_eq!(count, 2);
+    assert_eq!(count, 3);
 }

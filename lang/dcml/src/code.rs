@@ -66,7 +66,7 @@ codes! {
     /// A number that is too large or too small.
     NumberRange, "number-range", Error,
     "A number is larger than 1.8e308, or so near to 0 that it would be 0.", model!("d(x) = 1e999 * k * u;");
-    /// A reserved word in the place of a name.
+    /// A reserved word instead of a name.
     ReservedName, "reserved-name", Error,
     "A reserved word is no name. Other spellings of it are: `Var`.", model!("VAR: END; d(x) = k * u;");
     /// Not what should stand here.

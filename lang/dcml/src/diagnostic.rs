@@ -1,6 +1,6 @@
 //! What is wrong with a document: where, what, and what to do.
 //!
-//! Owns the shape of a finding and how many are kept. Which findings there are is known to [`Code`], how they look to whoever
+//! Owns the shape of a finding and how many are kept. Which findings there are is known to [`Code`], how they look to a person who
 //! shows them.
 
 pub use super::code::Code;

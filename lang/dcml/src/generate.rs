@@ -1,4 +1,4 @@
-//! A model as source text of another language, for whoever writes a robot's program there.
+//! A model as source text of another language, for programs of robots in that language.
 //!
 //! Owns the choice of the language and what all of them share. Computes nothing: what is printed is the straight-line code
 //! of `lower`, with the names of the model and the same floating-point operations in the same order, so that every

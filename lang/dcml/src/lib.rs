@@ -1,6 +1,6 @@
 //! The Differential Constraints Modeling Language: what a robot's state does under an action, as text.
 //!
-//! Owns the border. Text to a [`syntax`] tree to a checked [`model`] to straight-line [`tape`]s; whoever simulates, plans
+//! Owns the border. Text to a [`syntax`] tree to a checked [`model`] to straight-line [`tape`]s; code that simulates, plans
 //! or drives a robot sees a [`system::System`] only. The language is that of Guarnieri, Magri, Brugali and Gherardi, *A
 //! Domain Specific Language for Modeling Differential Constraints of Mobile Robots*.
 

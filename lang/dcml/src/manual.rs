@@ -131,48 +131,7 @@ PARAM: /** the
 CONST: g = -9.81;
 CONFIG: x, th in S1;
 d(x)=v*L*g; d(th)=w; END;";
-        let expected = "# Car
-
-Package `a.b`.
-
-A car.
-\\# Not a heading
-- *author* me
-
-## Actions
-
-| name | unit | range | meaning |
-| --- | --- | --- | --- |
-| `v` | m/s | -1 to 2 | speed \\| forwards |
-| `w` |  |  |  |
-
-## Parameters
-
-| name | meaning |
-| --- | --- |
-| `L` | the base |
-
-## Constants
-
-| name | value |
-| --- | --- |
-| `g` | `-9.81` |
-
-## Configuration
-
-| name | range |
-| --- | --- |
-| `x` |  |
-| `th` | an angle that wraps |
-
-## Equations
-
-```dcml
-d(x) = v * L * g;
-d(th) = w;
-```
-";
-        assert_eq!(markdown(text).as_deref(), Ok(expected));
+        insta::assert_snapshot!("page", markdown(text).expect("a page"));
         assert!(markdown("BEGIN").is_err());
     }
 }

@@ -167,7 +167,7 @@ impl<'a> Parser<'a, '_> {
                 TokenKind::EndOfText | TokenKind::Keyword(Keyword::Begin) => {
                     let message = format!("the model `{}` has no end", shown(&model.name.text));
                     let found = Diagnostic::new(Code::MissingEnd, begin, message, "it begins here");
-                    self.tell(found.hint("end it with `END;`"));
+                    self.report(found.hint("end it with `END;`"));
                     break;
                 }
                 TokenKind::Keyword(Keyword::Package) => self.package(&mut model),
@@ -210,7 +210,7 @@ impl<'a> Parser<'a, '_> {
                         "no `;` stands behind `BEGIN Name`",
                         "remove it",
                     );
-                    self.tell(found);
+                    self.report(found);
                 }
                 Name { text, span }
             }
@@ -222,7 +222,7 @@ impl<'a> Parser<'a, '_> {
                     "a name expected behind it",
                 )
                 .hint("write `BEGIN Name`");
-                self.tell(found);
+                self.report(found);
                 Name {
                     text: String::new(),
                     span: begin,
@@ -247,7 +247,7 @@ impl<'a> Parser<'a, '_> {
                 "no name stands behind `END`",
                 "remove it",
             );
-            self.tell(found.hint("a model ends with `END;`"));
+            self.report(found.hint("a model ends with `END;`"));
             return;
         }
         let found = Diagnostic::new(
@@ -256,7 +256,7 @@ impl<'a> Parser<'a, '_> {
             "`;` is missing behind `END`",
             "no `;` here",
         );
-        self.tell(found.hint("a model ends with `END;`"));
+        self.report(found.hint("a model ends with `END;`"));
     }
 
     /// What begins with a word: an equation, or a section that is not spelled right. Whether it ends the model.
@@ -276,7 +276,7 @@ impl<'a> Parser<'a, '_> {
                 let span = self.token().span;
                 let message = format!("`{}` of a name has no equation", shown(word));
                 let found = Diagnostic::new(Code::Unexpected, span, message, "write `d`");
-                self.tell(found.hint("a derivative is written `d(x) = ...;`"));
+                self.report(found.hint("a derivative is written `d(x) = ...;`"));
                 self.equation(model, true);
             }
             next => {
@@ -289,7 +289,7 @@ impl<'a> Parser<'a, '_> {
                         format!("`{word}` ends no model"),
                         "write `END`",
                     );
-                    self.tell(found.hint("reserved words have capital letters only"));
+                    self.report(found.hint("reserved words have capital letters only"));
                     self.bump();
                     self.bump();
                     return true;
@@ -311,15 +311,15 @@ impl<'a> Parser<'a, '_> {
         let found = Diagnostic::new(Code::UnknownSection, span, message, "not a section");
         match meant {
             Some(Keyword::Section(kind)) => {
-                self.tell(found.hint(format!("did you mean `{}`?", kind.keyword())));
+                self.report(found.hint(format!("did you mean `{}`?", kind.keyword())));
                 self.section(kind, model);
             }
             Some(Keyword::Package) => {
-                self.tell(found.hint("did you mean `PACKAGE`?"));
+                self.report(found.hint("did you mean `PACKAGE`?"));
                 self.package(model);
             }
             _ => {
-                self.tell(found.hint("there are PACKAGE, ACTION, PARAM, CONST, CONFIG and VAR"));
+                self.report(found.hint("there are PACKAGE, ACTION, PARAM, CONST, CONFIG and VAR"));
                 self.damage.names = true;
                 self.bump();
                 self.bump();
@@ -400,7 +400,7 @@ impl<'a> Parser<'a, '_> {
                 );
                 let found =
                     Diagnostic::new(Code::ReservedName, span, message, "reserved").hint(hint);
-                self.tell(found);
+                self.report(found);
                 None
             }
             _ => {
@@ -437,7 +437,7 @@ impl<'a> Parser<'a, '_> {
                 "a second one",
             );
             let found = found.note(first.span, "the first one is here");
-            self.tell(found);
+            self.report(found);
             return;
         }
         model.package = Some(name);

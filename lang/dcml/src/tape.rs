@@ -134,7 +134,7 @@ impl Tape {
         is_right.then_some(()).ok_or_else(wrong)
     }
 
-    /// What it means: the results, one operation after another. For tests and for whoever needs one value; `run` is the
+    /// What it means: the results, one operation after another. For tests and for callers that need one value; `run` is the
     /// fast way. An input that is not given is not a number.
     pub fn reference(&self, state: &[f64], action: &[f64], params: &[f64]) -> Vec<f64> {
         let mut values: Vec<f64> = Vec::with_capacity(self.operations.len());

@@ -53,7 +53,7 @@ impl Trace for Ring {
 struct Nothing;
 
 impl Brick for Nothing {
-    fn tell(&mut self, command: Command<'_>) {
+    fn command(&mut self, command: Command<'_>) {
         black_box(command);
     }
     fn scalar(&mut self, _: Port) -> Option<i32> {

@@ -1,25 +1,35 @@
 //! All blocks: one table row for each, with its properties, its documentation and what it does.
 //!
-//! Owns the look-up by type name and the kinds of properties. Rows stand in `core`, `actions`, `waits` and `drawing`; names in
-//! Russian in `words`; blocks of other kits, which are only known by name, in `foreign`. Knows neither links nor expressions:
-//! it says that a text is an expression, and `lower` asks for its meaning.
+//! Owns the look-up by type name and the kinds of properties. Rows stand in `core`, `motors`, `actions`, `waits` and
+//! `drawing`, in the order of the palette; blocks of other kits, which are only known by name, in `foreign`. Knows neither
+//! links nor expressions: it says that a text is an expression, and `lower` asks for its meaning.
 //!
 //! Names, defaults and choices are those of the editor's metamodels (`robotsMetamodel`, `trikMetamodel`).
+
+// A kind of block that is forgotten must not compile.
+#![deny(clippy::wildcard_enum_match_arm)]
 
 pub mod act;
 mod actions;
 mod core;
 mod drawing;
+pub mod example;
 pub mod foreign;
+mod motors;
 pub mod page;
+mod parts;
+pub mod wait;
 mod waits;
-pub mod words;
 
 #[cfg(test)]
 mod tests;
 
 use super::ports::Kit;
 pub use act::Act;
+use example::Example;
+use lang_text::problem::{Locale, Words};
+pub(crate) use parts::{EVALUATE, REDRAW};
+pub use wait::Wait;
 
 /// One type of block.
 #[derive(Debug)]
@@ -28,6 +38,8 @@ pub struct Row {
     pub kind: &'static str,
     /// The name that the editor shows, in English.
     pub shown: &'static str,
+    /// The same in Russian.
+    pub russian: &'static str,
     /// Where the editor's palette has it.
     pub category: Category,
     /// Which kits have it.
@@ -38,8 +50,12 @@ pub struct Row {
     pub properties: &'static [Property],
     /// What it does, for people.
     pub text: &'static str,
+    /// Its picture: SVG within a square of 50 px around the origin.
+    pub icon: &'static str,
     /// What it does, for `lower`.
     pub does: Does,
+    /// Small programs that show what it does, for the tests.
+    pub examples: &'static [Example],
 }
 
 /// A group of blocks.
@@ -90,6 +106,8 @@ pub struct Property {
     pub name: &'static str,
     /// The name that the editor shows, in English.
     pub shown: &'static str,
+    /// The same in Russian.
+    pub russian: &'static str,
     /// What its text is.
     pub content: Content,
     /// Its text in a new block.
@@ -184,52 +202,68 @@ pub enum Does {
     /// Waits for a message of another robot.
     Mail,
     /// Copies a sensor into a variable.
-    Copy(Copied),
+    Copy(&'static Copied),
     /// Tells a device something and goes on.
     Act(&'static Act),
     /// Waits until a device says something.
-    Watch(Watch),
+    Wait(&'static Wait),
 }
 
 /// What is copied into a variable.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Copied {
-    /// Place of the line, the first number of `lineSensor`.
-    Line,
-    /// All distances of the lidar.
-    Lidar,
+#[derive(Clone, Copy, Debug)]
+pub struct Copied {
+    /// The expression that the variable gets.
+    pub value: &'static str,
+    /// What has to be there for that.
+    pub device: Option<Needed>,
 }
 
-/// What is waited for.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Watch {
-    /// A sensor against the expression in this property.
-    Sensor(&'static str),
-    /// An encoder against the expression in this property.
-    Encoder(&'static str),
-    /// The heading against the expression in this property.
-    Gyroscope(&'static str),
-    /// Acceleration along an axis against the expression in this property.
-    Acceleration(&'static str),
-    /// A touch sensor.
-    Touch,
-    /// The motion sensor.
-    Motion,
-    /// A button of the board.
-    Button,
-    /// A button of the gamepad.
-    PadButton,
-    /// A pad of the gamepad.
-    Pad,
-    /// The wheel of the gamepad against the expression in this property.
-    Wheel(&'static str),
-    /// A gamepad comes.
-    Connected,
-    /// The gamepad goes.
-    Disconnected,
+/// A device that a block cannot do without.
+#[derive(Clone, Copy, Debug)]
+pub struct Needed {
+    /// The port that has to answer.
+    pub port: &'static str,
+    /// What is said if it does not.
+    pub absent: fn() -> Words,
 }
 
 impl Row {
+    /// The name that the editor shows.
+    pub fn shown_in(&self, locale: Locale) -> &'static str {
+        match locale {
+            Locale::English => self.shown,
+            Locale::Russian => self.russian,
+        }
+    }
+
+    /// Whether it is there only to be drawn: programs in words and in other languages do not have it.
+    pub fn is_mark(&self) -> bool {
+        match self.does {
+            Does::Start | Does::Merge | Does::Comment => true,
+            Does::End
+            | Does::Statements
+            | Does::Assign
+            | Does::Random
+            | Does::Ask
+            | Does::If
+            | Does::Switch
+            | Does::Loop
+            | Does::While
+            | Does::Fork
+            | Does::Join
+            | Does::Kill
+            | Does::Send
+            | Does::Receive
+            | Does::Call
+            | Does::Timer
+            | Does::AnyButton
+            | Does::Mail
+            | Does::Copy(_)
+            | Does::Act(_)
+            | Does::Wait(_) => false,
+        }
+    }
+
     /// The property by its name in the save.
     pub fn property(&self, name: &str) -> Option<&'static Property> {
         self.properties
@@ -247,81 +281,29 @@ impl Row {
     }
 }
 
+impl Property {
+    /// The name that the editor shows.
+    pub fn shown_in(&self, locale: Locale) -> &'static str {
+        match locale {
+            Locale::English => self.shown,
+            Locale::Russian => self.russian,
+        }
+    }
+}
+
 /// All rows, by category and in the order of the palette.
 pub fn table() -> impl Iterator<Item = &'static Row> {
-    [core::ROWS, actions::ROWS, waits::ROWS, drawing::ROWS]
-        .into_iter()
-        .flatten()
+    let all = [
+        core::ROWS,
+        motors::ROWS,
+        actions::ROWS,
+        waits::ROWS,
+        drawing::ROWS,
+    ];
+    all.into_iter().flatten()
 }
 
 /// The row of a type name.
 pub fn find(kind: &str) -> Option<&'static Row> {
     table().find(|row| row.kind == kind)
 }
-
-/// A property whose text is an expression.
-const fn expression(
-    name: &'static str,
-    shown: &'static str,
-    wanted: Type,
-    default: &'static str,
-) -> Property {
-    Property {
-        name,
-        shown,
-        content: Content::Expression(wanted),
-        default,
-    }
-}
-
-/// A property of another content.
-const fn property(
-    name: &'static str,
-    shown: &'static str,
-    content: Content,
-    default: &'static str,
-) -> Property {
-    Property {
-        name,
-        shown,
-        content,
-        default,
-    }
-}
-
-/// A flag.
-const fn flag(name: &'static str, shown: &'static str, default: &'static str) -> Property {
-    property(name, shown, Content::Flag, default)
-}
-
-/// A variable that is assigned to.
-const fn variable(name: &'static str, default: &'static str) -> Property {
-    property(name, "Variable", Content::Variable, default)
-}
-
-/// How a reading is compared.
-const SIGN: Property = property("Sign", "Sign", Content::Choice(SIGNS), "greater");
-const SIGNS: &[&str] = &["greater", "less", "notLess", "notGreater", "equals"];
-/// The sign of blocks that send.
-const ENVELOPE: &str = "<rect class=\"i\" x=\"-14\" y=\"-9\" width=\"28\" height=\"19\"/><path class=\"i\" d=\"M-14 -9L0 3L14 -9\"/>";
-pub(crate) const REDRAW: Property = flag("Redraw", "Redraw", "true");
-pub(crate) const EVALUATE: Property = flag("Evaluate", "Evaluate", "false");
-const COLORS: &[&str] = &[
-    "white",
-    "black",
-    "red",
-    "darkRed",
-    "green",
-    "darkGreen",
-    "blue",
-    "darkBlue",
-    "cyan",
-    "darkCyan",
-    "magenta",
-    "darkMagenta",
-    "yellow",
-    "darkYellow",
-    "gray",
-    "darkGray",
-    "lightGray",
-];

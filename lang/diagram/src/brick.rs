@@ -67,7 +67,7 @@ pub enum Command<'a> {
     },
     /// Text at the end of a file.
     Append {
-        /// The file as the user wrote it; whoever opens it decides where that is.
+        /// The file as the user wrote it; the code that opens it decides where that is.
         file: &'a str,
         /// The text.
         text: &'a str,
@@ -205,7 +205,7 @@ pub enum Answer {
 pub struct Question<'a> {
     /// Into which variable the answer goes.
     pub variable: &'a str,
-    /// The question; empty: whoever asks finds words.
+    /// The question; empty: the asking side finds words.
     pub prompt: &'a str,
     /// What stands in the field.
     pub default: &'a str,
@@ -214,7 +214,7 @@ pub struct Question<'a> {
 /// A robot.
 pub trait Brick {
     /// Tells a device something. What the robot does not have is left out, as the original does.
-    fn tell(&mut self, command: Command<'_>);
+    fn command(&mut self, command: Command<'_>);
 
     /// The newest reading of a sensor with one number; nothing if no such sensor is plugged in.
     fn scalar(&mut self, port: Port) -> Option<i32>;
@@ -222,6 +222,23 @@ pub trait Brick {
     /// The newest reading of a sensor with several numbers, written behind what is in `into`; false if no such sensor is
     /// plugged in.
     fn vector(&mut self, port: Port, into: &mut Vec<i32>) -> bool;
+
+    /// The number that a sensor keeps instead of being read every now and then, because somebody has locked it. A sensor
+    /// with several numbers keeps those that it has, whatever this one is.
+    fn locked(&mut self, _port: Port) -> Option<i32> {
+        None
+    }
+
+    /// A reading that somebody else has given to a sensor since the last call. It counts at once, as if the sensor had
+    /// been read.
+    fn announced(&mut self) -> Option<(Port, i32)> {
+        None
+    }
+
+    /// A number of the function `random`; whatever else counts or rigs random numbers does not see it.
+    fn random_of_function(&mut self, low: i32, high: i32) -> i32 {
+        self.random(low, high)
+    }
 
     /// A random whole number, both bounds included; `low` is not above `high`.
     fn random(&mut self, low: i32, high: i32) -> i32;

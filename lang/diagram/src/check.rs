@@ -168,17 +168,13 @@ fn sources(program: &Program, node: Node, tell: &mut dyn FnMut(u32)) {
                 tell(high);
             }
         }
-        Op::Copy { assignment, .. } => {
-            if let Some((source, _)) = program.assignments[assignment as usize].bounds {
-                tell(source);
-            }
-        }
+        Op::Copy { copy, .. } => tell(program.copies[copy as usize].source),
         Op::Act { action, .. } => program.actions[action as usize]
             .sources
             .iter()
             .for_each(|&one| tell(one)),
         Op::Watch { watch, .. } => program.watches[watch as usize]
-            .source
+            .source()
             .into_iter()
             .for_each(tell),
         Op::Pass { .. }
@@ -276,7 +272,6 @@ fn given(program: &Program, flow: &Flow, texts: &HashMap<u32, Source>) -> HashSe
                 Op::Random { assignment, .. }
                 | Op::AnyButton { assignment, .. }
                 | Op::Mail { assignment, .. }
-                | Op::Copy { assignment, .. }
                 | Op::Receive { assignment, .. }
                 | Op::Ask { assignment, .. },
             ) => {

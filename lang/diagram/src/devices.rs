@@ -4,10 +4,13 @@
 //! with the sensor on its port. An empty port gets the sensor, unless the teacher has locked the sensors; another sensor,
 //! or a locked empty port, keeps the program from running. Knows nothing of walls and places.
 
+// A kind of block that is forgotten must not compile.
+#![deny(clippy::wildcard_enum_match_arm)]
+
 use std::collections::BTreeMap;
 
-use super::blocks::{Does, Watch};
-use super::ports::{Kit, Port, Way};
+use super::blocks::Does;
+use super::ports::{Direction, Kit, Port};
 use super::program::{Node, Op, Program};
 use super::project::Project;
 use super::words;
@@ -76,7 +79,7 @@ pub fn plugged_in(world: &str, kit: Kit) -> BTreeMap<Port, Sensor> {
         }
         let kind = Sensor::named(sensor.attribute("type").unwrap_or(""));
         // Names of the first controllers, as JA1, stand beside the present ones and are none of theirs.
-        if let (Some(port), Some(kind)) = (Port::find(kit, name, Way::In), kind) {
+        if let (Some(port), Some(kind)) = (Port::find(kit, name, Direction::In), kind) {
             sensors.insert(port, kind);
         }
     }
@@ -88,6 +91,32 @@ pub fn needed(program: &Program) -> BTreeMap<Port, Sensor> {
     wishes(program)
         .map(|(_, port, sensor)| (port, sensor))
         .collect()
+}
+
+/// Sensors that blocks wait for on ports that are empty, in the order of the blocks. The gyroscope is one of them, as
+/// [`Sensor::Other`].
+pub fn missing(project: &Project, program: &Program) -> Vec<(Port, Sensor)> {
+    let world = project.world.as_deref().unwrap_or_default();
+    let mut there = plugged_in(world, program.kit);
+    let mut missing = Vec::new();
+    for (node, op) in (0..).zip(program.ops.iter()) {
+        let Op::Watch { watch, .. } = *op else {
+            continue;
+        };
+        let watching = &program.watches[watch as usize];
+        let port = watching.port.as_ref().ok().copied();
+        let sensor = match port {
+            Some(port) if port.name() == "GyroscopePort" => Some(Sensor::Other),
+            _ => wanted(program, node),
+        };
+        if let Some((port, sensor)) = port.zip(sensor)
+            && !there.contains_key(&port)
+        {
+            there.insert(port, sensor);
+            missing.push((port, sensor));
+        }
+    }
+    missing
 }
 
 /// Each block that waits for a sensor that is plugged in, with its port.
@@ -126,11 +155,8 @@ pub(super) fn mismatch(project: &Project, program: &Program) -> Option<Problem> 
 /// The sensor that a block waits for, if it is one that is plugged in.
 fn wanted(program: &Program, node: Node) -> Option<Sensor> {
     let row = program.row(node)?;
-    match (row.does, row.kind) {
-        (Does::Watch(Watch::Touch), _) => Some(Sensor::Touch),
-        (Does::Watch(Watch::Sensor(_)), "TrikWaitForLight") => Some(Sensor::Light),
-        (Does::Watch(Watch::Sensor(_)), "TrikWaitForIRDistance") => Some(Sensor::Infrared),
-        (Does::Watch(Watch::Sensor(_)), "TrikWaitForSonarDistance") => Some(Sensor::Sonar),
-        _ => None,
-    }
+    let Does::Wait(wait) = row.does else {
+        return None;
+    };
+    Sensor::named(wait.sensor)
 }

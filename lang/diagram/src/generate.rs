@@ -1,7 +1,10 @@
 //! Programs as text: a project in another language, with the same behaviour.
 //!
 //! Owns the way from a project to a file: functions are planned, texts understood, graphs structured, statements
-//! printed. A language is a table of rows in `dialects`; a block is an arm in `steps`. Knows no files.
+//! printed. A language is a file of tables in `dialects`; a block is an arm in `steps`, and what a
+//! device says a row in `readings`. Knows no files.
+
+#![deny(clippy::wildcard_enum_match_arm)]
 
 mod build;
 mod code;
@@ -11,9 +14,11 @@ mod lines;
 mod names;
 pub(super) mod plan;
 mod print;
+mod readings;
 mod routines;
 mod steps;
 mod texts;
+mod ticks;
 mod words;
 
 #[cfg(test)]
@@ -22,7 +27,7 @@ mod tests;
 use super::lower::{World, lower};
 use super::project::Project;
 use super::structure::{Jumps, Manner};
-use code::{Code, Kind, Statement, What};
+use code::{Code, Kind, Operation, Robot, each_code};
 use lang_expr::value::Compat;
 use lang_text::problem::{Problem, Severity};
 use print::{Dialect, Printer};
@@ -172,6 +177,9 @@ pub fn generate(
     if language == Language::JavaScript && script.has_threads && !printer.shared().is_empty() {
         let dialect = &dialects::javascript::turns::TURNS;
         printer = Printer::new(dialect, &script, program, title);
+    } else if language == Language::Python && script.names_threads {
+        let dialect = &dialects::python::turns::TURNS;
+        printer = Printer::new(dialect, &script, program, title);
     }
     let mut notes: Vec<Problem> = lowered.problems;
     notes.retain(|problem| problem.severity != Severity::Error);
@@ -206,9 +214,9 @@ fn refusals(printer: &Printer<'_>, language: Language) -> Vec<Problem> {
     }
     let missing = missing(printer)
         .into_iter()
-        .filter(|what| !may_be_left_out(*what));
-    told_once(&mut problems, missing, |what| {
-        Problem::error(words::cannot(what, language.name()))
+        .filter(|operation| !may_be_left_out(*operation));
+    told_once(&mut problems, missing, |operation| {
+        Problem::error(words::cannot(operation, language.name()))
     });
     problems
 }
@@ -216,11 +224,11 @@ fn refusals(printer: &Printer<'_>, language: Language) -> Vec<Problem> {
 /// One problem for each thing, though a program may say it in several ways.
 fn told_once(
     problems: &mut Vec<Problem>,
-    things: impl Iterator<Item = What>,
-    tell: impl Fn(What) -> Problem,
+    operations: impl Iterator<Item = Operation>,
+    tell: impl Fn(Operation) -> Problem,
 ) {
-    for what in things {
-        let problem = tell(what);
+    for operation in operations {
+        let problem = tell(operation);
         if !problems.iter().any(|known| known.words == problem.words) {
             problems.push(problem);
         }
@@ -228,15 +236,15 @@ fn told_once(
 }
 
 /// Things that a program uses and the language has no words for.
-fn missing(printer: &Printer<'_>) -> Vec<What> {
+fn missing(printer: &Printer<'_>) -> Vec<Operation> {
     let mut missing = Vec::new();
     for routine in &printer.script.routines {
         each_code(&routine.body, &mut |code| {
-            if let Code::Do(what, _) = code
-                && (printer.dialect.row)(*what).text.is_empty()
-                && !missing.contains(what)
+            if let Code::Do(operation, _) = code
+                && printer.dialect.tables.row(*operation).text.is_empty()
+                && !missing.contains(operation)
             {
-                missing.push(*what);
+                missing.push(*operation);
             }
         });
     }
@@ -244,38 +252,18 @@ fn missing(printer: &Printer<'_>) -> Vec<What> {
 }
 
 /// Whether a program is still one without this.
-fn may_be_left_out(what: What) -> bool {
-    match what {
-        What::Command(command) => command.is_dispensable,
-        what => matches!(what, What::Redraw | What::Finish),
-    }
-}
-
-fn each_code(list: &[Statement], seen: &mut dyn FnMut(&Code)) {
-    let mut every = |code: &Code| {
-        code.has(&mut |part| {
-            seen(part);
-            false
-        });
-    };
-    for statement in list {
-        match statement {
-            Statement::Do(code)
-            | Statement::If(code, ..)
-            | Statement::While { when: code, .. }
-            | Statement::DoWhile { when: code, .. }
-            | Statement::Switch { on: code, .. }
-            | Statement::Repeat { times: code, .. } => every(code),
-            Statement::Set(target, value) => {
-                every(target);
-                every(value);
-            }
-            Statement::Call { arguments, .. } => arguments.iter().for_each(&mut every),
-            _ => {}
-        }
-    }
-    for part in list.iter().flat_map(Statement::parts) {
-        each_code(part, seen);
+fn may_be_left_out(operation: Operation) -> bool {
+    match operation {
+        Operation::Command(command) => command.is_dispensable,
+        Operation::Robot(Robot::Redraw | Robot::Finish) => true,
+        Operation::Number(_)
+        | Operation::Truth(_)
+        | Operation::Conversion(_)
+        | Operation::Function(_)
+        | Operation::Element(_)
+        | Operation::Robot(_)
+        | Operation::Turn(_)
+        | Operation::Read(_) => false,
     }
 }
 
@@ -293,9 +281,9 @@ fn remarks(printer: &Printer<'_>, language: Language) -> Vec<Problem> {
     // What is drawn is told by its block.
     let missing = missing(printer)
         .into_iter()
-        .filter(|what| !matches!(what, What::Redraw | What::Finish));
-    told_once(&mut remarks, missing, |what| {
-        Problem::warning(words::left_out(what, language.name()))
+        .filter(|operation| !matches!(operation, Operation::Robot(_)));
+    told_once(&mut remarks, missing, |operation| {
+        Problem::warning(words::left_out(operation, language.name()))
     });
     if language == Language::JavaScript && printer.script.has_threads {
         let shared = printer.shared();

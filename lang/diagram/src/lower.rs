@@ -13,12 +13,12 @@ mod properties;
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use super::blocks::{self, Act, Copied, Does, Row, Silent, foreign};
+use super::blocks::{self, Act, Does, Row, Silent, Wait, foreign};
 use super::devices;
-use super::ports::{Kit, Port, Way};
+use super::ports::{Direction, Kit, Port};
 use super::program::{
-    Action, Argument, ArgumentKind, Assignment, Axis, Call, Message, NOWHERE, Node, Op, Program,
-    Sheet, Sign, Source, Spot, Text, Watching,
+    Action, Argument, ArgumentKind, Assignment, Call, Copying, Message, NOWHERE, Node, Op, Program,
+    Sheet, Sign, Source, Spot, Text, WatchedFor, Watching,
 };
 use super::project::{Block, Diagram, DiagramKind, Project};
 use super::words;
@@ -108,6 +108,7 @@ struct Lowering<'a> {
     calls: Vec<Call>,
     messages: Vec<Message>,
     assignments: Vec<Assignment>,
+    copies: Vec<Copying>,
     actions: Vec<Action>,
     watches: Vec<Watching>,
     loops: u32,
@@ -150,6 +151,7 @@ impl<'a> Lowering<'a> {
             calls: Vec::new(),
             messages: Vec::new(),
             assignments: Vec::new(),
+            copies: Vec::new(),
             actions: Vec::new(),
             watches: Vec::new(),
             loops: 0,
@@ -176,9 +178,11 @@ impl<'a> Lowering<'a> {
             calls: self.calls.into(),
             messages: self.messages.into(),
             assignments: self.assignments.into(),
+            copies: self.copies.into(),
             actions: self.actions.into(),
             watches: self.watches.into(),
             refusal: None,
+            has_gamepad: !matches!(self.world, World::Simulated { gamepad: false, .. }),
             loops: self.loops,
             kit: self.kit,
         };
@@ -292,51 +296,73 @@ impl<'a> Lowering<'a> {
             let next = links::single(at.diagram, at.block, at.base)?;
             return Ok(Op::Pass { next });
         }
-        match at.row.does {
-            Does::End => Ok(Op::End),
-            Does::Comment if at.block.incoming.is_empty() => Ok(Op::End),
-            Does::Comment => Err(words::comment_in_flow()),
+        self.operation(at)
+    }
+
+    fn operation(&mut self, at: At<'a>) -> Result<Op, Words> {
+        // Links first: a block whose links are wrong has no other faults.
+        let next = || links::single(at.diagram, at.block, at.base);
+        Ok(match at.row.does {
+            Does::Start | Does::Merge => Op::Pass { next: next()? },
+            Does::End => Op::End,
+            Does::Comment if at.block.incoming.is_empty() => Op::End,
+            Does::Comment => return Err(words::comment_in_flow()),
             Does::If => {
                 let (yes, no) = links::two_branches(at)?;
                 let source = self.expression(at, "Condition");
-                Ok(Op::If { source, yes, no })
+                Op::If { source, yes, no }
             }
             Does::While => {
                 let (yes, no) = self.loop_links(at)?;
                 let source = self.expression(at, "Condition");
-                Ok(Op::If { source, yes, no })
+                Op::If { source, yes, no }
             }
-            Does::Loop => self.counted(at),
-            Does::Switch => self.switch(at),
-            Does::Fork => self.fork(at),
-            Does::Join => self.join(at),
-            Does::Ask => {
-                let (next, cancel) = links::question(at)?;
-                Ok(Op::Ask {
-                    assignment: self.assignment(at),
-                    next,
-                    cancel,
-                })
+            Does::Loop => self.counted(at)?,
+            Does::Switch => self.switch(at)?,
+            Does::Fork => self.fork(at)?,
+            Does::Join => self.join(at, next()?)?,
+            Does::Kill => self.kill(at, next()?)?,
+            Does::Send => self.send(at, next()?)?,
+            Does::Receive => self.receive(at, next()?)?,
+            Does::Call => self.call(at, next()?)?,
+            Does::Ask => self.ask(at)?,
+            Does::Statements => {
+                let (next, source) = (next()?, self.expression(at, "Body"));
+                Op::Run { source, next }
             }
-            Does::Start
-            | Does::Merge
-            | Does::Statements
-            | Does::Assign
-            | Does::Random
-            | Does::Kill
-            | Does::Send
-            | Does::Receive
-            | Does::Call
-            | Does::Timer
-            | Does::AnyButton
-            | Does::Mail
-            | Does::Copy(_)
-            | Does::Act(_)
-            | Does::Watch(_) => {
-                let next = links::single(at.diagram, at.block, at.base)?;
-                self.straight(at, next)
+            Does::Assign => {
+                let (next, source) = (next()?, self.spliced(at, text(at, "value")));
+                Op::Run { source, next }
             }
-        }
+            Does::Timer => {
+                let (next, source) = (next()?, self.expression(at, "Delay"));
+                Op::Timer { source, next }
+            }
+            Does::Random => {
+                let (next, assignment) = (next()?, self.assignment(at));
+                Op::Random { assignment, next }
+            }
+            Does::AnyButton => {
+                let (next, assignment) = (next()?, self.assignment(at));
+                Op::AnyButton { assignment, next }
+            }
+            Does::Mail => {
+                let (next, assignment) = (next()?, self.assignment(at));
+                Op::Mail { assignment, next }
+            }
+            Does::Copy(copied) => {
+                let (next, copy) = (next()?, self.copied(at, copied));
+                Op::Copy { copy, next }
+            }
+            Does::Act(act) => {
+                let (next, action) = (next()?, self.action(at, act));
+                Op::Act { action, next }
+            }
+            Does::Wait(wait) => {
+                let (next, watch) = (next()?, self.watch(at, wait));
+                Op::Watch { watch, next }
+            }
+        })
     }
 
     fn counted(&mut self, at: At<'a>) -> Result<Op, Words> {
@@ -361,8 +387,7 @@ impl<'a> Lowering<'a> {
         })
     }
 
-    fn join(&mut self, at: At<'a>) -> Result<Op, Words> {
-        let next = links::single(at.diagram, at.block, at.base)?;
+    fn join(&mut self, at: At<'a>, next: Node) -> Result<Op, Words> {
         let guard = at.block.outgoing.first();
         let guard = guard.and_then(|&link| at.diagram.links.get(link));
         let survivor = guard.map_or("", |link| link.guard.as_str());
@@ -410,63 +435,12 @@ impl<'a> Lowering<'a> {
         Ok((found.body, found.exit))
     }
 
-    fn straight(&mut self, at: At<'a>, next: Node) -> Result<Op, Words> {
-        Ok(match at.row.does {
-            Does::Statements => Op::Run {
-                source: self.expression(at, "Body"),
-                next,
-            },
-            Does::Assign => Op::Run {
-                source: self.spliced(at),
-                next,
-            },
-            Does::Timer => Op::Timer {
-                source: self.expression(at, "Delay"),
-                next,
-            },
-            Does::Random => Op::Random {
-                assignment: self.assignment(at),
-                next,
-            },
-            Does::AnyButton => Op::AnyButton {
-                assignment: self.assignment(at),
-                next,
-            },
-            Does::Mail => Op::Mail {
-                assignment: self.assignment(at),
-                next,
-            },
-            Does::Copy(copied) => Op::Copy {
-                assignment: self.copied(at, copied),
-                copied,
-                next,
-            },
-            Does::Receive => self.receive(at, next)?,
-            Does::Kill => self.kill(at, next)?,
-            Does::Send => self.send(at, next)?,
-            Does::Call => Op::Call {
-                call: self.call(at)?,
-                next,
-            },
-            Does::Act(act) => Op::Act {
-                action: self.action(at, act),
-                next,
-            },
-            Does::Watch(watch) => Op::Watch {
-                watch: self.watch(at, watch),
-                next,
-            },
-            Does::Start
-            | Does::End
-            | Does::Comment
-            | Does::Merge
-            | Does::Ask
-            | Does::If
-            | Does::Switch
-            | Does::Loop
-            | Does::While
-            | Does::Fork
-            | Does::Join => Op::Pass { next },
+    fn ask(&mut self, at: At<'a>) -> Result<Op, Words> {
+        let (next, cancel) = links::question(at)?;
+        Ok(Op::Ask {
+            assignment: self.assignment(at),
+            next,
+            cancel,
         })
     }
 
@@ -511,7 +485,7 @@ impl<'a> Lowering<'a> {
         self.messages.len() as u32 - 1
     }
 
-    fn call(&mut self, at: At<'a>) -> Result<u32, Words> {
+    fn call(&mut self, at: At<'a>, next: Node) -> Result<Op, Words> {
         let name = at.block.name.as_str();
         if !name
             .chars()
@@ -544,7 +518,8 @@ impl<'a> Lowering<'a> {
         });
         let arguments = arguments.collect();
         self.calls.push(Call { diagram, arguments });
-        Ok(self.calls.len() as u32 - 1)
+        let call = self.calls.len() as u32 - 1;
+        Ok(Op::Call { call, next })
     }
 }
 

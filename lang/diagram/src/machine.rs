@@ -102,6 +102,8 @@ pub struct Machine {
     active: Vec<Handle>,
     /// What of the beginning is kept, and until when.
     kept: Option<(Vec<Handle>, u32)>,
+    /// Why there is no beginning; it is told when that would be.
+    unfit: Option<Problem>,
     /// Whether `active` belongs to the beginning.
     is_beginning: bool,
     /// Blocks that are done with waiting.
@@ -154,6 +156,7 @@ impl Machine {
             now: 0,
             active: Vec::new(),
             kept: None,
+            unfit: None,
             is_beginning: false,
             posted: VecDeque::new(),
             deferred: VecDeque::new(),
@@ -184,6 +187,10 @@ impl Machine {
             && self.now >= until
             && let Some((chain, _)) = self.kept.take()
         {
+            if let Some(problem) = self.unfit.take() {
+                self.report(problem, env);
+                self.end_all(env);
+            }
             self.active = chain;
             self.is_beginning = true;
             self.drive(env);
@@ -191,6 +198,16 @@ impl Machine {
         }
         self.work_off(env);
         self.status()
+    }
+
+    /// The clocks of a moment at which the program is being stopped: blocks that are due run once more, and whatever they
+    /// put off does not.
+    pub fn last_tick(&mut self, now: u32, brick: &mut dyn Brick, trace: &mut dyn Trace) {
+        if let (None, Some(began)) = (self.ended, self.began) {
+            let before = self.now;
+            self.now = now.saturating_sub(began).max(before);
+            self.tick(self.now - before, &mut Env { brick, trace });
+        }
     }
 
     /// What it is doing.
@@ -255,9 +272,12 @@ impl Machine {
     fn begin(&mut self, now: u32, env: &mut Env<'_>) {
         self.began = Some(now);
         self.sensors = Sensors::new(&self.formulas);
-        self.sensors.refresh(env.brick);
+        if !self.options.in_turns {
+            // The original's simulator reads them for the first time when they are due.
+            self.sensors.refresh(env.brick);
+        }
         if let Some(problem) = self.program.refusal.clone() {
-            self.tell(problem, env);
+            self.report(problem, env);
             self.end_all(env);
             return;
         }
@@ -279,8 +299,8 @@ impl Machine {
                     ..Place::default()
                 };
                 let problem = Problem::error(words);
-                self.tell(Problem { place, ..problem }, env);
-                self.end_all(env);
+                self.unfit = Some(Problem { place, ..problem });
+                self.kept = Some((Vec::new(), if self.options.in_turns { TURN_MS } else { 0 }));
                 return;
             }
         };
@@ -297,6 +317,7 @@ impl Machine {
         if elapsed == 0 {
             return;
         }
+        self.hear_announced(env);
         let mut after = None;
         while let Some(node) = self.next_clock(after) {
             after = Some(node);
@@ -332,21 +353,32 @@ impl Machine {
         for _ in 0..due {
             match self.deferred.pop_front() {
                 None => break,
-                Some(Deferred::Block(node)) => {
-                    let before = self.deferred.len();
-                    self.done(node, env);
-                    for at in (before..self.deferred.len()).rev() {
-                        if let Deferred::Thread(handle) = self.deferred[at] {
-                            self.deferred.remove(at);
-                            soon.push_front(handle);
-                        }
-                    }
-                }
+                Some(Deferred::Block(node)) => self.follow(node, &mut soon, env),
                 Some(Deferred::Thread(handle)) => self.resume(handle, env),
             }
         }
         for handle in soon {
             self.resume(handle, env);
+        }
+    }
+
+    /// A block that was put off is done, and so are those of its kind that come right behind it: the original posts them
+    /// to the same pass. Threads that have run long enough meanwhile come `soon`.
+    fn follow(&mut self, node: Node, soon: &mut VecDeque<Handle>, env: &mut Env<'_>) {
+        let mut blocks = VecDeque::from([node]);
+        while let Some(node) = blocks.pop_front() {
+            let before = self.deferred.len();
+            self.done(node, env);
+            let mut threads = Vec::new();
+            for deferred in self.deferred.drain(before.min(self.deferred.len())..) {
+                match deferred {
+                    Deferred::Thread(handle) => threads.push(handle),
+                    Deferred::Block(node) => blocks.push_back(node),
+                }
+            }
+            for handle in threads.into_iter().rev() {
+                soon.push_front(handle);
+            }
         }
     }
 
@@ -391,10 +423,10 @@ impl Machine {
     fn error_at(&mut self, node: Node, words: Words, env: &mut Env<'_>) {
         let mut problem = Problem::error(words);
         problem.place = self.program.place(node);
-        self.tell(problem, env);
+        self.report(problem, env);
     }
 
-    fn tell(&mut self, problem: Problem, env: &mut Env<'_>) {
+    fn report(&mut self, problem: Problem, env: &mut Env<'_>) {
         env.trace.trap(self.now, &problem);
         if self.errors.len() < lang_text::limits::PROBLEMS {
             self.errors.push(problem);
@@ -435,6 +467,6 @@ impl Machine {
         self.deferred.clear();
         self.clocks.clear();
         self.kept = None;
-        env.brick.tell(Command::Rest);
+        env.brick.command(Command::Rest);
     }
 }

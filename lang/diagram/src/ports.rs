@@ -9,7 +9,7 @@ pub use lang_expr::Kit;
 
 /// Which way a port works.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Way {
+pub enum Direction {
     /// The robot is told something.
     Out,
     /// The robot tells something.
@@ -39,13 +39,13 @@ pub struct Port(u8);
 
 struct Line {
     name: &'static str,
-    way: Way,
+    way: Direction,
     sort: Sort,
     /// The variable that shows it, or nothing.
     variable: &'static str,
 }
 
-const fn line(name: &'static str, way: Way, sort: Sort, variable: &'static str) -> Line {
+const fn line(name: &'static str, way: Direction, sort: Sort, variable: &'static str) -> Line {
     Line {
         name,
         way,
@@ -55,97 +55,132 @@ const fn line(name: &'static str, way: Way, sort: Sort, variable: &'static str) 
 }
 
 const PORTS: &[Line] = &[
-    line("M1", Way::Out, Sort::Motor, ""),
-    line("M2", Way::Out, Sort::Motor, ""),
-    line("M3", Way::Out, Sort::Motor, ""),
-    line("M4", Way::Out, Sort::Motor, ""),
-    line("S1", Way::Out, Sort::Servo, ""),
-    line("S2", Way::Out, Sort::Servo, ""),
-    line("S3", Way::Out, Sort::Servo, ""),
-    line("S4", Way::Out, Sort::Servo, ""),
-    line("S5", Way::Out, Sort::Servo, ""),
-    line("S6", Way::Out, Sort::Servo, ""),
-    line("E1", Way::In, Sort::Encoder, "encoder1"),
-    line("E2", Way::In, Sort::Encoder, "encoder2"),
-    line("E3", Way::In, Sort::Encoder, "encoder3"),
-    line("E4", Way::In, Sort::Encoder, "encoder4"),
-    line("A1", Way::In, Sort::Scalar, "sensorA1"),
-    line("A2", Way::In, Sort::Scalar, "sensorA2"),
-    line("A3", Way::In, Sort::Scalar, "sensorA3"),
-    line("A4", Way::In, Sort::Scalar, "sensorA4"),
-    line("A5", Way::In, Sort::Scalar, "sensorA5"),
-    line("A6", Way::In, Sort::Scalar, "sensorA6"),
-    line("D1", Way::In, Sort::Scalar, "sensorD1"),
-    line("D2", Way::In, Sort::Scalar, "sensorD2"),
-    line("F1", Way::In, Sort::Scalar, "sensorF1"),
-    line("GyroscopePort", Way::In, Sort::Vector, "gyroscope"),
-    line("AccelerometerPort", Way::In, Sort::Vector, "accelerometer"),
-    line("LineSensorPort", Way::In, Sort::Vector, "lineSensor"),
-    line("ColorSensorPort", Way::In, Sort::Vector, "colorSensor"),
-    line("ObjectSensorXPort", Way::In, Sort::Scalar, "objectSensorX"),
-    line("ObjectSensorYPort", Way::In, Sort::Scalar, "objectSensorY"),
+    line("M1", Direction::Out, Sort::Motor, ""),
+    line("M2", Direction::Out, Sort::Motor, ""),
+    line("M3", Direction::Out, Sort::Motor, ""),
+    line("M4", Direction::Out, Sort::Motor, ""),
+    line("S1", Direction::Out, Sort::Servo, ""),
+    line("S2", Direction::Out, Sort::Servo, ""),
+    line("S3", Direction::Out, Sort::Servo, ""),
+    line("S4", Direction::Out, Sort::Servo, ""),
+    line("S5", Direction::Out, Sort::Servo, ""),
+    line("S6", Direction::Out, Sort::Servo, ""),
+    line("E1", Direction::In, Sort::Encoder, "encoder1"),
+    line("E2", Direction::In, Sort::Encoder, "encoder2"),
+    line("E3", Direction::In, Sort::Encoder, "encoder3"),
+    line("E4", Direction::In, Sort::Encoder, "encoder4"),
+    line("A1", Direction::In, Sort::Scalar, "sensorA1"),
+    line("A2", Direction::In, Sort::Scalar, "sensorA2"),
+    line("A3", Direction::In, Sort::Scalar, "sensorA3"),
+    line("A4", Direction::In, Sort::Scalar, "sensorA4"),
+    line("A5", Direction::In, Sort::Scalar, "sensorA5"),
+    line("A6", Direction::In, Sort::Scalar, "sensorA6"),
+    line("D1", Direction::In, Sort::Scalar, "sensorD1"),
+    line("D2", Direction::In, Sort::Scalar, "sensorD2"),
+    line("F1", Direction::In, Sort::Scalar, "sensorF1"),
+    line("GyroscopePort", Direction::In, Sort::Vector, "gyroscope"),
+    line(
+        "AccelerometerPort",
+        Direction::In,
+        Sort::Vector,
+        "accelerometer",
+    ),
+    line("LineSensorPort", Direction::In, Sort::Vector, "lineSensor"),
+    line(
+        "ColorSensorPort",
+        Direction::In,
+        Sort::Vector,
+        "colorSensor",
+    ),
+    line(
+        "ObjectSensorXPort",
+        Direction::In,
+        Sort::Scalar,
+        "objectSensorX",
+    ),
+    line(
+        "ObjectSensorYPort",
+        Direction::In,
+        Sort::Scalar,
+        "objectSensorY",
+    ),
     line(
         "ObjectSensorSizePort",
-        Way::In,
+        Direction::In,
         Sort::Scalar,
         "objectSensorSize",
     ),
-    line("LidarPort", Way::In, Sort::Vector, "lidar"),
-    line("Left", Way::In, Sort::Button(105), "buttonLeft"),
-    line("Right", Way::In, Sort::Button(106), "buttonRight"),
-    line("Up", Way::In, Sort::Button(103), "buttonUp"),
-    line("Down", Way::In, Sort::Button(108), "buttonDown"),
-    line("Enter", Way::In, Sort::Button(28), "buttonEnter"),
-    line("Esc", Way::In, Sort::Button(1), "buttonEsc"),
-    line("Power", Way::In, Sort::Button(116), "buttonPower"),
-    line("GamepadPad1PosPort", Way::In, Sort::Vector, "gamepadPad1"),
-    line("GamepadPad2PosPort", Way::In, Sort::Vector, "gamepadPad2"),
+    line("LidarPort", Direction::In, Sort::Vector, "lidar"),
+    line("Left", Direction::In, Sort::Button(105), "buttonLeft"),
+    line("Right", Direction::In, Sort::Button(106), "buttonRight"),
+    line("Up", Direction::In, Sort::Button(103), "buttonUp"),
+    line("Down", Direction::In, Sort::Button(108), "buttonDown"),
+    line("Enter", Direction::In, Sort::Button(28), "buttonEnter"),
+    line("Esc", Direction::In, Sort::Button(1), "buttonEsc"),
+    line("Power", Direction::In, Sort::Button(116), "buttonPower"),
+    line(
+        "GamepadPad1PosPort",
+        Direction::In,
+        Sort::Vector,
+        "gamepadPad1",
+    ),
+    line(
+        "GamepadPad2PosPort",
+        Direction::In,
+        Sort::Vector,
+        "gamepadPad2",
+    ),
     line(
         "GamepadPad1PressedPort",
-        Way::In,
+        Direction::In,
         Sort::Scalar,
         "gamepadPad1Pressed",
     ),
     line(
         "GamepadPad2PressedPort",
-        Way::In,
+        Direction::In,
         Sort::Scalar,
         "gamepadPad2Pressed",
     ),
-    line("GamepadWheelPort", Way::In, Sort::Scalar, "gamepadWheel"),
+    line(
+        "GamepadWheelPort",
+        Direction::In,
+        Sort::Scalar,
+        "gamepadWheel",
+    ),
     line(
         "GamepadButton1Port",
-        Way::In,
+        Direction::In,
         Sort::Scalar,
         "gamepadButton1",
     ),
     line(
         "GamepadButton2Port",
-        Way::In,
+        Direction::In,
         Sort::Scalar,
         "gamepadButton2",
     ),
     line(
         "GamepadButton3Port",
-        Way::In,
+        Direction::In,
         Sort::Scalar,
         "gamepadButton3",
     ),
     line(
         "GamepadButton4Port",
-        Way::In,
+        Direction::In,
         Sort::Scalar,
         "gamepadButton4",
     ),
     line(
         "GamepadButton5Port",
-        Way::In,
+        Direction::In,
         Sort::Scalar,
         "gamepadButton5",
     ),
     line(
         "GamepadConnectionIndicatorPort",
-        Way::In,
+        Direction::In,
         Sort::Scalar,
         "gamepadConnected",
     ),
@@ -200,16 +235,16 @@ impl Port {
     }
 
     /// The port that a text means in a kit, if it works that way.
-    pub fn find(kit: Kit, text: &str, way: Way) -> Option<Self> {
+    pub fn find(kit: Kit, text: &str, way: Direction) -> Option<Self> {
         let mut name = latin(text.trim())?;
         let number = name.chars().nth(1).filter(char::is_ascii_digit);
         if name.len() == 2 && number.is_some() {
             // Of letters that stand for others, by the way in which the port is used.
             let letter = match (name.as_bytes()[0], way, kit) {
-                (b'M' | b'B', Way::In, _) => Some('E'),
-                (b'J', Way::In, _) => Some('A'),
-                (b'E' | b'C', Way::Out, Kit::V6) => Some('S'),
-                (b'E', Way::In, _) => None,
+                (b'M' | b'B', Direction::In, _) => Some('E'),
+                (b'J', Direction::In, _) => Some('A'),
+                (b'E' | b'C', Direction::Out, Kit::V6) => Some('S'),
+                (b'E', Direction::In, _) => None,
                 _ => None,
             };
             if let Some(letter) = letter {
@@ -249,28 +284,28 @@ fn latin(text: &str) -> Option<String> {
 mod tests {
     use super::*;
 
-    fn found(kit: Kit, text: &str, way: Way) -> Option<&'static str> {
+    fn found(kit: Kit, text: &str, way: Direction) -> Option<&'static str> {
         Port::find(kit, text, way).map(Port::name)
     }
 
     #[test]
     fn names_are_found_in_both_kits_and_with_cyrillic_letters() {
         for kit in [Kit::V6, Kit::V62] {
-            assert_eq!(found(kit, " M3 ", Way::Out), Some("M3"));
-            assert_eq!(found(kit, "\u{41c}3", Way::Out), Some("M3"));
-            assert_eq!(found(kit, "B1", Way::In), Some("E1"));
-            assert_eq!(found(kit, "M4", Way::In), Some("E4"));
-            assert_eq!(found(kit, "\u{410}1", Way::In), Some("A1"));
-            assert_eq!(found(kit, "LeftButtonPort", Way::In), Some("Left"));
-            assert_eq!(found(kit, "Esc", Way::In), Some("Esc"));
-            assert_eq!(found(kit, "A1", Way::Out), None);
-            assert_eq!(found(kit, "", Way::In), None);
-            assert_eq!(found(kit, "M9", Way::Out), None);
+            assert_eq!(found(kit, " M3 ", Direction::Out), Some("M3"));
+            assert_eq!(found(kit, "\u{41c}3", Direction::Out), Some("M3"));
+            assert_eq!(found(kit, "B1", Direction::In), Some("E1"));
+            assert_eq!(found(kit, "M4", Direction::In), Some("E4"));
+            assert_eq!(found(kit, "\u{410}1", Direction::In), Some("A1"));
+            assert_eq!(found(kit, "LeftButtonPort", Direction::In), Some("Left"));
+            assert_eq!(found(kit, "Esc", Direction::In), Some("Esc"));
+            assert_eq!(found(kit, "A1", Direction::Out), None);
+            assert_eq!(found(kit, "", Direction::In), None);
+            assert_eq!(found(kit, "M9", Direction::Out), None);
         }
-        assert_eq!(found(Kit::V6, "E1", Way::Out), Some("S1"));
-        assert_eq!(found(Kit::V62, "E1", Way::Out), None);
-        assert_eq!(found(Kit::V62, "E1", Way::In), Some("E1"));
-        assert_eq!(found(Kit::V62, &"M".repeat(1000), Way::Out), None);
+        assert_eq!(found(Kit::V6, "E1", Direction::Out), Some("S1"));
+        assert_eq!(found(Kit::V62, "E1", Direction::Out), None);
+        assert_eq!(found(Kit::V62, "E1", Direction::In), Some("E1"));
+        assert_eq!(found(Kit::V62, &"M".repeat(1000), Direction::Out), None);
     }
 
     #[test]

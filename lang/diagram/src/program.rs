@@ -4,7 +4,8 @@
 
 use std::rc::Rc;
 
-use super::blocks::{Act, Copied, Row, Type, Watch};
+use super::blocks::wait::Measure;
+use super::blocks::{Act, Copied, Row, Type, Wait};
 use super::ports::{Kit, Port};
 use lang_text::problem::{Place, Problem};
 
@@ -37,10 +38,13 @@ pub struct Program {
     pub(crate) calls: Box<[Call]>,
     pub(crate) messages: Box<[Message]>,
     pub(crate) assignments: Box<[Assignment]>,
+    pub(crate) copies: Box<[Copying]>,
     pub(crate) actions: Box<[Action]>,
     pub(crate) watches: Box<[Watching]>,
     /// Why nothing of it can run.
     pub(crate) refusal: Option<Problem>,
+    /// Whether somebody may have a gamepad.
+    pub(crate) has_gamepad: bool,
     /// How many loops with counters there are.
     pub(crate) loops: u32,
     /// Whose blocks these are.
@@ -122,11 +126,7 @@ pub(crate) enum Op {
     /// Waits for a message of another robot.
     Mail { assignment: u32, next: Node },
     /// Copies a sensor into a variable.
-    Copy {
-        assignment: u32,
-        copied: Copied,
-        next: Node,
-    },
+    Copy { copy: u32, next: Node },
     /// Tells a device something.
     Act { action: u32, next: Node },
     /// Waits until a device says something.
@@ -230,6 +230,14 @@ pub(crate) struct Assignment {
     pub prompt: Box<str>,
 }
 
+/// A sensor that is copied into a variable.
+#[derive(Clone, Debug)]
+pub(crate) struct Copying {
+    pub copied: &'static Copied,
+    /// The statement that does it.
+    pub source: Source,
+}
+
 /// A device command with its texts.
 #[derive(Clone, Debug)]
 pub(crate) struct Action {
@@ -248,14 +256,35 @@ pub(crate) struct Action {
     pub ports: Box<[Port]>,
 }
 
+/// A port that is watched.
 #[derive(Clone, Debug)]
 pub(crate) struct Watching {
-    pub watch: Watch,
-    /// The port, or the reason why there is none.
+    pub wait: &'static Wait,
+    /// The port, or the name that none has.
     pub port: Result<Port, Box<str>>,
-    pub source: Option<Source>,
-    pub sign: Sign,
-    pub axis: Axis,
+    pub measure: Measure,
+    pub until: WatchedFor,
+}
+
+/// Which readings of a watched port end the wait.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum WatchedFor {
+    /// Those that stand so to an expression.
+    Compared(Sign, Source),
+    /// Those above 0.
+    Positive,
+    /// 0.
+    Zero,
+}
+
+impl Watching {
+    /// The expression with which readings are compared.
+    pub(crate) fn source(&self) -> Option<Source> {
+        match self.until {
+            WatchedFor::Compared(_, source) => Some(source),
+            WatchedFor::Positive | WatchedFor::Zero => None,
+        }
+    }
 }
 
 /// How a reading is compared with a value.
@@ -283,19 +312,15 @@ impl Sign {
     }
 }
 
-/// An axis of the accelerometer.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub(crate) enum Axis {
-    X,
-    Y,
-    Z,
-    Length,
-}
-
 impl Program {
     /// How many nodes there are.
     pub fn len(&self) -> usize {
         self.ops.len()
+    }
+
+    /// Why it cannot be run at all.
+    pub fn refusal(&self) -> Option<&Problem> {
+        self.refusal.as_ref()
     }
 
     /// Whether there is nothing to run.

@@ -70,7 +70,7 @@ pub struct Block {
     pub logical: String,
     /// Type, as `TrikV6EnginesForward`.
     pub kind: String,
-    /// The label that the editor shows; in the language of whoever drew it.
+    /// The label that the editor shows; in the language of its author.
     pub name: String,
     /// Everything that is text, number or truth in the logical object, as text.
     pub properties: BTreeMap<String, String>,

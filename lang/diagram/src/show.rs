@@ -6,6 +6,7 @@
 // A kind of block, operation or value that is forgotten must not compile.
 #![deny(clippy::wildcard_enum_match_arm)]
 
+mod labels;
 pub mod outline;
 pub mod picture;
 pub mod words;
@@ -23,15 +24,8 @@ const PROPERTY_MAX: usize = 48;
 /// The name of a block, as the editor has it.
 fn name(block: &Block, locale: Locale) -> String {
     match blocks::find(&block.kind) {
-        Some(row) => in_locale(row.shown, locale).to_owned(),
+        Some(row) => row.shown_in(locale).to_owned(),
         None => block.kind.clone(),
-    }
-}
-
-fn in_locale(shown: &'static str, locale: Locale) -> &'static str {
-    match locale {
-        Locale::English => shown,
-        Locale::Russian => blocks::words::russian(shown),
     }
 }
 

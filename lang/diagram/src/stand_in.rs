@@ -7,11 +7,14 @@
 //! Facts are those of the original: wheels of 8 px radius, 44 px apart, their axle 15 px behind the centre, 5.5 degrees
 //! of a wheel per tick at full power; shifts pass through 32-bit floats there, so they do here.
 
+// A command that is forgotten must not compile.
+#![deny(clippy::wildcard_enum_match_arm)]
+
 use std::collections::BTreeMap;
 
 use super::brick::{Answer, Brick, Command, Question};
 use super::machine::STEP_MS;
-use super::ports::{Port, Sort, Way};
+use super::ports::{Direction, Port, Sort};
 use lang_expr::Kit;
 use lang_text::xml::{self, Element};
 
@@ -23,6 +26,8 @@ const WHEEL_RADIUS: f64 = 8.0;
 const TRACK: f64 = 44.0;
 /// From the centre of the robot to the middle of its axle.
 const AXLE: f64 = -15.0;
+/// Length and width of a robot of usual size.
+const SIZE: f64 = 50.0;
 /// Speeds that are nearer than this are the same.
 const SAME: f64 = 1e-8;
 /// Lines of a log that nobody reads do not grow for ever.
@@ -63,7 +68,12 @@ impl Default for Placing {
 impl Placing {
     /// Where a world model has put its robot of TRIK; at the origin if it says nothing.
     pub fn of_world(text: &str) -> Self {
-        let mut placing = Self::default();
+        // A world that says nothing has them so, other than robots without a world here.
+        let mut placing = Self {
+            left: Port::named("M4"),
+            right: Port::named("M3"),
+            ..Self::default()
+        };
         let Ok(root) = xml::parse(text) else {
             return placing;
         };
@@ -102,7 +112,7 @@ impl Placing {
             for (side, wheel) in [("left", &mut placing.left), ("right", &mut placing.right)] {
                 if let Some(text) = wheels.attribute(side) {
                     let name = text.split("###").next().unwrap_or("");
-                    *wheel = Port::find(Kit::V62, name, Way::Out);
+                    *wheel = Port::find(Kit::V62, name, Direction::Out);
                 }
             }
         }
@@ -192,8 +202,8 @@ impl StandIn {
     /// One tick of the world, before the step of the program at the same time.
     pub fn tick(&mut self) {
         self.now = self.now.saturating_add(STEP_MS);
-        let Motion { shift, turn } =
-            motion(self.wheels.map(|wheel| wheel.chosen), self.pose.degrees);
+        let powers = self.wheels.map(|wheel| wheel.chosen);
+        let Motion { shift, turn } = motion(&Rolling::default(), powers, self.pose.degrees);
         for wheel in &mut self.wheels {
             let power = wheel.motor.and_then(|motor| self.powers.get(&motor));
             wheel.chosen = power.copied().unwrap_or(0);
@@ -222,9 +232,46 @@ pub struct Motion {
     pub turn: f64,
 }
 
-/// Speed of a wheel's rim in pixels in a millisecond, at a power in percent.
+/// Sizes of a robot that rolls, in pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rolling {
+    /// Radius of its wheels.
+    pub radius: f64,
+    /// From wheel to wheel.
+    pub track: f64,
+    /// From its centre ahead to the middle of its axle.
+    pub axle: f64,
+}
+
+impl Default for Rolling {
+    fn default() -> Self {
+        Self {
+            radius: WHEEL_RADIUS,
+            track: TRACK,
+            axle: AXLE,
+        }
+    }
+}
+
+impl Rolling {
+    /// Of a robot so many pixels long and wide: its wheels keep their places, and their radius is whole.
+    pub fn of_size(length: f64, width: f64) -> Self {
+        Self {
+            radius: (WHEEL_RADIUS * length / SIZE).floor(),
+            track: TRACK * width / SIZE,
+            axle: AXLE * length / SIZE,
+        }
+    }
+
+    /// Speed of a wheel's rim in pixels in a millisecond, at a power in percent.
+    pub fn rim_speed(&self, percent: i32) -> f64 {
+        f64::from(percent) * 2.0 * std::f64::consts::PI * self.radius * DEGREES_PER_PERCENT / 360.0
+    }
+}
+
+/// Speed of a wheel's rim in pixels in a millisecond, at a power in percent, of a robot of usual size.
 pub fn rim_speed(percent: i32) -> f64 {
-    f64::from(percent) * 2.0 * std::f64::consts::PI * WHEEL_RADIUS * DEGREES_PER_PERCENT / 360.0
+    Rolling::default().rim_speed(percent)
 }
 
 /// Degrees that a wheel turns in one tick, at a power in percent.
@@ -232,10 +279,10 @@ pub fn wheel_turn(percent: i32) -> f64 {
     f64::from(STEP_MS) * f64::from(percent) * DEGREES_PER_PERCENT
 }
 
-/// What one tick of exact rolling moves a robot whose left and right wheel have these powers in percent and which looks
+/// What one tick of exact rolling moves a robot of these sizes whose left and right wheel have these powers in percent and which looks
 /// this many degrees clockwise from the right.
-pub fn motion(powers: [i32; 2], degrees: f64) -> Motion {
-    let [left, right] = powers.map(rim_speed);
+pub fn motion(rolling: &Rolling, powers: [i32; 2], degrees: f64) -> Motion {
+    let [left, right] = powers.map(|percent| rolling.rim_speed(percent));
     let mean = f64::midpoint(left, right);
     let time = f64::from(STEP_MS);
     let heading = degrees.to_radians();
@@ -247,11 +294,11 @@ pub fn motion(powers: [i32; 2], degrees: f64) -> Motion {
             turn: 0.0,
         };
     }
-    let turn = (left - right) * time / TRACK;
+    let turn = (left - right) * time / rolling.track;
     let radius = mean / (turn / time);
     // The centre of the robot around the point beside its axle, in the robot's own directions.
-    let (x, y) = (-AXLE, -radius);
-    let x_turned = x * turn.cos() - y * turn.sin() + AXLE;
+    let (x, y) = (-rolling.axle, -radius);
+    let x_turned = x * turn.cos() - y * turn.sin() + rolling.axle;
     let y_turned = x * turn.sin() + y * turn.cos() + radius;
     let shift_x = x_turned * heading.cos() - y_turned * heading.sin();
     let shift_y = x_turned * heading.sin() + y_turned * heading.cos();
@@ -262,11 +309,11 @@ pub fn motion(powers: [i32; 2], degrees: f64) -> Motion {
 }
 
 fn encoder_of(motor: Port) -> Option<Port> {
-    Port::find(Kit::V62, motor.name(), Way::In)
+    Port::find(Kit::V62, motor.name(), Direction::In)
 }
 
 impl Brick for StandIn {
-    fn tell(&mut self, command: Command<'_>) {
+    fn command(&mut self, command: Command<'_>) {
         if self.is_logging && self.log.len() < LOG_MAX {
             self.log.push((self.now, command.to_string()));
         }
@@ -282,7 +329,33 @@ impl Brick for StandIn {
             }
             Command::CalibrateGyroscope => self.calibrated = self.pose.degrees,
             Command::Rest => self.powers.clear(),
-            _ => {}
+            // All else can only be read in the log.
+            Command::Servo { .. }
+            | Command::Sound { .. }
+            | Command::Tone { .. }
+            | Command::Say { .. }
+            | Command::Led { .. }
+            | Command::System { .. }
+            | Command::Append { .. }
+            | Command::Remove { .. }
+            | Command::StartCamera { .. }
+            | Command::StopCamera { .. }
+            | Command::StartVideo { .. }
+            | Command::StopVideo
+            | Command::Detect { .. }
+            | Command::Send { .. }
+            | Command::Join { .. }
+            | Command::Console { .. }
+            | Command::PenColor { .. }
+            | Command::PenWidth { .. }
+            | Command::Background { .. }
+            | Command::Draw(_)
+            | Command::Label { .. }
+            | Command::Smile { .. }
+            | Command::ClearScreen
+            | Command::Redraw
+            | Command::MarkerDown { .. }
+            | Command::MarkerUp => {}
         }
     }
 

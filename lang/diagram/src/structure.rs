@@ -27,7 +27,7 @@ use super::tree::Tree;
 
 /// How control leaves a block.
 #[derive(Clone, Debug, Eq, PartialEq)]
-pub enum Way {
+pub enum Exit {
     /// Not at all: the program ends here.
     End,
     /// To one block.
@@ -42,7 +42,7 @@ pub enum Way {
 #[derive(Clone, Debug)]
 pub struct Graph {
     /// All blocks; those that cannot be reached are left out of the program.
-    pub ways: Vec<Way>,
+    pub ways: Vec<Exit>,
     /// Where it begins.
     pub entry: usize,
 }

@@ -1,6 +1,6 @@
 //! What is shown of the word under the pointer.
 //!
-//! Owns what is said and in which order; marks of a text format are put in by whoever shows it.
+//! Owns what is said and in which order; marks of a text format are put in by the code that shows it.
 
 use super::names::Meant;
 use super::words::Role;

@@ -139,7 +139,7 @@ impl<'a> Analysis<'a> {
             PartType::Same(other) => match self.parts[other as usize] {
                 PartType::Own(possible) => Some(possible),
                 PartType::Shared(variable) => Some(self.names.types.get(variable)),
-                _ => None,
+                PartType::None | PartType::Same(_) => None,
             },
         }
     }
@@ -151,9 +151,10 @@ impl<'a> Analysis<'a> {
     }
 
     fn set(&mut self, id: Id, possible: Possible) {
-        let id = match self.parts[id as usize] {
-            PartType::Same(other) => other,
-            _ => id,
+        let id = if let PartType::Same(other) = self.parts[id as usize] {
+            other
+        } else {
+            id
         };
         match &mut self.parts[id as usize] {
             PartType::Own(had) => *had = possible,
@@ -181,7 +182,7 @@ impl<'a> Analysis<'a> {
     fn unite(&mut self, id: Id, other: Id) {
         self.parts[id as usize] = match self.parts[other as usize] {
             PartType::Own(_) => PartType::Same(other),
-            shared => shared,
+            shared @ (PartType::None | PartType::Shared(_) | PartType::Same(_)) => shared,
         };
     }
 

@@ -34,7 +34,19 @@ impl Run<'_> {
             }
             Function::Ceil => Value::Int(self.number(self.argument(span, 0)).ceil() as i32),
             Function::Floor => Value::Int(self.number(self.argument(span, 0)).floor() as i32),
-            _ => Value::Float(self.call_number(id, function, span)),
+            Function::Sin
+            | Function::Cos
+            | Function::Ln
+            | Function::Exp
+            | Function::Asin
+            | Function::Acos
+            | Function::Atan
+            | Function::Sqrt
+            | Function::Abs
+            | Function::Random
+            | Function::Min
+            | Function::Max
+            | Function::Atan2 => Value::Float(self.call_number(id, function, span)),
         }
     }
 
@@ -47,32 +59,28 @@ impl Run<'_> {
                 self.call(id, function, span).to_float()
             }
             Function::Random => self.random(id, self.argument(span, 0)),
-            Function::Min | Function::Max | Function::Atan2 => {
-                let one = self.number(self.argument(span, 0));
-                let two = self.number(self.argument(span, 1));
-                match function {
-                    Function::Min if one < two => one,
-                    Function::Min => two,
-                    Function::Max if one < two => two,
-                    Function::Max => one,
-                    _ => one.atan2(two),
-                }
-            }
-            _ => {
-                let number = self.number(self.argument(span, 0));
-                match function {
-                    Function::Sin => number.sin(),
-                    Function::Cos => number.cos(),
-                    Function::Ln => number.ln(),
-                    Function::Exp => number.exp(),
-                    Function::Asin => number.asin(),
-                    Function::Acos => number.acos(),
-                    Function::Atan => number.atan(),
-                    Function::Sqrt => number.sqrt(),
-                    _ => number.abs(),
-                }
-            }
+            Function::Min => self.of_two(span, |one, two| if one < two { one } else { two }),
+            Function::Max => self.of_two(span, |one, two| if one < two { two } else { one }),
+            Function::Atan2 => self.of_two(span, f64::atan2),
+            Function::Sin => self.of_one(span, f64::sin),
+            Function::Cos => self.of_one(span, f64::cos),
+            Function::Ln => self.of_one(span, f64::ln),
+            Function::Exp => self.of_one(span, f64::exp),
+            Function::Asin => self.of_one(span, f64::asin),
+            Function::Acos => self.of_one(span, f64::acos),
+            Function::Atan => self.of_one(span, f64::atan),
+            Function::Sqrt => self.of_one(span, f64::sqrt),
+            Function::Abs => self.of_one(span, f64::abs),
         }
+    }
+
+    fn of_one(&mut self, span: Span, function: impl Fn(f64) -> f64) -> f64 {
+        function(self.number(self.argument(span, 0)))
+    }
+
+    fn of_two(&mut self, span: Span, function: impl Fn(f64, f64) -> f64) -> f64 {
+        let one = self.number(self.argument(span, 0));
+        function(one, self.number(self.argument(span, 1)))
     }
 
     fn random(&mut self, id: Id, argument: Id) -> f64 {

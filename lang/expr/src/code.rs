@@ -115,7 +115,7 @@ impl Compiler<'_> {
             Value::Bool(truth) => Op::Bool(truth),
             Value::Int(number) => Op::Int(number),
             Value::Float(number) => Op::Float(number),
-            value => {
+            value @ (Value::Text(_) | Value::List(_)) => {
                 self.code.constants.push(value);
                 Op::Constant(index(self.code.constants.len() - 1))
             }
@@ -159,15 +159,15 @@ impl Compiler<'_> {
             Node::Call {
                 function,
                 arguments,
-            } => match self.analysis.tree.node(*function) {
-                Node::Name(name) => match self.kind(name) {
-                    Some((_, Kind::Function(function))) => {
-                        Op::Call(function, self.span(arguments.iter().copied()))
-                    }
-                    _ => self.broken(What::UnknownFunction),
-                },
-                _ => self.broken(What::IndirectCall),
-            },
+            } => {
+                let Node::Name(name) = self.analysis.tree.node(*function) else {
+                    return self.broken(What::IndirectCall);
+                };
+                let Some((_, Kind::Function(function))) = self.kind(name) else {
+                    return self.broken(What::UnknownFunction);
+                };
+                Op::Call(function, self.span(arguments.iter().copied()))
+            }
             Node::Method { .. } => self.broken(What::NotInterpreted),
             Node::Table { fields, .. } => self.table(fields),
             Node::Assign { target, value } => self.assign(*target, *value),
@@ -233,7 +233,19 @@ impl Compiler<'_> {
                     };
                     return Ok((base, path));
                 }
-                _ => return Err(What::IndexOfValue),
+                Node::Nil
+                | Node::Bool(_)
+                | Node::Int(_)
+                | Node::Float(_)
+                | Node::Text(_)
+                | Node::RawText(_)
+                | Node::Unary(..)
+                | Node::Binary(..)
+                | Node::Call { .. }
+                | Node::Method { .. }
+                | Node::Table { .. }
+                | Node::Assign { .. }
+                | Node::Block(_) => return Err(What::IndexOfValue),
             }
         }
     }
@@ -266,7 +278,19 @@ impl Compiler<'_> {
                 Ok(_) => self.broken(What::ReadOnly(String::new())),
                 Err(what) => self.broken(what),
             },
-            _ => self.broken(What::NotInterpreted),
+            Node::Nil
+            | Node::Bool(_)
+            | Node::Int(_)
+            | Node::Float(_)
+            | Node::Text(_)
+            | Node::RawText(_)
+            | Node::Unary(..)
+            | Node::Binary(..)
+            | Node::Call { .. }
+            | Node::Method { .. }
+            | Node::Table { .. }
+            | Node::Assign { .. }
+            | Node::Block(_) => self.broken(What::NotInterpreted),
         }
     }
 }

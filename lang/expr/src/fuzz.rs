@@ -86,8 +86,8 @@ pub fn expression(bytes: &[u8]) {
 }
 
 fn holds_nan(value: &Value) -> bool {
-    match value {
-        Value::List(list) => list.items().iter().any(holds_nan),
-        value => value.to_float().is_nan(),
+    match value.list() {
+        Some(list) => list.items().iter().any(holds_nan),
+        None => value.to_float().is_nan(),
     }
 }

@@ -4,12 +4,14 @@
 //! [`Names`], and compiles; [`evaluate`] runs it on the project's [`Store`]. Docs for users: docs/user/expressions.md.
 //! Knows no blocks, no diagrams and no robot: the robot is the trait [`Outside`].
 
+#![deny(clippy::wildcard_enum_match_arm)]
 // Problems are rare, and their size costs nothing where none is.
 #![allow(clippy::result_large_err)]
 
 mod analyse;
 mod call;
 mod code;
+mod elements;
 mod escape;
 pub mod fuzz;
 mod lexer;

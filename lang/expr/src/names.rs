@@ -89,6 +89,20 @@ impl Names {
         names
     }
 
+    /// Makes a sensor variable a name that nobody knows yet, because the robot has no such sensor.
+    pub fn forget_sensor(&mut self, name: &str) {
+        let Some(slot) = self.find(name) else {
+            return;
+        };
+        let variable = self.types.variable(Possible::one(Type::Any));
+        let entry = &mut self.entries[slot as usize];
+        if matches!(entry.kind, Kind::Sensor(_)) {
+            entry.kind = Kind::Variable;
+            entry.variable = variable;
+            entry.declared = None;
+        }
+    }
+
     /// The names of a kit for the generators of static languages: an assignment that would widen a variable is told as
     /// a warning and leaves the variable's type alone.
     pub fn with_static_types(kit: Kit, compat: Compat) -> Self {

@@ -314,7 +314,7 @@ impl<'a> Parser<'a> {
                         at,
                     );
                 }
-                _ => return found,
+                Token::Name | Token::Int | Token::Float | Token::Word(_) => return found,
             }
         }
     }

@@ -3,12 +3,12 @@
 //! A part is asked for what its user needs (a number, a whole number, a truth, any value), so that numbers take no
 //! memory. As in the real program, an error counts as 0 and the rest still runs; the errors come out at the end.
 
-use super::code::{Base, Code, Op, Span};
+use super::code::{Code, Op};
 use super::names::Names;
 use super::reserved::SensorIndex;
 use super::store::Store;
 use super::tree::{Binary, Id};
-use super::value::{Compat, List, ListError, Value, round};
+use super::value::{Compat, Value, round};
 use super::words::{Fault, What};
 use crate::limits;
 use std::rc::Rc;
@@ -33,7 +33,7 @@ pub(super) struct Run<'a> {
     pub(super) names: &'a Names,
     pub(super) store: &'a mut Store,
     pub(super) outside: &'a mut dyn Outside,
-    is_fixed: bool,
+    pub(super) is_fixed: bool,
     cells: u32,
     pub(super) faults: Vec<Fault>,
 }
@@ -65,16 +65,6 @@ impl<'a> Run<'a> {
     }
 
     #[cold]
-    fn list_fault(&mut self, error: ListError, id: Id) {
-        let what = match error {
-            ListError::Negative => What::NegativeIndex,
-            ListError::TooLong => What::ValueTooLong,
-            ListError::TooDeep => What::ValueTooDeep,
-        };
-        self.fault(what, id);
-    }
-
-    #[cold]
     fn uninitialized(&mut self, slot: u32, id: Id) {
         let name = self.names.name(slot).to_owned();
         self.fault(What::Uninitialized(name), id);
@@ -87,7 +77,7 @@ impl<'a> Run<'a> {
     }
 
     /// Pays for work on large values.
-    fn pay(&mut self, cells: u32, id: Id) -> bool {
+    pub(super) fn pay(&mut self, cells: u32, id: Id) -> bool {
         if let Some(left) = self.cells.checked_sub(cells) {
             self.cells = left;
             return true;
@@ -116,7 +106,20 @@ impl<'a> Run<'a> {
             Op::MinusNarrow(operand) => -f64::from(self.number(operand) as f32),
             Op::Binary(operator, left, right) => self.binary_number(id, operator, left, right),
             Op::Call(function, span) => self.call_number(id, function, span),
-            _ => self.value(id).to_float(),
+            Op::Nil
+            | Op::Bool(_)
+            | Op::Constant(_)
+            | Op::Not(_)
+            | Op::TextLength(_)
+            | Op::Length(_)
+            | Op::BitNot(_)
+            | Op::Element(..)
+            | Op::Elements(..)
+            | Op::Table(_)
+            | Op::Block(_)
+            | Op::Assign(..)
+            | Op::AssignElement(..)
+            | Op::Broken(_) => self.value(id).to_float(),
         }
     }
 
@@ -146,7 +149,14 @@ impl<'a> Run<'a> {
             | Binary::BitXor
             | Binary::ShiftLeft
             | Binary::ShiftRight => f64::from(self.whole(id)),
-            _ => f64::from(u8::from(self.truth(id))),
+            Binary::Or
+            | Binary::And
+            | Binary::Less
+            | Binary::Greater
+            | Binary::LessEqual
+            | Binary::GreaterEqual
+            | Binary::NotEqual
+            | Binary::Equal => f64::from(u8::from(self.truth(id))),
         }
     }
 
@@ -167,62 +177,90 @@ impl<'a> Run<'a> {
             Op::BitNot(operand) => return !self.whole(operand),
             Op::Float(_) | Op::Minus(_) | Op::MinusNarrow(_) => return round(self.number(id)),
             Op::Binary(operator, left, right) => (operator, left, right),
-            _ => return self.value(id).to_int(),
+            Op::Nil
+            | Op::Bool(_)
+            | Op::Constant(_)
+            | Op::Not(_)
+            | Op::TextLength(_)
+            | Op::Length(_)
+            | Op::Element(..)
+            | Op::Elements(..)
+            | Op::Call(..)
+            | Op::Table(_)
+            | Op::Block(_)
+            | Op::Assign(..)
+            | Op::AssignElement(..)
+            | Op::Broken(_) => return self.value(id).to_int(),
         };
         match operator {
             Binary::Add | Binary::Subtract | Binary::Multiply | Binary::Divide | Binary::Power => {
                 round(self.number(id))
             }
             Binary::Join => self.value(id).to_int(),
-            Binary::DivideWhole
-            | Binary::Modulo
-            | Binary::BitAnd
-            | Binary::BitOr
-            | Binary::BitXor
-            | Binary::ShiftLeft
-            | Binary::ShiftRight => {
-                let left = self.whole(left);
-                let right = self.whole(right);
-                self.bits(id, operator, left, right)
+            Binary::DivideWhole => self.divided(id, left, right),
+            Binary::Modulo => self.rest(id, left, right),
+            Binary::BitAnd => self.bits(left, right, |left, right| left & right),
+            Binary::BitOr => self.bits(left, right, |left, right| left | right),
+            Binary::BitXor => self.bits(left, right, |left, right| left ^ right),
+            Binary::ShiftLeft => {
+                let is_fixed = self.is_fixed;
+                self.bits(left, right, |left, right| match is_fixed {
+                    true if !(0..32).contains(&right) => 0,
+                    _ => left.wrapping_shl(right as u32),
+                })
             }
-            _ => i32::from(self.truth(id)),
+            Binary::ShiftRight => {
+                let is_fixed = self.is_fixed;
+                self.bits(left, right, |left, right| match is_fixed {
+                    true if !(0..32).contains(&right) => -i32::from(left < 0),
+                    _ => left.wrapping_shr(right as u32),
+                })
+            }
+            Binary::Or
+            | Binary::And
+            | Binary::Less
+            | Binary::Greater
+            | Binary::LessEqual
+            | Binary::GreaterEqual
+            | Binary::NotEqual
+            | Binary::Equal => i32::from(self.truth(id)),
         }
     }
 
-    fn bits(&mut self, id: Id, operator: Binary, left: i32, right: i32) -> i32 {
-        match operator {
-            Binary::DivideWhole | Binary::Modulo if right == 0 => {
-                self.fault(What::DivisionByZero, id);
-                0
-            }
-            Binary::DivideWhole if self.is_fixed => {
-                let down = left.wrapping_div(right);
-                down - i32::from(left.wrapping_rem(right) != 0 && (left < 0) != (right < 0))
-            }
-            Binary::DivideWhole => left.wrapping_div(right),
-            Binary::Modulo if self.is_fixed => {
-                let rest = left.wrapping_rem(right);
-                if rest != 0 && (rest < 0) != (right < 0) {
-                    rest + right
-                } else {
-                    rest
-                }
-            }
-            Binary::Modulo => left.wrapping_rem(right),
-            Binary::BitAnd => left & right,
-            Binary::BitOr => left | right,
-            Binary::BitXor => left ^ right,
-            Binary::ShiftLeft if self.is_fixed && !(0..32).contains(&right) => 0,
-            Binary::ShiftLeft => left.wrapping_shl(right as u32),
-            Binary::ShiftRight if self.is_fixed && !(0..32).contains(&right) => {
-                if left < 0 {
-                    -1
-                } else {
-                    0
-                }
-            }
-            _ => left.wrapping_shr(right as u32),
+    fn bits(&mut self, left: Id, right: Id, operator: impl Fn(i32, i32) -> i32) -> i32 {
+        let left = self.whole(left);
+        operator(left, self.whole(right))
+    }
+
+    /// Dividend and divisor; nothing, and a fault, if that is 0.
+    fn division(&mut self, id: Id, left: Id, right: Id) -> Option<(i32, i32)> {
+        let left = self.whole(left);
+        let right = self.whole(right);
+        if right == 0 {
+            self.fault(What::DivisionByZero, id);
+            return None;
         }
+        Some((left, right))
+    }
+
+    fn divided(&mut self, id: Id, left: Id, right: Id) -> i32 {
+        let Some((left, right)) = self.division(id, left, right) else {
+            return 0;
+        };
+        let cut = left.wrapping_div(right);
+        let is_above = left.wrapping_rem(right) != 0 && (left < 0) != (right < 0);
+        cut - i32::from(self.is_fixed && is_above)
+    }
+
+    fn rest(&mut self, id: Id, left: Id, right: Id) -> i32 {
+        let Some((left, right)) = self.division(id, left, right) else {
+            return 0;
+        };
+        let rest = left.wrapping_rem(right);
+        if self.is_fixed && rest != 0 && (rest < 0) != (right < 0) {
+            return rest + right;
+        }
+        rest
     }
 
     /// As a truth: of a comparison, of `and` and `or`, or of any value as a condition takes it.
@@ -231,7 +269,25 @@ impl<'a> Run<'a> {
             Op::Bool(truth) => return truth,
             Op::Not(operand) => return !self.truth(operand),
             Op::Binary(operator, left, right) => (operator, left, right),
-            _ => return self.value_truth(id),
+            Op::Nil
+            | Op::Int(_)
+            | Op::Float(_)
+            | Op::Constant(_)
+            | Op::Variable(_)
+            | Op::Sensor(_)
+            | Op::Minus(_)
+            | Op::MinusNarrow(_)
+            | Op::TextLength(_)
+            | Op::Length(_)
+            | Op::BitNot(_)
+            | Op::Element(..)
+            | Op::Elements(..)
+            | Op::Call(..)
+            | Op::Table(_)
+            | Op::Block(_)
+            | Op::Assign(..)
+            | Op::AssignElement(..)
+            | Op::Broken(_) => return self.value_truth(id),
         };
         match operator {
             Binary::And => self.side(left) && self.side(right),
@@ -248,16 +304,30 @@ impl<'a> Run<'a> {
             }
             Binary::Equal => self.equal(id, left, right),
             Binary::NotEqual => !self.equal(id, left, right),
-            _ => self.value_truth(id),
+            Binary::BitOr
+            | Binary::BitXor
+            | Binary::BitAnd
+            | Binary::ShiftLeft
+            | Binary::ShiftRight
+            | Binary::Join
+            | Binary::Add
+            | Binary::Subtract
+            | Binary::Multiply
+            | Binary::Divide
+            | Binary::DivideWhole
+            | Binary::Modulo
+            | Binary::Power => self.value_truth(id),
         }
     }
 
     fn value_truth(&mut self, id: Id) -> bool {
         let value = self.value(id);
-        match value {
-            Value::Float(number) if self.is_fixed => number != 0.0,
-            _ => value.to_bool(),
+        if let Value::Float(number) = value
+            && self.is_fixed
+        {
+            return number != 0.0;
         }
+        value.to_bool()
     }
 
     /// A side of `and` or `or`: goes through a whole number.
@@ -265,10 +335,10 @@ impl<'a> Run<'a> {
         if self.is_fixed {
             return self.truth(id);
         }
-        match self.code.ops[id as usize] {
-            Op::Bool(_) | Op::Not(_) => self.truth(id),
-            _ => self.whole(id) != 0,
+        if let Op::Bool(_) | Op::Not(_) = self.code.ops[id as usize] {
+            return self.truth(id);
         }
+        self.whole(id) != 0
     }
 
     fn ordered(
@@ -319,10 +389,12 @@ impl<'a> Run<'a> {
             Op::BitNot(_) => Value::Int(self.whole(id)),
             Op::TextLength(operand) | Op::Length(operand) => {
                 let value = self.value(operand);
-                Value::Int(match &value {
-                    Value::List(list) => i32::try_from(list.items().len()).unwrap_or(i32::MAX),
-                    _ if !self.pay(value.cells(), id) => 0,
-                    _ => length(&value.to_text()),
+                Value::Int(if let Value::List(list) = &value {
+                    i32::try_from(list.items().len()).unwrap_or(i32::MAX)
+                } else if self.pay(value.cells(), id) {
+                    length(&value.to_text())
+                } else {
+                    0
                 })
             }
             Op::Binary(operator, left, right) => self.binary(id, operator, left, right),
@@ -368,7 +440,14 @@ impl<'a> Run<'a> {
             | Binary::ShiftLeft
             | Binary::ShiftRight => Value::Int(self.whole(id)),
             Binary::Join => self.join(id, left, right),
-            _ => Value::Bool(self.truth(id)),
+            Binary::Or
+            | Binary::And
+            | Binary::Less
+            | Binary::Greater
+            | Binary::LessEqual
+            | Binary::GreaterEqual
+            | Binary::NotEqual
+            | Binary::Equal => Value::Bool(self.truth(id)),
         }
     }
 
@@ -388,140 +467,13 @@ impl<'a> Run<'a> {
     }
 
     pub(super) fn text(&self, value: &Value) -> Rc<str> {
-        match value {
-            Value::Float(number) if self.is_fixed && number.is_finite() => {
-                super::value::plain_text(*number).into()
-            }
-            _ => value.to_text(),
-        }
-    }
-
-    fn base(&mut self, base: Base) -> Option<Rc<List>> {
-        match base {
-            Base::Variable(slot) => match self.store.get(slot) {
-                Some(Value::List(list)) => Some(list.clone()),
-                _ => None,
-            },
-            Base::Sensor(sensor) => match self.outside.sensor(sensor) {
-                Value::List(list) => Some(list),
-                _ => None,
-            },
-            Base::Constant => None,
-        }
-    }
-
-    fn element(&mut self, id: Id, base: Base, index: Id) -> Value {
-        let index = self.whole(index);
-        if let Base::Variable(slot) = base
-            && let Some(Value::List(list)) = self.store.get(slot)
-            && let Ok(index) = usize::try_from(index)
+        if let Value::Float(number) = value
+            && self.is_fixed
+            && number.is_finite()
         {
-            return list.items().get(index).cloned().unwrap_or_default();
+            return super::value::plain_text(*number).into();
         }
-        let list = self.base(base);
-        self.element_of(id, list.as_deref(), index)
-    }
-
-    fn element_of(&mut self, id: Id, list: Option<&List>, index: i32) -> Value {
-        let Ok(index) = usize::try_from(index) else {
-            self.fault(What::NegativeIndex, id);
-            return Value::Nil;
-        };
-        list.and_then(|list| list.items().get(index).cloned())
-            .unwrap_or_default()
-    }
-
-    /// The indices of an element, computed from the last to the first, as the real program does.
-    fn indices(&mut self, ids: &[Id]) -> ([i32; limits::LIST_DEPTH_MAX as usize], usize) {
-        let mut path = [0; limits::LIST_DEPTH_MAX as usize];
-        for (place, &id) in path.iter_mut().zip(ids).rev() {
-            *place = self.whole(id);
-        }
-        (path, ids.len().min(path.len()))
-    }
-
-    fn elements(&mut self, id: Id, base: Base, span: Span) -> Value {
-        let code = self.code;
-        let (path, count) = self.indices(code.operands(span));
-        let mut found = self.base(base).map_or(Value::Nil, Value::List);
-        for &index in &path[..count] {
-            let list = match found {
-                Value::List(list) => Some(list),
-                _ => None,
-            };
-            if list.is_none() && index >= 0 {
-                return Value::Nil;
-            }
-            if index < 0 {
-                self.fault(What::NegativeIndex, id);
-                return Value::Nil;
-            }
-            found = self.element_of(id, list.as_deref(), index);
-        }
-        found
-    }
-
-    fn assign_element(&mut self, id: Id, base: Base, span: Span) {
-        let code = self.code;
-        let Some((&value, ids)) = code.operands(span).split_last() else {
-            return;
-        };
-        let value = self.value(value);
-        let (path, count) = self.indices(ids);
-        let Base::Variable(slot) = base else {
-            return;
-        };
-        let mut list = match self.store.remove(slot) {
-            Some(Value::List(list)) => list,
-            _ => Rc::default(),
-        };
-        // A list that somebody else has, too, is copied, and so may be a list in it.
-        let may_copy = Rc::strong_count(&list) > 1 || count > 1;
-        if may_copy && !self.pay(list.cells(), id) {
-            let _ = self.store.set(slot, Value::List(list));
-            return;
-        }
-        let before = list.cells();
-        let outcome = Rc::make_mut(&mut list).put_at(&path[..count], value);
-        let grown = list.cells().saturating_sub(before);
-        if let Err(error) = outcome {
-            self.list_fault(error, id);
-        }
-        self.pay(grown, id);
-        if self.store.set(slot, Value::List(list)).is_err() {
-            self.fault(What::StoreFull, id);
-        }
-    }
-
-    fn table(&mut self, id: Id, span: Span) -> Value {
-        let code = self.code;
-        let pairs = code.operands(span);
-        let mut list = List::default();
-        for pair in pairs.chunks_exact(2) {
-            let (key, value) = (pair[0], pair[1]);
-            let outcome = if key == value {
-                let value = self.value(value);
-                let end = i32::try_from(list.items().len()).unwrap_or(i32::MAX);
-                list.put(end, value, &Value::Nil)
-            } else {
-                let key = self.whole(key);
-                let value = self.value(value);
-                if self.is_fixed {
-                    list.put(key, value, &Value::Nil)
-                } else {
-                    // The real program keeps texts here.
-                    list.put(key, Value::Text(value.to_text()), &Value::text(""))
-                }
-            };
-            if let Err(error) = outcome {
-                self.list_fault(error, id);
-                break;
-            }
-        }
-        if !self.pay(list.cells(), id) {
-            return Value::Nil;
-        }
-        Value::List(Rc::new(list))
+        value.to_text()
     }
 }
 

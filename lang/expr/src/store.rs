@@ -4,7 +4,7 @@ use super::names::Slot;
 use super::value::Value;
 use crate::limits;
 
-/// How many writes are remembered for whoever watches.
+/// How many writes are remembered for a watcher.
 const REMEMBERED: usize = 64;
 
 /// Values by slot.

@@ -231,13 +231,13 @@ impl Tree {
 
     /// The statements of the text, in order.
     pub fn statements(&self) -> Vec<Id> {
-        match self.root {
-            Some(root) => match self.node(root) {
-                Node::Block(statements) => statements.clone(),
-                _ => vec![root],
-            },
-            None => Vec::new(),
+        let Some(root) = self.root else {
+            return Vec::new();
+        };
+        if let Node::Block(statements) = self.node(root) {
+            return statements.clone();
         }
+        vec![root]
     }
 
     /// Calls `visit` with the direct children of a node, in the order of the text.
@@ -279,7 +279,13 @@ impl Tree {
                 visit(*value);
             }
             Node::Block(statements) => statements.iter().for_each(|&child| visit(child)),
-            _ => {}
+            Node::Nil
+            | Node::Bool(_)
+            | Node::Int(_)
+            | Node::Float(_)
+            | Node::Text(_)
+            | Node::RawText(_)
+            | Node::Name(_) => {}
         }
     }
 
@@ -399,7 +405,19 @@ impl Tree {
         let binds = match self.node(id) {
             Node::Binary(operator, ..) => operator.precedence(),
             Node::Unary(..) => UNARY_PRECEDENCE,
-            _ => u8::MAX,
+            Node::Nil
+            | Node::Bool(_)
+            | Node::Int(_)
+            | Node::Float(_)
+            | Node::Text(_)
+            | Node::RawText(_)
+            | Node::Name(_)
+            | Node::Index { .. }
+            | Node::Call { .. }
+            | Node::Method { .. }
+            | Node::Table { .. }
+            | Node::Assign { .. }
+            | Node::Block(_) => u8::MAX,
         };
         self.show_bracketed(id, binds < least, f)
     }

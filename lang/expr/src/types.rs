@@ -130,10 +130,10 @@ impl Types {
 
     /// The type of the elements, if it is a table.
     pub fn element(&self, table: Type) -> Option<Element> {
-        match table {
-            Type::Table(index) => self.elements.get(index as usize).copied(),
-            _ => None,
-        }
+        let Type::Table(index) = table else {
+            return None;
+        };
+        self.elements.get(index as usize).copied()
     }
 
     /// A new variable.

@@ -83,7 +83,7 @@ impl List {
         self.cells
     }
 
-    /// Counts a new item in the place of `old` cells.
+    /// Counts a new item instead of `old` cells.
     fn account(&mut self, old: u32, item: &Value) -> Result<(), ListError> {
         let depth = 1 + item.depth();
         if depth > limits::LIST_DEPTH_MAX {
@@ -132,10 +132,8 @@ impl List {
         let index = usize::try_from(first).map_err(|_| ListError::Negative)?;
         self.pad(index.checked_add(1).ok_or(ListError::TooLong)?, &Value::Nil)?;
         let old = self.items[index].cells();
-        let mut inner = match std::mem::take(&mut self.items[index]) {
-            Value::List(list) => list,
-            _ => Rc::default(),
-        };
+        let had = std::mem::take(&mut self.items[index]).into_list();
+        let mut inner = had.unwrap_or_default();
         let outcome = Rc::make_mut(&mut inner).put_at(rest, value);
         let inner = Value::List(inner);
         let counted = self.account(old, &inner);
@@ -160,20 +158,33 @@ impl Value {
         Self::List(Rc::new(List::new(items).unwrap_or_default()))
     }
 
+    /// The list, if it is one.
+    pub(crate) fn list(&self) -> Option<&Rc<List>> {
+        match self {
+            Self::List(list) => Some(list),
+            Self::Nil | Self::Bool(_) | Self::Int(_) | Self::Float(_) | Self::Text(_) => None,
+        }
+    }
+
+    /// The list, if it is one.
+    pub(crate) fn into_list(self) -> Option<Rc<List>> {
+        match self {
+            Self::List(list) => Some(list),
+            Self::Nil | Self::Bool(_) | Self::Int(_) | Self::Float(_) | Self::Text(_) => None,
+        }
+    }
+
     /// What it weighs: 1, and what is in it.
     pub fn cells(&self) -> u32 {
         match self {
             Self::Text(text) => 1 + u32::try_from(text.len() / 16).unwrap_or(u32::MAX - 1),
             Self::List(list) => list.cells.saturating_add(1),
-            _ => 1,
+            Self::Nil | Self::Bool(_) | Self::Int(_) | Self::Float(_) => 1,
         }
     }
 
     fn depth(&self) -> u16 {
-        match self {
-            Self::List(list) => list.depth.max(1),
-            _ => 0,
-        }
+        self.list().map_or(0, |list| list.depth.max(1))
     }
 
     /// As a number: a text that is none, and everything else that is none, is 0.
@@ -229,7 +240,7 @@ impl Value {
         match self {
             Self::List(list) => list.items.iter().map(Self::to_text).collect(),
             Self::Text(text) => vec![text.clone()],
-            _ => Vec::new(),
+            Self::Nil | Self::Bool(_) | Self::Int(_) | Self::Float(_) => Vec::new(),
         }
     }
 

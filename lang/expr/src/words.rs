@@ -156,16 +156,27 @@ impl What {
             | Self::TooFewArguments(_)
             | Self::NotAnalysed
             | Self::OddNumber(..) => Stage::Semantic,
-            _ => Stage::Runtime,
+            Self::DivisionByZero
+            | Self::RandomOfNothing
+            | Self::Uninitialized(_)
+            | Self::NegativeIndex
+            | Self::IndexNotNumber
+            | Self::IndexOfValue
+            | Self::KeyNotNumber
+            | Self::NotInterpreted
+            | Self::ValueTooLong
+            | Self::ValueTooDeep
+            | Self::StoreFull
+            | Self::TooMuchWork => Stage::Runtime,
         }
     }
 
     /// Whether the text can be run all the same.
     pub fn severity(&self) -> Severity {
-        match self {
-            Self::ImplicitCast(_) | Self::OddNumber(..) => Severity::Warning,
-            _ => Severity::Error,
+        if let Self::ImplicitCast(_) | Self::OddNumber(..) = self {
+            return Severity::Warning;
         }
+        Severity::Error
     }
 
     /// Its words: those of the real program, where it has any.
@@ -269,7 +280,29 @@ impl What {
             Self::ValueTooDeep => format!(": at most {}.", limits::LIST_DEPTH_MAX),
             Self::StoreFull => ". Does a table or text grow without end?".into(),
             Self::TooMuchWork => ". Are very long tables compared or copied?".into(),
-            _ => String::new(),
+            Self::UnknownSymbols(_)
+            | Self::UnexpectedToken
+            | Self::Expected(..)
+            | Self::NotSupportedYet
+            | Self::CountsDiffer
+            | Self::AssignToCall
+            | Self::FunctionAsName
+            | Self::AssignToValue
+            | Self::Mismatched
+            | Self::ImplicitCast(_)
+            | Self::TypeMismatch
+            | Self::NoType
+            | Self::CannotDeduce(_)
+            | Self::IndirectCall
+            | Self::TooManyArguments(_)
+            | Self::TooFewArguments(_)
+            | Self::NotAnalysed
+            | Self::DivisionByZero
+            | Self::NegativeIndex
+            | Self::IndexNotNumber
+            | Self::IndexOfValue
+            | Self::KeyNotNumber
+            | Self::NotInterpreted => String::new(),
         }
     }
 
@@ -284,16 +317,7 @@ impl What {
                 "Текст слишком длинный: не больше {} байт; разделите его на несколько блоков.",
                 limits::EXPRESSION_TEXT_MAX
             ),
-            Self::UnknownSymbols(text) => {
-                let hint = if text.starts_with(['"', '\'']) {
-                    ". Нет закрывающей кавычки?"
-                } else if text.starts_with('!') {
-                    ". Вместо «!» пишите «not»."
-                } else {
-                    ""
-                };
-                format!("Непонятные символы: {}{hint}", short(text))
-            }
+            Self::UnknownSymbols(text) => unknown_in_russian(text),
             Self::UnexpectedToken => "Этого здесь быть не может".into(),
             Self::UnexpectedEnd => "Текст неожиданно кончился: после этого места чего-то не хватает".into(),
             Self::Expected(wanted, got) => {
@@ -342,7 +366,17 @@ impl What {
                  означает восьмеричную запись.",
                 short(text)
             ),
-            _ => self.russian_of_running(),
+            Self::DivisionByZero
+            | Self::RandomOfNothing
+            | Self::Uninitialized(_)
+            | Self::NegativeIndex
+            | Self::IndexNotNumber
+            | Self::IndexOfValue
+            | Self::KeyNotNumber
+            | Self::ValueTooLong
+            | Self::ValueTooDeep
+            | Self::StoreFull
+            | Self::TooMuchWork => self.russian_of_running(),
         }
     }
 
@@ -380,7 +414,34 @@ impl What {
             Self::TooMuchWork => {
                 "Слишком много работы. Сравниваются или копируются очень длинные таблицы?".into()
             }
-            _ => String::new(),
+            // `russian` has the words of these.
+            Self::TextTooLong
+            | Self::UnknownSymbols(_)
+            | Self::UnexpectedToken
+            | Self::UnexpectedEnd
+            | Self::Expected(..)
+            | Self::ExpectedAtEnd(..)
+            | Self::NotSupportedYet
+            | Self::TooDeep
+            | Self::CountsDiffer
+            | Self::AssignToCall
+            | Self::TooManyNames
+            | Self::FunctionAsName
+            | Self::AssignToValue
+            | Self::Mismatched
+            | Self::ImplicitCast(_)
+            | Self::TypeMismatch
+            | Self::NoType
+            | Self::CannotDeduce(_)
+            | Self::Undeclared(_)
+            | Self::ReadOnly(_)
+            | Self::IndirectCall
+            | Self::UnknownFunction
+            | Self::TooManyArguments(_)
+            | Self::TooFewArguments(_)
+            | Self::NotAnalysed
+            | Self::OddNumber(..)
+            | Self::NotInterpreted => String::new(),
         }
     }
 }
@@ -393,6 +454,18 @@ fn short(text: &str) -> String {
         shown.push_str("...");
     }
     shown
+}
+
+/// Symbols that begin nothing, with what they may be meant for.
+fn unknown_in_russian(text: &str) -> String {
+    let hint = if text.starts_with(['"', '\'']) {
+        ". Нет закрывающей кавычки?"
+    } else if text.starts_with('!') {
+        ". Вместо «!» пишите «not»."
+    } else {
+        ""
+    };
+    format!("Непонятные символы: {}{hint}", short(text))
 }
 
 /// A token as Russian messages call it.

@@ -250,7 +250,7 @@ impl<'a, S: System + ?Sized, W: Surroundings + ?Sized> Search<'a, S, W> {
         }
     }
 
-    /// Keeps a place if it is the best of its neighbourhood, in the place of the one that was.
+    /// Keeps a place if it is the best of its neighbourhood, instead of the one that was.
     fn keep_best(&mut self, from: u32, reached: &Reached, radius: f64, point: &mut Vec<f64>) {
         let cost = self.tree.cost(from) + u64::from(reached.steps);
         if self.best.as_ref().is_some_and(|best| cost >= best.steps()) {

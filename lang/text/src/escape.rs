@@ -16,6 +16,12 @@ pub fn entity(sign: char) -> Option<&'static str> {
 /// A text that is shown: for between tags and for values in double quotes. What XML cannot hold becomes a space.
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
+    push(&mut out, text);
+    out
+}
+
+/// Adds a text as [`escaped`] gives it.
+pub fn push(out: &mut String, text: &str) {
     for sign in text.chars() {
         match entity(sign) {
             Some(entity) => out.push_str(entity),
@@ -23,7 +29,6 @@ pub fn escaped(text: &str) -> String {
             None => out.push(sign),
         }
     }
-    out
 }
 
 #[cfg(test)]

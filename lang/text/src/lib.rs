@@ -1,5 +1,5 @@
 //! What the languages share: what is wrong with a text and where, in two languages, XML as a tree,
-//! and the signs of markup.
+//! the signs of markup, and pictures in SVG.
 //!
 //! Pure: bytes in, values and [`problem::Problem`]s out. Knows no language, no files, network, threads or clock.
 
@@ -9,4 +9,5 @@
 pub mod escape;
 pub mod limits;
 pub mod problem;
+pub mod svg;
 pub mod xml;

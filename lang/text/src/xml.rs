@@ -4,6 +4,7 @@
 //! stand, because saves have the tag `qReal::Id`, which no parser with namespaces accepts.
 
 use crate::escape::entity;
+use crate::problem::Problem;
 use std::borrow::Cow;
 
 mod read;
@@ -132,6 +133,11 @@ impl<'a> Element<'a> {
             Node::Text(_) | Node::Comment(_) => unreachable!("position() found a tag"),
         }
     }
+}
+
+/// Whether a document could not be read because it ends before its tags do.
+pub fn is_cut_short(problem: &Problem) -> bool {
+    problem.words == words::unfinished()
 }
 
 /// Writes a document as Qt does: each tag on a line, `indent` spaces for each level.

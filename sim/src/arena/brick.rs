@@ -124,17 +124,20 @@ impl Handle<'_> {
 }
 
 impl Brick for Handle<'_> {
-    fn tell(&mut self, command: Command<'_>) {
+    fn command(&mut self, command: Command<'_>) {
         let robot = &mut self.arena.robots[self.index];
         match command {
             Command::Power { port, percent } => robot.set_power(port, percent),
             Command::Off { port, .. } => robot.set_power(port, 0),
             Command::Servo { port, degrees } => robot.set_servo(port, degrees),
-            Command::ResetEncoder { port } => robot.reset_encoder(port),
+            Command::ResetEncoder { port } => {
+                robot.reset_encoder(port);
+                robot.readings.note(port, 0, self.arena.now);
+            }
             Command::CalibrateGyroscope => robot.calibrate(),
             Command::Rest => {
                 robot.rest();
-                robot.shown.tell(&command);
+                robot.shown.command(&command);
             }
             Command::MarkerDown { color } => {
                 robot.marker.is_down = true;
@@ -144,19 +147,38 @@ impl Brick for Handle<'_> {
             Command::Join { hull, .. } => robot.hull = hull,
             Command::Send { message, hull } => self.send(message, hull),
             Command::Detect { mode: "line" } => self.learn(),
-            _ => robot.shown.tell(&command),
+            _ => robot.shown.command(&command),
         }
     }
 
     fn scalar(&mut self, port: Port) -> Option<i32> {
         let robot = &self.arena.robots[self.index];
-        match port.sort() {
+        let reading = match port.sort() {
             Sort::Encoder => Some(robot.encoder(port) as i32),
             Sort::Button(code) => Some(i32::from(robot.is_pressed(code))),
             Sort::Scalar if port.name().starts_with("Gamepad") => self.gamepad(port),
             Sort::Scalar => self.range(port),
             Sort::Motor | Sort::Servo | Sort::Vector => None,
+        };
+        if let Some(reading) = reading {
+            let now = self.arena.now;
+            let robot = &mut self.arena.robots[self.index];
+            robot.readings.note(port, reading, now);
         }
+        reading
+    }
+
+    fn locked(&mut self, port: Port) -> Option<i32> {
+        let readings = &self.arena.robots[self.index].readings;
+        readings.is_locked(port).then(|| readings.last(port))
+    }
+
+    fn announced(&mut self) -> Option<(Port, i32)> {
+        self.arena.robots[self.index].readings.announced()
+    }
+
+    fn random_of_function(&mut self, low: i32, high: i32) -> i32 {
+        self.arena.robots[self.index].dice.throw(low, high)
     }
 
     fn vector(&mut self, port: Port, into: &mut Vec<i32>) -> bool {

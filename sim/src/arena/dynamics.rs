@@ -1,77 +1,65 @@
 //! Realistic physics: masses, friction and impulses, for robots and what they push.
 //!
-//! Owns the bodies of a field and how wheels drive one. The solver is that of crate `rapier2d-f64`, which follows the same
-//! paper as the original's Box2D 3; its unit is the original's, so its tolerances are the same. Numbers are near those of
-//! the original and not equal; tests hold how near. Knows no programs and no sensors.
+//! Owns the order of one tick and of the start, and how wheels drive a robot. The solver is crate `box2d-rust`, a Rust
+//! version of the original's Box2D that computes its own sines, so a run is the same on every processor. Knows no programs
+//! and no rules.
 //!
-//! Facts are those of the original. A wheel is welded to the robot; in each tick it loses all speed across and
-//! gets the impulse that its own mass needs to roll as fast as its motor turns, so the robot gains speed over some 60 ms.
-//! A robot whose wheels both stand is stopped dead. Wheels and body are one body here: the original's joints are without
-//! play. A small push at each change of speed is left out; it is below 0.01 pixels a second.
+//! Facts are those of the original, found by repeating its recorded runs bit for bit. Each wheel is a body of its own on a
+//! hinge that does not turn. In each tick it loses all speed across and gets the impulse that its own mass needs to roll as
+//! fast as its motor turns, first the left one, then the right one: so the robot gains speed over some 60 ms, and drifts
+//! aside a little on an empty field. A robot whose wheels both stand is stopped dead. The pose of a robot is the sum of
+//! what its body has moved, and not the place of the body.
+//!
+//! The original's solver is of June 2025 and ours a year younger: without contacts both give the same bits, with contacts
+//! places differ by some tenths of a pixel after seconds. Tests hold how much.
 
-use rapier2d_f64::prelude::{
-    CoefficientCombineRule, ColliderBuilder, PhysicsWorld, RigidBodyBuilder, RigidBodyHandle,
-    Vector,
+mod parts;
+mod units;
+
+use box2d_rust::body::{
+    body_apply_force_to_center, body_apply_linear_impulse_to_center, body_get_linear_velocity,
+    body_get_mass, body_get_position, body_get_rotation, body_get_world_vector, body_is_awake,
+    body_set_angular_velocity, body_set_linear_velocity, body_set_transform,
 };
+use box2d_rust::id::BodyId;
+use box2d_rust::math_functions::{Pos, Rot, VEC2_ZERO, Vec2, dot, mul_sv, rot_get_angle, sub};
+use box2d_rust::types::WorldDef;
+use box2d_rust::world::{World, world_set_contact_recycle_distance, world_step};
 
 use lang_diagram::machine::STEP_MS;
-use lang_diagram::stand_in::{Motion, PIXELS_IN_CM, Pose, rim_speed};
+use lang_diagram::stand_in::{Motion, Pose, rim_speed};
 
+use self::parts::{Chassis, placed};
 use super::robot::Robot;
-use super::solids;
-use crate::field::{Field, Material, ROBOT_SIZE, Sensor, Solid, SolidKind};
-use crate::geometry::{Point, point};
+use crate::field::{Field, Solid, SolidKind};
+use crate::geometry::Point;
 
-/// Units of the solver in a pixel.
-const SCALE: f64 = 10.0 / PIXELS_IN_CM;
 /// Steps of the solver in one tick.
-const STEPS: usize = 10;
-/// The robot's body from its upper left corner.
-const BODY: [(f64, f64); 6] = [
-    (1.0, 10.0),
-    (47.0, 10.0),
-    (49.0, 20.0),
-    (49.0, 30.0),
-    (47.0, 40.0),
-    (1.0, 40.0),
-];
-/// Left and right wheel from there.
-const WHEELS: [(f64, f64); 2] = [(10.0, 3.0), (10.0, 47.0)];
-/// Length and width of a wheel.
-const WHEEL: (f64, f64) = (16.0, 8.0);
-/// Parts of length and width at which the corners of a wheel are.
-const WHEEL_CORNERS: [(f64, f64); 8] = [
-    (0.2, 1.0),
-    (0.8, 1.0),
-    (1.0, 0.6),
-    (1.0, 0.4),
-    (0.8, 0.0),
-    (0.2, 0.0),
-    (0.0, 0.4),
-    (0.0, 0.6),
-];
-/// The original takes the density of a wheel from the rectangle around it, so without its corners it is lighter.
-const WHEEL_SHARE: f64 = 0.84;
-/// Radius of what a sensor runs into things with.
-const SENSOR_RADIUS: f64 = 5.0;
-/// Largest of what materials have, and least mass of what can be pushed.
-const MATERIAL_MAX: f64 = 1e4;
-const MASS_MIN: f64 = 1e-6;
+const STEPS: i32 = 10;
+/// Slower collisions do not bounce, in the solver's metres per second.
+const BOUNCE_MIN: f32 = 0.05;
+/// The push at each change of a wheel's speed.
+const PUSH: f32 = 0.1;
+/// Speeds that are nearer than this are the same.
+const SAME: f64 = 1e-10;
+/// The order in which things are made.
+const KINDS: [SolidKind; 3] = [SolidKind::Skittle, SolidKind::Ball, SolidKind::Cube];
 
 /// Bodies of a field.
 pub(super) struct Dynamics {
-    world: PhysicsWorld,
+    world: World,
     robots: Vec<Driven>,
     /// Bodies of things that can be pushed, as [`Field::solids`] has them.
-    pushed: Vec<Option<RigidBodyHandle>>,
+    pushed: Vec<Option<BodyId>>,
 }
 
-/// A robot's body.
+/// A robot's bodies, and what is remembered of them.
 struct Driven {
-    body: RigidBodyHandle,
-    /// Where the last tick has left it.
+    chassis: Chassis,
+    /// The last speeds that were asked of the wheels; a stop is not remembered.
+    asked: [f64; 2],
+    /// Where the last tick has left the robot in the scene: elsewhere means that a hand has put it there.
     left: Pose,
-    wheel_mass: f64,
 }
 
 impl std::fmt::Debug for Dynamics {
@@ -81,187 +69,113 @@ impl std::fmt::Debug for Dynamics {
     }
 }
 
-fn vector(at: Point) -> Vector {
-    Vector::new(at.x * SCALE, at.y * SCALE)
-}
-
-fn scene(at: Vector) -> Point {
-    point(at.x / SCALE, at.y / SCALE)
-}
-
-/// A body of a material; one without mass stands for ever.
-fn body(material: &Material, at: Point, degrees: f64) -> RigidBodyBuilder {
-    let body = if material.mass > 0.0 {
-        RigidBodyBuilder::dynamic()
-    } else {
-        RigidBodyBuilder::fixed()
-    };
-    body.translation(vector(at))
-        .rotation(degrees.to_radians())
-        .linear_damping(material.linear_damping.clamp(0.0, MATERIAL_MAX))
-        .angular_damping(material.angular_damping.clamp(0.0, MATERIAL_MAX))
-}
-
-fn of_material(collider: ColliderBuilder, material: &Material) -> ColliderBuilder {
-    collider
-        .mass(material.mass.clamp(MASS_MIN, MATERIAL_MAX))
-        .friction(material.friction.clamp(0.0, MATERIAL_MAX))
-        .restitution(material.restitution.clamp(0.0, 1.0))
-        .friction_combine_rule(CoefficientCombineRule::GeometricMean)
-        .restitution_combine_rule(CoefficientCombineRule::Max)
-}
-
-fn hull(corners: impl IntoIterator<Item = Point>) -> Option<ColliderBuilder> {
-    let corners: Vec<Vector> = corners.into_iter().map(vector).collect();
-    ColliderBuilder::convex_hull(&corners)
-}
-
-/// A point of the robot from its centre.
-fn from_centre((x, y): (f64, f64)) -> Point {
-    point(x - ROBOT_SIZE / 2.0, y - ROBOT_SIZE / 2.0)
-}
-
-fn centre(pose: Pose) -> Point {
-    point(pose.x + ROBOT_SIZE / 2.0, pose.y + ROBOT_SIZE / 2.0)
-}
-
 impl Dynamics {
     /// All bodies of a field and its robots.
+    ///
+    /// The first robot is made and taken away twice before everything else, and once after it, as in the original: so its
+    /// bodies get the same numbers, which decide what is solved first.
     pub(super) fn new(field: &Field, robots: &[Robot]) -> Self {
-        let mut world = PhysicsWorld::new();
-        world.gravity = Vector::new(0.0, 0.0);
-        world.integration_parameters.dt = f64::from(STEP_MS) / 1000.0;
-        world.integration_parameters.num_solver_iterations = STEPS;
-        let mut dynamics = Self {
-            world,
-            robots: Vec::new(),
-            pushed: Vec::new(),
-        };
-        for wall in &field.walls {
-            // Corners around the middle: small numbers in shapes.
-            let corners = solids::wall(wall);
-            let middle = point(
-                f64::midpoint(wall.begin.x, wall.end.x),
-                f64::midpoint(wall.begin.y, wall.end.y),
-            );
-            if let Some(shape) = hull(corners.map(|corner| corner.from(middle))) {
-                let stands = Material {
-                    mass: 0.0,
-                    ..wall.material
-                };
-                let shape = of_material(shape, &stands);
-                dynamics.world.insert(body(&stands, middle, 0.0), shape);
-            }
-        }
-        dynamics.pushed = field
-            .solids
-            .iter()
-            .map(|solid| dynamics.add_solid(solid))
-            .collect();
-        for robot in robots {
-            dynamics.add_robot(robot);
-        }
-        dynamics
-    }
-
-    fn add_solid(&mut self, solid: &Solid) -> Option<RigidBodyHandle> {
-        let half = solid.size / 2.0;
-        if half <= 0.0 || !half.is_finite() {
-            return None;
-        }
-        let shape = match solid.kind {
-            SolidKind::Cube => ColliderBuilder::cuboid(half * SCALE, half * SCALE),
-            SolidKind::Ball | SolidKind::Skittle => ColliderBuilder::ball(half * SCALE),
-        };
-        let shape = of_material(shape, &solid.material);
-        let body = body(&solid.material, solid.at, solid.rotation);
-        Some(self.world.insert(body, shape).0)
-    }
-
-    fn add_robot(&mut self, robot: &Robot) {
-        let placed = robot.description();
-        let pose = robot.pose();
-        let wheel = &placed.wheels;
-        let wheel_mass = wheel.mass.clamp(MASS_MIN, MATERIAL_MAX) * WHEEL_SHARE;
-        // Only the body of the original is damped, its wheels are not.
-        let mass = placed.material.mass.clamp(MASS_MIN, MATERIAL_MAX);
-        let share = mass / (mass + 2.0 * wheel_mass);
-        let material = Material {
-            mass,
-            linear_damping: placed.material.linear_damping * share,
-            angular_damping: placed.material.angular_damping * share,
-            ..placed.material
-        };
-        let builder = body(&material, centre(pose), pose.degrees).can_sleep(false);
-        let body = self.world.insert_body(builder);
-        let mut shapes = Vec::new();
-        shapes.extend(hull(BODY.map(from_centre)).map(|shape| of_material(shape, &material)));
-        for middle in WHEELS {
-            let corners = WHEEL_CORNERS.map(|(along, across)| {
-                let x = middle.0 + (along - 0.5) * WHEEL.0;
-                from_centre((x, middle.1 + (across - 0.5) * WHEEL.1))
-            });
-            let shape = hull(corners).map(|shape| of_material(shape, wheel).mass(wheel_mass));
-            shapes.extend(shape);
-        }
-        let is_body = |sensor: &&Sensor| super::robot::body_of(sensor).is_some();
-        for sensor in placed.sensors.iter().filter(is_body) {
-            let at = from_centre((sensor.at.x, sensor.at.y));
-            let ball = ColliderBuilder::ball(SENSOR_RADIUS * SCALE).translation(vector(at));
-            shapes.push(of_material(ball, &material).mass(0.0));
-        }
-        for shape in shapes {
-            self.world.insert_collider(shape, Some(body));
-        }
-        self.robots.push(Driven {
-            body,
-            left: pose,
-            wheel_mass,
+        let mut world = World::new(&WorldDef {
+            gravity: VEC2_ZERO,
+            restitution_threshold: BOUNCE_MIN,
+            ..WorldDef::default()
         });
+        world_set_contact_recycle_distance(&mut world, 0.0);
+        let first = robots.first().map(Robot::description);
+        let mut early = None;
+        if let Some(robot) = first {
+            let origin = Point::default();
+            let mut made = Chassis::new(&mut world, robot, origin, 0.0);
+            made.add_sensors(&mut world, robot, origin, 0.0, false);
+            made.remove(&mut world);
+            let made = Chassis::new(&mut world, robot, origin, 0.0);
+            made.turn_to(&mut world, 0.0);
+            made.turn_to(&mut world, 0.0);
+            made.remove(&mut world);
+            let made = Chassis::new(&mut world, robot, origin, 0.0);
+            made.turn_to(&mut world, 0.0);
+            early = Some(made);
+        }
+        for wall in &field.walls {
+            parts::add_wall(&mut world, wall);
+        }
+        let mut pushed = vec![None; field.solids.len()];
+        for kind in KINDS {
+            for (body, solid) in pushed.iter_mut().zip(&field.solids) {
+                if solid.kind == kind {
+                    *body = parts::add_solid(&mut world, solid);
+                }
+            }
+        }
+        if let Some(early) = early {
+            early.remove(&mut world);
+        }
+        let robots = robots
+            .iter()
+            .map(|robot| Driven::new(&mut world, robot))
+            .collect();
+        for (body, solid) in pushed.iter().zip(&field.solids) {
+            if let &Some(body) = body {
+                settle(&mut world, body, solid);
+            }
+        }
+        Self {
+            world,
+            robots,
+            pushed,
+        }
     }
 
-    /// One tick: what it moves each robot, in their order, and new places of things that were pushed.
-    pub(super) fn tick(
-        &mut self,
-        robots: &mut [Robot],
-        field: &mut Field,
-        mut moved: impl FnMut(usize, &Solid),
-    ) {
+    /// One tick: what it moves each robot, in their order.
+    pub(super) fn tick(&mut self, robots: &mut [Robot]) {
         for (driven, robot) in self.robots.iter_mut().zip(robots.iter()) {
-            drive(&mut self.world, driven, robot);
+            driven.follow(&mut self.world, robot);
+            driven.drive(&mut self.world, robot.chosen);
         }
-        self.world.step();
-        for (driven, robot) in self.robots.iter_mut().zip(robots) {
-            let Some(body) = self.world.bodies.get(driven.body) else {
-                continue;
-            };
-            let at = scene(body.translation());
-            let old = centre(driven.left);
-            let turn = body.rotation().angle().to_degrees() - driven.left.degrees;
-            let turn = turn - 360.0 * (turn / 360.0).round();
+        let before: Vec<(Pos, Rot)> = self
+            .robots
+            .iter()
+            .map(|driven| self.place(driven.chassis.body))
+            .collect();
+        world_step(&mut self.world, STEP_MS as f32 / 1000.0, STEPS);
+        let moved = self.robots.iter().zip(before).map(|(driven, before)| {
+            let now = self.place(driven.chassis.body);
+            Motion {
+                shift: units::pixels(sub(now.0, before.0)),
+                turn: units::turn(before.1, now.1),
+            }
+        });
+        let moved: Vec<Motion> = moved.collect();
+        for ((driven, robot), motion) in self.robots.iter_mut().zip(robots).zip(moved) {
             robot.is_stuck = false;
-            robot.motion = Motion {
-                shift: ((at.x - old.x) as f32, (at.y - old.y) as f32),
-                turn,
-            };
+            robot.motion = motion;
             driven.left = Pose {
-                x: robot.pose.x + f64::from(robot.motion.shift.0),
-                y: robot.pose.y + f64::from(robot.motion.shift.1),
-                degrees: robot.pose.degrees + turn,
+                x: robot.pose.x + f64::from(motion.shift.0),
+                y: robot.pose.y + f64::from(motion.shift.1),
+                degrees: robot.pose.degrees + motion.turn,
             };
         }
-        for (index, handle) in self.pushed.iter().enumerate() {
-            let body = handle.and_then(|handle| self.world.bodies.get(handle));
-            let (Some(body), Some(solid)) = (body, field.solids.get_mut(index)) else {
+    }
+
+    fn place(&self, body: BodyId) -> (Pos, Rot) {
+        (
+            body_get_position(&self.world, body),
+            body_get_rotation(&self.world, body),
+        )
+    }
+
+    /// Reads back where things are that were pushed since the last time.
+    pub(super) fn read_back(&self, field: &mut Field, mut moved: impl FnMut(usize, &Solid)) {
+        for (index, (body, solid)) in self.pushed.iter().zip(&mut field.solids).enumerate() {
+            let &Some(body) = body else {
                 continue;
             };
-            if body.is_sleeping() || !body.is_dynamic() {
+            if !body_is_awake(&self.world, body) {
                 continue;
             }
-            let (at, degrees) = (
-                scene(body.translation()),
-                body.rotation().angle().to_degrees(),
-            );
+            let (position, rotation) = self.place(body);
+            let at = units::scene(position);
+            let degrees = units::degrees(rot_get_angle(rotation));
             if at != solid.at || degrees != solid.rotation {
                 (solid.at, solid.rotation) = (at, degrees);
                 moved(index, solid);
@@ -270,43 +184,98 @@ impl Dynamics {
     }
 }
 
-/// Gives a robot's body what its wheels do in a tick.
-fn drive(world: &mut PhysicsWorld, driven: &mut Driven, robot: &Robot) {
-    let Some(body) = world.bodies.get_mut(driven.body) else {
-        return;
-    };
-    let pose = robot.pose();
-    // Places of the scene pass through 32 bits; who is farther off was put there by hand.
-    let off = (pose.x - driven.left.x).abs() + (pose.y - driven.left.y).abs();
-    if off > 1e-3 || (pose.degrees - driven.left.degrees).abs() > 1e-3 {
-        body.set_translation(vector(centre(pose)), true);
-        body.set_rotation(
-            rapier2d_f64::prelude::Rotation::new(pose.degrees.to_radians()),
-            true,
-        );
-        body.set_linvel(Vector::new(0.0, 0.0), true);
-        body.set_angvel(0.0, true);
-        driven.left = pose;
-    }
-    if robot.chosen == [0, 0] {
-        body.set_linvel(Vector::new(0.0, 0.0), true);
-        body.set_angvel(0.0, true);
+/// A thing that does not stand exactly where the solver's 32 bits have it is put there.
+fn settle(world: &mut World, body: BodyId, solid: &Solid) {
+    if solid.material.mass <= 0.0 {
         return;
     }
-    let (sine, cosine) = body.rotation().angle().sin_cos();
-    let (ahead, across) = (Vector::new(cosine, sine), Vector::new(-sine, cosine));
-    // Both wheels are looked at before either pushes.
-    let pushes: [(Vector, Vector); 2] = std::array::from_fn(|side| {
-        let place = from_centre(WHEELS[side]);
-        let place = body.translation() + (ahead * place.x + across * place.y) * SCALE;
-        let speed = body.velocity_at_point(place);
-        let wanted = rim_speed(robot.chosen[side]) * 1000.0 * SCALE;
-        let change = ahead * (wanted - speed.dot(ahead)) - across * speed.dot(across);
-        (change * driven.wheel_mass, place)
-    });
-    for (impulse, place) in pushes {
-        body.apply_impulse_at_point(impulse, place, true);
+    let at = units::scene(body_get_position(world, body));
+    if (at.x - solid.at.x).abs() > 1e-12 || (at.y - solid.at.y).abs() > 1e-12 {
+        let position = units::vector(at);
+        body_set_transform(world, body, position, units::rotation(solid.rotation));
     }
+}
+
+impl Driven {
+    fn new(world: &mut World, robot: &Robot) -> Self {
+        let description = robot.description();
+        let (centre, degrees) = placed(robot.pose());
+        let mut chassis = Chassis::new(world, description, centre, degrees);
+        chassis.turn_to(world, degrees);
+        chassis.add_sensors(world, description, centre, degrees, true);
+        Self {
+            chassis,
+            asked: [0.0; 2],
+            left: robot.pose(),
+        }
+    }
+
+    /// Goes where a hand has put the robot: all bodies move by the same, and keep their speed.
+    fn follow(&mut self, world: &mut World, robot: &Robot) {
+        let pose = robot.pose();
+        if pose == self.left {
+            return;
+        }
+        let (old, _) = placed(self.left);
+        let (new, _) = placed(pose);
+        let shift = units::vector(new.from(old));
+        for body in self.chassis.bodies() {
+            let from = body_get_position(world, body);
+            let rotation = body_get_rotation(world, body);
+            let to = Vec2::new(from.x + shift.x, from.y + shift.y);
+            body_set_transform(world, body, to, rotation);
+        }
+        if pose.degrees != self.left.degrees && pose.degrees.is_finite() {
+            self.chassis.turn_to(world, pose.degrees);
+        }
+        self.left = pose;
+    }
+
+    /// Gives the wheels what their motors do in a tick.
+    fn drive(&mut self, world: &mut World, powers: [i32; 2]) {
+        let wanted = powers.map(speed);
+        if wanted[0].abs() + wanted[1].abs() < f64::from(f32::EPSILON) {
+            stop(world, self.chassis.body);
+            for wheel in self.chassis.wheels {
+                stop(world, wheel.body);
+            }
+            return;
+        }
+        for (side, wanted) in wanted.into_iter().enumerate() {
+            let wheel = self.chassis.wheels[side].body;
+            let mass = body_get_mass(world, wheel);
+            let ahead = body_get_world_vector(world, wheel, Vec2::new(1.0, 0.0));
+            let across = body_get_world_vector(world, wheel, Vec2::new(0.0, 1.0));
+            if (wanted - self.asked[side]).abs() > f64::from(f32::EPSILON) {
+                let push = mul_sv(if wanted > 0.0 { PUSH } else { -PUSH }, ahead);
+                body_apply_force_to_center(world, self.chassis.body, push, true);
+                self.asked[side] = wanted;
+            }
+            let slip = dot(across, body_get_linear_velocity(world, wheel));
+            let impulse = mul_sv(-mass, mul_sv(slip, across));
+            body_apply_linear_impulse_to_center(world, wheel, impulse, true);
+            let now = f64::from(dot(ahead, body_get_linear_velocity(world, wheel)));
+            if (now - wanted).abs() < SAME {
+                continue;
+            }
+            if (wanted - now).abs() < f64::from(f32::EPSILON) {
+                stop(world, wheel);
+                continue;
+            }
+            let impulse = mul_sv((wanted as f32 - now as f32) * mass, ahead);
+            body_apply_linear_impulse_to_center(world, wheel, impulse, true);
+        }
+    }
+}
+
+/// The speed of a wheel's rim at a power, in the solver's metres per second.
+fn speed(percent: i32) -> f64 {
+    f64::from(units::metres(rim_speed(percent))) / (f64::from(STEP_MS) / 1000.0) * 10.0
+}
+
+fn stop(world: &mut World, body: BodyId) {
+    body_set_linear_velocity(world, body, VEC2_ZERO);
+    body_set_angular_velocity(world, body, 0.0);
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //!
 //! Owns what lies over what, and windows: small pictures of the floor under a sensor, turned as the sensor is. A window is
 //! painted when it is asked for, straight from the outlines that it meets, because its pixels lie between those of any
-//! picture painted before. Walls, robots and backgrounds are not on it: the original's sensors do not see them either.
+//! picture painted before. Robots and backgrounds are not on it: the original's sensors do not see them either.
 //! Knows no sensors and no robots.
 //!
 //! Facts are those of the original: a window is an upright square of whole pixels that has room for the turned one; it is
@@ -44,8 +44,8 @@ const SHIFT: f64 = 1.0 / 65536.0;
 /// Something on the floor.
 #[derive(Clone, Debug)]
 enum Thing {
-    /// A painted area.
-    Area(Outline, Tint),
+    /// A painted area, and where it is looked for if that is not all of it.
+    Area(Outline, Tint, Option<Bounds>),
     /// An area whose colour changes from place to place.
     Shade(Outline, Box<Gradient>),
     /// Pixels, and what takes a place of the scene to one of them.
@@ -57,7 +57,8 @@ enum Thing {
 impl Thing {
     fn bounds(&self) -> Bounds {
         match self {
-            Self::Area(outline, _) | Self::Shade(outline, _) => outline.bounds(),
+            Self::Area(_, _, Some(bounds)) => *bounds,
+            Self::Area(outline, ..) | Self::Shade(outline, _) => outline.bounds(),
             Self::Pixels(_, _, bounds) => *bounds,
             Self::Mark(stroke) => {
                 let mut bounds = Bounds::NOTHING;
@@ -138,7 +139,13 @@ impl Floor {
 
     /// Lays an area over everything that is there.
     pub fn add_area(&mut self, outline: Outline, tint: Tint) {
-        self.add(Thing::Area(outline, tint));
+        self.add(Thing::Area(outline, tint, None));
+        self.count = self.things.len();
+    }
+
+    /// The same for an area that only windows see which meet a rectangle, whatever else it covers.
+    pub fn add_area_within(&mut self, outline: Outline, tint: Tint, bounds: Bounds) {
+        self.add(Thing::Area(outline, tint, Some(bounds)));
         self.count = self.things.len();
     }
 
@@ -158,7 +165,7 @@ impl Floor {
                 }
             } else if let Some((outline, paint)) = layer.outline(place) {
                 self.add(match paint {
-                    Paint::Plain(tint) => Thing::Area(outline, tint),
+                    Paint::Plain(tint) => Thing::Area(outline, tint, None),
                     Paint::Shade(gradient) => Thing::Shade(outline, gradient),
                 });
             }
@@ -202,7 +209,7 @@ impl Floor {
         if !bounds.0.iter().all(|side| side.is_finite()) {
             return;
         }
-        if let Thing::Area(outline, _) | Thing::Shade(outline, _) = &thing {
+        if let Thing::Area(outline, ..) | Thing::Shade(outline, _) = &thing {
             if self.steps + outline.len() > limits::FLOOR_STEPS {
                 self.is_full = true;
                 return;
@@ -290,7 +297,7 @@ impl Floor {
                 continue;
             }
             match thing {
-                Thing::Area(outline, tint) => {
+                Thing::Area(outline, tint, _) => {
                     let (coverage, canvas) = (&mut self.coverage, &mut self.canvas);
                     fill(outline, |_, _| *tint, coverage, canvas, corner, size, ratio);
                 }

@@ -56,7 +56,7 @@ pub struct Outline {
     points: Vec<Point>,
     /// Of each figure: where its corners begin and end, and what is around them.
     figures: Vec<(u32, u32, Bounds)>,
-    /// Room for whoever makes figures.
+    /// Room for callers that make figures.
     pub(super) spare: Vec<Point>,
 }
 

@@ -6,12 +6,13 @@ use std::collections::VecDeque;
 
 use lang_diagram::machine::STEP_MS;
 use lang_diagram::ports::{Port, Sort};
-use lang_diagram::stand_in::{Motion, Pose, wheel_turn};
+use lang_diagram::stand_in::{Motion, Pose, Rolling, wheel_turn};
 
 use super::floor::sensors::noise;
 use super::outline::Outline;
+use super::readings::Readings;
 use super::screen::Shown;
-use crate::field::{self, ROBOT_SIZE, Sensor, SensorKind, Settings};
+use crate::field::{self, Sensor, SensorKind, Settings};
 use crate::geometry::{Point, point};
 use crate::random::Random;
 
@@ -74,11 +75,16 @@ pub struct Dice {
 impl Dice {
     fn roll(&mut self, low: i32, high: i32) -> i32 {
         self.calls = self.calls.saturating_add(1);
-        let count = i64::from(high) - i64::from(low) + 1;
-        let number = i64::from(low) + ((self.random.unit() * count as f64) as i64).min(count - 1);
-        let number = i32::try_from(number).unwrap_or(low);
+        let number = self.throw(low, high);
         self.last = self.fixed.unwrap_or(number);
         self.last
+    }
+
+    /// A random number of which nobody keeps count.
+    pub(super) fn throw(&mut self, low: i32, high: i32) -> i32 {
+        let count = i64::from(high) - i64::from(low) + 1;
+        let number = i64::from(low) + ((self.random.unit() * count as f64) as i64).min(count - 1);
+        i32::try_from(number).unwrap_or(low)
     }
 }
 
@@ -88,12 +94,16 @@ pub struct Robot {
     /// How it was put onto the field: its sensors and wheels.
     pub(crate) placed: field::Robot,
     pub(crate) pose: Pose,
-    /// Power of M1 to M4 in percent, as told.
+    /// Power of M1 to M4 in percent, as told; a rule may tell more than a motor can do.
     powers: [i32; 4],
     /// Angles of S1 to S6 in degrees, as told.
     servos: [i32; 6],
     /// Motors of the left and right wheel, as indices.
     wheels: [Option<usize>; 2],
+    /// Sizes of its wheels.
+    pub(super) rolling: Rolling,
+    /// What its sensors have said.
+    pub readings: Readings,
     /// Powers of both wheels that the physics of the next tick takes.
     pub(super) chosen: [i32; 2],
     /// What the last tick moved it.
@@ -140,6 +150,8 @@ impl Robot {
                 y: placed.position.y,
                 degrees: placed.direction,
             },
+            rolling: Rolling::of_size(placed.size.x, placed.size.y),
+            readings: Readings::default(),
             powers: [0; 4],
             servos: [0; 6],
             wheels,
@@ -175,14 +187,14 @@ impl Robot {
     /// Square and sensors, unturned, from the centre.
     fn own_outline(&self) -> Outline {
         let mut outline = Outline::default();
-        let half = ROBOT_SIZE / 2.0;
-        outline.add([(-half, -half), (half, -half), (half, half), (-half, half)].map(corner));
+        let half = self.half();
+        outline.add(square_of(half));
         for sensor in &self.placed.sensors {
             let is_last = sensor
                 .port
                 .is_some_and(|port| self.placed.sensor(port).is_some_and(|one| one == sensor));
             if let Some(corners) = body_of(sensor).filter(|_| is_last) {
-                outline.add(corners.map(|one| point(one.x - half, one.y - half)));
+                outline.add(corners.map(|one| one.from(half)));
             }
         }
         outline
@@ -205,8 +217,7 @@ impl Robot {
 
     /// The square alone, without sensors: corners in order.
     pub fn square(&self) -> [Point; 4] {
-        let half = ROBOT_SIZE / 2.0;
-        [(-half, -half), (half, -half), (half, half), (-half, half)].map(|(x, y)| {
+        square_of(self.half()).map(|Point { x, y }| {
             let (sin, cos) = self.pose.degrees.to_radians().sin_cos();
             let centre = self.centre();
             point(centre.x + x * cos - y * sin, centre.y + x * sin + y * cos)
@@ -215,21 +226,21 @@ impl Robot {
 
     /// Corners of a sensor on the field; nothing if it has no body.
     pub fn sensor_corners(&self, sensor: &Sensor) -> Option<[Point; 4]> {
-        let half = ROBOT_SIZE / 2.0;
+        let half = self.half();
         let centre = self.centre();
         let (sin, cos) = self.pose.degrees.to_radians().sin_cos();
         Some(body_of(sensor)?.map(|one| {
-            let (x, y) = (one.x - half, one.y - half);
+            let (x, y) = (one.x - half.x, one.y - half.y);
             point(centre.x + x * cos - y * sin, centre.y + x * sin + y * cos)
         }))
     }
 
     /// Where a sensor is and which way it looks, in degrees.
     pub fn sensor_pose(&self, sensor: &Sensor) -> (Point, f64) {
-        let half = ROBOT_SIZE / 2.0;
+        let half = self.half();
         // The original turns the way from the centre in 32 bits.
-        let x = f64::from((sensor.at.x - half) as f32);
-        let y = f64::from((sensor.at.y - half) as f32);
+        let x = f64::from((sensor.at.x - half.x) as f32);
+        let y = f64::from((sensor.at.y - half.y) as f32);
         let (sin, cos) = self.pose.degrees.to_radians().sin_cos();
         let turned_x = (x * cos - y * sin) as f32;
         let turned_y = (x * sin + y * cos) as f32;
@@ -251,7 +262,7 @@ impl Robot {
                 let share = 1.0 + noise(&mut self.noise, MOTOR_NOISE);
                 (f64::from(power) * share).round().clamp(-100.0, 100.0) as i32
             } else {
-                power
+                power.clamp(-100, 100)
             };
         }
         self.shown.tick(STEP_MS);
@@ -287,8 +298,14 @@ impl Robot {
 
     /// Its centre.
     pub fn centre(&self) -> Point {
-        let half = ROBOT_SIZE / 2.0;
-        point(self.pose.x + half, self.pose.y + half)
+        let half = self.half();
+        point(self.pose.x + half.x, self.pose.y + half.y)
+    }
+
+    /// From its corner to its centre.
+    fn half(&self) -> Point {
+        let size = self.placed.size;
+        point(size.x / 2.0, size.y / 2.0)
     }
 
     /// Its sensors, wheels and the rest of its description.
@@ -315,9 +332,9 @@ impl Robot {
         }
     }
 
-    pub(super) fn set_power(&mut self, port: Port, percent: i32) {
+    pub(crate) fn set_power(&mut self, port: Port, percent: i32) {
         if port.sort() == Sort::Motor {
-            self.powers[digit(port)] = percent.clamp(-100, 100);
+            self.powers[digit(port)] = percent;
         }
     }
 
@@ -330,7 +347,7 @@ impl Robot {
         }
     }
 
-    pub(super) fn set_servo(&mut self, port: Port, degrees: i32) {
+    pub(crate) fn set_servo(&mut self, port: Port, degrees: i32) {
         if port.sort() == Sort::Servo {
             self.servos[digit(port)] = degrees;
         }
@@ -377,22 +394,20 @@ impl Robot {
         ((self.rate * 1000.0) as i32, angle)
     }
 
-    /// What the accelerometer says: differences of speed over the last half of a second, and the fall of things.
+    /// What the accelerometer says: how it moved in the oldest of the last 50 ticks, the other way round, and the fall of
+    /// things. The original's formula wants more, but two of its terms are the same place.
     pub fn accelerometer(&self) -> [i32; 3] {
         let (stamps, count, next) = &self.stamps;
         let at = |age: usize| stamps[(next + STAMPS - 1 - age) % STAMPS];
         let difference = match *count {
             0 | 1 => Point::default(),
             2 | 3 => at(0).from(at(count - 1)),
-            _ => {
-                let newest = at(0).from(at(1));
-                newest.from(at(count - 2).from(at(count - 1)))
-            }
+            _ => at(count - 1).from(at(count - 2)),
         };
-        let scale = ACCELERATION_SCALE / (*count).max(1) as f64;
+        let count = (*count).max(1) as f64;
         [
-            (difference.x * scale) as i32,
-            (difference.y * scale) as i32,
+            (difference.x / count * ACCELERATION_SCALE) as i32,
+            (difference.y / count * ACCELERATION_SCALE) as i32,
             GRAVITY,
         ]
     }
@@ -446,8 +461,10 @@ impl Robot {
     }
 }
 
-fn corner((x, y): (f64, f64)) -> Point {
-    point(x, y)
+/// The corners of a rectangle around (0, 0).
+fn square_of(half: Point) -> [Point; 4] {
+    let (x, y) = (half.x, half.y);
+    [point(-x, -y), point(x, -y), point(x, y), point(-x, y)]
 }
 
 /// Width and height of a sensor as it is drawn.

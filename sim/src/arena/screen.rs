@@ -94,7 +94,7 @@ pub fn hex(colour: Colour) -> String {
 
 impl Screen {
     /// Does what a command says, if it is one for the display.
-    pub fn tell(&mut self, command: &Command<'_>) -> Change {
+    pub fn command(&mut self, command: &Command<'_>) -> Change {
         let mut change = Change::default();
         match *command {
             Command::PenColor { color } => self.pen = named(color),
@@ -178,6 +178,16 @@ impl Screen {
         self.face == Some(false)
     }
 
+    /// Another colour behind everything.
+    pub fn set_background(&mut self, colour: Colour) {
+        self.background = colour;
+    }
+
+    /// Everything, to be changed.
+    pub fn objects_mut(&mut self) -> &mut [Object] {
+        &mut self.objects
+    }
+
     /// Everything, in the order in which it was drawn.
     pub fn objects(&self) -> &[Object] {
         &self.objects
@@ -232,12 +242,14 @@ impl Screen {
 pub struct Shown {
     /// The display.
     pub screen: Screen,
-    /// What it said or printed last.
-    pub last_phrase: String,
+    /// What it said last, if it said anything.
+    pub last_phrase: Option<String>,
     /// The first [`limits::PRINTED_LINES`] texts that it printed.
     pub printed: Vec<String>,
     /// Colour of its light.
     pub led: Colour,
+    /// How much of what is behind that colour is hidden, which only a rule changes; 255 is all.
+    pub led_alpha: u8,
     /// Milliseconds for which it still sounds.
     pub beep_ms: u32,
 }
@@ -246,12 +258,18 @@ impl Default for Shown {
     fn default() -> Self {
         Self {
             screen: Screen::default(),
-            last_phrase: String::new(),
+            last_phrase: None,
             printed: Vec::new(),
             led: WHITE,
+            led_alpha: u8::MAX,
             beep_ms: 0,
         }
     }
+}
+
+/// What is kept of a text.
+fn cut(text: &str) -> String {
+    text.chars().take(limits::SCREEN_TEXT).collect()
 }
 
 /// How long a sound file is, whatever is in it.
@@ -259,22 +277,26 @@ const SOUND_MS: u32 = 1000;
 
 impl Shown {
     /// Does what a command says, if it is one for display, light, loudspeaker or speech.
-    pub fn tell(&mut self, command: &Command<'_>) {
+    pub fn command(&mut self, command: &Command<'_>) {
         match *command {
-            Command::Say { text } | Command::Console { text } => {
-                self.last_phrase = text.chars().take(limits::SCREEN_TEXT).collect();
-                let is_printed = matches!(command, Command::Console { .. });
-                if is_printed && self.printed.len() < limits::PRINTED_LINES {
-                    self.printed.push(self.last_phrase.clone());
+            Command::Say { text } => self.last_phrase = Some(cut(text)),
+            Command::Console { text } => {
+                if self.printed.len() < limits::PRINTED_LINES {
+                    self.printed.push(cut(text));
                 }
             }
-            Command::Led { color: "off" } => self.led = GRAY,
-            Command::Led { color } => self.led = named(color),
+            Command::Led { color } => {
+                self.led = match color {
+                    "off" => GRAY,
+                    color => named(color),
+                };
+                self.led_alpha = u8::MAX;
+            }
             Command::Tone { ms, .. } => self.beep_ms = u32::try_from(ms).unwrap_or(0),
             Command::Sound { .. } => self.beep_ms = SOUND_MS,
             Command::Rest => self.beep_ms = 0,
             _ => {
-                self.screen.tell(command);
+                self.screen.command(command);
             }
         }
     }
@@ -293,9 +315,9 @@ mod tests {
     fn what_is_drawn_is_listed_in_order() {
         let mut screen = Screen::default();
         assert_eq!(hex(screen.background()), "#a0a0a4");
-        screen.tell(&Command::PenColor { color: "yellow" });
-        screen.tell(&Command::PenWidth { width: 10 });
-        let change = screen.tell(&Command::Draw(Figure::Ellipse([60, 100, 20, 20], false)));
+        screen.command(&Command::PenColor { color: "yellow" });
+        screen.command(&Command::PenWidth { width: 10 });
+        let change = screen.command(&Command::Draw(Figure::Ellipse([60, 100, 20, 20], false)));
         assert!(change.objects && !change.smiles && !change.background);
         let label = |text| Command::Label {
             x: 1,
@@ -303,8 +325,8 @@ mod tests {
             size: 20,
             text,
         };
-        screen.tell(&label("one"));
-        screen.tell(&label("two"));
+        screen.command(&label("one"));
+        screen.command(&label("two"));
         let objects = screen.objects();
         assert_eq!(objects.len(), 2);
         assert_eq!(objects[0].form, Form::Ellipse([60, 100, 20, 20], false));
@@ -313,10 +335,10 @@ mod tests {
             ("#ffff00".to_owned(), 10)
         );
         assert_eq!(objects[1].form, Form::Text([1, 2], "two".to_owned(), 20));
-        screen.tell(&Command::Smile { sad: true });
+        screen.command(&Command::Smile { sad: true });
         assert!(screen.sad_smiles() && !screen.smiles());
-        screen.tell(&Command::Background { color: "red" });
-        screen.tell(&Command::ClearScreen);
+        screen.command(&Command::Background { color: "red" });
+        screen.command(&Command::ClearScreen);
         assert!(screen.objects().is_empty() && !screen.sad_smiles());
         assert_eq!(hex(screen.background()), "#ff0000");
     }
@@ -324,8 +346,8 @@ mod tests {
     #[test]
     fn the_picture_shows_it() {
         let mut screen = Screen::default();
-        screen.tell(&Command::Background { color: "white" });
-        screen.tell(&Command::Draw(Figure::Ellipse([100, 100, 30, 20], true)));
+        screen.command(&Command::Background { color: "white" });
+        screen.command(&Command::Draw(Figure::Ellipse([100, 100, 30, 20], true)));
         let pixels = screen.paint();
         assert_eq!((pixels.width(), pixels.height()), (WIDTH, HEIGHT));
         assert_eq!(pixels.at(100, 100), Some(BLACK));
@@ -334,23 +356,23 @@ mod tests {
         let again = screen::picture::decode(&screen.png()).unwrap();
         assert_eq!(again, pixels);
         let huge = Figure::Ellipse([i32::MIN, i32::MAX, i32::MAX, i32::MIN], true);
-        screen.tell(&Command::Draw(huge));
+        screen.command(&Command::Draw(huge));
         screen.paint();
     }
 
     #[test]
     fn sounds_end() {
         let mut shown = Shown::default();
-        shown.tell(&Command::Tone { hertz: 440, ms: 25 });
+        shown.command(&Command::Tone { hertz: 440, ms: 25 });
         shown.tick(10);
         assert_eq!(shown.beep_ms, 15);
         shown.tick(20);
         assert_eq!(shown.beep_ms, 0);
-        shown.tell(&Command::Say { text: "hi" });
-        shown.tell(&Command::Led { color: "green" });
+        shown.command(&Command::Say { text: "hi" });
+        shown.command(&Command::Led { color: "green" });
         assert_eq!(
-            (shown.last_phrase.as_str(), hex(shown.led)),
-            ("hi", "#008000".to_owned())
+            (shown.last_phrase.as_deref(), hex(shown.led)),
+            (Some("hi"), "#008000".to_owned())
         );
     }
 }

@@ -12,8 +12,8 @@ fn port(name: &str) -> Port {
 }
 
 fn power(arena: &mut Arena, left: i32, right: i32) {
-    for (motor, percent) in [("M3", left), ("M4", right)] {
-        arena.robot(0).tell(Command::Power {
+    for (motor, percent) in [("M4", left), ("M3", right)] {
+        arena.robot(0).command(Command::Power {
             port: port(motor),
             percent,
         });
@@ -63,7 +63,7 @@ fn a_second_straight_on_and_on_the_spot_and_in_an_arc() {
 #[test]
 fn encoders_count_550_degrees_in_a_second_and_only_those_of_wheels() {
     let mut arena = Arena::new(&Field::default(), Setup::default());
-    arena.robot(0).tell(Command::Power {
+    arena.robot(0).command(Command::Power {
         port: port("M1"),
         percent: 100,
     });
@@ -72,7 +72,7 @@ fn encoders_count_550_degrees_in_a_second_and_only_those_of_wheels() {
     assert_eq!(arena.robot(0).scalar(port("E1")), Some(0));
     arena
         .robot(0)
-        .tell(Command::ResetEncoder { port: port("E3") });
+        .command(Command::ResetEncoder { port: port("E3") });
     assert_eq!(arena.robot(0).scalar(port("E3")), Some(0));
 }
 
@@ -83,7 +83,7 @@ fn a_gyroscope_turns_over_at_180_degrees() {
     let mut numbers = Vec::new();
     assert!(arena.robot(0).vector(port("GyroscopePort"), &mut numbers));
     assert_eq!(numbers[6], -160_000);
-    arena.robot(0).tell(Command::CalibrateGyroscope);
+    arena.robot(0).command(Command::CalibrateGyroscope);
     numbers.clear();
     arena.robot(0).vector(port("GyroscopePort"), &mut numbers);
     assert_eq!(numbers[6], 0);
@@ -131,16 +131,16 @@ fn robots_send_each_other_messages_and_have_numbers_of_their_own() {
         ..Setup::default()
     };
     let mut arena = Arena::new(&Field::default(), setup);
-    arena.robot(1).tell(Command::Join {
+    arena.robot(1).command(Command::Join {
         address: "",
         port: 0,
         hull: 7,
     });
-    arena.robot(0).tell(Command::Send {
+    arena.robot(0).command(Command::Send {
         message: "all",
         hull: None,
     });
-    arena.robot(0).tell(Command::Send {
+    arena.robot(0).command(Command::Send {
         message: "seven",
         hull: Some(7),
     });

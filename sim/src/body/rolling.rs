@@ -4,6 +4,7 @@
 //! so that a model whose place is computed from other states is pushed as well. Knows no walls and no sensors.
 
 pub mod configuration;
+pub mod refusal;
 
 use crate::geometry::{Point, Pose};
 use crate::limits::{SERVO_RAD_S, STEP_S};
@@ -12,12 +13,11 @@ use lang_dcml::robot::Robot;
 use lang_dcml::solve::{Method, Options, Solver};
 use lang_dcml::syntax::Kind;
 use lang_dcml::system::System;
+use refusal::{Refusal, TAG};
 use std::f64::consts::FRAC_PI_2;
 
 /// Pulses of a servo of TRIK, in nanoseconds: a quarter of a turn to the right, ahead, and a quarter to the left.
 const PULSES_NS: [f64; 3] = [700_000.0, 1_425_000.0, 2_150_000.0];
-/// What names the port of an action in its documentation.
-const TAG: &str = "@port";
 /// What gives the place, in states or outputs.
 const PLACE: [&str; 3] = ["x", "y", "theta"];
 
@@ -64,21 +64,21 @@ impl Actuator {
     ///
     /// # Errors
     /// What is wrong with the words.
-    pub fn read(words: &str) -> Result<Self, String> {
+    pub fn read(words: &str) -> Result<Self, Refusal> {
         let (name, factor) = words.split_once('*').unwrap_or((words, "1"));
-        let port = Port::named(name.trim())
-            .ok_or_else(|| format!("'{}' is no port: M1 to M4 or S1 to S6", name.trim()))?;
+        let port =
+            Port::named(name.trim()).ok_or_else(|| Refusal::NoPort(name.trim().to_owned()))?;
         let factor = factor
             .trim()
             .parse()
             .ok()
             .filter(|number: &f64| number.is_finite());
-        let factor = factor.ok_or_else(|| format!("'{words}': a number belongs behind *"))?;
+        let factor = factor.ok_or_else(|| Refusal::NoFactor(words.to_owned()))?;
         Ok(Self { port, factor })
     }
 
     /// What the model says of an action: its name is that of a port, or its documentation has `@port M3`.
-    fn of(symbol: &Symbol) -> Result<Option<Self>, String> {
+    fn of(symbol: &Symbol) -> Result<Option<Self>, Refusal> {
         if let Some(port) = Port::named(&symbol.name) {
             return Ok(Some(Self { port, factor: 1.0 }));
         }
@@ -90,7 +90,7 @@ impl Actuator {
         let named = Self::read(words.next().unwrap_or_default());
         named
             .map(Some)
-            .map_err(|reason| format!("{TAG} of the action '{}': {reason}", symbol.name))
+            .map_err(|why| Refusal::Documented(symbol.name.clone(), why.into()))
     }
 }
 
@@ -134,7 +134,7 @@ impl Rolling {
     ///
     /// # Errors
     /// Why this model with these numbers and ports does not move a robot, for the person who said so.
-    pub fn new(model: &Model, said: &Said, start: Pose) -> Result<Self, String> {
+    pub fn new(model: &Model, said: &Said, start: Pose) -> Result<Self, Refusal> {
         let of = |kind: Kind| -> Vec<&Symbol> { model.of_kind(kind).collect() };
         let params = numbers(
             &of(Kind::Param),
@@ -145,11 +145,11 @@ impl Rolling {
         )?;
         let states: Vec<&Symbol> = model.states().collect();
         let state = numbers(&states, "state", "--start", &said.start, Some(0.0))?;
-        let robot = Robot::new(model, &params).map_err(|refused| refused.to_string())?;
+        let robot = Robot::new(model, &params).map_err(Refusal::Equations)?;
         let step = Options::fixed(Method::Rk4, STEP_S);
         let solver = Solver::new(step, robot.states(), robot.actions());
         let mut rolling = Self {
-            solver: solver.map_err(|failure| failure.to_string())?,
+            solver: solver.map_err(Refusal::Steps)?,
             actuators: actuators(&of(Kind::Action), &said.drive)?,
             place: place(model)?,
             action: vec![0.0; robot.actions()],
@@ -165,9 +165,7 @@ impl Rolling {
             .iter()
             .all(|one| one.is_finite())
         {
-            return Err(
-                "the model has no finite place where it begins: say where with --start".to_owned(),
-            );
+            return Err(Refusal::NoPlaceToStart);
         }
         let turned = Pose {
             at: Point::default(),
@@ -282,26 +280,19 @@ fn angle_of(pulse_ns: u32) -> f64 {
 /// A number for each name of a model: what was said, or the usual one.
 fn numbers(
     names: &[&Symbol],
-    what: &str,
-    option: &str,
+    what: &'static str,
+    option: &'static str,
     said: &[(String, f64)],
     usual: Option<f64>,
-) -> Result<Vec<f64>, String> {
+) -> Result<Vec<f64>, Refusal> {
     known(names, what, said.iter().map(|(name, _)| name))?;
-    let missing: Vec<&str> = names
+    let missing: Vec<String> = names
         .iter()
-        .map(|symbol| symbol.name.as_str())
+        .map(|symbol| symbol.name.clone())
         .filter(|name| usual.is_none() && !said.iter().any(|(other, _)| other == name))
         .collect();
     if !missing.is_empty() {
-        return Err(format!(
-            "the model needs numbers: {option} {}",
-            missing
-                .iter()
-                .map(|name| format!("{name}=..."))
-                .collect::<Vec<_>>()
-                .join(",")
-        ));
+        return Err(Refusal::Missing(option, missing));
     }
     let number = |symbol: &&Symbol| {
         let given = said.iter().rev().find(|(name, _)| *name == symbol.name);
@@ -316,28 +307,23 @@ fn numbers(
 /// Refuses names that a model has not.
 fn known<'n>(
     names: &[&Symbol],
-    what: &str,
+    what: &'static str,
     mut said: impl Iterator<Item = &'n String>,
-) -> Result<(), String> {
+) -> Result<(), Refusal> {
     match said.find(|name| !names.iter().any(|symbol| symbol.name == **name)) {
         None => Ok(()),
         Some(stray) => {
-            let there: Vec<&str> = names.iter().map(|symbol| symbol.name.as_str()).collect();
-            let there = if there.is_empty() {
-                "none".to_owned()
-            } else {
-                there.join(", ")
-            };
-            Err(format!("the model has no {what} '{stray}'; it has {there}"))
+            let there = names.iter().map(|symbol| symbol.name.clone()).collect();
+            Err(Refusal::Stray(what, stray.clone(), there))
         }
     }
 }
 
 /// The port of each action.
-fn actuators(actions: &[&Symbol], said: &[(String, Actuator)]) -> Result<Vec<Actuator>, String> {
+fn actuators(actions: &[&Symbol], said: &[(String, Actuator)]) -> Result<Vec<Actuator>, Refusal> {
     known(actions, "action", said.iter().map(|(name, _)| name))?;
     if actions.is_empty() {
-        return Err("the model has no actions: no motor moves it".to_owned());
+        return Err(Refusal::NoActions);
     }
     let mut found = Vec::new();
     for symbol in actions {
@@ -346,18 +332,13 @@ fn actuators(actions: &[&Symbol], said: &[(String, Actuator)]) -> Result<Vec<Act
             Some((_, actuator)) => Some(*actuator),
             None => Actuator::of(symbol)?,
         };
-        found.push(one.ok_or_else(|| {
-            format!(
-                "nothing drives the action '{0}': say --drive {0}=M3, or write {TAG} M3 into its documentation",
-                symbol.name
-            )
-        })?);
+        found.push(one.ok_or_else(|| Refusal::Idle(symbol.name.clone()))?);
     }
     Ok(found)
 }
 
 /// Where a model has the place.
-fn place(model: &Model) -> Result<[Place; 3], String> {
+fn place(model: &Model) -> Result<[Place; 3], Refusal> {
     let find = |name: &str| {
         let state = model.states().position(|symbol| symbol.name == name);
         let output = || model.outputs().position(|symbol| symbol.name == name);
@@ -368,10 +349,7 @@ fn place(model: &Model) -> Result<[Place; 3], String> {
     let [x, y, theta] = PLACE.map(find);
     match (x, y, theta) {
         (Some(x), Some(y), Some(theta)) => Ok([x, y, theta]),
-        _ => Err(format!(
-            "the model '{}' must have x, y and theta in its CONFIG: they are the place on the map",
-            model.name
-        )),
+        _ => Err(Refusal::NoPlace(model.name.clone())),
     }
 }
 

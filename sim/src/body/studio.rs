@@ -13,7 +13,7 @@ use lang_diagram::stand_in::PIXELS_IN_CM;
 
 use super::battery::Battery;
 use super::two_wheels::sharp_gp2_raw;
-use super::{Body, Drive, Power, Senses};
+use super::{BadOrder, Body, Drive, Power, Senses};
 use crate::arena::floor::{Window, sensors};
 use crate::arena::{Arena, Setup, Timeline, ranges};
 use crate::field::{Field, Locks, SensorKind};
@@ -117,6 +117,7 @@ impl Studio {
     pub fn new(field: &Field, seed: u64) -> Self {
         let setup = Setup {
             seed,
+            is_watched: true,
             ..Setup::default()
         };
         let mut studio = Self {
@@ -236,16 +237,17 @@ impl Studio {
 }
 
 /// A world model in a file.
-fn read(file: &str) -> Result<Field, String> {
+fn read(file: &str) -> Result<Field, BadOrder> {
+    let unread = |error: std::io::Error| BadOrder::Unread(file.to_owned(), error.to_string());
     let mut text = String::new();
-    let opened = File::open(file).map_err(|error| format!("{file}: {error}"))?;
+    let opened = File::open(file).map_err(unread)?;
     let read = opened.take(limits::FIELD_BYTES).read_to_string(&mut text);
-    read.map_err(|error| format!("{file}: {error}"))?;
+    read.map_err(unread)?;
     let opened = Field::read(&text).map_err(|problems| {
         let first = problems
             .first()
             .map_or_else(String::new, ToString::to_string);
-        format!("{file}: {first}")
+        BadOrder::Field(file.to_owned(), first)
     })?;
     Ok(opened.field)
 }
@@ -260,7 +262,9 @@ impl Body for Studio {
                     Power::Brake | Power::Open | Power::Blocked => 0,
                 };
                 if let Some(port) = named('M', index) {
-                    self.arena.robot(0).tell(Command::Power { port, percent });
+                    self.arena
+                        .robot(0)
+                        .command(Command::Power { port, percent });
                 }
             }
             self.arena.tick();
@@ -305,8 +309,7 @@ impl Body for Studio {
         false
     }
 
-    fn order(&mut self, words: &str) -> Result<(), String> {
-        const ORDERS: &str = "pause, go, step, step NUMBER, speed NUMBER or field FILE";
+    fn order(&mut self, words: &str) -> Result<(), BadOrder> {
         let words = words.trim();
         let (order, rest) = words.split_once(' ').unwrap_or((words, ""));
         let rest = rest.trim();
@@ -320,10 +323,7 @@ impl Body for Studio {
                     rest.parse().unwrap_or(0)
                 };
                 if !(1..=limits::STEPS_ORDERED).contains(&ticks) {
-                    return Err(format!(
-                        "step takes 1 to {} ticks of 10 ms",
-                        limits::STEPS_ORDERED
-                    ));
+                    return Err(BadOrder::Ticks);
                 }
                 self.timeline.pause(true);
                 (0..ticks).for_each(|_| self.timeline.step());
@@ -332,15 +332,13 @@ impl Body for Studio {
                 let (least, most) = (limits::MIN_SPEED, limits::MAX_SPEED);
                 let speed: f64 = rest.parse().unwrap_or(f64::NAN);
                 if !(least..=most).contains(&speed) {
-                    return Err(format!("speed takes {least} to {most}, not '{rest}'"));
+                    return Err(BadOrder::Speed(rest.to_owned()));
                 }
                 self.timeline.set_speed(speed);
             }
-            ("field", _) if self.is_locked => {
-                return Err("the project of this world locks it: its walls stay".to_owned());
-            }
+            ("field", _) if self.is_locked => return Err(BadOrder::Locked),
             ("field", file) if !file.is_empty() => self.change(&read(file)?),
-            _ => return Err(format!("'{words}' is no order: there are {ORDERS}")),
+            _ => return Err(BadOrder::Unknown(words.to_owned())),
         }
         Ok(())
     }
@@ -471,7 +469,7 @@ mod tests {
             ..Locks::default()
         });
         let refused = locked.order("field x.xml").unwrap_err();
-        assert!(refused.contains("locks it"), "{refused}");
+        assert_eq!(refused, BadOrder::Locked);
         locked.order("pause").unwrap();
         // The wall is gone in another field.
         let before = body.senses().analog[0];
@@ -491,7 +489,7 @@ mod tests {
     fn the_configuration_has_what_the_world_has() {
         let text = configuration(&field());
         for line in [
-            "{ port = 'M3', type = 'powerMotor', name = 'left', encoder = 'E3' },",
+            "{ port = 'M4', type = 'powerMotor', name = 'left', encoder = 'E4' },",
             "{ port = 'A1', type = 'sharpGP2', name = 'infrared1' },",
             "{ port = 'D1', type = 'ultrasonic', name = 'sonar1' },",
         ] {

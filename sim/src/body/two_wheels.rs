@@ -5,6 +5,7 @@
 
 use super::battery::Battery;
 use super::motor::Motor;
+use super::rolling::refusal::Refusal;
 use super::rolling::{Actuator, Port, Rolling, Said};
 use super::{Body, Drive, Senses};
 use crate::geometry::{Point, Pose, point};
@@ -61,10 +62,10 @@ pub struct TwoWheels {
 ///
 /// # Errors
 /// The model does not say what it should.
-pub fn two_wheels(start: Pose) -> Result<Rolling, String> {
+pub fn two_wheels(start: Pose) -> Result<Rolling, Refusal> {
     let text = models::named(MODEL).map_or("", |found| found.text);
     let model = lang_dcml::understand(text).models.pop();
-    let model = model.ok_or_else(|| format!("{MODEL} is no shipped model"))?;
+    let model = model.ok_or(Refusal::NotShipped(MODEL))?;
     let number = |name: &str, number: f64| (name.to_owned(), number);
     let motor = |name: &str, index| {
         let port = Port::Motor(index);

@@ -11,12 +11,12 @@ use super::words;
 use crate::geometry::{Point, point};
 use crate::limits;
 
-/// Which way.
-pub(super) enum Way<'p> {
+/// What is done with the attributes.
+pub(super) enum Mode<'p> {
     /// From text to values; what is wrong goes here.
     Read(&'p mut Vec<Problem>),
     /// From text to values once more.
-    Look,
+    ReadAgain,
     /// From values to text.
     Write,
 }
@@ -24,7 +24,7 @@ pub(super) enum Way<'p> {
 /// The attributes of a tag, being read or written.
 pub(super) struct Codec<'e, 'p> {
     pub element: &'e mut Element<'static>,
-    pub way: Way<'p>,
+    pub mode: Mode<'p>,
     /// Pixels in a unit of the text.
     pub scale: f64,
     /// Which of its kind it is, from 1, for messages.
@@ -34,18 +34,18 @@ pub(super) struct Codec<'e, 'p> {
 impl Codec<'_, '_> {
     /// Whether values come from text.
     pub fn is_reading(&self) -> bool {
-        matches!(self.way, Way::Read(_) | Way::Look)
+        matches!(self.mode, Mode::Read(_) | Mode::ReadAgain)
     }
 
     /// The same tag, to be read whatever is done with it; what is wrong has been told before.
     pub fn reading(&mut self) -> Codec<'_, '_> {
-        let way = match &mut self.way {
-            Way::Read(problems) => Way::Read(problems),
-            Way::Write | Way::Look => Way::Look,
+        let mode = match &mut self.mode {
+            Mode::Read(problems) => Mode::Read(problems),
+            Mode::Write | Mode::ReadAgain => Mode::ReadAgain,
         };
         Codec {
             element: self.element,
-            way,
+            mode,
             scale: self.scale,
             ordinal: self.ordinal,
         }
@@ -53,14 +53,14 @@ impl Codec<'_, '_> {
 
     /// A tag inside this one.
     pub fn inside<'i>(&'i mut self, element: &'i mut Element<'static>) -> Codec<'i, 'i> {
-        let way = match &mut self.way {
-            Way::Read(problems) => Way::Read(problems),
-            Way::Look => Way::Look,
-            Way::Write => Way::Write,
+        let mode = match &mut self.mode {
+            Mode::Read(problems) => Mode::Read(problems),
+            Mode::ReadAgain => Mode::ReadAgain,
+            Mode::Write => Mode::Write,
         };
         Codec {
             element,
-            way,
+            mode,
             scale: self.scale,
             ordinal: self.ordinal,
         }
@@ -74,7 +74,7 @@ impl Codec<'_, '_> {
     fn complain(&mut self, severity: Severity, name: &str, text: &str) {
         let id = self.element.attribute("id").unwrap_or_default();
         let words = words::number(&self.element.name, self.ordinal, id, name, text, severity);
-        if let Way::Read(problems) = &mut self.way {
+        if let Mode::Read(problems) = &mut self.mode {
             let mut problem = Problem::error(words);
             problem.severity = severity;
             if !id.is_empty() {

@@ -28,7 +28,8 @@ impl Unit {
         match self {
             Self::Pixels => 1.0,
             Self::Centimetres => PIXELS_IN_CM,
-            Self::Millimetres => PIXELS_IN_CM / 10.0,
+            // The original has a tenth in 32 bits.
+            Self::Millimetres => PIXELS_IN_CM * f64::from(0.1f32),
             Self::Metres => PIXELS_IN_CM * 100.0,
         }
     }
@@ -121,6 +122,21 @@ impl Wall {
             end,
             ..Self::default()
         }
+    }
+}
+
+impl Wall {
+    /// The pen around it, if it has one.
+    pub fn pen(&self) -> Option<Pen> {
+        let text = |name| self.source.attribute(name).unwrap_or_default();
+        let width: f64 = text("stroke-width").trim().parse().unwrap_or(0.0);
+        let pen = Pen {
+            colour: text("stroke").to_owned(),
+            width: self.width,
+            style: text("stroke-style").to_owned(),
+            ..Pen::default()
+        };
+        (width > 0.0 && pen.style != "none").then_some(pen)
     }
 }
 
@@ -357,6 +373,8 @@ pub struct Region {
     pub at: Point,
     /// Width and height; negative ones are as they were written.
     pub size: Point,
+    /// Of a region of kind `bound`: the width of the ring along the outline that it is; 0: it is no ring.
+    pub ring: f64,
     /// Of a region of kind `bound`: the drawn thing whose place it takes.
     pub bound: String,
     /// Whether it is shown hatched.
@@ -379,6 +397,7 @@ impl Default for Region {
             kind: "ellipse".to_owned(),
             at: Point::default(),
             size: point(200.0, 200.0),
+            ring: 0.0,
             bound: String::new(),
             filled: true,
             visible: true,
@@ -506,6 +525,12 @@ pub struct Robot {
     pub right: Option<Port>,
     /// Its sensors.
     pub sensors: Vec<Sensor>,
+    /// Whether it stands in a text of an old version, where robots of both kits of TRIK have names of their own.
+    pub is_old: bool,
+    /// Other names of its ports in rules, and the ports.
+    pub aliases: Vec<(String, String)>,
+    /// Length and width.
+    pub size: Point,
     /// What its body is made of.
     pub material: Material,
     /// What its wheels are made of.
@@ -519,7 +544,7 @@ pub const ROBOT_SIZE: f64 = 50.0;
 impl Robot {
     /// Whether it is the robot of TRIK.
     pub fn is_trik(&self) -> bool {
-        self.id.starts_with("trik")
+        self.id == "trikKitRobot" || (self.is_old && self.id.starts_with("trik"))
     }
 
     /// The sensor on a port.
@@ -533,8 +558,8 @@ impl Robot {
     /// Onto its start marker, if it has one.
     pub fn to_start(&mut self) {
         if let Some(start) = &self.start {
-            let half = ROBOT_SIZE / 2.0;
-            self.position = point(start.at.x - half, start.at.y - half);
+            let half = point(self.size.x / 2.0, self.size.y / 2.0);
+            self.position = start.at.from(half);
             self.direction = start.direction;
         }
     }
@@ -547,9 +572,12 @@ impl Default for Robot {
             position: Point::default(),
             direction: 0.0,
             start: None,
-            left: Port::named("M3"),
-            right: Port::named("M4"),
+            left: Port::named("M4"),
+            right: Port::named("M3"),
             sensors: Vec::new(),
+            is_old: false,
+            aliases: Vec::new(),
+            size: point(ROBOT_SIZE, ROBOT_SIZE),
             material: Material {
                 mass: 1.05,
                 friction: 0.3,

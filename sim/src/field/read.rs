@@ -4,11 +4,11 @@
 
 use std::collections::BTreeSet;
 
-use lang_diagram::ports::{Kit, Port, Way as PortWay};
+use lang_diagram::ports::{Direction, Kit, Port};
 use lang_text::problem::{Problem, Severity, keep};
 use lang_text::xml::{self, Element, Node};
 
-use super::attributes::{Codec, Way};
+use super::attributes::{Codec, Mode};
 use super::items::{
     Blob, Comment, Drawn, Image, Pen, Region, Robot, Sensor, Settings, Shape, Solid, SolidKind,
     Stroke, Trace, Unit, Wall,
@@ -100,7 +100,7 @@ impl Reader {
     fn codec<'s>(&'s mut self, element: &'s mut Element<'static>, ordinal: usize) -> Codec<'s, 's> {
         Codec {
             element,
-            way: Way::Read(&mut self.problems),
+            mode: Mode::Read(&mut self.problems),
             scale: self.scale,
             ordinal,
         }
@@ -393,7 +393,11 @@ impl Reader {
     }
 
     fn robot(&mut self, mut element: Element<'static>, ordinal: usize) -> Robot {
-        let mut robot = Robot::default();
+        let mut robot = Robot {
+            aliases: aliases(&element),
+            is_old: self.field.version.is_none(),
+            ..Robot::default()
+        };
         self.codec(&mut element, ordinal)
             .text("id", &mut robot.id, "");
         // Older worlds keep the place with the robot's devices.
@@ -420,7 +424,7 @@ impl Reader {
                 let Some(text) = wheels.attribute(side) else {
                     continue;
                 };
-                *wheel = port(text, PortWay::Out);
+                *wheel = port(text, Direction::Out);
                 let is_named = !text.starts_with("None") && !text.starts_with("###");
                 if wheel.is_none() && is_named && robot.id.starts_with("trik") {
                     let problem = Problem::warning(words::bad_port(text));
@@ -433,10 +437,39 @@ impl Reader {
     }
 }
 
+/// Other names of ports that the texts of a robot's ports have in their third part, divided by `$$$`.
+fn aliases(robot: &Element<'_>) -> Vec<(String, String)> {
+    let inside = |name: &str, attribute: &'static str| {
+        let list = robot.child(name).into_iter().flat_map(Element::elements);
+        let texts = list.filter_map(move |one| one.attribute(attribute));
+        texts
+            .take(limits::FIELD_SENSORS)
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
+    };
+    let mut texts = inside("sensors", "port");
+    texts.extend(inside("configurators", "port"));
+    for side in ["left", "right"] {
+        let wheel = robot.child("wheels").and_then(|one| one.attribute(side));
+        texts.extend(wheel.map(str::to_owned));
+    }
+    let mut found = Vec::new();
+    for text in &texts {
+        let parts: Vec<&str> = text.split("###").collect();
+        let [port, _, names, ..] = parts[..] else {
+            continue;
+        };
+        let names = names.split("$$$").filter(|name| !name.is_empty());
+        found.extend(names.map(|name| (name.to_owned(), port.to_owned())));
+    }
+    found.truncate(limits::FIELD_SENSORS);
+    found
+}
+
 /// The port that a text with four parts means.
-pub(super) fn port(text: &str, way: PortWay) -> Option<Port> {
+pub(super) fn port(text: &str, direction: Direction) -> Option<Port> {
     let name = text.split("###").next().unwrap_or_default();
-    Port::find(Kit::V62, name, way)
+    Port::find(Kit::V62, name, direction)
 }
 
 /// Contents of a picture, from its tag.

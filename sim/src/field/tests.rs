@@ -35,7 +35,7 @@ fn units_are_those_of_the_settings_and_centimetres_without_them() {
     assert_eq!(wall("", "<settings sizeUnit=\"m\"/>").0, 20.0 * cm * 100.0);
     assert_eq!(
         wall("", "<settings sizeUnit=\"mm\"/>").0,
-        20.0 * (cm / 10.0)
+        20.0 * (cm * f64::from(0.1f32))
     );
     assert_eq!(wall("", "<settings sizeUnit=\"px\"/>").0, 20.0);
 }

@@ -2,7 +2,7 @@
 //!
 //! Owns the lists, each of which serves for reading and writing. Knows no containers.
 
-use lang_diagram::ports::Way as PortWay;
+use lang_diagram::ports::Direction;
 use lang_text::xml::Element;
 
 use super::attributes::Codec;
@@ -156,7 +156,13 @@ impl Region {
         codec.both(["width", "height"], &mut self.size, default.size);
         codec.both(["textX", "textY"], &mut self.text_at, default.text_at);
         codec.flag("filled", &mut self.filled, default.filled);
-        codec.flag("visible", &mut self.visible, default.visible);
+        codec.flag("visible", &mut self.visible, false);
+        if codec.is_reading() {
+            // Only a whole number of units counts, and of pixels too.
+            let whole = codec.element.attribute("stroke");
+            let whole: i32 = whole.and_then(|text| text.trim().parse().ok()).unwrap_or(0);
+            self.ring = (f64::from(whole.max(0)) * codec.scale).trunc();
+        }
         codec.text("color", &mut self.colour, &default.colour);
         codec.text("text", &mut self.text, "");
     }
@@ -234,7 +240,7 @@ impl Sensor {
             let text = codec.element.attribute("port").unwrap_or_default();
             // A port has exactly four parts; another text is none.
             let is_whole = text.split("###").count() == 4;
-            self.port = is_whole.then(|| port(text, PortWay::In)).flatten();
+            self.port = is_whole.then(|| port(text, Direction::In)).flatten();
             self.kind = SensorKind::named(&self.type_name);
         }
     }
@@ -266,8 +272,10 @@ impl Robot {
         if !codec.is_reading() || codec.has("direction") {
             codec.plain("direction", &mut self.direction, 0.0);
         }
-        let default = Self::default().material;
-        codec.material(&mut self.material, default);
+        let default = Self::default();
+        codec.length("width", &mut self.size.x, default.size.x);
+        codec.length("height", &mut self.size.y, default.size.y);
+        codec.material(&mut self.material, default.material);
         let Some(at) = codec.element.nodes.iter().position(
             |node| matches!(node, lang_text::xml::Node::Element(one) if one.name == "startPosition"),
         ) else {

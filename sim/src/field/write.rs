@@ -5,7 +5,7 @@
 use lang_text::xml::{self, Element, Node};
 
 use super::Field;
-use super::attributes::{Codec, Way};
+use super::attributes::{Codec, Mode};
 use super::items::{Drawn, Robot, Shape, SolidKind};
 
 /// Of the text; the original takes it as its own.
@@ -41,7 +41,7 @@ pub(super) fn write(field: &Field) -> String {
 fn codec<'e>(element: &'e mut Element<'static>, scale: f64) -> Codec<'e, 'e> {
     Codec {
         element,
-        way: Way::Write,
+        mode: Mode::Write,
         scale,
         ordinal: 0,
     }
@@ -166,7 +166,7 @@ fn robot_devices(robot: &Robot, element: &mut Element<'static>, scale: f64) {
     for (side, motor) in sides {
         let there = wheels
             .attribute(side)
-            .and_then(|text| super::read::port(text, lang_diagram::ports::Way::Out));
+            .and_then(|text| super::read::port(text, lang_diagram::ports::Direction::Out));
         if there != motor || wheels.attribute(side).is_none() {
             let name = motor.map_or("None", lang_diagram::ports::Port::name);
             wheels.set(side, &format!("{name}###output######"));

@@ -6,6 +6,7 @@
 use crate::arena::{Gamepad, Pad, Robot};
 use crate::limits;
 use lang_diagram::ports::{Port, Sort};
+use std::fmt;
 
 /// One thing that a person does.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -27,47 +28,95 @@ enum What {
     Key(i32, bool),
 }
 
+/// What is wrong in a line. Its author can change that.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum Reason {
+    /// It does not begin with a time.
+    NoTime(String),
+    /// Its time is before that of the line above.
+    Back,
+    /// It is one more than [`limits::DEEDS`].
+    TooMany,
+    /// Nobody can do this.
+    Unknown(String),
+    /// A word instead of a number within these bounds.
+    NotWithin(String, i32, i32),
+    /// No key has this name.
+    NoKey(String),
+}
+
+/// A line that is refused, from 1, and why.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct Refusal {
+    /// Its number.
+    pub line: u32,
+    /// Why.
+    pub reason: Reason,
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        const FORMS: &str = "'pad 1 X Y', 'pad 1 up', 'btn 3 down', 'btn 3 up', 'wheel PERCENT', 'gamepad on', 'gamepad off', \
+                             'key Enter down' or 'key Enter up'";
+        write!(out, "line {}: ", self.line)?;
+        match &self.reason {
+            Reason::NoTime(word) => write!(
+                out,
+                "it begins with a time in seconds, as 1.5, not with '{word}'"
+            ),
+            Reason::Back => out.write_str("time goes back"),
+            Reason::TooMany => write!(out, "there are more than {}", limits::DEEDS),
+            Reason::Unknown(words) => write!(out, "'{words}' is none of {FORMS}"),
+            Reason::NotWithin(word, low, high) => {
+                write!(out, "'{word}' is no number from {low} to {high}")
+            }
+            Reason::NoKey(name) => write!(out, "there is no key '{name}'"),
+        }
+    }
+}
+
+impl std::error::Error for Refusal {}
+
 /// Reads deeds: in each line seconds and what is done, in order of time. Empty lines and those behind `#` mean nothing.
 ///
 /// # Errors
 /// The number of the line and what is wrong in it.
-pub fn read(text: &str) -> Result<Vec<Deed>, String> {
+pub fn read(text: &str) -> Result<Vec<Deed>, Refusal> {
     let mut deeds: Vec<Deed> = Vec::new();
-    for (number, line) in (1..).zip(text.lines()) {
-        let line = line.split('#').next().unwrap_or_default();
+    for (number, text) in (1..).zip(text.lines()) {
+        let line = text.split('#').next().unwrap_or_default();
         let words: Vec<&str> = line.split_whitespace().collect();
         let Some((seconds, words)) = words.split_first() else {
             continue;
         };
-        let place = |why: String| format!("line {number}: {why}");
+        let place = |reason| Refusal {
+            line: number,
+            reason,
+        };
         let ms = ms(seconds).map_err(place)?;
         let what = what(words).map_err(place)?;
         if deeds.last().is_some_and(|last| last.ms > ms) {
-            return Err(place("time goes back".to_owned()));
+            return Err(place(Reason::Back));
         }
         if deeds.len() == limits::DEEDS {
-            return Err(place(format!("there are more than {}", limits::DEEDS)));
+            return Err(place(Reason::TooMany));
         }
         deeds.push(Deed { ms, what });
     }
     Ok(deeds)
 }
 
-fn ms(text: &str) -> Result<u32, String> {
+fn ms(text: &str) -> Result<u32, Reason> {
     let ms = text
         .parse::<f64>()
         .map(|seconds| (seconds * 1000.0).round());
     match ms {
         Ok(ms) if (0.0..=f64::from(limits::RUN_MS_MAX)).contains(&ms) => Ok(ms as u32),
-        _ => Err(format!(
-            "it begins with a time in seconds, as 1.5, not with '{text}'"
-        )),
+        _ => Err(Reason::NoTime(text.to_owned())),
     }
 }
 
-fn what(words: &[&str]) -> Result<What, String> {
-    const FORMS: &str = "'pad 1 X Y', 'pad 1 up', 'btn 3 down', 'btn 3 up', 'wheel PERCENT', 'gamepad on', 'gamepad off', \
-                         'key Enter down' or 'key Enter up'";
+fn what(words: &[&str]) -> Result<What, Reason> {
     let is_down = |word: &str| match word {
         "down" => Some(true),
         "up" => Some(false),
@@ -77,9 +126,9 @@ fn what(words: &[&str]) -> Result<What, String> {
         let number: Option<i32> = word.parse().ok();
         number
             .filter(|number| (low..=high).contains(number))
-            .ok_or_else(|| format!("'{word}' is no number from {low} to {high}"))
+            .ok_or_else(|| Reason::NotWithin(word.to_owned(), low, high))
     };
-    let unknown = || format!("'{}' is none of {FORMS}", words.join(" "));
+    let unknown = || Reason::Unknown(words.join(" "));
     Ok(match *words {
         ["pad", pad, "up"] => What::Pad(within(pad, 1, 2)? as usize - 1, None),
         ["pad", pad, x, y] => {
@@ -97,7 +146,7 @@ fn what(words: &[&str]) -> Result<What, String> {
             let is_down = is_down(state).ok_or_else(unknown)?;
             match Port::named(name).map(Port::sort) {
                 Some(Sort::Button(code)) => What::Key(code, is_down),
-                _ => return Err(format!("there is no key '{name}'")),
+                _ => return Err(Reason::NoKey(name.to_owned())),
             }
         }
         _ => return Err(unknown()),
@@ -194,7 +243,7 @@ mod tests {
             ("1 key Reset down", "line 1: there is no key 'Reset'"),
             ("2 wheel 1\n1 wheel 2", "line 2: time goes back"),
         ] {
-            let told = read(text).unwrap_err();
+            let told = read(text).unwrap_err().to_string();
             assert!(told.starts_with(why), "{text}: {told}");
         }
         let many = "0 wheel 1\n".repeat(limits::DEEDS + 1);

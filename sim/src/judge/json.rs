@@ -38,11 +38,38 @@ pub fn number(into: &mut String, number: f64) {
     }
 }
 
+/// Why a text is refused. Its author can change that.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum Refusal {
+    /// It has more values than [`limits::JSON_VALUES`].
+    TooMany,
+    /// What is wrong, and where that was noticed.
+    At {
+        /// From 1.
+        line: usize,
+        /// From 1.
+        column: usize,
+        /// In the words of the reader, or of the code that uses what is read.
+        why: String,
+    },
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooMany => out.write_str("there are too many values"),
+            Self::At { line, column, why } => write!(out, "line {line}, column {column}: {why}"),
+        }
+    }
+}
+
+impl std::error::Error for Refusal {}
+
 /// Reads one value and nothing after it.
 ///
 /// # Errors
 /// The line and column, and what is wrong there; also more values than [`limits::JSON_VALUES`] and deep nesting.
-pub fn read(text: &str) -> Result<Value, String> {
+pub fn read(text: &str) -> Result<Value, Refusal> {
     bounded(text)?;
     serde_json::from_str(text).map_err(|error| place(&error))
 }
@@ -54,7 +81,7 @@ pub fn read(text: &str) -> Result<Value, String> {
 pub fn read_list(
     text: &str,
     use_one: impl FnMut(Value) -> Result<(), &'static str>,
-) -> Result<(), String> {
+) -> Result<(), Refusal> {
     bounded(text)?;
     let mut reader = serde_json::Deserializer::from_str(text);
     reader
@@ -64,25 +91,25 @@ pub fn read_list(
 }
 
 /// Refuses a text with too many values before memory is spent on them.
-fn bounded(text: &str) -> Result<(), String> {
+fn bounded(text: &str) -> Result<(), Refusal> {
     let starts = |byte: &&u8| matches!(byte, b',' | b'[' | b'{');
     if text.as_bytes().iter().filter(starts).count() > limits::JSON_VALUES {
-        return Err("there are too many values".to_owned());
+        return Err(Refusal::TooMany);
     }
     Ok(())
 }
 
 /// What is wrong, after the place where it was noticed.
-fn place(error: &serde_json::Error) -> String {
+fn place(error: &serde_json::Error) -> Refusal {
     let (line, column) = (error.line(), error.column());
     let all = error.to_string();
     let why = all.strip_suffix(&format!(" at line {line} column {column}"));
-    // What is wrong with the first byte is told before it was taken.
-    format!(
-        "line {line}, column {}: {}",
-        column.max(1),
-        why.unwrap_or(&all)
-    )
+    Refusal::At {
+        line,
+        // What is wrong with the first byte is told before it was taken.
+        column: column.max(1),
+        why: why.unwrap_or(&all).to_owned(),
+    }
 }
 
 /// Gives each value of a list to a function.
@@ -133,7 +160,7 @@ mod tests {
     fn a_surrogate_pair_is_one_character_and_half_a_pair_is_refused() {
         assert_eq!(read(r#""\ud83d\ude00""#), Ok("\u{1f600}".into()));
         for json in [r#""\ud83d\u0041""#, r#""\ud83d""#, r#""\ude00""#] {
-            let why = read(json).unwrap_err();
+            let why = read(json).unwrap_err().to_string();
             assert!(
                 why.contains("surrogate") || why.contains("hex escape"),
                 "{why}"
@@ -153,11 +180,12 @@ mod tests {
             ("\"\\q\"", "line 1, column 3: invalid escape"),
             ("\u{44f}", "line 1, column 1: expected value"),
         ] {
-            assert_eq!(read(json), Err(place.to_owned()), "{json}");
+            assert_eq!(read(json).unwrap_err().to_string(), place, "{json}");
         }
         let deep = "[".repeat(100_000);
-        assert!(read(&deep).unwrap_err().contains("recursion limit"));
+        let why = read(&deep).unwrap_err().to_string();
+        assert!(why.contains("recursion limit"), "{why}");
         let many = format!("[{}]", "0,".repeat(limits::JSON_VALUES));
-        assert_eq!(read(&many), Err("there are too many values".to_owned()));
+        assert_eq!(read(&many), Err(Refusal::TooMany));
     }
 }

@@ -12,8 +12,8 @@ use super::json::Value;
 use super::trajectory::{Record, Trajectory};
 use crate::field::{Field, ROBOT_SIZE};
 use crate::geometry::Point;
+use lang_text::svg::{Svg, View};
 use shapes::{Bounds, colour};
-use std::fmt::Write as _;
 
 /// Half a robot.
 const HALF: f64 = ROBOT_SIZE / 2.0;
@@ -26,27 +26,33 @@ const MARKS_MAX: usize = 40;
 
 /// The picture of a run: robots where they began and where they ended.
 pub fn svg(field: &Field, trajectory: &Trajectory) -> String {
-    let mut out = head(field, trajectory);
-    shapes::field(field, &mut out);
-    marker(trajectory, &mut out);
-    for robot in 0..trajectory.robots.len() {
-        way(trajectory, robot, &mut out);
-    }
+    let mut svg = ground(field, trajectory);
     for robot in 0..trajectory.robots.len() {
         let poses = || trajectory.poses(robot as u16);
         if let Some(first) = poses().next() {
-            robot_at(first, robot, 0.35, &mut out);
+            robot_at(first, robot, 0.35, &mut svg);
         }
         if let Some(last) = poses().last() {
-            robot_at(last, robot, 0.9, &mut out);
+            robot_at(last, robot, 0.9, &mut svg);
         }
     }
-    out.push_str("</svg>\n");
-    out
+    svg.finish()
+}
+
+/// All that lies below the robots: the field, what was drawn, and the ways.
+fn ground(field: &Field, trajectory: &Trajectory) -> Svg {
+    let mut svg = Svg::new();
+    head(field, trajectory, &mut svg);
+    shapes::field(field, &mut svg);
+    marker(trajectory, &mut svg);
+    for robot in 0..trajectory.robots.len() {
+        way(trajectory, robot, &mut svg);
+    }
+    svg
 }
 
 /// The first tag, around everything that there is.
-fn head(field: &Field, trajectory: &Trajectory) -> String {
+fn head(field: &Field, trajectory: &Trajectory, svg: &mut Svg) {
     let mut bounds = Bounds::default();
     shapes::bounds(field, &mut bounds);
     for record in &trajectory.records {
@@ -55,17 +61,22 @@ fn head(field: &Field, trajectory: &Trajectory) -> String {
             bounds.add(x + ROBOT_SIZE + HALF / 2.0, y + ROBOT_SIZE + HALF / 2.0);
         }
     }
-    let [x, y, width, height] = bounds.frame();
-    format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"{x:.1} {y:.1} {width:.1} {height:.1}\" \
-         font-family=\"sans-serif\" font-size=\"14\">\n\
-         <rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"{}\"/>\n",
-        colour(&field.settings.background, "#ffffff")
-    )
+    let frame = bounds.frame();
+    let view = View {
+        frame,
+        digits: 1,
+        is_sized: false,
+    };
+    svg.picture(view)
+        .style(&[("font-family", "sans-serif"), ("font-size", "14")])
+        .open();
+    shapes::rect(frame, svg)
+        .with("fill", colour(&field.settings.background, "#ffffff"))
+        .close();
 }
 
 /// What markers of robots have drawn: their devices tell when they were down.
-fn marker(trajectory: &Trajectory, out: &mut String) {
+fn marker(trajectory: &Trajectory, svg: &mut Svg) {
     for robot in 0..trajectory.robots.len() {
         let (mut is_down, mut ink) = (false, "#000000".to_owned());
         let mut stroke: Vec<(f64, f64)> = Vec::new();
@@ -80,12 +91,12 @@ fn marker(trajectory: &Trajectory, out: &mut String) {
                         stroke.extend(at);
                     }
                 }
-                Record::Told {
-                    robot: of, told, ..
-                } if usize::from(*of) == robot && told.device == "marker" => {
-                    polyline(&stroke, &ink, 6.0, 1.0, out);
+                Record::Device {
+                    robot: of, change, ..
+                } if usize::from(*of) == robot && change.device == "marker" => {
+                    polyline(&stroke, &ink, 6.0, 1.0, svg);
                     stroke.clear();
-                    match (&*told.property, &told.value) {
+                    match (&*change.property, &change.value) {
                         ("isDown", Value::Bool(down)) => is_down = *down,
                         ("color", Value::String(text)) => ink = colour(text, "#000000"),
                         _ => {}
@@ -97,18 +108,18 @@ fn marker(trajectory: &Trajectory, out: &mut String) {
                 _ => {}
             }
         }
-        polyline(&stroke, &ink, 6.0, 1.0, out);
+        polyline(&stroke, &ink, 6.0, 1.0, svg);
     }
 }
 
 /// The way of a robot's centre, with marks of time.
-fn way(trajectory: &Trajectory, robot: usize, out: &mut String) {
+fn way(trajectory: &Trajectory, robot: usize, svg: &mut Svg) {
     let ink = WAYS[robot % WAYS.len()];
     let points: Vec<(f64, f64)> = trajectory
         .poses(robot as u16)
         .map(|[_, x, y, _]| (x + HALF, y + HALF))
         .collect();
-    polyline(&points, ink, 2.0, 0.9, out);
+    polyline(&points, ink, 2.0, 0.9, svg);
     let end = trajectory.poses(robot as u16).last();
     let end = end.map_or(0.0, |pose| pose[0]);
     let every = [1e3, 2e3, 5e3, 1e4, 3e4, 6e4, 6e5]
@@ -128,57 +139,66 @@ fn way(trajectory: &Trajectory, robot: usize, out: &mut String) {
             continue;
         }
         before = Some((x, y));
-        let _ = writeln!(
-            out,
-            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3\" fill=\"{ink}\"/>\
-             <text x=\"{:.1}\" y=\"{:.1}\" font-size=\"10\" fill=\"{ink}\">{:.0} s</text>",
-            x + 4.0,
-            y - 4.0,
-            ms / 1000.0
-        );
+        svg.tag("circle")
+            .numbers(1, [("cx", x), ("cy", y)])
+            .style(&[("r", "3"), ("fill", ink)])
+            .close();
+        svg.tag("text")
+            .numbers(1, [("x", x + 4.0), ("y", y - 4.0)])
+            .style(&[("font-size", "10"), ("fill", ink)])
+            .text(format_args!("{:.0} s", ms / 1000.0));
     }
 }
 
-fn polyline(points: &[(f64, f64)], ink: &str, width: f64, opacity: f64, out: &mut String) {
+fn polyline(points: &[(f64, f64)], ink: &str, width: f64, opacity: f64, svg: &mut Svg) {
     if points.len() < 2 {
         return;
     }
-    let _ = write!(
-        out,
-        "<polyline fill=\"none\" stroke=\"{ink}\" stroke-width=\"{width}\" opacity=\"{opacity}\" \
-         stroke-linejoin=\"round\" points=\""
-    );
     let mut before: Option<(f64, f64)> = None;
-    for (index, &(x, y)) in points.iter().enumerate() {
+    let far = points.iter().enumerate().filter(|&(index, &(x, y))| {
         let is_last = index + 1 == points.len();
-        if !is_last && before.is_some_and(|at| (at.0 - x).hypot(at.1 - y) < NEAR) {
-            continue;
+        let is_near = before.is_some_and(|at| (at.0 - x).hypot(at.1 - y) < NEAR);
+        if is_last || !is_near {
+            before = Some((x, y));
         }
-        before = Some((x, y));
-        let _ = write!(out, "{x:.1},{y:.1} ");
-    }
-    out.push_str("\"/>\n");
+        is_last || !is_near
+    });
+    svg.tag("polyline")
+        .style(&[("fill", "none"), ("stroke", ink)])
+        .with("stroke-width", width)
+        .with("opacity", opacity)
+        .with("stroke-linejoin", "round")
+        .points(far.map(|(_, &point)| point))
+        .close();
 }
 
 /// A robot by its pose: its outline and an arrow ahead.
-fn robot_at([_, x, y, degrees]: [f64; 4], robot: usize, opacity: f64, out: &mut String) {
+fn robot_at([_, x, y, degrees]: [f64; 4], robot: usize, opacity: f64, svg: &mut Svg) {
     let (x, y) = (x + HALF, y + HALF);
-    let _ = writeln!(
-        out,
-        "<g transform=\"translate({x:.2} {y:.2}) rotate({degrees:.2})\" opacity=\"{opacity}\">{}</g>",
-        body(robot)
-    );
+    let place = format_args!("translate({x:.2} {y:.2}) rotate({degrees:.2})");
+    svg.tag("g")
+        .with("transform", place)
+        .with("opacity", opacity)
+        .open();
+    body(robot, svg);
+    svg.end();
 }
 
 /// A robot around its centre, looking to the right.
-fn body(robot: usize) -> String {
+fn body(robot: usize, svg: &mut Svg) {
     let ink = WAYS[robot % WAYS.len()];
-    format!(
-        "<rect x=\"-25\" y=\"-25\" width=\"50\" height=\"50\" rx=\"6\" fill=\"#eceff1\" stroke=\"{ink}\" stroke-width=\"2\"/>\
-         <rect x=\"-23\" y=\"-25\" width=\"16\" height=\"6\" fill=\"#455a64\"/>\
-         <rect x=\"-23\" y=\"19\" width=\"16\" height=\"6\" fill=\"#455a64\"/>\
-         <path d=\"M6 -9 L20 0 L6 9 Z\" fill=\"{ink}\"/>"
-    )
+    shapes::whole_rect([-25.0, -25.0, 50.0, 50.0], svg)
+        .style(&[("rx", "6"), ("fill", "#eceff1"), ("stroke", ink)])
+        .with("stroke-width", 2)
+        .close();
+    for top in [-25.0, 19.0] {
+        shapes::whole_rect([-23.0, top, 16.0, 6.0], svg)
+            .with("fill", "#455a64")
+            .close();
+    }
+    svg.tag("path")
+        .style(&[("d", "M6 -9 L20 0 L6 9 Z"), ("fill", ink)])
+        .close();
 }
 
 /// Whether a point can be drawn.

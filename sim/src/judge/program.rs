@@ -17,11 +17,19 @@ pub trait Program {
     /// or after a bounded piece of work.
     fn step(&mut self, now_ms: u32, robot: &mut dyn Brick) -> Status;
 
+    /// What of it still runs in the tick in which the rules have decided.
+    fn last_tick(&mut self, _now_ms: u32, _robot: &mut dyn Brick) {}
+
     /// Ends it from outside: motors off, nothing runs any more.
     fn stop(&mut self, robot: &mut dyn Brick);
 
     /// What went wrong in it so far, in order; it only grows.
     fn errors(&self) -> &[Problem];
+
+    /// Why it cannot even begin.
+    fn refusal(&self) -> Option<&Problem> {
+        None
+    }
 
     /// Whether it was ended because it took too much real time, which says nothing of the task.
     fn is_out_of_time(&self) -> bool {
@@ -54,11 +62,19 @@ impl Program for Diagram {
         self.machine.step(now_ms, robot, &mut Deaf)
     }
 
+    fn last_tick(&mut self, now_ms: u32, robot: &mut dyn Brick) {
+        self.machine.last_tick(now_ms, robot, &mut Deaf);
+    }
+
     fn stop(&mut self, robot: &mut dyn Brick) {
         self.machine.stop(robot, &mut Deaf);
     }
 
     fn errors(&self) -> &[Problem] {
         self.machine.errors()
+    }
+
+    fn refusal(&self) -> Option<&Problem> {
+        self.machine.program().refusal()
     }
 }

@@ -4,12 +4,17 @@
 //! the way back from such a record to commands. The robot behind it does not notice.
 
 use super::json::Value;
-use super::trajectory::{Record, Told, Trajectory};
+use super::trajectory::{DeviceChange, Record, Trajectory};
 use crate::arena::screen::{Form, Object, Shown, hex};
-use crate::arena::{Arena, Handle};
+use crate::arena::{Arena, Change, Handle};
 use crate::limits;
 use lang_diagram::brick::{Answer, Brick, Command, Figure, Question};
 use lang_diagram::ports::Port;
+
+const DISPLAY: (&str, &str) = ("display", "DisplayPort");
+const MARKER: (&str, &str) = ("marker", "MarkerPort");
+const LED: (&str, &str) = ("led", "LedPort");
+const SHELL: (&str, &str) = ("shell", "ShellPort");
 
 /// A robot whose commands are recorded.
 pub(super) struct Recorder<'a> {
@@ -20,55 +25,68 @@ pub(super) struct Recorder<'a> {
 }
 
 impl Recorder<'_> {
-    fn told(&mut self, (device, port): (&str, &str), property: &str, value: Value) {
+    fn push(&mut self, (device, port): (&str, &str), property: &str, value: Value) {
         if self.trajectory.records.len() >= limits::RECORDS {
             return;
         }
-        let told = Box::new(Told {
+        let change = Box::new(DeviceChange {
             device: device.to_owned(),
             port: port.to_owned(),
             property: property.to_owned(),
             value,
         });
-        self.trajectory.records.push(Record::Told {
+        self.trajectory.records.push(Record::Device {
             robot: self.robot,
             ms: self.ms,
-            told,
+            change,
         });
+    }
+
+    /// Records what a rule has changed.
+    pub fn changed(&mut self, change: Change) {
+        match change {
+            Change::Phrase => {
+                let phrase = self.shown().last_phrase.clone().unwrap_or_default();
+                self.push(SHELL, "lastPhrase", phrase.into());
+            }
+            Change::Led => {
+                let shown = self.shown();
+                let colour = match shown.led_alpha {
+                    u8::MAX => hex(shown.led),
+                    alpha => format!("#{alpha:02x}{:06x}", shown.led.number()),
+                };
+                self.push(LED, "color", colour.into());
+            }
+            Change::Marker => {
+                let marker = self.arena.robots()[usize::from(self.robot)].marker();
+                let is_down = marker.is_down;
+                let colour = Value::from(hex(crate::arena::screen::named(&marker.colour)));
+                self.push(MARKER, "isDown", Value::Bool(is_down));
+                if is_down {
+                    self.push(MARKER, "color", colour);
+                }
+            }
+            Change::Background => {
+                let colour = Value::from(hex(self.shown().screen.background()));
+                self.push(DISPLAY, "background", colour);
+            }
+        }
     }
 
     /// Records what a command has changed.
     fn record(&mut self, command: &Command<'_>) {
-        const DISPLAY: (&str, &str) = ("display", "DisplayPort");
-        const MARKER: (&str, &str) = ("marker", "MarkerPort");
-        const LED: (&str, &str) = ("led", "LedPort");
-        const SHELL: (&str, &str) = ("shell", "ShellPort");
         match *command {
-            Command::Say { .. } | Command::Console { .. } => {
-                let phrase = self.shown().last_phrase.clone();
-                self.told(SHELL, "lastPhrase", phrase.into());
-            }
-            Command::Led { .. } => {
-                let colour = Value::from(hex(self.shown().led));
-                self.told(LED, "color", colour);
-            }
-            Command::MarkerDown { color } => {
-                let colour = Value::from(hex(crate::arena::screen::named(color)));
-                self.told(MARKER, "isDown", Value::Bool(true));
-                self.told(MARKER, "color", colour);
-            }
-            Command::MarkerUp => self.told(MARKER, "isDown", Value::Bool(false)),
-            Command::Background { .. } => {
-                let colour = Value::from(hex(self.shown().screen.background()));
-                self.told(DISPLAY, "background", colour);
-            }
+            Command::Say { .. } => self.changed(Change::Phrase),
+            Command::Led { .. } => self.changed(Change::Led),
+            Command::MarkerDown { .. } | Command::MarkerUp => self.changed(Change::Marker),
+            Command::Background { .. } => self.changed(Change::Background),
             Command::Smile { .. } | Command::ClearScreen => {
                 let screen = &self.shown().screen;
                 let (smiles, sad) = (screen.smiles(), screen.sad_smiles());
-                self.told(DISPLAY, "smiles", Value::Bool(smiles));
-                self.told(DISPLAY, "sadSmiles", Value::Bool(sad));
+                self.push(DISPLAY, "smiles", Value::Bool(smiles));
+                self.push(DISPLAY, "sadSmiles", Value::Bool(sad));
                 if matches!(command, Command::ClearScreen) {
-                    self.told(DISPLAY, "objects", Value::Array(Vec::new()));
+                    self.push(DISPLAY, "objects", Value::Array(Vec::new()));
                 }
             }
             Command::Draw(_) | Command::Label { .. } => {
@@ -76,10 +94,11 @@ impl Recorder<'_> {
                 // A list of a crowded display in each record would need too much memory.
                 let some = objects.iter().take(limits::OBJECTS_TOLD).map(object);
                 let list = Value::Array(some.collect());
-                self.told(DISPLAY, "objects", list);
+                self.push(DISPLAY, "objects", list);
             }
             // What moves is recorded as a trajectory; the rest leaves nothing on a device that can be seen.
-            Command::Power { .. }
+            Command::Console { .. }
+            | Command::Power { .. }
             | Command::Off { .. }
             | Command::Servo { .. }
             | Command::ResetEncoder { .. }
@@ -113,8 +132,8 @@ impl Recorder<'_> {
 }
 
 impl Brick for Recorder<'_> {
-    fn tell(&mut self, command: Command<'_>) {
-        self.handle().tell(command);
+    fn command(&mut self, command: Command<'_>) {
+        self.handle().command(command);
         self.record(&command);
     }
 
@@ -124,6 +143,18 @@ impl Brick for Recorder<'_> {
 
     fn vector(&mut self, port: Port, into: &mut Vec<i32>) -> bool {
         self.handle().vector(port, into)
+    }
+
+    fn locked(&mut self, port: Port) -> Option<i32> {
+        self.handle().locked(port)
+    }
+
+    fn announced(&mut self) -> Option<(Port, i32)> {
+        self.handle().announced()
+    }
+
+    fn random_of_function(&mut self, low: i32, high: i32) -> i32 {
+        self.handle().random_of_function(low, high)
     }
 
     fn random(&mut self, low: i32, high: i32) -> i32 {
@@ -168,8 +199,12 @@ fn object(object: &Object) -> Value {
             numbers(&["x", "y", "a", "b"], sides);
             "ellipse"
         }
-        Form::Arc(all) => {
-            numbers(&["x", "y", "a", "b", "startAngle", "spanAngle"], all);
+        Form::Arc([x, y, width, height, start, span]) => {
+            // Centre and half axes, in whole pixels.
+            let middle = |from: i32, length: i32| from.saturating_add((length - 1).div_euclid(2));
+            let (x, y) = (middle(*x, *width), middle(*y, *height));
+            let all = [x, y, width / 2, height / 2, *start, *span];
+            numbers(&["x", "y", "a", "b", "startAngle", "spanAngle"], &all);
             "arc"
         }
         Form::Text(at, _, size) => {
@@ -179,29 +214,25 @@ fn object(object: &Object) -> Value {
         }
     };
     parts.push(("type", kind.into()));
-    match &object.form {
-        Form::Text(_, text, _) => parts.push(("text", text.as_str().into())),
-        Form::Rectangle(_, true) | Form::Ellipse(_, true) => {
-            parts.push(("filled", true.into()));
-        }
-        _ => {}
+    if let Form::Text(_, text, _) = &object.form {
+        parts.push(("text", text.as_str().into()));
     }
     parts.into_iter().collect()
 }
 
-/// Tells a device again what it was told.
-pub(super) fn replay(brick: &mut dyn Brick, told: &Told) {
-    match (&*told.device, &*told.property, &told.value) {
-        (_, "lastPhrase", Value::String(text)) => brick.tell(Command::Say { text }),
-        ("led", "color", Value::String(color)) => brick.tell(Command::Led { color }),
-        ("marker", "color", Value::String(color)) => brick.tell(Command::MarkerDown { color }),
-        (_, "isDown", Value::Bool(true)) => brick.tell(Command::MarkerDown { color: "black" }),
-        (_, "isDown", Value::Bool(false)) => brick.tell(Command::MarkerUp),
-        (_, "background", Value::String(color)) => brick.tell(Command::Background { color }),
-        (_, "smiles", Value::Bool(true)) => brick.tell(Command::Smile { sad: false }),
-        (_, "sadSmiles", Value::Bool(true)) => brick.tell(Command::Smile { sad: true }),
+/// Changes a device again as it was changed.
+pub(super) fn replay(brick: &mut dyn Brick, change: &DeviceChange) {
+    match (&*change.device, &*change.property, &change.value) {
+        (_, "lastPhrase", Value::String(text)) => brick.command(Command::Say { text }),
+        ("led", "color", Value::String(color)) => brick.command(Command::Led { color }),
+        ("marker", "color", Value::String(color)) => brick.command(Command::MarkerDown { color }),
+        (_, "isDown", Value::Bool(true)) => brick.command(Command::MarkerDown { color: "black" }),
+        (_, "isDown", Value::Bool(false)) => brick.command(Command::MarkerUp),
+        (_, "background", Value::String(color)) => brick.command(Command::Background { color }),
+        (_, "smiles", Value::Bool(true)) => brick.command(Command::Smile { sad: false }),
+        (_, "sadSmiles", Value::Bool(true)) => brick.command(Command::Smile { sad: true }),
         (_, "objects", Value::Array(objects)) => {
-            brick.tell(Command::ClearScreen);
+            brick.command(Command::ClearScreen);
             objects.iter().for_each(|object| draw(brick, object));
         }
         _ => {}
@@ -215,17 +246,16 @@ fn draw(brick: &mut dyn Brick, object: &Value) {
         number.unwrap_or_default() as i32
     };
     let text = |name: &str| object.get(name).and_then(Value::as_str).unwrap_or_default();
-    let is_filled = object.get("filled") == Some(&Value::Bool(true));
-    brick.tell(Command::PenColor {
+    brick.command(Command::PenColor {
         color: text("color"),
     });
-    brick.tell(Command::PenWidth {
+    brick.command(Command::PenWidth {
         width: number("thickness"),
     });
     let (x, y) = (number("x"), number("y"));
     let figure = match text("type") {
         "text" => {
-            return brick.tell(Command::Label {
+            return brick.command(Command::Label {
                 x,
                 y,
                 size: number("fontSize"),
@@ -234,13 +264,17 @@ fn draw(brick: &mut dyn Brick, object: &Value) {
         }
         "point" => Figure::Pixel([x, y]),
         "line" => Figure::Line(["x1", "y1", "x2", "y2"].map(number)),
-        "rectangle" => Figure::Rectangle([x, y, number("width"), number("height")], is_filled),
-        "ellipse" => Figure::Ellipse([x, y, number("a"), number("b")], is_filled),
+        "rectangle" => Figure::Rectangle([x, y, number("width"), number("height")], false),
+        "ellipse" => Figure::Ellipse([x, y, number("a"), number("b")], false),
         "arc" => {
             let angles = ["startAngle", "spanAngle"].map(number);
-            Figure::Arc([x, y, number("a"), number("b"), angles[0], angles[1]])
+            let [width, height] = ["a", "b"].map(|name| number(name).saturating_mul(2));
+            let corner =
+                |middle: i32, length: i32| middle.saturating_sub((length - 1).div_euclid(2));
+            let (x, y) = (corner(x, width), corner(y, height));
+            Figure::Arc([x, y, width, height, angles[0], angles[1]])
         }
         _ => return,
     };
-    brick.tell(Command::Draw(figure));
+    brick.command(Command::Draw(figure));
 }

@@ -1,7 +1,7 @@
 //! A recorded run held against the rules of a task, as if it happened now.
 //!
-//! Owns the way back from a trajectory to a world: robots are put where they were, and devices are told again what they
-//! were told. Sensors of such a world show what they would have shown there.
+//! Owns the way back from a trajectory to a world: robots are put where they were, and devices are changed again as they
+//! were. Sensors of such a world show what they would have shown there.
 
 use super::recorder::replay;
 use super::run::{Outcome, Run, Settings, Verdict};
@@ -34,7 +34,7 @@ pub fn judge_recorded(task: &Task, trajectory: &Trajectory, settings: &Settings)
     let mut run = Run::new(task, settings, &arena);
     let is_pose_of_ours = |record: &Record| match record {
         Record::Pose { robot, .. } => cast[usize::from(*robot)].is_some(),
-        Record::Told { .. } => false,
+        Record::Device { .. } => false,
     };
     if !trajectory.records.iter().any(is_pose_of_ours) {
         let why = match cast.iter().any(Option::is_some) || cast.is_empty() {
@@ -49,7 +49,7 @@ pub fn judge_recorded(task: &Task, trajectory: &Trajectory, settings: &Settings)
         .zip(&cast)
         .filter_map(|(robot, index)| Some((Track::new(trajectory, robot), (*index)?)))
         .collect();
-    let mut told = trajectory.records.iter().peekable();
+    let mut records = trajectory.records.iter().peekable();
     let end = trajectory.records.last().map_or(0, Record::ms);
     let began = Instant::now();
     let mut now = 0;
@@ -57,14 +57,15 @@ pub fn judge_recorded(task: &Task, trajectory: &Trajectory, settings: &Settings)
         for (track, index) in &mut tracks {
             track.put(now, &mut arena, *index);
         }
-        while let Some(record) = told.next_if(|record| record.ms() <= now) {
-            if let Record::Told { robot, told, .. } = record
+        while let Some(record) = records.next_if(|record| record.ms() <= now) {
+            if let Record::Device { robot, change, .. } = record
                 && let Some(index) = cast[usize::from(*robot)]
             {
-                replay(&mut arena.robot(index), told);
+                replay(&mut arena.robot(index), change);
             }
         }
         run.record(now, &arena);
+        arena.renew();
         if now > 0 && run.look(now, &mut arena) {
             break;
         }
@@ -160,7 +161,7 @@ impl Track {
             .is_some_and(|next| next[0] <= soon && next[1..] != [x, y, degrees]);
         let percent = i32::from(is_riding);
         if let Some(port) = Port::named("M3") {
-            arena.robot(index).tell(Command::Power { port, percent });
+            arena.robot(index).command(Command::Power { port, percent });
         }
     }
 }
@@ -205,21 +206,21 @@ mod tests {
     #[test]
     fn every_robot_of_a_record_is_judged() {
         let task = task();
-        let told = record(["trikKitRobot", "second"]);
-        let outcome = judge_recorded(&task, &told, &Settings::default());
+        let recorded = record(["trikKitRobot", "second"]);
+        let outcome = judge_recorded(&task, &recorded, &Settings::default());
         assert_eq!((outcome.verdict, outcome.ms), (Verdict::Accomplished, 20));
-        assert_eq!(strange_in_record(&task, &told), []);
+        assert_eq!(strange_in_record(&task, &recorded), []);
         // The order in which they are met does not matter.
-        let told = record(["second", "trikKitRobot"]);
-        let outcome = judge_recorded(&task, &told, &Settings::default());
+        let recorded = record(["second", "trikKitRobot"]);
+        let outcome = judge_recorded(&task, &recorded, &Settings::default());
         assert_eq!(outcome.verdict, Verdict::Failed);
     }
 
     #[test]
     fn robots_that_the_world_does_not_know_are_told() {
         let task = task();
-        let told = record(["trikKitRobot", "stranger"]);
-        let strange = strange_in_record(&task, &told);
+        let recorded = record(["trikKitRobot", "stranger"]);
+        let strange = strange_in_record(&task, &recorded);
         assert!(strange[0].english.contains("'stranger'"), "{strange:?}");
         assert_eq!(strange.len(), 1);
         let none = record(["someone", "stranger"]);

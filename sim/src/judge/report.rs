@@ -2,8 +2,9 @@
 //!
 //! Owns that form: a list of levels and messages, and the variables of the rules as they are.
 
-use super::json;
+use super::json::{self, Value};
 use lang_constraint::{Entry, Level};
+use lang_text::problem::{Locale, Place, Problem};
 
 /// The name of a level in reports.
 pub fn level(level: Level) -> &'static str {
@@ -15,13 +16,64 @@ pub fn level(level: Level) -> &'static str {
     }
 }
 
+/// Where a problem is, for people; the original tells none of this.
+pub fn place(problem: &Problem) -> String {
+    let place = &problem.place;
+    let parts = [&place.file, &place.diagram, &place.block];
+    let parts = parts.into_iter().flatten();
+    parts.map(|part| format!("{part}: ")).collect()
+}
+
+/// A problem in the words of the original, which gives no advice.
+pub fn text(problem: &Problem, locale: Locale) -> String {
+    let bare = Problem {
+        place: Place {
+            property: problem.place.property.clone(),
+            position: problem.place.position,
+            ..Place::default()
+        },
+        ..problem.clone()
+    };
+    let text = bare.in_locale(locale);
+    let is_expression = problem.place.property.is_some();
+    match text.split_once(". ") {
+        // Advice is what follows a sentence about an expression.
+        Some((said, _)) if is_expression => said.to_owned(),
+        _ => text,
+    }
+}
+
+/// What a message becomes that looks like JSON there: nothing, or what it is if it has variables.
+fn raw(entry: &Entry) -> Option<Option<&str>> {
+    let is_said = matches!(entry.level, Level::Info | Level::Log);
+    if entry.level == Level::Variables {
+        return Some(Some(&entry.text));
+    }
+    if !is_said || !entry.text.trim_start().starts_with('{') {
+        return None;
+    }
+    match json::read(&entry.text) {
+        Ok(value @ Value::Object(_)) => {
+            let has_variables = value.get("variables").is_some();
+            Some(has_variables.then_some(entry.text.as_str()))
+        }
+        _ => None,
+    }
+}
+
 /// The report as JSON.
 pub fn write(entries: &[Entry]) -> String {
     let mut out = String::from("[");
-    for (index, entry) in entries.iter().enumerate() {
-        out.push_str(if index == 0 { "\n" } else { ",\n" });
-        if entry.level == Level::Variables {
-            out.push_str(&entry.text);
+    let mut is_first = true;
+    for entry in entries {
+        let raw = raw(entry);
+        if raw == Some(None) {
+            continue;
+        }
+        out.push_str(if is_first { "\n" } else { ",\n" });
+        is_first = false;
+        if let Some(Some(raw)) = raw {
+            out.push_str(raw);
             continue;
         }
         out.push_str("{\"level\":");
@@ -62,6 +114,7 @@ mod tests {
         let entry = |level, text: &str| Entry {
             level,
             at_ms: 0,
+            place: String::new(),
             text: text.to_owned(),
         };
         let report = write(&[

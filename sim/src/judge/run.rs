@@ -7,6 +7,7 @@
 use super::hands::{self, Deed};
 use super::program::Program;
 use super::recorder::Recorder;
+use super::report;
 use super::task::Task;
 use super::trajectory::{Record, Trajectory};
 use super::words;
@@ -47,6 +48,9 @@ pub struct Settings {
     pub answers: Vec<String>,
     /// What a person with a gamepad does beside the robot, in order of time.
     pub deeds: Option<Vec<Deed>>,
+    /// Whether markers leave something on the floor that sensors and rules see, as in the original's window. Its background
+    /// mode, which is that of graders, draws nothing.
+    pub is_marking: bool,
     /// Whether a trajectory is kept.
     pub is_recording: bool,
     /// Whether a picture of the display at the end is made.
@@ -63,6 +67,7 @@ impl Default for Settings {
             seed: 1,
             answers: Vec::new(),
             deeds: None,
+            is_marking: false,
             is_recording: false,
             is_showing: false,
         }
@@ -97,6 +102,7 @@ pub fn judge(task: &Task, program: &mut dyn Program, settings: &Settings) -> Out
         seed: settings.seed,
         sensors: task.sensors.clone(),
         answers: settings.answers.iter().cloned().collect(),
+        is_unmarked: !settings.is_marking,
         ..Setup::default()
     };
     let mut arena = Arena::new(&task.field, setup);
@@ -107,11 +113,18 @@ pub fn judge(task: &Task, program: &mut dyn Program, settings: &Settings) -> Out
     }
     let began = Instant::now();
     let mut now = 0;
+    if let Some(why) = program.refusal() {
+        // It does not begin, and so the rules have nothing to say.
+        run.hear(0, std::slice::from_ref(why));
+        run.verdict = Some(Verdict::Failed);
+        return run.outcome(0, &arena);
+    }
     loop {
         if now > 0 {
             arena.tick();
             run.record(now, &arena);
             if run.look(now, &mut arena) {
+                run.last_tick(now, program, &mut arena);
                 break;
             }
         }
@@ -120,6 +133,7 @@ pub fn judge(task: &Task, program: &mut dyn Program, settings: &Settings) -> Out
         }
         let status = run.step(now, program, &mut arena);
         run.hear(now, program.errors());
+        arena.renew();
         if let Status::Ended { with_errors, .. } = status {
             match program.is_out_of_time() {
                 true => run.verdict = Some(Verdict::Unknown),
@@ -171,10 +185,20 @@ impl<'a> Run<'a> {
         for robot in arena.robots() {
             trajectory.robots.push(robot.description().id.clone());
         }
+        // What is wrong with templates of the save is told, and nothing else comes of it.
+        let faults = task.rules.iter().flat_map(|rules| rules.faults());
+        let faults = faults.map(|problem| (Level::Error, &problem.words));
+        let told = task.told.iter().map(|words| (Level::Info, words));
+        let entries = faults.chain(told).map(|(level, words)| Entry {
+            level,
+            at_ms: 0,
+            place: String::new(),
+            text: words.in_locale(settings.locale).to_owned(),
+        });
         Self {
             settings,
             checker,
-            entries: Vec::new(),
+            entries: entries.collect(),
             trajectory,
             heard: 0,
             verdict: None,
@@ -215,13 +239,43 @@ impl<'a> Run<'a> {
         program.step(now, &mut robot)
     }
 
+    /// What the program still does in the tick in which the rules have decided.
+    fn last_tick(&mut self, now: u32, program: &mut dyn Program, arena: &mut Arena) {
+        let mut robot = Recorder {
+            arena,
+            robot: 0,
+            ms: now,
+            trajectory: &mut self.trajectory,
+        };
+        program.last_tick(now, &mut robot);
+        if !self.settings.is_recording {
+            self.trajectory.records.clear();
+        }
+    }
+
     /// Lets the rules look; whether they have decided.
     pub fn look(&mut self, now: u32, arena: &mut Arena) -> bool {
         let Some(checker) = &mut self.checker else {
             return false;
         };
         let decision = checker.check(u64::from(now), arena, &mut self.entries);
+        self.record_changes(now, arena);
         self.decide(decision)
+    }
+
+    /// Keeps what rules have told devices.
+    fn record_changes(&mut self, now: u32, arena: &mut Arena) {
+        for (robot, change) in arena.take_changes() {
+            if self.settings.is_recording {
+                let mut recorder = Recorder {
+                    arena: &mut *arena,
+                    robot: robot as u16,
+                    ms: now,
+                    trajectory: &mut self.trajectory,
+                };
+                recorder.changed(change);
+            }
+        }
     }
 
     /// The program has ended by itself.
@@ -232,6 +286,7 @@ impl<'a> Run<'a> {
             Some(checker) => {
                 let time = u64::from(now);
                 let decision = checker.program_ended(time, with_errors, arena, &mut self.entries);
+                self.record_changes(now, arena);
                 self.decide(decision);
             }
         }
@@ -253,7 +308,8 @@ impl<'a> Run<'a> {
             self.entries.push(Entry {
                 level: Level::Error,
                 at_ms: u64::from(now),
-                text: problem.in_locale(self.settings.locale),
+                place: report::place(problem),
+                text: report::text(problem, self.settings.locale),
             });
         }
         self.heard = self.heard.max(errors.len());
@@ -264,6 +320,7 @@ impl<'a> Run<'a> {
         self.entries.push(Entry {
             level: Level::Error,
             at_ms: u64::from(now),
+            place: String::new(),
             text: why.in_locale(self.settings.locale).to_owned(),
         });
         self.verdict = Some(Verdict::Failed);

@@ -1,19 +1,20 @@
 //! An arena as the rules of a task see it: objects by name, their types and what they say.
 //!
-//! Owns the names of objects and their numbers; `scene/places` says where things are, `scene/shown` what is on a display.
+//! Owns the names of objects and their numbers; `scene/places` says where things are, `scene/set` what rules may
+//! change of them, `scene/shown` what is on a display.
 //! Knows no rules. Names and types are those of the original: a type is the class there.
 //!
 //! A number of an object is good as long as the field is not edited.
 
 mod places;
+mod set;
 mod shown;
 
 use lang_constraint::{Missing, Object, ObjectPoint, Rect, Scene, Unfit, Value};
-use lang_diagram::brick::Brick;
-use lang_diagram::ports::{Kit, Port, Sort, Way};
+use lang_diagram::ports::{Port, Sort};
 
-use crate::arena::{Arena, Robot, screen};
-use crate::field::{Material, Pen, SensorKind, Shape, SolidKind};
+use crate::arena::{Arena, Robot};
+use crate::field::{Drawn, Material, Region, SensorKind, Shape, SolidKind};
 
 /// An object of an arena.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -26,9 +27,7 @@ enum Thing {
     Wall(usize),
     Solid(usize),
     Drawn(usize),
-    Image(usize),
     Region(usize),
-    Comment(usize),
     Trace,
 }
 
@@ -90,9 +89,7 @@ impl Thing {
             Self::Wall(index) => (3, index),
             Self::Solid(index) => (4, index),
             Self::Drawn(index) => (5, index),
-            Self::Image(index) => (6, index),
             Self::Region(index) => (7, index),
-            Self::Comment(index) => (8, index),
             Self::Trace => (9, 0),
         };
         let which = u32::try_from(which).ok()?;
@@ -110,9 +107,7 @@ impl Thing {
             3 => Self::Wall(which),
             4 => Self::Solid(which),
             5 => Self::Drawn(which),
-            6 => Self::Image(which),
             7 => Self::Region(which),
-            8 => Self::Comment(which),
             9 => Self::Trace,
             _ => return None,
         })
@@ -143,13 +138,14 @@ fn named(arena: &Arena, name: &str) -> Option<Thing> {
         return None;
     }
     let field = arena.field();
-    at(&field.regions, |one| one.id == name)
+    // A region whose drawn thing is not there is not there either.
+    let is_there =
+        |one: &Region| !one.is_bound() || field.drawn.iter().any(|drawn| drawn.id == one.bound);
+    at(&field.regions, |one| one.id == name && is_there(one))
         .map(Thing::Region)
         .or_else(|| at(&field.solids, |one| one.id == name).map(Thing::Solid))
         .or_else(|| at(&field.walls, |one| one.id == name).map(Thing::Wall))
         .or_else(|| at(&field.drawn, |one| one.id == name).map(Thing::Drawn))
-        .or_else(|| at(&field.images, |one| one.id == name).map(Thing::Image))
-        .or_else(|| at(&field.comments, |one| one.id == name).map(Thing::Comment))
 }
 
 fn at<T>(all: &[T], is_it: impl Fn(&T) -> bool) -> Option<usize> {
@@ -158,29 +154,42 @@ fn at<T>(all: &[T], is_it: impl Fn(&T) -> bool) -> Option<usize> {
 
 /// What a robot has under a name: a part, or a device that is plugged in.
 fn of_robot(robot: &Robot, index: usize, name: &str) -> Option<Thing> {
-    if let Some((_, part, _)) = PARTS.iter().find(|(known, ..)| *known == name) {
-        return Some(Thing::Part(index, *part));
-    }
-    let (name, ways) = if let Some(name) = name.strip_suffix("_in") {
-        (name, &[Way::In][..])
-    } else if let Some(name) = name.strip_suffix("_out") {
-        (name, &[Way::Out][..])
-    } else {
-        (name, &[Way::Out, Way::In][..])
+    let own = |name: &str| {
+        if let Some((_, part, _)) = PARTS.iter().find(|(known, ..)| *known == name) {
+            return Some(Thing::Part(index, *part));
+        }
+        let port = Port::all().find(|port| port.name() == long_name(name))?;
+        is_plugged_in(robot, port).then_some(Thing::Device(index, port))
     };
-    // Ports with long names go without the word `Port` and begin small.
-    let mut long = String::new();
-    if let Some(first) = name.chars().next().filter(char::is_ascii_lowercase) {
-        long.push(first.to_ascii_uppercase());
-        long.push_str(&name[1..]);
-        long.push_str("Port");
+    own(name).or_else(|| {
+        let aliases = &robot.description().aliases;
+        let (_, port) = aliases.iter().find(|(alias, _)| alias == name)?;
+        own(&short_name(port))
+    })
+}
+
+/// The name of a port by that in rules: ports with long names go without the word `Port` and begin small there.
+fn long_name(name: &str) -> String {
+    match name.chars().next().filter(char::is_ascii_lowercase) {
+        Some(first) => format!("{}{}Port", first.to_ascii_uppercase(), &name[1..]),
+        // As it is written with a word `Port` it is no name in rules.
+        None if name.ends_with("Port") => String::new(),
+        None => name.to_owned(),
     }
-    let find = |text: &str| {
-        let mut ways = ways.iter();
-        ways.find_map(|&way| Port::find(Kit::V62, text, way))
-    };
-    let port = find(name).or_else(|| find(&long))?;
-    is_plugged_in(robot, port).then_some(Thing::Device(index, port))
+}
+
+/// The other way round.
+fn short_name(port: &str) -> String {
+    match port
+        .strip_suffix("Port")
+        .and_then(|short| short.chars().next())
+    {
+        Some(first) => {
+            let rest = &port[first.len_utf8()..port.len() - 4];
+            format!("{}{rest}", first.to_ascii_lowercase())
+        }
+        None => port.to_owned(),
+    }
 }
 
 fn is_plugged_in(robot: &Robot, port: Port) -> bool {
@@ -189,7 +198,11 @@ fn is_plugged_in(robot: &Robot, port: Port) -> bool {
         Sort::Scalar | Sort::Vector => match port.name() {
             "GyroscopePort" | "AccelerometerPort" => true,
             "LidarPort" => robot.sensor_of(SensorKind::Lidar).is_some(),
-            "LineSensorPort" | "ColorSensorPort" => robot.sensor_of(SensorKind::Camera).is_some(),
+            "LineSensorPort"
+            | "ColorSensorPort"
+            | "ObjectSensorXPort"
+            | "ObjectSensorYPort"
+            | "ObjectSensorSizePort" => robot.sensor_of(SensorKind::Camera).is_some(),
             name if name.starts_with("Gamepad") => robot.gamepad().is_some(),
             _ => robot
                 .sensor(port)
@@ -210,6 +223,9 @@ fn class_of_device(robot: &Robot, port: Port) -> Option<&'static str> {
             "LidarPort" => "twoDModel::robotModel::parts::Lidar",
             "LineSensorPort" => "trik::robotModel::twoD::parts::LineSensor",
             "ColorSensorPort" => "trik::robotModel::twoD::parts::ColorSensor",
+            name if name.starts_with("ObjectSensor") => {
+                "trik::robotModel::twoD::parts::ObjectSensor"
+            }
             _ => match robot.sensor(port)?.kind {
                 SensorKind::Infrared | SensorKind::Sonar => {
                     "twoDModel::robotModel::parts::RangeSensor"
@@ -243,20 +259,25 @@ fn class_of(arena: &Arena, thing: Thing) -> Option<&'static str> {
             Shape::Curve(..) => "twoDModel::items::CurveItem",
             Shape::Stylus(..) => "twoDModel::items::StylusItem",
         },
-        Thing::Image(_) => "twoDModel::items::ImageItem",
-        Thing::Region(index) => match field.regions.get(index)?.kind.as_str() {
-            "ellipse" => "twoDModel::items::EllipseRegion",
-            "bound" => "twoDModel::items::BoundRegion",
+        Thing::Region(index) => match field.regions.get(index)? {
+            region if region.is_ellipse() => "twoDModel::items::EllipseRegion",
+            region if region.is_bound() => "twoDModel::items::BoundRegion",
             _ => "twoDModel::items::RectangularRegion",
         },
-        Thing::Comment(_) => "twoDModel::items::CommentItem",
         Thing::Trace => "utils::ObjectsSetBase",
     })
 }
 
 impl Scene for Arena {
     fn find(&mut self, name: &str) -> Option<Object> {
-        named(self, name)?.number()
+        let thing = named(self, name)?;
+        if let Thing::Device(robot, port) = thing
+            && let Some(robot) = self.robot_mut(robot)
+        {
+            // What a rule may ask for is read every now and then from here on.
+            robot.readings.watch(port);
+        }
+        thing.number()
     }
 
     fn type_of(&mut self, object: Object) -> Option<&'static str> {
@@ -280,39 +301,24 @@ impl Scene for Arena {
     }
 
     fn set_property(&mut self, object: Object, property: &str, value: &Value) -> bool {
-        match (Thing::of(object), property) {
-            (Some(Thing::Part(robot, Part::Random)), "fixedValue") => {
-                if let Some(robot) = self.robot_mut(robot) {
-                    let is_null = matches!(value, Value::Null);
-                    robot.dice.fixed = (!is_null).then(|| value.to_int());
-                }
-                true
-            }
-            (Some(Thing::Robot(index)), "rotation") => {
-                if let Some(robot) = self.robot_mut(index) {
-                    let mut pose = robot.pose();
-                    pose.degrees = number(value);
-                    robot.put(pose);
-                }
-                true
-            }
-            (Some(Thing::Solid(index)), "x" | "y" | "rotation") => {
-                let number = number(value);
-                self.edit(|field| {
-                    if let Some(solid) = field.solids.get_mut(index) {
-                        match property {
-                            "x" => solid.at.x = number + solid.size / 2.0,
-                            "y" => solid.at.y = number + solid.size / 2.0,
-                            _ => solid.rotation = number,
-                        }
-                    }
-                });
-                true
-            }
-            // What is there and cannot be set stays as it is, without a word, as in the original.
-            (Some(thing), _) => self::property(self, thing, property).is_some(),
-            (None, _) => false,
-        }
+        let thing = Thing::of(object);
+        thing.is_some_and(|thing| set::set(self, thing, property, value))
+    }
+
+    fn set_within(
+        &mut self,
+        object: Object,
+        chain: &[Box<str>],
+        property: &str,
+        value: &Value,
+    ) -> bool {
+        let (Some(Thing::Part(robot, Part::Display)), [list, which]) = (Thing::of(object), chain)
+        else {
+            return false;
+        };
+        self.robot_mut(robot).is_some_and(|robot| {
+            shown::set(&mut robot.shown.screen, (list, which), property, value)
+        })
     }
 
     fn is_inside(
@@ -333,7 +339,7 @@ impl Scene for Arena {
         if thing == Thing::Trace {
             return places::around_trace(self);
         }
-        // Only the trace has a rectangle of its own there; of others their place is taken.
+        // Only the trace has a rectangle of its own there; of others where they are is taken.
         Some(Rect {
             x: property(self, thing, "x")?.to_int(),
             y: property(self, thing, "y")?.to_int(),
@@ -343,20 +349,8 @@ impl Scene for Arena {
     }
 }
 
-/// A finite number; 0 for what is none, and no farther than a field is large.
-fn number(value: &Value) -> f64 {
-    let number = match value {
-        Value::Double(number) => *number,
-        other => f64::from(other.to_int()),
-    };
-    if number.is_nan() {
-        return 0.0;
-    }
-    number.clamp(-crate::limits::FIELD_NUMBER, crate::limits::FIELD_NUMBER)
-}
-
 /// A property of a thing; nothing if it has none of this name.
-fn property(arena: &mut Arena, thing: Thing, name: &str) -> Option<Value> {
+fn property(arena: &Arena, thing: Thing, name: &str) -> Option<Value> {
     match thing {
         Thing::Robot(index) => {
             let robot = arena.robots().get(index)?;
@@ -380,21 +374,15 @@ fn property(arena: &mut Arena, thing: Thing, name: &str) -> Option<Value> {
     }
 }
 
-fn device(arena: &mut Arena, index: usize, port: Port, name: &str) -> Option<Value> {
+fn device(arena: &Arena, index: usize, port: Port, name: &str) -> Option<Value> {
     let robot = arena.robots().get(index)?;
     match (port.sort(), name) {
-        (Sort::Motor, "power" | "speed") => Some(Value::Int(robot.power(port))),
-        (Sort::Servo, "power" | "value") => Some(Value::Int(robot.servo(port))),
+        (Sort::Motor, "power") => Some(Value::Int(robot.power(port))),
+        (Sort::Servo, "power") => Some(Value::Int(robot.servo(port))),
         (Sort::Motor | Sort::Servo, _) => None,
-        (Sort::Vector, "value" | "lastData") => {
-            let mut numbers = Vec::new();
-            arena.robot(index).vector(port, &mut numbers);
-            Some(Value::list(numbers.into_iter().map(Value::Int)))
-        }
-        (_, "value" | "lastData") => {
-            let reading = arena.robot(index).scalar(port);
-            Some(Value::Int(reading.unwrap_or(0)))
-        }
+        (_, "locked") => Some(Value::Bool(robot.readings.is_locked(port))),
+        (Sort::Vector, "value") => Some(Value::Opaque),
+        (_, "value") => Some(Value::Int(robot.readings.last(port))),
         _ => None,
     }
 }
@@ -403,20 +391,21 @@ fn of_part(robot: &Robot, part: Part, name: &str) -> Option<Value> {
     let shown = robot.shown();
     match (part, name) {
         (Part::Display, _) => shown::property(&shown.screen, name),
-        (Part::Shell, "lastPhrase") => Some(Value::text(&shown.last_phrase)),
-        (Part::Led, "color") => Some(Value::Colour(shown.led.number())),
-        (Part::Marker, "isDown") => Some(Value::Bool(robot.marker().is_down)),
-        (Part::Marker, "color") => {
-            let colour = screen::named(&robot.marker().colour);
-            Some(Value::Colour(colour.number()))
+        (Part::Shell, "lastPhrase") => {
+            let phrase = shown.last_phrase.as_deref();
+            Some(phrase.map_or(Value::NoText, Value::text))
         }
+        (Part::Led, "color") => {
+            let alpha = u32::from(shown.led_alpha) << 24;
+            Some(Value::Colour(alpha | shown.led.number()))
+        }
+        (Part::Marker, "isDown") => Some(Value::Bool(robot.marker().is_down)),
         (Part::Random, "fixedValue") => Some(robot.dice.fixed.map_or(Value::Null, Value::Int)),
         (Part::Random, "callsCount") => {
             let calls = i32::try_from(robot.dice.calls);
             Some(Value::Int(calls.unwrap_or(i32::MAX)))
         }
         (Part::Random, "lastValue") => Some(Value::Int(robot.dice.last)),
-        (Part::Speaker, "isPlaying") => Some(Value::Bool(shown.beep_ms > 0)),
         _ => None,
     }
 }
@@ -424,60 +413,73 @@ fn of_part(robot: &Robot, part: Part, name: &str) -> Option<Value> {
 /// A property of something on the field.
 fn of_item(arena: &Arena, thing: Thing, name: &str) -> Option<Value> {
     let field = arena.field();
-    let (at, rotation) = places::corner(arena, thing)?;
+    let (family, index) = set::family(thing)?;
+    let graphic = arena.graphics.of(family, index);
+    let (at, rotation) = match thing {
+        Thing::Solid(index) => {
+            let solid = field.solids.get(index)?;
+            (places::as_told(solid.at, graphic.at), solid.rotation)
+        }
+        _ => (graphic.at, graphic.rotation),
+    };
+    let visible = match thing {
+        Thing::Region(index) => field.regions.get(index)?.visible,
+        _ => true,
+    };
     match name {
         "x" => return Some(Value::Double(at.x)),
         "y" => return Some(Value::Double(at.y)),
         "rotation" => return Some(Value::Double(rotation)),
-        "pos" => return Some(Value::Point(places::whole(at))),
+        // Nothing can be asked of that of a wall, as in the original.
+        "pos" if matches!(thing, Thing::Wall(_)) => return Some(Value::Opaque),
+        "pos" => return Some(Value::Place([at.x, at.y])),
+        "visible" => return Some(Value::Bool(graphic.is_visible.unwrap_or(visible))),
+        "enabled" => return Some(Value::Bool(true)),
+        "z" => return Some(Value::Double(0.0)),
+        "opacity" | "scale" => return Some(Value::Double(1.0)),
         _ => {}
     }
     match thing {
         Thing::Wall(index) => {
-            let wall = field.walls.get(index)?;
-            match name {
-                "thickness" => Some(Value::Double(wall.width)),
-                _ => of_material(&wall.material, name),
-            }
+            let material = &field.walls.get(index)?.material;
+            let asked = ["mass", "friction", "restitution"].contains(&name);
+            asked.then(|| of_material(material, name)).flatten()
         }
         Thing::Solid(index) => of_material(&field.solids.get(index)?.material, name),
-        Thing::Drawn(index) => of_pen(&field.drawn.get(index)?.pen, name),
+        Thing::Drawn(index) => of_drawn(field.drawn.get(index)?, name),
         Thing::Region(index) => {
             let region = field.regions.get(index)?;
             Some(match name {
                 "filled" => Value::Bool(region.filled),
-                "visible" => Value::Bool(region.visible),
-                "color" => Value::Colour(screen::named(&region.colour).number()),
-                "text" => Value::text(&region.text),
-                "width" => Value::Double(region.size.x),
-                "height" => Value::Double(region.size.y),
+                "color" => Value::Colour(set::argb(&region.colour).unwrap_or(set::BLACK)),
                 _ => return None,
             })
         }
-        Thing::Comment(index) => {
-            let text = &field.comments.get(index)?.text;
-            (name == "text").then(|| Value::text(text))
-        }
-        _ => None,
+        Thing::Robot(_) | Thing::Device(..) | Thing::Part(..) | Thing::Trace => None,
     }
 }
 
+/// The original keeps these in 32 bits.
 fn of_material(material: &Material, name: &str) -> Option<Value> {
-    Some(Value::Double(match name {
+    let number = match name {
         "mass" => material.mass,
         "friction" => material.friction,
         "restitution" => material.restitution,
         "angularDamping" => material.angular_damping,
         "linearDamping" => material.linear_damping,
         _ => return None,
-    }))
+    };
+    Some(Value::Double(f64::from(number as f32)))
 }
 
-fn of_pen(pen: &Pen, name: &str) -> Option<Value> {
+fn of_drawn(drawn: &Drawn, name: &str) -> Option<Value> {
+    let pen = &drawn.pen;
     Some(match name {
         "thickness" => Value::Double(pen.width),
-        "color" => Value::Colour(screen::named(&pen.colour).number()),
-        "filled" => Value::Bool(pen.fill_style == "solid"),
+        "color" => Value::Colour(set::argb(&pen.colour).unwrap_or(set::BLACK)),
+        "filled" if matches!(drawn.shape, Shape::Rectangle(..) | Shape::Ellipse(..)) => {
+            Value::Bool(pen.fill_style == "solid")
+        }
         _ => return None,
     })
 }

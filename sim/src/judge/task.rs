@@ -5,13 +5,12 @@
 
 use super::words;
 use crate::field::{Field, Locks, SensorKind};
-use lang_constraint::{Rules, read_with_templates};
+use lang_constraint::{Rules, read_with_templates, unread};
 use lang_diagram::devices::{self, Sensor};
 use lang_diagram::ports::Port;
 use lang_diagram::program::Program;
 use lang_diagram::project::Project;
 use lang_text::problem::{Problem, Words};
-use lang_text::xml::{self, Element};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
@@ -24,6 +23,8 @@ pub struct Task {
     pub rules: Option<Rc<Rules>>,
     /// Sensors that go onto ports that are empty.
     pub sensors: Vec<(Port, SensorKind)>,
+    /// What is told of these sensors before a run.
+    pub told: Vec<Words>,
     /// What the task that was given out locks.
     pub locks: Locks,
 }
@@ -31,7 +32,7 @@ pub struct Task {
 /// The texts of a task.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Texts<'a> {
-    /// The world model, as XML.
+    /// The world model, as XML; empty for a save without one.
     pub world: &'a str,
     /// Embedded pictures, as XML.
     pub blobs: Option<&'a str>,
@@ -45,25 +46,33 @@ impl Task {
     /// # Errors
     /// Everything for which nothing can be judged.
     pub fn read(texts: Texts<'_>) -> Result<(Self, Vec<Problem>), Vec<Problem>> {
-        let opened = Field::read(texts.world)?;
-        let (mut field, mut problems): (Field, Vec<Problem>) = (opened.field, opened.problems);
+        // A save without a world, or with an empty one, runs in an empty world.
+        let (mut field, mut problems) = match texts.world.trim() {
+            "" => (Field::default(), Vec::new()),
+            _ => {
+                let told = |all: Vec<Problem>| all.into_iter().map(unread).collect::<Vec<_>>();
+                let opened = Field::read(texts.world).map_err(told)?;
+                (opened.field, opened.problems)
+            }
+        };
         if let Some(blobs) = texts.blobs {
             problems.extend(field.add_blobs(blobs));
         }
-        let templates = templates(texts.templates, &mut problems);
+        let templates = texts.templates.into_iter().flat_map(BTreeMap::values);
+        let templates: Vec<&str> = templates.map(String::as_str).collect();
         let rules = match &field.constraints {
-            Some(element) if element.elements().next().is_some() => {
-                let rules = read_with_templates(element, templates.as_ref());
-                let rules = rules.map_err(in_rules)?;
+            Some(element) => {
+                let rules = read_with_templates(element, &templates)?;
                 problems.extend(rules.warnings().iter().cloned());
                 Some(Rc::new(rules))
             }
-            _ => None,
+            None => None,
         };
         let task = Self {
             field,
             rules,
             sensors: Vec::new(),
+            told: Vec::new(),
             locks: Locks::default(),
         };
         Ok((task, problems))
@@ -79,46 +88,24 @@ impl Task {
         self.field.hold(&given.field, locks)
     }
 
-    /// Gives the robot the sensors that a diagram waits for, on ports that are empty, unless a teacher has locked them.
+    /// Gives the robot the sensors that a diagram waits for, on ports that are empty, unless a teacher has locked them; and
+    /// tells which ones.
     pub fn plug_in(&mut self, project: &Project, program: &Program) {
         if self.locks.sensors || Locks::of(&project.meta).sensors {
             return;
         }
-        let kinds = devices::needed(program).into_iter();
-        self.sensors = kinds
-            .filter_map(|(port, sensor)| {
-                let kind = match sensor {
-                    Sensor::Infrared => SensorKind::Infrared,
-                    Sensor::Sonar => SensorKind::Sonar,
-                    Sensor::Light => SensorKind::Light,
-                    Sensor::Touch => SensorKind::Touch,
-                    Sensor::Other => return None,
-                };
-                Some((port, kind))
-            })
-            .collect();
-    }
-}
-
-/// All templates of a project under one element; none if it has none. What cannot be read is told and left out.
-fn templates(
-    files: Option<&BTreeMap<String, String>>,
-    problems: &mut Vec<Problem>,
-) -> Option<Element<'static>> {
-    let mut all = Element::new("templates");
-    for text in files?.values() {
-        match xml::parse(text) {
-            Ok(element) => all.nodes.extend(element.into_owned().nodes),
-            Err(problem) => problems.push(problem),
+        self.sensors.clear();
+        self.told.clear();
+        for (port, sensor) in devices::missing(project, program) {
+            let kind = match sensor {
+                Sensor::Infrared => Some(SensorKind::Infrared),
+                Sensor::Sonar => Some(SensorKind::Sonar),
+                Sensor::Light => Some(SensorKind::Light),
+                Sensor::Touch => Some(SensorKind::Touch),
+                Sensor::Other => None,
+            };
+            self.sensors.extend(kind.map(|kind| (port, kind)));
+            self.told.push(words::configured(sensor, port.name()));
         }
     }
-    (!all.nodes.is_empty()).then_some(all)
-}
-
-/// Problems of rules, with the words by which the original tells them.
-fn in_rules(mut problems: Vec<Problem>) -> Vec<Problem> {
-    for problem in &mut problems {
-        problem.words = words::in_rules(&problem.words);
-    }
-    problems
 }

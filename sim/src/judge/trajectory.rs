@@ -1,4 +1,4 @@
-//! Where robots were and what their devices were told, moment by moment: recorded, written, read.
+//! Where robots were and how their devices changed, moment by moment: recorded, written, read.
 //!
 //! Owns the form in which TRIK Studio's `2D-model` writes it: a list of poses, one for each robot and tick, and of changes
 //! of devices. Lengths are pixels, the pose is that of the upper left corner of the unturned robot, angles are degrees
@@ -23,20 +23,20 @@ pub enum Record {
         /// Degrees clockwise, not wrapped.
         degrees: f64,
     },
-    /// What a device was told.
-    Told {
+    /// A device was changed.
+    Device {
         /// Which of [`Trajectory::robots`].
         robot: u16,
         /// Model time, in milliseconds.
         ms: u32,
         /// What it is and what was changed.
-        told: Box<Told>,
+        change: Box<DeviceChange>,
     },
 }
 
 /// A change of a device.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Told {
+pub struct DeviceChange {
     /// Kind of the device, as `display`.
     pub device: String,
     /// Its port, as `DisplayPort`.
@@ -60,7 +60,7 @@ impl Record {
     /// Model time, in milliseconds.
     pub fn ms(&self) -> u32 {
         match self {
-            Self::Pose { ms, .. } | Self::Told { ms, .. } => *ms,
+            Self::Pose { ms, .. } | Self::Device { ms, .. } => *ms,
         }
     }
 }
@@ -126,11 +126,11 @@ impl Trajectory {
                     json::number(out, value);
                 }
             }
-            Record::Told { robot, ms, told } => {
+            Record::Device { robot, ms, change } => {
                 for (key, value) in [
-                    ("{\"device\":", &*told.device),
-                    (",\"port\":", &told.port),
-                    (",\"property\":", &told.property),
+                    ("{\"device\":", &*change.device),
+                    (",\"port\":", &change.port),
+                    (",\"property\":", &change.property),
                     (",\"robotId\":", name(*robot)),
                 ] {
                     out.push_str(key);
@@ -139,7 +139,7 @@ impl Trajectory {
                 out.push_str(",\"timestamp\":");
                 json::number(out, f64::from(*ms));
                 out.push_str(",\"value\":");
-                json::write(out, &told.value);
+                json::write(out, &change.value);
             }
         }
         out.push('}');
@@ -150,7 +150,7 @@ impl Trajectory {
     /// # Errors
     /// The place and what is wrong there: no JSON, a record without its parts, time that goes back, more than
     /// [`limits::RECORDS`].
-    pub fn read(text: &str) -> Result<Self, String> {
+    pub fn read(text: &str) -> Result<Self, json::Refusal> {
         let mut trajectory = Self::default();
         let mut now = 0;
         json::read_list(text, |value| {
@@ -185,14 +185,14 @@ impl Trajectory {
                     .unwrap_or("")
                     .to_owned()
             };
-            let told = Told {
+            let change = DeviceChange {
                 device: part("device"),
                 port: part("port"),
                 property: property.to_owned(),
                 value: value.get("value").cloned().unwrap_or(Value::Null),
             };
-            let told = Box::new(told);
-            return Ok(Record::Told { robot, ms, told });
+            let change = Box::new(change);
+            return Ok(Record::Device { robot, ms, change });
         }
         let number = |key| value.get(key).and_then(Value::as_f64);
         let parts = (number("x"), number("y"), number("rotation"));
@@ -233,10 +233,10 @@ mod tests {
                 degrees: 450.5,
             });
         }
-        trajectory.records.push(Record::Told {
+        trajectory.records.push(Record::Device {
             robot,
             ms: 20,
-            told: Box::new(Told {
+            change: Box::new(DeviceChange {
                 device: "led".into(),
                 port: "LedPort".into(),
                 property: "color".into(),
@@ -273,11 +273,11 @@ mod tests {
                 "line 1, column 60: this pose is too far away",
             ),
         ] {
-            assert_eq!(Trajectory::read(text), Err(why.to_owned()));
+            assert_eq!(Trajectory::read(text).unwrap_err().to_string(), why);
         }
         let back = r#"[{"robotId":"a","timestamp":2,"property":"x"},
 {"robotId":"a","timestamp":1,"property":"x"}]"#;
-        let why = Trajectory::read(back).unwrap_err();
+        let why = Trajectory::read(back).unwrap_err().to_string();
         assert!(
             why.starts_with("line 2") && why.contains("time goes back"),
             "{why}"

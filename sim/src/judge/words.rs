@@ -1,5 +1,6 @@
 //! What the judge says itself, in English and Russian.
 
+use lang_diagram::devices::Sensor;
 use lang_text::problem::{Locale, Words};
 
 /// Names of what can be moved on a page: time, speed.
@@ -66,10 +67,18 @@ pub(super) fn robot_renamed(name: &str, own: &str) -> Words {
     )
 }
 
-/// Something is wrong with rules.
-pub(super) fn in_rules(words: &Words) -> Words {
+/// A sensor was put onto an empty port because blocks wait for it.
+pub(super) fn configured(sensor: Sensor, port: &str) -> Words {
+    let [english, russian] = match sensor {
+        Sensor::Infrared => ["Infrared Sensor", "Датчик расстояния ИК"],
+        Sensor::Sonar => ["Sonic Sensor", "Датчик расстояния УЗ"],
+        Sensor::Light => ["Light sensor", "Датчик света"],
+        Sensor::Touch => ["Touch sensor", "Датчик касания"],
+        Sensor::Other => ["Gyroscope", "Гироскоп"],
+    };
     Words::new(
-        format!("Error while parsing constraints: {}", words.english),
-        format!("Ошибка при разборе ограничений: {}", words.russian),
+        format!("{english} has been auto configured to port {port}"),
+        // So the original writes it.
+        format!("{russian} был автоматически сгонфигурирован на порту {port}"),
     )
 }

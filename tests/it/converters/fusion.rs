@@ -70,7 +70,9 @@ eventually(lambda: open(M + '/old/value').read() == '7\\n')
 sampled = time.monotonic_ns()
 before = None
 for number in range(5):
-    time.sleep(0.02)
+    # Long enough for an age and an interval that are not nothing.
+    since = time.monotonic_ns()
+    eventually(lambda: time.monotonic_ns() > since + 20_000_000, 'the clock')
     wrote = time.monotonic_ns()
     os.write(pipe, bytes([number]))
     first, second, age1, age2, interval = struct.unpack('<BBIII', read_exactly(fd, 14))
@@ -270,6 +272,13 @@ def put(name, text):
 def encoder(speed):
     with open(D + '/encoder', 'r+b') as f:
         f.write(struct.pack('<i', speed))
+def stamp():
+    return os.getxattr(M + '/motor/speed', 'user.trik.time_ns')
+def some_steps():
+    # Of the regulator: begun and ended, whatever they did.
+    for _ in range(4):
+        before = stamp()
+        eventually(lambda: stamp() != before, 'a step')
 ";
 
 #[test]
@@ -291,11 +300,11 @@ put('motor/params/speed.gain', '3')
 eventually(lambda: power() == 15)
 put('motor/speed', '46')
 eventually(lambda: power() == 3)
-# Whoever writes to the motor has it from there on.
+# A program that writes to the motor has it from there on.
 put('motor/value', '-7')
 encoder(20)
 eventually(lambda: text(M + '/motor/speed') == '20\\n')
-time.sleep(0.05)
+some_steps()
 assert power() == -7, power()
 put('motor/speed', '21')
 eventually(lambda: power() == 3)
@@ -303,7 +312,7 @@ eventually(lambda: power() == 3)
     ));
 }
 
-/// Whoever gives an order hears at once that it cannot be.
+/// A program that gives an order hears at once that it cannot be.
 #[test]
 fn an_order_that_the_law_refuses_changes_nothing() {
     let Some(m) = regulated() else {
@@ -357,14 +366,15 @@ for name in ('one', 'both'):
     fd = open_ro(M + '/' + name + '/value', os.O_NONBLOCK)
     expect('EAGAIN', os.pread, fd, 10, 0)
     assert text(M + '/' + name + '/fault') == '', name
-pipe = feed('in')
+pipe, reader = feed('in'), os.getpid()
 def late():
-    time.sleep(0.05)
+    eventually(lambda: asleep(reader), 'a reader that waits')
     os.write(pipe, b'\\x07')
-threading.Thread(target=late).start()
+child = forked(late)
 assert text(M + '/both/value') == '7 7\\n'
 assert text(M + '/one/value') == '7\\n'
 assert text(M + '/asked/value') == '7\\n'
+assert ended(child) == 0
 ",
     );
 }
@@ -383,7 +393,9 @@ def begin(speed='50'):
     eventually(lambda: power() == 120 or power() == 80)
 def ends(why):
     eventually(lambda: power() == 0, why)
-    time.sleep(0.03)
+    # It stays there, with an encoder that can be read, too.
+    encoder(10)
+    some_steps()
     assert power() == 0, (why, power())
 begin()
 put('stop', '1')

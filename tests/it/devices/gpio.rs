@@ -1,4 +1,4 @@
-//! GPIO lines: plain files in the place of sysfs.
+//! GPIO lines: plain files instead of sysfs.
 
 use crate::mount_with;
 use harness::Board;

@@ -1,4 +1,4 @@
-//! Sampled sensors: a folder in the place of sysfs and a named pipe in that of the node.
+//! Sampled sensors: a folder instead of sysfs and a named pipe in that of the node.
 
 use crate::mount_with;
 use harness::{Board, Mount};

@@ -1,4 +1,4 @@
-//! Servos and other pulses: plain files in the place of a PWM chip.
+//! Servos and other pulses: plain files instead of a PWM chip.
 
 use crate::mount_with;
 use harness::{Board, Mount};

@@ -104,7 +104,7 @@ fn a_signal_ends_a_reader_that_waits_at_once() {
     m.python(
         "for number in (signal.SIGKILL, signal.SIGTERM, signal.SIGINT):
     child = subprocess.Popen(['cat', M + '/n/device'])
-    eventually(lambda: '/n/device' in ' '.join(os.path.realpath(f.path) for f in os.scandir('/proc/%d/fd' % child.pid)), 'cat to open')
+    eventually(lambda: has_open(child.pid, '/n/device'), 'cat to open')
     eventually(lambda: asleep(child.pid), 'cat to wait')
     start = time.monotonic()
     child.send_signal(number)

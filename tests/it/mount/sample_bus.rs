@@ -206,7 +206,7 @@ fn a_killed_daemon_leaves_nothing_and_the_next_one_publishes_again() {
     let left = directory(&m);
     m.kill_everything();
     assert!(left.exists());
-    // Whoever is next cleans up, at whichever mount point.
+    // The next mount cleans up, at whichever mount point.
     let Some(other) = mount(TREE) else { return };
     assert!(!left.exists() && directory(&other).exists());
 }

@@ -129,7 +129,7 @@ assert open(left, 'rb').read() == b'\\x64\\1'
     );
 }
 
-/// execve(2) closes descriptors while the kernel keeps others from looking at the process: whoever answers those
+/// execve(2) closes descriptors while the kernel keeps others from looking at the process: a daemon that answers those
 /// closes must not wait for the process (found as a mount that hung for good).
 #[test]
 fn a_program_that_replaces_itself_is_answered_and_keeps_or_hands_over_its_actuator() {

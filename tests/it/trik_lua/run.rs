@@ -104,7 +104,8 @@ impl Robot {
         let mut tuple = input.to_vec();
         for (id, stage) in ids.iter().zip(&stages) {
             let mut output = vec![0; stage.output_size];
-            match self.vm.convert(*id, &tuple, &mut output)? {
+            let done = self.vm.convert(*id, &tuple, &mut output);
+            match done.map_err(|fault| fault.to_string())? {
                 Conversion::Produced => tuple = output,
                 Conversion::Consumed => return Ok(None),
             }

@@ -7,12 +7,12 @@ use super::{CRATES, files, none, root};
 
 /// Libraries that stand behind a border, and the only crates that may link them.
 const BEHIND_A_BORDER: [(&str, &[&str]); 9] = [
+    ("box2d-rust", &["sim"]),
     ("clap", &["trik", "trikd", "trikfs", "trikfs-ev3dev"]),
     ("flate2", &["lang-diagram"]),
     ("fuser", &["trikfs"]),
     ("libloading", &["trikfs"]),
     ("mlua-sys", &["config"]),
-    ("rapier2d-f64", &["sim"]),
     ("rquickjs", &["trikd"]),
     ("tokio", &["trikd"]),
     ("zip", &["lang-diagram"]),
@@ -21,8 +21,12 @@ const BEHIND_A_BORDER: [(&str, &[&str]); 9] = [
 /// What a crate's manifest says, as far as the rules need it.
 struct Manifest {
     name: String,
+    /// What sources call it, if its library has another name.
+    library: Option<String>,
     /// Names of crates that it is linked with, ours and others; not those of its tests alone.
     dependencies: BTreeSet<String>,
+    /// Those for its tests, benchmarks and build script.
+    helpers: BTreeSet<String>,
 }
 
 fn text(path: &Path) -> String {
@@ -34,7 +38,9 @@ fn manifest(folder: &str) -> Manifest {
     let mut section = "";
     let mut found = Manifest {
         name: String::new(),
+        library: None,
         dependencies: BTreeSet::new(),
+        helpers: BTreeSet::new(),
     };
     for line in text.lines() {
         if line.starts_with('[') {
@@ -47,8 +53,14 @@ fn manifest(folder: &str) -> Manifest {
         let key = key.strip_suffix(".workspace").unwrap_or(key).to_owned();
         match section {
             "[package]" if key == "name" => found.name = value.trim().trim_matches('"').to_owned(),
+            "[lib]" if key == "name" => {
+                found.library = Some(value.trim().trim_matches('"').to_owned());
+            }
             "[dependencies]" => {
                 found.dependencies.insert(key);
+            }
+            "[dev-dependencies]" | "[build-dependencies]" => {
+                found.helpers.insert(key);
             }
             _ => (),
         }
@@ -94,7 +106,10 @@ fn crates_depend_on_each_other_as_the_table_says() {
     for name in rules.keys().filter(|name| !ours.contains(*name)) {
         complaints.push(format!("ARCHITECTURE.md: there is no crate {name}"));
     }
-    for Manifest { name, dependencies } in &manifests {
+    for Manifest {
+        name, dependencies, ..
+    } in &manifests
+    {
         let linked: BTreeSet<String> = dependencies.intersection(&ours).cloned().collect();
         match rules.get(name) {
             None => complaints.push(format!("ARCHITECTURE.md: no row for {name}")),
@@ -128,10 +143,48 @@ fn nothing_for_the_controller_links_what_is_for_a_pc() {
 #[test]
 fn libraries_behind_a_border_are_linked_by_nobody_else() {
     let mut complaints = Vec::new();
-    for Manifest { name, dependencies } in CRATES.map(manifest) {
+    for Manifest {
+        name, dependencies, ..
+    } in CRATES.map(manifest)
+    {
         for (library, owners) in BEHIND_A_BORDER {
             if dependencies.contains(library) && !owners.contains(&name.as_str()) {
                 complaints.push(format!("{name} links {library}, which is for {owners:?}"));
+            }
+        }
+    }
+    none(&complaints);
+}
+
+/// Dependencies that no source names, with their reason.
+const NAMED_NOWHERE: [(&str, &str); 1] = [
+    // Its shared library has to be built with the program.
+    ("trikfs", "filters"),
+];
+
+#[test]
+fn every_dependency_is_used() {
+    let manifests = CRATES.map(|folder| (folder, manifest(folder)));
+    let mut complaints = Vec::new();
+    for (folder, manifest) in &manifests {
+        let mut found = Vec::new();
+        files(&root().join(folder), "rs", &mut found);
+        let texts: Vec<String> = found.iter().map(|path| text(path)).collect();
+        for dependency in manifest.dependencies.union(&manifest.helpers) {
+            let ours = manifests
+                .iter()
+                .find(|(_, other)| other.name == *dependency);
+            let library = ours.and_then(|(_, other)| other.library.clone());
+            let library = library.unwrap_or_else(|| dependency.replace('-', "_"));
+            let is_word = |text: &String| {
+                text.split(|letter: char| !letter.is_alphanumeric() && letter != '_')
+                    .any(|word| word == library)
+            };
+            let may_be_silent = NAMED_NOWHERE.contains(&(&manifest.name, dependency));
+            if texts.iter().any(is_word) == may_be_silent {
+                complaints.push(format!(
+                    "{folder}/Cargo.toml: {dependency}: named by no source, or listed as such"
+                ));
             }
         }
     }
@@ -193,6 +246,27 @@ fn every_source_is_compiled() {
             };
             if !by_parent() && !by_path() {
                 complaints.push(format!("{name}/{inside}: no module, nobody compiles it"));
+            }
+        }
+    }
+    none(&complaints);
+}
+
+#[test]
+fn every_snapshot_belongs_to_a_test() {
+    let mut complaints = Vec::new();
+    for name in CRATES {
+        let mut found = Vec::new();
+        files(&root().join(name), "snap", &mut found);
+        for path in found {
+            let snapshot = text(&path);
+            let source = snapshot
+                .lines()
+                .find_map(|line| line.strip_prefix("source: "));
+            let test = source.map(|source| root().join(source));
+            let compares = |test: PathBuf| test.is_file() && text(&test).contains("insta::");
+            if !test.is_some_and(compares) {
+                complaints.push(format!("{}: no test compares it", path.display()));
             }
         }
     }

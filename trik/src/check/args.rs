@@ -1,4 +1,4 @@
-//! What `trik check` can be told.
+//! The options of `trik check`.
 //!
 //! Owns the options and how they are passed to a worker process. Knows nothing of what they do.
 
@@ -66,6 +66,10 @@ pub(crate) struct CheckArgs {
     /// How many runs at once [default: one for each core].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub jobs: Option<u16>,
+    /// Let markers leave traces that sensors and rules see, as in the window of TRIK Studio; graders run it without one,
+    /// and there are none.
+    #[arg(long)]
+    pub marker_traces: bool,
     /// Longest run in seconds of simulated time, whatever the rules say.
     #[arg(long, value_name = "SECONDS", default_value_t = 600.0, value_parser = model_seconds)]
     pub time_limit: f64,
@@ -118,6 +122,7 @@ impl CheckArgs {
         for (name, is_set) in [
             ("--force", self.force),
             ("--continue", self.keep_going),
+            ("--marker-traces", self.marker_traces),
             ("--one", self.is_one),
             ("--embedded", self.is_embedded),
         ] {

@@ -1,4 +1,4 @@
-//! In the place of TRIK Studio's `2D-model` and `patcher`: the same option names, for graders that call these programs.
+//! Instead of TRIK Studio's `2D-model` and `patcher`: the same option names, for graders that call these programs.
 //!
 //! Owns the words and the exit codes of both: 2D-model 0 done, 1 errors in the report, 2 could not be run, 3 no program
 //! written, 4 unknown language; patcher 0 done, 1 unreadable, 2 contradicting options, 255 not saved. The exit code of the
@@ -251,6 +251,7 @@ fn wanted(args: Model, is_script: bool) -> CheckArgs {
         results: None,
         force: true,
         keep_going: false,
+        marker_traces: false,
         jobs: None,
         time_limit: limits::MODEL_SECONDS_MAX,
         wall_limit: limits::WALL_SECONDS_MAX,

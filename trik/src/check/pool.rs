@@ -1,7 +1,7 @@
-//! Many runs on all cores: processes that do one run after another, and whoever watches them.
+//! Many runs on all cores: processes that do one run after another, and the thread that watches them.
 //!
 //! Owns the processes. A run that crashes, eats its memory or hangs takes only its process with it: another one is started
-//! and does the rest. Results come in the order of the runs; whoever is far ahead waits, so memory is bounded.
+//! and does the rest. Results come in the order of the runs; a process that is far ahead waits, so memory is bounded.
 
 use super::args::CheckArgs;
 use super::jobs::{Job, shown};
@@ -94,7 +94,7 @@ pub(super) fn run(
         let done = in_order(&shared, &results, &mut take);
         shared.lock().is_over = true;
         shared.has_moved.notify_all();
-        // Whoever waits for room is let go.
+        // A thread that waits for room is let go.
         drop(results);
         done
     })
@@ -150,7 +150,8 @@ fn feed(jobs: &[Job], args: &CheckArgs, shared: &Shared, send: &SyncSender<(usiz
                 job.rules(args).map(shown),
                 why.to_string(),
             );
-            report(job, args, &mut row);
+            let said = row.messages.clone();
+            report(job, args, &mut row, &said);
             row
         });
         if send.send((index, row)).is_err() {

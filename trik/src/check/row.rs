@@ -1,4 +1,4 @@
-//! What is said of one run: a line of JSON, and a row of the table.
+//! One run as a line of JSON and as a row of the table.
 //!
 //! Owns both forms. The line is also what a worker process tells.
 

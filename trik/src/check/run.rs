@@ -16,9 +16,10 @@ use crate::output::Output;
 use lang_constraint::Level;
 use lang_diagram::lower::{World, lower};
 use lang_diagram::project::Project;
-use lang_text::problem::{Locale, Problem};
+use lang_text::problem::{Locale, Problem, Severity};
 use sim::field::Locks;
 use sim::judge::{self, Caption, Diagram, Outcome, Program, Settings, Task, Texts, Trajectory};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::time::Duration;
@@ -30,7 +31,7 @@ pub(super) const SVG: &str = ".svg";
 pub(super) const HTML: &str = ".html";
 pub(super) const DISPLAY: &str = ".png";
 
-/// What a worker is doing, for whoever watches its time.
+/// What a worker is doing, for the thread that watches its time.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub(super) enum Phase {
     /// The program runs.
@@ -61,18 +62,21 @@ pub(super) fn run(job: &Job, args: &CheckArgs, report_phase: &mut dyn FnMut(Phas
                 lines.iter().for_each(|line| row.say("error", line));
             }
         }
-        Err(lines) => {
+        Err(refused) => {
+            let lines = &refused.lines;
             lines.iter().for_each(|line| row.say("error", line));
-            report(job, args, &mut row);
+            let said = refused.bare.into_iter();
+            let said: Vec<_> = said.map(|text| ("error".to_owned(), text)).collect();
+            report(job, args, &mut row, &said);
         }
     }
     row
 }
 
-/// Writes the report of a run that could not be.
-pub(super) fn report(job: &Job, args: &CheckArgs, row: &mut Row) {
+/// Writes the report of a run that could not be, of these levels and messages.
+pub(super) fn report(job: &Job, args: &CheckArgs, row: &mut Row, said: &[(String, String)]) {
     let Some(path) = &args.report else { return };
-    let text = judge::report::of_messages(&row.messages);
+    let text = judge::report::of_messages(said);
     if let Err(why) = put(job, args, path, REPORT, text.as_bytes()) {
         row.say("error", &why.to_string());
     }
@@ -89,14 +93,44 @@ fn fill(outcome: &Outcome, row: &mut Row) {
     row.ms = outcome.ms;
     row.total_score = outcome.total_score;
     row.printed.clone_from(&outcome.printed);
+    // What is wrong with rules is wrong in each tick; a person needs it once.
+    let mut told = BTreeSet::new();
     for entry in &outcome.entries {
-        if entry.level != Level::Variables {
-            row.say(judge::report::level(entry.level), &entry.text);
+        let is_new = entry.level != Level::Critical || told.insert(&entry.text);
+        if entry.level != Level::Variables && is_new {
+            row.say(judge::report::level(entry.level), &entry.line());
         }
     }
 }
 
 type Lines = Vec<String>;
+
+/// Why a run cannot be: for people, with places, and for the report, which has none.
+struct Refused {
+    lines: Lines,
+    bare: Lines,
+}
+
+impl From<Lines> for Refused {
+    fn from(lines: Lines) -> Self {
+        let bare = lines.clone();
+        Self { lines, bare }
+    }
+}
+
+impl Refused {
+    /// Of problems in the file at a path.
+    fn of(path: &Path, problems: &[Problem], locale: Locale) -> Self {
+        let errors = problems
+            .iter()
+            .filter(|one| one.severity == Severity::Error);
+        let bare = errors.map(|problem| judge::report::text(problem, locale));
+        Self {
+            lines: lines(path, problems, locale),
+            bare: bare.collect(),
+        }
+    }
+}
 
 /// An error as the only line.
 fn line(error: Error) -> Lines {
@@ -108,7 +142,7 @@ fn judged(
     job: &Job,
     args: &CheckArgs,
     report_phase: &mut dyn FnMut(Phase),
-) -> Result<(Task, Outcome, Lines), Lines> {
+) -> Result<(Task, Outcome, Lines), Refused> {
     let settings = settings(args).map_err(line)?;
     let mut solution = match &job.log {
         Some(log) if *log == job.solution => Solution::default(),
@@ -124,21 +158,24 @@ fn judged(
         solution.project.blobs = None;
     }
     let project = &solution.project;
-    let Some(world) = &project.world else {
+    if project.world.is_none() && solution.script.is_some() {
         let why = format!(
             "{}: there is no world in it: --field gives one",
             shown(&job.solution)
         );
-        return Err(vec![why]);
-    };
+        return Err(vec![why].into());
+    }
+    // A diagram without a world runs in an empty one.
+    let world = project.world.as_deref().unwrap_or_default();
     let place = job.field.as_deref().unwrap_or(&job.solution);
     let texts = Texts {
         world,
         blobs: project.blobs.as_deref(),
         templates: Some(&project.templates),
     };
-    let task = Task::read(texts).map_err(|problems| lines(place, &problems, args.language))?;
-    let (mut task, strange) = task;
+    let task = Task::read(texts);
+    let refused = |problems: Vec<Problem>| Refused::of(place, &problems, args.language);
+    let (mut task, strange) = task.map_err(refused)?;
     let mut strange = lines(place, &strange, args.language);
     if let Some(given) = &args.task {
         let changed = hold(&mut task, given, args)?;
@@ -208,6 +245,7 @@ fn settings(args: &CheckArgs) -> Result<Settings, Error> {
         seed: u64::from(args.seed),
         answers,
         deeds,
+        is_marking: args.marker_traces,
         is_showing: args.display.is_some(),
         is_recording: [&args.trajectory, &args.svg, &args.html]
             .into_iter()

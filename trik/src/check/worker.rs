@@ -51,7 +51,7 @@ pub(super) fn serve(args: &CheckArgs) -> Result<(), Error> {
                 Phase::Runs => RUNS,
                 Phase::Ended => ENDED,
             };
-            // Whoever does not listen any more has killed this process.
+            // A reader that has gone away has killed this process.
             let _ = output.write_all(format!("\n{mark}{word}\n").as_bytes());
             let _ = output.flush();
         });
@@ -66,7 +66,7 @@ pub(super) fn serve(args: &CheckArgs) -> Result<(), Error> {
     Ok(())
 }
 
-/// Ends what a program in Python has started and left behind, wherever it has put itself: whoever loses its parent
+/// Ends what a program in Python has started and left behind, wherever it has put itself: a process that loses its parent
 /// becomes a child of this process.
 fn sweep_all() {
     for _ in 0..limits::SWEEPS {

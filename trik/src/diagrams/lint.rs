@@ -1,4 +1,4 @@
-//! `trik lint`: everything that is wrong with diagrams, and the way back for blocks that an editor of old has lost.
+//! `trik lint`: everything that is wrong with diagrams, and the way back for blocks that an earlier editor has lost.
 //!
 //! Owns the order of files, the summary and the exit code. What is wrong is found in `lang`.
 

@@ -4,7 +4,7 @@
 
 use super::words;
 use crate::terminal::{harmless, named};
-use lang_diagram::blocks::{self, Row, words::russian};
+use lang_diagram::blocks::{self, Row};
 use lang_diagram::project::{Block, Project};
 use lang_text::problem::{Locale, Problem, Severity};
 use std::cmp::Reverse;
@@ -92,7 +92,7 @@ impl<'a> Reporter<'a> {
         let row = found.and_then(|block| blocks::find(&block.kind));
         if let Some(block) = found {
             let (x, y) = block.position;
-            let name = row.map_or(&*block.kind, |row| self.translated(row.shown));
+            let name = row.map_or(&*block.kind, |row| row.shown_in(self.locale));
             line.push_str(&format!("{} ({x:.0}, {y:.0}): ", harmless(name)));
         } else if let Some(block) = &place.block {
             line.push_str(&format!("{}: ", harmless(block)));
@@ -111,20 +111,13 @@ impl<'a> Reporter<'a> {
         line
     }
 
-    fn translated(&self, shown: &'static str) -> &'static str {
-        match self.locale {
-            Locale::English => shown,
-            Locale::Russian => russian(shown),
-        }
-    }
-
     /// A property as the editor shows it.
     fn property<'b>(&self, row: Option<&'static Row>, name: &'b str) -> &'b str {
         let shown = row.and_then(|row| {
             let mut all = row.properties.iter();
             all.find(|one| one.name == name || one.shown == name)
         });
-        shown.map_or(name, |property| self.translated(property.shown))
+        shown.map_or(name, |property| property.shown_in(self.locale))
     }
 }
 

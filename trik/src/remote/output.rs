@@ -1,4 +1,4 @@
-//! Where the output of a program goes: a thread of its own writes it, because whoever reads it may take its time, and the
+//! Where the output of a program goes: a thread of its own writes it, because the reader may take its time, and the
 //! connection to the robot must not wait for that.
 //!
 //! Owns that thread and what waits for it, which is bounded; and lines for the person, without what a terminal would obey.

@@ -20,7 +20,8 @@ use trikd::protocol::news::{self, End};
 /// What `trik run` can be told.
 #[derive(Args, Clone, Debug, PartialEq, Eq)]
 pub(crate) struct RunArgs {
-    /// The program.
+    /// The program: NAME.js, NAME.py, NAME.qrs (a diagram of TRIK Studio), NAME.lua, or a file that begins with #! or is
+    /// compiled for the robot.
     pub file: PathBuf,
     /// Name or address of the robot, and its port if that is not 8888 [default: the virtual robot that runs on this
     /// computer, or else 127.0.0.1].

@@ -68,7 +68,7 @@ pub(crate) fn target(text: &str) -> Result<Target, Error> {
     })
 }
 
-/// The robot of whoever names none: the virtual one that runs here, or what listens on this machine.
+/// The robot if none is named: the virtual one that runs here, or what listens on this machine.
 pub(super) fn the_one() -> Result<Target, Error> {
     let base = place::base()?;
     let all = place::running(&base).map_err(|error| Error::file(&base, error));

@@ -48,6 +48,9 @@ pub fn order(line: &str, mut tell: impl FnMut(Command<'_>)) -> Result<(), Error>
             Command::PenWidth { width }
         }
         "background" => Command::Background { color: rest },
+        // What the controller's own faces are called: its Python has no other words for them.
+        "image" if rest.ends_with("trik_smile_normal.png") => Command::Smile { sad: false },
+        "image" if rest.ends_with("trik_smile_sad.png") => Command::Smile { sad: true },
         "smile" => Command::Smile { sad: false },
         "sadsmile" => Command::Smile { sad: true },
         "clear" => Command::ClearScreen,
@@ -75,6 +78,8 @@ mod tests {
             ("ellipse 1 2.9 3 4 0", "ellipse 1 2 3 4"),
             ("color red", "pen red"),
             ("sadsmile", "smile sad"),
+            ("image media/trik_smile_normal.png", "smile"),
+            ("image /x/media/trik_smile_sad.png", "smile sad"),
             ("redraw", "redraw"),
         ] {
             let mut told = Vec::new();

@@ -68,12 +68,13 @@ impl JavaScript {
         let file = std::path::absolute(file)
             .map_err(|error| Error::file(file, format!("where is it? {error}")))?;
         let folder = file.parent().unwrap_or(Path::new("/")).to_owned();
-        let failed = |reason: String| Error::system(format!("{name}: cannot be started"), reason);
+        let failed =
+            |why: &dyn std::fmt::Display| Error::system(format!("{name}: cannot be started"), why);
         let ear = Ear::default();
         let shared = Shared::new(PathBuf::new(), folder, Box::new(ear.clone()))
-            .map_err(|error| failed(error.to_string()))?;
+            .map_err(|error| failed(&error))?;
         let stage = Rc::new(Stage::default());
-        let slot = shared.admit(MAIN).map_err(failed)?;
+        let slot = shared.admit(MAIN).map_err(|why| failed(&why))?;
         let job = Job {
             name: MAIN.to_owned(),
             text: with_call_of_main(text.to_owned()).into(),
@@ -185,7 +186,7 @@ impl JavaScript {
         }
         for text in said.take_printed() {
             let text = text.strip_suffix('\n').unwrap_or(&text);
-            robot.tell(Command::Console { text });
+            robot.command(Command::Console { text });
         }
     }
 
@@ -310,8 +311,8 @@ impl JavaScript {
         self.ended = Some(self.stage.now.get());
         let failure = self.shared.failure();
         self.errors
-            .extend(failure.map(|text| problem(&self.file, &text)));
-        robot.tell(Command::Rest);
+            .extend(failure.map(|failure| problem(&self.file, &failure.to_string())));
+        robot.command(Command::Rest);
     }
 
     /// Ends all threads: what they ask for is no longer done.
@@ -341,7 +342,7 @@ impl Program for JavaScript {
         if self.ended.is_none() {
             self.quit();
             self.ended = Some(self.stage.now.get());
-            robot.tell(Command::Rest);
+            robot.command(Command::Rest);
         }
     }
 

@@ -198,7 +198,7 @@ impl Python {
             }
         };
         if let Some((_, channel)) = &mut self.child {
-            // Whoever is gone says so when it is heard.
+            // A client that is gone says so when it is heard.
             let _ = channel.write_all(&encode(text.as_bytes()));
         }
     }
@@ -240,7 +240,7 @@ impl Python {
         }
     }
 
-    /// What every program says to whoever runs it; only a question to the mailbox has an answer.
+    /// What every program says to its runner; only a question to the mailbox has an answer.
     fn hear_message(
         &mut self,
         message: FromProgram<'_>,
@@ -249,7 +249,7 @@ impl Python {
         match message {
             FromProgram::Print(text) => {
                 let text = text.strip_suffix('\n').unwrap_or(text);
-                robot.tell(Command::Console { text });
+                robot.command(Command::Console { text });
             }
             FromProgram::Error(text) => self.fail(text.trim_end()),
             FromProgram::Info(text) => {
@@ -282,7 +282,7 @@ impl Python {
             "read" => self.tree.read(robot, text),
             "write" => self.tree.write(robot, first, rest).map(|()| String::new()),
             "stream" => Ok(self.stream(text, robot)),
-            "draw" => drawing::order(text, |command| robot.tell(command))
+            "draw" => drawing::order(text, |command| robot.command(command))
                 .map(|()| String::new())
                 .map_err(io::Error::other),
             "mail" => robot.mail().ok_or_else(|| io::ErrorKind::WouldBlock.into()),
@@ -295,7 +295,7 @@ impl Python {
             }
             "system" => {
                 let (command, code) = (text, false);
-                robot.tell(Command::System { command, code });
+                robot.command(Command::System { command, code });
                 Ok("0".to_owned())
             }
             "append" => {
@@ -337,14 +337,14 @@ impl Python {
     }
 
     fn mailbox(&mut self, words: &str, robot: &mut dyn Brick) -> String {
-        super::mailbox(words, &mut self.hull, |command| robot.tell(command))
+        super::mailbox(words, &mut self.hull, |command| robot.command(command))
     }
 
     /// The program is over, by itself or not.
     fn end(&mut self, robot: &mut dyn Brick) {
         self.ended = Some(self.now);
         self.kill();
-        robot.tell(Command::Rest);
+        robot.command(Command::Rest);
     }
 
     fn kill(&mut self) {

@@ -47,7 +47,7 @@ impl Readings {
 }
 
 impl Brick for Refreshed<'_> {
-    fn tell(&mut self, command: Command<'_>) {
+    fn command(&mut self, command: Command<'_>) {
         match command {
             Command::ResetEncoder { port } => {
                 self.readings.scalars.remove(&port);
@@ -84,7 +84,7 @@ impl Brick for Refreshed<'_> {
             | Command::MarkerUp
             | Command::Rest => {}
         }
-        self.robot.tell(command);
+        self.robot.command(command);
     }
 
     fn scalar(&mut self, port: Port) -> Option<i32> {

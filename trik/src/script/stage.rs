@@ -1,7 +1,7 @@
 //! Where one thread of a judged JavaScript program stands: each call to the robot hands over to who steps the program.
 //!
 //! Owns the hand-over and what it costs. A thread runs on a stack of its own, so a call may stop in its middle, however
-//! deep, and go on in a later step. Whoever asks [`limits::SCRIPT_CALLS`] times without waiting, or computes until the
+//! deep, and go on in a later step. A program that asks [`limits::SCRIPT_CALLS`] times without waiting, or computes until the
 //! engine has looked up a few times (some 10 000 turns of a loop), is charged one tick.
 
 use super::input::Input;
@@ -15,11 +15,15 @@ use std::fmt;
 use std::io;
 use std::rc::Rc;
 use std::sync::{Arc, Mutex, PoisonError};
+use trikd::display::Unshown;
+use trikd::engine::NoThread;
 use trikd::js::events::Record;
+use trikd::js::files::Unread;
 use trikd::js::machine::Job;
 use trikd::js::outside::Output;
 use trikd::js::platform::{Platform, Shown};
 use trikd::js::shared::{Shared, Slot};
+use trikd::pictures::NoPicture;
 use trikd::tree::Answers;
 
 /// What is done with the robot while a thread waits for the answer.
@@ -307,7 +311,7 @@ impl Platform for Here {
         self.heard.borrow_mut().records.pop_front()
     }
 
-    fn start(&self, shared: &Arc<Shared>, job: Job) -> Result<(), String> {
+    fn start(&self, shared: &Arc<Shared>, job: Job) -> Result<(), NoThread> {
         let slot = shared.admit(&job.name)?;
         self.stage.begins.borrow_mut().push((job, slot));
         self.give_way();
@@ -328,34 +332,36 @@ impl Platform for Here {
         let stage = self.stage.clone();
         let answer = self.stage.with(move |brick| {
             let mut hull = stage.hull.get();
-            let answer = mailbox(&words, &mut hull, |command| brick.tell(command));
+            let answer = mailbox(&words, &mut hull, |command| brick.command(command));
             stage.hull.set(hull);
             answer
         });
         answer.map_or_else(over, Ok)
     }
 
-    fn show(&self, _shared: &Shared, shown: Shown<'_>) -> Result<(), String> {
+    fn show(&self, _shared: &Shared, shown: Shown<'_>) -> Result<(), Unshown> {
         let Shown::Order(line) = shown else {
-            return Err("pictures are not shown in the simulator".to_owned());
+            let why = "pictures are not shown in the simulator";
+            return Err(Unshown::Simulated(why.to_owned()));
         };
         let line = line.to_owned();
         let done = self
             .stage
-            .with(move |brick| drawing::order(&line, |command| brick.tell(command)));
-        done.unwrap_or(Ok(())).map_err(|error| error.to_string())
+            .with(move |brick| drawing::order(&line, |command| brick.command(command)));
+        done.unwrap_or(Ok(()))
+            .map_err(|error| Unshown::Simulated(error.to_string()))
     }
 
-    fn photo(&self, _shared: &Shared) -> Result<screen::Pixels, String> {
-        Err("the simulated robot has no picture of its camera".to_owned())
+    fn photo(&self, _shared: &Shared) -> Result<screen::Pixels, NoPicture> {
+        Err(NoPicture::Simulated)
     }
 
-    fn include(&self, shared: &Shared, file: &str) -> Result<String, String> {
+    fn include(&self, shared: &Shared, file: &str) -> Result<String, Unread> {
         self.stage.charge(1);
         beside(&shared.folder, file)
     }
 
-    fn read_file(&self, shared: &Shared, file: &str) -> Result<String, String> {
+    fn read_file(&self, shared: &Shared, file: &str) -> Result<String, Unread> {
         self.stage.charge(1);
         if let Some(bytes) = self.stage.tree.borrow().written(file) {
             return Ok(String::from_utf8_lossy(bytes).into_owned());
@@ -377,7 +383,7 @@ impl Platform for Here {
     fn system(&self, _shared: &Shared, command: &str, _waits: bool) -> io::Result<i32> {
         let command = command.to_owned();
         let told = self.stage.with(move |brick| {
-            brick.tell(Command::System {
+            brick.command(Command::System {
                 command: &command,
                 code: false,
             });

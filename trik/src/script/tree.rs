@@ -5,7 +5,7 @@
 
 use crate::limits;
 use lang_diagram::brick::{Brick, Command};
-use lang_diagram::ports::{Kit, Port, Sort, Way};
+use lang_diagram::ports::{Direction, Kit, Port, Sort};
 use std::collections::BTreeMap;
 use std::io;
 
@@ -57,7 +57,7 @@ fn nothing_yet() -> io::Error {
     io::ErrorKind::WouldBlock.into()
 }
 
-fn port(name: &str, way: Way) -> Option<Port> {
+fn port(name: &str, way: Direction) -> Option<Port> {
     Port::find(Kit::V62, name, way)
 }
 
@@ -65,7 +65,9 @@ fn whole(text: &str) -> io::Result<i32> {
     let number: f64 = text
         .trim()
         .parse()
-        .map_err(|_| io::Error::from(io::ErrorKind::InvalidInput))?;
+        .ok()
+        .filter(|number: &f64| number.is_finite())
+        .ok_or_else(|| io::Error::from(io::ErrorKind::InvalidInput))?;
     Ok(number as i32)
 }
 
@@ -100,11 +102,11 @@ impl Tree {
     /// Whether this directory is there and something is plugged in.
     pub fn has(&self, brick: &mut dyn Brick, directory: &str) -> bool {
         match directory.split_once('/') {
-            Some(("motors", name)) => is_sort(name, Way::Out, Sort::Motor),
-            Some(("servos", name)) => is_sort(name, Way::Out, Sort::Servo),
-            Some(("encoders", name)) => is_sort(name, Way::In, Sort::Encoder),
+            Some(("motors", name)) => is_sort(name, Direction::Out, Sort::Motor),
+            Some(("servos", name)) => is_sort(name, Direction::Out, Sort::Servo),
+            Some(("encoders", name)) => is_sort(name, Direction::In, Sort::Encoder),
             Some(("sensors", name)) => {
-                let port = port(name, Way::In).filter(|port| port.sort() == Sort::Scalar);
+                let port = port(name, Direction::In).filter(|port| port.sort() == Sort::Scalar);
                 port.is_some_and(|port| brick.scalar(port).is_some())
             }
             Some(("camera", mode)) => ["line", "object", "color"].contains(&mode),
@@ -134,12 +136,12 @@ impl Tree {
         let parts: Vec<&str> = path.split('/').collect();
         let text = match parts[..] {
             ["motors" | "servos", name, "value"] => {
-                let port = port(name, Way::Out).ok_or_else(absent)?;
+                let port = port(name, Direction::Out).ok_or_else(absent)?;
                 self.powers.get(&port).copied().unwrap_or(0).to_string()
             }
             ["servos", _, "units"] => "deg".to_owned(),
             ["sensors" | "encoders", name, "value" | "raw"] => {
-                let port = port(name, Way::In).ok_or_else(absent)?;
+                let port = port(name, Direction::In).ok_or_else(absent)?;
                 brick.scalar(port).ok_or_else(unplugged)?.to_string()
             }
             ["keys", "value"] => joined(keys(brick)),
@@ -190,63 +192,63 @@ impl Tree {
         let parts: Vec<&str> = path.split('/').collect();
         match parts[..] {
             ["motors", name, "value"] => {
-                let port = port(name, Way::Out).ok_or_else(absent)?;
+                let port = port(name, Direction::Out).ok_or_else(absent)?;
                 let percent = whole(text)?;
                 self.powers.insert(port, percent);
-                brick.tell(Command::Power { port, percent });
+                brick.command(Command::Power { port, percent });
             }
             ["servos", name, "value"] => {
-                let port = port(name, Way::Out).ok_or_else(absent)?;
+                let port = port(name, Direction::Out).ok_or_else(absent)?;
                 let degrees = whole(text)?;
                 self.powers.insert(port, degrees);
-                brick.tell(Command::Servo { port, degrees });
+                brick.command(Command::Servo { port, degrees });
             }
             ["motors" | "servos", name, "brake" | "power"] => {
-                let port = port(name, Way::Out).ok_or_else(absent)?;
+                let port = port(name, Direction::Out).ok_or_else(absent)?;
                 self.powers.remove(&port);
                 let brake = parts[2] == "brake";
-                brick.tell(Command::Off { port, brake });
+                brick.command(Command::Off { port, brake });
             }
             ["encoders", name, "value"] => {
-                let port = port(name, Way::In).ok_or_else(absent)?;
-                brick.tell(Command::ResetEncoder { port });
+                let port = port(name, Direction::In).ok_or_else(absent)?;
+                brick.command(Command::ResetEncoder { port });
                 self.cleared = true;
             }
             ["led", light, "value"] => self.light(brick, light, whole(text)? != 0),
             ["sound", "play", "value"] => {
                 let file = text.rsplit('/').next().unwrap_or(text);
-                brick.tell(Command::Sound { file });
+                brick.command(Command::Sound { file });
             }
-            ["sound", "say", "value"] => brick.tell(Command::Say { text }),
+            ["sound", "say", "value"] => brick.command(Command::Say { text }),
             ["sound", "tone", "value"] => {
                 let (hertz, ms) = text.trim().split_once(' ').ok_or_else(absent)?;
                 let (hertz, ms) = (whole(hertz)?, whole(ms)?);
-                brick.tell(Command::Tone { hertz, ms });
+                brick.command(Command::Tone { hertz, ms });
             }
             ["camera", mode, "video_out"] => {
                 let show = whole(text)? != 0;
-                brick.tell(Command::StartCamera { mode, show });
+                brick.command(Command::StartCamera { mode, show });
             }
             ["camera", mode, "detect"] => {
                 *self.detections.entry(mode.to_owned()).or_default() += 1;
-                brick.tell(Command::Detect { mode });
+                brick.command(Command::Detect { mode });
             }
             // The colour that was detected is looked for anyway.
             ["camera", _, "hsv"] => {}
-            ["marker", "value"] => brick.tell(match text.trim() {
+            ["marker", "value"] => brick.command(match text.trim() {
                 "" => Command::MarkerUp,
                 color => Command::MarkerDown { color },
             }),
             ["stop"] => {
                 self.powers.clear();
-                brick.tell(Command::Rest);
+                brick.command(Command::Rest);
             }
             _ => return Err(absent()),
         }
         Ok(())
     }
 
-    /// Whether an encoder was cleared since the last question, and whoever did it goes on in the next tick. So it is for a
+    /// Whether an encoder was cleared since the last question, and the program goes on in the next tick. So it is for a
     /// diagram: the block takes a turn of the simulator's, which comes through its events every third tick.
     pub fn has_cleared(&mut self, now_ms: u32) -> bool {
         if !std::mem::take(&mut self.cleared) {
@@ -272,7 +274,7 @@ impl Tree {
             (false, true) => "red",
             (false, false) => "off",
         };
-        brick.tell(Command::Led { color });
+        brick.command(Command::Led { color });
     }
 
     /// What the program has put into a file of its own; it never reaches the disk.
@@ -296,18 +298,18 @@ impl Tree {
         let whole = self.written.entry(file.to_owned()).or_default();
         whole.extend_from_slice(bytes);
         let text = &*String::from_utf8_lossy(bytes);
-        brick.tell(Command::Append { file, text });
+        brick.command(Command::Append { file, text });
         Ok(())
     }
 
     /// Removes a file of the program.
     pub fn remove(&mut self, brick: &mut dyn Brick, file: &str) {
         self.written.remove(file);
-        brick.tell(Command::Remove { file });
+        brick.command(Command::Remove { file });
     }
 }
 
-fn is_sort(name: &str, way: Way, sort: Sort) -> bool {
+fn is_sort(name: &str, way: Direction, sort: Sort) -> bool {
     port(name, way).is_some_and(|port| port.sort() == sort)
 }
 

@@ -226,7 +226,7 @@ def trace(frame, event, _):
 
 
 def clocks():
-    """Model time in the place of all clocks."""
+    """Model time instead of all clocks."""
     time.sleep = sleep
     time.time = lambda: EPOCH + now / 1000
     time.time_ns = lambda: int((EPOCH * 1000 + now) * 1_000_000)
@@ -305,6 +305,10 @@ def module(text):
         def up(self):
             link.ask('write', 'marker/value\n')
 
+    def random(self, a, b):
+        a, b = trik._whole(a, 'random'), trik._whole(b, 'random')
+        return int(link.ask('random', '%d %d' % (min(a, b), max(a, b))))
+
     def kill(self, name):
         thread = self._threads.get(name)
         if thread and thread.is_alive():
@@ -329,7 +333,7 @@ def module(text):
     trik.Threads.killThread, trik.Threads.sendMessage = kill, send_message
     trik.Brick.marker = lambda self: Marker()
     script = trik.Script
-    script.random = lambda self, a, b: int(link.ask('random', '%d %d' % (min(a, b), max(a, b))))
+    script.random = random
     script.system = lambda self, command, synchronously=False: int(link.ask('system', command) or 0)
     script.writeToFile = lambda self, file, text: link.ask('append', '%s\n%s' % (file, text)) and None
     script.writeData = lambda self, file, data: link.ask('append', '%s\n%s' % (file, bytes(data).decode('latin-1'))) and None

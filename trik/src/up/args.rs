@@ -1,4 +1,4 @@
-//! What `trik up` can be told.
+//! The options of `trik up`.
 //!
 //! Owns the options and the forms of their values. Knows nothing of what they do.
 
@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 /// The robot used if none is named.
 pub(crate) const DEFAULT_ROBOT: &str = "two-wheels";
 
-/// What `trik up` can be told.
+/// The options of `trik up`.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub(crate) struct UpArgs {
     /// Which robot: its body in the simulator, and its configuration robots/NAME.lua; or a model of DCML that moves the
@@ -120,7 +120,8 @@ fn number_of(text: &str) -> Result<(String, f64), String> {
 /// `ACTION=PORT`
 fn driven(text: &str) -> Result<(String, Actuator), String> {
     let (name, port) = text.split_once('=').ok_or("write ACTION=PORT")?;
-    Ok((name.trim().to_owned(), Actuator::read(port)?))
+    let actuator = Actuator::read(port).map_err(|why| why.to_string())?;
+    Ok((name.trim().to_owned(), actuator))
 }
 
 fn speed(text: &str) -> Result<f64, String> {

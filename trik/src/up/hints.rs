@@ -119,7 +119,7 @@ mod tests {
             [
                 "cat sensors/A1/value",
                 "cat sensors/D2/value",
-                "echo 30 > motors/M1/value; echo 30 > motors/M4/value",
+                "echo 30 > motors/M1/value; echo 30 > motors/M3/value",
                 "cat encoders/E1/value",
                 "echo > stop",
             ]

@@ -27,7 +27,7 @@ impl Screen {
         })
     }
 
-    /// Shows these lines in the place of the last ones, as much of them as there is room for.
+    /// Shows these lines instead of the last ones, as much of them as there is room for.
     pub(super) fn draw(&mut self, lines: &[String]) {
         if !self.enter() {
             return;

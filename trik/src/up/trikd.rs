@@ -1,7 +1,7 @@
 //! trikd beside the tree, so that TRIK Studio and gamepads reach the virtual robot as they reach a real one.
 //!
 //! Owns where it serves, where its folders are, and what a person is told of it; `companion` is its life. It serves this
-//! machine alone unless somebody names other addresses, because whoever reaches it runs programs with the rights of the
+//! machine alone unless somebody names other addresses, because a client that reaches it runs programs with the rights of the
 //! person who started the robot.
 
 use super::args::{UpArgs, absolute};
@@ -71,7 +71,7 @@ impl Trikd {
         if geteuid().is_root()
             && let Ok(Some(user)) = User::from_uid(geteuid())
         {
-            // Programs have the rights of the person who started the robot, whoever that is.
+            // Programs have the rights of the person who started the robot, whichever that is.
             list.push(format!("--user={}", user.name).into());
         }
         Ok(Self {

@@ -354,7 +354,7 @@ fn a_reader_that_has_seen_enough_is_no_failure() {
     }
 }
 
-/// A project whose blocks an editor of old has lost.
+/// A project whose blocks an earlier editor has lost.
 fn lost() -> Option<PathBuf> {
     let path = needs::data()?;
     let mut found: Option<(usize, PathBuf)> = None;

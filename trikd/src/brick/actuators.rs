@@ -57,19 +57,28 @@ impl Motor {
     }
 
     /// Percent of a power motor or of a servo that turns on, degrees of other servos; cut to what is possible and
-    /// rounded to a whole number.
+    /// rounded to a whole number. What is no number moves nothing: a power motor stands still, a servo stays where it is.
     ///
     /// # Errors
-    /// Those of the tree; `InvalidInput` for what is no number.
+    /// Those of the tree.
     pub fn set_power(&self, power: f64) -> io::Result<()> {
-        if power.is_nan() {
-            return Err(io::Error::new(
-                io::ErrorKind::InvalidInput,
-                "the power is not a number",
-            ));
+        if !power.is_finite() {
+            return if self.is_servo {
+                Ok(())
+            } else {
+                self.power.write("0\n")
+            };
         }
-        let power = power.clamp(-self.greatest, self.greatest).round();
-        self.power.write(&format!("{power:.0}\n"))
+        let wanted = power.clamp(-self.greatest, self.greatest).round();
+        let done = self.power.write(&format!("{wanted:.0}\n"));
+        match &done {
+            // Some servos have nothing below the middle: as far as they go.
+            Err(error) if self.is_servo && error.raw_os_error() == Some(libc::ERANGE) => {
+                let end = if wanted < 0.0 { 0.0 } else { self.greatest };
+                self.power.write(&format!("{end:.0}\n"))
+            }
+            Ok(()) | Err(_) => done,
+        }
     }
 
     /// What was set last.

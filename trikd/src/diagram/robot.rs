@@ -145,6 +145,8 @@ impl<'a> Robot<'a> {
         } else {
             let mut process = std::process::Command::new("sh");
             process.args(["-c", command]);
+            // What helpers say is not what the program says.
+            process.stdout(Stdio::null()).stderr(Stdio::null());
             process
         };
         match process.stdin(Stdio::null()).spawn() {
@@ -193,7 +195,7 @@ fn order(figure: Figure) -> String {
 }
 
 impl brick::Brick for Robot<'_> {
-    fn tell(&mut self, command: Command<'_>) {
+    fn command(&mut self, command: Command<'_>) {
         match command {
             Command::Power { port, percent } => self.set_power(port, percent),
             Command::Servo { port, degrees } => self.set_power(port, degrees),

@@ -2,12 +2,12 @@
 //!
 //! Owns the order of things in a thread of a program, and what makes it end: its text, a failure, the end of all.
 
-use super::failure::Failure;
+use super::failure::Failure as Thrown;
 use super::natives::{self, Own};
 use super::platform::{Mounted, Platform};
 use super::shared::{Shared, Slot};
 use super::source;
-use crate::engine::Outcome;
+use crate::engine::{Failure, Outcome};
 use crate::limits;
 use rquickjs::context::EvalOptions;
 use rquickjs::{Context, Ctx, Error, Function, Object, Runtime, Value};
@@ -79,7 +79,7 @@ pub fn run_jobs(ctx: &Ctx<'_>) {
 /// Runs one engine on the mounted tree to its end.
 ///
 /// # Errors
-/// The text of a failure, if it was no end that was asked for.
+/// The failure, if it was no end that was asked for.
 pub fn run(job: &Job, shared: &Arc<Shared>, slot: &Arc<Slot>) -> Outcome {
     run_on(Rc::new(Mounted::new(&shared.root)), job, shared, slot)
 }
@@ -94,7 +94,7 @@ pub fn run_on(
     shared: &Arc<Shared>,
     slot: &Arc<Slot>,
 ) -> Outcome {
-    let broken = |error: Error| format!("JavaScript cannot be started: {error}");
+    let broken = |error: Error| Failure::Engine(error.to_string());
     let runtime = Runtime::new().map_err(broken)?;
     runtime.set_memory_limit(limits::JS_MEMORY_BYTES);
     runtime.set_max_stack_size(limits::JS_STACK_BYTES);
@@ -104,7 +104,7 @@ pub fn run_on(
     let (lost, text) = (own.clone(), job.text.clone());
     runtime.set_host_promise_rejection_tracker(Some(Box::new(
         move |ctx, _promise, reason, is_handled| {
-            let failure = (!is_handled).then(|| Failure::new(&ctx, reason, &text));
+            let failure = (!is_handled).then(|| Thrown::new(&ctx, reason, &text));
             *lost.lost.borrow_mut() = failure;
         },
     )));
@@ -113,11 +113,11 @@ pub fn run_on(
         let done = live(&ctx, job, &own);
         let failure = match done {
             Ok(()) => own.lost.borrow_mut().take(),
-            Err(error) => Some(Failure::of(&ctx, &error, &job.text)),
+            Err(error) => Some(Thrown::of(&ctx, &error, &job.text)),
         };
         // An end that was asked for looks like a failure from inside.
         match failure.filter(|_| !slot.stops() && !shared.quits()) {
-            Some(failure) => Err(failure.of_program()),
+            Some(failure) => Err(Failure::Program(failure.of_program())),
             None => Ok(()),
         }
     })

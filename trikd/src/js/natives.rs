@@ -57,8 +57,8 @@ impl Own {
 }
 
 /// An exception with a message.
-pub fn failed(ctx: &Ctx<'_>, message: &str) -> rquickjs::Error {
-    Exception::throw_message(ctx, message)
+pub fn failed(ctx: &Ctx<'_>, message: impl std::fmt::Display) -> rquickjs::Error {
+    Exception::throw_message(ctx, &message.to_string())
 }
 
 /// Puts a function into the object.
@@ -184,7 +184,7 @@ fn next<'js>(ctx: &Ctx<'js>, own: &Own, until_ms: f64) -> rquickjs::Result<Value
             return Ok(Value::new_null(ctx.clone()));
         }
         let waited = own.platform.wait(&own.slot, until_ms);
-        waited.map_err(|error| failed(ctx, &format!("nothing can be waited for: {error}")))?;
+        waited.map_err(|error| failed(ctx, format!("nothing can be waited for: {error}")))?;
         woken = true;
     }
 }

@@ -4,11 +4,13 @@
 //! that passes only when programs wait. [`Mounted`] is the robot; the rest implements [`Platform`].
 
 use super::events::{Record, Streams};
+use super::files::{Unread, read_text};
 use super::machine::Job;
-use super::read_text;
 use super::shared::{Shared, Slot};
 use crate::brick::Brick;
-use crate::pictures;
+use crate::display::Unshown;
+use crate::engine::NoThread;
+use crate::pictures::{self, NoPicture};
 use screen::Pixels;
 use std::fs::OpenOptions;
 use std::io::{self, Write};
@@ -66,7 +68,7 @@ pub trait Platform {
     ///
     /// # Errors
     /// Why there is none.
-    fn start(&self, shared: &Arc<Shared>, job: Job) -> Result<(), String> {
+    fn start(&self, shared: &Arc<Shared>, job: Job) -> Result<(), NoThread> {
         shared.start(job)
     }
 
@@ -89,7 +91,7 @@ pub trait Platform {
     ///
     /// # Errors
     /// Why it is not shown.
-    fn show(&self, shared: &Shared, shown: Shown<'_>) -> Result<(), String> {
+    fn show(&self, shared: &Shared, shown: Shown<'_>) -> Result<(), Unshown> {
         let mut display = shared.display();
         match shown {
             Shown::Order(line) => display.order(line),
@@ -104,7 +106,7 @@ pub trait Platform {
     ///
     /// # Errors
     /// Why there is none.
-    fn photo(&self, shared: &Shared) -> Result<Pixels, String> {
+    fn photo(&self, shared: &Shared) -> Result<Pixels, NoPicture> {
         pictures::photo(&shared.root)
     }
 
@@ -112,7 +114,7 @@ pub trait Platform {
     ///
     /// # Errors
     /// Why it cannot be read.
-    fn include(&self, shared: &Shared, file: &str) -> Result<String, String> {
+    fn include(&self, shared: &Shared, file: &str) -> Result<String, Unread> {
         read_text(&shared.folder.join(file))
     }
 
@@ -120,7 +122,7 @@ pub trait Platform {
     ///
     /// # Errors
     /// Why it cannot be read.
-    fn read_file(&self, shared: &Shared, file: &str) -> Result<String, String> {
+    fn read_file(&self, shared: &Shared, file: &str) -> Result<String, Unread> {
         read_text(&shared.folder.join(file))
     }
 
@@ -151,7 +153,10 @@ pub trait Platform {
     /// It cannot be started.
     fn system(&self, shared: &Shared, command: &str, waits: bool) -> io::Result<i32> {
         let mut shell = Command::new("sh");
-        shell.arg("-c").arg(command).stdin(Stdio::null());
+        shell.arg("-c").arg(command);
+        // What helpers say is not what the program says.
+        shell.stdin(Stdio::null());
+        shell.stdout(Stdio::null()).stderr(Stdio::null());
         let mut child = shell.current_dir(&shared.folder).spawn()?;
         if waits {
             return Ok(child.wait()?.code().unwrap_or(-1));

@@ -3,12 +3,12 @@
 //! The thread that calls [`run`] has no engine: it brings in what comes from outside and carries questions out, so
 //! that engines may loop as they like.
 
+use super::files::read_text;
 use super::machine::{Job, Kind};
 use super::outside::{Output, Outside};
-use super::read_text;
 use super::shared::{Event, MAIN, Shared};
 use super::source;
-use crate::engine::{Outcome, Start};
+use crate::engine::{Failure, Outcome, Start};
 use crate::host::Incoming;
 use crate::limits;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
@@ -20,30 +20,35 @@ use std::time::{Duration, Instant};
 /// Runs a program from its beginning to the end of its last thread.
 ///
 /// # Errors
-/// The text of the first failure.
+/// The first failure.
 pub fn run(start: Start, root: &Path, outside: &dyn Outside, output: Box<dyn Output>) -> Outcome {
     let here = || std::env::current_dir().unwrap_or_else(|_| PathBuf::from("/"));
     let (folder, text, kind) = match start {
         Start::File(path) => {
             let folder = path.parent().map_or_else(here, Path::to_owned);
-            (folder, read_text(&path)?, Kind::Program)
+            (
+                folder,
+                read_text(&path).map_err(Failure::Unread)?,
+                Kind::Program,
+            )
         }
         Start::Script(text) => (here(), text, Kind::Program),
         Start::Direct => (here(), String::new(), Kind::Direct),
     };
     let shared = Shared::new(root.to_owned(), folder, output)
-        .map_err(|error| format!("the program cannot be started: {error}"))?;
+        .map_err(|error| Failure::Start(error.into()))?;
     let shared = Arc::new(shared);
-    shared.start(Job {
+    let job = Job {
         name: MAIN.to_owned(),
         text: source::with_call_of_main(text).into(),
         kind,
-    })?;
+    };
+    shared.start(job).map_err(Failure::Thread)?;
     let served = serve(&shared, outside);
     shared.quit(None);
     wait_for_threads(&shared);
     if let Err(error) = served {
-        return Err(format!("the daemon cannot be heard: {error}"));
+        return Err(Failure::Deaf(error.into()));
     }
     shared.failure().map_or(Ok(()), Err)
 }

@@ -6,6 +6,7 @@
 use super::machine::{self, Job};
 use super::outside::Output;
 use crate::display::Display;
+use crate::engine::{Failure, NoThread, Outcome};
 use crate::limits;
 use nix::sys::eventfd::{EfdFlags, EventFd};
 use std::collections::{HashMap, VecDeque};
@@ -64,7 +65,7 @@ impl Bell {
         self.fd.read().is_ok()
     }
 
-    /// Whether it was rung and not hushed, for whoever waits on the same thread.
+    /// Whether it was rung and not hushed, for another wait on the same thread.
     pub fn is_rung(&self) -> bool {
         self.rung.load(Ordering::Relaxed)
     }
@@ -124,9 +125,8 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 /// The work of one engine; who waits for its end must hear of it in any case.
-pub fn unbroken(work: impl FnOnce() -> Result<(), String>) -> Result<(), String> {
-    catch_unwind(AssertUnwindSafe(work))
-        .unwrap_or_else(|_| Err("trikd has a defect: its JavaScript broke off".to_owned()))
+pub fn unbroken(work: impl FnOnce() -> Outcome) -> Outcome {
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or(Err(Failure::Broken))
 }
 
 /// A question to the mailbox and where its answer goes.
@@ -146,7 +146,7 @@ pub struct Shared {
     questions: Mutex<VecDeque<Question>>,
     running: Mutex<HashMap<String, Arc<Slot>>>,
     notes: Mutex<HashMap<String, VecDeque<String>>>,
-    failure: Mutex<Option<String>>,
+    failure: Mutex<Option<Failure>>,
     quits: AtomicBool,
 }
 
@@ -204,7 +204,7 @@ impl Shared {
     ///
     /// # Errors
     /// Why there is none: its name is taken, there are too many.
-    pub fn start(self: &Arc<Self>, job: Job) -> Result<(), String> {
+    pub fn start(self: &Arc<Self>, job: Job) -> Result<(), NoThread> {
         let slot = self.admit(&job.name)?;
         let (shared, own) = (self.clone(), slot.clone());
         let started = std::thread::Builder::new()
@@ -216,35 +216,30 @@ impl Shared {
             });
         if let Err(error) = started {
             lock(&self.running).remove(&slot.name);
-            return Err(format!("no thread: {error}"));
+            return Err(NoThread::System(error.into()));
         }
         Ok(())
     }
 
-    /// A slot for a thread that begins now; whoever runs it calls [`Shared::finish`] at its end.
+    /// A slot for a thread that begins now; its runner calls [`Shared::finish`] at its end.
     ///
     /// # Errors
     /// Its name is taken, or there are too many.
-    pub fn admit(&self, name: &str) -> Result<Arc<Slot>, String> {
+    pub fn admit(&self, name: &str) -> Result<Arc<Slot>, NoThread> {
         let mut running = lock(&self.running);
         if running.contains_key(name) {
-            return Err(format!(
-                "Attempt to create a thread with an already occupied id {name}"
-            ));
+            return Err(NoThread::Occupied(name.to_owned()));
         }
         if running.len() >= limits::JS_THREADS {
-            return Err(format!(
-                "a program has at most {} threads at once: wait for the end of some with Threading.joinThread",
-                limits::JS_THREADS
-            ));
+            return Err(NoThread::TooMany);
         }
-        let slot = Arc::new(Slot::new(name).map_err(|error| format!("no thread: {error}"))?);
+        let slot = Arc::new(Slot::new(name).map_err(|error| NoThread::System(error.into()))?);
         running.insert(slot.name.clone(), slot.clone());
         Ok(slot)
     }
 
     /// A thread has ended; with its failure the program ends.
-    pub fn finish(&self, slot: &Slot, outcome: Result<(), String>) {
+    pub fn finish(&self, slot: &Slot, outcome: Outcome) {
         let mut running = lock(&self.running);
         running.remove(&slot.name);
         lock(&self.notes).remove(&slot.name);
@@ -252,8 +247,8 @@ impl Shared {
             other.bell.ring();
         }
         drop(running);
-        if let Err(text) = outcome {
-            lock(&self.failure).get_or_insert(text);
+        if let Err(failure) = outcome {
+            lock(&self.failure).get_or_insert(failure);
             self.quit(None);
         }
         self.bell.ring();
@@ -285,7 +280,7 @@ impl Shared {
     }
 
     /// The first failure of any thread.
-    pub fn failure(&self) -> Option<String> {
+    pub fn failure(&self) -> Option<Failure> {
         lock(&self.failure).take()
     }
 

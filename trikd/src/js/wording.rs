@@ -144,6 +144,8 @@ pub fn message(
         "ReferenceError" => message
             .strip_suffix(" is not defined")
             .map(|variable| format!("Can't find variable: {variable}")),
+        // What our own scripts say of a call is no matter of its text.
+        "SyntaxError" if message.starts_with("too few arguments") => None,
         "SyntaxError" if !message.contains("JSON") => Some(format!("Parse error: {message}")),
         "TypeError" => not_an_object(message, place).or_else(|| {
             let place = place.filter(|_| message == "not a function")?;

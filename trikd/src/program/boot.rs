@@ -6,6 +6,7 @@
 use super::{Command, Programs};
 use crate::sampler::Sampler;
 use crate::{limits, log, scripts};
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::time::Duration;
@@ -16,6 +17,37 @@ const NAMES: [&str; 3] = ["autorun.js", "autorun.py", "autorun"];
 /// A file of this name in the folder of programs keeps them from running.
 const SKIP: &str = "no-autorun";
 
+/// Why a program that is there is not run; the person who looks after the robot can change that.
+#[derive(Clone, Debug, Eq, PartialEq)]
+enum Reason {
+    /// A file in this folder says no.
+    Skip(PathBuf),
+    /// trikd has crashed.
+    Crash,
+    /// So many starts with it did not last.
+    Starts(u32),
+}
+
+/// A program that is not run, and why.
+#[derive(Clone, Debug, Eq, PartialEq)]
+struct NotRun(PathBuf, Reason);
+
+impl fmt::Display for NotRun {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "{} is not run: ", self.0.display())?;
+        match &self.1 {
+            Reason::Skip(folder) => {
+                write!(out, "there is a file {SKIP} in {}", folder.display())
+            }
+            Reason::Crash => out.write_str("trikd has been started again after a crash"),
+            Reason::Starts(count) => write!(
+                out,
+                "the last {count} starts with it did not last: run it by hand to have it run again"
+            ),
+        }
+    }
+}
+
 /// Starts that were begun and have not turned out well.
 fn begun(file: &Path) -> u32 {
     std::fs::read_to_string(file)
@@ -25,21 +57,21 @@ fn begun(file: &Path) -> u32 {
 }
 
 /// The program to run, or why none is run; None: there is none.
-fn choose(folder: &Path, count: u32, restarts: u32) -> Option<Result<PathBuf, String>> {
+fn choose(folder: &Path, count: u32, restarts: u32) -> Option<Result<PathBuf, NotRun>> {
     let path = NAMES
         .iter()
         .map(|name| folder.join(name))
         .find(|path| path.is_file())?;
     let why = if folder.join(SKIP).exists() {
-        format!("there is a file {SKIP} in {}", folder.display())
+        Reason::Skip(folder.to_owned())
     } else if restarts > 0 {
-        "trikd has been started again after a crash".to_owned()
+        Reason::Crash
     } else if count >= limits::AUTORUN_TRIES {
-        format!("the last {count} starts with it did not last: run it by hand to have it run again")
+        Reason::Starts(count)
     } else {
         return Some(Ok(path));
     };
-    Some(Err(format!("{} is not run: {why}", path.display())))
+    Some(Err(NotRun(path, why)))
 }
 
 /// What the start works with.
@@ -51,7 +83,7 @@ pub struct Autorun {
     pub state: PathBuf,
     /// What the robot senses: a key that is held down.
     pub sampler: Rc<Sampler>,
-    /// Whoever runs programs.
+    /// The part that runs programs.
     pub programs: Rc<Programs>,
 }
 
@@ -94,21 +126,23 @@ pub async fn autorun(parts: Autorun, restarts: u32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scratch::Scratch;
+    use harness::put;
+    use tempfile::tempdir;
 
     #[test]
     fn a_program_that_took_the_robot_down_is_not_run_for_ever() {
-        let scratch = Scratch::new("boot");
+        let scratch = tempdir().unwrap();
         let folder = scratch.path();
         assert!(choose(folder, 0, 0).is_none());
-        let path = scratch.file("autorun.py", "");
+        let path = put(scratch.path(), "autorun.py", "");
         assert_eq!(choose(folder, limits::AUTORUN_TRIES - 1, 0), Some(Ok(path)));
         let why = |count, restarts| choose(folder, count, restarts).unwrap().unwrap_err();
-        assert!(why(limits::AUTORUN_TRIES, 0).contains("did not last"));
-        assert!(why(0, 1).contains("after a crash"));
-        scratch.file(SKIP, "");
-        assert!(why(0, 0).contains(SKIP));
-        assert_eq!(begun(&scratch.file("count", "2\n")), 2);
-        assert_eq!(begun(&scratch.file("count", "many")), 0);
+        let told = why(limits::AUTORUN_TRIES, 0);
+        assert!(told.to_string().contains("did not last"), "{told}");
+        assert!(why(0, 1).to_string().contains("after a crash"));
+        put(scratch.path(), SKIP, "");
+        assert!(why(0, 0).to_string().contains(SKIP));
+        assert_eq!(begun(&put(scratch.path(), "count", "2\n")), 2);
+        assert_eq!(begun(&put(scratch.path(), "count", "many")), 0);
     }
 }

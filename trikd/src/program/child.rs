@@ -9,7 +9,7 @@ use crate::protocol::frame::{Decoder, encode};
 use crate::protocol::program::ToProgram;
 use crate::settings::Settings;
 use nix::unistd::{Pid, User};
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::io;
 use std::os::fd::OwnedFd;
 use std::os::unix::fs::MetadataExt;
@@ -31,6 +31,8 @@ pub enum Language {
     Python,
     /// A child of our own with the machine of diagrams inside.
     Diagram,
+    /// Lua on the files of the tree, by an interpreter of the machine.
+    Lua,
     /// Anything that can be executed.
     Native,
 }
@@ -42,15 +44,10 @@ impl Language {
             Some("py") => Self::Python,
             Some("js" | "qts") => Self::JavaScript,
             Some("qrs") => Self::Diagram,
-            _ => {
-                let mut first = [0; 4];
-                let read = std::fs::File::open(path)
-                    .and_then(|mut file| io::Read::read(&mut file, &mut first));
-                match read {
-                    Ok(size) if crate::scripts::is_executable(&first[..size]) => Self::Native,
-                    _ => Self::JavaScript,
-                }
-            }
+            // One that names its interpreter runs on that.
+            Some("lua") if !begins_as_executable(path) => Self::Lua,
+            Some(_) | None if begins_as_executable(path) => Self::Native,
+            Some(_) | None => Self::JavaScript,
         }
     }
 
@@ -60,9 +57,34 @@ impl Language {
             Self::JavaScript => "JavaScript",
             Self::Python => "Python",
             Self::Diagram => "diagram",
+            Self::Lua => "Lua",
             Self::Native => "native",
         }
     }
+}
+
+fn begins_as_executable(path: &Path) -> bool {
+    let mut first = [0; 4];
+    let read = std::fs::File::open(path).and_then(|mut file| io::Read::read(&mut file, &mut first));
+    read.is_ok_and(|size| crate::scripts::is_executable(&first[..size]))
+}
+
+/// Interpreters of Lua, the first that is there counts.
+const LUA: [&str; 3] = ["luajit", "lua5.1", "lua"];
+
+/// An interpreter of Lua in one of these directories.
+fn lua(path: &OsStr) -> io::Result<PathBuf> {
+    let found = LUA.iter().find_map(|name| {
+        std::env::split_paths(path)
+            .map(|directory| directory.join(name))
+            .find(|file| file.is_file())
+    });
+    found.ok_or_else(|| {
+        io::Error::new(
+            io::ErrorKind::NotFound,
+            "this robot has no luajit, which runs Lua: install luajit on it, or generate the program in Python or JavaScript",
+        )
+    })
 }
 
 /// Whose rights programs have.
@@ -153,10 +175,20 @@ pub struct Child {
     events: std::collections::VecDeque<Event>,
 }
 
-/// Words of the command that becomes the program.
-fn words(settings: &Settings, language: Language, path: Option<&Path>) -> Vec<OsString> {
-    match (language, path) {
+/// Words of the command that becomes the program, which is looked for in these directories.
+fn words(
+    settings: &Settings,
+    directories: &OsStr,
+    language: Language,
+    path: Option<&Path>,
+) -> io::Result<Vec<OsString>> {
+    Ok(match (language, path) {
         (Language::Native, Some(path)) => vec![path.into()],
+        (Language::Lua, path) => {
+            let program = path.map(OsString::from);
+            let words = std::iter::once(lua(directories)?.into()).chain(program);
+            words.collect()
+        }
         (Language::Python, _) => {
             vec![
                 settings.python.clone().into(),
@@ -167,7 +199,7 @@ fn words(settings: &Settings, language: Language, path: Option<&Path>) -> Vec<Os
         }
         (Language::Diagram, _) => vec![SELF.into(), "diagram".into()],
         (Language::JavaScript, _) | (Language::Native, None) => vec![SELF.into(), "js".into()],
-    }
+    })
 }
 
 /// Starts a program within its limits, in the folder of programs. It leads a session of its own.
@@ -199,14 +231,14 @@ pub fn start(
             .arg("--gid")
             .arg(user.gid.to_string());
     }
-    command.arg("--").args(words(settings, language, path));
+    let directories =
+        std::env::var_os("PATH").unwrap_or_else(|| "/usr/local/bin:/usr/bin:/bin".into());
+    let words = words(settings, &directories, language, path)?;
+    command.arg("--").args(words);
     let python: PathBuf = settings.run.join("python");
     command
         .env_clear()
-        .env(
-            "PATH",
-            std::env::var_os("PATH").unwrap_or_else(|| "/usr/local/bin:/usr/bin:/bin".into()),
-        )
+        .env("PATH", directories)
         .env("HOME", &settings.scripts)
         .env("LANG", "C.UTF-8")
         .env("TRIK_TREE", &settings.tree)
@@ -221,7 +253,7 @@ pub fn start(
         .current_dir(&settings.scripts)
         .stdout(Stdio::piped())
         .stderr(Stdio::piped());
-    let channel = if language == Language::Native {
+    let channel = if matches!(language, Language::Native | Language::Lua) {
         command.stdin(Stdio::null());
         None
     } else {

@@ -1,6 +1,6 @@
 //! Ends everything that a program has started, wherever it has put itself.
 //!
-//! This process is the subreaper of all programs: whoever loses its parent becomes our child, so what lives below us is
+//! This process is the subreaper of all programs: a process that loses its parent becomes our child, so what lives below us is
 //! what has to go. A program with a user of its own cannot even outrun the search: one kill(2) takes all of that user.
 
 use crate::error::Error;

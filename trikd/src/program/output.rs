@@ -1,8 +1,9 @@
 //! What a program says, line by line, and not more of it than clients and network can take.
 //!
-//! Owns the splitting and the meter. Knows no processes.
+//! Owns the splitting, the meter, and which messages of a burst are left out: those in its middle. Knows no processes.
 
 use crate::limits;
+use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 /// Bytes of a pipe on their way to lines.
@@ -55,12 +56,14 @@ impl Lines {
     }
 }
 
-/// Lets so many messages and bytes through in a second, and counts the others.
+/// Lets so many messages and bytes through in a second, holds the newest of the others, and counts those that are lost.
 #[derive(Debug)]
 pub struct Meter {
     messages: f64,
     bytes: f64,
     at: Instant,
+    held: VecDeque<String>,
+    held_bytes: usize,
     dropped: u32,
     dropped_since: Option<Instant>,
 }
@@ -71,6 +74,8 @@ impl Default for Meter {
             messages: limits::OUTPUT_MESSAGES_PER_SECOND,
             bytes: limits::OUTPUT_BYTES_PER_SECOND,
             at: Instant::now(),
+            held: VecDeque::new(),
+            held_bytes: 0,
             dropped: 0,
             dropped_since: None,
         }
@@ -78,8 +83,39 @@ impl Default for Meter {
 }
 
 impl Meter {
+    /// Takes a message: gives it back if it may pass now, else holds it until [`Meter::release`].
+    pub fn offer(&mut self, message: String, now: Instant) -> Option<String> {
+        if self.held.is_empty() && self.admits(message.len(), now) {
+            return Some(message);
+        }
+        self.held_bytes += message.len();
+        self.held.push_back(message);
+        while self.held.len() > limits::OUTPUT_HELD_MESSAGES
+            || self.held_bytes > limits::OUTPUT_HELD_BYTES
+        {
+            let Some(oldest) = self.held.pop_front() else {
+                break;
+            };
+            self.held_bytes -= oldest.len();
+            self.dropped = self.dropped.saturating_add(1);
+            self.dropped_since.get_or_insert(now);
+        }
+        None
+    }
+
+    /// The next message that was held, if it may pass now or nothing more comes. What was lost before it is told first:
+    /// until [`Meter::take_dropped`] has said how much that was, it waits.
+    pub fn release(&mut self, now: Instant, is_over: bool) -> Option<String> {
+        let size = self.held.front()?.len();
+        if !is_over && (self.dropped_since.is_some() || !self.admits(size, now)) {
+            return None;
+        }
+        self.held_bytes -= size;
+        self.held.pop_front()
+    }
+
     /// Whether a message of this size may pass now.
-    pub fn admits(&mut self, size: usize, now: Instant) -> bool {
+    fn admits(&mut self, size: usize, now: Instant) -> bool {
         let passed = now.saturating_duration_since(self.at).as_secs_f64();
         self.at = now;
         let refill = |left: f64, per_second: f64| (left + passed * per_second).min(per_second);
@@ -92,9 +128,6 @@ impl Meter {
         if passes {
             self.messages -= 1.0;
             self.bytes -= size;
-        } else {
-            self.dropped = self.dropped.saturating_add(1);
-            self.dropped_since.get_or_insert(now);
         }
         passes
     }
@@ -142,22 +175,48 @@ mod tests {
         assert!(got.iter().all(|line| line.len() <= limits::LINE_BYTES));
     }
 
+    /// All that comes out now.
+    fn released(meter: &mut Meter, now: Instant, is_over: bool) -> Vec<String> {
+        std::iter::from_fn(|| meter.release(now, is_over)).collect()
+    }
+
     #[test]
-    fn a_flood_is_cut_and_counted() {
+    fn a_flood_loses_its_middle_which_is_counted() {
         let mut meter = Meter::default();
         let start = Instant::now();
-        let passed = (0..10_000).filter(|_| meter.admits(10, start)).count();
-        assert_eq!(
-            f64::from(u32::try_from(passed).unwrap()),
-            limits::OUTPUT_MESSAGES_PER_SECOND
-        );
+        let offered = (0..10_000).map(|number| meter.offer(number.to_string(), start));
+        let passed: Vec<_> = offered.flatten().collect();
+        let count = limits::OUTPUT_MESSAGES_PER_SECOND as usize;
+        assert_eq!((passed.len(), &*passed[count - 1]), (count, "999"));
         assert_eq!(meter.take_dropped(start, false), None);
-        let later = start + Duration::from_secs(2);
-        assert!(meter.admits(10, later));
-        assert_eq!(
-            meter.take_dropped(later, false),
-            Some(10_000 - u32::try_from(passed).unwrap())
+        assert!(released(&mut meter, start, false).is_empty());
+        let soon = start + Duration::from_millis(900);
+        assert!(
+            released(&mut meter, soon, false).is_empty(),
+            "before the count"
         );
+        let later = start + Duration::from_secs(2);
+        let lost = 10_000 - count - limits::OUTPUT_HELD_MESSAGES;
+        assert_eq!(meter.take_dropped(later, false), u32::try_from(lost).ok());
+        let last = released(&mut meter, later, false);
+        assert_eq!(last.len(), limits::OUTPUT_HELD_MESSAGES);
+        assert_eq!(last.last().map(String::as_str), Some("9999"));
         assert_eq!(meter.take_dropped(later, true), None);
+        assert_eq!(
+            meter.offer("next".to_owned(), later).as_deref(),
+            Some("next")
+        );
+    }
+
+    #[test]
+    fn at_the_end_all_that_is_held_comes_and_long_messages_are_held_by_their_bytes() {
+        let mut meter = Meter::default();
+        let start = Instant::now();
+        while meter.offer("x".repeat(60_000), start).is_some() {}
+        assert_eq!(meter.offer("y".repeat(60_000), start), None);
+        let last = released(&mut meter, start, true);
+        assert_eq!(last.len(), 1);
+        assert!(last[0].starts_with('y'));
+        assert_eq!(meter.take_dropped(start, true), Some(1));
     }
 }

@@ -1,4 +1,4 @@
-//! What is asked of whoever runs programs, in the order in which it came, and what the status shows of programs.
+//! Requests to the part that runs programs, in the order in which they came, and what the status shows of programs.
 //!
 //! Owns the queue and its limit. Knows no processes.
 

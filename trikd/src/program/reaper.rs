@@ -43,7 +43,7 @@ impl Reaper {
                 Ok(_) => continue,
             };
             if let Some(tell) = self.waiting.borrow_mut().remove(&pid.as_raw()) {
-                // Whoever asked may have lost interest.
+                // The caller may have lost interest.
                 let _ = tell.send(ended);
             }
         }

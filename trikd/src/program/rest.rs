@@ -3,7 +3,7 @@
 //! Owns that thread and the open file `stop`. A device that hangs delays the thread, and others wait for it as long as
 //! they like.
 
-use crate::error::Os;
+use crate::blame::Os;
 use crate::limits;
 use crate::priority::{self, Rank};
 use crate::tree::{Access, Tree};
@@ -111,7 +111,7 @@ fn serve(root: &Path, asked: &Receiver<Answer>) {
     let tree = Tree::new(root);
     let stop = tree.node("stop", Access::Write);
     while let Ok(first) = asked.recv() {
-        // Whoever asked meanwhile is served by the same write.
+        // A caller that asked meanwhile is served by the same write.
         let others: Vec<_> = asked.try_iter().collect();
         let done = stop.write("1\n").map_err(|error| Failure::of(root, error));
         for answer in std::iter::once(first).chain(others) {
@@ -133,7 +133,8 @@ pub fn is_explained(text: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scratch::Scratch;
+    use harness::put;
+    use tempfile::tempdir;
 
     #[test]
     fn every_failure_is_told_so_that_it_is_known_as_one() {
@@ -147,7 +148,7 @@ mod tests {
 
     #[test]
     fn everything_is_brought_to_rest_by_one_write() {
-        let scratch = Scratch::new("rest");
+        let scratch = tempdir().unwrap();
         let runtime = tokio::runtime::Builder::new_current_thread()
             .enable_time()
             .build()
@@ -157,7 +158,7 @@ mod tests {
             .block_on(rest.now(limits::REST_LAST_MS))
             .unwrap_err();
         assert_eq!(why, Failure::NoTree(scratch.path().to_owned()));
-        let stop = scratch.file("stop", "");
+        let stop = put(scratch.path(), "stop", "");
         runtime.block_on(rest.now(limits::REST_LAST_MS)).unwrap();
         assert_eq!(std::fs::read_to_string(stop).unwrap(), "1\n");
     }

@@ -30,7 +30,7 @@ const KINDS: &str = "_services._dns-sd._udp.local";
 pub struct Robot {
     /// Its name, one label.
     pub name: String,
-    /// Its address towards whoever asked.
+    /// Its address as the asking computer sees it.
     pub ip: Ipv4Addr,
     /// Its control port.
     pub port: u16,

@@ -6,7 +6,7 @@ use std::net::{IpAddr, Ipv4Addr};
 /// One message.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub enum Message {
-    /// First frame of whoever connects.
+    /// First frame of the side that connects.
     Register {
         /// Port of its own server.
         port: u16,

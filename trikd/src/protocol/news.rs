@@ -89,7 +89,7 @@ pub fn ended<'a>(text: &'a str, name: &str) -> Option<End<'a>> {
     what.strip_prefix("was stopped by ").map(End::Stopped)
 }
 
-/// In the place of the program in [`running`] when there is none.
+/// Instead of the program in [`running`] when there is none.
 pub const NONE: &str = "none";
 
 /// The line of a status about the program that runs.

@@ -12,6 +12,7 @@ import heapq
 import io
 import itertools
 import json
+import math
 import os
 import queue
 import random as _random
@@ -23,6 +24,9 @@ import sys
 import threading
 import time
 import traceback
+
+# The name of the controller's own module; programs import either.
+sys.modules.setdefault('TRIK', sys.modules[__name__])
 
 _ROOT = os.environ.get('TRIK_TREE', '/trikfs')
 _STALE = {errno.ENOTCONN, errno.ENODEV, errno.ESTALE, errno.ECONNABORTED}
@@ -75,6 +79,22 @@ def _file(path, flags=os.O_RDONLY):
     return _files[path, flags]
 
 
+def _number(value, what):
+    """A finite number, or a text with one; whatever else there is must not move anything."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError, OverflowError):
+        number = math.nan
+    if not math.isfinite(number):
+        raise ValueError('%s: %r is no number' % (what, value))
+    return number
+
+
+def _whole(value, what, least=-2**31, most=2**31 - 1):
+    """The whole number of it, as the controller takes numbers: cut towards zero, and to its range."""
+    return int(max(least, min(most, _number(value, what))))
+
+
 def _has(directory):
     return os.path.isdir(os.path.join(_ROOT, directory))
 
@@ -84,7 +104,16 @@ def _is_there(path):
 
 
 def _names(directory):
-    return sorted(os.listdir(os.path.join(_ROOT, directory)))
+    try:
+        return sorted(os.listdir(os.path.join(_ROOT, directory)))
+    except FileNotFoundError:
+        return []
+
+
+def _ports(group):
+    """Names of connectors. The second names that a robot file gives them count only where it has no others."""
+    names = _names(group)
+    return [name for name in names if re.fullmatch('[A-Z]{1,2}[0-9]{1,2}', name)] or names
 
 
 class _Channel:
@@ -195,6 +224,19 @@ class _Signal:
             function(*arguments)
 
 
+def _watched(read):
+    """A signal with values and time, 50 times a second from the first connection on."""
+    def watch():
+        while True:
+            try:
+                _events.put((signal, (read(), int(time.time() * 1000))))
+            except OSError:
+                pass
+            time.sleep(0.02)
+    signal = _Signal(watch)
+    return signal
+
+
 def _stream(path, size):
     """Pieces of a stream of the tree for ever."""
     while True:
@@ -217,13 +259,20 @@ class Motor:
     def __init__(self, directory, servo):
         self._value, self._servo = directory + '/value', servo
         self._switch = directory + ('/power' if servo else '/brake')
-        self._most = 100
+        self._most, self._told = 100, set()
         if servo and _file(directory + '/units').text() != '%':
             self._most = 90
 
     def setPower(self, power, constrain=True):
-        power = round(max(-self._most, min(self._most, power)))
-        _file(self._value, os.O_WRONLY).write('%d\n' % power)
+        power = _whole(power, 'setPower', -self._most, self._most)
+        file = _file(self._value, os.O_WRONLY)
+        try:
+            file.write('%d\n' % power)
+        except OSError as error:
+            # Some servos have nothing below the middle: as far as they go.
+            if error.errno != errno.ERANGE or not self._servo:
+                raise
+            file.write('0\n' if power < 0 else '%d\n' % self._most)
 
     def power(self):
         return _file(self._value).number()
@@ -238,8 +287,11 @@ class Motor:
         if self._servo:
             return self.powerOff()
         _file(self._switch, os.O_WRONLY).write('1\n')
-        time.sleep(ms / 1000)
+        time.sleep(max(0, _whole(ms, 'brake')) / 1000)
         self.setPower(0)
+
+    def setPeriod(self, us=20000):
+        _once(self._told, 'motor.setPeriod', 'the tree sets the period of pulses by the type of the motor; nothing is changed')
 
 
 class Sensor:
@@ -273,6 +325,26 @@ class KeysEnum:
     Left, Up, Down, Enter, Right, Power, Esc = 105, 103, 108, 28, 106, 116, 1
 
 
+class Events:
+    Sync, Key, Relative, Absolute, Misc = range(5)
+
+
+class MouseEventCodes:
+    """Numbers of linux/input-event-codes.h under the names of the controller."""
+
+    X, Y, Wheel = 0, 1, 8
+    LeftBtn, RightBtn, MiddleBtn = 272, 273, 274
+
+
+class PadEventCodes:
+    """As MouseEventCodes."""
+
+    BtnA, BtnB, BtnC, BtnX, BtnY, BtnZ = range(304, 310)
+    BtnTL, BtnTR, BtnTL2, BtnTR2, BtnSelect, BtnStart = range(310, 316)
+    X, Y, Z, Rx, Ry, Rz, Throttle, Rudder, Wheel, Gas, Break = range(11)
+    Hat0X, Hat0Y, Hat1X, Hat1Y = range(16, 20)
+
+
 _KEY_ORDER = [116, 103, 1, 105, 106, 108, 28]
 
 
@@ -303,12 +375,14 @@ class Keys:
 
     def wasPressed(self, code):
         self._start()
+        code = _whole(code, 'wasPressed')
         if code in self._latched:
             self._latched.discard(code)
             return True
         return False
 
     def isPressed(self, code):
+        code = _whole(code, 'isPressed')
         try:
             return dict(zip(_KEY_ORDER, _file('keys/value', os.O_RDONLY | os.O_NONBLOCK).numbers())).get(code, 0) != 0
         except BlockingIOError:
@@ -354,17 +428,149 @@ class Battery:
 
 
 class Accelerometer:
+    def __init__(self):
+        self.newData = _watched(self.read)
+
     def read(self):
         return _file('accelerometer/value').numbers()
 
+    def readRawData(self):
+        return _file('accelerometer/raw').numbers()
+
 
 class Gyroscope:
+    _TURN = 360000
+    _NO_VALUES = 'the gyroscope calibrates itself whenever the robot rests; its bias stands in the robot file'
+
+    def __init__(self):
+        # What is left of a calibration, since the tree measures the bias by itself: where forward is.
+        self._forward, self._waits = 0, None
+        self.newData, self.calibrationFinished = _watched(self.read), _Signal()
+
     def read(self):
         rates, tilt = _file('gyroscope/value').numbers(), _file('gyroscope/tilt').numbers()
-        return rates + [int(time.time() * 1e6) % (1 << 31)] + tilt + [_file('gyroscope/heading').number()]
+        heading = _file('gyroscope/heading').number()
+        if self._forward:
+            turned = heading - self._forward
+            heading = turned - self._TURN * math.floor(turned / self._TURN + 0.5)
+        return rates + [int(time.time() * 1e6) % (1 << 31)] + tilt + [heading]
 
     def readRawData(self):
         return _file('gyroscope/raw').numbers()
+
+    def calibrate(self, ms):
+        """After this time the heading begins at 0."""
+        ms, self._waits = max(0, _whole(ms, 'calibrate')), object()
+        threading.Thread(target=self._finish, args=(self._waits, ms), daemon=True).start()
+
+    def _finish(self, mine, ms):
+        time.sleep(ms / 1000)
+        while self._waits is mine:
+            try:
+                self._forward = _file('gyroscope/heading').number()
+            except OSError:
+                time.sleep(0.02)
+                continue
+            self._waits = None
+            _events.put((self.calibrationFinished, ()))
+
+    def isCalibrated(self):
+        if self._waits is not None:
+            return False
+        try:
+            _file('gyroscope/value', os.O_RDONLY | os.O_NONBLOCK).number()
+        except OSError:
+            return False
+        return True
+
+    def getCalibrationValues(self):
+        raise TypeError('gyroscope.getCalibrationValues: ' + self._NO_VALUES)
+
+    def setCalibrationValues(self, values):
+        raise TypeError('gyroscope.setCalibrationValues: ' + self._NO_VALUES)
+
+
+class Lidar:
+    def read(self):
+        """Distances in mm, one for each degree."""
+        return _file('lidar/value').numbers()
+
+
+def _cell(values, row, column, what):
+    side = round(len(values) ** 0.5)
+    row, column = _whole(row, what), _whole(column, what)
+    if not (1 <= row <= side and 1 <= column <= side):
+        raise IndexError('%s has cells 1 to %d, not %d, %d' % (what, side, row, column))
+    return values[(row - 1) * side + column - 1]
+
+
+def _never(what, why):
+    """A signal that would never come says so when somebody wants it."""
+    class Never(_Signal):
+        def connect(self, function):
+            raise TypeError('%s: %s' % (what, why))
+    return Never()
+
+
+class IrCamera:
+    _NO_PICTURE = 'the tree has no picture of the infrared camera; readSensor() gives its cells'
+
+    def __init__(self):
+        self.imageUpdated = _never('irCamera.imageUpdated', self._NO_PICTURE)
+        self.sensorUpdated = _never('irCamera.sensorUpdated', 'the tree tells no changes of the infrared camera; use a timer')
+        self.stopped = _never('irCamera.stopped', 'the infrared camera does not stop')
+
+    def init(self):
+        _file('ir_camera/value').numbers()
+
+    def stop(self):
+        pass
+
+    def readSensor(self, row, column):
+        return _cell(_file('ir_camera/value').numbers(), row, column, 'irCamera')
+
+    def getImage(self):
+        raise TypeError('irCamera.getImage: ' + self._NO_PICTURE)
+
+
+class Fifo:
+    """Lines of a text node of the tree."""
+
+    _LINES_MAX = 4096
+
+    def __init__(self, path):
+        self._lines, self.newLine, self.newData = queue.Queue(), _Signal(), _Signal()
+        threading.Thread(target=self._watch, args=(path,), daemon=True).start()
+
+    def _watch(self, path):
+        for piece in _stream(path, 4096):
+            for line in piece.replace(b'\0', b'\n').decode('utf-8', 'replace').split('\n'):
+                if not line:
+                    continue
+                if self._lines.qsize() >= self._LINES_MAX:
+                    self._take()
+                self._lines.put(line)
+                for signal, value in ((self.newLine, line), (self.newData, list(line.encode()))):
+                    if signal.functions:
+                        _events.put((signal, (value,)))
+
+    def _take(self, wait=False):
+        try:
+            return self._lines.get(block=wait)
+        except queue.Empty:
+            return None
+
+    def read(self):
+        return self._take(True)
+
+    def readRaw(self):
+        return list('\n'.join(iter(self._take, None)).encode())
+
+    def hasLine(self):
+        return not self._lines.empty()
+
+    def hasData(self):
+        return self.hasLine()
 
 
 class Camera:
@@ -372,7 +578,7 @@ class Camera:
         self._place, self._name = place, place.rpartition('/')[2]
         self._file = _File(place + '/value', os.O_RDONLY | os.O_NONBLOCK)
         self._colour = _File(place + '/hsv', os.O_RDONLY | os.O_NONBLOCK)
-        self._untold = None
+        self._untold, self.stopped = None, _Signal()
 
     def init(self, show=False):
         # The sensor runs while its files are open.
@@ -411,9 +617,9 @@ class Camera:
             numbers = [0, 0, 0]
         if self._name != 'color':
             return numbers
-        side = round(len(numbers) ** 0.5)
-        index = (row - 1) * side + column - 1 if row else 0
-        colour = numbers[index] if 0 <= index < len(numbers) else 0
+        colour = 0
+        if len(numbers) >= 4:
+            colour = numbers[0] if row is None else _cell(numbers, row, 1 if column is None else column, 'colorSensor')
         return [colour >> 16 & 255, colour >> 8 & 255, colour & 255]
 
     def getDetectParameters(self):
@@ -426,6 +632,7 @@ class Camera:
         self._untold = None
         self._file.close()
         self._colour.close()
+        _events.put((self.stopped, ()))
 
 
 def _once(told, what, why):
@@ -541,24 +748,33 @@ class PwmCapture:
     def duty(self):
         return _file(self._directory + '/duty_cycle').number()
 
+    def dutyRaw(self):
+        raise TypeError('pwmCapture.dutyRaw: the driver tells no raw width of pulses; duty() gives percent')
+
 
 class I2c:
     """A device on a bus: bytes at the position of a register, as the tree has them."""
 
     def __init__(self, bus, address, wide, order):
+        bus, address = _whole(bus, 'bus'), _whole(address, 'address')
         if not 3 <= address <= 0x77:
             raise ValueError('address %s is not 3 to 119 (0x77)' % address)
-        self._file = _File('i2c/bus%d/device' % bus, os.O_RDWR)
+        path = 'i2c/bus%d/device' % bus
+        if not _is_there(path):
+            raise FileNotFoundError(errno.ENOENT, 'there is no bus %d' % bus, os.path.join(_ROOT, path))
+        self._file = _File(path, os.O_RDWR)
         self._base, self._most = (address << 16) + (wide << 24), 0xffff if wide else 0xff
         # Words go out like this, but come in with the low byte first, as TRIK has it.
         self._order = order
 
     def _place(self, register):
+        register = _whole(register, 'register')
         if not 0 <= register <= self._most:
             raise ValueError('register %s is not 0 to %d' % (register, self._most))
         return self._base + register
 
     def send(self, register, value, mode='b'):
+        value = _whole(value, 'value')
         bytes_ = (value & 0xffff).to_bytes(2, self._order) if mode == 'w' else bytes([value & 255])
         place = self._place(register)
         self._file._do(lambda fd: os.pwrite(fd, bytes_, place))
@@ -621,14 +837,20 @@ class EventDevice(_Narrowed):
 
 class SoundSensor(Camera):
     def volume(self, coefficient):
-        self._write('volume', '%d\n' % round(coefficient))
+        self._write('volume', '%d\n' % _whole(coefficient, 'volume', 0, 100))
 
 
 class Brick:
     def __init__(self):
-        self._made, self._keys, self._display = {}, Keys(), Display()
+        self._made, self._keys, self._display, self._told = {}, Keys(), Display(), set()
+        self.stopped, self.resetCompleted = _Signal(), _Signal()
 
-    def _port(self, port, kinds, file=''):
+    def _absent(self, what, port, kinds):
+        """Nothing is plugged in there: said once, because what is called on None is an error that names no port."""
+        there = [name for directory, _ in kinds for name in _ports(directory)]
+        _once(self._told, '%s(%s)' % (what, port), 'nothing is plugged in there; plugged in are ' + (', '.join(there) or 'none'))
+
+    def _port(self, what, port, kinds, file=''):
         port = str(port)
         for directory, make in kinds:
             place = '%s/%s' % (directory, port)
@@ -637,16 +859,19 @@ class Brick:
                 self._made[place, file] = make(place)
             if (place, file) in self._made:
                 return self._made[place, file]
+        if what:
+            self._absent(what, port, kinds)
         return None
 
     def motor(self, port):
-        return self._port(port, [('motors', lambda place: Motor(place, False)), ('servos', lambda place: Motor(place, True))])
+        kinds = [('motors', lambda place: Motor(place, False)), ('servos', lambda place: Motor(place, True))]
+        return self._port('brick.motor', port, kinds)
 
     def sensor(self, port):
-        return self._port(port, [('sensors', Sensor)])
+        return self._port('brick.sensor', port, [('sensors', Sensor)])
 
     def encoder(self, port):
-        return self._port(port, [('encoders', Encoder)])
+        return self._port('brick.encoder', port, [('encoders', Encoder)])
 
     def keys(self):
         return self._keys
@@ -667,22 +892,27 @@ class Brick:
         return _helper.ask('photo 320 240')
 
     def pwmCapture(self, port):
-        return self._port(port, [('servos', PwmCapture)], 'duty_cycle')
+        return self._port('', port, [('servos', PwmCapture)], 'duty_cycle')
 
     def pwmCapturePorts(self):
-        return [port for port in _names('servos') if self.pwmCapture(port)]
+        return [port for port in _ports('servos') if self.pwmCapture(port)]
 
     def battery(self):
         return Battery()
 
+    def _one(self, place, make):
+        if place not in self._made and _has(place):
+            self._made[place] = make()
+        return self._made.get(place)
+
     def accelerometer(self):
-        return Accelerometer() if _has('accelerometer') else None
+        return self._one('accelerometer', Accelerometer)
 
     def gyroscope(self):
-        return Gyroscope() if _has('gyroscope') else None
+        return self._one('gyroscope', Gyroscope)
 
     def _camera(self, place, make=Camera):
-        return self._made.setdefault(place, make(place)) if _has(place) else None
+        return self._one(place, lambda: make(place))
 
     def lineSensor(self, port=None):
         return self._camera('camera/line')
@@ -721,8 +951,23 @@ class Brick:
     def _eventPath(file):
         return 'input/%s/device' % re.sub('[^A-Za-z0-9_-]', '_', str(file).rpartition('/')[2])
 
-    def lidar(self):
-        return _file('lidar/value').numbers()
+    def lidar(self, port=None):
+        return self._one('lidar', Lidar)
+
+    def irCamera(self):
+        return self._one('ir_camera', IrCamera)
+
+    def fifo(self, port):
+        place = str(port)
+        is_plain = len(place.split('/')) <= 3 and all(re.fullmatch('[A-Za-z0-9_-]+', part) for part in place.split('/'))
+        if not is_plain or not _is_there(place + '/device'):
+            return None
+        return self._one(place, lambda: Fifo(place + '/device'))
+
+    def configure(self, port, kind):
+        """The robot file says what is plugged in. Cameras need nothing."""
+        if kind not in ('lineSensor', 'objectSensor', 'colorSensor'):
+            _once(self._told, 'brick.configure of %s' % port, 'the robot file says what is plugged in; nothing is changed')
 
     def gamepad(self):
         return gamepad
@@ -737,64 +982,133 @@ class Brick:
         _file('sound/play/value', os.O_WRONLY).write(os.path.abspath(file))
 
     def playTone(self, hz, ms):
-        if hz >= 0 and ms >= 0:
-            _file('sound/tone/value', os.O_WRONLY).write('%d %d\n' % (round(hz), round(ms)))
+        hz, ms = _whole(hz, 'playTone'), _whole(ms, 'playTone')
+        if hz >= 0 and ms > 0:
+            tone = (max(20, min(7000, hz)), min(10000, ms))
+            _file('sound/tone/value', os.O_WRONLY).write('%d %d\n' % tone)
 
     def say(self, text):
-        _file('sound/say/value', os.O_WRONLY).write(text)
+        _file('sound/say/value', os.O_WRONLY).write(str(text))
 
     def motorPorts(self, kind=None):
-        return _names('motors')
+        groups = {'powerMotor': ['motors'], 'servoMotor': ['servos']}.get(kind, ['motors', 'servos'])
+        return [name for group in groups for name in _ports(group)]
 
     def sensorPorts(self, kind=None):
-        return _names('sensors')
+        begins = {'analogSensor': 'A', 'digitalSensor': 'D', 'rangeSensor': 'D'}.get(kind, '')
+        return [name for name in _ports('sensors') if name.startswith(begins)]
 
     def encoderPorts(self):
-        return _names('encoders')
+        return _ports('encoders')
 
-    def stop(self):
+    def _rest(self):
         _file('stop', os.O_WRONLY).write('1\n')
         if _is_there('display/device'):
             self._display.hide()
 
+    def stop(self):
+        self._rest()
+        _events.put((self.stopped, ()))
+
+    def reset(self):
+        self._rest()
+        self._keys.reset()
+        _events.put((self.resetCompleted, ()))
+
 
 class Timer:
-    def __init__(self, ms):
-        self.timeout, self._period, self._runs = _Signal(), ms / 1000, True
-        self.start()
+    """Calls what is connected to `timeout` each time its period is over, in script.run()."""
 
-    def start(self):
+    def __init__(self, ms):
+        self.timeout, self._turn, self._runs, self._once = _Signal(), 0, False, False
+        self.start(ms)
+
+    def _plan(self, at):
+        """The next time; those that were planned before count no longer."""
+        self._turn += 1
+        self._at = at
+        script._schedule(at, self._turn, self)
+
+    def start(self, ms=None):
+        if ms is not None:
+            self._period = max(0, _whole(ms, 'timer')) / 1000
         self._runs = True
-        script._schedule(time.monotonic() + self._period, self)
+        self._plan(time.monotonic() + self._period)
 
     def stop(self):
         self._runs = False
+
+    def isActive(self):
+        return self._runs
+
+    def interval(self):
+        return round(self._period * 1000)
+
+    def setInterval(self, ms):
+        self._period = max(0, _whole(ms, 'timer')) / 1000
+        if self._runs:
+            self._plan(time.monotonic() + self._period)
+
+    def isSingleShot(self):
+        return self._once
+
+    def setSingleShot(self, on):
+        self._once = bool(on)
+
+    def remainingTime(self):
+        return max(0, round((self._at - time.monotonic()) * 1000)) if self._runs else -1
+
+    def _fire(self, now):
+        if self._once:
+            self._runs = False
+        else:
+            # A period of 0 is one of 1 ms: others want to run as well.
+            self._plan(max(now, self._at + max(0.001, self._period)))
+        self.timeout._call(())
 
 
 class Script:
     def __init__(self):
         self._due, self._order, self._quits = [], itertools.count(), False
+        self._runs = False
 
-    def _schedule(self, at, timer):
-        heapq.heappush(self._due, (at, next(self._order), timer))
+    def _schedule(self, at, turn, timer):
+        heapq.heappush(self._due, (at, next(self._order), turn, timer))
 
     def wait(self, ms):
-        time.sleep(max(0, ms) / 1000)
+        time.sleep(max(0, _whole(ms, 'wait')) / 1000)
+
+    def isInEventDrivenMode(self):
+        return self._runs
+
+    def repeat(self, ms, function):
+        timer = Timer(ms)
+        timer.timeout.connect(function)
+        return timer
+
+    def reset(self):
+        """Stops all timers."""
+        for _, _, _, timer in self._due:
+            timer.stop()
+        self._due = []
 
     def time(self):
         return int(time.time() * 1000)
 
     def timeInterval(self, first, second):
-        return int(second - first)
+        return _whole(second, 'timeInterval') - _whole(first, 'timeInterval') & 0x7fffffff
 
     def random(self, least, greatest):
+        least, greatest = _whole(least, 'random'), _whole(greatest, 'random')
         return _random.randint(min(least, greatest), max(least, greatest))
 
     def timer(self, ms):
         return Timer(ms)
 
     def system(self, command, synchronously=False):
-        process = subprocess.Popen(['sh', '-c', command], stdin=subprocess.DEVNULL)
+        # What helpers say is not what the program says.
+        quiet = dict.fromkeys(('stdin', 'stdout', 'stderr'), subprocess.DEVNULL)
+        process = subprocess.Popen(['sh', '-c', str(command)], **quiet)
         return process.wait() if synchronously else 0
 
     def getPhoto(self):
@@ -826,14 +1140,13 @@ class Script:
         """Event-driven from here on: calls what is connected, until quit()."""
         if _channel:
             _channel.send('events')
-        self._quits = False
+        self._quits, self._runs = False, True
         while not self._quits:
             now = time.monotonic()
-            while self._due and self._due[0][0] <= now:
-                at, _, timer = heapq.heappop(self._due)
-                if timer._runs:
-                    self._schedule(max(now, at + timer._period), timer)
-                    timer.timeout._call(())
+            while self._due and self._due[0][0] <= now and not self._quits:
+                _, _, turn, timer = heapq.heappop(self._due)
+                if timer._runs and timer._turn == turn:
+                    timer._fire(now)
             while not _directs.empty():
                 _evaluate(_directs.get())
             wait = max(0, self._due[0][0] - time.monotonic()) if self._due else None
@@ -889,6 +1202,13 @@ class Threads:
     def sendMessage(self, name, text):
         self._box(name).put(str(text))
 
+    def reset(self):
+        """Ends all threads but the main one and itself."""
+        mine = threading.current_thread()
+        for name, thread in list(self._threads.items()):
+            if thread is not mine:
+                self.killThread(name)
+
     def receiveMessage(self, wait=True):
         mine = threading.current_thread()
         box = self._box('main' if mine is threading.main_thread() else mine.name)
@@ -900,7 +1220,7 @@ class Threads:
 
 class Mailbox:
     def __init__(self):
-        self.newMessage = _Signal()
+        self.newMessage, self._waiting = _Signal(), 0
 
     def _ask(self, words):
         if not _channel:
@@ -909,21 +1229,32 @@ class Mailbox:
         return _answers.get()
 
     def connect(self, ip, port=None):
-        self._ask('connect %s %s' % (ip, port or ''))
+        self._ask('connect %s %s' % (ip, '' if port is None else _whole(port, 'connect')))
 
     def joinNetwork(self, ip, port=-1, hull=-1):
-        self._ask('join %s %d %d' % (ip or '-', port, hull))
+        self._ask('join %s %d %d' % (ip or '-', _whole(port, 'joinNetwork'), _whole(hull, 'joinNetwork')))
 
     def send(self, hull, text=None):
         if text is None:
             hull, text = -1, hull
-        self._ask('send %d %s' % (hull, text))
+        self._ask('send %d %s' % (_whole(hull, 'send'), text))
 
     def receive(self, wait=True):
+        self._waiting += bool(wait)
         try:
             return _mail.get(block=wait)
         except queue.Empty:
             return ''
+        finally:
+            self._waiting -= bool(wait)
+
+    def stopWaiting(self):
+        """Ends receive() in other threads, which then gives an empty text."""
+        for _ in range(self._waiting):
+            _mail.put('')
+
+    def reset(self):
+        self.clearQueue()
 
     def hasMessages(self):
         return not _mail.empty()
@@ -936,7 +1267,7 @@ class Mailbox:
         return int(self._ask('hull'))
 
     def setHullNumber(self, hull):
-        self._ask('hull %d' % hull)
+        self._ask('hull %d' % _whole(hull, 'setHullNumber'))
 
     def serverIp(self):
         return self._ask('server')
@@ -960,9 +1291,20 @@ class Mailbox:
 class Gamepad:
     def __init__(self):
         self._seen = None
-        for name in ('pad', 'padUp', 'button', 'wheelEvent', 'custom'):
+        for name in ('pad', 'padUp', 'button', 'wheelEvent', 'custom', 'connected'):
             setattr(self, name, _Signal(self._start))
-        self._started = False
+        self.disconnected = _Signal(self._look)
+        self._started, self._heard, self._told = False, False, set()
+
+    def _look(self):
+        was = self.isConnected()
+        while True:
+            time.sleep(0.5)
+            now = self.isConnected()
+            if was and not now:
+                self._heard = False
+                _events.put((self.disconnected, ()))
+            was = now
 
     def _start(self):
         if not self._started:
@@ -981,6 +1323,9 @@ class Gamepad:
     def _line(self, words, line):
         if not words:
             return
+        if not self._heard:
+            self._heard = True
+            _events.put((self.connected, ()))
         if words[0] == 'pad' and words[2] == 'up':
             _events.put((self.padUp, (int(words[1]),)))
         elif words[0] == 'pad':
@@ -998,24 +1343,35 @@ class Gamepad:
         except OSError:
             return missing
 
+    def _pad(self, pad):
+        return self._numbers('pad%d/value' % _whole(pad, 'pad'), [0, 0, 0])
+
     def isPadPressed(self, pad):
-        return self._numbers('pad%d/value' % pad, [0, 0, 0])[2] != 0
+        return self._pad(pad)[2] != 0
 
     def padX(self, pad):
-        x, _, touched = self._numbers('pad%d/value' % pad, [0, 0, 0])
+        x, _, touched = self._pad(pad)
         return x if touched else -101
 
     def padY(self, pad):
-        _, y, touched = self._numbers('pad%d/value' % pad, [0, 0, 0])
+        _, y, touched = self._pad(pad)
         return y if touched else -101
 
     def wheel(self):
         return self._numbers('wheel/value', [-101])[0]
 
+    @staticmethod
+    def _button(button):
+        button = _whole(button, 'button')
+        if not 1 <= button <= 5:
+            raise IndexError('a gamepad has buttons 1 to 5, not %d' % button)
+        return button
+
     def buttonIsPressed(self, button):
-        return self._numbers('buttons/value', [0] * 5)[button - 1] != 0
+        return self._numbers('buttons/value', [0] * 5)[self._button(button) - 1] != 0
 
     def buttonWasPressed(self, button):
+        button = self._button(button)
         presses = self._numbers('buttons/presses', [0] * 5)
         if self._seen is None:
             self._seen = [0] * 5
@@ -1030,7 +1386,7 @@ class Gamepad:
         self._seen = self._numbers('buttons/presses', [0] * 5)
 
     def disconnect(self):
-        pass
+        _once(self._told, 'gamepad.disconnect', 'a gamepad ends its connection itself; nothing is changed')
 
 
 script = Script()
@@ -1040,10 +1396,13 @@ Threading = Threads()
 brick = Brick()
 
 for _letter, _count in (('A', 6), ('D', 3), ('M', 4), ('E', 4), ('S', 6)):
-    for _number in range(1, _count + 1):
-        globals()['%s%d' % (_letter, _number)] = '%s%d' % (_letter, _number)
+    for _index in range(1, _count + 1):
+        globals()['%s%d' % (_letter, _index)] = '%s%d' % (_letter, _index)
 
-__all__ = ['brick', 'script', 'getPhoto', 'mailbox', 'gamepad', 'web', 'KeysEnum', 'Threading'] + [
+__all__ = [
+    'brick', 'script', 'getPhoto', 'mailbox', 'gamepad', 'web', 'Threading',
+    'KeysEnum', 'Events', 'MouseEventCodes', 'PadEventCodes',
+] + [
     name for name in list(globals()) if name[:1] in 'ADMES' and name[1:].isdigit()
 ]
 

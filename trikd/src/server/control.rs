@@ -23,7 +23,7 @@ pub struct Control {
     pub clients: Rc<Clients>,
     /// Bytes of half frames.
     pub held: Rc<Held>,
-    /// Whoever runs programs.
+    /// The part that runs programs.
     pub programs: Rc<Programs>,
     /// Who beeps after an upload.
     pub feedback: Rc<Feedback>,
@@ -141,7 +141,7 @@ impl Handler for Session {
                 };
                 self.client.watch(watching);
             }
-            // Whoever sees danger may stop the robot.
+            // Anyone who sees danger may stop the robot.
             Request::Stop => self.command(Command::Stop("a client")).await,
             Request::File { name, content } => {
                 if self.may_control() {

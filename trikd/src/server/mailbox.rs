@@ -51,7 +51,7 @@ pub struct Surroundings {
     pub held: Rc<Held>,
     /// Connections on all ports.
     pub seats: Rc<Seats>,
-    /// Whoever runs programs, to which messages go.
+    /// The part that runs programs, to which messages go.
     pub programs: Rc<Programs>,
     /// Addresses that this robot serves at; none: all.
     pub addresses: Vec<IpAddr>,
@@ -410,7 +410,7 @@ impl Mailbox {
         linked.any(|robot| (robot.ip, robot.port) != (server.ip(), server.port()))
     }
 
-    /// Hull number of whoever is at the other end of a link.
+    /// Hull number of the robot at the other end of a link.
     fn hull_of(&self, link: &Rc<Link>) -> i32 {
         let robots = self.robots.borrow();
         let of_link = |robot: &&Robot| {

@@ -71,7 +71,7 @@ async fn diagram(clients: &Clients, stream: &mut TcpStream, peer: SocketAddr) ->
 pub struct Variables {
     /// The register of connections.
     pub clients: Rc<Clients>,
-    /// Whoever runs programs.
+    /// The part that runs programs.
     pub programs: Rc<Programs>,
 }
 

@@ -6,7 +6,7 @@ use super::Guest;
 use super::variables::head;
 use crate::clients::Clients;
 use crate::limits;
-use crate::pictures::{Newest, Pictures};
+use crate::pictures::{Newest, NoPicture, Pictures};
 use crate::protocol::http::{Head, answer};
 use std::io;
 use std::rc::Rc;
@@ -18,18 +18,15 @@ use tokio::sync::watch::Receiver;
 use tokio::time::timeout;
 
 /// The next picture.
-async fn next(watcher: &mut Receiver<Newest>) -> Result<Arc<[u8]>, String> {
+async fn next(watcher: &mut Receiver<Newest>) -> Result<Arc<[u8]>, NoPicture> {
     let wait = Duration::from_millis(limits::PICTURE_WAIT_MS);
     match timeout(wait, watcher.changed()).await {
         Ok(Ok(())) => {}
-        Ok(Err(_)) => return Err("trikd ends".to_owned()),
-        Err(_) => {
-            let seconds = limits::PICTURE_WAIT_MS / 1000;
-            return Err(format!("the camera has given nothing for {seconds} s"));
-        }
+        Ok(Err(_)) => return Err(NoPicture::End),
+        Err(_) => return Err(NoPicture::Silent(limits::PICTURE_WAIT_MS / 1000)),
     }
     let newest = watcher.borrow_and_update().clone();
-    newest.unwrap_or_else(|| Err("there is no picture yet".to_owned()))
+    newest.unwrap_or(Err(NoPicture::NoneYet))
 }
 
 /// Ends when the client has broken the connection. One that only says nothing more may still want its answer.
@@ -93,7 +90,7 @@ pub async fn serve(video: Rc<Video>, guest: Guest) {
                     picture = next(&mut watcher) => picture.map(|picture| (picture, watcher)),
                     () = gone(&mut stream) => return drop(seat),
                 },
-                Err(error) => Err(error.to_string()),
+                Err(error) => Err(NoPicture::NoReader(error.into())),
             };
             match first {
                 Err(reason) => text(

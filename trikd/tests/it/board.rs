@@ -3,7 +3,7 @@
 //! `trik` of the same build starts the board; a build of this package alone may not have it.
 
 use crate::rig::{BUILT, Client, Robot, trikd};
-use harness::wait::{SOON, note_skip};
+use harness::wait::note_skip;
 use harness::{Board, eventually, processes};
 use nix::sys::signal::Signal;
 use std::io::{BufRead, BufReader};
@@ -221,8 +221,13 @@ fn all_sensors_of_the_board_arrive() {
     let Some(board) = virtual_robot() else { return };
     let robot = &board.robot;
     let mut client = robot.client("telemetry");
-    client.send("ports");
-    let ports = client.next().expect("an answer");
+    let mut ports = String::new();
+    // Before the tree is looked through for the first time there are no names.
+    eventually("the tree answers", || {
+        client.send("ports");
+        ports = client.next().expect("an answer");
+        ports != "ports:analog:;digital:;special:;encoders:"
+    });
     assert!(
         ports.starts_with("ports:analog:A1,A2,A3,A4,A5,A6;digital:D1,D2"),
         "{ports}"
@@ -291,19 +296,11 @@ fn a_gamepad_reaches_the_tree_and_a_tree_that_leaves_is_told() {
     };
     let (mut gamepad, mut telemetry) =
         (Client::new(port("gamepad")), Client::new(port("telemetry")));
-    let deadline = std::time::Instant::now() + SOON;
-    loop {
+    eventually("the pad arrives", || {
         gamepad.raw("pad 1 -20 30\n");
         telemetry.send("sensor:GamepadPad1PosPort");
-        if telemetry.next().as_deref() == Some("sensor:GamepadPad1PosPort:(-20,30)") {
-            break;
-        }
-        assert!(
-            std::time::Instant::now() < deadline,
-            "the pad does not arrive"
-        );
-        std::thread::sleep(std::time::Duration::from_millis(20));
-    }
+        telemetry.next().as_deref() == Some("sensor:GamepadPad1PosPort:(-20,30)")
+    });
     let mut control = Client::new(port("control"));
     control.sync();
     let Virtual { robot, up } = board;

@@ -131,7 +131,7 @@ fn a_client_that_does_not_read_loses_messages_and_nobody_else_does() {
     let (mut deaf, mut hears) = (robot.client("control"), robot.client("control"));
     deaf.sync();
     // More than all buffers between both sides hold, at the rate that a program may have.
-    let text = "import time\nfor i in range(2000):\n  print('x' * 2000)\n  time.sleep(0.002)\ntime.sleep(1.5)\nprint('last')";
+    let text = "import time\nfor i in range(2000):\n  print('x' * 2000)\n  time.sleep(0.002)\nwhile True: time.sleep(0.1); print('last')";
     hears.send(&format!("file:flood.py:{text}"));
     hears.send("run:flood.py");
     let alive = deaf.stream.try_clone().unwrap();

@@ -4,18 +4,24 @@
 //! standard error, `//=` a file of the tree and what it must have at the end. FOLDER stands for the program's directory, TREE for
 //! that of the tree.
 
+use harness::put;
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
-use trikd::scratch::Scratch;
+use tempfile::{TempDir, tempdir};
 
 /// Only against hanging.
 const LONG: Duration = Duration::from_secs(120);
 
-/// A plain directory in the place of the tree.
-pub fn tree(scratch: &Scratch) {
+/// A plain directory instead of the tree.
+pub fn tree(scratch: &TempDir) {
+    fill(scratch.path());
+}
+
+/// Files of a tree with all that a robot can have.
+pub fn fill(folder: &Path) {
     let files = [
         ("status", ""),
         ("sensors/A1/value", "42\n"),
@@ -62,13 +68,13 @@ pub fn tree(scratch: &Scratch) {
         ),
     ];
     for (name, text) in files {
-        scratch.file(name, text);
+        put(folder, name, text);
     }
     for port in ["M1", "M3", "M4"] {
-        scratch.file(&format!("motors/{port}/value"), "");
-        scratch.file(&format!("motors/{port}/brake"), "");
+        put(folder, &format!("motors/{port}/value"), "");
+        put(folder, &format!("motors/{port}/brake"), "");
     }
-    scratch.file("lidar/value", "7 ".repeat(360));
+    put(folder, "lidar/value", "7 ".repeat(360));
 }
 
 /// The lines of the program that begin with a mark.
@@ -119,11 +125,11 @@ pub fn run(tree: &Path, program: &Path) -> Output {
 fn complaints(path: &Path) -> Vec<String> {
     let name = path.file_stem().unwrap().to_string_lossy();
     let text = fs::read_to_string(path).unwrap();
-    let scratch = Scratch::new("js");
+    let scratch = tempdir().unwrap();
     tree(&scratch);
     for line in marked(&text, "//<") {
         let (file, content) = line.split_once(' ').unwrap_or((line, ""));
-        scratch.file(file, format!("{content}\n"));
+        put(scratch.path(), file, format!("{content}\n"));
     }
     let own = text.lines().take_while(|line| {
         !["//<", "//>", "//!", "//="]
@@ -131,7 +137,11 @@ fn complaints(path: &Path) -> Vec<String> {
             .any(|mark| line.starts_with(mark))
     });
     let own: Vec<_> = own.collect();
-    let program = scratch.file(&format!("scripts/{name}.js"), own.join("\n") + "\n");
+    let program = put(
+        scratch.path(),
+        &format!("scripts/{name}.js"),
+        own.join("\n") + "\n",
+    );
     let folder = program.parent().unwrap().to_str().unwrap().to_owned();
     let output = run(scratch.path(), &program);
     let tree = scratch.path().to_str().unwrap().to_owned();

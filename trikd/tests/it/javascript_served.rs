@@ -4,6 +4,7 @@ use crate::javascript::run;
 use crate::rig::{Client, robot};
 use harness::documents::examples;
 use harness::processes;
+use harness::put;
 use nix::sys::stat::Mode;
 use proptest::prelude::*;
 use proptest::test_runner::Config;
@@ -13,7 +14,7 @@ use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
-use trikd::scratch::Scratch;
+use tempfile::tempdir;
 
 fn start(client: &mut Client, name: &str, text: &str) {
     client.send(&format!("file:{name}:{text}"));
@@ -169,11 +170,12 @@ fn messages_between_robots_reach_a_program() {
 /// A program, and what it prints while keys are pressed: one record of seven integers for each change.
 #[test]
 fn no_key_is_missed_while_a_program_does_something_else() {
-    let scratch = Scratch::new("js-keys");
+    let scratch = tempdir().unwrap();
     let device = scratch.path().join("keys/device");
     fs::create_dir_all(scratch.path().join("keys")).unwrap();
     nix::unistd::mkfifo(&device, Mode::from_bits_truncate(0o600)).unwrap();
-    let program = scratch.file(
+    let program = put(
+        scratch.path(),
         "keys.js",
         "var keys = brick.keys();\n\
          print(keys.wasPressed(KeysEnum.Up));\n\
@@ -222,8 +224,8 @@ fn no_key_is_missed_while_a_program_does_something_else() {
 
 /// Whether the process of a program ends with a signal that nobody sent.
 fn crashes(text: &[u8]) -> Option<String> {
-    let scratch = Scratch::new("js-hostile");
-    let program = scratch.file("hostile.js", text);
+    let scratch = tempdir().unwrap();
+    let program = put(scratch.path(), "hostile.js", text);
     let mut child = Command::new(crate::rig::trikd())
         .args(["js", "--tree"])
         .arg(scratch.path())
@@ -342,7 +344,7 @@ fn document() -> String {
 
 #[test]
 fn every_name_of_the_document_is_there() {
-    let scratch = Scratch::new("js-names");
+    let scratch = tempdir().unwrap();
     crate::javascript::tree(&scratch);
     let markdown = document();
     let rows = markdown.lines().filter_map(|line| line.strip_prefix("| `"));
@@ -389,17 +391,17 @@ fn every_name_of_the_document_is_there() {
         };
         text.push_str(&format!("check({call:?}, {object}, {wanted:?});\n"));
     }
-    scratch.file("camera/object/value", "1 2 3\n");
-    scratch.file("gamepad/text/value", "pad 1 up\n");
+    put(scratch.path(), "camera/object/value", "1 2 3\n");
+    put(scratch.path(), "gamepad/text/value", "pad 1 up\n");
     for file in [
         "microphones/value",
         "i2c/bus1/device",
         "input/event0/value",
         "input/event0/device",
     ] {
-        scratch.file(file, "");
+        put(scratch.path(), file, "");
     }
-    let program = scratch.file("names.js", text);
+    let program = put(scratch.path(), "names.js", text);
     let output = run(scratch.path(), &program);
     let said = String::from_utf8_lossy(&output.stdout).into_owned()
         + &String::from_utf8_lossy(&output.stderr);
@@ -412,9 +414,9 @@ fn every_example_of_the_document_prints_what_the_document_says() {
     let all = examples(&markdown);
     let mut tried = 0;
     for pair in all.windows(2).filter(|pair| pair[0].info == "js") {
-        let scratch = Scratch::new("js-document");
+        let scratch = tempdir().unwrap();
         crate::javascript::tree(&scratch);
-        let program = scratch.file("example.js", &pair[0].text);
+        let program = put(scratch.path(), "example.js", &pair[0].text);
         let output = run(scratch.path(), &program);
         let said = String::from_utf8_lossy(&output.stdout).into_owned()
             + &String::from_utf8_lossy(&output.stderr).replace("trikd: ", "error: ");

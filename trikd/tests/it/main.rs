@@ -1,6 +1,6 @@
 //! `trikd` as clients and programs use it: raw bytes on real sockets, programs in real processes.
 //!
-//! Most tests have a plain directory in the place of the tree; those in `board` have a virtual board. One binary, so
+//! Most tests have a plain directory instead of the tree; those in `board` have a virtual board. One binary, so
 //! that linking happens once. Below is the table of contents.
 
 /// Who may do what.
@@ -23,10 +23,14 @@ mod gamepad;
 mod javascript;
 /// JavaScript under the daemon, hostile programs, and what its document says.
 mod javascript_served;
+/// What Python and Lua have of the robot.
+mod languages;
 /// What stands in the log, and what cannot get there.
 mod log;
 /// Several robots.
 mod mailbox;
+/// The table of what the controller has.
+mod official;
 /// Programs: how they are run, what they say, how they end.
 mod programs;
 /// A running trikd and its clients.

@@ -5,7 +5,7 @@ use harness::{eventually, processes};
 use std::time::Instant;
 
 /// Uploads and runs a program, and waits for the message that it has started.
-fn run(client: &mut Client, name: &str, text: &str) {
+pub fn run(client: &mut Client, name: &str, text: &str) {
     client.send(&format!("file:{name}:{text}"));
     client.send(&format!("run:{name}"));
     client.expect(&format!("info: {name} has started"));
@@ -35,6 +35,8 @@ fn a_python_program_prints_line_by_line_and_uses_the_robot() {
     run(&mut client, "a.py", text);
     client.expect("print: in main\n");
     client.expect("print: 27 -1 90\n");
+    client.expect("info: brick.motor(Z9): nothing is plugged in there; plugged in are M1");
+    client.expect("info: brick.sensor(../A1): nothing is plugged in there; plugged in are A1, D1");
     client.expect("print: None None\n");
     client.expect("print: \u{43f}\u{440}");
     let told = client.next().unwrap();
@@ -235,15 +237,34 @@ fn a_flood_of_output_is_cut_and_the_program_goes_on() {
     run(
         &mut client,
         "flood.py",
-        "import time\nfor i in range(20000): print(i)\ntime.sleep(1.2)\nprint('end')",
+        "import time\nfor i in range(20000): print(i)\nwhile True: time.sleep(0.1); print('end')",
     );
     let told = client.until("info: ");
     assert!(
         told.contains(" messages of the program were left out"),
         "{told}"
     );
+    // Said until there is room for it again.
     client.until("print: end\n");
-    client.until("info: flood.py has ended");
+    client.send("stop");
+    client.until("info: flood.py was stopped");
+}
+
+/// A burst kept its beginning and lost its end, where the reason for it stands.
+#[test]
+fn the_last_lines_of_a_chatty_program_arrive() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    let text = "for i in range(5000): print(i)\nprint('the reason')\nraise SystemExit(3)";
+    run(&mut client, "chatty.py", text);
+    client.expect("print: 0\n");
+    let told = client.until("info: ");
+    assert!(
+        told.contains(" messages of the program were left out"),
+        "{told}"
+    );
+    client.until("print: 4999\n");
+    client.expect("print: the reason\n");
 }
 
 #[test]

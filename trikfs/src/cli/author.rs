@@ -2,7 +2,8 @@
 //!
 //! Owns their words and which of them go together; `trial` and `kit` do the work.
 
-use super::{Failure, SearchArgs, print};
+use super::{SearchArgs, print};
+use crate::failure::Failure;
 use crate::kit::{self, Language};
 use crate::limits::RECORDING_BYTES_MAX;
 use crate::trial::stream::{self, Input, Shape, Wishes};
@@ -109,8 +110,7 @@ pub(super) fn convert(args: &ConvertArgs) -> Result<(), Failure> {
 fn random(args: &ConvertArgs, subject: &Subject, tuples: u32) -> Result<(), Failure> {
     let recorded = match &args.input {
         None => Vec::new(),
-        Some(file) => trial::read(file, RECORDING_BYTES_MAX)
-            .map_err(|reason| format!("{}: {reason}", file.display()))?,
+        Some(file) => trial::read(file, RECORDING_BYTES_MAX)?,
     };
     let random = Random {
         tuples: tuples as usize,
@@ -133,9 +133,7 @@ fn stream(args: &ConvertArgs, subject: &Subject) -> Result<(), Failure> {
     let named = args.input.as_deref().filter(|file| *file != Path::new("-"));
     let name = named.unwrap_or(standard);
     let mut bytes: Box<dyn Read> = match named {
-        Some(file) => {
-            Box::new(File::open(file).map_err(|error| format!("{}: {error}", file.display()))?)
-        }
+        Some(file) => Box::new(File::open(file).map_err(|error| Failure::file(file, error))?),
         None => Box::new(io::stdin().lock()),
     };
     let mut input = if args.replay {
@@ -147,5 +145,5 @@ fn stream(args: &ConvertArgs, subject: &Subject) -> Result<(), Failure> {
     for line in lines {
         let _ = writeln!(io::stderr(), "{line}");
     }
-    Ok(result?)
+    result
 }

@@ -3,22 +3,22 @@
 //! Editors save by renaming, which the tree does not have; so the editor gets a copy, and the copy is written back as a
 //! program would write it. Owns the copy, which outlives a refusal.
 
+use crate::failure::Failure;
+use crate::limits::STATUS_BYTES_MAX;
 use config::limits::CONFIG_BYTES_MAX;
+use nix::errno::Errno;
 use std::fs::{self, DirBuilder, File, OpenOptions};
 use std::io::{self, BufRead, IsTerminal, Read, Write};
 use std::os::unix::fs::{DirBuilderExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Bytes of `status` that are looked at for the reason of a refusal.
-const STATUS_BYTES_MAX: u64 = 64 << 10;
-
 /// Edits the configuration of the tree at `mountpoint` and applies it, again and again until it is accepted or the
 /// user gives up.
 ///
 /// # Errors
 /// Why nothing was applied, and where the user's text is kept.
-pub(super) fn edit(mountpoint: &Path) -> Result<(), String> {
+pub(super) fn edit(mountpoint: &Path) -> Result<(), Failure> {
     let ask = |reason: &str| {
         if !io::stdin().is_terminal() {
             return false;
@@ -40,12 +40,12 @@ fn editor() -> String {
         .unwrap_or_else(|| "vi".to_owned())
 }
 
-fn edit_with(mountpoint: &Path, editor: &str, again: &dyn Fn(&str) -> bool) -> Result<(), String> {
+fn edit_with(mountpoint: &Path, editor: &str, again: &dyn Fn(&str) -> bool) -> Result<(), Failure> {
     let live = mountpoint.join("config");
     let before = read(&live)?;
     let copy = Copy::new(&before)?;
     loop {
-        run_editor(editor, &copy.path).map_err(|error| copy.keep(&error))?;
+        run_editor(editor, &copy.path).map_err(|failure| copy.keep(failure))?;
         let text = read(&copy.path)?;
         if text == before {
             let _ = writeln!(io::stderr(), "trikfs: nothing was changed");
@@ -58,7 +58,7 @@ fn edit_with(mountpoint: &Path, editor: &str, again: &dyn Fn(&str) -> bool) -> R
         };
         let reason = refusal(mountpoint, &live, &error);
         if !again(&reason) {
-            return Err(copy.keep(&reason));
+            return Err(copy.keep(Failure::NotApplied(reason)));
         }
     }
 }
@@ -71,14 +71,14 @@ struct Copy {
 
 impl Copy {
     /// In a private directory: a configuration may hold what others should not read.
-    fn new(text: &[u8]) -> Result<Self, String> {
+    fn new(text: &[u8]) -> Result<Self, Failure> {
         let name = format!(
             "trikfs-edit-{}-{}",
             nix::unistd::geteuid(),
             std::process::id()
         );
         let dir = std::env::temp_dir().join(name);
-        let fail = |error: io::Error| format!("{}: {error}", dir.display());
+        let fail = |error: io::Error| Failure::file(&dir, error);
         DirBuilder::new().mode(0o700).create(&dir).map_err(fail)?;
         // The ending tells the editor what language it is.
         let path = dir.join("config.lua");
@@ -96,36 +96,37 @@ impl Copy {
         let _ = fs::remove_dir_all(&self.dir);
     }
 
-    fn keep(&self, reason: &str) -> String {
-        format!("{reason}\nyour text is in {}", self.path.display())
+    fn keep(&self, failure: Failure) -> Failure {
+        Failure::Kept {
+            why: Box::new(failure),
+            path: self.path.clone(),
+        }
     }
 }
 
-fn run_editor(editor: &str, path: &Path) -> Result<(), String> {
+fn run_editor(editor: &str, path: &Path) -> Result<(), Failure> {
     // The variables hold words of the shell, for example `code --wait`.
     let status = Command::new("/bin/sh")
         .args(["-c", &format!("{editor} \"$1\""), "sh"])
         .arg(path)
         .status()
-        .map_err(|error| format!("editor {editor}: {error}"))?;
+        .map_err(|error| Failure::system(format!("editor {editor}"), error))?;
     if status.success() {
         Ok(())
     } else {
-        Err(format!("editor {editor}: {status}"))
+        Err(Failure::Refused(format!("editor {editor}: {status}")))
     }
 }
 
-fn read(path: &Path) -> Result<Vec<u8>, String> {
+fn read(path: &Path) -> Result<Vec<u8>, Failure> {
     let mut text = Vec::new();
     let limit = CONFIG_BYTES_MAX as u64;
     File::open(path)
         .and_then(|file| file.take(limit + 1).read_to_end(&mut text))
-        .map_err(|error| format!("{}: {error}", path.display()))?;
+        .map_err(|error| Failure::file(path, error))?;
     if text.len() > CONFIG_BYTES_MAX {
-        return Err(format!(
-            "{}: more than {CONFIG_BYTES_MAX} bytes",
-            path.display()
-        ));
+        let why = format!("more than {CONFIG_BYTES_MAX} bytes");
+        return Err(Failure::file(path, why));
     }
     Ok(text)
 }
@@ -144,7 +145,10 @@ fn refusal(mountpoint: &Path, live: &Path, error: &io::Error) -> String {
         .and_then(|file| file.take(STATUS_BYTES_MAX).read_to_end(&mut status));
     let status = String::from_utf8_lossy(&status);
     match status.lines().next() {
-        Some(line) if found.is_ok() && error.raw_os_error() == Some(libc::EINVAL) => {
+        Some(line)
+            if found.is_ok()
+                && error.raw_os_error().map(Errno::from_raw) == Some(Errno::EINVAL) =>
+        {
             line.to_owned()
         }
         _ => format!("{}: {error}", live.display()),
@@ -188,7 +192,9 @@ mod tests {
     fn an_editor_that_fails_applies_nothing_and_the_text_is_kept() {
         let _turn = ONE_AT_A_TIME.lock();
         let tree = tree("trikfs = {}\n");
-        let refusal = edit_with(tree.dir(), "false", &|_| true).expect_err("refused");
+        let refusal = edit_with(tree.dir(), "false", &|_| true)
+            .expect_err("refused")
+            .to_string();
         assert!(
             refusal.starts_with("editor false: exit status: 1\n"),
             "{refusal}"
@@ -215,7 +221,9 @@ mod tests {
             "rm -rf {0}; mkdir -p {0}; echo bad >",
             tree.path("config").display()
         );
-        let refusal = edit_with(tree.dir(), &editor, &again).expect_err("refused");
+        let refusal = edit_with(tree.dir(), &editor, &again)
+            .expect_err("refused")
+            .to_string();
         assert_eq!(tries.get(), 3);
         let text = kept(&refusal);
         assert_eq!(fs::read_to_string(&text).expect("read"), "bad\n");
@@ -244,7 +252,9 @@ mod tests {
     #[test]
     fn a_directory_without_a_configuration_is_no_tree() {
         let scratch = Scratch::new();
-        let refusal = edit_with(scratch.dir(), "true", &|_| false).expect_err("refused");
+        let refusal = edit_with(scratch.dir(), "true", &|_| false)
+            .expect_err("refused")
+            .to_string();
         assert!(
             refusal.ends_with("config: No such file or directory (os error 2)"),
             "{refusal}"

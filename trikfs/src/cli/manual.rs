@@ -3,6 +3,7 @@
 //! Owns nothing else. Behind the feature `manual`, which is on by default: a robot with little memory has no use for it.
 
 use super::Cli;
+use crate::failure::Failure;
 use clap::CommandFactory;
 use clap_complete::Shell;
 
@@ -17,7 +18,7 @@ pub(super) fn completions(shell: Shell) -> Vec<u8> {
 ///
 /// # Errors
 /// There is no such command.
-pub(super) fn page(name: Option<&str>) -> Result<Vec<u8>, String> {
+pub(super) fn page(name: Option<&str>) -> Result<Vec<u8>, Failure> {
     let mut program = Cli::command();
     // Gives the commands their full names and the help options that a parse would give them.
     program.build();
@@ -32,11 +33,11 @@ pub(super) fn page(name: Option<&str>) -> Result<Vec<u8>, String> {
                     .display_name(format!("trikfs-{name}"))
                     .version(env!("CARGO_PKG_VERSION"))
             })
-            .ok_or_else(|| format!("there is no command {name}"))?,
+            .ok_or_else(|| Failure::Refused(format!("there is no command {name}")))?,
     };
     let mut text = Vec::new();
     clap_mangen::Man::new(page)
         .render(&mut text)
-        .map_err(|error| error.to_string())?;
+        .map_err(|error| Failure::Refused(error.to_string()))?;
     Ok(text)
 }

@@ -1,4 +1,6 @@
 //! Tells the service manager, if there is one, that the tree can be used: the protocol of sd_notify(3).
+//!
+//! Owns the message and its socket. Knows nothing of the tree.
 
 use std::env;
 use std::ffi::{OsStr, OsString};

@@ -3,7 +3,8 @@
 //! Owns the order. Opens nothing but directories, to see whether they are there.
 
 use crate::check::SearchPaths;
-use crate::convert::shared::Cache;
+use crate::convert::shared::{Cache, CacheError};
+use crate::failure::Failure;
 use std::path::{Path, PathBuf};
 
 /// The search path of this run: `include` in front of the usual places, which depend on where this program is:
@@ -16,7 +17,7 @@ pub(super) fn search_paths(
     include: Vec<PathBuf>,
     cache_dir: Option<&Path>,
     device_root: Option<PathBuf>,
-) -> Result<SearchPaths, String> {
+) -> Result<SearchPaths, CacheError> {
     let program = std::env::current_exe().ok();
     let dirs = Dirs::beside(program.as_deref().and_then(Path::parent), include);
     Ok(SearchPaths {
@@ -31,13 +32,17 @@ pub(super) fn search_paths(
 ///
 /// # Errors
 /// No directory of the search path has it.
-pub fn find_shipped(name: &Path, include: Vec<PathBuf>) -> Result<PathBuf, String> {
+pub fn find_shipped(name: &Path, include: Vec<PathBuf>) -> Result<PathBuf, Failure> {
     let program = std::env::current_exe().ok();
     let dirs = Dirs::beside(program.as_deref().and_then(Path::parent), include).include;
     let found = dirs.iter().map(|dir| dir.join(name));
     found.clone().find(|path| path.is_file()).ok_or_else(|| {
         let dirs: Vec<_> = dirs.iter().map(|dir| dir.display().to_string()).collect();
-        format!("there is no {} in {}", name.display(), dirs.join(", "))
+        Failure::Refused(format!(
+            "there is no {} in {}",
+            name.display(),
+            dirs.join(", ")
+        ))
     })
 }
 
@@ -155,6 +160,7 @@ mod tests {
             "{found:?}"
         );
         let refusal = find_shipped(Path::new("none.lua"), vec!["/here".into()]).expect_err("none");
+        let refusal = refusal.to_string();
         assert!(
             refusal.starts_with("there is no none.lua in /here, /etc/trikfs, "),
             "{refusal}"

@@ -1,12 +1,15 @@
 //! `mount` and its hidden other half `serve`: the processes around one mounted tree.
 //!
 //! Foreground: this process becomes the guardian, which starts `serve`. Background: this process starts a guardian in a
-//! session of its own, waits for its one line, and ends.
+//! session of its own, waits for its one line, and ends. Owns that line and what becomes of a terminal; `guardian` and
+//! `daemon` do the work.
 
-use super::{Failure, MountArgs, ServeArgs, absolute, notify};
+use super::{MountArgs, ServeArgs, absolute, notify};
 use crate::daemon::{self, Options};
+use crate::failure::Failure;
 use crate::guardian::inherit::{Farewell, Inheritance};
 use crate::guardian::{self, Plan};
+use crate::limits::READY_LINE_BYTES_MAX;
 use crate::mount::MountOptions;
 use crate::sample_bus::Readers;
 use crate::tree::Owner;
@@ -20,9 +23,6 @@ use std::os::unix::process::CommandExt;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// Longest line that the guardian in the background prints.
-const LINE_BYTES_MAX: u64 = 16 << 10;
-
 /// `trikfs mount`.
 pub(super) fn mount(args: MountArgs) -> Result<(), Failure> {
     let args = MountArgs {
@@ -33,7 +33,7 @@ pub(super) fn mount(args: MountArgs) -> Result<(), Failure> {
     if args.tree.group.is_some() && !args.allow_other {
         let reason =
             "--group is for other users, who are only let in with --allow-other: give both";
-        return Err(Failure::Reason(reason.to_owned()));
+        return Err(Failure::Refused(reason.to_owned()));
     }
     make_mountpoint(&args.mountpoint)?;
     if args.background && !args.detached {
@@ -53,7 +53,8 @@ fn make_mountpoint(path: &Path) -> Result<(), Failure> {
     // Anything else than "not there" (a stale mount, no permission) is the mounting's to tell.
     if matches!(path.symlink_metadata(), Err(error) if error.kind() == io::ErrorKind::NotFound) {
         std::fs::create_dir_all(path).map_err(|error| {
-            format!("the mount point {} cannot be made: {error}", path.display())
+            let what = format!("the mount point {} cannot be made", path.display());
+            Failure::system(what, error)
         })?;
     }
     Ok(())
@@ -61,7 +62,7 @@ fn make_mountpoint(path: &Path) -> Result<(), Failure> {
 
 /// Starts this program again, detached, and passes on the line with which it says that the tree can be used.
 fn start_in_background(args: &MountArgs) -> Result<(), Failure> {
-    let fail = |error: io::Error| Failure::Reason(format!("starting in the background: {error}"));
+    let fail = |error: io::Error| Failure::system("starting in the background", error);
     let (line, writer) = io::pipe().map_err(fail)?;
     let mut command = Command::new("/proc/self/exe");
     command
@@ -77,7 +78,7 @@ fn start_in_background(args: &MountArgs) -> Result<(), Failure> {
     // The command holds our copy of the writing end, and the line ends when the guardian closes its own.
     drop(command);
     let mut said = Vec::new();
-    line.take(LINE_BYTES_MAX)
+    line.take(READY_LINE_BYTES_MAX)
         .read_to_end(&mut said)
         .map_err(fail)?;
     if said.ends_with(b"\n") {
@@ -86,10 +87,8 @@ fn start_in_background(args: &MountArgs) -> Result<(), Failure> {
     let status = guardian.wait().map_err(fail)?;
     // An exit is a refusal, for which there are words on standard error.
     match status.code() {
-        Some(_) => Err(Failure::Told),
-        None => Err(Failure::Reason(format!(
-            "starting in the background: {status}"
-        ))),
+        Some(_) => Err(Failure::Reported),
+        None => Err(Failure::system("starting in the background", status)),
     }
 }
 
@@ -100,7 +99,7 @@ fn guard(args: &MountArgs) -> Result<(), Failure> {
         // Fails only for the leader of a session, which has what this is for.
         let _ = setsid();
         // A daemon must not keep a file system busy that somebody wants to unmount.
-        std::env::set_current_dir("/").map_err(|error| format!("/: {error}"))?;
+        std::env::set_current_dir("/").map_err(|error| Failure::file(Path::new("/"), error))?;
     }
     let mut arguments: Vec<OsString> = args.tree.to_arguments();
     arguments.extend(args.detached.then(|| "--detached".into()));
@@ -125,7 +124,7 @@ fn guard(args: &MountArgs) -> Result<(), Failure> {
             return;
         }
         announced = true;
-        // Who started us may not listen, and the tree can be used all the same.
+        // The process that started this one may not listen; the tree can be used all the same.
         let _ = writeln!(io::stdout(), "{}", ready_line(&args.mountpoint, nodes))
             .and_then(|()| io::stdout().flush());
         notify::ready();
@@ -133,10 +132,7 @@ fn guard(args: &MountArgs) -> Result<(), Failure> {
             detach_output();
         }
     };
-    guardian::run(&plan, &mut ready).map_err(|reason| match reason.is_empty() {
-        true => Failure::Told,
-        false => Failure::Reason(reason),
-    })
+    guardian::run(&plan, &mut ready)
 }
 
 fn ready_line(mountpoint: &Path, nodes: usize) -> String {
@@ -174,7 +170,7 @@ fn detach_output() {
 pub(super) fn serve(args: ServeArgs) -> Result<(), Failure> {
     name_process();
     let inheritance = Inheritance::take(&args.handover)?;
-    let fail = |error: io::Error| format!("serve: {error}");
+    let fail = |error: io::Error| Failure::system("serve", error);
     let farewell =
         Farewell::prepare(&inheritance, &args.mountpoint, &args.handover).map_err(fail)?;
     let lifeline = inheritance.lifeline.share().map_err(fail)?;
@@ -207,7 +203,7 @@ pub(super) fn serve(args: ServeArgs) -> Result<(), Failure> {
         ledger: Some(inheritance.ledger),
         ready: Box::new(move |nodes| {
             if detached {
-                // Before the guardian hears of it: then whoever waits for the line finds no copy of the terminal left.
+                // Before the guardian hears of it: the line must come after the last copy of the terminal is closed.
                 detach_output();
             }
             lifeline.ready(nodes);
@@ -217,7 +213,7 @@ pub(super) fn serve(args: ServeArgs) -> Result<(), Failure> {
     inheritance.lifeline.over();
     farewell.say();
     drop(inheritance.lifeline);
-    result.map_err(Failure::Reason)
+    result
 }
 
 #[cfg(test)]

@@ -21,6 +21,32 @@ fn the_definition_is_consistent() {
     Cli::command().debug_assert();
 }
 
+/// What `--help` says of a command and of those below it that a person is shown.
+#[cfg(feature = "manual")]
+fn help(command: &mut clap::Command) -> String {
+    let mut text = format!("{}\n", command.render_long_help());
+    for one in command.get_subcommands_mut() {
+        if !one.is_hide_set() && one.get_name() != "help" {
+            text.push_str(&format!("\n==== {}\n\n", one.get_name()));
+            text.push_str(&help(one));
+        }
+    }
+    text
+}
+
+#[cfg(feature = "manual")]
+#[test]
+fn help_has_these_words() {
+    let mut command = Cli::command().term_width(100);
+    command.build();
+    // The second transport is there only with its feature.
+    let words: String = help(&mut command)
+        .split_inclusive('\n')
+        .filter(|line| !line.trim_start().starts_with("- fuser:"))
+        .collect();
+    insta::assert_snapshot!("help", words);
+}
+
 #[test]
 fn mount_takes_all_its_options() {
     let args = mount_args(&[

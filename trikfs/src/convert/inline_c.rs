@@ -5,7 +5,7 @@
 //! library goes to `shared` like any other. Compiled code is native code and trusted as such; the
 //! compiler itself is kept within time, memory and output, because `#include "/dev/zero"` is a line of C.
 
-use super::shared::Cache;
+use super::shared::{Cache, CacheError};
 use crate::command::{self, Ended, Limits};
 use crate::hash::Hash;
 use crate::limits;
@@ -159,6 +159,7 @@ fn compile_with(
     limit: Duration,
 ) -> Result<PathBuf, Problem> {
     let problem = |line: u32, reason: String| Problem::new(&place.file, line, reason);
+    let uncached = |error: CacheError| problem(place.line, error.to_string());
     let name = format!("c-{}.so", compiler.identity().part(code.as_bytes()).hex());
     let ready = cache.path(&name);
     if looks_compiled(&ready) {
@@ -172,7 +173,7 @@ fn compile_with(
     let source = cache.temporary(".c");
     let output = cache.temporary(".so");
     let ended = write_sources(cache, &source, code, place)
-        .map_err(|error| problem(place.line, error))
+        .map_err(uncached)
         .and_then(|()| {
             let limits = Limits {
                 groups: None,
@@ -193,9 +194,7 @@ fn compile_with(
             if !warnings.is_empty() {
                 progress(&warnings);
             }
-            cache
-                .adopt(&output, &name)
-                .map_err(|error| problem(place.line, error))
+            cache.adopt(&output, &name).map_err(uncached)
         }
         Err(refusal) => {
             let _ = fs::remove_file(&output);
@@ -239,10 +238,14 @@ fn judge(
 }
 
 /// The include directory with the header, and the source with the line numbers of the configuration.
-fn write_sources(cache: &Cache, source: &Path, code: &str, place: &Place) -> Result<(), String> {
+fn write_sources(
+    cache: &Cache,
+    source: &Path,
+    code: &str,
+    place: &Place,
+) -> Result<(), CacheError> {
     let dir = include_dir(cache);
-    let fail =
-        |error: std::io::Error| format!("cache directory {}: {error}", cache.dir().display());
+    let fail = |error: std::io::Error| CacheError::system(cache.dir(), &error);
     fs::create_dir_all(&dir).map_err(fail)?;
     let header = dir.join(HEADER_NAME);
     if fs::read(&header).map_or(true, |found| found != HEADER.as_bytes()) {

@@ -5,15 +5,13 @@
 
 use crate::events::lock;
 use crate::limits;
+use config::error::Error;
 use config::program::{Program, Vm};
 use std::io;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
-
-/// How many states are kept ready before anybody was seen to need more.
-const READY_AT_FIRST: usize = 4;
 
 enum Work {
     Fill(Arc<StatePool>),
@@ -38,7 +36,7 @@ impl StateMaker {
             .name("lua-states".to_owned())
             .spawn(move || {
                 while let Ok(first) = todo.recv() {
-                    // Who opens files in a row should not be interrupted at each of them: the work waits until
+                    // A program that opens files in a row should not be interrupted at each of them: the work waits until
                     // a stock's worth of it may have come, and is then done in one go.
                     std::thread::sleep(Duration::from_millis(limits::LUA_STATES_BATCH_MS));
                     for item in std::iter::once(first).chain(todo.try_iter()) {
@@ -61,7 +59,7 @@ impl StateMaker {
             program,
             maker: self.clone(),
             ready: Mutex::default(),
-            wanted: AtomicUsize::new(READY_AT_FIRST),
+            wanted: AtomicUsize::new(limits::LUA_STATES_FIRST),
             filling: AtomicBool::new(false),
             retired: AtomicBool::new(false),
         });
@@ -82,7 +80,7 @@ pub struct StatePool {
 
 impl StatePool {
     /// A state of one's own; made on the spot if the stock is empty.
-    pub fn take(self: &Arc<Self>) -> Result<Vm, String> {
+    pub fn take(self: &Arc<Self>) -> Result<Vm, Error> {
         let (vm, left) = {
             let mut ready = lock(&self.ready);
             (ready.pop(), ready.len())
@@ -129,7 +127,7 @@ impl StatePool {
             {
                 return;
             }
-            // A program that no longer runs says so to whoever opens a file.
+            // If the program no longer runs, the next open of a file reports it.
             let Ok(vm) = self.program.prepare() else {
                 return;
             };

@@ -13,14 +13,17 @@
 
 mod cache;
 mod elf;
+mod refusal;
 
 pub use cache::Cache;
+pub use refusal::{CacheError, LibraryError, Wrong};
 
+use crate::errno::{BlameWord, blame_and_reason};
 use crate::hash::Hash;
 use crate::limits;
 use config::nearest::suggestion;
 use converter::abi::{self, Descriptor, Instance};
-use converter::{Conversion, Direction};
+use converter::{Conversion, Direction, Fault};
 use libloading::os::unix as dl;
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -59,7 +62,7 @@ impl Library {
     ///
     /// # Errors
     /// What is wrong, with the path and, for a name that is not there, all that are.
-    pub fn load(path: &Path, name: Option<&str>, cache: &Cache) -> Result<Self, String> {
+    pub fn load(path: &Path, name: Option<&str>, cache: &Cache) -> Result<Self, LibraryError> {
         let inline = cache.holds(path);
         let shown = if inline {
             "inline C".to_owned()
@@ -75,20 +78,16 @@ impl Library {
         } else {
             copy(path, cache)?
         };
-        let descriptors = open_library(&loadable).map_err(|error| {
-            // The user has never seen the name in the cache.
-            let error = error.replace(&loadable.display().to_string(), &shown);
-            if error.starts_with(&shown) {
-                error
-            } else {
-                format!("{shown}: {error}")
-            }
-        })?;
+        let descriptor = open_library(&loadable, &shown)
+            .and_then(|descriptors| choose(descriptors, name))
+            .map_err(|why| LibraryError::Library {
+                shown: shown.clone(),
+                why,
+            })?;
         let label = match name {
             Some(name) => format!("{short}#{name}"),
             None => short,
         };
-        let descriptor = choose(descriptors, name).map_err(|error| format!("{shown}: {error}"))?;
         Ok(Self {
             descriptor: Arc::new(descriptor),
             label: label.into(),
@@ -104,17 +103,17 @@ impl Library {
     ///
     /// # Errors
     /// Names the converter, what it wants and what it would get.
-    pub fn check_sizes(&self, input_size: usize, output_size: usize) -> Result<(), String> {
+    pub fn check_sizes(&self, input_size: usize, output_size: usize) -> Result<(), Fault> {
         self.descriptor
             .check_sizes(input_size, output_size)
-            .map_err(|error| format!("{}: {error}", self.label))
+            .map_err(|error| labelled(&self.label, &error))
     }
 
     /// Makes the converter's state for one open file and direction.
     ///
     /// # Errors
     /// The converter's own refusal (parameters, sizes), in its words.
-    pub fn open(&self, info: &OpenInfo<'_>) -> Result<NativeStage, String> {
+    pub fn open(&self, info: &OpenInfo<'_>) -> Result<NativeStage, Fault> {
         let raw = converter::OpenInfo {
             direction: info.direction,
             input_size: info.input_size,
@@ -126,7 +125,7 @@ impl Library {
         let instance = self
             .descriptor
             .open(&raw)
-            .map_err(|fault| format!("{}: {fault}", self.label))?;
+            .map_err(|error| labelled(&self.label, &error))?;
         Ok(NativeStage {
             instance,
             label: Arc::clone(&self.label),
@@ -151,10 +150,10 @@ impl NativeStage {
     ///
     /// # Errors
     /// The fault in the converter's words, after the library's name. The tuple is lost; the next call is made as usual.
-    pub fn convert(&mut self, input: &[u8], output: &mut [u8]) -> Result<Conversion, String> {
+    pub fn convert(&mut self, input: &[u8], output: &mut [u8]) -> Result<Conversion, Fault> {
         self.instance
             .convert(input, output)
-            .map_err(|fault| format!("{}: {fault}", self.label))
+            .map_err(|fault| labelled(&self.label, &fault))
     }
 
     /// Converts whole tuples from the front of `input` to the front of `output` until one of them has no room for
@@ -165,7 +164,7 @@ impl NativeStage {
         &mut self,
         input: &[u8],
         output: &mut [u8],
-    ) -> (usize, usize, Option<String>) {
+    ) -> (usize, usize, Option<Fault>) {
         let (mut taken, mut made) = (0, 0);
         let mut room = output.chunks_exact_mut(self.output_size);
         let mut next = room.next();
@@ -180,46 +179,60 @@ impl NativeStage {
                     next = room.next();
                 }
                 Ok(Conversion::Consumed) => {}
-                Err(fault) => return (taken, made, Some(format!("{}: {fault}", self.label))),
+                Err(fault) => return (taken, made, Some(labelled(&self.label, &fault))),
             }
         }
         (taken, made, None)
     }
 }
 
+/// A fault after the name of the library, but a word that blames somebody else stays the first.
+fn labelled(label: &str, fault: &dyn std::fmt::Display) -> Fault {
+    let text = fault.to_string();
+    let (word, reason) = blame_and_reason(&text);
+    let word = word.map_or("", BlameWord::text);
+    Fault::new(format!("{word}{label}: {reason}"))
+}
+
 /// Reads a library and puts its copy into the cache.
-fn copy(path: &Path, cache: &Cache) -> Result<PathBuf, String> {
-    let shown = path.display();
-    let fail = |error: std::io::Error| match error.kind() {
-        std::io::ErrorKind::NotFound => format!("{shown}: no such library"),
-        _ => format!("{shown}: {error}"),
+fn copy(path: &Path, cache: &Cache) -> Result<PathBuf, LibraryError> {
+    let wrong = |why| LibraryError::Library {
+        shown: path.display().to_string(),
+        why,
+    };
+    let fail = |error: std::io::Error| {
+        wrong(match error.kind() {
+            std::io::ErrorKind::NotFound => Wrong::Missing,
+            _ => Wrong::Unreadable(error.to_string()),
+        })
     };
     // Asked before opening: a FIFO would wait for a writer.
     let found = std::fs::metadata(path).map_err(fail)?;
     if !found.is_file() {
-        return Err(format!("{shown}: not a regular file"));
+        return Err(wrong(Wrong::NotAFile));
     }
     if found.len() > limits::LIBRARY_BYTES_MAX {
-        return Err(format!(
-            "{shown}: larger than {} bytes",
-            limits::LIBRARY_BYTES_MAX
-        ));
+        return Err(wrong(Wrong::TooLarge));
     }
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(fail)?;
     file.take(limits::LIBRARY_BYTES_MAX)
         .read_to_end(&mut bytes)
         .map_err(fail)?;
-    elf::check(&bytes).map_err(|error| format!("{shown}: {error}"))?;
-    cache.put(&format!("lib-{}.so", Hash::of(&bytes).hex()), &bytes)
+    elf::check(&bytes).map_err(|why| wrong(Wrong::Elf(why)))?;
+    Ok(cache.put(&format!("lib-{}.so", Hash::of(&bytes).hex()), &bytes)?)
 }
 
-/// Loads a library for ever and reads what it holds.
-fn open_library(path: &Path) -> Result<Vec<Descriptor>, String> {
+/// Loads a library for ever and reads what it holds; the user knows it as `shown`.
+fn open_library(path: &Path, shown: &str) -> Result<Vec<Descriptor>, Wrong> {
     // SAFETY: constructors of the library run, and native code is trusted (see the head of this file). `copy` and
     // `inline_c` made the file in a directory that `Cache::open` found to be ours alone.
-    let library =
-        unsafe { dl::Library::open(Some(path), dl::RTLD_NOW | dl::RTLD_LOCAL) }.map_err(explain)?;
+    let library = unsafe { dl::Library::open(Some(path), dl::RTLD_NOW | dl::RTLD_LOCAL) };
+    let library = library.map_err(|error| {
+        let source = std::error::Error::source(&error);
+        let words = source.map_or_else(|| error.to_string(), ToString::to_string);
+        explain(&words, path, shown)
+    })?;
     // SAFETY: the header gives this symbol this type.
     let entry = unsafe { library.get::<abi::Entry>(abi::ENTRY_SYMBOL) }
         .ok()
@@ -234,48 +247,41 @@ fn open_library(path: &Path) -> Result<Vec<Descriptor>, String> {
         // SAFETY: the library that holds the function is loaded and stays so.
         let table = unsafe { entry() };
         // SAFETY: this is what the entry of a library returned that is never unloaded.
-        return unsafe { abi::read_library(table) };
+        return Ok(unsafe { abi::read_library(table) }?);
     }
     match plain {
         // SAFETY: the header gives this symbol this type and these rules; the library is never unloaded.
         Some(function) => Ok(vec![unsafe {
             Descriptor::plain(abi::PLAIN_SYMBOL, function)
         }]),
-        None => Err(format!(
-            "exports neither {} nor {}",
-            abi::ENTRY_SYMBOL,
-            abi::PLAIN_SYMBOL
-        )),
+        None => Err(Wrong::NoSymbol),
     }
 }
 
-/// The loader's own words, and what to do about the one refusal that puzzles everybody.
-fn explain(error: libloading::Error) -> String {
-    let text = match std::error::Error::source(&error) {
-        Some(source) => source.to_string(),
-        None => error.to_string(),
-    };
-    if text.contains("failed to map segment") {
-        return format!(
-            "{text}; a file system mounted noexec cannot hold the cache, choose another place with --cache"
-        );
+/// The loader's own words, without the name of the file at their beginning; the one refusal that puzzles everybody is told
+/// from the others, for which the loader gives nothing but words.
+fn explain(words: &str, path: &Path, shown: &str) -> Wrong {
+    let path = path.display().to_string();
+    let words = words.strip_prefix(&format!("{path}: ")).unwrap_or(words);
+    // The user has never seen the name in the cache.
+    let words = words.replace(&path, shown);
+    if words.contains("failed to map segment") {
+        Wrong::NoExec(words)
+    } else {
+        Wrong::Linker(words)
     }
-    text
 }
 
 /// The converter called `name`, or the only one.
-fn choose(mut descriptors: Vec<Descriptor>, name: Option<&str>) -> Result<Descriptor, String> {
+fn choose(mut descriptors: Vec<Descriptor>, name: Option<&str>) -> Result<Descriptor, Wrong> {
     let Some(name) = name else {
         return match descriptors.pop() {
             Some(only) if descriptors.is_empty() => Ok(only),
             Some(last) => {
                 descriptors.push(last);
-                Err(format!(
-                    "holds several converters, add #NAME: {}",
-                    names(&descriptors)
-                ))
+                Err(Wrong::Several(names(&descriptors)))
             }
-            None => Err("holds no converter".to_owned()),
+            None => Err(Wrong::Empty),
         };
     };
     if let Some(index) = descriptors
@@ -285,18 +291,16 @@ fn choose(mut descriptors: Vec<Descriptor>, name: Option<&str>) -> Result<Descri
         return Ok(descriptors.swap_remove(index));
     }
     let hint = suggestion(name, descriptors.iter().map(Descriptor::name));
-    Err(format!(
-        "has no converter '{name}'{hint}; it holds: {}",
-        names(&descriptors)
-    ))
+    Err(Wrong::NoConverter {
+        name: name.to_owned(),
+        hint,
+        names: names(&descriptors),
+    })
 }
 
-fn names(descriptors: &[Descriptor]) -> String {
-    descriptors
-        .iter()
-        .map(Descriptor::name)
-        .collect::<Vec<_>>()
-        .join(", ")
+fn names(descriptors: &[Descriptor]) -> Vec<String> {
+    let names = descriptors.iter().map(Descriptor::name);
+    names.map(str::to_owned).collect()
 }
 
 #[cfg(test)]

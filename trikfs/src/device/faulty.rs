@@ -1,6 +1,6 @@
 //! A source that fails on purpose, so that what happens then can be tried and tested.
 //!
-//! Owns counting the reads and choosing the failure. The source behind it knows nothing of this.
+//! Owns counting the reads and choosing the failure. The source within it knows nothing of this.
 
 use super::{Device, Got, Kind, Sink, State, Stream, Surroundings, kinds};
 use crate::errno::Error;
@@ -115,7 +115,6 @@ struct FaultyStream {
 impl Stream for FaultyStream {
     fn read(&mut self, buf: &mut [u8]) -> Result<Got, Error> {
         match self.plan.next() {
-            Some(Some(error)) if error.errno() == libc::EAGAIN => Ok(Got::Nothing),
             Some(Some(error)) => Err(error),
             Some(None) => Ok(Got::End),
             None => {

@@ -1,7 +1,7 @@
 //! Registers of devices on an I2C bus: a state that is sampled with one transfer, and a sink that writes with one.
 //!
 //! Owns what a tuple means: which bytes are sent, what is remembered, what an error is called. `bus` owns the buses and
-//! who has each of them when, `adapter` the calls of i2c-dev, `virtual_bus` the socket that stands in for it, and `devices`
+//! the turns on each of them, `adapter` the calls of i2c-dev, `virtual_bus` the socket that stands in for it, and `devices`
 //! reaches any register of a bus.
 
 mod adapter;

@@ -51,7 +51,7 @@ impl Iio {
         let node = description
             .nodes
             .join(folder.file_name().unwrap_or_default());
-        // Before anything is changed: who has it open now has made his settings.
+        // Before anything is changed: a process that has it open now has made its settings.
         let bytes = open_node(&node)?;
         let enable = folder.join("buffer/enable");
         // Channels cannot be chosen while the buffer runs.

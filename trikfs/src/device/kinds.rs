@@ -2,7 +2,7 @@
 //!
 //! Owns the list of kinds, and nothing that one of them does.
 
-use super::{Device, Kind, Sink, Surroundings};
+use super::{Device, Drives, Kind, Positions, Sink, Surroundings};
 use crate::errno::Error;
 use config::description::SourceDescription;
 use std::collections::BTreeSet;
@@ -54,6 +54,19 @@ pub fn open_sink(
 /// The kind of a plain path is looked up each time, because a device may appear later as something else.
 pub fn is_shared(source: &SourceDescription) -> Result<bool, Error> {
     kind(source).is_shared()
+}
+
+/// Opens a source that has no tuples; None for all that have them.
+pub fn open_positions(
+    source: &SourceDescription,
+    around: &Surroundings,
+) -> Result<Option<Box<dyn Positions>>, Error> {
+    kind(source).open_positions(around)
+}
+
+/// What moves when a source is written.
+pub fn drives(source: &SourceDescription) -> Drives<'_> {
+    kind(source).drives()
 }
 
 /// The buses whose transfers a source waits for, itself or through nodes that it reads or drives.

@@ -42,7 +42,7 @@ fn open(other: &Arc<dyn LinkedNode>) -> Result<Device, Error> {
 pub struct Latched(Arc<dyn LinkedNode>);
 
 impl Latched {
-    /// Joins those who read the other node's newest value.
+    /// Joins the readers of the other node's newest value.
     pub fn open(other: &Arc<dyn LinkedNode>) -> Result<Self, Error> {
         other.join_newest()?;
         Ok(Self(other.clone()))

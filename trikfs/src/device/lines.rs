@@ -1,7 +1,8 @@
 //! Lines of text from the named pipe of a sensor program, and lines to it; or pictures from such a pipe.
 //!
-//! Owns what a line is (what a picture is, `picture` knows), and the way from nothing to a running sensor: its program is started, its pipe appears, lines
-//! come. Nobody waits for that: until there are lines, there is nothing to read. How programs are run, `programs` knows.
+//! Owns what a line is (what a picture is, `picture` knows), and the way from nothing to a running sensor: its program is
+//! started, its pipe appears, lines come. Nothing waits for that: until there are lines, there is nothing to read. How
+//! programs are run, `programs` knows.
 
 pub mod answer;
 mod picture;

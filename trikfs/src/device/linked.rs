@@ -2,7 +2,7 @@
 //!
 //! Owns the border: all that devices know of nodes is the trait [`LinkedNode`]. How a node answers is its own business.
 
-use super::{Device, Kind, Sink, Surroundings};
+use super::{Device, Drives, Kind, Sink, Surroundings};
 use crate::errno::Error;
 use crate::latch::Latch;
 use config::description::LinkDescription;
@@ -29,6 +29,10 @@ impl Kind for LinkDescription {
             node.add_buses(buses);
         }
     }
+
+    fn drives(&self) -> Drives<'_> {
+        Drives::Other(&self.path)
+    }
 }
 
 /// A node that others read or drive.
@@ -48,7 +52,7 @@ pub trait LinkedNode: Send + Sync {
     /// What opening its sink says.
     fn open_sink(self: Arc<Self>) -> Result<Box<dyn Sink>, Error>;
 
-    /// Joins those who read the newest value; without background sampling the node's source is open from here on. A
+    /// Joins the readers of the newest value; without background sampling the node's source is open from here on. A
     /// device that is gone and is sampled in the background may come back: that is no error.
     ///
     /// # Errors

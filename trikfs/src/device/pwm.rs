@@ -128,7 +128,7 @@ mod tests {
         fs::read_to_string(description.chip.join("pwm1").join(name)).unwrap()
     }
 
-    /// Puts something in the place of a file that cannot be written.
+    /// Replaces a file with something that cannot be written.
     fn block(description: &PwmDescription, name: &str) -> PathBuf {
         let path = description.chip.join("pwm1").join(name);
         fs::remove_file(&path).unwrap();

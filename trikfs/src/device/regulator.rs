@@ -2,7 +2,7 @@
 //!
 //! Owns nothing of the control itself, which is the business of `regulation`; written tuples do not come here.
 
-use super::{Device, Kind, Surroundings};
+use super::{Device, Drives, Kind, Surroundings};
 use crate::errno::Error;
 use config::description::RegulatorDescription;
 use std::collections::BTreeSet;
@@ -22,5 +22,9 @@ impl Kind for RegulatorDescription {
             node.add_buses(buses);
         }
         self.feedback.add_buses(around, buses);
+    }
+
+    fn drives(&self) -> Drives<'_> {
+        Drives::Held(&self.actuator)
     }
 }

@@ -7,9 +7,10 @@ use super::{Device, Got, Kind, Stream, Surroundings, device_error};
 use crate::errno::Error;
 use crate::limits;
 use config::description::ReplayDescription;
+use std::fmt;
 use std::io::Read;
 use std::os::fd::BorrowedFd;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 impl Kind for ReplayDescription {
@@ -41,6 +42,42 @@ pub struct Record {
     pub bytes: Vec<u8>,
 }
 
+/// A line of a recording that is none; the author of the recording has to act.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BadRecording {
+    path: PathBuf,
+    /// From 1.
+    line: usize,
+    why: BadLine,
+}
+
+/// What is wrong with a line of a recording.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum BadLine {
+    Form,
+    Time,
+    Range,
+    Falls,
+    Bytes,
+    Odd,
+}
+
+impl fmt::Display for BadRecording {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let what = match self.why {
+            BadLine::Form => "expected a time in ms and bytes in hex",
+            BadLine::Time => "the time is not a number of ms",
+            BadLine::Range => "the time is out of range",
+            BadLine::Falls => "the time falls",
+            BadLine::Bytes => "the bytes are not hex",
+            BadLine::Odd => "an odd number of hex digits",
+        };
+        write!(f, "{}:{}: {what}", self.path.display(), self.line)
+    }
+}
+
+impl std::error::Error for BadRecording {}
+
 impl Replay {
     /// Reads the whole recording (at most [`limits::RECORDING_BYTES_MAX`]); its time starts now.
     pub fn open(description: &ReplayDescription) -> Result<Self, Error> {
@@ -56,7 +93,7 @@ impl Replay {
                 path.display()
             )));
         }
-        let records = parse(path, &text).map_err(Error::NoDevice)?;
+        let records = parse(path, &text).map_err(|why| Error::NoDevice(why.to_string()))?;
         Ok(Self {
             records,
             at: 0,
@@ -78,22 +115,24 @@ impl Replay {
 ///
 /// # Errors
 /// The first line that is none, with its number.
-pub fn parse(path: &Path, text: &str) -> Result<Vec<Record>, String> {
+pub fn parse(path: &Path, text: &str) -> Result<Vec<Record>, BadRecording> {
     let mut records: Vec<Record> = Vec::new();
     for (index, line) in text.lines().enumerate() {
-        let bad = |what: &str| format!("{}:{}: {what}", path.display(), index + 1);
+        let bad = |why| BadRecording {
+            path: path.to_owned(),
+            line: index + 1,
+            why,
+        };
         let line = line.split('#').next().unwrap_or("").trim();
         let Some((time, hex)) = line.split_once(char::is_whitespace) else {
             if line.is_empty() {
                 continue;
             }
-            return Err(bad("expected a time in ms and bytes in hex"));
+            return Err(bad(BadLine::Form));
         };
-        let time_ms: f64 = time
-            .parse()
-            .map_err(|_| bad("the time is not a number of ms"))?;
+        let time_ms: f64 = time.parse().map_err(|_| bad(BadLine::Time))?;
         if !(0.0..=f64::from(u32::MAX / 1000)).contains(&time_ms) {
-            return Err(bad("the time is out of range"));
+            return Err(bad(BadLine::Range));
         }
         #[allow(
             clippy::cast_possible_truncation,
@@ -102,16 +141,16 @@ pub fn parse(path: &Path, text: &str) -> Result<Vec<Record>, String> {
         )]
         let time_us = (time_ms * 1000.0) as u32;
         if records.last().is_some_and(|last| last.time_us > time_us) {
-            return Err(bad("the time falls"));
+            return Err(bad(BadLine::Falls));
         }
         let digits: Vec<u32> = hex
             .chars()
             .filter(|c| !c.is_whitespace())
             .map(|c| c.to_digit(16))
             .collect::<Option<_>>()
-            .ok_or_else(|| bad("the bytes are not hex"))?;
+            .ok_or_else(|| bad(BadLine::Bytes))?;
         if !digits.len().is_multiple_of(2) {
-            return Err(bad("an odd number of hex digits"));
+            return Err(bad(BadLine::Odd));
         }
         #[allow(clippy::cast_possible_truncation, reason = "two hex digits are a byte")]
         let bytes = digits
@@ -193,7 +232,7 @@ mod tests {
             ("0 012", "r:1: an odd number of hex digits"),
         ] {
             assert_eq!(
-                parse(Path::new("r"), text),
+                parse(Path::new("r"), text).map_err(|why| why.to_string()),
                 Err(reason.to_owned()),
                 "{text}"
             );

@@ -184,7 +184,7 @@ impl Joint {
             .iter()
             .filter_map(|input| match &input.origin {
                 From::Newest(latched) => Some(latched),
-                _ => None,
+                From::State(_) | From::Stream(_) => None,
             })
             .collect();
         if latched.is_empty() {
@@ -327,7 +327,7 @@ impl Stream for Streams {
     fn wake_at(&self) -> Option<Instant> {
         let due = |input: &Input| match &input.origin {
             From::Stream(stream) => stream.wake_at(),
-            _ => None,
+            From::State(_) | From::Newest(_) => None,
         };
         self.joint.inputs.iter().filter_map(due).min()
     }

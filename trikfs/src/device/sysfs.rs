@@ -1,25 +1,23 @@
 //! Short texts in the attributes of sysfs: numbers and words that switch a port.
 //!
-//! Owns how they are read (the first line, bounded) and written (one write, a newline behind). A plain file in the
-//! place of an attribute is written alike, so that whoever looks at it never finds it empty. Knows no port.
+//! Owns how they are read (the first line, bounded) and written (one write, with a newline). A plain file that
+//! stands for an attribute is written in the same way, so that its readers never find it empty. Knows no port.
 
 use super::device_error;
 use crate::errno::Error;
+use crate::limits::ATTRIBUTE_BYTES_MAX;
 use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Read, Write};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::Path;
 use std::str::FromStr;
 
-/// Bytes of an attribute of sysfs: one page.
-const BYTES_MAX: u64 = 4096;
-
 /// The first line without spaces around it.
 pub(super) fn read(path: &Path) -> Result<String, Error> {
     let failed = |error: std::io::Error| device_error(path, &error);
     let file = open(OpenOptions::new().read(true), path).map_err(failed)?;
     let mut bytes = Vec::new();
-    file.take(BYTES_MAX)
+    file.take(ATTRIBUTE_BYTES_MAX)
         .read_to_end(&mut bytes)
         .map_err(failed)?;
     let line = bytes
@@ -67,7 +65,7 @@ pub(super) fn try_write(path: &Path, text: &str) -> Result<(), std::io::Error> {
 }
 
 fn open(options: &mut OpenOptions, path: &Path) -> Result<File, std::io::Error> {
-    // A FIFO in the place of an attribute must not make anybody wait.
+    // A FIFO instead of an attribute must not make anybody wait.
     options
         .custom_flags(libc::O_NONBLOCK | libc::O_NOCTTY)
         .open(path)
@@ -76,7 +74,7 @@ fn open(options: &mut OpenOptions, path: &Path) -> Result<File, std::io::Error> 
 /// Writes a number to an `export` file. EBUSY means that somebody has exported it already.
 pub(super) fn export(path: &Path, number: u32) -> Result<(), Error> {
     match try_write(path, &number.to_string()) {
-        Err(error) if error.raw_os_error() == Some(libc::EBUSY) => Ok(()),
+        Err(error) if error.kind() == std::io::ErrorKind::ResourceBusy => Ok(()),
         Err(error) => Err(device_error(path, &error)),
         Ok(()) => Ok(()),
     }

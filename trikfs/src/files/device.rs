@@ -124,7 +124,7 @@ impl DeviceFile {
             }
         }
         if request.nonblocking {
-            // Somebody who polls edge-triggered comes here to find the end of the data.
+            // A program that polls edge-triggered comes here to find the end of the data.
             if self.poll.get().is_some() && reader.arm()? && is_first {
                 return match reader.read(out)? {
                     Got::Bytes(n) => Ok(Outcome::Done(n)),

@@ -1,37 +1,37 @@
-//! An open `device` of a whole I2C bus: each read and write is one transfer with the register at its position.
+//! An open `device` that has no tuples: each read and write is one transfer with what its position stands for.
 //!
-//! Owns nothing but the two; what a position means is the bus's business.
+//! Owns nothing but the open device and who may write it; what a position means is the device's business.
 
 use super::OpenFile;
 use super::ownership::Ownership;
-use crate::device::i2c::devices::Devices;
+use crate::device::Positions;
 use crate::errno::Error;
 use crate::limits;
 use crate::node::Node;
 use crate::transport::{Caller, Outcome, RequestId, Transfer};
-use config::description::I2cBusDescription;
 use std::sync::Arc;
 
 /// One open `device`.
 pub struct DevicesFile {
     node: Arc<Node>,
-    devices: Devices,
+    device: Box<dyn Positions>,
     ownership: Ownership,
 }
 
 impl DevicesFile {
-    /// Opens the bus, which must be there.
-    pub fn open(
-        node: &Arc<Node>,
-        bus: &I2cBusDescription,
-        read: bool,
-        write: bool,
-    ) -> Result<Arc<Self>, Error> {
+    /// Opens the device, if it has no tuples.
+    ///
+    /// # Errors
+    /// The node cannot be opened that way, or its device is not there.
+    pub fn open(node: &Arc<Node>, read: bool, write: bool) -> Result<Option<Arc<Self>>, Error> {
         node.check_access(read, write)?;
-        Ok(Arc::new(Self {
-            node: node.clone(),
-            devices: Devices::open(bus, node.description.timeout_ms, &node.engine)?,
-            ownership: Ownership::default(),
+        let device = node.open_positions()?;
+        Ok(device.map(|device| {
+            Arc::new(Self {
+                node: node.clone(),
+                device,
+                ownership: Ownership::default(),
+            })
         }))
     }
 
@@ -47,7 +47,7 @@ impl OpenFile for DevicesFile {
         }
         let _inside = self.node.quarantine.enter()?;
         let size = out.len().min(limits::READ_BYTES);
-        self.reported(self.devices.read(request.offset, &mut out[..size]))?;
+        self.reported(self.device.read(request.offset, &mut out[..size]))?;
         self.node.stats.reads.add(1);
         Ok(Outcome::Done(size))
     }
@@ -58,7 +58,7 @@ impl OpenFile for DevicesFile {
         }
         let _inside = self.node.quarantine.enter()?;
         let _admitted = self.ownership.admit(&self.node, request.caller)?;
-        self.reported(self.devices.write(request.offset, data))?;
+        self.reported(self.device.write(request.offset, data))?;
         self.node.stats.writes.add(1);
         Ok(Outcome::Done(data.len()))
     }

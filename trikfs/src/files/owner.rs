@@ -24,7 +24,7 @@ pub struct OwnerFile {
 }
 
 impl OwnerFile {
-    /// Claims the lease of the node's directory. Who opens for reading as well may wait and ask with a priority.
+    /// Claims the lease of the node's directory. A program that opens for reading as well may wait and ask with a priority.
     pub fn open(node: &Arc<Node>, reads: bool, caller: Caller) -> Result<Arc<Self>, Error> {
         if node.is_retired() {
             return Err(Error::Stale);

@@ -15,7 +15,7 @@ use crate::transport::Caller;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
-/// What is known of the program behind one open file.
+/// What is known of the program that has one file open.
 #[derive(Default)]
 pub struct Ownership {
     has_ended: AtomicBool,
@@ -73,7 +73,7 @@ impl Ownership {
         }
     }
 
-    /// The last descriptor is gone. Who has lost the actuator to a lease since does not stop it any more.
+    /// The last descriptor is gone. A program that has lost the actuator to a lease since does not stop it any more.
     pub fn released(&self, node: &Arc<Node>) {
         if !self.has_ended.load(Ordering::Relaxed) || node.is_retired() {
             return;

@@ -134,7 +134,7 @@ impl ValueFile {
             View::Text => self.node.format.render(tuple, text),
             View::Field(index) => self.node.format.render_field(index, tuple, text),
         };
-        rendered.map_err(Error::Converter)?;
+        rendered.map_err(|why| Error::Converter(why.to_string()))?;
         content.extend_from_slice(text.as_bytes());
         content.push(b'\n');
         Ok(true)

@@ -1,7 +1,7 @@
 //! What brings one actuator to rest when the daemon is dead, and its form as bytes of the ledger.
 //!
-//! Owns that form, which never leaves the machine; the fields of a device are those of its kind of source. The bytes come from a process that may have died of anything:
-//! decoding believes nothing, and every number is within the limits of a configuration.
+//! Owns that form, which never leaves the machine; the fields of a device are those of its kind of source. The bytes come
+//! from a process that may have died of anything: decoding believes nothing, and every number is within the limits of a configuration.
 //!
 //! ```text
 //! action:  length u32 | timeout_ms u32 | kind u8 | fields of the kind | tuple

@@ -1,11 +1,13 @@
 //! The daemon as a child process: its start, the line that tells of its life, its end.
 //!
 //! What it inherits travels without any unsafe claim to a descriptor's number: the connection to the kernel as
-//! standard input, the lifeline as standard output, the ledger as a number that is opened again through /proc.
+//! standard input, the lifeline as standard output, the ledger as a number that is opened again through /proc. Owns the
+//! process and what it says; what its end means, `watch` judges.
 
 use super::inherit::Handover;
 use super::ledger::Ledger;
 use super::mounted::Mounted;
+use crate::limits::LIFE_LINE_BYTES_MAX;
 use nix::sys::signal::{Signal, kill};
 use nix::sys::wait::{Id, WaitPidFlag, WaitStatus, waitid};
 use nix::unistd::Pid;
@@ -14,9 +16,6 @@ use std::io::{self, PipeReader, Read};
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 use std::os::unix::process::CommandExt;
 use std::process::{self, Command, ExitStatus};
-
-/// Longest line that a daemon has to say; a longer one is nonsense and is dropped.
-const LINE_BYTES_MAX: usize = 64;
 
 /// A running daemon. Dropping it kills it.
 pub(super) struct Child {
@@ -91,7 +90,7 @@ impl Child {
         if let Some(word) = self.next_word() {
             return Ok(word);
         }
-        let mut piece = [0; LINE_BYTES_MAX];
+        let mut piece = [0; LIFE_LINE_BYTES_MAX];
         let size = match self.lifeline.read(&mut piece) {
             Err(error) if error.kind() == io::ErrorKind::Interrupted => return Ok(Heard::Nothing),
             result => result?,
@@ -101,7 +100,7 @@ impl Child {
         }
         self.heard.extend_from_slice(&piece[..size]);
         let word = self.next_word();
-        if self.heard.len() > LINE_BYTES_MAX {
+        if self.heard.len() > LIFE_LINE_BYTES_MAX {
             self.heard.clear();
         }
         Ok(word.unwrap_or(Heard::Nothing))
@@ -186,7 +185,7 @@ mod tests {
             match child.hear().expect("readable") {
                 Heard::End => return heard,
                 Heard::Nothing => {}
-                word => heard.push(word),
+                word @ (Heard::Ready(_) | Heard::Over) => heard.push(word),
             }
         }
     }

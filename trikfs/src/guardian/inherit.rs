@@ -7,6 +7,7 @@
 use super::clean_up;
 use super::ledger::Ledger;
 use super::mounted::Mounted;
+use crate::failure::Failure;
 use nix::sys::prctl::set_pdeathsig;
 use nix::sys::signal::{SigSet, Signal};
 use nix::unistd::{dup2_stdin, dup2_stdout, getppid};
@@ -49,10 +50,10 @@ impl Handover {
     }
 }
 
-fn mount_numbers(text: &str) -> Result<(u32, u32), String> {
+fn mount_numbers(text: &str) -> Result<(u32, u32), &'static str> {
     text.split_once(':')
         .and_then(|(id, connection)| Some((id.parse().ok()?, connection.parse().ok()?)))
-        .ok_or_else(|| "not two numbers".to_owned())
+        .ok_or("not two numbers")
 }
 
 /// What the daemon has from the guardian.
@@ -92,8 +93,8 @@ impl Inheritance {
     ///
     /// # Errors
     /// This process was not started by a guardian.
-    pub fn take(handover: &Handover) -> Result<Self, String> {
-        let fail = |error: io::Error| format!("not started by a guardian: {error}");
+    pub fn take(handover: &Handover) -> Result<Self, Failure> {
+        let fail = |error: io::Error| Failure::system("not started by a guardian", error);
         let mask: SigSet = [Signal::SIGTERM, Signal::SIGINT, Signal::SIGHUP]
             .into_iter()
             .collect();
@@ -104,7 +105,7 @@ impl Inheritance {
         set_pdeathsig(Signal::SIGTERM).map_err(|error| fail(error.into()))?;
         // It may have died before the line above, and then no signal comes.
         if !is_parent(handover.guardian) {
-            return Err("the guardian is gone".to_owned());
+            return Err(Failure::Orphaned);
         }
         let device = io::stdin().as_fd().try_clone_to_owned().map_err(fail)?;
         let lifeline = io::stdout().as_fd().try_clone_to_owned().map_err(fail)?;
@@ -204,6 +205,6 @@ mod tests {
         let refusal = std::thread::spawn(move || Inheritance::take(&handover).err())
             .join()
             .expect("no panic");
-        assert_eq!(refusal.as_deref(), Some("the guardian is gone"));
+        assert!(matches!(refusal, Some(Failure::Orphaned)), "{refusal:?}");
     }
 }

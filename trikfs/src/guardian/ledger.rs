@@ -72,7 +72,7 @@ impl Ledger {
         Ok(Self::over(File::from(file)))
     }
 
-    /// The ledger behind a descriptor that this process inherited.
+    /// The ledger of a descriptor that this process inherited.
     pub fn inherited(number: RawFd) -> io::Result<Self> {
         // Opening it anew needs no unsafe claim to own the number.
         let file = OpenOptions::new()

@@ -5,7 +5,7 @@
 //! mount is surely there: it belongs to that connection for ever and can hit no other.
 //! Touches no file of the mount, which may have nobody to answer.
 
-use crate::mount;
+use crate::mount::{self, MountError};
 use nix::mount::{MntFlags, umount2};
 use std::fs::{File, OpenOptions};
 use std::io::Write;
@@ -31,10 +31,8 @@ impl Mounted {
     ///
     /// # Errors
     /// There is none, or the list cannot be read.
-    pub fn find(path: &Path) -> Result<Self, String> {
-        let entry = mount::find(path).map_err(|error| error.to_string())?;
-        let entry =
-            entry.ok_or_else(|| format!("{}: not in the list of mounts", path.display()))?;
+    pub fn find(path: &Path) -> Result<Self, MountError> {
+        let entry = mount::find(path)?.ok_or_else(|| MountError::Unlisted(path.to_owned()))?;
         Ok(Self::named(
             entry.mountpoint,
             entry.id,

@@ -14,9 +14,6 @@ use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How long one action may take before the next one is begun beside it.
-const PATIENCE: Duration = Duration::from_millis(50);
-
 type Queue = Arc<Mutex<VecDeque<(usize, RestAction)>>>;
 
 /// Carries out all actions and gives a line for each that failed or did not end within three seconds.
@@ -41,7 +38,7 @@ fn bring_to_rest_within(actions: &[RestAction], limit: Duration) -> Vec<String> 
             workers += usize::from(start_worker(&queue, &buses, &sender));
         }
         let patience = if workers < limits::REST_THREADS_MAX {
-            PATIENCE
+            limits::REST_PATIENCE
         } else {
             limit
         };

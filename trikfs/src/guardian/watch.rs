@@ -1,6 +1,7 @@
 //! Waits for whatever comes first: a signal, the end of the mount, a word from the daemon, its end.
 //!
-//! One poll(2) for all of them; nothing here is asked periodically.
+//! Owns what is listened to, the patience with a daemon that is to end, and the judgement of its end. One poll(2) for all
+//! of them; nothing here is asked periodically. Knows no actuator and no mount point.
 
 use super::child::{Child, Heard};
 use crate::limits;
@@ -21,7 +22,7 @@ const PANICKED: i32 = 101;
 /// How one life of the daemon ended.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum End {
-    /// It was asked to, by whomever, or the mount is gone.
+    /// It was asked to by a signal, or the mount is gone.
     Stopped,
     /// It refused to run and said why.
     Failed,
@@ -57,7 +58,7 @@ impl Watch {
 
     /// Waits for the daemon's end. Brings it about when a signal comes or the mount goes: first by asking, after two
     /// seconds by force. A daemon that somebody stops (SIGSTOP) and does not soon continue is killed: it would leave
-    /// actuators driven and nobody who answers. `ready` is called when the daemon says that it serves.
+    /// actuators driven and requests unanswered. `ready` is called when the daemon says that it serves.
     pub(super) fn until_end(
         &self,
         child: &mut Child,
@@ -105,7 +106,7 @@ impl Watch {
                 }
                 // It hangs in the kernel. What is left to do must not wait for it.
                 Urgency::Forced(deadline) if now >= deadline => return Ok(End::Stopped),
-                _ => {}
+                Urgency::None | Urgency::Asked(_) | Urgency::Forced(_) => {}
             }
         }
     }

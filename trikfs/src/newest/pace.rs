@@ -1,6 +1,6 @@
 //! When samples are taken in the background: by the clock or on event, and when one has become too old.
 //!
-//! Owns the due times. What a sample is and who hears of it is `newest`'s business.
+//! Owns the due times. What a sample is, and what hears of it, is `newest`'s business.
 
 use super::Source;
 use crate::events::{Due, lock};
@@ -64,7 +64,7 @@ impl Due for Renewal {
         if !node.is_retired() {
             node.sampling.newest.sample(&node);
         }
-        // Whoever waited may have given up.
+        // The writer may no longer wait.
         let _ = self.done.try_send(());
         None
     }
@@ -75,7 +75,7 @@ impl Due for Renewal {
 /// hangs.
 pub fn renew(node: &Arc<Node>) {
     let by_clock = matches!(node.description.pace, Pace::Every { .. });
-    if !by_clock || node.driving.regulation().is_some() || node.is_retired() {
+    if !by_clock || node.driving.takes_orders() || node.is_retired() {
         return;
     }
     let (done, sampled) = sync_channel(1);

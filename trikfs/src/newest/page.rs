@@ -1,6 +1,6 @@
 //! A node's `bin_data` in the kernel's page cache.
 //!
-//! Owns the counts of those who read from there and what is known of the page's content. Filling and dropping happen
+//! Owns the counts of its readers and what is known of the page's content. Filling and dropping happen
 //! on event and schedule threads only: a READ request may hold the page while it waits for the thread that serves the
 //! kernel, so that thread must never wait for the page.
 

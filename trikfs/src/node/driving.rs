@@ -1,16 +1,18 @@
-//! Who drives a node: leases, a regulator in front of it, a regulator behind it.
+//! Who drives a node: leases, the regulator that takes what is written to it as orders, the regulator that drives it.
 //!
-//! Owns the count of writes, the turn of those who write to a node that is regulated, and why a regulator gave up. The
-//! rules of leases and of regulators are theirs; how a node comes to rest is in `rest`.
+//! Owns the count of writes, the turn of writers to a node that is regulated, and why a regulator gave up; no other
+//! file asks a node whether it has a regulator. The rules of leases and of regulators are theirs; how a node comes to rest
+//! is in `rest`. Knows no kind of source but by what its trait says that it drives.
 
 use super::Node;
 use super::written::Written;
 use crate::crew::lock_patiently;
+use crate::device::{Drives, kinds};
 use crate::errno::Error;
 use crate::events::lock;
 use crate::lease::Lease;
 use crate::regulation::Regulation;
-use config::description::{NodeDescription, SourceDescription};
+use config::description::NodeDescription;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
 
@@ -20,7 +22,7 @@ pub struct Driving {
     pub lease: Arc<Lease>,
     /// The same, and those of the nodes that a write passes on its way to the device.
     pub leases: Vec<Arc<Lease>>,
-    /// Only for the source `regulator{...}`.
+    /// Only for a source that holds what is written.
     regulation: Option<Regulation>,
     /// A regulator drives this node.
     is_regulated: AtomicBool,
@@ -41,11 +43,11 @@ impl Driving {
     ) -> Self {
         let source = &description.source;
         let linked = |path: &str| links.iter().find(|(name, _)| name == path);
-        let regulation = match source {
-            SourceDescription::Regulator(regulator) => {
-                linked(&regulator.actuator).map(|(_, actuator)| Regulation::new(actuator.clone()))
+        let regulation = match kinds::drives(source) {
+            Drives::Held(actuator) => {
+                linked(actuator).map(|(_, actuator)| Regulation::new(actuator.clone()))
             }
-            _ => None,
+            Drives::Itself | Drives::Other(_) => None,
         };
         let mut leases = vec![lease.clone()];
         if let Some((_, node)) = source.written_node().and_then(linked) {
@@ -65,9 +67,43 @@ impl Driving {
         }
     }
 
-    /// Holds what is written by driving another node.
-    pub fn regulation(&self) -> Option<&Regulation> {
-        self.regulation.as_ref()
+    /// What is written is an order to a regulator, which holds it by driving another node; no sink takes it.
+    pub fn takes_orders(&self) -> bool {
+        self.regulation.is_some()
+    }
+
+    /// A program wrote what is to be held; see [`Regulation::order`].
+    pub fn order(&self, node: &Arc<Node>, tuple: &[u8]) -> Result<(), Error> {
+        match &self.regulation {
+            Some(regulation) => regulation.order(node, tuple),
+            None => Err(Error::Internal("an order without a regulator".to_owned())),
+        }
+    }
+
+    /// The node was measured: a regulator makes a step.
+    pub fn measured(&self, node: &Node, tuple: &[u8]) {
+        if let Some(regulation) = &self.regulation {
+            regulation.step(node, tuple);
+        }
+    }
+
+    /// Measuring the node failed: a regulator can hold nothing without it.
+    pub fn not_measured(&self, node: &Node, error: &Error) {
+        if let Some(regulation) = &self.regulation {
+            regulation.fail(node, error);
+        }
+    }
+
+    /// Nothing is held any more; what was driven stays as it is.
+    pub fn release(&self) {
+        if let Some(regulation) = &self.regulation {
+            regulation.release();
+        }
+    }
+
+    /// Brings to rest what a regulator drives; None for a node that takes no orders.
+    pub fn rest_what_is_held(&self) -> Option<Result<(), Error>> {
+        self.regulation.as_ref().map(Regulation::rest)
     }
 
     /// Changes whenever a lease that a write to this node touches changes hands.
@@ -105,8 +141,8 @@ impl Node {
     /// What is driven in the end: the node itself, or the one that it stands for.
     fn driven(&self) -> &Self {
         let mut node = self;
-        while let SourceDescription::Node(link) = &node.description.source {
-            match node.links.iter().find(|(name, _)| *name == link.path) {
+        while let Drives::Other(path) = kinds::drives(&node.description.source) {
+            match node.links.iter().find(|(name, _)| name == path) {
                 Some((_, other)) => node = other,
                 None => break,
             }
@@ -114,14 +150,14 @@ impl Node {
         node
     }
 
-    /// From now on a regulator drives this node beside those who write to it.
+    /// From now on a regulator drives this node beside the programs that write to it.
     pub fn let_regulate(&self) {
         let driving = &self.driven().driving;
         driving.is_regulated.store(true, Ordering::Relaxed);
     }
 
     /// The right to write, alone, to a node that a regulator drives; others need none. A regulator that finds the node
-    /// its own and writes must not come behind somebody who writes at that moment and has the last word.
+    /// its own and writes must not come after a program that writes at that moment and has the last word.
     pub fn take_turn(&self) -> Option<MutexGuard<'_, ()>> {
         let driving = &self.driven().driving;
         let is_regulated = driving.is_regulated.load(Ordering::Relaxed);

@@ -41,7 +41,7 @@ impl Trouble {
     }
 
     /// Notes a failure. One of the device or the converter is shown by `fault`, `stats` and the log; a mistake of the
-    /// caller, who has the errno, by the log alone.
+    /// caller, which has the errno, by the log alone.
     pub(super) fn report(&self, error: &Error, stats: &Stats) {
         if error.blame() == Blame::Caller {
             return self.tell_mistake(error);

@@ -1,7 +1,7 @@
 //! A node as the source and the sink of other nodes.
 //!
-//! Owns the bridge: readiness of a stream becomes that of an eventfd, so that a linked stream looks like any other to
-//! whoever waits for it.
+//! Owns the bridge: readiness of a stream becomes that of an eventfd, so that a linked stream can be
+//! waited for like any other.
 
 use super::{Feed, Node};
 use crate::device::linked::LinkedNode;

@@ -1,20 +1,19 @@
 //! How a node's actuator comes to rest: by this process, and by the guardian when this one is dead.
 //!
-//! Owns the rest as a tuple and as an action of the guardian. When that happens is the business of others.
+//! Owns the rest as a tuple and as an action of the guardian, and what a lease knows of actuators. When they come to rest
+//! is the business of others.
 
 use super::Node;
 use crate::errno::Error;
 use crate::events::lock;
 use crate::guardian::actions::RestAction;
+use crate::lease::Actuators;
 use crate::limits;
 use config::source::rest::Resting;
 use converter::Direction;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, Weak};
 use std::time::{Duration, Instant};
-
-/// Between two attempts to bring an actuator to rest whose device is busy.
-const PAUSE: Duration = Duration::from_millis(1);
 
 impl Node {
     /// The tuple that brings the actuator to rest, as a program would write it.
@@ -31,8 +30,8 @@ impl Node {
     /// Brings the actuator to rest now. One that this board does not have rests already; a bus that has too many to
     /// serve at the moment is asked again until the node's time limit.
     pub fn rest(self: &Arc<Self>) -> Result<(), Error> {
-        if let Some(regulation) = self.driving.regulation() {
-            return regulation.rest();
+        if let Some(rested) = self.driving.rest_what_is_held() {
+            return rested;
         }
         let Some(tuple) = self.rest_tuple()? else {
             return Ok(());
@@ -48,7 +47,7 @@ impl Node {
             });
             match outcome {
                 Err(error) if error.is_busy_device() && Instant::now() < deadline => {
-                    std::thread::sleep(PAUSE);
+                    std::thread::sleep(limits::REST_PAUSE);
                 }
                 outcome => {
                     self.driving.written.forget_sent();
@@ -60,7 +59,7 @@ impl Node {
 
     /// What the guardian has to do if this process is no longer there; nothing if there is no device to rest.
     pub fn rest_action(self: &Arc<Self>) -> Result<Option<RestAction>, Error> {
-        if self.driving.regulation().is_some() {
+        if self.driving.takes_orders() {
             // What it drives has a rest of its own.
             return Ok(None);
         }
@@ -102,6 +101,27 @@ impl Node {
     }
 }
 
+/// The actuators of a lease: those of them that are still there.
+pub struct LeasedActuators(pub Vec<Weak<Node>>);
+
+impl LeasedActuators {
+    fn nodes(&self) -> Vec<Arc<Node>> {
+        self.0.iter().filter_map(Weak::upgrade).collect()
+    }
+}
+
+impl Actuators for LeasedActuators {
+    fn write_mode(&self) -> u16 {
+        let modes = self.nodes().into_iter();
+        modes.fold(0, |mode, node| mode | (node.description.mode & 0o222))
+    }
+
+    fn rest(&self) {
+        // Each node has noted its failure: its `fault` and the log tell.
+        let _ = rest_all(&self.nodes());
+    }
+}
+
 /// Brings every actuator to rest, slow ones beside each other: one that hangs keeps one thread. All are tried; the
 /// first failure is returned.
 pub fn rest_all(nodes: &[Arc<Node>]) -> Result<(), Error> {
@@ -111,8 +131,8 @@ pub fn rest_all(nodes: &[Arc<Node>]) -> Result<(), Error> {
     let next = AtomicUsize::new(0);
     let failures = Mutex::new(Vec::new());
     // First nobody may drive them any more.
-    for regulation in nodes.iter().filter_map(|node| node.driving.regulation()) {
-        regulation.release();
+    for node in nodes {
+        node.driving.release();
     }
     let work = || {
         while let Some(node) = actuators.get(next.fetch_add(1, Ordering::Relaxed)) {

@@ -6,7 +6,7 @@ use super::Node;
 use crate::convert::{LogSink, Pipeline};
 use crate::device::lines::answer::Answer;
 use crate::device::linked::LinkedNode;
-use crate::device::{Device, State, Stream, Surroundings, kinds};
+use crate::device::{Device, Positions, State, Stream, Surroundings, kinds};
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::{Ready, lock};
@@ -114,7 +114,7 @@ impl Node {
                 Device::Stream(stream) => Opened::Stream(Origin::Own(stream)),
             });
         }
-        // What came before, an end included, is for those who were there before.
+        // What came before, an end included, is for the readers that were there before.
         let running = lock(&self.source.hub).upgrade();
         if let Some(hub) = running {
             hub.pump();
@@ -143,6 +143,11 @@ impl Node {
         )
     }
 
+    /// Opens a device that is read and written at positions; None for all that has tuples.
+    pub fn open_positions(&self) -> Result<Option<Box<dyn Positions>>, Error> {
+        kinds::open_positions(&self.description.source, &self.source.around)
+    }
+
     /// Opens the source, which must be a stream: one that was a stream before.
     pub fn open_stream(&self) -> Result<Box<dyn Stream>, Error> {
         match self.open_device()? {
@@ -158,7 +163,7 @@ impl Node {
         self: &Arc<Self>,
         pipeline: Option<Arc<Mutex<Pipeline>>>,
     ) -> Result<Writer, Error> {
-        if self.driving.regulation().is_some() {
+        if self.driving.takes_orders() {
             return Ok(Writer::to_regulation(self.clone()));
         }
         let pipeline = pipeline.map_or_else(|| self.open_pipeline(), Ok)?;

@@ -1,6 +1,6 @@
-//! The sample bus of a build that has none: nothing is published, and nobody notices.
+//! The sample bus of a build that has none: nothing is published, and nothing else changes.
 
-use super::Readers;
+use super::{BusError, Readers};
 use crate::clock::Stamp;
 use crate::errno::Error;
 use config::description::{Alias, NodeDescription};
@@ -19,7 +19,7 @@ impl SampleBus {
     ///
     /// # Errors
     /// None.
-    pub fn open(&self, _mountpoint: &Path, _readers: Readers) -> Result<(), String> {
+    pub fn open(&self, _mountpoint: &Path, _readers: Readers) -> Result<(), BusError> {
         Ok(())
     }
 
@@ -35,7 +35,7 @@ impl SampleBus {
     ///
     /// # Errors
     /// None.
-    pub fn set_aliases(&self, _aliases: &[Alias]) -> Result<(), String> {
+    pub fn set_aliases(&self, _aliases: &[Alias]) -> Result<(), BusError> {
         Ok(())
     }
 
@@ -43,7 +43,7 @@ impl SampleBus {
     ///
     /// # Errors
     /// None.
-    pub fn ring(&self, _description: &NodeDescription) -> Result<Option<Ring>, String> {
+    pub fn ring(&self, _description: &NodeDescription) -> Result<Option<Ring>, BusError> {
         Ok(None)
     }
 }

@@ -3,7 +3,7 @@
 //! Owns the mount's directory in shared memory and the sum of what its rings take. Whatever fails here becomes a line
 //! for the log and for `status`; files never notice.
 
-use super::Readers;
+use super::{BusError, Readers};
 use crate::clock::Stamp;
 use crate::errno::Error;
 use crate::events::lock;
@@ -22,7 +22,7 @@ use std::time::Duration;
 pub struct SampleBus {
     place: Mutex<Option<Place>>,
     /// Why there is no directory.
-    problem: Mutex<Option<String>>,
+    problem: Mutex<Option<BusError>>,
     used_bytes: Arc<AtomicUsize>,
 }
 
@@ -42,8 +42,8 @@ impl SampleBus {
     /// Takes the directory of a mount point.
     ///
     /// # Errors
-    /// A line that says why there is no sample bus; `status` shows it as well.
-    pub fn open(&self, mountpoint: &Path, readers: Readers) -> Result<(), String> {
+    /// Why there is no sample bus; `status` shows it as well.
+    pub fn open(&self, mountpoint: &Path, readers: Readers) -> Result<(), BusError> {
         let shared_memory = Path::new(SHARED_MEMORY);
         let mode = match readers {
             Readers::Owner => 0o700,
@@ -60,9 +60,9 @@ impl SampleBus {
                 Ok(())
             }
             Err(error) => {
-                let line = format!("sample bus: off: {error}; files are not affected");
-                *lock(&self.problem) = Some(line.clone());
-                Err(line)
+                let error = BusError::Off(error.to_string());
+                *lock(&self.problem) = Some(error.clone());
+                Err(error)
             }
         }
     }
@@ -78,15 +78,15 @@ impl SampleBus {
         let problem = lock(&self.problem);
         problem
             .as_ref()
-            .map_or_else(String::new, |line| format!("{line}\n"))
+            .map_or_else(String::new, |error| format!("{error}\n"))
     }
 
     /// Second names lead to the rings of their nodes, and to nothing while those have none. Links are the names of the
     /// configuration in force and no others; call it when the rings of nodes that are gone have ended.
     ///
     /// # Errors
-    /// A line for the first name that could not be made.
-    pub fn set_aliases(&self, aliases: &[Alias]) -> Result<(), String> {
+    /// The first name that could not be made.
+    pub fn set_aliases(&self, aliases: &[Alias]) -> Result<(), BusError> {
         let place = lock(&self.place);
         let Some(place) = place.as_ref() else {
             return Ok(());
@@ -105,17 +105,16 @@ impl SampleBus {
             failed.get_or_insert((name, error));
         }
         failed.map_or(Ok(()), |(name, error)| {
-            Err(format!(
-                "sample bus: the second name {name} is not there: {error}; files are not affected"
-            ))
+            let why = error.to_string();
+            Err(BusError::Alias { name, why })
         })
     }
 
     /// A ring for a node, with the rights of its files. None: the mount has no sample bus.
     ///
     /// # Errors
-    /// A line that says why this node has none.
-    pub fn ring(&self, description: &NodeDescription) -> Result<Option<Ring>, String> {
+    /// Why this node has none.
+    pub fn ring(&self, description: &NodeDescription) -> Result<Option<Ring>, BusError> {
         let place = lock(&self.place);
         let Some(place) = place.as_ref() else {
             return Ok(None);
@@ -130,9 +129,8 @@ impl SampleBus {
         };
         let size = description.output_tuple_size;
         let ring = self.make(place, &description.path, size, rights);
-        ring.map(Some).map_err(|error| {
-            format!("sample bus: not published: {error}; the node's files are not affected")
-        })
+        ring.map(Some)
+            .map_err(|error| BusError::Ring(error.to_string()))
     }
 
     fn make(

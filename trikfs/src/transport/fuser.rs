@@ -5,7 +5,7 @@
 //!
 //! What it cannot do, compared with the native transport (fuser 0.18):
 //! * a waiting reader cannot be interrupted or killed before its data comes: FUSE_INTERRUPT is answered ENOSYS;
-//! * nobody takes over from an operation that lasts: as many as [`THREADS`] late ones stop the mount;
+//! * nobody takes over from an operation that lasts: as many as [`FUSER_THREADS`] late ones stop the mount;
 //! * ASYNC_READ cannot be switched off, and the version of the protocol cannot be held down;
 //! * a store into a file that the kernel does not know is reported as done;
 //! * a session ends only when the mount does.
@@ -17,14 +17,14 @@ use super::{
     Answer, Attr, Caller, FileKind, Opened, Operations, Outcome, PollHandle, StatFs, Transfer,
 };
 use crate::errno::Error;
-use crate::limits::{BACKGROUND_MAX, TRANSFER_BYTES_MAX};
+use crate::limits::{BACKGROUND_MAX, FUSER_THREADS, TRANSFER_BYTES_MAX};
 use crate::transport::RequestId;
 use fuser::{
-    BsdFileFlags, Config, Errno, FileAttr, FileHandle, FileType, Filesystem, FopenFlags,
-    Generation, INodeNo, InitFlags, IoctlFlags, KernelConfig, LockOwner, OpenFlags, PollEvents,
-    PollFlags, PollNotifier, RenameFlags, ReplyAttr, ReplyCreate, ReplyData, ReplyDirectory,
-    ReplyEmpty, ReplyEntry, ReplyIoctl, ReplyOpen, ReplyPoll, ReplyStatfs, ReplyWrite, ReplyXattr,
-    Request, SessionACL, TimeOrNow, WriteFlags,
+    BsdFileFlags, Config, FileAttr, FileHandle, FileType, Filesystem, FopenFlags, Generation,
+    INodeNo, InitFlags, IoctlFlags, KernelConfig, LockOwner, OpenFlags, PollEvents, PollFlags,
+    PollNotifier, RenameFlags, ReplyAttr, ReplyCreate, ReplyData, ReplyDirectory, ReplyEmpty,
+    ReplyEntry, ReplyIoctl, ReplyOpen, ReplyPoll, ReplyStatfs, ReplyWrite, ReplyXattr, Request,
+    SessionACL, TimeOrNow, WriteFlags,
 };
 use link::{Link, Reply, fenced, number};
 use std::ffi::OsStr;
@@ -34,9 +34,6 @@ use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
 use std::sync::Arc;
 use std::time::SystemTime;
-
-/// Threads that serve the mount. More cost every request some 15 %, fewer let a single late operation stop it.
-const THREADS: usize = 4;
 
 /// Serves a mount until it is gone, then tells the filesystem.
 ///
@@ -50,7 +47,7 @@ pub fn serve(device: OwnedFd, operations: Arc<dyn Operations>) -> io::Result<()>
         features: Features::of_version(0),
     };
     let mut config = Config::default();
-    config.n_threads = Some(THREADS);
+    config.n_threads = Some(FUSER_THREADS);
     // The mount itself says who may enter.
     let session = fuser::Session::from_fd(adapter, device, SessionACL::All, config)?;
     link.notifier.get_or_init(|| session.notifier());
@@ -214,23 +211,23 @@ impl Filesystem for Adapter {
         _d: u32,
         reply: ReplyEntry,
     ) {
-        reply.error(Errno::EPERM);
+        reply.error(number(&Error::NotPermitted));
     }
 
     fn mkdir(&self, _r: &Request, _p: INodeNo, _n: &OsStr, _m: u32, _u: u32, reply: ReplyEntry) {
-        reply.error(Errno::EPERM);
+        reply.error(number(&Error::NotPermitted));
     }
 
     fn unlink(&self, _r: &Request, _p: INodeNo, _n: &OsStr, reply: ReplyEmpty) {
-        reply.error(Errno::EPERM);
+        reply.error(number(&Error::NotPermitted));
     }
 
     fn rmdir(&self, _r: &Request, _p: INodeNo, _n: &OsStr, reply: ReplyEmpty) {
-        reply.error(Errno::EPERM);
+        reply.error(number(&Error::NotPermitted));
     }
 
     fn symlink(&self, _r: &Request, _p: INodeNo, _n: &OsStr, _t: &Path, reply: ReplyEntry) {
-        reply.error(Errno::EPERM);
+        reply.error(number(&Error::NotPermitted));
     }
 
     fn rename(
@@ -243,11 +240,11 @@ impl Filesystem for Adapter {
         _flags: RenameFlags,
         reply: ReplyEmpty,
     ) {
-        reply.error(Errno::EPERM);
+        reply.error(number(&Error::NotPermitted));
     }
 
     fn link(&self, _r: &Request, _i: INodeNo, _p: INodeNo, _n: &OsStr, reply: ReplyEntry) {
-        reply.error(Errno::EPERM);
+        reply.error(number(&Error::NotPermitted));
     }
 
     fn create(
@@ -260,7 +257,7 @@ impl Filesystem for Adapter {
         _f: i32,
         reply: ReplyCreate,
     ) {
-        reply.error(Errno::EPERM);
+        reply.error(number(&Error::NotPermitted));
     }
 
     fn open(&self, request: &Request, ino: INodeNo, flags: OpenFlags, reply: ReplyOpen) {
@@ -463,7 +460,7 @@ impl Filesystem for Adapter {
         _out_size: u32,
         reply: ReplyIoctl,
     ) {
-        reply.error(Errno::from_i32(libc::ENOTTY));
+        reply.error(number(&Error::NoControl));
     }
 
     fn poll(

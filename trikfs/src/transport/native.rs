@@ -6,7 +6,7 @@
 //!
 //! One thread at a time reads the device. Operations run on it, in line, because a hop to another thread costs as
 //! much as the rest of a read; when one lasts longer than a millisecond another thread of the crew reads on, and the
-//! late one answers its own request. A read allocates nothing: the operation writes behind the header of the answer.
+//! late one answers its own request. A read allocates nothing: the operation writes after the header of the answer.
 //!
 //! # Interrupts
 //! The kernel sends INTERRUPT once, and only after the request itself has been read completely. A request is in one of
@@ -17,7 +17,7 @@
 //! It cannot be that a request was read but stands in no slot yet: another thread reads the device only after the first
 //! one has lost the role, which happens between `Seat::begin` and `Seat::end`, after the slot was filled. So no
 //! INTERRUPT needs to be sent back (EAGAIN) for a second try.
-//! Who takes the number out of the slot answers: the interrupter with EINTR, or the thread with its result. A result
+//! The side that takes the number out of the slot answers: the interrupter with EINTR, or the thread with its result. A result
 //! that came too late is undone as far as it can be: a file that was opened is released, a request that was parked is
 //! interrupted there. FLUSH and FSYNC are not answered over the head of their operation: their verdict must not be lost.
 
@@ -33,6 +33,7 @@ pub use encode::invalidate_message;
 pub(crate) use negotiate::Features;
 
 use crate::crew::{Crew, Seat};
+use crate::errno::Error;
 use crate::limits::{MAX_THREADS, TRANSFER_BYTES_MAX};
 use crate::transport::null::NullFs;
 use crate::transport::{Kernel, Operations, RequestId};
@@ -115,7 +116,7 @@ impl Slot {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes this request out. True for one of the two who try.
+    /// Takes this request out. True for one of the two that try.
     fn take(&self, unique: u64) -> bool {
         let mut slot = self.lock();
         let found = *slot == Some(unique);
@@ -171,7 +172,7 @@ impl Session {
 
     /// Makes [`serve`](Self::serve) return soon, from any thread, while the mount stays: for a busy mount that was
     /// detached. When the descriptor is closed with the session and the last [`Kernel`] of it, programs get ENOTCONN
-    /// from the mount, and whoever waits in it is let go.
+    /// from the mount, and all requests that wait in it are ended.
     ///
     /// Works while some file is open. On newer kernels (6.18) a mount that is kept busy by a working directory alone
     /// goes on until the process ends.
@@ -232,7 +233,7 @@ impl Shared {
         }
         let inside = self.slots().iter().any(|slot| slot.take(unique));
         if inside {
-            self.link.refuse(unique, libc::EINTR);
+            self.link.refuse(unique, &Error::Interrupted);
         } else {
             self.operations.interrupt(id);
         }
@@ -243,7 +244,7 @@ impl Shared {
             Negotiated::Agreed(features, reply) => (Some(features), reply),
             Negotiated::AskAgain(reply) => (None, reply),
             Negotiated::TooOld => {
-                self.link.refuse(unique, libc::EPROTO);
+                self.link.refuse(unique, &Error::OldKernel);
                 return self.fail(io::Error::new(
                     io::ErrorKind::Unsupported,
                     format!(
@@ -327,7 +328,9 @@ impl Worker {
                     "a request of the kernel is malformed: {reason}"
                 ));
                 if let Some(unique) = unique {
-                    shared.link.refuse(unique, libc::EIO);
+                    shared
+                        .link
+                        .refuse(unique, &Error::Internal(reason.to_string()));
                 }
             }
         }
@@ -388,7 +391,8 @@ fn serve_operation(
 ) {
     let header = &request.header;
     let Some(features) = shared.features.get() else {
-        return shared.link.refuse(header.unique, libc::EIO);
+        let early = Error::Internal("a request before the first one".into());
+        return shared.link.refuse(header.unique, &early);
     };
     let interruptible = !matches!(request.body, Body::Flush { .. } | Body::Fsync { .. });
     let (head, out) = reply.split_at_mut(abi::OUT_HEADER);
@@ -405,7 +409,7 @@ fn serve_operation(
     let performed = match performed {
         Some(performed) => performed,
         None if matches!(request.body, Body::Forget | Body::NotifyReply) => Performed::Silent,
-        None => Performed::Refuse(libc::EIO),
+        None => Performed::Refuse(Error::Internal("panic in a request".into())),
     };
     match performed {
         // Before the answer, because the file may be closed as soon as it arrives.
@@ -416,12 +420,12 @@ fn serve_operation(
     if !ours {
         return undo(shared, header, performed);
     }
-    let (error, bytes) = match performed {
-        Performed::Reply(bytes) | Performed::Opened { bytes, .. } => (0, bytes),
-        Performed::Refuse(errno) => (errno, 0),
+    let (errno, bytes) = match &performed {
+        Performed::Reply(bytes) | Performed::Opened { bytes, .. } => (0, *bytes),
+        Performed::Refuse(error) => (error.errno(), 0),
         Performed::Wait | Performed::Silent => return,
     };
-    head.copy_from_slice(&encode::answer_header(header.unique, error, bytes));
+    head.copy_from_slice(&encode::answer_header(header.unique, errno, bytes));
     let sent = shared.link.send(&reply[..abi::OUT_HEADER + bytes]);
     if sent.is_err() {
         undo(shared, header, performed);

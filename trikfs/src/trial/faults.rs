@@ -3,12 +3,9 @@
 //! Owns the report. Keeps at most `limits::FAULT_REASONS_MAX` reasons, so that a converter with an endless choice of
 //! words costs no memory.
 
-use crate::limits::FAULT_REASONS_MAX;
+use crate::limits::{FAULT_REASONS_MAX, FAULT_SHOWN_BYTES};
 use converter::trial::hex;
 use std::fmt::Write;
-
-/// Bytes of a tuple that a message shows.
-const SHOWN_BYTES: usize = 16;
 
 /// A tuple of the input.
 #[derive(Clone, Copy)]
@@ -24,8 +21,8 @@ pub struct Place<'a> {
 impl Place<'_> {
     /// For messages.
     pub fn show(&self) -> String {
-        let shown = hex(&self.bytes[..self.bytes.len().min(SHOWN_BYTES)]);
-        let more = if self.bytes.len() > SHOWN_BYTES {
+        let shown = hex(&self.bytes[..self.bytes.len().min(FAULT_SHOWN_BYTES)]);
+        let more = if self.bytes.len() > FAULT_SHOWN_BYTES {
             "..."
         } else {
             ""

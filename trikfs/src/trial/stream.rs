@@ -1,6 +1,7 @@
 //! Bytes of a file, a pipe or a recording through one converter, tuple by tuple, as raw bytes, hexadecimal or text.
 //!
-//! Owns the forms of input and output. What is there is converted at once, so that a pipe can be watched.
+//! Owns the forms of input and output. What is there is converted at once, so that a pipe can be watched. Knows neither
+//! configuration nor language.
 
 use super::faults::{Faults, Place};
 use super::timing::Timing;
@@ -8,6 +9,7 @@ use super::{Subject, convert};
 use crate::convert::Pipeline;
 use crate::device::replay;
 use crate::errno::Error;
+use crate::failure::Failure;
 use crate::limits::{CONVERT_CHUNK_BYTES, RECORDING_BYTES_MAX};
 use config::format::Format;
 use converter::Conversion;
@@ -33,7 +35,7 @@ pub enum Shape {
 pub struct Wishes {
     /// How results are written.
     pub shape: Shape,
-    /// Go on behind a refused tuple and report at the end.
+    /// Go on after a refused tuple and report at the end.
     pub keep_going: bool,
     /// Measure each conversion.
     pub timing: bool,
@@ -52,24 +54,23 @@ impl Input<'_> {
     ///
     /// # Errors
     /// The file with the line and what is wrong with it.
-    pub fn recording(text: &mut dyn Read, name: &Path) -> Result<Self, String> {
+    pub fn recording(text: &mut dyn Read, name: &Path) -> Result<Self, Failure> {
         let mut read = String::new();
-        let failed = |error: io::Error| format!("{}: {error}", name.display());
+        let failed = |error: io::Error| Failure::file(name, error);
         text.take(RECORDING_BYTES_MAX as u64 + 1)
             .read_to_string(&mut read)
             .map_err(failed)?;
         if read.len() > RECORDING_BYTES_MAX {
-            return Err(format!(
-                "{}: a recording may have {RECORDING_BYTES_MAX} bytes",
-                name.display()
-            ));
+            let why = format!("a recording may have {RECORDING_BYTES_MAX} bytes");
+            return Err(Failure::file(name, why));
         }
-        let records = replay::parse(name, &read)?;
+        let records = replay::parse(name, &read);
+        let records = records.map_err(|why| Failure::Refused(why.to_string()))?;
         Ok(Self::Recording(records.into_iter()))
     }
 
     /// Appends what comes next. None at the end, else the time of a recording's line in us.
-    fn more(&mut self, pending: &mut Vec<u8>) -> Result<Option<Option<u32>>, String> {
+    fn more(&mut self, pending: &mut Vec<u8>) -> Result<Option<Option<u32>>, Failure> {
         match self {
             Self::Recording(records) => Ok(records.next().map(|record| {
                 pending.extend(record.bytes);
@@ -81,7 +82,10 @@ impl Input<'_> {
                 let got = loop {
                     match input.read(&mut pending[start..]) {
                         Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-                        other => break other.map_err(|error| format!("{name}: {error}"))?,
+                        other => {
+                            break other
+                                .map_err(|error| Failure::file(Path::new(&*name), error))?;
+                        }
                     }
                 };
                 pending.truncate(start + got);
@@ -93,14 +97,14 @@ impl Input<'_> {
 
 /// Why a run ended before its input.
 enum Stop {
-    Reason(String),
+    Failed(Failure),
     /// Nobody reads the output any more.
     Enough,
 }
 
-impl From<String> for Stop {
-    fn from(reason: String) -> Self {
-        Self::Reason(reason)
+impl From<Failure> for Stop {
+    fn from(failure: Failure) -> Self {
+        Self::Failed(failure)
     }
 }
 
@@ -108,7 +112,7 @@ impl From<io::Error> for Stop {
     fn from(error: io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::BrokenPipe => Self::Enough,
-            _ => Self::Reason(format!("standard output: {error}")),
+            _ => Self::Failed(Failure::system("standard output", error)),
         }
     }
 }
@@ -123,11 +127,11 @@ pub fn run(
     wishes: Wishes,
     input: &mut Input<'_>,
     output: &mut dyn Write,
-) -> (Vec<String>, Result<(), String>) {
+) -> (Vec<String>, Result<(), Failure>) {
     let node = subject.description().path.clone();
     let mut run = match Run::new(subject, wishes) {
         Ok(run) => run,
-        Err(reason) => return (Vec::new(), Err(reason)),
+        Err(failure) => return (Vec::new(), Err(failure)),
     };
     let ended = run.all(input, output);
     let mut lines = Vec::new();
@@ -142,18 +146,19 @@ pub fn run(
     if let Some(timing) = &run.timing {
         lines.push(format!("node {node}: {}", timing.render()));
     }
+    let faults = run.faults.render(run.tuples);
     let result = match ended {
-        Ok(()) => run.faults.render(run.tuples).map_or(Ok(()), Err),
+        Ok(()) => faults.map_or(Ok(()), |faults| Err(Failure::Converter(faults))),
         Err(Stop::Enough) => Ok(()),
         // What was refused before is told as well.
-        Err(Stop::Reason(reason)) => Err(match run.faults.render(run.tuples) {
-            Some(faults) => format!("{faults}\n  {reason}"),
-            None => reason,
+        Err(Stop::Failed(failure)) => Err(match faults {
+            Some(faults) => Failure::Converter(format!("{faults}\n  {failure}")),
+            None => failure,
         }),
     };
     (
         lines,
-        result.map_err(|reason| format!("node {node}: {reason}")),
+        result.map_err(|failure| failure.at(format!("node {node}"))),
     )
 }
 
@@ -173,10 +178,12 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    fn new(subject: &'a Subject, wishes: Wishes) -> Result<Self, String> {
+    fn new(subject: &'a Subject, wishes: Wishes) -> Result<Self, Failure> {
         let (input_size, output_size) = subject.sizes();
         Ok(Self {
-            pipeline: subject.open()?,
+            pipeline: subject
+                .open()
+                .map_err(|error| Failure::Opening(error.to_string()))?,
             direction: subject.direction,
             wishes,
             format: &subject.format,
@@ -208,11 +215,11 @@ impl<'a> Run<'a> {
         if pending.is_empty() {
             return Ok(());
         }
-        Err(Stop::Reason(format!(
+        Err(Stop::Failed(Failure::Refused(format!(
             "the input ends {} bytes into a tuple of {}",
             pending.len(),
             self.input_size
-        )))
+        ))))
     }
 
     fn one(
@@ -245,7 +252,10 @@ impl<'a> Run<'a> {
                 self.faults.add(place, error.to_string());
                 Ok(())
             }
-            Err(error) => Err(Stop::Reason(format!("{}: {error}", place.show()))),
+            Err(error) => {
+                let why = format!("{}: {error}", place.show());
+                Err(Stop::Failed(Failure::Converter(why)))
+            }
         }
     }
 
@@ -266,7 +276,7 @@ impl<'a> Run<'a> {
             Shape::Text => self
                 .format
                 .render(&self.converted, &mut self.line)
-                .map_err(Error::Converter)?,
+                .map_err(|why| Error::Converter(why.to_string()))?,
         }
         self.line.push('\n');
         Ok(true)

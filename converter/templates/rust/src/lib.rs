@@ -76,7 +76,8 @@ mod tests {
         let vectors = vectors::parse(include_str!("../vectors.txt")).unwrap();
         let (input_size, output_size) = (vectors.input_size, vectors.output_size);
         let mut open = trial::opener::<BatteryMeanState>(input_size, output_size, &vectors.params);
-        trial::check_vectors(&vectors, &mut open).unwrap();
+        let met = trial::check_vectors(&vectors, &mut open);
+        met.unwrap_or_else(|why| panic!("{why}"));
     }
 
     #[test]
@@ -93,11 +94,12 @@ mod tests {
             // For floats there is trial::finite_f32.
             check: &|output| match u32::from_le_bytes(output.try_into().unwrap()) {
                 0..=13256 => Ok(()),
-                millivolts => Err(format!("{millivolts} mV")),
+                millivolts => Err(format!("{millivolts} mV").into()),
             },
         };
         let mut open = trial::opener::<BatteryMeanState>(2, 4, &params);
-        let report = trial::check_properties(&trial, &mut open).unwrap();
+        let report = trial::check_properties(&trial, &mut open);
+        let report = report.unwrap_or_else(|why| panic!("{why}"));
         println!("seed {seed}: {report:?}");
     }
 
@@ -106,6 +108,7 @@ mod tests {
         for count in [0.0, 1001.0, f64::NAN] {
             let params = BTreeMap::from([("count".to_owned(), count)]);
             let refused = trial::opener::<BatteryMeanState>(2, 4, &params)().err();
+            let refused = refused.map(|fault| fault.to_string());
             assert_eq!(
                 refused.as_deref(),
                 Some("battery_mean: count must be from 1 to 1000")

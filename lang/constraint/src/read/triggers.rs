@@ -55,7 +55,7 @@ impl Reader {
                 let property = self.filled(element, "property")?;
                 let [value] = self.operands(element, &["object", "property"])?;
                 Some(Trigger::SetState {
-                    object: self.path(object)?,
+                    object: self.path(object),
                     property: property.into(),
                     value,
                 })
@@ -70,7 +70,7 @@ impl Reader {
     /// A text with `%name%`, which a tag `replace` fills, and `${path}`: first the ones, then the others, each by name.
     fn message(&mut self, element: &Element<'_>) -> Option<Message> {
         self.known(element, &["text"]);
-        let text = self.present(element, "text")?;
+        let text = self.filled(element, "text")?;
         let mut named: BTreeMap<String, Operand> = BTreeMap::new();
         self.stray_text(element);
         for child in element.elements() {
@@ -93,7 +93,7 @@ impl Reader {
                 break;
             };
             rest = after;
-            let path = self.path(inside)?;
+            let path = self.path(inside);
             inline.insert(format!("${{{inside}}}"), Operand::Either(path));
         }
         let filled = named.into_iter().chain(inline);

@@ -39,16 +39,20 @@ impl Reader {
         }
     }
 
-    /// The path of a property; empty parts are left out.
-    pub(super) fn path(&mut self, text: &str) -> Option<Path> {
+    /// The path of a property; empty parts are left out. One without a name is an error each time when it is read.
+    pub(super) fn path(&mut self, text: &str) -> Path {
         let parts = text.split('.').filter(|part| !part.is_empty());
         let parts: Box<[Box<str>]> = parts.map(Into::into).collect();
-        if parts.is_empty() {
-            self.error(words::empty_path());
-            return None;
+        match &parts[..] {
+            [] => self.warn(words::empty_path()),
+            [one] => self.objects.push(one.clone()),
+            [one, other, ..] => self.objects.push(format!("{one}.{other}").into()),
         }
-        let slot = self.slot();
-        Some(Path { parts, slot })
+        Path {
+            text: text.into(),
+            parts,
+            slot: self.slot(),
+        }
     }
 
     fn slot(&mut self) -> usize {
@@ -70,7 +74,7 @@ impl Reader {
             .collect();
         if written.is_empty() {
             self.known(element, others);
-            let children: [&Element<'_>; N] = self.exactly_or_written(element)?;
+            let children: [&Element<'_>; N] = self.exactly(element)?;
             let values = children.map(|child| self.value(child));
             return Some(values);
         }
@@ -79,37 +83,27 @@ impl Reader {
                 self.warn(words::strange_attribute(&element.name, name, None));
             }
         }
-        let found = written.len() + element.nodes.len();
+        if written.len() != N {
+            self.error(words::operands(&element.name, N, written.len()));
+        }
         if written.len() != N || !element.nodes.is_empty() {
-            self.error(words::operands(&element.name, N, found));
+            self.error(words::children(&element.name, N));
             return None;
         }
         written.sort_by(|(left, _), (right, _)| left.cmp(right));
         let values = written.into_iter().map(|(_, text)| self.written(text));
-        let values: Option<Vec<_>> = values.collect();
-        values?.try_into().ok()
-    }
-
-    /// As `exactly`, with a hint that attributes are possible.
-    fn exactly_or_written<'e, 'x, const N: usize>(
-        &mut self,
-        element: &'e Element<'x>,
-    ) -> Option<[&'e Element<'x>; N]> {
-        if element.nodes.is_empty() {
-            self.error(words::operands(&element.name, N, 0));
-            return None;
-        }
-        self.exactly(element)
+        let values: Vec<_> = values.collect();
+        values.try_into().ok()
     }
 
     /// A value as an attribute: `${path}`, or what it looks like.
-    fn written(&mut self, text: &str) -> Option<Operand> {
+    fn written(&mut self, text: &str) -> Operand {
         let path = text
             .strip_prefix("${")
             .and_then(|text| text.strip_suffix('}'));
         match path {
-            Some(path) => self.path(path).map(Operand::Either),
-            None => Some(Operand::Constant(Value::guess(text))),
+            Some(path) => Operand::Either(self.path(path)),
+            None => Operand::Constant(Value::guess(text)),
         }
     }
 
@@ -131,12 +125,16 @@ impl Reader {
                 self.known(element, &["name"]);
                 let name = self.filled(element, "name")?;
                 let parts = name.split('.').map(Into::into).collect();
-                Some(Operand::Variable(Path { parts, slot: 0 }))
+                Some(Operand::Variable(Path {
+                    text: name.into(),
+                    parts,
+                    slot: 0,
+                }))
             }
             "objectstate" => {
                 self.known(element, &["object"]);
                 let object = self.filled(element, "object")?;
-                self.path(object).map(Operand::State)
+                Some(Operand::State(self.path(object)))
             }
             "typeof" => {
                 self.known(element, &["objectId"]);

@@ -25,14 +25,29 @@ fn constants_of_all_types_are_equal_to_themselves_only() {
 }
 
 #[test]
-fn numbers_compare_as_numbers_and_texts_as_the_type_of_the_left() {
+fn numbers_compare_as_numbers_also_with_texts_that_are_numbers() {
     assert!(equal(r#"<int value="1"/>"#, r#"<double value="1"/>"#));
     assert!(equal(r#"<int value="1"/>"#, r#"<bool value="true"/>"#));
     assert!(equal(r#"<string value="5"/>"#, r#"<int value="5"/>"#));
     assert!(equal(r#"<int value="5"/>"#, r#"<string value="5"/>"#));
-    assert!(!equal(r#"<string value="5.0"/>"#, r#"<int value="5"/>"#));
+    assert!(equal(r#"<string value="5.0"/>"#, r#"<int value="5"/>"#));
+    // Two texts are texts, whatever they look like; with what is no number a number is a text too.
+    assert!(!equal(r#"<string value="5.0"/>"#, r#"<string value="5"/>"#));
+    assert!(holds(
+        r#"<less><string value="10"/><string value="9"/></less>"#
+    ));
+    assert!(holds(r#"<greater _1="x1" _2="5"/>"#));
+    assert!(holds(r#"<less _1="0x10" _2="16"/>"#));
+    // By their codes.
+    assert!(holds(r#"<greater _1="abc" _2="ABC"/>"#));
     assert!(equal(r#"<double value="5"/>"#, r#"<string value="5.0"/>"#));
+    // Beside true or false everything else is one of these, but for other than whole numbers.
     assert!(equal(r#"<bool value="false"/>"#, r#"<string value="0"/>"#));
+    assert!(equal(r#"<bool value="true"/>"#, r#"<string value="yes"/>"#));
+    assert!(equal(r#"<int value="5"/>"#, r#"<bool value="true"/>"#));
+    assert!(holds(
+        r#"<greater><bool value="true"/><double value="0.5"/></greater>"#
+    ));
     assert!(!equal(
         r#"<int value="0"/>"#,
         r#"<variableValue name="never"/>"#
@@ -324,7 +339,7 @@ fn a_bounding_rectangle_is_around_objects_points_records_and_lists() {
 #[test]
 fn a_colour_on_the_left_is_compared_by_name_or_number_and_on_the_right_by_number() {
     let mut stage = Stage::new();
-    stage.set("robot1", "colour", Value::Colour(0x00_8000));
+    stage.set("robot1", "colour", Value::colour(0x00_8000));
     for (left, right, wanted) in [
         ("${robot1.colour}", "green", true),
         ("${robot1.colour}", "#008000", true),
@@ -342,7 +357,7 @@ fn a_colour_on_the_left_is_compared_by_name_or_number_and_on_the_right_by_number
         let condition = format!(r#"<equals _1="{left}" _2="{right}"/>"#);
         assert_eq!(holds_on(copy, &condition), (wanted, vec![]), "{condition}");
     }
-    assert!(Value::Colour(0x00_8888).equals(&Value::text("#088")));
+    assert!(Value::colour(0x00_8888).equals(&Value::text("#088")));
 }
 
 #[test]

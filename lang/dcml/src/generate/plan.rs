@@ -271,7 +271,7 @@ impl<'s, 'm> Planner<'s, 'm> {
         dialect: &dyn Dialect,
         body: &mut Body,
     ) -> Text {
-        // Whoever has no line of its own is used once, but for names and numbers, which are short.
+        // What has no line of its own is used once, but for names and numbers, which are short.
         let of = |id: ValueId| texts.get(&id).cloned().unwrap_or_else(|| Text::whole("0"));
         match operation {
             Operation::Constant(number) => dialect.number(number),

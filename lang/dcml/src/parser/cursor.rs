@@ -120,7 +120,7 @@ impl<'a> Parser<'a, '_> {
         (self.kind() == kind).then(|| self.bump().span)
     }
 
-    pub(super) fn tell(&mut self, found: Diagnostic) {
+    pub(super) fn report(&mut self, found: Diagnostic) {
         self.damage.any = true;
         self.findings.add(found);
     }
@@ -197,7 +197,7 @@ impl<'a> Parser<'a, '_> {
                 "`;` is missing behind this",
                 "no `;` here",
             );
-            self.tell(found.hint("end each statement with `;`"));
+            self.report(found.hint("end each statement with `;`"));
             if self.begins_statement() || self.kind() == TokenKind::Open {
                 return;
             }

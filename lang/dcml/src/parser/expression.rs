@@ -161,7 +161,7 @@ impl Parser<'_, '_> {
                 "this parenthesis is not closed",
                 "it begins here",
             );
-            self.tell(found.hint("put `)` where it ends"));
+            self.report(found.hint("put `)` where it ends"));
             return Some(self.before());
         }
         let found = self.unexpected_here("an operator or `)`");
@@ -185,7 +185,7 @@ impl Parser<'_, '_> {
             "there is no operator `^`",
             "not an operator",
         );
-        self.tell(found.hint("write `pow(x, 2)` or `x * x`"));
+        self.report(found.hint("write `pow(x, 2)` or `x * x`"));
         None
     }
 
@@ -202,7 +202,7 @@ impl Parser<'_, '_> {
         let what = if number == 0.0 { "small" } else { "large" };
         let message = format!("the number `{}` is too {what}", shown(text));
         let found = Diagnostic::new(Code::NumberRange, span, message, format!("too {what}"));
-        self.tell(found.hint("numbers lie between 4.9e-324 and 1.8e308"));
+        self.report(found.hint("numbers lie between 4.9e-324 and 1.8e308"));
         1.0
     }
 
@@ -213,7 +213,7 @@ impl Parser<'_, '_> {
         }
         let message = format!("the expression is deeper than {DCML_DEPTH}");
         let found = Diagnostic::new(Code::TooDeep, span, message, "too deep here");
-        self.tell(
+        self.report(
             found.hint("give a name to a part of it: declare a `VAR` and write an equation for it"),
         );
         None

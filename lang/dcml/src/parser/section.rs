@@ -131,7 +131,9 @@ impl Parser<'_, '_> {
                 "`,` is missing behind this",
                 "no `,` here",
             );
-            self.tell(found.hint("put a comma between names, and a semicolon behind the last one"));
+            self.report(
+                found.hint("put a comma between names, and a semicolon behind the last one"),
+            );
             return Some(Next::Name);
         }
         if is_statement || self.begins_line() {
@@ -142,7 +144,7 @@ impl Parser<'_, '_> {
                 "`;` is missing behind this",
                 "no `;` here",
             );
-            self.tell(found.hint("end each section with `;`"));
+            self.report(found.hint("end each section with `;`"));
             if is_statement {
                 return None;
             }
@@ -188,7 +190,7 @@ impl Parser<'_, '_> {
                 "this bracket is not closed",
                 "it begins here",
             );
-            self.tell(found.hint("a unit is written `[m/s]`"));
+            self.report(found.hint("a unit is written `[m/s]`"));
             return false;
         };
         let inside = Span {
@@ -204,7 +206,7 @@ impl Parser<'_, '_> {
                 "a unit has one line and no comments",
                 "it begins here",
             );
-            self.tell(found.hint("a unit is written `[m/s]`"));
+            self.report(found.hint("a unit is written `[m/s]`"));
         }
         let skipped = text.len() - text.trim_start().len();
         let start = inside.start + u32::try_from(skipped).unwrap_or_default();
@@ -282,7 +284,7 @@ impl Parser<'_, '_> {
                 shown(&one.name.text)
             );
             let found = Diagnostic::new(Code::Unexpected, value.span, message, "a number expected");
-            self.tell(found.hint("what is computed is a `VAR` with an equation"));
+            self.report(found.hint("what is computed is a `VAR` with an equation"));
         }
         one.value = Some((number.unwrap_or_default(), value.span));
         true

@@ -1,5 +1,4 @@
-//! What a block that tells a device something does, in every part that asks: the machine, the generators, the pictures
-//! and the tests.
+//! What a block that tells a device something does, in every part that asks: the machine, the generators and the tests.
 //!
 //! Owns the shape of one such row; the rows stand beside their blocks, in `actions`, `core` and `drawing`. Knows neither
 //! expressions nor languages: the machine and the generators evaluate what a row names.
@@ -14,7 +13,7 @@ pub struct Act {
     /// How generated programs have it: the first row whose condition holds. Empty for motors and encoders, which every
     /// language has.
     pub phrases: &'static [Phrase],
-    /// What messages of the generators call the block in Russian.
+    /// What messages of the generators call the block in Russian, if that is not its name in the palette.
     pub russian: &'static str,
     /// Whether a generated program is still one without it.
     pub is_dispensable: bool,
@@ -24,10 +23,6 @@ pub struct Act {
     pub may_be_code: bool,
     /// Whether numbers in its computed text have at most six decimals.
     pub is_label: bool,
-    /// SVG within a square of 50 px around the origin.
-    pub icon: &'static str,
-    /// Blocks that show what it does, for the tests.
-    pub examples: &'static [Example],
 }
 
 /// What happens when the machine comes to a block.
@@ -144,15 +139,6 @@ pub enum Operand {
     Flag(usize),
 }
 
-/// A block with properties, and what the robot is told.
-#[derive(Clone, Copy, Debug)]
-pub struct Example {
-    /// Properties that differ from their defaults.
-    pub properties: &'static [(&'static str, &'static str)],
-    /// The commands, as a log has them.
-    pub told: &'static [&'static str],
-}
-
 impl Act {
     /// One command.
     pub(super) const fn command(
@@ -172,8 +158,6 @@ impl Act {
             is_optional: false,
             may_be_code: false,
             is_label: false,
-            icon: "",
-            examples: &[],
         }
     }
 
@@ -181,19 +165,9 @@ impl Act {
         Self { phrases, ..self }
     }
 
-    /// With a picture.
-    pub(super) const fn icon(self, icon: &'static str) -> Self {
-        Self { icon, ..self }
-    }
-
-    /// With a name for messages of the generators.
+    /// With a name of its own for messages of the generators.
     pub(super) const fn russian(self, russian: &'static str) -> Self {
         Self { russian, ..self }
-    }
-
-    /// With examples.
-    pub(super) const fn examples(self, examples: &'static [Example]) -> Self {
-        Self { examples, ..self }
     }
 
     /// Left out where a language has no words for it.
@@ -206,7 +180,7 @@ impl Act {
 }
 
 /// A phrase that every script of the controller has.
-pub(super) const fn script(operands: &'static [Operand], text: &'static str) -> Phrase {
+pub(crate) const fn script(operands: &'static [Operand], text: &'static str) -> Phrase {
     Phrase {
         when: When::Always,
         operands,
@@ -226,7 +200,7 @@ impl Phrase {
     }
 
     /// The same for programs over the tree: Lua and C.
-    pub(super) const fn tree(self, text: &'static str) -> Self {
+    pub(crate) const fn tree(self, text: &'static str) -> Self {
         Self {
             lua: text,
             c: text,
@@ -234,16 +208,13 @@ impl Phrase {
         }
     }
 
+    /// The same with other words in Python.
+    pub(super) const fn python(self, python: &'static str) -> Self {
+        Self { python, ..self }
+    }
+
     /// The same for .NET.
-    pub(super) const fn dotnet(self, dotnet: &'static str) -> Self {
+    pub(crate) const fn dotnet(self, dotnet: &'static str) -> Self {
         Self { dotnet, ..self }
     }
-}
-
-/// What a block tells with these properties.
-pub(super) const fn example(
-    properties: &'static [(&'static str, &'static str)],
-    told: &'static [&'static str],
-) -> Example {
-    Example { properties, told }
 }

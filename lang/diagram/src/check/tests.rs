@@ -35,7 +35,7 @@ fn all_errors_are_told_at_once_at_their_blocks() {
     told.dedup_by_key(|line| line.split("1:").next().unwrap_or_default().to_owned());
     let expected = [
         "main: Timer: No outgoing links, please connect this block to something or use Final Node to end program",
-        "main: Function: 'Body', 1:7 ",
+        "main: Function: 'Expression', 1:7 ",
         "main: Condition: 'Condition', 1:",
         "main: Led: 'Color': 'pink' is none of the words that this property may have",
         "main: Led: No way leads to this block",

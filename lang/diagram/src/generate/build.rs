@@ -7,10 +7,12 @@
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use super::code::{Code, Kind, Typed, What};
-use super::words;
+use super::code::{
+    Code, Conversion, Element, Function, Kind, Number, Operation, Robot, Truth, Typed,
+};
+use super::{readings, words};
 use crate::limits;
-use crate::ports::{Kit, Port, Sort, Way};
+use crate::ports::{Direction, Kit, Port};
 use lang_expr::tree::{Binary, Field, Id, Node, Tree, Unary};
 use lang_expr::value::{Compat, round};
 use lang_text::problem::{Position, Words};
@@ -84,33 +86,36 @@ fn typed(code: Code, kind: Kind) -> Typed {
     Typed { code, kind }
 }
 
-fn int(what: What, operands: impl Into<Vec<Code>>) -> Typed {
-    typed(Code::does(what, operands), Kind::Int)
+fn int(operation: impl Into<Operation>, operands: impl Into<Vec<Code>>) -> Typed {
+    typed(Code::does(operation, operands), Kind::Int)
 }
 
-fn float(what: What, operands: impl Into<Vec<Code>>) -> Typed {
-    typed(Code::does(what, operands), Kind::Float)
+fn float(operation: impl Into<Operation>, operands: impl Into<Vec<Code>>) -> Typed {
+    typed(Code::does(operation, operands), Kind::Float)
 }
 
-fn truth_of(what: What, operands: impl Into<Vec<Code>>) -> Typed {
-    typed(Code::does(what, operands), Kind::Bool)
+fn truth_of(operation: Truth, operands: impl Into<Vec<Code>>) -> Typed {
+    typed(Code::does(operation, operands), Kind::Bool)
 }
 
 /// A value as a number.
 pub(super) fn number(value: Typed) -> Code {
+    if value.code == Code::Nil {
+        return Code::Int(0);
+    }
     match value.kind {
         Kind::Int | Kind::Float => value.code,
-        Kind::Bool => Code::does(What::WholeOfBool, [value.code]),
-        _ => Code::does(What::NumberOfAny, [value.code]),
+        Kind::Bool => Code::does(Conversion::WholeOfBool, [value.code]),
+        Kind::Any | Kind::Text | Kind::List(_) => Code::does(Conversion::NumberOfAny, [value.code]),
     }
 }
 
 /// A value as a number that may have a fraction.
 pub(super) fn real(value: Typed) -> Code {
-    match value.kind {
-        Kind::Float => value.code,
-        _ => Code::does(What::FloatOfInt, [number(value)]),
+    if value.kind == Kind::Float {
+        return value.code;
     }
+    Code::does(Conversion::FloatOfInt, [number(value)])
 }
 
 /// A value as a whole number.
@@ -118,19 +123,23 @@ pub(super) fn whole(value: Typed) -> Code {
     match (value.kind, value.code) {
         (Kind::Int, code) => code,
         (_, Code::Float(number)) => Code::Int(round(number).into()),
-        (Kind::Float, code) => Code::does(What::WholeOfFloat, [code]),
-        (Kind::Bool, code) => Code::does(What::WholeOfBool, [code]),
-        (_, code) => Code::does(What::WholeOfAny, [code]),
+        (_, Code::Nil) => Code::Int(0),
+        (Kind::Float, code) => Code::does(Conversion::WholeOfFloat, [code]),
+        (Kind::Bool, code) => Code::does(Conversion::WholeOfBool, [code]),
+        (_, code) => Code::does(Conversion::WholeOfAny, [code]),
     }
 }
 
 /// A value as a truth, as a condition sees it.
 pub(super) fn truth(value: Typed) -> Code {
+    if value.code == Code::Nil {
+        return Code::Bool(false);
+    }
     match value.kind {
         Kind::Bool => value.code,
-        Kind::Int => Code::does(What::NotEqual, [value.code, Code::Int(0)]),
-        Kind::Float => Code::does(What::NotEqual, [whole(value), Code::Int(0)]),
-        _ => Code::does(What::TruthOfAny, [value.code]),
+        Kind::Int => Code::does(Truth::NotEqual, [value.code, Code::Int(0)]),
+        Kind::Float => Code::does(Truth::NotEqual, [whole(value), Code::Int(0)]),
+        Kind::Any | Kind::Text | Kind::List(_) => Code::does(Conversion::TruthOfAny, [value.code]),
     }
 }
 
@@ -139,13 +148,16 @@ pub(super) fn text(value: Typed) -> Code {
     match (value.kind, value.code) {
         (_, Code::Int(number)) => Code::Text(number.to_string().into()),
         (_, Code::Port(name)) => Code::Text(name),
+        (_, Code::Nil) => Code::Text("".into()),
         (Kind::Text, code) => code,
         // An element that is not there has no digits.
-        (_, code @ Code::Do(What::At | What::AtWhole, _)) => Code::does(What::TextOfAny, [code]),
-        (Kind::Int, code) => Code::does(What::TextOfInt, [code]),
-        (Kind::Float, code) => Code::does(What::TextOfFloat, [code]),
-        (Kind::Bool, code) => Code::does(What::TextOfBool, [code]),
-        (_, code) => Code::does(What::TextOfAny, [code]),
+        (_, code @ Code::Do(Operation::Element(Element::At | Element::AtWhole), _)) => {
+            Code::does(Conversion::TextOfAny, [code])
+        }
+        (Kind::Int, code) => Code::does(Conversion::TextOfInt, [code]),
+        (Kind::Float, code) => Code::does(Conversion::TextOfFloat, [code]),
+        (Kind::Bool, code) => Code::does(Conversion::TextOfBool, [code]),
+        (_, code) => Code::does(Conversion::TextOfAny, [code]),
     }
 }
 
@@ -213,10 +225,10 @@ impl Builder<'_> {
             return Ok(typed(Code::Variable(number), self.variables.kind(number)));
         }
         if let Some(port) = Port::shown_by(name) {
-            return Ok(reading(port));
+            return Ok(readings::of(port));
         }
         if name == "pi" {
-            return Ok(float(What::Pi, []));
+            return Ok(float(Function::Pi, []));
         }
         let button = lang_expr::reserved::BUTTONS
             .iter()
@@ -224,7 +236,7 @@ impl Builder<'_> {
         if let Some((_, code)) = button {
             return Ok(typed(Code::Int((*code).into()), Kind::Int));
         }
-        let way = [Way::Out, Way::In];
+        let way = [Direction::Out, Direction::In];
         let port = way
             .into_iter()
             .find_map(|way| Port::find(self.kit, name, way));
@@ -240,14 +252,17 @@ impl Builder<'_> {
     fn unary(&self, operator: Unary, value: Typed) -> Typed {
         match operator {
             Unary::Minus => self.minus(value),
-            Unary::Not => match truth(value) {
-                Code::Do(What::Not, mut inner) if inner.len() == 1 => {
-                    typed(inner.remove(0), Kind::Bool)
+            Unary::Not => {
+                let value = truth(value);
+                if let Code::Do(Operation::Truth(Truth::Not), inner) = &value
+                    && let [inner] = &inner[..]
+                {
+                    return typed(inner.clone(), Kind::Bool);
                 }
-                code => truth_of(What::Not, [code]),
-            },
-            Unary::Length => int(What::Length, [text(value)]),
-            Unary::BitNot => int(What::BitNot, [whole(value)]),
+                truth_of(Truth::Not, [value])
+            }
+            Unary::Length => int(Conversion::Length, [text(value)]),
+            Unary::BitNot => int(Number::BitNot, [whole(value)]),
         }
     }
 
@@ -272,8 +287,23 @@ impl Builder<'_> {
                 reason = "that is what the original loses"
             )]
             Code::Float(number) => Code::Float(f64::from(-(number as f32))),
-            code if is_exact || kind == Kind::Int => Code::does(What::Negate, [code]),
-            code => Code::does(What::NegateSingle, [code]),
+            code @ (Code::Bool(_)
+            | Code::Text(_)
+            | Code::Nil
+            | Code::Port(_)
+            | Code::Variable(_)
+            | Code::Own(..)
+            | Code::Function(_)
+            | Code::Do(..)
+            | Code::List(_)) => {
+                let is_plain = is_exact || kind == Kind::Int;
+                let minus = if is_plain {
+                    Number::Negate
+                } else {
+                    Number::NegateSingle
+                };
+                Code::does(minus, [code])
+            }
         };
         typed(code, kind)
     }
@@ -293,53 +323,56 @@ impl Builder<'_> {
             truth_of(what, [as_wanted(left.clone()), as_wanted(right.clone())])
         };
         // By way of whole numbers, as the original has it.
-        let by_whole = |value: &Typed| match value.kind {
-            Kind::Bool => value.code.clone(),
-            _ => Code::does(What::NotEqual, [whole(value.clone()), Code::Int(0)]),
+        let by_whole = |value: &Typed| {
+            if value.kind == Kind::Bool {
+                return value.code.clone();
+            }
+            Code::does(Truth::NotEqual, [whole(value.clone()), Code::Int(0)])
         };
         let both = |what| truth_of(what, [by_whole(&left), by_whole(&right)]);
         match operator {
-            Binary::Or => both(What::Or),
-            Binary::And => both(What::And),
-            Binary::Less => order(What::Less),
-            Binary::Greater => order(What::Greater),
-            Binary::LessEqual => order(What::LessEqual),
-            Binary::GreaterEqual => order(What::GreaterEqual),
-            Binary::Equal => equal(left, right, [What::Equal, What::EqualText, What::EqualAny]),
+            Binary::Or => both(Truth::Or),
+            Binary::And => both(Truth::And),
+            Binary::Less => order(Truth::Less),
+            Binary::Greater => order(Truth::Greater),
+            Binary::LessEqual => order(Truth::LessEqual),
+            Binary::GreaterEqual => order(Truth::GreaterEqual),
+            Binary::Equal => equal(
+                left,
+                right,
+                [Truth::Equal, Truth::EqualText, Truth::EqualAny],
+            ),
             Binary::NotEqual => equal(
                 left,
                 right,
-                [What::NotEqual, What::NotEqualText, What::NotEqualAny],
+                [Truth::NotEqual, Truth::NotEqualText, Truth::NotEqualAny],
             ),
-            Binary::BitOr => bits(What::BitOr),
-            Binary::BitXor => bits(What::BitXor),
-            Binary::BitAnd => bits(What::BitAnd),
-            Binary::ShiftLeft => bits(What::ShiftLeft),
-            Binary::ShiftRight => bits(What::ShiftRight),
+            Binary::BitOr => bits(Number::BitOr),
+            Binary::BitXor => bits(Number::BitXor),
+            Binary::BitAnd => bits(Number::BitAnd),
+            Binary::ShiftLeft => bits(Number::ShiftLeft),
+            Binary::ShiftRight => bits(Number::ShiftRight),
             Binary::Join => typed(
-                Code::does(What::Join, [text(left), text(right)]),
+                Code::does(Conversion::Join, [text(left), text(right)]),
                 Kind::Text,
             ),
-            Binary::Add => arithmetic(What::Add),
-            Binary::Subtract => arithmetic(What::Subtract),
-            Binary::Multiply => arithmetic(What::Multiply),
+            Binary::Add => arithmetic(Number::Add),
+            Binary::Subtract => arithmetic(Number::Subtract),
+            Binary::Multiply => arithmetic(Number::Multiply),
             Binary::Divide => {
                 let right = number(right.clone());
-                let is_plain = match right {
-                    Code::Int(number) => number != 0,
-                    Code::Float(number) => number != 0.0,
-                    _ => false,
-                };
+                let is_plain = matches!(right, Code::Int(number) if number != 0)
+                    || matches!(right, Code::Float(number) if number != 0.0);
                 let what = if is_plain {
-                    What::DividePlain
+                    Number::DividePlain
                 } else {
-                    What::Divide
+                    Number::Divide
                 };
                 float(what, [real(left), real_literal(right)])
             }
-            Binary::DivideWhole => bits(What::DivideWhole),
-            Binary::Modulo => bits(What::Modulo),
-            Binary::Power => float(What::Power, [real(left), real(right)]),
+            Binary::DivideWhole => bits(Number::DivideWhole),
+            Binary::Modulo => bits(Number::Modulo),
+            Binary::Power => float(Number::Power, [real(left), real(right)]),
         }
     }
 
@@ -388,64 +421,66 @@ impl Builder<'_> {
         let mut values = values.into_iter();
         let mut next = || values.next().unwrap_or(typed(Code::Nil, Kind::Any));
         let unary = match &*name {
-            "time" => return Ok(int(What::Time, [])),
-            "print" => return Ok(typed(Code::does(What::Print, [text(next())]), Kind::Any)),
+            "time" => return Ok(int(Function::Time, [])),
+            "print" => return Ok(typed(Code::does(Robot::Print, [text(next())]), Kind::Any)),
             "random" => {
-                let below = match whole(next()) {
-                    Code::Int(number) => Code::Int(number - 1),
-                    code => Code::does(What::Subtract, [code, Code::Int(1)]),
+                let count = whole(next());
+                let below = if let Code::Int(count) = count {
+                    Code::Int(count - 1)
+                } else {
+                    Code::does(Number::Subtract, [count, Code::Int(1)])
                 };
-                return Ok(int(What::Random, [Code::Int(0), below]));
+                return Ok(int(Function::Random, [Code::Int(0), below]));
             }
             "sensor" => return self.sensor(id, next()),
-            "sgn" => return Ok(int(What::Sgn, [real(next())])),
-            "ceil" => return Ok(int(What::Ceil, [real(next())])),
-            "floor" => return Ok(int(What::Floor, [real(next())])),
-            "min" => return Ok(float(What::Min, [real(next()), real(next())])),
-            "max" => return Ok(float(What::Max, [real(next()), real(next())])),
-            "atan2" => return Ok(float(What::Atan2, [real(next()), real(next())])),
-            "sin" => What::Sin,
-            "cos" => What::Cos,
-            "ln" => What::Ln,
-            "exp" => What::Exp,
-            "asin" => What::Asin,
-            "acos" => What::Acos,
-            "atan" => What::Atan,
-            "sqrt" => What::Sqrt,
-            _ => What::Abs,
+            "sgn" => return Ok(int(Function::Sgn, [real(next())])),
+            "ceil" => return Ok(int(Function::Ceil, [real(next())])),
+            "floor" => return Ok(int(Function::Floor, [real(next())])),
+            "min" => return Ok(float(Function::Min, [real(next()), real(next())])),
+            "max" => return Ok(float(Function::Max, [real(next()), real(next())])),
+            "atan2" => return Ok(float(Function::Atan2, [real(next()), real(next())])),
+            "sin" => Function::Sin,
+            "cos" => Function::Cos,
+            "ln" => Function::Ln,
+            "exp" => Function::Exp,
+            "asin" => Function::Asin,
+            "acos" => Function::Acos,
+            "atan" => Function::Atan,
+            "sqrt" => Function::Sqrt,
+            "abs" => Function::Abs,
+            _ => return self.wrong(id, words::unknown_function(&name)),
         };
         Ok(float(unary, [real(next())]))
     }
 
     fn sensor(&self, id: Id, port: Typed) -> Result<Typed, Wrong> {
-        let name = match &port.code {
-            Code::Text(name) | Code::Port(name) => name.clone(),
-            _ => return self.wrong(id, words::port_must_be_plain()),
+        let (Code::Text(name) | Code::Port(name)) = &port.code else {
+            return self.wrong(id, words::port_must_be_plain());
         };
-        match Port::find(self.kit, &name, Way::In) {
-            Some(port) => Ok(reading(port)),
-            None => self.wrong(id, words::unknown_port(&name)),
+        match Port::find(self.kit, name, Direction::In) {
+            Some(port) => Ok(readings::of(port)),
+            None => self.wrong(id, words::unknown_port(name)),
         }
     }
 
     /// The variable and the indices of what is assigned to.
     pub(super) fn target(&mut self, id: Id) -> Result<(Rc<str>, Vec<Code>), Wrong> {
-        match self.tree.node(id) {
-            Node::Name(name) => Ok((name.clone(), Vec::new())),
-            Node::Index { table, index } => {
-                let (table, index) = (*table, *index);
-                let (name, mut path) = self.target(table)?;
-                path.push(whole(self.value(index)?));
-                Ok((name, path))
-            }
-            _ => self.wrong(id, words::no_target()),
+        if let Node::Name(name) = self.tree.node(id) {
+            return Ok((name.clone(), Vec::new()));
         }
+        let Node::Index { table, index } = self.tree.node(id) else {
+            return self.wrong(id, words::no_target());
+        };
+        let (table, index) = (*table, *index);
+        let (name, mut path) = self.target(table)?;
+        path.push(whole(self.value(index)?));
+        Ok((name, path))
     }
 }
 
-fn equal(left: Typed, right: Typed, whats: [What; 3]) -> Typed {
+fn equal(left: Typed, right: Typed, operations: [Truth; 3]) -> Typed {
     let is_number = |kind: &Kind| matches!(kind, Kind::Int | Kind::Float | Kind::Bool);
-    let (numbers, texts, any) = (whats[0], whats[1], whats[2]);
+    let (numbers, texts, any) = (operations[0], operations[1], operations[2]);
     let operands = match (&left.kind, &right.kind) {
         (Kind::Bool, Kind::Bool) => return truth_of(numbers, [left.code, right.code]),
         (one, other) if is_number(one) && is_number(other) => {
@@ -464,25 +499,28 @@ fn equal(left: Typed, right: Typed, whats: [What; 3]) -> Typed {
 
 /// A divisor as a number that may have a fraction.
 fn real_literal(code: Code) -> Code {
-    match code {
-        code @ (Code::Float(_) | Code::Do(What::FloatOfInt, _)) => code,
-        code => Code::does(What::FloatOfInt, [code]),
+    let is_real = matches!(
+        code,
+        Code::Float(_) | Code::Do(Operation::Conversion(Conversion::FloatOfInt), _)
+    );
+    if is_real {
+        return code;
     }
+    Code::does(Conversion::FloatOfInt, [code])
 }
 
 fn element(table: Typed, index: Code) -> Typed {
     let kind = match &table.kind {
         Kind::List(element) => (**element).clone(),
-        _ => Kind::Any,
+        Kind::Any | Kind::Bool | Kind::Int | Kind::Float | Kind::Text => Kind::Any,
     };
-    let count = match &table.code {
-        Code::Do(What::Gyroscope, _) => 7,
-        Code::Do(What::Accelerometer | What::LineSensor | What::ColorSensor, _) => 3,
-        Code::Do(What::Lidar, _) => 360,
-        _ => 0,
+    let count = if let Code::Do(Operation::Read(reading), _) = &table.code {
+        reading.count()
+    } else {
+        0
     };
     let pad = match (&table.code, &index) {
-        (Code::List(parts), Code::Int(at)) if is_pad(parts) => usize::try_from(*at)
+        (Code::List(parts), Code::Int(at)) if readings::is_pair(parts) => usize::try_from(*at)
             .ok()
             .and_then(|at| parts.get(at).cloned()),
         _ => None,
@@ -492,54 +530,11 @@ fn element(table: Typed, index: Code) -> Typed {
     }
     let is_there = matches!(index, Code::Int(at) if (0..count).contains(&at));
     let what = match kind {
-        _ if is_there => What::AtPlain,
-        Kind::Int => What::AtWhole,
-        _ => What::At,
+        _ if is_there => Element::AtPlain,
+        Kind::Int => Element::AtWhole,
+        Kind::Any | Kind::Bool | Kind::Float | Kind::Text | Kind::List(_) => Element::At,
     };
     typed(Code::does(what, [table.code, index]), kind)
-}
-
-/// Whether a list is the place on a pad.
-fn is_pad(parts: &[Code]) -> bool {
-    matches!(parts, [Code::Do(What::PadX, _), Code::Do(What::PadY, _)])
-}
-
-/// What a sensor's variable gives.
-pub(super) fn reading(port: Port) -> Typed {
-    let name = port.name();
-    let operand = || Code::Port(name.into());
-    let list = |what| typed(Code::does(what, []), Kind::List(Box::new(Kind::Int)));
-    let digit = || {
-        let digit = name.chars().find(char::is_ascii_digit);
-        Code::Int(
-            digit
-                .and_then(|digit| digit.to_digit(10))
-                .unwrap_or(1)
-                .into(),
-        )
-    };
-    let element = |what, at| int(What::AtPlain, [Code::does(what, []), Code::Int(at)]);
-    match (port.sort(), name) {
-        (Sort::Encoder, _) => int(What::Encoder, [operand()]),
-        (Sort::Button(code), _) => int(What::Button, [Code::Int(code.into())]),
-        (_, "GyroscopePort") => list(What::Gyroscope),
-        (_, "AccelerometerPort") => list(What::Accelerometer),
-        (_, "LineSensorPort") => list(What::LineSensor),
-        (_, "ColorSensorPort") => list(What::ColorSensor),
-        (_, "ObjectSensorXPort") => element(What::ObjectSensor, 0),
-        (_, "ObjectSensorYPort") => element(What::ObjectSensor, 1),
-        (_, "ObjectSensorSizePort") => element(What::ObjectSensor, 2),
-        (_, "LidarPort") => list(What::Lidar),
-        (_, "GamepadWheelPort") => int(What::Wheel, []),
-        (_, "GamepadConnectionIndicatorPort") => int(What::GamepadConnected, []),
-        (Sort::Vector, _) => {
-            let place = [What::PadX, What::PadY].map(|what| Code::does(what, [digit()]));
-            typed(Code::List(place.into()), Kind::List(Box::new(Kind::Int)))
-        }
-        _ if name.ends_with("PressedPort") => int(What::PadPressed, [digit()]),
-        _ if name.starts_with("GamepadButton") => int(What::PadButton, [digit()]),
-        _ => int(What::Sensor, [operand()]),
-    }
 }
 
 fn literal(text: &str) -> Typed {

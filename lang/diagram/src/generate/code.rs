@@ -1,9 +1,10 @@
 //! Expressions and statements between the diagram and the languages: what is computed and told, with types, in no
 //! language.
 //!
-//! Owns the list of everything that a language must be able to say ([`What`]); each dialect has one row for each, but for
-//! commands of blocks, whose words stand in the row of the block.
+//! Owns the list of everything that a language must be able to say ([`Operation`]); each dialect has a table for each
+//! group of it. Words of commands stand in the rows of blocks, and words of readings in those of `readings`.
 
+use super::readings::Reading;
 use crate::blocks::act::Phrase;
 use std::rc::Rc;
 
@@ -46,10 +47,25 @@ pub(super) struct Command {
     pub(super) is_dispensable: bool,
 }
 
-/// Everything that is said with operands; the comment names them.
+/// Everything that is said with operands: an operator, a function, a command or a reading.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub(super) enum What {
-    // Numbers: left, right.
+pub(super) enum Operation {
+    Number(Number),
+    Truth(Truth),
+    Conversion(Conversion),
+    Function(Function),
+    Element(Element),
+    Robot(Robot),
+    Turn(Turn),
+    /// What a device says; its row has the operand.
+    Read(&'static Reading),
+    /// What the row of a block says.
+    Command(Command),
+}
+
+/// Operators on numbers: left, right.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum Number {
     Add,
     Subtract,
     Multiply,
@@ -70,7 +86,11 @@ pub(super) enum What {
     BitNot,
     ShiftLeft,
     ShiftRight,
-    // Truths.
+}
+
+/// Operators that give a truth: left, right.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum Truth {
     Not,
     And,
     Or,
@@ -86,10 +106,16 @@ pub(super) enum What {
     /// Of anything.
     EqualAny,
     NotEqualAny,
-    // Texts.
+    /// counter, count: whether a loop with a shared counter goes on
+    Again,
+}
+
+/// From one kind of value to another, and what only texts have.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum Conversion {
+    /// left, right
     Join,
     Length,
-    // Conversions: a value.
     /// A whole number where languages with types want another one.
     FloatOfInt,
     WholeOfFloat,
@@ -105,7 +131,11 @@ pub(super) enum What {
     Printed,
     /// The text of a message as a value.
     ValueOf,
-    // Functions of the language.
+}
+
+/// Functions of the language of expressions.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum Function {
     Sin,
     Cos,
     Ln,
@@ -125,7 +155,11 @@ pub(super) enum What {
     Time,
     /// low, high
     Random,
-    // Tables.
+}
+
+/// Elements of tables, and whole tables.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum Element {
     /// table, index: nothing beyond the end
     At,
     /// The same in a table of whole numbers.
@@ -135,34 +169,22 @@ pub(super) enum What {
     /// table, index, value
     Put,
     Copy,
-    // Readings.
-    /// port
-    Sensor,
-    /// port
-    Encoder,
-    Gyroscope,
-    Accelerometer,
-    LineSensor,
-    ObjectSensor,
-    ColorSensor,
-    Lidar,
-    /// code
-    Button,
-    /// The code of any button, or -1.
-    AnyButton,
-    /// number
-    PadButton,
-    /// number
-    PadX,
-    /// number
-    PadY,
-    /// number
-    PadPressed,
-    Wheel,
-    GamepadConnected,
-    /// Nothing if there is none.
-    Mail,
-    // Commands.
+}
+
+/// What is known of the number that an operation gives.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum Wholeness {
+    /// It is whole.
+    Whole,
+    /// It is whole if all operands are.
+    LikeOperands,
+    /// It may have a fraction, or be no number at all.
+    Unknown,
+}
+
+/// What the robot is told and no row of a block says.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum Robot {
     /// port, percent
     SetPower,
     /// port
@@ -171,31 +193,47 @@ pub(super) enum What {
     Servo,
     /// port
     ResetEncoder,
-    /// What the row of its block says.
-    Command(Command),
     /// anything
     Print,
     Redraw,
-    /// ms
-    Wait,
     /// Everything to rest, at the end of the program.
     Finish,
-    // Threads.
-    /// name, function
-    StartThread,
-    /// name
-    JoinThread,
-    /// name
-    KillThread,
-    /// name, text
-    SendThread,
-    /// Waits.
-    ReceiveThread,
-    /// An empty text if there is none.
-    ReceiveThreadNow,
-    /// counter, count: whether a loop with a shared counter goes on
-    Again,
 }
+
+/// Waits, and threads: where another thread may run.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum Turn {
+    /// ms
+    Wait,
+    /// whether to wait: the code of any button, or -1
+    AnyButton,
+    /// whether to wait: a message of another robot, nothing if there is none
+    Mail,
+    /// name, function
+    Start,
+    /// name
+    Join,
+    /// name
+    Kill,
+    /// name, text
+    Send,
+    /// Waits.
+    Receive,
+    /// An empty text if there is none.
+    ReceiveNow,
+}
+
+macro_rules! operations {
+    ($($group:ident)*) => {
+        $(impl From<$group> for Operation {
+            fn from(operation: $group) -> Self {
+                Self::$group(operation)
+            }
+        })*
+    };
+}
+
+operations! { Number Truth Conversion Function Element Robot Turn Command }
 
 /// An expression.
 #[derive(Clone, Debug, PartialEq)]
@@ -213,7 +251,7 @@ pub(super) enum Code {
     Own(Own, usize),
     /// A function of the program, as a value.
     Function(usize),
-    Do(What, Vec<Code>),
+    Do(Operation, Vec<Code>),
     List(Vec<Code>),
 }
 
@@ -286,10 +324,46 @@ pub(super) enum Statement {
     Label(usize),
 }
 
+/// Shows every expression of a list, and of the lists in it.
+pub(super) fn each_code(list: &[Statement], seen: &mut dyn FnMut(&Code)) {
+    let mut every = |code: &Code| {
+        code.has(&mut |part| {
+            seen(part);
+            false
+        });
+    };
+    for statement in list {
+        match statement {
+            Statement::Do(code)
+            | Statement::If(code, ..)
+            | Statement::While { when: code, .. }
+            | Statement::DoWhile { when: code, .. }
+            | Statement::Switch { on: code, .. }
+            | Statement::Repeat { times: code, .. } => every(code),
+            Statement::Set(target, value) => {
+                every(target);
+                every(value);
+            }
+            Statement::Call { arguments, .. } => arguments.iter().for_each(&mut every),
+            Statement::Choice { on, .. } => every(on),
+            Statement::Comment(_)
+            | Statement::Loop { .. }
+            | Statement::Break(_)
+            | Statement::Continue(_)
+            | Statement::Return
+            | Statement::Goto(_)
+            | Statement::Label(_) => {}
+        }
+    }
+    for part in list.iter().flat_map(Statement::parts) {
+        each_code(part, seen);
+    }
+}
+
 impl Code {
     /// Says something with operands.
-    pub(super) fn does(what: What, operands: impl Into<Vec<Code>>) -> Self {
-        Self::Do(what, operands.into())
+    pub(super) fn does(operation: impl Into<Operation>, operands: impl Into<Vec<Code>>) -> Self {
+        Self::Do(operation.into(), operands.into())
     }
 
     /// Whether any part is as asked.
@@ -297,21 +371,116 @@ impl Code {
         asked(self)
             || match self {
                 Self::Do(_, parts) | Self::List(parts) => parts.iter().any(|part| part.has(asked)),
-                _ => false,
+                Self::Int(_)
+                | Self::Float(_)
+                | Self::Bool(_)
+                | Self::Text(_)
+                | Self::Nil
+                | Self::Port(_)
+                | Self::Variable(_)
+                | Self::Own(..)
+                | Self::Function(_) => false,
             }
     }
 
     /// Whether it may give something else when it is computed again at once, or does something.
     pub(super) fn is_fickle(&self) -> bool {
-        self.has(&mut |part| {
-            use What::{AnyButton, Button, Mail, Print, Random, ReceiveThread, Time};
-            matches!(
-                part,
-                Self::Do(
-                    Random | Time | Print | Mail | AnyButton | Button | ReceiveThread,
-                    _
-                )
-            )
+        self.has(&mut |part| matches!(part, Self::Do(operation, _) if operation.is_fickle()))
+    }
+}
+
+impl Operation {
+    fn is_fickle(self) -> bool {
+        match self {
+            Self::Function(function) => matches!(function, Function::Random | Function::Time),
+            Self::Robot(told) => matches!(told, Robot::Print),
+            Self::Turn(turn) => matches!(turn, Turn::Mail | Turn::AnyButton | Turn::Receive),
+            Self::Read(reading) => reading.is_fickle,
+            Self::Number(_)
+            | Self::Truth(_)
+            | Self::Conversion(_)
+            | Self::Element(_)
+            | Self::Command(_) => false,
+        }
+    }
+
+    /// What is known of the number that it gives.
+    pub(super) fn wholeness(self) -> Wholeness {
+        match self {
+            Self::Number(number) => number.wholeness(),
+            Self::Conversion(conversion) => match conversion {
+                Conversion::Length
+                | Conversion::WholeOfFloat
+                | Conversion::WholeOfBool
+                | Conversion::WholeOfAny => Wholeness::Whole,
+                Conversion::Join
+                | Conversion::FloatOfInt
+                | Conversion::NumberOfAny
+                | Conversion::TruthOfAny
+                | Conversion::TextOfInt
+                | Conversion::TextOfFloat
+                | Conversion::TextOfBool
+                | Conversion::TextOfAny
+                | Conversion::Printed
+                | Conversion::ValueOf => Wholeness::Unknown,
+            },
+            Self::Function(Function::Random | Function::Time)
+            | Self::Element(Element::AtPlain)
+            | Self::Turn(Turn::AnyButton) => Wholeness::Whole,
+            Self::Read(reading) if reading.is_whole() => Wholeness::Whole,
+            Self::Truth(_)
+            | Self::Function(_)
+            | Self::Element(_)
+            | Self::Robot(_)
+            | Self::Turn(_)
+            | Self::Read(_)
+            | Self::Command(_) => Wholeness::Unknown,
+        }
+    }
+}
+
+impl Number {
+    fn wholeness(self) -> Wholeness {
+        match self {
+            Self::Add | Self::Subtract | Self::Multiply | Self::Negate => Wholeness::LikeOperands,
+            Self::DivideWhole
+            | Self::Modulo
+            | Self::BitAnd
+            | Self::BitOr
+            | Self::BitXor
+            | Self::BitNot
+            | Self::ShiftLeft
+            | Self::ShiftRight => Wholeness::Whole,
+            Self::Divide | Self::DividePlain | Self::Power | Self::NegateSingle => {
+                Wholeness::Unknown
+            }
+        }
+    }
+}
+
+impl Truth {
+    /// What is true where this is false, with the same operands. Numbers that may be none have no order, so only whole
+    /// ones are surely greater where they are not less.
+    pub(super) fn opposite(self, is_whole: bool) -> Option<Self> {
+        Some(match self {
+            Self::Equal => Self::NotEqual,
+            Self::NotEqual => Self::Equal,
+            Self::EqualText => Self::NotEqualText,
+            Self::NotEqualText => Self::EqualText,
+            Self::EqualAny => Self::NotEqualAny,
+            Self::NotEqualAny => Self::EqualAny,
+            Self::Less if is_whole => Self::GreaterEqual,
+            Self::Greater if is_whole => Self::LessEqual,
+            Self::LessEqual if is_whole => Self::Greater,
+            Self::GreaterEqual if is_whole => Self::Less,
+            Self::Less
+            | Self::Greater
+            | Self::LessEqual
+            | Self::GreaterEqual
+            | Self::Not
+            | Self::And
+            | Self::Or
+            | Self::Again => return None,
         })
     }
 }

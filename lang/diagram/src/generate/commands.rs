@@ -3,14 +3,13 @@
 //! Owns the order in which properties are evaluated, which is the machine's. What a block says stands in its row.
 
 use super::build::{text, whole};
-use super::code::{Code, Command, Kind, Statement, Typed, What};
+use super::code::{Code, Command, Conversion, Kind, Number, Operation, Robot, Statement, Typed};
 use super::routines::Lowerer;
-use super::steps::{plain, tell};
+use super::steps::{emit, plain};
 use super::words;
 use crate::blocks::Type;
 use crate::blocks::act::{Effect, FONT_SIZE, Operand, Phrase, When};
-use crate::blocks::words::russian;
-use crate::ports::{Port, Sort, Way};
+use crate::ports::{Direction, Port, Sort};
 use crate::program::{Action, Node, Source};
 
 impl Lowerer<'_> {
@@ -26,7 +25,7 @@ impl Lowerer<'_> {
                     .iter()
                     .filter(|port| port.sort() == Sort::Encoder);
                 for port in encoders {
-                    tell(out, What::ResetEncoder, [Code::Port(port.name().into())]);
+                    emit(out, Robot::ResetEncoder, [Code::Port(port.name().into())]);
                 }
             }
             Effect::Command(_) if action.act.may_be_code && action.flags.first() == Some(&true) => {
@@ -35,7 +34,7 @@ impl Lowerer<'_> {
             Effect::Command(_) => {
                 self.phrase(node, action, out);
                 if action.redraws {
-                    tell(out, What::Redraw, []);
+                    emit(out, Robot::Redraw, []);
                 }
             }
         }
@@ -82,17 +81,17 @@ impl Lowerer<'_> {
             Operand::Flag(at) => Code::Bool(action.flags.get(at).copied().unwrap_or(false)),
         });
         let operands: Vec<Code> = operands.collect();
-        let shown = self.program.row(node).map_or("", |row| row.shown);
+        let row = self.program.row(node);
         let command = Command {
             phrase,
-            english: shown,
+            english: row.map_or("", |row| row.shown),
             russian: match action.act.russian {
-                "" => russian(shown),
+                "" => row.map_or("", |row| row.russian),
                 other => other,
             },
             is_dispensable: action.act.is_dispensable,
         };
-        tell(out, What::Command(command), operands);
+        emit(out, command, operands);
     }
 
     /// Power times a sign to each port of the list; without a sign they are switched off.
@@ -126,15 +125,15 @@ impl Lowerer<'_> {
                 self.fail(node, words::ports_must_be_plain());
                 return;
             };
-            let Some(port) = Port::find(self.program.kit, &name, Way::Out) else {
+            let Some(port) = Port::find(self.program.kit, &name, Direction::Out) else {
                 out.push(Statement::Comment(format!("There is no port {name}")));
                 continue;
             };
             let operand = Code::Port(port.name().into());
             match (&power, port.sort()) {
-                (None, _) => tell(out, What::PowerOff, [operand]),
-                (Some(power), Sort::Servo) => tell(out, What::Servo, [operand, power.clone()]),
-                (Some(power), _) => tell(out, What::SetPower, [operand, power.clone()]),
+                (None, _) => emit(out, Robot::PowerOff, [operand]),
+                (Some(power), Sort::Servo) => emit(out, Robot::Servo, [operand, power.clone()]),
+                (Some(power), _) => emit(out, Robot::SetPower, [operand, power.clone()]),
             }
         }
     }
@@ -145,21 +144,28 @@ fn signed(power: Code, sign: i32) -> Code {
     if sign > 0 {
         return power;
     }
-    match power {
-        Code::Int(power) => Code::Int(-power),
-        Code::Do(What::Negate, mut inner) if inner.len() == 1 => inner.remove(0),
-        power => Code::does(What::Negate, [power]),
+    if let Code::Int(power) = power {
+        return Code::Int(-power);
     }
+    if let Code::Do(Operation::Number(Number::Negate), inner) = &power
+        && let [inner] = &inner[..]
+    {
+        return inner.clone();
+    }
+    Code::does(Number::Negate, [power])
 }
 
 fn printed(value: Typed) -> Code {
     match value.kind {
         Kind::Int | Kind::Bool => text(value),
-        Kind::Text => match value.code {
+        Kind::Text => {
+            let is_number = |text: &str| text.trim().parse::<f64>().is_ok();
             // What is surely no number stands as it is.
-            Code::Text(text) if text.trim().parse::<f64>().is_err() => Code::Text(text),
-            code => Code::does(What::Printed, [code]),
-        },
-        _ => Code::does(What::Printed, [text(value)]),
+            if matches!(&value.code, Code::Text(text) if !is_number(text)) {
+                return value.code;
+            }
+            Code::does(Conversion::Printed, [value.code])
+        }
+        Kind::Any | Kind::Float | Kind::List(_) => Code::does(Conversion::Printed, [text(value)]),
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Owns which loops need a name. All words come from the dialect.
 
-use super::code::{Code, Own, Statement, What};
+use super::code::{Code, Conversion, Operation, Own, Statement, Truth};
 use super::print::{Printer, fill, own_name};
 
 impl Printer<'_> {
@@ -17,11 +17,10 @@ impl Printer<'_> {
     }
 
     fn block(&mut self, list: &[Statement], depth: usize, out: &mut String) {
-        let is_empty = list.iter().all(|statement| match statement {
-            Statement::Comment(_) => true,
-            // What the language has no words for is left out.
-            Statement::Do(code) => self.code(code, 0).is_empty(),
-            _ => false,
+        // What the language has no words for is left out.
+        let is_empty = list.iter().all(|statement| {
+            matches!(statement, Statement::Comment(_))
+                || matches!(statement, Statement::Do(code) if self.code(code, 0).is_empty())
         });
         if is_empty && !self.dialect.syntax.empty.is_empty() {
             self.line(depth, self.dialect.syntax.empty, out);
@@ -72,30 +71,11 @@ impl Printer<'_> {
                 branches,
                 other,
             } => {
-                let tests = branches.iter().map(|(guards, body)| {
-                    let test = one_of(on, guards);
-                    (self.code(&test, 0), &body[..])
-                });
-                let tests: Vec<_> = tests.collect();
-                self.chain(&tests, other, depth, out);
+                self.chain(&self.branches(on, branches), other, depth, out);
             }
             Statement::Choice { on, arms } => {
-                let tests = arms.iter().map(|(value, body)| {
-                    let value = Code::Int(i64::try_from(*value).unwrap_or(0));
-                    let test = Code::does(What::Equal, [on.clone(), value]);
-                    (self.code(&test, 0), &body[..])
-                });
-                let tests: Vec<_> = tests.collect();
-                self.chain(&tests, &[], depth, out);
+                self.chain(&self.arms(on, arms), &[], depth, out);
             }
-            _ => self.looped_or_left(statement, depth, out),
-        }
-    }
-
-    /// Loops, and what leaves them.
-    fn looped_or_left(&mut self, statement: &Statement, depth: usize, out: &mut String) {
-        let syntax = self.dialect.syntax;
-        match statement {
             Statement::Loop { label, body } => {
                 self.looped(*label, syntax.forever, body, depth, out);
             }
@@ -112,13 +92,7 @@ impl Printer<'_> {
                 times,
                 body,
             } => {
-                let template = match times {
-                    Code::Int(_) => syntax.repeat_plain,
-                    _ => syntax.repeat,
-                };
-                let counter = own_name(Own::Counter, *counter);
-                let count = format!("{counter}Times");
-                let head = fill(template, &[&self.code(times, 0), &counter, &count]);
+                let head = self.repeat(*counter, times);
                 self.looped(*label, &head, body, depth, out);
             }
             Statement::Break(label) => {
@@ -134,8 +108,47 @@ impl Printer<'_> {
             Statement::Label(label) => {
                 self.line(depth, &fill(syntax.label, &[&format!("place{label}")]), out);
             }
-            _ => {}
         }
+    }
+
+    /// The head of a loop that runs so many times.
+    fn repeat(&self, counter: usize, times: &Code) -> String {
+        let syntax = self.dialect.syntax;
+        let template = if matches!(times, Code::Int(_)) {
+            syntax.repeat_plain
+        } else {
+            syntax.repeat
+        };
+        let counter = own_name(Own::Counter, counter);
+        let count = format!("{counter}Times");
+        fill(template, &[&self.code(times, 0), &counter, &count])
+    }
+
+    /// The tests of a choice with what each leads to.
+    fn arms<'b>(
+        &self,
+        on: &Code,
+        arms: &'b [(usize, Vec<Statement>)],
+    ) -> Vec<(String, &'b [Statement])> {
+        let tests = arms.iter().map(|(value, body)| {
+            let value = Code::Int(i64::try_from(*value).unwrap_or(0));
+            let test = Code::does(Truth::Equal, [on.clone(), value]);
+            (self.code(&test, 0), &body[..])
+        });
+        tests.collect()
+    }
+
+    /// The tests of a switch with what each leads to.
+    fn branches<'b>(
+        &self,
+        on: &Code,
+        branches: &'b [(Vec<std::rc::Rc<str>>, Vec<Statement>)],
+    ) -> Vec<(String, &'b [Statement])> {
+        let tests = branches.iter().map(|(guards, body)| {
+            let test = one_of(on, guards);
+            (self.code(&test, 0), &body[..])
+        });
+        tests.collect()
     }
 
     /// Branches one after the other, the first that holds.
@@ -214,7 +227,7 @@ impl Printer<'_> {
         let syntax = self.dialect.syntax;
         let Some((head, foot)) = syntax.do_while else {
             let leave = vec![Statement::Break(label)];
-            let not = Code::does(What::Not, [when.clone()]);
+            let not = Code::does(Truth::Not, [when.clone()]);
             let mut body = body.to_vec();
             body.push(Statement::If(not, leave, Vec::new()));
             self.looped(label, syntax.forever, &body, depth, out);
@@ -249,15 +262,16 @@ fn one_of(on: &Code, guards: &[std::rc::Rc<str>]) -> Code {
             .ok()
             .filter(|number| number.to_string() == guard)
     };
-    let test = |guard: &std::rc::Rc<str>| match on {
-        Code::Do(What::TextOfInt, inner) if number(guard).is_some() => {
-            let value = Code::Int(number(guard).unwrap_or(0));
-            Code::does(What::Equal, [inner[0].clone(), value])
+    let test = |guard: &std::rc::Rc<str>| {
+        if let Code::Do(Operation::Conversion(Conversion::TextOfInt), inner) = on
+            && let Some(number) = number(guard)
+        {
+            return Code::does(Truth::Equal, [inner[0].clone(), Code::Int(number)]);
         }
-        _ => Code::does(What::EqualText, [on.clone(), Code::Text(guard.clone())]),
+        Code::does(Truth::EqualText, [on.clone(), Code::Text(guard.clone())])
     };
     let tests = guards.iter().map(test);
-    let either = |one, other| Code::does(What::Or, [one, other]);
+    let either = |one, other| Code::does(Truth::Or, [one, other]);
     tests.reduce(either).unwrap_or(Code::Bool(false))
 }
 
@@ -296,7 +310,16 @@ pub(super) fn find_named(list: &[Statement], around: &mut Vec<usize>, named: &mu
                     .for_each(|part| find_named(part, around, named));
                 around.pop();
             }
-            _ => statement
+            Statement::Comment(_)
+            | Statement::Do(_)
+            | Statement::Set(..)
+            | Statement::Call { .. }
+            | Statement::If(..)
+            | Statement::Switch { .. }
+            | Statement::Choice { .. }
+            | Statement::Return
+            | Statement::Goto(_)
+            | Statement::Label(_) => statement
                 .parts()
                 .into_iter()
                 .for_each(|part| find_named(part, around, named)),

@@ -9,7 +9,7 @@ use std::rc::Rc;
 use super::words;
 use crate::limits;
 use crate::program::{NOWHERE, Node, Op, Program};
-use crate::structure::{Graph, Way};
+use crate::structure::{Exit, Graph};
 use lang_text::problem::Problem;
 
 /// Whose function it is.
@@ -46,7 +46,7 @@ pub(crate) struct Plan {
 
 /// What follows a node in a function.
 enum Follow {
-    Ways(Way),
+    Ways(Exit),
     /// These begin threads, and the way goes on.
     Fork(Vec<(Rc<str>, Node)>, Node),
     /// This is called, and the way goes on.
@@ -142,12 +142,12 @@ impl Planner<'_> {
                         self.run_by(owner, &BTreeSet::from([name.clone()]), waiting);
                     }
                     all_begun.insert(node, begun);
-                    Way::Step(next as usize)
+                    Exit::Step(next as usize)
                 }
                 Follow::Call(callee, next) => {
                     calls.insert(callee);
                     self.run_by(Owner::Subprogram(callee), &threads, waiting);
-                    Way::Step(next as usize)
+                    Exit::Step(next as usize)
                 }
             };
             let mut local = |node: usize| {
@@ -157,13 +157,13 @@ impl Planner<'_> {
                 })
             };
             ways.push(match way {
-                Way::End => Way::End,
-                Way::Step(next) => Way::Step(local(next)),
-                Way::Test(yes, no) => {
+                Exit::End => Exit::End,
+                Exit::Step(next) => Exit::Step(local(next)),
+                Exit::Test(yes, no) => {
                     let yes = local(yes);
-                    Way::Test(yes, local(no))
+                    Exit::Test(yes, local(no))
                 }
-                Way::Switch(all) => Way::Switch(all.into_iter().map(local).collect()),
+                Exit::Switch(all) => Exit::Switch(all.into_iter().map(local).collect()),
             });
         }
         Some(Function {
@@ -187,28 +187,28 @@ impl Planner<'_> {
 
     fn follow(&mut self, node: Node, threads: &BTreeSet<Rc<str>>) -> Follow {
         let ways = match self.program.ops[node as usize] {
-            Op::End => Way::End,
+            Op::End => Exit::End,
             Op::Fault { fault } => {
                 let fault = self.program.faults[fault as usize].clone();
                 self.problems.insert(node, fault);
-                Way::End
+                Exit::End
             }
-            Op::If { yes, no, .. } => Way::Test(yes as usize, no as usize),
-            Op::Loop { body, next, .. } => Way::Test(body as usize, next as usize),
+            Op::If { yes, no, .. } => Exit::Test(yes as usize, no as usize),
+            Op::Loop { body, next, .. } => Exit::Test(body as usize, next as usize),
             Op::Switch { switch } => {
                 let switch = &self.program.switches[switch as usize];
                 let ways = switch.branches.iter().map(|&(_, to)| to as usize);
-                Way::Switch(ways.chain([switch.other as usize]).collect())
+                Exit::Switch(ways.chain([switch.other as usize]).collect())
             }
             Op::Fork { fork } => return self.fork(node, fork, threads),
             Op::Join { join, next } => {
                 let survivor = &self.program.joins[join as usize].survivor;
                 match (threads.contains(survivor), threads.len()) {
-                    (true, 1) => Way::Step(next as usize),
-                    (false, _) => Way::End,
+                    (true, 1) => Exit::Step(next as usize),
+                    (false, _) => Exit::End,
                     _ => {
                         self.fail(node, words::unclear_thread());
-                        Way::End
+                        Exit::End
                     }
                 }
             }
@@ -216,14 +216,25 @@ impl Planner<'_> {
                 Some(diagram) => return Follow::Call(diagram, next),
                 None => {
                     self.fail(node, words::no_subprogram());
-                    Way::End
+                    Exit::End
                 }
             },
             Op::Ask { .. } => {
                 self.fail(node, words::no_questions());
-                Way::End
+                Exit::End
             }
-            op => op.next().map_or(Way::End, |next| Way::Step(next as usize)),
+            Op::Pass { next }
+            | Op::Run { next, .. }
+            | Op::Kill { next, .. }
+            | Op::Send { next, .. }
+            | Op::Receive { next, .. }
+            | Op::Timer { next, .. }
+            | Op::Random { next, .. }
+            | Op::AnyButton { next, .. }
+            | Op::Mail { next, .. }
+            | Op::Copy { next, .. }
+            | Op::Act { next, .. }
+            | Op::Watch { next, .. } => Exit::Step(next as usize),
         };
         Follow::Ways(ways)
     }
@@ -250,7 +261,7 @@ impl Planner<'_> {
                 words::no_own_branch()
             };
             self.fail(node, words);
-            return Follow::Ways(Way::End);
+            return Follow::Ways(Exit::End);
         };
         let others = branches
             .iter()
@@ -282,7 +293,7 @@ impl Plan {
     pub(crate) fn thread(&self, name: &str, node: Node) -> Option<usize> {
         let is_it = |function: &Function| match &function.owner {
             Owner::Thread(known, start) => &**known == name && *start == node,
-            _ => false,
+            Owner::Main | Owner::Subprogram(_) => false,
         };
         self.functions.iter().position(is_it)
     }
@@ -299,6 +310,16 @@ impl Plan {
     pub(crate) fn has_threads(&self) -> bool {
         let is_thread = |function: &Function| matches!(function.owner, Owner::Thread(..));
         self.functions.iter().any(is_thread)
+    }
+
+    /// Whether a thread is ended, or written to or read from, by its name.
+    pub(crate) fn names_threads(&self, program: &Program) -> bool {
+        let names = |node: &Node| {
+            let op = program.ops[*node as usize];
+            matches!(op, Op::Kill { .. } | Op::Send { .. } | Op::Receive { .. })
+        };
+        let mut functions = self.functions.iter();
+        functions.any(|function| function.nodes.iter().any(names))
     }
 
     /// Whether a subprogram may be running more than once at a time.

@@ -2,11 +2,15 @@
 //!
 //! Owns brackets, indentation and names. Knows no language: all words come from the dialect.
 
-use super::code::{Code, Kind, Own, Statement, What};
+use super::code::{
+    Code, Conversion, Element, Function, Kind, Number, Operation, Own, Robot, Statement, Truth,
+    Turn, each_code,
+};
 use super::lines::find_named;
 use super::names::{Names, Rules};
 use super::plan::Owner;
 use super::routines::{Abilities, Routine, Script};
+use crate::blocks::act::Phrase;
 use crate::program::Program;
 
 /// How one thing is said. `$1` and so on stand for operands.
@@ -110,9 +114,41 @@ pub(super) struct Syntax {
     pub(super) call: &'static str,
 }
 
+/// The words of a language for each group of operations. Each is a match in full, so that a new operation does not
+/// compile until every language has words for it or [`NONE`].
+#[derive(Clone, Copy)]
+pub(super) struct Tables {
+    pub(super) number: fn(Number) -> Row,
+    pub(super) truth: fn(Truth) -> Row,
+    pub(super) conversion: fn(Conversion) -> Row,
+    pub(super) function: fn(Function) -> Row,
+    pub(super) element: fn(Element) -> Row,
+    pub(super) robot: fn(Robot) -> Row,
+    pub(super) turn: fn(Turn) -> Row,
+    /// Its words in the row of a block or of a reading.
+    pub(super) phrase: fn(&'static Phrase) -> &'static str,
+}
+
+impl Tables {
+    /// How an operation is said.
+    pub(super) fn row(&self, operation: Operation) -> Row {
+        match operation {
+            Operation::Number(number) => (self.number)(number),
+            Operation::Truth(truth) => (self.truth)(truth),
+            Operation::Conversion(conversion) => (self.conversion)(conversion),
+            Operation::Function(function) => (self.function)(function),
+            Operation::Element(element) => (self.element)(element),
+            Operation::Robot(robot) => (self.robot)(robot),
+            Operation::Turn(turn) => (self.turn)(turn),
+            Operation::Read(reading) => call((self.phrase)(&reading.phrase)),
+            Operation::Command(command) => call((self.phrase)(command.phrase)),
+        }
+    }
+}
+
 /// A language.
 pub(super) struct Dialect {
-    pub(super) row: fn(What) -> Row,
+    pub(super) tables: Tables,
     pub(super) syntax: Syntax,
     pub(super) rules: Rules,
     pub(super) abilities: Abilities,
@@ -127,7 +163,7 @@ pub(super) struct Dialect {
     pub(super) variable: &'static str,
     /// A function of the program as a value.
     pub(super) function: &'static str,
-    /// What helpers are called and how they are written; a helper may use those before it.
+    /// What helpers define, names with spaces between, and how they are written; a helper may use those before it.
     pub(super) helpers: &'static [(&'static str, &'static str)],
     /// Kinds that variables must have: the language wants to know them.
     pub(super) is_typed: bool,
@@ -184,8 +220,10 @@ impl<'a> Printer<'a> {
         title: String,
     ) -> Self {
         let mut names = Names::new(dialect.rules);
-        for (name, _) in dialect.helpers {
-            names.take(name);
+        for (defined, _) in dialect.helpers {
+            for name in defined.split(' ') {
+                names.take(name);
+            }
         }
         let functions = script.routines.iter().map(|routine| match &routine.owner {
             Owner::Main => names.take("main"),
@@ -231,9 +269,9 @@ impl<'a> Printer<'a> {
     /// The helpers that a text uses, in order.
     pub(super) fn helpers(&self, text: &str) -> String {
         let mut used = vec![false; self.dialect.helpers.len()];
-        let mut needs = text.to_owned();
-        for (index, (name, body)) in self.dialect.helpers.iter().enumerate().rev() {
-            if has_word(&needs, name) {
+        let mut needs = self.without_texts(text);
+        for (index, (defined, body)) in self.dialect.helpers.iter().enumerate().rev() {
+            if defined.split(' ').any(|name| has_word(&needs, name)) {
                 used[index] = true;
                 needs.push_str(body);
             }
@@ -244,6 +282,37 @@ impl<'a> Printer<'a> {
                 out.push_str(body.trim_matches('\n'));
                 out.push_str("\n\n");
             }
+        }
+        out
+    }
+
+    /// A program without comments and texts in quotes: names in them mean nothing.
+    fn without_texts(&self, program: &str) -> String {
+        let comment = self.dialect.syntax.comment;
+        let comment = comment.split('$').next().unwrap_or_default();
+        let escapes = (self.dialect.quote)("\\").contains("\\\\");
+        let mut out = String::with_capacity(program.len());
+        for line in program.lines() {
+            if line.trim_start().starts_with(comment) {
+                continue;
+            }
+            let mut quote = None;
+            let mut letters = line.chars();
+            while let Some(letter) = letters.next() {
+                if quote == Some(letter) {
+                    quote = None;
+                    continue;
+                }
+                match quote {
+                    None if letter == '"' || letter == '\'' => quote = Some(letter),
+                    None => out.push(letter),
+                    Some(_) if letter == '\\' && escapes => {
+                        letters.next();
+                    }
+                    Some(_) => {}
+                }
+            }
+            out.push('\n');
         }
         out
     }
@@ -294,8 +363,8 @@ impl<'a> Printer<'a> {
     pub(super) fn counters(&self) -> i64 {
         let mut count = 0;
         for routine in &self.script.routines {
-            super::each_code(&routine.body, &mut |code| {
-                if let Code::Do(What::Again, operands) = code
+            each_code(&routine.body, &mut |code| {
+                if let Code::Do(Operation::Truth(Truth::Again), operands) = code
                     && let Some(Code::Int(number)) = operands.first()
                 {
                     count = count.max(number + 1);
@@ -366,13 +435,13 @@ impl<'a> Printer<'a> {
                 (dialect.list)(&parts)
             }
             // Nothing needs to be said: the operand stands for itself.
-            Code::Do(what, operands)
-                if (dialect.row)(*what).text == "$1" && operands.len() == 1 =>
+            Code::Do(operation, operands)
+                if dialect.tables.row(*operation).text == "$1" && operands.len() == 1 =>
             {
                 self.code(&operands[0], least)
             }
-            Code::Do(what, operands) => {
-                let row = (dialect.row)(*what);
+            Code::Do(operation, operands) => {
+                let row = dialect.tables.row(*operation);
                 let said = operands.iter().enumerate().map(|(index, operand)| {
                     self.code(operand, row.needs.get(index).copied().unwrap_or(0))
                 });
@@ -449,6 +518,6 @@ pub(super) fn float(number: f64) -> String {
 /// Whether a variable stands in a list.
 fn uses(list: &[Statement], number: usize) -> bool {
     let mut found = false;
-    super::each_code(list, &mut |code| found |= *code == Code::Variable(number));
+    each_code(list, &mut |code| found |= *code == Code::Variable(number));
     found
 }

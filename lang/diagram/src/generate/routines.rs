@@ -5,7 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::build::{Variables, truth, whole};
-use super::code::{Code, Kind, Own, Statement, What};
+use super::code::{Code, Element, Kind, Operation, Own, Robot, Statement, Truth, Wholeness};
 use super::plan::{Function, Owner, Plan};
 use super::texts::Texts;
 use crate::program::{Node, Op, Program};
@@ -33,6 +33,8 @@ pub(super) struct Script {
     pub(super) routines: Vec<Routine>,
     pub(super) variables: Variables,
     pub(super) has_threads: bool,
+    /// Whether threads are begun, ended or written to, if only the one that the program begins with.
+    pub(super) names_threads: bool,
 }
 
 /// What the target language can do.
@@ -49,6 +51,8 @@ pub(super) struct Lowerer<'a> {
     pub(super) texts: Texts<'a>,
     /// How often the block of a loop stands in the whole program.
     loops: BTreeMap<Node, usize>,
+    /// Timers that count the step in which they begin, by their function.
+    pub(super) early: BTreeSet<(usize, Node)>,
     /// Whether threads are ended from outside.
     kills: bool,
     counters: BTreeMap<Node, usize>,
@@ -75,6 +79,7 @@ pub(super) fn routines(
         plan,
         texts,
         loops: BTreeMap::new(),
+        early: super::ticks::early(program, plan),
         kills: program.ops.iter().any(|op| matches!(op, Op::Kill { .. })),
         counters: BTreeMap::new(),
         function: 0,
@@ -92,7 +97,7 @@ pub(super) fn routines(
         let owner = plan.functions[index].owner.clone();
         let parameters = match owner {
             Owner::Subprogram(diagram) => lowerer.parameters(diagram),
-            _ => Vec::new(),
+            Owner::Main | Owner::Thread(..) => Vec::new(),
         };
         let mut assigned = BTreeSet::new();
         assigns(&body, &mut assigned);
@@ -112,6 +117,7 @@ pub(super) fn routines(
         routines,
         variables: lowerer.texts.variables,
         has_threads: plan.has_threads(),
+        names_threads: plan.has_threads() || plan.names_threads(program),
     })
 }
 
@@ -135,7 +141,11 @@ fn is_calm(list: &[Tree], at_end: bool) -> bool {
             Tree::If { .. } | Tree::Switch { .. } | Tree::Choice { .. } => {
                 tree.parts().into_iter().all(|part| is_calm(part, at_end))
             }
-            _ => tree.parts().into_iter().all(|part| is_calm(part, false)),
+            Tree::Step(_)
+            | Tree::Loop { .. }
+            | Tree::While { .. }
+            | Tree::DoWhile { .. }
+            | Tree::Set { .. } => tree.parts().into_iter().all(|part| is_calm(part, false)),
         }
     })
 }
@@ -143,19 +153,16 @@ fn is_calm(list: &[Tree], at_end: bool) -> bool {
 /// Variables that get values in a list.
 fn assigns(list: &[Statement], found: &mut BTreeSet<usize>) {
     for statement in list {
-        match statement {
-            Statement::Set(Code::Variable(variable), _) => {
-                found.insert(*variable);
-            }
-            Statement::Do(Code::Do(What::Put, operands)) => {
-                if let Some(Code::Variable(variable)) = operands.first() {
-                    found.insert(*variable);
-                }
-            }
-            _ => statement
-                .parts()
-                .into_iter()
-                .for_each(|part| assigns(part, found)),
+        if let Statement::Set(Code::Variable(variable), _) = statement {
+            found.insert(*variable);
+        }
+        if let Statement::Do(Code::Do(Operation::Element(Element::Put), operands)) = statement
+            && let Some(Code::Variable(variable)) = operands.first()
+        {
+            found.insert(*variable);
+        }
+        for part in statement.parts() {
+            assigns(part, found);
         }
     }
 }
@@ -176,7 +183,15 @@ impl Statement {
             | Self::While { body, .. }
             | Self::DoWhile { body, .. }
             | Self::Repeat { body, .. } => vec![body],
-            _ => Vec::new(),
+            Self::Comment(_)
+            | Self::Do(_)
+            | Self::Set(..)
+            | Self::Call { .. }
+            | Self::Break(_)
+            | Self::Continue(_)
+            | Self::Return
+            | Self::Goto(_)
+            | Self::Label(_) => Vec::new(),
         }
     }
 }
@@ -188,13 +203,9 @@ impl Lowerer<'_> {
 
     fn count_loops(&mut self, function: &Function, list: &[Tree]) {
         for tree in list {
-            let when = match tree {
-                Tree::If { when, .. } | Tree::While { when, .. } | Tree::DoWhile { when, .. } => {
-                    Some(when)
-                }
-                _ => None,
-            };
-            if let Some(when) = when {
+            if let Tree::If { when, .. } | Tree::While { when, .. } | Tree::DoWhile { when, .. } =
+                tree
+            {
                 when.tests(&mut |block| {
                     if let Some(&node) = function.nodes.get(block) {
                         *self.loops.entry(node).or_default() += 1;
@@ -260,7 +271,7 @@ impl Lowerer<'_> {
             Tree::End(_) => {
                 let owner = &self.plan.functions[self.function].owner;
                 if *owner == Owner::Main && !self.plan.has_threads() {
-                    out.push(Statement::Do(Code::does(What::Finish, [])));
+                    out.push(Statement::Do(Code::does(Robot::Finish, [])));
                 }
                 out.push(Statement::Return);
             }
@@ -303,11 +314,11 @@ impl Lowerer<'_> {
             }
             Condition::And(left, right) => {
                 let left = self.condition(left);
-                Code::does(What::And, [left, self.condition(right)])
+                Code::does(Truth::And, [left, self.condition(right)])
             }
             Condition::Or(left, right) => {
                 let left = self.condition(left);
-                Code::does(What::Or, [left, self.condition(right)])
+                Code::does(Truth::Or, [left, self.condition(right)])
             }
         }
     }
@@ -323,58 +334,63 @@ impl Lowerer<'_> {
                 let new = self.counters.len();
                 let counter = *self.counters.entry(node).or_insert(new);
                 let counter = Code::Int(i64::try_from(counter).unwrap_or(0));
-                Code::does(What::Again, [counter, times])
+                Code::does(Truth::Again, [counter, times])
             }
-            _ => Code::Bool(false),
+            // No others have two ways out.
+            Op::Pass { .. }
+            | Op::End
+            | Op::Fault { .. }
+            | Op::Run { .. }
+            | Op::Switch { .. }
+            | Op::Fork { .. }
+            | Op::Join { .. }
+            | Op::Kill { .. }
+            | Op::Send { .. }
+            | Op::Receive { .. }
+            | Op::Call { .. }
+            | Op::Timer { .. }
+            | Op::Random { .. }
+            | Op::Ask { .. }
+            | Op::AnyButton { .. }
+            | Op::Mail { .. }
+            | Op::Copy { .. }
+            | Op::Act { .. }
+            | Op::Watch { .. } => Code::Bool(false),
         }
     }
 
     fn negated(&self, code: Code) -> Code {
-        let Code::Do(what, operands) = code else {
-            return Code::does(What::Not, [code]);
+        let Code::Do(Operation::Truth(truth), operands) = code else {
+            return Code::does(Truth::Not, [code]);
         };
+        if truth == Truth::Not {
+            return operands.into_iter().next().unwrap_or(Code::Bool(true));
+        }
         let is_whole = operands.iter().all(|operand| self.is_whole(operand));
-        let opposite = match what {
-            What::Not => return operands.into_iter().next().unwrap_or(Code::Bool(true)),
-            What::Equal => What::NotEqual,
-            What::NotEqual => What::Equal,
-            What::EqualText => What::NotEqualText,
-            What::NotEqualText => What::EqualText,
-            What::Less if is_whole => What::GreaterEqual,
-            What::Greater if is_whole => What::LessEqual,
-            What::LessEqual if is_whole => What::Greater,
-            What::GreaterEqual if is_whole => What::Less,
-            _ => return Code::does(What::Not, [Code::Do(what, operands)]),
-        };
-        Code::Do(opposite, operands)
+        match truth.opposite(is_whole) {
+            Some(opposite) => Code::does(opposite, operands),
+            None => Code::does(Truth::Not, [Code::does(truth, operands)]),
+        }
     }
 
     /// Whether a number is surely whole, so that its comparisons have opposites.
     fn is_whole(&self, code: &Code) -> bool {
-        use What::{
-            Add, AtPlain, DivideWhole, Encoder, Modulo, Multiply, Random, Sensor, Subtract, Time,
-            WholeOfAny, WholeOfBool, WholeOfFloat,
-        };
         match code {
             Code::Int(_) => true,
             Code::Variable(number) => self.texts.variables.all[*number].kind == Some(Kind::Int),
-            Code::Do(Add | Subtract | Multiply, parts) => {
-                parts.iter().all(|part| self.is_whole(part))
-            }
-            Code::Do(what, _) => matches!(
-                what,
-                AtPlain
-                    | DivideWhole
-                    | Encoder
-                    | Modulo
-                    | Random
-                    | Sensor
-                    | Time
-                    | WholeOfAny
-                    | WholeOfBool
-                    | WholeOfFloat
-            ),
-            _ => false,
+            Code::Do(operation, parts) => match operation.wholeness() {
+                Wholeness::Whole => true,
+                Wholeness::LikeOperands => parts.iter().all(|part| self.is_whole(part)),
+                Wholeness::Unknown => false,
+            },
+            Code::Float(_)
+            | Code::Bool(_)
+            | Code::Text(_)
+            | Code::Nil
+            | Code::Port(_)
+            | Code::Own(..)
+            | Code::Function(_)
+            | Code::List(_) => false,
         }
     }
 
@@ -443,7 +459,7 @@ impl Lowerer<'_> {
 }
 
 fn is_counting(code: &Code) -> bool {
-    code.has(&mut |part| matches!(part, Code::Do(What::Again, _)))
+    code.has(&mut |part| matches!(part, Code::Do(Operation::Truth(Truth::Again), _)))
 }
 
 /// Whether control stays in the loop that a statement is in until its head is reached again.
@@ -463,7 +479,12 @@ fn stays_inside(tree: &Tree, may_end: bool, own: usize, inner: &mut Vec<usize>) 
             inner.pop();
             stays
         }
-        _ => {
+        Tree::Step(_)
+        | Tree::If { .. }
+        | Tree::Switch { .. }
+        | Tree::Set { .. }
+        | Tree::Choice { .. }
+        | Tree::Label(_) => {
             let parts = tree.parts();
             parts
                 .into_iter()

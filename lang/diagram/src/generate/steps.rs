@@ -2,23 +2,26 @@
 //!
 //! Owns the meaning of each operation, which is the machine's; what devices are told is in `commands`.
 
-use super::build::{self, reading, text, truth, whole};
-use super::code::{Code, Kind, Own, Statement, Typed, What};
+use super::build::{self, text, truth, whole};
+use super::code::{
+    Code, Conversion, Element, Function, Kind, Number, Operation, Own, Robot, Statement, Truth,
+    Turn, Typed,
+};
+use super::readings::of as reading;
 use super::routines::Lowerer;
 use super::texts::Sentence;
 use super::words;
-use crate::blocks::Watch;
-use crate::program::{ArgumentKind, Axis, Node, Op, Program, Sign, Source, Watching};
+use crate::blocks::Row;
+use crate::blocks::wait::{Every, Measure};
+use crate::machine::STEP_MS;
+use crate::program::{ArgumentKind, Node, Op, Program, Sign, Source, WatchedFor, Watching};
 
-/// How often a block looks at its sensor, in milliseconds.
-const LOOK_MS: i64 = 20;
-/// And at an encoder.
-const LOOK_AT_ENCODER_MS: i64 = 10;
-/// And at a button of the gamepad.
-const LOOK_AT_PAD_MS: i64 = 200;
-
-pub(super) fn tell(out: &mut Vec<Statement>, what: What, operands: impl Into<Vec<Code>>) {
-    out.push(Statement::Do(Code::does(what, operands)));
+pub(super) fn emit(
+    out: &mut Vec<Statement>,
+    operation: impl Into<Operation>,
+    operands: impl Into<Vec<Code>>,
+) {
+    out.push(Statement::Do(Code::does(operation, operands)));
 }
 
 pub(super) fn plain(text: &str) -> Code {
@@ -53,57 +56,74 @@ impl Lowerer<'_> {
         match program.ops[node as usize] {
             Op::Pass { .. } => self.pass(node, out),
             Op::Run { source, .. } => self.run(node, source, out),
-            Op::Copy { assignment, .. } => {
-                if let Some((source, _)) = program.assignments[assignment as usize].bounds {
-                    self.run(node, source, out);
-                }
-            }
-            Op::Timer { source, .. } => {
-                let delay = whole(self.value(node, source));
-                tell(out, What::Wait, [delay]);
-            }
+            Op::Copy { copy, .. } => self.run(node, program.copies[copy as usize].source, out),
+            Op::Timer { source, .. } => self.timer(node, source, out),
             Op::Random { assignment, .. } => {
                 if let Some((low, high)) = program.assignments[assignment as usize].bounds {
                     let low = whole(self.value(node, low));
                     let high = whole(self.value(node, high));
-                    let value = Code::does(What::Random, ordered(low, high));
+                    let value = Code::does(Function::Random, ordered(low, high));
                     self.assign(node, value, out);
                 }
             }
             Op::AnyButton { assignment, .. } => {
                 let wait = Code::Bool(program.assignments[assignment as usize].wait);
-                self.assign(node, Code::does(What::AnyButton, [wait]), out);
+                self.assign(node, Code::does(Turn::AnyButton, [wait]), out);
             }
             Op::Mail { assignment, .. } => {
                 let wait = Code::Bool(program.assignments[assignment as usize].wait);
-                self.assign(node, Code::does(What::Mail, [wait]), out);
+                self.assign(node, Code::does(Turn::Mail, [wait]), out);
             }
             Op::Receive { assignment, .. } => {
                 self.receive(node, program.assignments[assignment as usize].wait, out);
             }
             Op::Kill { message, .. } => {
                 let name = &program.messages[message as usize].thread;
-                tell(out, What::KillThread, [plain(name)]);
+                emit(out, Turn::Kill, [plain(name)]);
             }
             Op::Send { message, .. } => {
                 let message = &program.messages[message as usize];
                 let sent = text(self.value(node, message.source));
-                tell(out, What::SendThread, [plain(&message.thread), sent]);
+                emit(out, Turn::Send, [plain(&message.thread), sent]);
             }
             Op::Fork { .. } => self.fork(node, out),
             Op::Join { .. } => self.join(node, out),
             Op::Call { call, .. } => self.call(node, call, out),
             Op::Act { action, .. } => self.act(node, &program.actions[action as usize], out),
             Op::Watch { watch, .. } => self.watch(node, &program.watches[watch as usize], out),
-            _ => {}
+            // Those end the function or have several ways out: the structure of the graph has them.
+            Op::End
+            | Op::Fault { .. }
+            | Op::If { .. }
+            | Op::Loop { .. }
+            | Op::Switch { .. }
+            | Op::Ask { .. } => {}
         }
+    }
+
+    /// A wait for a time. One that another timer has led to counts the step in which it begins.
+    fn timer(&mut self, node: Node, source: Source, out: &mut Vec<Statement>) {
+        let delay = whole(self.value(node, source));
+        if !self.early.contains(&(self.function, node)) {
+            emit(out, Turn::Wait, [delay]);
+            return;
+        }
+        let step = i64::from(STEP_MS);
+        if let Code::Int(ms) = delay
+            && ms <= step
+        {
+            let done = format!("Timer {ms}: over in the step in which it begins");
+            out.push(Statement::Comment(done));
+            return;
+        }
+        let rest = Code::does(Number::Subtract, [delay, Code::Int(step)]);
+        emit(out, Turn::Wait, [rest]);
     }
 
     /// A block that does nothing says so, unless it is there only to be drawn.
     fn pass(&mut self, node: Node, out: &mut Vec<Statement>) {
-        use crate::blocks::Does;
         let row = self.program.row(node);
-        if row.is_some_and(|row| matches!(row.does, Does::Start | Does::Merge | Does::Comment)) {
+        if row.is_some_and(Row::is_mark) {
             return;
         }
         let name = row.map_or("a block that TRIK does not have", |row| row.shown);
@@ -134,18 +154,30 @@ impl Lowerer<'_> {
     /// A value as a variable wants it: tables are copied.
     fn converted(&self, variable: usize, path: &[Code], value: Typed) -> Code {
         let wanted = &self.texts.variables.all[variable].kind;
-        let is_list = matches!(value.kind, Kind::List(_) | Kind::Any);
-        match value.code {
-            code @ Code::Variable(_) if is_list => Code::does(What::Copy, [code]),
-            code @ Code::Do(What::At, _) if matches!(value.kind, Kind::List(_)) => {
-                Code::does(What::Copy, [code])
-            }
-            Code::Port(name) => Code::Text(name),
-            code if value.kind == Kind::Int && path.is_empty() && *wanted == Some(Kind::Float) => {
-                Code::does(What::FloatOfInt, [code])
-            }
-            code => code,
+        let is_shared = match &value.code {
+            Code::Variable(_) => matches!(value.kind, Kind::List(_) | Kind::Any),
+            Code::Do(Operation::Element(Element::At), _) => matches!(value.kind, Kind::List(_)),
+            Code::Int(_)
+            | Code::Float(_)
+            | Code::Bool(_)
+            | Code::Text(_)
+            | Code::Nil
+            | Code::Port(_)
+            | Code::Own(..)
+            | Code::Function(_)
+            | Code::Do(..)
+            | Code::List(_) => false,
+        };
+        if is_shared {
+            return Code::does(Element::Copy, [value.code]);
         }
+        if let Code::Port(name) = value.code {
+            return Code::Text(name);
+        }
+        if value.kind == Kind::Int && path.is_empty() && *wanted == Some(Kind::Float) {
+            return Code::does(Conversion::FloatOfInt, [value.code]);
+        }
+        value.code
     }
 
     /// Gives a value to the variable of a block.
@@ -164,16 +196,20 @@ impl Lowerer<'_> {
 
     fn receive(&mut self, node: Node, wait: bool, out: &mut Vec<Statement>) {
         if wait {
-            let message = Code::does(What::ReceiveThread, []);
-            self.assign(node, Code::does(What::ValueOf, [message]), out);
+            let message = Code::does(Turn::Receive, []);
+            self.assign(node, Code::does(Conversion::ValueOf, [message]), out);
             return;
         }
         let place = self.place(Kind::Text);
-        let message = Code::does(What::ReceiveThreadNow, []);
+        let message = Code::does(Turn::ReceiveNow, []);
         out.push(Statement::Set(place.clone(), message));
         let mut body = Vec::new();
-        self.assign(node, Code::does(What::ValueOf, [place.clone()]), &mut body);
-        let came = Code::does(What::NotEqualText, [place, plain("")]);
+        self.assign(
+            node,
+            Code::does(Conversion::ValueOf, [place.clone()]),
+            &mut body,
+        );
+        let came = Code::does(Truth::NotEqualText, [place, plain("")]);
         out.push(Statement::If(came, body, Vec::new()));
     }
 
@@ -181,11 +217,7 @@ impl Lowerer<'_> {
         let begun = self.plan.functions[self.function].begun.get(&node).cloned();
         for (name, first) in begun.unwrap_or_default() {
             if let Some(function) = self.plan.thread(&name, first) {
-                tell(
-                    out,
-                    What::StartThread,
-                    [plain(&name), Code::Function(function)],
-                );
+                emit(out, Turn::Start, [plain(&name), Code::Function(function)]);
             }
         }
     }
@@ -200,7 +232,7 @@ impl Lowerer<'_> {
             }
         }
         for name in names {
-            tell(out, What::JoinThread, [plain(&name)]);
+            emit(out, Turn::Join, [plain(&name)]);
         }
     }
 
@@ -322,41 +354,40 @@ impl Lowerer<'_> {
                 return;
             }
         };
-        let element =
-            |reading: Typed, at: i64| Code::does(What::AtPlain, [reading.code, Code::Int(at)]);
-        let reading = match (watching.watch, watching.axis) {
-            (Watch::Gyroscope(_), _) => {
-                let operands = [element(reading(port), 6), Code::Int(1000)];
-                Code::does(What::DivideWhole, operands)
-            }
-            (Watch::Acceleration(_), Axis::X) => element(reading(port), 0),
-            (Watch::Acceleration(_), Axis::Y) => element(reading(port), 1),
-            (Watch::Acceleration(_), Axis::Z) => element(reading(port), 2),
-            (Watch::Acceleration(_), Axis::Length) => length(&reading(port).code),
-            _ => reading(port).code,
+        let said = reading(port).code;
+        let element = |at: usize| {
+            let at = i64::try_from(at).unwrap_or(i64::MAX);
+            Code::does(Element::AtPlain, [said.clone(), Code::Int(at)])
         };
-        let holds = match (watching.watch, watching.source) {
-            (Watch::Disconnected, _) => Code::does(What::Equal, [reading, Code::Int(0)]),
-            (_, None) => Code::does(What::Greater, [reading, Code::Int(0)]),
-            (_, Some(source)) => {
+        let reading = match watching.measure {
+            Measure::Only => said,
+            Measure::At(at) => element(at),
+            Measure::ThousandthAt(at) => {
+                Code::does(Number::DivideWhole, [element(at), Code::Int(1000)])
+            }
+            Measure::Length => length(&said),
+        };
+        let holds = match watching.until {
+            WatchedFor::Zero => Code::does(Truth::Equal, [reading, Code::Int(0)]),
+            WatchedFor::Positive => Code::does(Truth::Greater, [reading, Code::Int(0)]),
+            WatchedFor::Compared(sign, source) => {
                 let wanted = whole(self.value(node, source));
-                match compared(watching.sign) {
+                match compared(sign) {
                     Some(what) => Code::does(what, [reading, wanted]),
                     None => Code::Bool(false),
                 }
             }
         };
-        let interval = match watching.watch {
-            Watch::Encoder(_) => LOOK_AT_ENCODER_MS,
-            Watch::PadButton => LOOK_AT_PAD_MS,
-            _ => LOOK_MS,
+        let interval = match watching.wait.every {
+            Every::Step => STEP_MS.into(),
+            Every::Ms(ms) => ms.into(),
         };
         let mut body = Vec::new();
-        tell(&mut body, What::Wait, [Code::Int(interval)]);
+        emit(&mut body, Turn::Wait, [Code::Int(interval)]);
         out.push(Statement::While {
             // Nobody leaves it.
             label: usize::MAX,
-            when: Code::does(What::Not, [holds]),
+            when: Code::does(Truth::Not, [holds]),
             body,
         });
     }
@@ -367,20 +398,28 @@ fn set(target: Code, path: Vec<Code>, value: Code) -> Statement {
     let Some(last) = path.next() else {
         return Statement::Set(target, value);
     };
-    let table = path
-        .rev()
-        .fold(target, |table, index| Code::does(What::At, [table, index]));
-    Statement::Do(Code::does(What::Put, [table, last, value]))
+    let table = path.rev().fold(target, |table, index| {
+        Code::does(Element::At, [table, index])
+    });
+    Statement::Do(Code::does(Element::Put, [table, last, value]))
 }
 
 /// What a value that nobody keeps does.
 fn effects(code: Code, out: &mut Vec<Statement>) {
     match code {
-        Code::Do(What::Print, operands) => tell(out, What::Print, operands),
+        Code::Do(Operation::Robot(Robot::Print), operands) => emit(out, Robot::Print, operands),
         Code::Do(_, parts) | Code::List(parts) => {
             parts.into_iter().for_each(|part| effects(part, out));
         }
-        _ => {}
+        Code::Int(_)
+        | Code::Float(_)
+        | Code::Bool(_)
+        | Code::Text(_)
+        | Code::Nil
+        | Code::Port(_)
+        | Code::Variable(_)
+        | Code::Own(..)
+        | Code::Function(_) => {}
     }
 }
 
@@ -389,19 +428,19 @@ fn ordered(low: Code, high: Code) -> [Code; 2] {
         (Code::Int(one), Code::Int(two)) if one > two => [high, low],
         (Code::Int(_), Code::Int(_)) => [low, high],
         _ => [
-            Code::does(What::Min, [low.clone(), high.clone()]),
-            Code::does(What::Max, [low, high]),
+            Code::does(Function::Min, [low.clone(), high.clone()]),
+            Code::does(Function::Max, [low, high]),
         ],
     }
 }
 
-fn compared(sign: Sign) -> Option<What> {
+fn compared(sign: Sign) -> Option<Truth> {
     Some(match sign {
-        Sign::Greater => What::Greater,
-        Sign::Less => What::Less,
-        Sign::NotLess => What::GreaterEqual,
-        Sign::NotGreater => What::LessEqual,
-        Sign::Equals => What::Equal,
+        Sign::Greater => Truth::Greater,
+        Sign::Less => Truth::Less,
+        Sign::NotLess => Truth::GreaterEqual,
+        Sign::NotGreater => Truth::LessEqual,
+        Sign::Equals => Truth::Equal,
         Sign::Unknown => return None,
     })
 }
@@ -409,12 +448,12 @@ fn compared(sign: Sign) -> Option<What> {
 /// How long a vector of three is, cut to a whole number.
 fn length(vector: &Code) -> Code {
     let square = |at: i64| {
-        let number = Code::does(What::AtPlain, [vector.clone(), Code::Int(at)]);
-        Code::does(What::Multiply, [number.clone(), number])
+        let number = Code::does(Element::AtPlain, [vector.clone(), Code::Int(at)]);
+        Code::does(Number::Multiply, [number.clone(), number])
     };
-    let sum = Code::does(What::Add, [square(0), square(1)]);
-    let sum = Code::does(What::Add, [sum, square(2)]);
-    Code::does(What::Floor, [Code::does(What::Sqrt, [sum])])
+    let sum = Code::does(Number::Add, [square(0), square(1)]);
+    let sum = Code::does(Number::Add, [sum, square(2)]);
+    Code::does(Function::Floor, [Code::does(Function::Sqrt, [sum])])
 }
 
 /// A variable of the generator whose use is said by its kind.

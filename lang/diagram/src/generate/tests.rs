@@ -92,6 +92,42 @@ fn the_shapes_of_trik_are_kept() {
     assert!(text.contains("\"motors/\" .. port .. \"/value\""), "{text}");
 }
 
+/// A function, a loop with a counter, a branch, a wait and a stop.
+fn with_all_shapes() -> Project {
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let count = sketch.block("Function", &[("Body", "laps = 0; far = 20.5")]);
+    let repeat = sketch.block("Loop", &[("Iterations", "3")]);
+    let go = sketch.block(
+        "TrikV6EnginesForward",
+        &[("Ports", "M3, M4"), ("Power", "70 - laps * 2")],
+    );
+    let near = [("Port", "D1"), ("Distance", "far"), ("Sign", "less")];
+    let near = sketch.block("TrikWaitForSonarDistance", &near);
+    let lap = sketch.block("Function", &[("Body", "laps = laps + 1")]);
+    let when = sketch.block("IfBlock", &[("Condition", "laps > 1 && sensorA1 < 50")]);
+    let say = sketch.block("TrikSay", &[("Text", "two \"laps\"")]);
+    let rest = sketch.block("Timer", &[("Delay", "500")]);
+    let stop = sketch.block("TrikV6EnginesStop", &[("Ports", "M3, M4")]);
+    let end = sketch.block("FinalNode", &[]);
+    sketch.chain(&[start, count, repeat, stop, end]);
+    sketch.guarded(repeat, go, "iteration");
+    sketch.chain(&[go, near, lap, when]);
+    sketch.guarded(when, say, "true");
+    sketch.guarded(when, rest, "false");
+    sketch.link(say, rest);
+    sketch.link(rest, repeat);
+    sketch.project()
+}
+
+#[test]
+fn a_program_is_the_same_text_in_every_language() {
+    let project = with_all_shapes();
+    for language in Language::ALL {
+        insta::assert_snapshot!(format!("{language:?}"), written(&project, language));
+    }
+}
+
 #[test]
 fn plain_operators_stand_where_they_do_the_same_and_helpers_elsewhere() {
     let text = written(
@@ -219,4 +255,49 @@ fn languages_are_known_by_their_names() {
     }
     assert_eq!(Language::named("FSharp"), Some(Language::FSharp));
     assert_eq!(Language::named("cobol"), None);
+}
+
+#[test]
+fn a_name_in_a_text_or_a_comment_brings_no_helper() {
+    let project = chain(&[
+        (
+            "Function",
+            &[("Body", "print('the gyroscope \" is sensor')")],
+        ),
+        ("TrikCalibrateGyroscope", &[]),
+    ]);
+    for language in [Language::C, Language::Lua] {
+        let text = written(&project, language);
+        assert!(!text.contains("gyroscope("), "{text}");
+        assert!(!text.contains("sensor("), "{text}");
+    }
+}
+
+#[test]
+fn a_timer_that_another_one_leads_to_counts_the_step_in_which_it_begins() {
+    let timer = |delay: &'static str| [("Delay", delay)];
+    let (long, other, short) = (timer("500"), timer("300"), timer("10"));
+    let sensor = [("Port", "D1"), ("Distance", "20"), ("Sign", "less")];
+    let project = chain(&[
+        ("Timer", &long),
+        ("TrikLed", &[]),
+        ("Timer", &other),
+        ("TrikWaitForSonarDistance", &sensor),
+        ("Timer", &long),
+        ("Timer", &short),
+    ]);
+    let text = written(&project, Language::JavaScript);
+    let waits: Vec<&str> = text
+        .lines()
+        .map(str::trim)
+        .filter(|line| line.contains("script.wait(") || line.contains("Timer 10"))
+        .collect();
+    let wanted = [
+        "script.wait(500);",
+        "script.wait(300 - 10);",
+        "script.wait(20);",
+        "script.wait(500);",
+        "// Timer 10: over in the step in which it begins",
+    ];
+    assert_eq!(waits, wanted);
 }

@@ -45,20 +45,27 @@ fn sources(program: &Program, node: Node) -> Vec<Source> {
         | Op::Timer { source, .. } => vec![source],
         Op::Switch { switch } => vec![program.switches[switch as usize].source],
         Op::Send { message, .. } => vec![program.messages[message as usize].source],
-        Op::Random { assignment, .. } | Op::Copy { assignment, .. } => {
-            match program.assignments[assignment as usize].bounds {
-                Some((low, high)) if low == high => vec![low],
-                Some((low, high)) => vec![low, high],
-                None => Vec::new(),
-            }
-        }
+        Op::Random { assignment, .. } => match program.assignments[assignment as usize].bounds {
+            Some((low, high)) => vec![low, high],
+            None => Vec::new(),
+        },
+        Op::Copy { copy, .. } => vec![program.copies[copy as usize].source],
         Op::Call { call, .. } => {
             let arguments = program.calls[call as usize].arguments.iter();
             arguments.map(|argument| argument.source).collect()
         }
         Op::Act { action, .. } => program.actions[action as usize].sources.to_vec(),
-        Op::Watch { watch, .. } => Vec::from_iter(program.watches[watch as usize].source),
-        _ => Vec::new(),
+        Op::Watch { watch, .. } => Vec::from_iter(program.watches[watch as usize].source()),
+        Op::Pass { .. }
+        | Op::End
+        | Op::Fault { .. }
+        | Op::Fork { .. }
+        | Op::Join { .. }
+        | Op::Kill { .. }
+        | Op::Receive { .. }
+        | Op::Ask { .. }
+        | Op::AnyButton { .. }
+        | Op::Mail { .. } => Vec::new(),
     }
 }
 
@@ -68,7 +75,23 @@ fn variable(program: &Program, node: Node) -> Option<(&str, Kind)> {
         Op::Random { assignment, .. } | Op::AnyButton { assignment, .. } => (assignment, Kind::Int),
         Op::Mail { assignment, .. } => (assignment, Kind::Text),
         Op::Receive { assignment, .. } => (assignment, Kind::Any),
-        _ => return None,
+        Op::Pass { .. }
+        | Op::End
+        | Op::Fault { .. }
+        | Op::Run { .. }
+        | Op::If { .. }
+        | Op::Loop { .. }
+        | Op::Switch { .. }
+        | Op::Fork { .. }
+        | Op::Join { .. }
+        | Op::Kill { .. }
+        | Op::Send { .. }
+        | Op::Call { .. }
+        | Op::Timer { .. }
+        | Op::Ask { .. }
+        | Op::Copy { .. }
+        | Op::Act { .. }
+        | Op::Watch { .. } => return None,
     };
     Some((&program.assignments[assignment as usize].variable, kind))
 }

@@ -1,6 +1,6 @@
 //! What is said when a diagram cannot be written in a language, in English and Russian.
 
-use super::code::What;
+use super::code::{Operation, Robot, Truth, Turn};
 use lang_text::problem::Words;
 
 pub(super) fn too_many_blocks(count: usize) -> Words {
@@ -152,8 +152,8 @@ pub(super) fn no_such_kind(name: &str, language: &str) -> Words {
 }
 
 /// Something that a language cannot say at all.
-pub(super) fn cannot(what: What, language: &str) -> Words {
-    let (english, russian) = thing(what);
+pub(super) fn cannot(operation: Operation, language: &str) -> Words {
+    let (english, russian) = thing(operation);
     Words::new(
         format!("Programs in {language} cannot do what {english} does. Choose another language."),
         format!(
@@ -163,8 +163,8 @@ pub(super) fn cannot(what: What, language: &str) -> Words {
 }
 
 /// Something that a program does without.
-pub(super) fn left_out(what: What, language: &str) -> Words {
-    let (english, russian) = thing(what);
+pub(super) fn left_out(operation: Operation, language: &str) -> Words {
+    let (english, russian) = thing(operation);
     Words::new(
         format!("{english} is left out: programs in {language} cannot do it."),
         format!("{russian} пропущен: программы на {language} этого не умеют."),
@@ -172,36 +172,39 @@ pub(super) fn left_out(what: What, language: &str) -> Words {
 }
 
 /// What a person knows it as: mostly the name of a block.
-fn thing(what: What) -> (String, String) {
+fn thing(operation: Operation) -> (String, String) {
     let block = |english: &str, russian: &str| {
         (
             format!("the block {english}"),
             format!("блок \"{russian}\""),
         )
     };
-    match what {
-        What::Command(command) => block(command.english, command.russian),
-        What::Mail => block("Wait for Message", "Получить сообщение"),
-        What::SendThread => block("Send Message To Thread", "Послать сообщение потоку"),
-        What::ReceiveThread | What::ReceiveThreadNow => block(
-            "Receive Message From Thread",
-            "Получить сообщение от потока",
+    match operation {
+        Operation::Command(command) => block(command.english, command.russian),
+        Operation::Read(reading) => (reading.english.into(), reading.russian.into()),
+        Operation::Robot(Robot::Redraw) => ("drawing".into(), "вывод на экран".into()),
+        Operation::Turn(turn) => match turn {
+            Turn::Mail => block("Wait for Message", "Получить сообщение"),
+            Turn::Send => block("Send Message To Thread", "Послать сообщение потоку"),
+            Turn::Receive | Turn::ReceiveNow => block(
+                "Receive Message From Thread",
+                "Получить сообщение от потока",
+            ),
+            Turn::Start | Turn::Join | Turn::Kill => ("threads".into(), "потоки".into()),
+            Turn::AnyButton => block("Get Button Code", "Код кнопки"),
+            Turn::Wait => block("Timer", "Таймер"),
+        },
+        Operation::Truth(Truth::EqualAny | Truth::NotEqualAny) => (
+            "a comparison of values of any kind".into(),
+            "сравнение значений любого типа".into(),
         ),
-        What::Redraw => ("drawing".into(), "вывод на экран".into()),
-        What::StartThread | What::JoinThread | What::KillThread => {
-            ("threads".into(), "потоки".into())
-        }
-        What::Lidar => ("the lidar".into(), "лидар".into()),
-        What::ObjectSensor | What::ColorSensor | What::LineSensor => {
-            ("a sensor of the camera".into(), "датчик камеры".into())
-        }
-        What::PadButton
-        | What::PadX
-        | What::PadY
-        | What::PadPressed
-        | What::Wheel
-        | What::GamepadConnected => ("the gamepad".into(), "пульт".into()),
-        other => (format!("{other:?}"), format!("{other:?}")),
+        // All languages have words for these.
+        Operation::Number(_)
+        | Operation::Truth(_)
+        | Operation::Conversion(_)
+        | Operation::Function(_)
+        | Operation::Element(_)
+        | Operation::Robot(_) => (format!("{operation:?}"), format!("{operation:?}")),
     }
 }
 

@@ -3,10 +3,11 @@
 //! Owns defaults and the reading of plain values. Knows no links.
 
 use super::{
-    Act, Action, Assignment, At, Axis, Copied, Lowering, Port, Sign, Source, Text, Watching, Way,
-    words,
+    Act, Action, Assignment, At, Copying, Direction, Lowering, Port, Sign, Source, Text, Wait,
+    WatchedFor, Watching, words,
 };
-use crate::blocks::{Content, EVALUATE, REDRAW, Type, Watch};
+use crate::blocks::wait::Until;
+use crate::blocks::{Content, Copied, EVALUATE, REDRAW, Type};
 
 /// The text of a property, or its default.
 pub(super) fn text<'a>(at: At<'a>, name: &str) -> &'a str {
@@ -68,19 +69,14 @@ impl<'a> Lowering<'a> {
         self.source(text(at, name), wanted, shown)
     }
 
-    /// The statement that a block makes of a variable and a value.
-    pub(super) fn spliced(&mut self, at: At<'a>) -> Source {
-        let statement = format!("{} = {}", text(at, "variable"), text(at, "value"));
+    /// The statement that a block makes of its variable and a value.
+    pub(super) fn spliced(&mut self, at: At<'a>, value: &str) -> Source {
+        let statement = format!("{} = {value}", variable(at));
         self.source(statement, Type::Statements, "")
     }
 
     /// The variable of a block and what belongs to it.
     pub(super) fn assignment(&mut self, at: At<'a>) -> u32 {
-        let variable = if at.row.property("Variable").is_some() {
-            "Variable"
-        } else {
-            "variable"
-        };
         let bounds = at.row.property("LowerBound").is_some();
         let bounds = bounds.then(|| {
             let low = self.expression(at, "LowerBound");
@@ -91,7 +87,7 @@ impl<'a> Lowering<'a> {
             None => flag(at, "Synchronized"),
         };
         self.assignments.push(Assignment {
-            variable: text(at, variable).into(),
+            variable: variable(at).into(),
             wait,
             bounds,
             default: text(at, "default").into(),
@@ -100,17 +96,11 @@ impl<'a> Lowering<'a> {
         self.assignments.len() as u32 - 1
     }
 
-    /// The statement that copies a sensor's variable, in the place of the bounds.
-    pub(super) fn copied(&mut self, at: At<'a>, copied: Copied) -> u32 {
-        let index = self.assignment(at);
-        let sensor = match copied {
-            Copied::Line => "lineSensor[0]",
-            Copied::Lidar => "lidar",
-        };
-        let variable = self.assignments[index as usize].variable.clone();
-        let source = self.source(format!("{variable} = {sensor}"), Type::Statements, "");
-        self.assignments[index as usize].bounds = Some((source, source));
-        index
+    /// What is copied into the variable of a block.
+    pub(super) fn copied(&mut self, at: At<'a>, copied: &'static Copied) -> u32 {
+        let source = self.spliced(at, copied.value);
+        self.copies.push(Copying { copied, source });
+        self.copies.len() as u32 - 1
     }
 
     /// A command with everything that the row says it has.
@@ -159,7 +149,7 @@ impl<'a> Lowering<'a> {
     fn ports(&mut self, list: &str, shown: &'static str) -> Box<[Port]> {
         let mut ports = Vec::new();
         for name in list.split(',').filter(|name| !name.is_empty()) {
-            match Port::find(self.kit, name, Way::In) {
+            match Port::find(self.kit, name, Direction::In) {
                 // The original repeats as well, but nobody sees a difference.
                 Some(port) if ports.contains(&port) => {}
                 Some(port) => ports.push(port),
@@ -170,69 +160,47 @@ impl<'a> Lowering<'a> {
     }
 
     /// What is waited for.
-    pub(super) fn watch(&mut self, at: At<'a>, watch: Watch) -> u32 {
-        let value = match watch {
-            Watch::Sensor(name)
-            | Watch::Encoder(name)
-            | Watch::Gyroscope(name)
-            | Watch::Acceleration(name)
-            | Watch::Wheel(name) => Some(self.expression(at, name)),
-            Watch::Touch
-            | Watch::Motion
-            | Watch::Button
-            | Watch::PadButton
-            | Watch::Pad
-            | Watch::Connected
-            | Watch::Disconnected => None,
+    pub(super) fn watch(&mut self, at: At<'a>, wait: &'static Wait) -> u32 {
+        let until = match wait.until {
+            Until::Compared(property) => {
+                WatchedFor::Compared(sign(text(at, "Sign")), self.expression(at, property))
+            }
+            Until::Positive => WatchedFor::Positive,
+            Until::Zero => WatchedFor::Zero,
         };
-        let port = match watch {
-            Watch::Button => text(at, "Button"),
-            Watch::Gyroscope(_) => "GyroscopePort",
-            Watch::Acceleration(_) => "AccelerometerPort",
-            Watch::Motion => "F1",
-            Watch::Wheel(_) => "GamepadWheelPort",
-            Watch::Connected | Watch::Disconnected => "GamepadConnectionIndicatorPort",
-            Watch::PadButton => match number(at, "Button") {
-                1 => "GamepadButton1Port",
-                2 => "GamepadButton2Port",
-                3 => "GamepadButton3Port",
-                4 => "GamepadButton4Port",
-                5 => "GamepadButton5Port",
-                _ => "GamepadButtonPort",
-            },
-            Watch::Pad => match number(at, "Pad") {
-                1 => "GamepadPad1PressedPort",
-                2 => "GamepadPad2PressedPort",
-                _ => "GamepadPadPressedPort",
-            },
-            Watch::Sensor(_) | Watch::Encoder(_) | Watch::Touch => text(at, "Port"),
-        };
-        let found = Port::find(self.kit, unquoted(port), Way::In);
+        let port = wait.port.name(
+            |property| text(at, property),
+            |property| number(at, property),
+        );
+        let found = Port::find(self.kit, unquoted(port), Direction::In);
         if found.is_none() {
             self.warn(words::unknown_port(port), None);
         }
-        let sign = match text(at, "Sign") {
-            "greater" => Sign::Greater,
-            "less" => Sign::Less,
-            "notLess" => Sign::NotLess,
-            "notGreater" => Sign::NotGreater,
-            "equals" => Sign::Equals,
-            _ => Sign::Unknown,
-        };
-        let axis = match text(at, "AccelerationAxis") {
-            "yAxis" => Axis::Y,
-            "zAxis" => Axis::Z,
-            "normal" => Axis::Length,
-            _ => Axis::X,
-        };
         self.watches.push(Watching {
-            watch,
+            wait,
             port: found.ok_or_else(|| port.into()),
-            source: value,
-            sign,
-            axis,
+            measure: wait.reading.measure(|property| text(at, property)),
+            until,
         });
         self.watches.len() as u32 - 1
+    }
+}
+
+/// The name of the variable that a block assigns to.
+fn variable<'a>(at: At<'a>) -> &'a str {
+    let mut properties = at.row.properties.iter();
+    let property = properties.find(|property| property.content == Content::Variable);
+    property.map_or("", |property| text(at, property.name))
+}
+
+fn sign(word: &str) -> Sign {
+    match word {
+        "greater" => Sign::Greater,
+        "less" => Sign::Less,
+        "notLess" => Sign::NotLess,
+        "notGreater" => Sign::NotGreater,
+        "equals" => Sign::Equals,
+        _ => Sign::Unknown,
     }
 }
 

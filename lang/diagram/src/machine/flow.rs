@@ -1,6 +1,6 @@
 //! The flow from block to block: who runs, what each operation does, where it leads.
 //!
-//! Owns the order in which threads run: one until it waits, and whoever it wakes or begins before it. Device commands are
+//! Owns the order in which threads run: one until it waits, and the threads that it wakes or begins before it. Device commands are
 //! in `perform`, waits in `waits`.
 
 use std::rc::Rc;
@@ -11,7 +11,8 @@ use super::threads::{Handle, State};
 use super::{Deferred, Env, Machine, TURN_MS, words};
 use crate::blocks::Type;
 use crate::limits;
-use crate::program::{Node, Op, Program};
+use crate::ports::Port;
+use crate::program::{Copying, Node, Op, Program};
 use lang_expr::Compat;
 
 /// How many blocks a thread enters before others get a turn.
@@ -28,7 +29,7 @@ pub(super) enum Flow {
 }
 
 impl Machine {
-    /// Lets whoever is on top run until nobody is left, or the beginning is kept for a while.
+    /// Lets the thread on top run until none is left, or the beginning is kept for a while.
     pub(super) fn drive(&mut self, env: &mut Env<'_>) {
         while let Some(&handle) = self.active.last() {
             let state = match self.threads.get_mut(handle) {
@@ -78,7 +79,7 @@ impl Machine {
     }
 
     fn tell_nowhere(&mut self, words: lang_text::problem::Words, env: &mut Env<'_>) {
-        self.tell(lang_text::problem::Problem::error(words), env);
+        self.report(lang_text::problem::Problem::error(words), env);
     }
 
     /// Runs blocks of a thread until it leaves.
@@ -211,7 +212,7 @@ impl Machine {
             Op::End => self.end_diagram(program, handle, env),
             Op::Fault { fault } => {
                 if let Some(problem) = program.faults.get(fault as usize) {
-                    self.tell(problem.clone(), env);
+                    self.report(problem.clone(), env);
                 }
                 Flow::Failed
             }
@@ -281,8 +282,7 @@ impl Machine {
                 let Some(value) = self.evaluate(node, source, Type::Whole, env) else {
                     return Flow::Failed;
                 };
-                self.set_clock(node, Purpose::Timer, value.to_int());
-                self.wait(handle, node)
+                self.wait_for(handle, node, Purpose::Timer, value.to_int())
             }
             Op::Random { assignment, next } => {
                 let assignment = &program.assignments[assignment as usize];
@@ -300,9 +300,10 @@ impl Machine {
                 let statement = format!("{} = {number}", assignment.variable);
                 self.splice(handle, node, &statement, next, env)
             }
-            Op::Copy {
-                assignment, next, ..
-            } => self.copy(program, handle, (node, next), assignment as usize, env),
+            Op::Copy { copy, next } => {
+                let copying = &program.copies[copy as usize];
+                self.copy(handle, (node, next), copying, env)
+            }
             Op::Act { action, next } => {
                 match self.perform(node, &program.actions[action as usize], env) {
                     None => Flow::Failed,
@@ -318,6 +319,13 @@ impl Machine {
                 let statement = super::waits::mail(program, assignment, &message);
                 self.splice(handle, node, &statement, next, env)
             }
+            Op::Mail { .. } => self.wait_for(handle, node, Purpose::Mail, 100),
+            Op::AnyButton { .. } => self.wait_for(handle, node, Purpose::AnyButton, 20),
+            Op::Ask { .. } => self.wait_for(handle, node, Purpose::Ask, 1),
+            Op::Watch { watch, .. } => {
+                self.watch(handle, node, &program.watches[watch as usize], env)
+            }
+            // They are done above.
             Op::Pass { .. }
             | Op::End
             | Op::Fault { .. }
@@ -330,17 +338,7 @@ impl Machine {
             | Op::Kill { .. }
             | Op::Send { .. }
             | Op::Receive { .. }
-            | Op::Call { .. }
-            | Op::Ask { .. }
-            | Op::AnyButton { .. }
-            | Op::Mail { .. }
-            | Op::Watch { .. } => {
-                self.threads.wait(handle, node);
-                match self.start_waiting(program, node, op, env) {
-                    true => Flow::Leave,
-                    false => Flow::Failed,
-                }
-            }
+            | Op::Call { .. } => self.wait(handle, node),
         }
     }
 
@@ -374,19 +372,17 @@ impl Machine {
 
     fn copy(
         &mut self,
-        program: &Program,
         handle: Handle,
         (node, next): (Node, Node),
-        assignment: usize,
+        copying: &Copying,
         env: &mut Env<'_>,
     ) -> Flow {
-        if self.lacks_copied(program, node, env) {
-            self.error_at(node, words::no_lidar(), env);
+        if let Some(needed) = copying.copied.device
+            && !Port::named(needed.port).is_some_and(|port| self.answers(port, env))
+        {
+            self.error_at(node, (needed.absent)(), env);
             return Flow::Failed;
         }
-        match program.assignments[assignment].bounds {
-            Some((source, _)) => self.run(handle, node, (source, next), env),
-            None => Flow::Next(next),
-        }
+        self.run(handle, node, (copying.source, next), env)
     }
 }

@@ -21,11 +21,20 @@ pub(super) struct Formulas {
 impl Formulas {
     pub fn new(program: &Program, compat: Compat) -> Self {
         let sources = program.sources.iter();
+        let mut names = Names::new(program.kit, compat);
+        if !program.has_gamepad {
+            // The original's simulator has no gamepad, and its names are those of any variable.
+            for sensor in SENSORS {
+                if sensor.name.starts_with("gamepad") {
+                    names.forget_sensor(sensor.name);
+                }
+            }
+        }
         Self {
             sources: sources
                 .map(|text| Source::new(&text.text, wanted(text.wanted)))
                 .collect(),
-            names: Names::new(program.kit, compat),
+            names,
             store: Store::default(),
             scratch: Vec::new(),
         }
@@ -114,7 +123,7 @@ impl Formulas {
     /// Sets a value or takes it away.
     pub fn put(&mut self, slot: Slot, value: Option<Value>) {
         match value {
-            // One value in the place of another one that was there before: the limit was kept then.
+            // One value instead of another one that was there before: the limit was kept then.
             Some(value) => drop(self.store.set(slot, value)),
             None => drop(self.store.remove(slot)),
         }

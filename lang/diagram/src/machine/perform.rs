@@ -7,7 +7,7 @@ use super::{Env, Machine};
 use crate::blocks::Type;
 use crate::blocks::act::{Effect, Operands, WHOLES_MAX};
 use crate::brick::Command;
-use crate::ports::{Port, Sort, Way};
+use crate::ports::{Direction, Port, Sort};
 use crate::program::{Action, Node, Source};
 use lang_expr::Value;
 use lang_text::problem::Problem;
@@ -78,7 +78,7 @@ impl Machine {
             problem.place = self.program.place(node);
             problem.place.property = Some(property.to_owned());
             problem.place.position = position;
-            self.tell(problem, env);
+            self.report(problem, env);
         }
     }
 
@@ -115,7 +115,8 @@ impl Machine {
             Effect::ResetEncoders => {
                 for &port in &action.ports {
                     if port.sort() == Sort::Encoder {
-                        env.brick.tell(Command::ResetEncoder { port });
+                        env.brick.command(Command::ResetEncoder { port });
+                        self.sensors.put(port, &[0]);
                     }
                 }
                 return Some(true);
@@ -123,7 +124,7 @@ impl Machine {
             Effect::Command(command) => {
                 self.one(node, action, command, env)?;
                 if action.redraws {
-                    env.brick.tell(Command::Redraw);
+                    env.brick.command(Command::Redraw);
                 }
             }
         }
@@ -140,15 +141,15 @@ impl Machine {
     ) -> Option<()> {
         if !action.ports.is_empty() {
             for &port in &action.ports {
-                env.brick.tell(command(port));
+                env.brick.command(command(port));
             }
             return Some(());
         }
         let list = self.evaluate(node, *action.sources.first()?, Type::List, env)?;
         for name in list.to_texts() {
             // What is no port is left out, as in the original.
-            if let Some(port) = Port::find(self.program.kit, &name, Way::Out) {
-                env.brick.tell(command(port));
+            if let Some(port) = Port::find(self.program.kit, &name, Direction::Out) {
+                env.brick.command(command(port));
             }
         }
         Some(())
@@ -185,7 +186,7 @@ impl Machine {
             }
         };
         let written = action.texts.first().map_or("", |text| &**text);
-        env.brick.tell(command(Operands {
+        env.brick.command(command(Operands {
             wholes,
             count,
             written,

@@ -29,7 +29,7 @@ impl Sensors {
         }
         Self {
             used,
-            values: vec![Value::Nil; SENSORS.len()],
+            values: (0..SENSORS.len()).map(nothing).collect(),
             ..Self::default()
         }
     }
@@ -44,33 +44,62 @@ impl Sensors {
         is_due
     }
 
-    /// Reads all that are named.
+    /// Reads all that are named, but for those that somebody has locked.
     pub fn refresh(&mut self, brick: &mut dyn Brick) {
         for index in 0..self.used.len() {
-            if self.used[index] {
+            if self.used[index] && !is_locked(index, brick) {
                 self.read(index, brick);
             }
         }
+    }
+
+    /// A sensor was read for somebody else, or was given a reading: its variable shows it at once.
+    pub fn put(&mut self, port: Port, numbers: &[i32]) {
+        let name = port.variable();
+        let index = name.and_then(|name| SENSORS.iter().position(|sensor| sensor.name == name));
+        let Some(index) = index.filter(|&index| self.used[index]) else {
+            return;
+        };
+        self.values[index] = match (SENSORS[index].shape, numbers) {
+            (Shape::Number, [number, ..]) => Value::Int(*number),
+            (Shape::Numbers(_), _) => Value::ints(numbers),
+            (Shape::Number, []) => return,
+        };
     }
 
     fn read(&mut self, index: usize, brick: &mut dyn Brick) {
         let sensor = &SENSORS[index];
         let port = Port::shown_by(sensor.name);
         let value = match sensor.shape {
-            // Without a device it is 0, or empty, as in the original.
-            Shape::Number => Value::Int(port.and_then(|port| brick.scalar(port)).unwrap_or(0)),
+            Shape::Number => match port.and_then(|port| brick.scalar(port)) {
+                Some(reading) => Value::Int(reading),
+                None => nothing(index),
+            },
             Shape::Numbers(_) => {
                 self.scratch.clear();
-                if let Some(port) = port
-                    && !brick.vector(port, &mut self.scratch)
-                {
-                    self.scratch.clear();
+                match port.is_some_and(|port| brick.vector(port, &mut self.scratch)) {
+                    true => Value::ints(&self.scratch),
+                    false => nothing(index),
                 }
-                Value::ints(&self.scratch)
             }
         };
         self.values[index] = value;
     }
+}
+
+/// What a variable is without a device, as in the original: 0, of several numbers the first one alone, and an empty text
+/// where the camera looks for an object.
+fn nothing(index: usize) -> Value {
+    match SENSORS[index].shape {
+        Shape::Number if SENSORS[index].name.starts_with("objectSensor") => Value::text(""),
+        Shape::Number => Value::Int(0),
+        Shape::Numbers(_) => Value::ints(&[0]),
+    }
+}
+
+fn is_locked(index: usize, brick: &mut dyn Brick) -> bool {
+    let port = Port::shown_by(SENSORS[index].name);
+    port.is_some_and(|port| brick.locked(port).is_some())
 }
 
 /// The robot as expressions see it.
@@ -97,11 +126,12 @@ impl Outside for Robot<'_> {
     }
 
     fn print(&mut self, text: &str) {
-        self.brick.tell(Command::Console { text });
+        self.brick.command(Command::Console { text });
     }
 
     fn random(&mut self, below: i32) -> i32 {
-        self.brick.random(0, below.saturating_sub(1).max(0))
+        self.brick
+            .random_of_function(0, below.saturating_sub(1).max(0))
     }
 }
 

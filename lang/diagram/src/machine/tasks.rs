@@ -1,6 +1,6 @@
 //! Threads and subprograms: fork and join, messages, calls and returns.
 //!
-//! Owns what these operations do to threads and variables; `flow` runs whoever they wake or begin.
+//! Owns what these operations do to threads and variables; `flow` runs the threads that they wake or begin.
 
 use super::flow::Flow;
 use super::threads::{Frame, Handle, State};
@@ -87,7 +87,7 @@ impl Machine {
             let mut problem = lang_text::problem::Problem::error(words::no_entry());
             problem.place.diagram = sheet.map(|sheet| sheet.name.to_string());
             problem.place.object = sheet.map(|sheet| sheet.id.to_string());
-            self.tell(problem, env);
+            self.report(problem, env);
             return Flow::Failed;
         };
         let Some(thread) = self.threads.get_mut(handle) else {

@@ -3,6 +3,7 @@
 mod control;
 mod devices;
 mod hostile;
+mod rows;
 mod threads;
 
 use std::rc::Rc;
@@ -159,8 +160,8 @@ fn everything_is_told_in_order() {
     };
     assert_eq!(machine.status(), ended);
     let error = &machine.errors()[0];
-    assert_eq!(error.place.property.as_deref(), Some("Body"));
-    assert!(error.to_string().contains("'Body', 1:"), "{error}");
+    assert_eq!(error.place.property.as_deref(), Some("Expression"));
+    assert!(error.to_string().contains("'Expression', 1:"), "{error}");
     assert_eq!(machine.step(200, &mut robot, &mut recorder), ended);
 }
 

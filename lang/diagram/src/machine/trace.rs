@@ -1,6 +1,6 @@
 //! What a running program tells of itself: for a debugger, a client, a test.
 //!
-//! Owns the trait. Everything is borrowed and nothing is kept: whoever wants to keep it does so.
+//! Owns the trait. Everything is borrowed and nothing is kept: a caller that wants to keep it does so.
 
 use crate::program::Node;
 use lang_expr::Value;

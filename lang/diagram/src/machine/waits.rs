@@ -4,13 +4,15 @@
 //! 100 ms; a sensor that is read for its variable answers the blocks that wait for it as well.
 
 use super::clocks::Purpose;
+use super::flow::Flow;
+use super::threads::Handle;
 use super::{Env, Machine, words};
-use crate::blocks::{Copied, Type, Watch};
+use crate::blocks::Type;
+use crate::blocks::wait::Every;
 use crate::brick::{Answer, Question};
 use crate::ports::{Port, Sort};
-use crate::program::{Axis, NOWHERE, Node, Op, Program, Watching};
+use crate::program::{NOWHERE, Node, Op, Program, WatchedFor, Watching};
 use lang_expr;
-use lang_text::problem::Words;
 
 /// What a look at a device gave.
 enum Look {
@@ -38,78 +40,52 @@ pub(super) fn mail(program: &Program, assignment: u32, message: &str) -> String 
 }
 
 impl Machine {
-    /// A thread has come to a block that waits; false after an error that was told.
-    pub(super) fn start_waiting(
+    /// A thread that has come to a block waits there until something answers, which is asked for every so many
+    /// milliseconds.
+    pub(super) fn wait_for(
         &mut self,
-        program: &Program,
+        handle: Handle,
         node: Node,
-        op: &Op,
+        purpose: Purpose,
+        every_ms: i32,
+    ) -> Flow {
+        self.set_clock(node, purpose, every_ms);
+        self.wait(handle, node)
+    }
+
+    /// A thread has come to a block that waits for a device.
+    pub(super) fn watch(
+        &mut self,
+        handle: Handle,
+        node: Node,
+        watching: &Watching,
         env: &mut Env<'_>,
-    ) -> bool {
-        match *op {
-            Op::Watch { watch, .. } => {
-                let watching = &program.watches[watch as usize];
-                let interval = match watching.watch {
-                    Watch::Encoder(_) => 1,
-                    Watch::PadButton => 200,
-                    Watch::Sensor(_)
-                    | Watch::Gyroscope(_)
-                    | Watch::Acceleration(_)
-                    | Watch::Touch
-                    | Watch::Motion
-                    | Watch::Button
-                    | Watch::Pad
-                    | Watch::Wheel(_)
-                    | Watch::Connected
-                    | Watch::Disconnected => 20,
+    ) -> Flow {
+        let every_ms = match watching.wait.every {
+            // A clock rings at most once in a step.
+            Every::Step => 1,
+            Every::Ms(ms) => ms,
+        };
+        let flow = self.wait_for(handle, node, Purpose::Watch, every_ms);
+        match self.look(node, watching, env) {
+            Look::Waits => flow,
+            Look::Holds => {
+                self.satisfy(node);
+                flow
+            }
+            Look::Failed => {
+                self.drop_clock(node);
+                Flow::Failed
+            }
+            Look::Absent => {
+                self.drop_clock(node);
+                let port = match &watching.port {
+                    Ok(port) => port.name(),
+                    Err(name) => name,
                 };
-                self.set_clock(node, Purpose::Watch, interval);
-                match self.look(node, watching, env) {
-                    Look::Waits => true,
-                    Look::Holds => {
-                        self.satisfy(node);
-                        true
-                    }
-                    Look::Failed => {
-                        self.drop_clock(node);
-                        false
-                    }
-                    Look::Absent => {
-                        self.drop_clock(node);
-                        self.error_at(node, absent(watching), env);
-                        false
-                    }
-                }
+                self.error_at(node, (watching.wait.absent)(port), env);
+                Flow::Failed
             }
-            Op::AnyButton { .. } => {
-                self.set_clock(node, Purpose::AnyButton, 20);
-                true
-            }
-            Op::Mail { .. } => {
-                self.set_clock(node, Purpose::Mail, 100);
-                true
-            }
-            Op::Ask { .. } => {
-                self.set_clock(node, Purpose::Ask, 1);
-                true
-            }
-            Op::Pass { .. }
-            | Op::End
-            | Op::Fault { .. }
-            | Op::Run { .. }
-            | Op::If { .. }
-            | Op::Loop { .. }
-            | Op::Switch { .. }
-            | Op::Fork { .. }
-            | Op::Join { .. }
-            | Op::Kill { .. }
-            | Op::Send { .. }
-            | Op::Receive { .. }
-            | Op::Call { .. }
-            | Op::Timer { .. }
-            | Op::Random { .. }
-            | Op::Copy { .. }
-            | Op::Act { .. } => true,
         }
     }
 
@@ -141,7 +117,7 @@ impl Machine {
         }
     }
 
-    /// Sensor variables were refreshed: whoever waits for a sensor has an answer.
+    /// Sensor variables were refreshed: a thread that waits for a sensor has an answer.
     pub(super) fn answer_waits(&mut self, env: &mut Env<'_>) {
         let mut after = None;
         while let Some(node) = self.next_clock(after) {
@@ -155,12 +131,37 @@ impl Machine {
         }
     }
 
+    /// Readings that somebody else has given to sensors: variables show them, and blocks that wait for them have an answer.
+    pub(super) fn hear_announced(&mut self, env: &mut Env<'_>) {
+        while let Some((port, reading)) = env.brick.announced() {
+            self.sensors.put(port, &[reading]);
+            let program = self.program.clone();
+            let mut after = None;
+            while let Some(node) = self.next_clock(after) {
+                after = Some(node);
+                let Some(Op::Watch { watch, .. }) = program.ops.get(node as usize) else {
+                    continue;
+                };
+                let watching = &program.watches[*watch as usize];
+                if watching.port == Ok(port) {
+                    let look = self.compare(node, watching, reading, env);
+                    self.conclude(node, look, env);
+                }
+            }
+        }
+    }
+
     fn look_again(&mut self, node: Node, env: &mut Env<'_>) {
         let program = self.program.clone();
         let Some(Op::Watch { watch, .. }) = program.ops.get(node as usize) else {
             return;
         };
-        match self.look(node, &program.watches[*watch as usize], env) {
+        let look = self.look(node, &program.watches[*watch as usize], env);
+        self.conclude(node, look, env);
+    }
+
+    fn conclude(&mut self, node: Node, look: Look, env: &mut Env<'_>) {
+        match look {
             Look::Holds => self.satisfy(node),
             Look::Failed => {
                 self.drop_clock(node);
@@ -183,37 +184,42 @@ impl Machine {
         let Some(reading) = self.reading(port, watching, env) else {
             return Look::Absent;
         };
-        let holds = match (watching.watch, watching.source) {
-            (Watch::Disconnected, _) => reading == 0,
-            (_, None) => reading > 0,
-            (_, Some(source)) => match self.evaluate(node, source, Type::Whole, env) {
-                None => return Look::Failed,
-                Some(value) => watching.sign.holds(reading, value.to_int()),
-            },
+        self.compare(node, watching, reading, env)
+    }
+
+    fn compare(
+        &mut self,
+        node: Node,
+        watching: &Watching,
+        reading: i32,
+        env: &mut Env<'_>,
+    ) -> Look {
+        let holds = match watching.until {
+            WatchedFor::Positive => reading > 0,
+            WatchedFor::Zero => reading == 0,
+            WatchedFor::Compared(sign, source) => {
+                match self.evaluate(node, source, Type::Whole, env) {
+                    None => return Look::Failed,
+                    Some(value) => sign.holds(reading, value.to_int()),
+                }
+            }
         };
         if holds { Look::Holds } else { Look::Waits }
     }
 
     fn reading(&mut self, port: Port, watching: &Watching, env: &mut Env<'_>) -> Option<i32> {
+        // What is read for a block is shown by the variable too.
         if super::sensors::is_scalar(port) {
-            return env.brick.scalar(port);
+            let reading = env.brick.scalar(port)?;
+            self.sensors.put(port, &[reading]);
+            return Some(reading);
         }
         self.scratch.clear();
         if !env.brick.vector(port, &mut self.scratch) {
             return None;
         }
-        let number = |index: usize| self.scratch.get(index).copied().unwrap_or(0);
-        Some(match (watching.watch, watching.axis) {
-            // Millidegrees, the last of seven numbers.
-            (Watch::Gyroscope(_), _) => number(6) / 1000,
-            (Watch::Acceleration(_), Axis::Y) => number(1),
-            (Watch::Acceleration(_), Axis::Z) => number(2),
-            (Watch::Acceleration(_), Axis::Length) => {
-                let squares = (0..3).map(|axis| f64::from(number(axis)).powi(2));
-                squares.sum::<f64>().sqrt() as i32
-            }
-            _ => number(0),
-        })
+        self.sensors.put(port, &self.scratch);
+        Some(watching.measure.of(&self.scratch))
     }
 
     fn look_at_buttons(&mut self, node: Node, env: &mut Env<'_>) {
@@ -224,8 +230,13 @@ impl Machine {
         let Some(assignment) = program.assignments.get(*assignment as usize) else {
             return;
         };
+        let reading = |port| {
+            let kept = env.brick.locked(port);
+            kept.or_else(|| env.brick.scalar(port)).unwrap_or(0)
+        };
+        let mut reading = reading;
         let pressed = Port::all().find_map(|port| match port.sort() {
-            Sort::Button(code) if env.brick.scalar(port).unwrap_or(0) != 0 => Some(code),
+            Sort::Button(code) if reading(port) != 0 => Some(code),
             Sort::Motor
             | Sort::Servo
             | Sort::Encoder
@@ -245,7 +256,7 @@ impl Machine {
         }
     }
 
-    /// Runs a statement for whoever waits at a block; false after an error, with which they have ended.
+    /// Runs a statement for the thread that waits at a block; false after an error, with which it has ended.
     fn assign_for_waiting(&mut self, node: Node, statement: &str, env: &mut Env<'_>) -> bool {
         let waiting = self.threads.waiting_at(node);
         let slot = waiting.first().map_or(0, |handle| handle.slot);
@@ -294,44 +305,12 @@ impl Machine {
         }
     }
 
-    /// Whether a block copies a sensor that is not there.
-    pub(super) fn lacks_copied(
-        &mut self,
-        program: &Program,
-        node: Node,
-        env: &mut Env<'_>,
-    ) -> bool {
-        let Some(Op::Copy {
-            copied: Copied::Lidar,
-            ..
-        }) = program.ops.get(node as usize)
-        else {
-            return false;
-        };
+    /// Whether anything answers on a port.
+    pub(super) fn answers(&mut self, port: Port, env: &mut Env<'_>) -> bool {
+        if super::sensors::is_scalar(port) {
+            return env.brick.scalar(port).is_some();
+        }
         self.scratch.clear();
-        let port = Port::named("LidarPort");
-        !port.is_some_and(|port| env.brick.vector(port, &mut self.scratch))
-    }
-}
-
-/// What is said of a device that is not there.
-fn absent(watching: &Watching) -> Words {
-    let port = match &watching.port {
-        Ok(port) => port.name(),
-        Err(name) => name,
-    };
-    match watching.watch {
-        Watch::Button => words::no_button(port),
-        Watch::Encoder(_) => words::not_configured("Encoder", port),
-        Watch::Gyroscope(_) => words::not_configured("Gyroscope", port),
-        Watch::Acceleration(_) => words::not_configured("Accelerometer", port),
-        Watch::Touch => words::not_configured("Touch sensor", port),
-        Watch::Motion => words::not_configured("Motion sensor", port),
-        Watch::Sensor(_) => words::not_configured("Sensor", port),
-        Watch::PadButton
-        | Watch::Pad
-        | Watch::Wheel(_)
-        | Watch::Connected
-        | Watch::Disconnected => words::not_configured("Gamepad", port),
+        env.brick.vector(port, &mut self.scratch)
     }
 }

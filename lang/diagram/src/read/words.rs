@@ -50,7 +50,7 @@ pub(super) fn no_logical() -> Words {
 
 pub(super) fn not_graphical() -> Words {
     Words::new(
-        "the diagram lists a logical object in the place of a graphical one; it is left out",
+        "the diagram lists a logical object instead of a graphical one; it is left out",
         "в диаграмме на месте графического объекта логический; он пропущен",
     )
 }

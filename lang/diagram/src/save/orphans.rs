@@ -1,4 +1,4 @@
-//! Objects that are in a save but in no diagram: what editors of old left behind when a block was deleted.
+//! Objects that are in a save but in no diagram: what earlier editors left behind when a block was deleted.
 
 use super::{Save, is_link};
 use crate::objects::{self, Object, Objects, ROOT};

@@ -7,6 +7,7 @@ use std::fmt::Write as _;
 
 use super::words::Word;
 use super::{details, name};
+use crate::blocks::Row;
 use crate::generate::plan::{Function, Owner, plan};
 use crate::lower::{World, lower};
 use crate::program::{Node, Op, Program};
@@ -182,9 +183,7 @@ impl<'a> Writer<'a> {
         let Some(node) = self.node(block) else {
             return;
         };
-        use crate::blocks::Does;
-        let row = self.program.row(node);
-        if row.is_some_and(|row| matches!(row.does, Does::Start | Does::Merge | Does::Comment)) {
+        if self.program.row(node).is_some_and(Row::is_mark) {
             return;
         }
         if let Some(begun) = self.function.and_then(|function| function.begun.get(&node)) {

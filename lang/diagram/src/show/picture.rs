@@ -1,60 +1,82 @@
 //! A diagram as a picture: SVG that needs nothing else.
 //!
-//! Owns icons, colours and places. All texts of the project are escaped; numbers that are none or far away are left out.
+//! Owns colours and ways of links; where texts stand is in `labels`, and icons are in the rows of blocks. All texts of the
+//! project are escaped; numbers that are none or far away are left out.
 
-use std::fmt::Write as _;
-
-use super::{details, name};
-use crate::blocks::{self, Category, Does};
+use super::labels::{self, Area, HALF, Room};
+use super::{details, name, shortened};
+use crate::blocks::{self, Category};
 use crate::limits::{PICTURE_BLOCKS_MAX, PICTURE_CORNERS_MAX};
 use crate::project::{Block, Diagram, Link};
 use lang_text::problem::Locale;
+use lang_text::svg::{Svg, View};
 
-/// Half of the side of a block, in px.
-const HALF: f64 = 25.0;
 /// Around everything, in px.
-const MARGIN: f64 = 70.0;
+const MARGIN: f64 = 20.0;
+/// Beside how many parts of a link a place for its guard is looked for.
+const GUARD_PARTS: usize = 8;
 /// How far from the origin anything may be.
 const FAR: f64 = 200_000.0;
 
 /// The picture of a diagram. What is too much for one picture is left out, and said.
 pub fn picture(diagram: &Diagram, locale: Locale) -> String {
     let blocks: Vec<&Block> = diagram.blocks.iter().take(PICTURE_BLOCKS_MAX).collect();
-    let (mut low, mut high) = ((f64::MAX, f64::MAX), (f64::MIN, f64::MIN));
-    for block in &blocks {
-        let (x, y) = middle(block);
-        low = (low.0.min(x), low.1.min(y));
-        high = (high.0.max(x), high.1.max(y));
+    let middles: Vec<(f64, f64)> = blocks.iter().map(|block| middle(block)).collect();
+    let mut taken: Vec<Area> = Vec::new();
+    let mut all_labels = Vec::new();
+    for (at, block) in blocks.iter().enumerate() {
+        let label = Label::of(block, locale, labels::room(at, &middles));
+        taken.push(Area::around(middles[at], HALF, HALF));
+        taken.push(Area::under(middles[at], &label.lines));
+        all_labels.push(label);
     }
-    if blocks.is_empty() {
-        (low, high) = ((0.0, 0.0), (0.0, 0.0));
+    let links = diagram.links.iter().take(2 * PICTURE_BLOCKS_MAX);
+    let ways: Vec<(&Link, Vec<(f64, f64)>)> = links
+        .filter_map(|link| Some((link, way(link, diagram)?)))
+        .collect();
+    let guards = ways.iter().map(|(link, way)| guard(link, way, &mut taken));
+    let guards: Vec<Option<Guard>> = guards.collect();
+    let corners = ways.iter().flat_map(|(_, way)| way.iter());
+    let corners = corners.map(|&corner| Area::around(corner, 0.0, 0.0));
+    let all = taken.iter().copied().chain(corners).reduce(Area::with);
+    let all = all.unwrap_or(Area::around((0.0, 0.0), HALF, HALF));
+    let (x, y) = (all.low.0 - MARGIN, all.low.1 - MARGIN);
+    let mut svg = Svg::new();
+    let view = View {
+        frame: [x, y, all.high.0 + MARGIN - x, all.high.1 + MARGIN - y],
+        digits: 0,
+        is_sized: true,
+    };
+    svg.picture(view).open();
+    svg.tag("title").text(shortened(&diagram.name));
+    svg.raw(STYLE);
+    for (_, way) in &ways {
+        svg.tag("polyline")
+            .with("class", "l")
+            .points(way.iter().copied())
+            .with("marker-end", "url(#a)")
+            .close();
     }
-    let (x, y) = (low.0 - MARGIN, low.1 - MARGIN);
-    let (width, height) = (high.0 - low.0 + 2.0 * MARGIN, high.1 - low.1 + 2.0 * MARGIN);
-    let mut out = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"{x:.0} {y:.0} {width:.0} {height:.0}\" width=\"{width:.0}\" height=\"{height:.0}\">\n"
-    );
-    let _ = writeln!(out, "<title>{}</title>", escaped(&diagram.name));
-    out.push_str(STYLE);
-    for link in diagram.links.iter().take(2 * PICTURE_BLOCKS_MAX) {
-        draw_link(link, diagram, &mut out);
+    for (block, label) in blocks.iter().zip(&all_labels) {
+        draw_block(block, label, &mut svg);
     }
-    for block in &blocks {
-        draw_block(block, locale, &mut out);
+    for guard in guards.into_iter().flatten() {
+        let x = f64::midpoint(guard.place.low.0, guard.place.high.0);
+        svg.tag("text")
+            .with("class", "g")
+            .numbers(1, [("x", x), ("y", guard.place.high.1 - 2.0)])
+            .text(&guard.text);
     }
     let left = diagram.blocks.len() - blocks.len();
     if left > 0 {
-        let _ = writeln!(
-            out,
-            "<text x=\"{x:.0}\" y=\"{:.0}\">+ {left}</text>",
-            y + 20.0
-        );
+        svg.tag("text")
+            .numbers(0, [("x", x + MARGIN), ("y", y + MARGIN)])
+            .text(format_args!("+ {left}"));
     }
-    out.push_str("</svg>\n");
-    out
+    svg.finish()
 }
 
-const STYLE: &str = "<style>text{font:10px sans-serif;text-anchor:middle;fill:#222}.d{fill:#666}.g{font-weight:bold}\
+const STYLE: &str = "<style>text{font:10px sans-serif;text-anchor:middle;fill:#222;paint-order:stroke;stroke:#fff;stroke-width:3}.d{fill:#666}.g{font-weight:bold}\
 .l{fill:none;stroke:#555;stroke-width:1.5}.i{fill:none;stroke:#fff;stroke-width:3;stroke-linecap:round;stroke-linejoin:round}\
 .f{fill:#fff}</style>\n<defs><marker id=\"a\" viewBox=\"0 0 8 8\" refX=\"8\" refY=\"4\" markerWidth=\"7\" markerHeight=\"7\" \
 orient=\"auto\"><path d=\"M0 0L8 4L0 8z\" fill=\"#555\"/></marker></defs>\n";
@@ -73,11 +95,6 @@ fn middle(block: &Block) -> (f64, f64) {
     (sane(x) + HALF, sane(y) + HALF)
 }
 
-/// Text that stands between tags.
-fn escaped(text: &str) -> String {
-    lang_text::escape::escaped(&super::shortened(text))
-}
-
 /// Where the way from the middle of a block to another place leaves its box.
 fn edge(from: (f64, f64), to: (f64, f64)) -> (f64, f64) {
     let (x, y) = (to.0 - from.0, to.1 - from.1);
@@ -88,7 +105,8 @@ fn edge(from: (f64, f64), to: (f64, f64)) -> (f64, f64) {
     (from.0 + x * HALF / far, from.1 + y * HALF / far)
 }
 
-fn draw_link(link: &Link, diagram: &Diagram, out: &mut String) {
+/// The corners of a link from the edge of one block to the edge of another.
+fn way(link: &Link, diagram: &Diagram) -> Option<Vec<(f64, f64)>> {
     let at = |end: Option<usize>| end.and_then(|end| diagram.blocks.get(end)).map(middle);
     let corners = link.path.iter().take(PICTURE_CORNERS_MAX);
     let corners: Vec<(f64, f64)> = corners.map(|&(x, y)| (sane(x), sane(y))).collect();
@@ -97,38 +115,78 @@ fn draw_link(link: &Link, diagram: &Diagram, out: &mut String) {
         0..=2 => &[][..],
         count => &corners[1..count - 1],
     };
-    let from = at(link.from).or_else(|| corners.first().copied());
-    let to = at(link.to).or_else(|| corners.last().copied());
-    let (Some(from), Some(to)) = (from, to) else {
-        return;
-    };
+    let from = at(link.from).or_else(|| corners.first().copied())?;
+    let to = at(link.to).or_else(|| corners.last().copied())?;
     let first = inner.first().copied().unwrap_or(to);
     let last = inner.last().copied().unwrap_or(from);
     let mut all = vec![edge(from, first)];
     all.extend_from_slice(inner);
     all.push(edge(to, last));
-    let points: Vec<String> = all.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
-    let _ = writeln!(
-        out,
-        "<polyline class=\"l\" points=\"{}\" marker-end=\"url(#a)\"/>",
-        points.join(" ")
-    );
-    if !link.guard.is_empty() {
-        let half = all.len() / 2;
-        let (one, two) = (all[half - 1], all[half]);
-        let (x, y) = (
-            f64::midpoint(one.0, two.0),
-            f64::midpoint(one.1, two.1) - 4.0,
-        );
-        let guard = escaped(&link.guard);
-        let _ = writeln!(
-            out,
-            "<text class=\"g\" x=\"{x:.1}\" y=\"{y:.1}\">{guard}</text>"
-        );
+    Some(all)
+}
+
+/// The guard of a link.
+struct Guard {
+    text: String,
+    place: Area,
+}
+
+/// The guard of a link beside one of its parts, where nothing else is.
+fn guard(link: &Link, way: &[(f64, f64)], taken: &mut Vec<Area>) -> Option<Guard> {
+    let text = shortened(&link.guard);
+    if text.is_empty() {
+        return None;
+    }
+    let (half, high) = (labels::width(&text) / 2.0 + 2.0, labels::LINE / 2.0);
+    let mut places = Vec::new();
+    for part in [0.5, 0.3, 0.7, 0.15, 0.85] {
+        for ends in way.windows(2).take(GUARD_PARTS) {
+            let (one, two) = (ends[0], ends[1]);
+            let x = one.0 + (two.0 - one.0) * part;
+            let y = one.1 + (two.1 - one.1) * part;
+            let beside = [
+                (0.0, -high - 2.0),
+                (0.0, high + 2.0),
+                (half, 0.0),
+                (-half, 0.0),
+            ];
+            let around = |(right, down)| Area::around((x + right, y + down), half, high);
+            places.extend(beside.map(around));
+        }
+    }
+    let place = labels::free(&places, taken)?;
+    Some(Guard { text, place })
+}
+
+/// What stands under a block.
+struct Label {
+    /// The name, then properties.
+    lines: Vec<String>,
+    /// How many lines the name has.
+    named: usize,
+    /// All of it.
+    whole: String,
+}
+
+impl Label {
+    fn of(block: &Block, locale: Locale, room: Room) -> Self {
+        let (name, details) = (name(block, locale), details(block));
+        let (said, details) = (shortened(&name), shortened(&details));
+        let mut lines = labels::wrapped(&said, room.width, room.lines);
+        let named = lines.len();
+        let left = room.lines - named.min(room.lines);
+        if left > 0 {
+            lines.extend(labels::wrapped(&details, room.width, left));
+        }
+        Self {
+            lines,
+            named,
+            whole: format!("{said}: {details}"),
+        }
     }
 }
 
-fn draw_block(block: &Block, locale: Locale, out: &mut String) {
+fn draw_block(block: &Block, label: &Label, svg: &mut Svg) {
     let (x, y) = middle(block);
     let row = blocks::find(&block.kind);
     let color = match row.map(|row| row.category) {
@@ -138,58 +196,27 @@ fn draw_block(block: &Block, locale: Locale, out: &mut String) {
         Some(Category::Drawing) => "#8a4fb5",
         None => "#888888",
     };
-    let said = escaped(&name(block, locale));
-    let details = escaped(&details(block));
-    let _ = writeln!(
-        out,
-        "<g transform=\"translate({x:.1} {y:.1})\"><title>{said}: {details}</title>"
-    );
-    let _ = writeln!(
-        out,
-        "<rect x=\"-25\" y=\"-25\" width=\"50\" height=\"50\" rx=\"9\" fill=\"{color}\"/>"
-    );
-    let _ = writeln!(out, "{}", icon(row.map(|row| row.does)));
-    let _ = writeln!(out, "<text y=\"36\">{said}</text>");
-    if !details.is_empty() {
-        let _ = writeln!(out, "<text class=\"d\" y=\"47\">{details}</text>");
+    svg.tag("g")
+        .with("transform", format_args!("translate({x:.1} {y:.1})"))
+        .open();
+    svg.tag("title").text(&label.whole);
+    svg.tag("rect")
+        .numbers(0, [("x", -25.0), ("y", -25.0)])
+        .numbers(0, [("width", 50.0), ("height", 50.0), ("rx", 9.0)])
+        .with("fill", color)
+        .close();
+    svg.raw(row.map_or(UNKNOWN, |row| row.icon));
+    svg.raw("\n");
+    for (at, line) in label.lines.iter().enumerate() {
+        let mut tag = svg.tag("text");
+        if at >= label.named {
+            tag = tag.with("class", "d");
+        }
+        let y = labels::FIRST_LINE + labels::LINE * at as f64;
+        tag.numbers(0, [("y", y)]).text(line);
     }
-    out.push_str("</g>\n");
+    svg.end();
 }
 
-/// A simple sign within a square of 50 px around the origin.
-fn icon(does: Option<Does>) -> &'static str {
-    let Some(does) = does else {
-        return "<path class=\"i\" d=\"M-6 -8a6 6 0 1 1 8 6q-2 1 -2 5M0 10v1\"/>";
-    };
-    match does {
-        Does::Start => "<path class=\"f\" d=\"M-8 -11L12 0L-8 11z\"/>",
-        Does::End => "<rect class=\"f\" x=\"-9\" y=\"-9\" width=\"18\" height=\"18\"/>",
-        Does::Comment => "<path class=\"i\" d=\"M-12 -8h24M-12 0h24M-12 8h14\"/>",
-        Does::Merge => "<path class=\"i\" d=\"M-12 -12L0 2M12 -12L0 2V14\"/>",
-        Does::Statements => "<path class=\"i\" d=\"M8 -13q-8 -3 -8 6v14q0 8 -8 6M-8 0h16\"/>",
-        Does::Assign => "<path class=\"i\" d=\"M-11 -5h22M-11 5h22\"/>",
-        Does::Random => {
-            "<rect class=\"i\" x=\"-12\" y=\"-12\" width=\"24\" height=\"24\" rx=\"4\"/><circle class=\"f\" cx=\"-5\" cy=\"-5\" r=\"2.5\"/><circle class=\"f\" cx=\"5\" cy=\"5\" r=\"2.5\"/><circle class=\"f\" r=\"2.5\"/>"
-        }
-        Does::Ask => "<path class=\"i\" d=\"M-7 -6a7 7 0 1 1 9 7q-2 1 -2 4M0 12v1\"/>",
-        Does::If => "<path class=\"i\" d=\"M0 -15L15 0L0 15L-15 0z\"/>",
-        Does::Switch => "<path class=\"i\" d=\"M0 -14V-2M0 -2L-13 12M0 -2V12M0 -2L13 12\"/>",
-        Does::Loop | Does::While => "<path class=\"i\" d=\"M11 -7a13 13 0 1 0 2 11M13 -14v8h-8\"/>",
-        Does::Fork => "<path class=\"i\" d=\"M-14 -4h28M-9 -4v14M9 -4v14M0 -14v10\"/>",
-        Does::Join => "<path class=\"i\" d=\"M-14 4h28M-9 4v-14M9 4v-14M0 4v10\"/>",
-        Does::Kill => "<path class=\"i\" d=\"M-10 -10L10 10M10 -10L-10 10\"/>",
-        Does::Call => {
-            "<rect class=\"i\" x=\"-14\" y=\"-10\" width=\"28\" height=\"20\"/><path class=\"i\" d=\"M-9 -10v20M9 -10v20\"/>"
-        }
-        Does::Timer => "<circle class=\"i\" r=\"13\"/><path class=\"i\" d=\"M0 -8V0L6 4\"/>",
-        Does::Send | Does::Receive | Does::Mail => {
-            "<rect class=\"i\" x=\"-14\" y=\"-9\" width=\"28\" height=\"19\"/><path class=\"i\" d=\"M-14 -9L0 3L14 -9\"/>"
-        }
-        Does::AnyButton => "<circle class=\"i\" r=\"13\"/><circle class=\"f\" r=\"6\"/>",
-        Does::Copy(_) => "<path class=\"i\" d=\"M-13 0h20M1 -7L8 0L1 7M13 -12v24\"/>",
-        Does::Watch(_) => {
-            "<path class=\"i\" d=\"M-14 0q14 -15 28 0q-14 15 -28 0z\"/><circle class=\"f\" r=\"4\"/>"
-        }
-        Does::Act(act) => act.icon,
-    }
-}
+/// The sign of a block that nobody knows.
+const UNKNOWN: &str = "<path class=\"i\" d=\"M-6 -8a6 6 0 1 1 8 6q-2 1 -2 5M0 10v1\"/>";

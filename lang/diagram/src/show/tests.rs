@@ -1,5 +1,6 @@
 //! Pictures and outlines of small projects, with friendly and hostile texts.
 
+use super::labels::{self, Area, HALF};
 use super::outline::outline;
 use super::picture::picture;
 use crate::project::Project;
@@ -34,6 +35,12 @@ fn an_outline_has_loops_and_names_in_both_languages() {
 }
 
 #[test]
+fn a_picture_has_blocks_links_guards_and_words() {
+    let svg = picture(&project("M3").diagrams[0], Locale::English);
+    insta::assert_snapshot!("picture", svg);
+}
+
+#[test]
 fn a_picture_is_xml_whatever_the_texts_say() {
     for text in [
         "M3",
@@ -59,6 +66,66 @@ fn places_that_are_none_are_drawn_somewhere() {
     let svg = picture(&project.diagrams[0], Locale::English);
     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
     assert!(svg.len() < 20_000, "{}", svg.len());
+}
+
+/// Numbers of an attribute, wherever it stands.
+fn numbers<'a>(svg: &'a str, before: &str) -> Vec<Vec<f64>> {
+    let parts: Vec<&'a str> = svg.split(before).skip(1).collect();
+    let texts = parts.iter().filter_map(|part| part.split('"').next());
+    let split = |text: &str| {
+        text.split([' ', ','])
+            .filter_map(|number| number.parse().ok())
+            .collect()
+    };
+    texts.map(split).collect()
+}
+
+#[test]
+fn links_and_guards_are_inside_the_picture() {
+    let mut project = project("M3");
+    project.diagrams[0].links[0].path =
+        vec![(0.0, 0.0), (-300.0, -400.0), (700.0, 900.0), (1.0, 1.0)];
+    let svg = picture(&project.diagrams[0], Locale::English);
+    let shown = &numbers(&svg, "viewBox=\"")[0];
+    for points in numbers(&svg, "points=\"") {
+        for corner in points.chunks(2) {
+            let (x, y) = (corner[0] - shown[0], corner[1] - shown[1]);
+            assert!(x >= 0.0 && x <= shown[2], "{corner:?} {shown:?}");
+            assert!(y >= 0.0 && y <= shown[3], "{corner:?} {shown:?}");
+        }
+    }
+}
+
+#[test]
+fn labels_of_blocks_do_not_cover_each_other() {
+    let middles: Vec<(f64, f64)> = (0..12)
+        .map(|at| (f64::from(at % 4) * 75.0, f64::from(at / 4) * 100.0))
+        .collect();
+    let mut taken: Vec<Area> = Vec::new();
+    for (own, &middle) in middles.iter().enumerate() {
+        let room = labels::room(own, &middles);
+        let text = "Wait for Ultrasonic Distance and for much more, whatever it may be";
+        let lines = labels::wrapped(text, room.width, room.lines);
+        assert!(!lines.is_empty() && lines.len() <= room.lines);
+        for area in [
+            Area::around(middle, HALF, HALF),
+            Area::under(middle, &lines),
+        ] {
+            let other = taken.iter().find(|other| area.meets(other));
+            assert!(other.is_none(), "{own}: {area:?} {other:?}");
+            taken.push(area);
+        }
+    }
+}
+
+#[test]
+fn a_text_is_put_where_nothing_is() {
+    let place = |x| Area::around((x, 0.0), 5.0, 5.0);
+    let mut taken = vec![place(0.0)];
+    let found = labels::free(&[place(1.0), place(20.0)], &mut taken);
+    assert_eq!(found.map(|area| area.low), Some((15.0, -5.0)));
+    let found = labels::free(&[place(1.0), place(20.0)], &mut taken);
+    assert_eq!(found.map(|area| area.low), Some((-4.0, -5.0)));
 }
 
 #[test]

@@ -50,10 +50,10 @@ fn walk_graph(graph: &Graph, walk: &mut Walk) {
     let mut at = graph.entry;
     while walk.visit(at).is_ok() {
         at = match &graph.ways[at] {
-            Way::End => return,
-            Way::Step(next) => *next,
-            Way::Test(yes, no) => [*yes, *no][walk.decide(at, 2)],
-            Way::Switch(all) => all[walk.decide(at, all.len())],
+            Exit::End => return,
+            Exit::Step(next) => *next,
+            Exit::Test(yes, no) => [*yes, *no][walk.decide(at, 2)],
+            Exit::Switch(all) => all[walk.decide(at, all.len())],
         };
     }
 }
@@ -104,7 +104,7 @@ impl Machine<'_> {
 
     fn switch(&mut self, on: usize, branches: &[(Vec<usize>, Vec<Tree>)]) -> Result<Left, Enough> {
         self.walk.visit(on)?;
-        let Way::Switch(all) = &self.graph.ways[on] else {
+        let Exit::Switch(all) = &self.graph.ways[on] else {
             panic!("{on} is no switch");
         };
         let way = self.walk.decide(on, all.len());
@@ -119,7 +119,7 @@ impl Machine<'_> {
         assert!(self.idle < 100_000, "nothing is visited");
         Ok(match tree {
             Tree::Step(node) => {
-                assert!(matches!(self.graph.ways[*node], Way::Step(_)));
+                assert!(matches!(self.graph.ways[*node], Exit::Step(_)));
                 self.walk.visit(*node)?;
                 Left::Through
             }
@@ -221,14 +221,14 @@ fn same(graph: &Graph, jumps: Jumps) -> Structured {
     structured
 }
 
-fn graph(ways: &[Way]) -> Graph {
+fn graph(ways: &[Exit]) -> Graph {
     Graph {
         ways: ways.to_vec(),
         entry: 0,
     }
 }
 
-use Way::{End, Step, Switch, Test};
+use Exit::{End, Step, Switch, Test};
 
 fn test(node: usize) -> Condition {
     Condition::Test(node)
@@ -417,7 +417,7 @@ fn drawn_graph(most: usize) -> impl Strategy<Value = Graph> {
                 _ => Step(to(0)),
             }
         };
-        let mut ways: Vec<Way> = nodes.into_iter().enumerate().map(way).collect();
+        let mut ways: Vec<Exit> = nodes.into_iter().enumerate().map(way).collect();
         ways.push(End);
         Graph { ways, entry: 0 }
     })

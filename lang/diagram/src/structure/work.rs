@@ -2,7 +2,7 @@
 //!
 //! Owns nodes and their ways. Knows no order and no loops.
 
-use super::{Graph, Way};
+use super::{Exit, Graph};
 use crate::tree::Condition;
 
 /// What a node is.
@@ -46,10 +46,10 @@ pub(super) fn shared(ways: &[usize]) -> Vec<(usize, Vec<usize>)> {
 /// The ways of a block that exist.
 pub(super) fn ways(graph: &Graph, block: usize) -> &[usize] {
     match &graph.ways[block] {
-        Way::End => &[],
-        Way::Step(next) => std::slice::from_ref(next),
-        Way::Test(..) => &[],
-        Way::Switch(all) => all,
+        Exit::End => &[],
+        Exit::Step(next) => std::slice::from_ref(next),
+        Exit::Test(..) => &[],
+        Exit::Switch(all) => all,
     }
 }
 
@@ -68,13 +68,13 @@ impl Work {
             done += 1;
             let pair;
             let (kind, ways) = match &graph.ways[block] {
-                Way::Test(yes, no) => {
+                Exit::Test(yes, no) => {
                     pair = [*yes, *no];
                     (Kind::Test(Condition::Test(block)), &pair[..])
                 }
-                Way::End => (Kind::End(block), ways(graph, block)),
-                Way::Step(_) => (Kind::Step(block), ways(graph, block)),
-                Way::Switch(_) => (Kind::Switch(block), ways(graph, block)),
+                Exit::End => (Kind::End(block), ways(graph, block)),
+                Exit::Step(_) => (Kind::Step(block), ways(graph, block)),
+                Exit::Switch(_) => (Kind::Switch(block), ways(graph, block)),
             };
             let mut next = Vec::with_capacity(ways.len());
             for &way in ways {

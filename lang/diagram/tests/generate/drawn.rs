@@ -21,8 +21,44 @@ pub fn projects() -> Vec<(String, Project)> {
         ("parameters", parameters()),
         ("threads", threads()),
         ("guards", guards()),
+        ("killed main", killed_main()),
+        ("killed itself", killed_itself()),
     ];
     all.map(|(name, project)| (name.to_owned(), project)).into()
+}
+
+/// The first thread is killed while it waits; what kills it goes on.
+fn killed_main() -> Project {
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let fork = sketch.block("Fork", &[]);
+    let long = sketch.block("Timer", &[("Delay", "1000")]);
+    let never = text(&mut sketch, "print('never')");
+    let end = sketch.block("FinalNode", &[]);
+    let short = sketch.block("Timer", &[("Delay", "200")]);
+    let kill = sketch.block("KillThread", &[("Thread", "main")]);
+    let after = text(&mut sketch, "print('after')");
+    let done = sketch.block("FinalNode", &[]);
+    sketch.link(start, fork);
+    sketch.guarded(fork, long, "main");
+    sketch.guarded(fork, short, "other");
+    sketch.chain(&[long, never, end]);
+    sketch.chain(&[short, kill, after, done]);
+    sketch.project()
+}
+
+/// The only thread kills itself between two texts.
+fn killed_itself() -> Project {
+    let mut sketch = Sketch::new();
+    let blocks = [
+        sketch.block("InitialNode", &[]),
+        text(&mut sketch, "print('before')"),
+        sketch.block("KillThread", &[("Thread", "main")]),
+        text(&mut sketch, "print('never')"),
+        sketch.block("FinalNode", &[]),
+    ];
+    sketch.chain(&blocks);
+    sketch.project()
 }
 
 fn chain(bodies: &[&str]) -> Project {

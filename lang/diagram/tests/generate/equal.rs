@@ -13,7 +13,7 @@ use lang_diagram::stand_in::{Placing, StandIn};
 use crate::host;
 
 /// Commands that are compared of a program without end.
-const ENOUGH: usize = 200;
+pub const ENOUGH: usize = 200;
 /// Commands that programs over files leave out.
 const LACKING: [&str; 14] = [
     "redraw",
@@ -41,7 +41,7 @@ const WORLD: World = World::Simulated {
 };
 
 /// What is plugged in and what it says; buttons are pressed now and then.
-fn robot(project: &Project) -> StandIn {
+pub fn robot(project: &Project) -> StandIn {
     use lang_diagram::ports::Port;
     let placing = project.world.as_deref().map(Placing::of_world);
     let mut robot = StandIn::new(placing.unwrap_or_default());
@@ -60,12 +60,15 @@ fn robot(project: &Project) -> StandIn {
     for name in ["Enter", "Down"] {
         robot.readings.insert(Port::named(name).unwrap(), 1);
     }
-    robot
-        .vectors
-        .insert(Port::named("LineSensorPort").unwrap(), vec![17, 0, 40]);
-    robot
-        .vectors
-        .insert(Port::named("ColorSensorPort").unwrap(), vec![200, 10, 30]);
+    for (name, numbers) in [
+        ("LineSensorPort", vec![17, 0, 40]),
+        ("ColorSensorPort", vec![200, 10, 30]),
+        ("AccelerometerPort", vec![1, 2, 4096]),
+        ("LidarPort", vec![100; 360]),
+        ("GamepadPad1PosPort", vec![30, -50]),
+    ] {
+        robot.vectors.insert(Port::named(name).unwrap(), numbers);
+    }
     robot
 }
 
@@ -82,8 +85,23 @@ fn commands(robot: &StandIn) -> Vec<String> {
     lines
 }
 
+/// The commands with their times, but for rest, which ends a program when nothing else is to come.
+pub fn moments(robot: &StandIn) -> Vec<(u32, String)> {
+    let lines = robot.log.iter();
+    let told = lines.map(|(at, line)| (*at, line.replace(" brake", " float")));
+    told.filter(|(_, line)| line != "rest")
+        .take(ENOUGH)
+        .collect()
+}
+
 /// What the diagram tells; whether it ended.
 fn diagram(project: &Project) -> (Vec<String>, bool) {
+    let (robot, has_ended, _) = run(project);
+    (commands(&robot), has_ended)
+}
+
+/// The robot after the diagram has run, whether it has ended, and whether there was an error.
+pub fn run(project: &Project) -> (StandIn, bool, bool) {
     let program = Rc::new(lower(project, WORLD).unwrap().program);
     let mut machine = Machine::new(program, machine::Options::default());
     let mut robot = robot(project);
@@ -97,7 +115,8 @@ fn diagram(project: &Project) -> (Vec<String>, bool) {
     for error in machine.errors() {
         println!("the diagram: {error}");
     }
-    (commands(&robot), status != Status::Running)
+    let has_failed = !machine.errors().is_empty();
+    (robot, status != Status::Running, has_failed)
 }
 
 /// Whether two commands have the same words and nearly the same numbers.

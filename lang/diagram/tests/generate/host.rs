@@ -1,7 +1,7 @@
 //! The robot's side of a generated program: the stand-in in virtual time, and whose turn it is.
 //!
 //! Owns the words between the shims (`shim.js`, `shim.py`, `shim.lua`) and the stand-in. One thread of the program runs
-//! at a time: whoever waits hands over to the one that is due first, and time passes only when all wait.
+//! at a time: one that waits hands over to the one that is due first, and time passes only when all wait.
 
 use std::collections::{BTreeMap, VecDeque};
 use std::io::{BufRead, BufReader, Write};
@@ -10,7 +10,7 @@ use std::process::{Command as Process, Stdio};
 
 use lang_diagram::brick::{Brick, Command, Figure};
 use lang_diagram::machine::STEP_MS;
-use lang_diagram::ports::{Kit, Port, Sort, Way};
+use lang_diagram::ports::{Direction, Kit, Port, Sort};
 use lang_diagram::stand_in::StandIn;
 
 /// Model time after which a program has shown enough.
@@ -143,7 +143,7 @@ fn numbers<const N: usize>(words: &[&str]) -> [i32; N] {
     std::array::from_fn(|at| number(words[at]))
 }
 
-fn port(name: &str, way: Way) -> Port {
+fn port(name: &str, way: Direction) -> Port {
     Port::find(Kit::V62, name, way).unwrap_or_else(|| panic!("no port {name:?}"))
 }
 
@@ -222,6 +222,9 @@ impl Host<'_> {
             "kill" => {
                 if let Some(killed) = self.names.remove(words[2]) {
                     self.forget(killed);
+                    if killed == id() {
+                        return self.next();
+                    }
                 }
                 words[1].to_owned()
             }
@@ -230,7 +233,7 @@ impl Host<'_> {
                     let mail = self.mail.entry(to).or_default();
                     mail.push_back(words[3].to_owned());
                     if matches!(self.threads.get(&to), Some(Thread::Receives)) {
-                        // Who has waited for it goes first.
+                        // The thread that waited for it goes first.
                         self.threads.insert(to, Thread::Ready);
                         self.threads.insert(id(), Thread::Ready);
                         self.ready.push(id());
@@ -368,7 +371,7 @@ impl Host<'_> {
     }
 
     fn measured(&mut self, name: &str) -> String {
-        let port = port(name, Way::In);
+        let port = port(name, Direction::In);
         if port.sort() != Sort::Vector {
             return self.robot.scalar(port).unwrap_or(0).to_string();
         }
@@ -384,19 +387,19 @@ impl Host<'_> {
         let rest = &words[1..];
         let command = match words[0] {
             "power" => Command::Power {
-                port: port(text, Way::Out),
+                port: port(text, Direction::Out),
                 percent: number(second).clamp(-100, 100),
             },
             "off" => Command::Off {
-                port: port(text, Way::Out),
+                port: port(text, Direction::Out),
                 brake: false,
             },
             "servo" => Command::Servo {
-                port: port(text, Way::Out),
+                port: port(text, Direction::Out),
                 degrees: number(second),
             },
             "reset" => Command::ResetEncoder {
-                port: port(text, Way::In),
+                port: port(text, Direction::In),
             },
             "sound" => Command::Sound { file: text },
             "tone" => Command::Tone {
@@ -445,6 +448,6 @@ impl Host<'_> {
             "rest" => Command::Rest,
             other => panic!("a word that nobody knows: {other}"),
         };
-        self.robot.tell(command);
+        self.robot.command(command);
     }
 }

@@ -2,10 +2,13 @@
 //! machine.
 
 mod drawn;
+mod each;
 mod equal;
 mod host;
 mod names;
+mod running;
 mod syntax;
+mod timers;
 
 use std::path::{Path, PathBuf};
 

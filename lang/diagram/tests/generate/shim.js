@@ -111,6 +111,16 @@ globalThis.brick = {
     stop: () => say('rest'),
 };
 
+const scalar = name => Number(ask('scalar', name));
+globalThis.gamepad = {
+    buttonIsPressed: number => scalar('GamepadButton' + number + 'Port') !== 0,
+    isPadPressed: number => scalar('GamepadPad' + number + 'PressedPort') !== 0,
+    padX: number => numbers(ask('vector', 'GamepadPad' + number + 'PosPort'))[0],
+    padY: number => numbers(ask('vector', 'GamepadPad' + number + 'PosPort'))[1],
+    wheel: () => scalar('GamepadWheelPort'),
+    isConnected: () => scalar('GamepadConnectionIndicatorPort') !== 0,
+};
+
 globalThis.script = {
     wait: ms => turn('wait', me, ms),
     time: () => Number(ask('time')),

@@ -38,42 +38,6 @@ def _turn(*words):
     _turns[me].wait()
 
 
-class Threading:
-  @staticmethod
-  def startThread(name, function):
-    me = _numbers[threading.get_ident()]
-    number = len(_turns)
-    _turns[number] = threading.Event()
-
-    def run():
-      _numbers[threading.get_ident()] = number
-      _turns[number].wait()
-      function()
-      _end(number)
-
-    threading.Thread(target=run, daemon=True).start()
-    _turn('start', me, number, name)
-
-  @staticmethod
-  def joinThread(name):
-    _turn('join', _numbers[threading.get_ident()], name)
-
-  @staticmethod
-  def killThread(name):
-    _turn('kill', _numbers[threading.get_ident()], name)
-
-  @staticmethod
-  def sendMessage(name, text):
-    _turn('send', _numbers[threading.get_ident()], name, text)
-
-  @staticmethod
-  def receiveMessage(wait):
-    me = _numbers[threading.get_ident()]
-    if wait:
-      _turn('receive', me)
-    return _ask('message', me)
-
-
 def _end(number):
   answer = _ask('end', number)
   if answer == 'quit':
@@ -146,6 +110,9 @@ class _Display:
   def addLabel(self, text, x, y, size):
     _say('label', x, y, size, text)
 
+  def showImage(self, file):
+    _say('smile', ['media/trik_smile_normal.png', 'media/trik_smile_sad.png'].index(file))
+
   def redraw(self):
     _say('redraw')
 
@@ -212,11 +179,8 @@ class _Brick:
   def objectSensor(self, _):
     return _Objects('', 'object')
 
-  def smile(self):
-    _say('smile', 0)
-
-  def sadSmile(self):
-    _say('smile', 1)
+  def configure(self, port, kind):
+    assert port == 'video2' and kind in ('lineSensor', 'objectSensor', 'colorSensor'), kind
 
   def playSound(self, file):
     _say('sound', file)
@@ -259,7 +223,7 @@ brick = _Brick()
 script = _Script()
 with open(sys.argv[1], encoding='utf-8') as file:
   text = file.read()
-space = {'__name__': '__main__', 'brick': brick, 'script': script, 'Threading': Threading, 'print': _print}
+space = {'__name__': '__main__', 'brick': brick, 'script': script, 'print': _print}
 exec(compile(text, sys.argv[1], 'exec'), space)
 _end(0)
 threading.Event().wait()

@@ -304,7 +304,13 @@ fn shape(tree: &Tree, id: Option<Id>) -> String {
         Node::Method { .. } => "Method".into(),
         Node::Assign { .. } => "Assign".into(),
         Node::Block(_) => "Block".into(),
-        leaf => format!("{leaf:?}"),
+        leaf @ (Node::Nil
+        | Node::Bool(_)
+        | Node::Int(_)
+        | Node::Float(_)
+        | Node::Text(_)
+        | Node::RawText(_)
+        | Node::Name(_)) => format!("{leaf:?}"),
     };
     let mut text = format!("({own}");
     tree.children(id, |child| {

@@ -2,30 +2,36 @@
 //!
 //! Owns that order, and what is said of things that cannot be shown. Knows the plain data of a field and no physics.
 //!
-//! Two facts of the original: backgrounds are for people only, sensors do not see them; and straight lines, those of a
+//! Two facts of the original: backgrounds, the colour of the scene among them, are for people only, sensors do not see them
+//! but white; and straight lines, those of a
 //! hand too, go from whole pixels to whole pixels.
 
 use lang_text::problem::Problem;
 
 use super::colour::Tint;
-use super::outline::{self, Affine, Cap, Nib, Outline};
+use super::outline::{self, Affine, Bounds, Cap, Nib, Outline};
 use super::picture::Picture;
 use super::{Floor, Stroke, words};
-use crate::field::{Drawn, Field, Image, Pen, Shape};
+use crate::arena::solids;
+use crate::field::{Drawn, Field, Image, Pen, Shape, Wall};
 use crate::geometry::{Point, point};
+
+/// Across the strip that sensors see of a wall.
+const WALL_STRIP: f64 = 10.0;
+/// What a sensor sees of its bricks on the whole: the picture of the original is its own.
+const BRICKS: [u8; 3] = [150, 94, 70];
 
 /// The floor of a field, and what is wrong with its pictures and colours.
 pub fn lay(field: &Field) -> (Floor, Vec<Problem>) {
     let mut layer = Layer::default();
-    let background = &field.settings.background;
-    if !background.is_empty() {
-        layer.floor.background = layer.tint(background, "settings").rgb;
-    }
     for image in field.images.iter().filter(|image| !image.is_background) {
         layer.image(field, image);
     }
     for drawn in &field.drawn {
         layer.drawn(drawn);
+    }
+    for wall in &field.walls {
+        layer.wall(wall);
     }
     for old in &field.trace {
         let rgb = layer.tint(&old.colour, "trace").rgb;
@@ -92,7 +98,10 @@ impl Layer {
                 let place = [right - left, 0.0, 0.0, bottom - top, left, top];
                 self.floor.add_picture(&picture, &Affine(place));
             }
-            Err(why) => self.warn(&image.id, words::bad_picture(&image.image, &why)),
+            Err(why) => self.warn(
+                &image.id,
+                words::bad_picture(&image.image, &why.to_string()),
+            ),
         }
     }
 
@@ -118,9 +127,18 @@ impl Layer {
                 self.pen(path.as_ref(), drawn, &drawn.pen, Cap::Round);
             }
             Shape::Stylus(strokes) => {
+                // It is looked for where its points are, however wide its pen is.
+                let mut bounds = Bounds::NOTHING;
+                for end in strokes.iter().flat_map(|one| [one.begin, one.end]) {
+                    bounds.add(end.x, end.y);
+                }
                 for stroke in strokes {
                     let path = outline::line(whole(stroke.begin), whole(stroke.end));
-                    self.pen(path.as_ref(), drawn, &drawn.pen, Cap::Round);
+                    if let Some((line, tint)) =
+                        self.line(path.as_ref(), &drawn.id, &drawn.pen, Cap::Round)
+                    {
+                        self.floor.add_area_within(line, tint, bounds);
+                    }
                 }
             }
         }
@@ -145,14 +163,49 @@ impl Layer {
         pen: &Pen,
         cap: Cap,
     ) {
+        if let Some((line, tint)) = self.line(path, &drawn.id, pen, cap) {
+            self.floor.add_area(line, tint);
+        }
+    }
+
+    /// What a pen leaves along a path, and in which colour.
+    fn line(
+        &mut self,
+        path: Option<&usvg::tiny_skia_path::Path>,
+        id: &str,
+        pen: &Pen,
+        cap: Cap,
+    ) -> Option<(Outline, Tint)> {
         let nib = Nib {
             width: pen.width,
             style: &pen.style,
             cap,
         };
-        if let Some(line) = path.and_then(|path| Outline::drawn(path, nib)) {
-            let tint = self.tint(&pen.colour, &drawn.id);
-            self.floor.add_area(line, tint);
+        let line = path.and_then(|path| Outline::drawn(path, nib))?;
+        Some((line, self.tint(&pen.colour, id)))
+    }
+
+    /// A wall: a strip of bricks of one width, whatever the wall's is, and a pen around it. It is looked for where the strip
+    /// is.
+    fn wall(&mut self, wall: &Wall) {
+        let strip = solids::wall(&Wall {
+            width: WALL_STRIP,
+            ..wall.clone()
+        });
+        let mut bounds = Bounds::NOTHING;
+        strip.iter().for_each(|at| bounds.add(at.x, at.y));
+        let path = outline::polygon(&strip);
+        let inside = path
+            .as_ref()
+            .and_then(|path| Outline::inside(path, &Affine::SAME, super::raster::Rule::EvenOdd));
+        if let Some(inside) = inside {
+            self.floor
+                .add_area_within(inside, Tint::solid(BRICKS), bounds);
+        }
+        if let Some(pen) = wall.pen()
+            && let Some((line, tint)) = self.line(path.as_ref(), &wall.id, &pen, Cap::Square)
+        {
+            self.floor.add_area_within(line, tint, bounds);
         }
     }
 }

@@ -274,6 +274,21 @@ pub fn line(begin: Point, end: Point) -> Option<skia::Path> {
     path.finish()
 }
 
+/// A closed figure with straight sides.
+pub fn polygon(corners: &[Point]) -> Option<skia::Path> {
+    let mut path = skia::PathBuilder::new();
+    for (index, &corner) in corners.iter().enumerate() {
+        let (x, y) = place(corner)?;
+        if index == 0 {
+            path.move_to(x, y);
+        } else {
+            path.line_to(x, y);
+        }
+    }
+    path.close();
+    path.finish()
+}
+
 /// A cubic curve.
 pub fn curve([begin, one, other, end]: [Point; 4]) -> Option<skia::Path> {
     let (begin, one, other, end) = (place(begin)?, place(one)?, place(other)?, place(end)?);

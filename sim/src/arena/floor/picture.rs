@@ -4,7 +4,8 @@
 //! does not show of it (clips, masks, filters) is not shown here. PNG and JPEG stay pixels. No other file is opened,
 //! whatever a picture names. Knows neither the field nor where a picture lies on it.
 
-use screen::Pixels;
+use screen::{Fault, Pixels};
+use std::fmt;
 use usvg::tiny_skia_path as skia;
 
 use super::colour::Tint;
@@ -12,6 +13,58 @@ use super::gradient::Gradient;
 use super::outline::{Affine, Outline};
 use super::raster::Rule;
 use crate::limits;
+
+/// Why a file is not shown. The author of the project can change that.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum Refusal {
+    /// It is no picture.
+    Fault(Fault),
+    /// A byte that Base64 has not.
+    NotBase64(usize),
+    /// It has more than [`limits::PICTURE_BYTES`].
+    TooLong,
+    /// It has no bytes.
+    Empty,
+    /// An SVG of so many bytes.
+    LongSvg(usize),
+    /// An SVG with sizes that its reader does not bear.
+    StrangeSvg,
+    /// An SVG that is damaged, in the words of its reader.
+    Svg(String),
+    /// An SVG of so many lines and areas.
+    ManyLayers(usize),
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Fault(why) => write!(out, "{why}"),
+            Self::NotBase64(at) => write!(out, "byte {at} of the picture is not Base64"),
+            Self::TooLong => write!(
+                out,
+                "the picture has more than {} bytes",
+                limits::PICTURE_BYTES
+            ),
+            Self::Empty => out.write_str("the picture is empty"),
+            Self::LongSvg(bytes) => write!(
+                out,
+                "the SVG has {bytes} bytes, more than {}: make a PNG of it",
+                limits::SVG_BYTES
+            ),
+            Self::StrangeSvg => {
+                out.write_str("the SVG cannot be read: a size in it is too strange")
+            }
+            Self::Svg(why) => write!(out, "the SVG cannot be read: {why}"),
+            Self::ManyLayers(count) => write!(
+                out,
+                "the SVG has {count} lines and areas, more than {}: make a PNG of it",
+                limits::PICTURE_LAYERS
+            ),
+        }
+    }
+}
+
+impl std::error::Error for Refusal {}
 
 /// A picture, from (0, 0) to (1, 1).
 #[derive(Clone, Debug, Default)]
@@ -69,26 +122,22 @@ impl Picture {
     ///
     /// # Errors
     /// What is wrong with it, for people.
-    pub fn read(path: &str, text: &str) -> Result<Self, String> {
+    pub fn read(path: &str, text: &str) -> Result<Self, Refusal> {
         let trimmed = text.trim_start();
         let is_svg = path.to_ascii_lowercase().ends_with("svg") || trimmed.starts_with('<');
         if is_svg {
             return Self::svg(trimmed);
         }
         let file = base64(text)?;
-        let pixels = screen::picture::decode(&file)?;
+        let pixels = screen::picture::decode(&file).map_err(Refusal::Fault)?;
         let mut picture = Self::default();
         picture.add_pixels(pixels, &Affine::SAME);
         Ok(picture)
     }
 
-    fn svg(text: &str) -> Result<Self, String> {
+    fn svg(text: &str) -> Result<Self, Refusal> {
         if text.len() > limits::SVG_BYTES {
-            return Err(format!(
-                "the SVG has {} bytes, more than {}: make a PNG of it",
-                text.len(),
-                limits::SVG_BYTES
-            ));
+            return Err(Refusal::LongSvg(text.len()));
         }
         let options = usvg::Options {
             image_href_resolver: usvg::ImageHrefResolver {
@@ -100,8 +149,8 @@ impl Picture {
         // usvg panics at some pictures inside that have strange sizes.
         let read = std::panic::AssertUnwindSafe(|| usvg::Tree::from_str(text, &options));
         let tree = std::panic::catch_unwind(read)
-            .map_err(|_| "the SVG cannot be read: a size in it is too strange".to_owned())?
-            .map_err(|error| format!("the SVG cannot be read: {error}"))?;
+            .map_err(|_| Refusal::StrangeSvg)?
+            .map_err(|error| Refusal::Svg(error.to_string()))?;
         let size = tree.size();
         let square = Affine([
             1.0 / f64::from(size.width()),
@@ -114,11 +163,7 @@ impl Picture {
         let mut picture = Self::default();
         picture.add_group(tree.root(), &square, 1.0, 0);
         if picture.layers.len() > limits::PICTURE_LAYERS {
-            return Err(format!(
-                "the SVG has {} lines and areas, more than {}: make a PNG of it",
-                picture.layers.len(),
-                limits::PICTURE_LAYERS
-            ));
+            return Err(Refusal::ManyLayers(picture.layers.len()));
         }
         picture.lacks.sort_unstable();
         picture.lacks.dedup();
@@ -226,12 +271,9 @@ fn affine(from: skia::Transform) -> Affine {
 }
 
 /// The bytes behind Base64; white space is left out.
-fn base64(text: &str) -> Result<Vec<u8>, String> {
+fn base64(text: &str) -> Result<Vec<u8>, Refusal> {
     if text.len() > limits::PICTURE_BYTES / 3 * 4 {
-        return Err(format!(
-            "the picture has more than {} bytes",
-            limits::PICTURE_BYTES
-        ));
+        return Err(Refusal::TooLong);
     }
     let mut bytes = Vec::with_capacity(text.len() / 4 * 3);
     let (mut bits, mut count) = (0u32, 0);
@@ -244,7 +286,7 @@ fn base64(text: &str) -> Result<Vec<u8>, String> {
             b'/' => 63,
             b'=' => break,
             _ if letter.is_ascii_whitespace() => continue,
-            _ => return Err(format!("byte {at} of the picture is not Base64")),
+            _ => return Err(Refusal::NotBase64(at)),
         };
         bits = bits << 6 | u32::from(value);
         count += 6;
@@ -254,7 +296,7 @@ fn base64(text: &str) -> Result<Vec<u8>, String> {
         }
     }
     if bytes.is_empty() {
-        return Err("the picture is empty".to_owned());
+        return Err(Refusal::Empty);
     }
     Ok(bytes)
 }
@@ -268,7 +310,7 @@ mod tests {
         assert_eq!(base64("aGVs\n bG8=").unwrap(), b"hello");
         assert_eq!(base64("aGVsbG8h").unwrap(), b"hello!");
         assert!(base64("  ").is_err());
-        assert!(base64("aG$s").unwrap_err().contains("byte 2"));
+        assert_eq!(base64("aG$s"), Err(Refusal::NotBase64(2)));
     }
 
     #[test]

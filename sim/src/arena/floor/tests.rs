@@ -133,6 +133,40 @@ fn places_that_are_none_are_white() {
     assert_eq!(window.side, 11);
 }
 
+/// What a light sensor would see in the middle of a window.
+fn middle(text: &str, x: f64) -> [u8; 3] {
+    let field = crate::field::Field::read(text).unwrap().field;
+    let (mut floor, _) = lay(&field);
+    let window = seen(&mut floor, point(x, 0.0), 0.0, 12, 1.0);
+    window.pixels[window.pixels.len() / 2]
+}
+
+#[test]
+fn walls_are_seen_as_strips_of_one_width_with_their_pens() {
+    let text = "<root version=\"20251219\"><world><walls>\
+        <wall id=\"a\" begin=\"0:-50\" end=\"0:50\" stroke=\"#ff000000\" stroke-width=\"0\" stroke-style=\"none\"/>\
+        <wall id=\"b\" begin=\"100:-50\" end=\"100:50\" stroke=\"#ffff0000\" stroke-width=\"30\" stroke-style=\"solid\"/>\
+        </walls></world><settings/></root>";
+    let bricks = middle(text, 0.0);
+    assert!(bricks != [255; 3] && bricks[0] > bricks[2], "{bricks:?}");
+    assert_eq!(middle(text, 12.0), [255; 3]);
+    assert_eq!(middle(text, 110.0), [255, 0, 0]);
+    // The pen is there, but a window that does not meet the strip does not see it.
+    assert_eq!(middle(text, 116.0), [255; 3]);
+}
+
+#[test]
+fn a_stylus_is_looked_for_where_its_points_are() {
+    let text = "<root version=\"20251219\"><world><colorFields>\
+        <stylus id=\"s\" stroke=\"#ff000000\" stroke-width=\"40\" stroke-style=\"solid\">\
+        <stylusLine begin=\"0:-50\" end=\"0:50\"/></stylus>\
+        <line id=\"l\" begin=\"100:-50\" end=\"100:50\" stroke=\"#ff000000\" stroke-width=\"40\" stroke-style=\"solid\"/>\
+        </colorFields></world><settings/></root>";
+    assert_eq!(middle(text, 4.0), [0; 3]);
+    assert_eq!(middle(text, 8.0), [255; 3]);
+    assert_eq!(middle(text, 110.0), [0; 3]);
+}
+
 #[test]
 fn fields_are_laid_and_what_cannot_be_shown_is_told() {
     use crate::field::{Drawn, Field, Pen, Shape};
@@ -152,7 +186,8 @@ fn fields_are_laid_and_what_cannot_be_shown_is_told() {
     for (x, colour) in [
         (0.0, [255, 0, 0]),
         (80.0, [0, 0, 255]),
-        (-200.0, [0, 255, 0]),
+        // The colour of the scene is for people only.
+        (-200.0, [255, 255, 255]),
     ] {
         let window = seen(&mut floor, point(x, 0.0), 12.0, 12, 1.0);
         assert!(window.pixels.iter().all(|pixel| *pixel == colour), "at {x}");
@@ -212,10 +247,14 @@ fn sensors_see_what_a_marker_has_left() {
     let mut line = Vec::new();
     assert!(arena.robot(0).vector(port("LineSensorPort"), &mut line));
     assert_eq!(line, [0, 0, 0]);
-    arena.robot(0).tell(Command::MarkerDown { color: "black" });
+    arena
+        .robot(0)
+        .command(Command::MarkerDown { color: "black" });
     for name in ["M3", "M4"] {
         let port = port(name);
-        arena.robot(0).tell(Command::Power { port, percent: 100 });
+        arena
+            .robot(0)
+            .command(Command::Power { port, percent: 100 });
     }
     for _ in 0..200 {
         arena.tick();
@@ -227,12 +266,12 @@ fn sensors_see_what_a_marker_has_left() {
     // Back over it: the camera is ahead and sees it in the middle.
     for name in ["M3", "M4"] {
         let port = port(name);
-        arena.robot(0).tell(Command::Power {
+        arena.robot(0).command(Command::Power {
             port,
             percent: -100,
         });
     }
-    arena.robot(0).tell(Command::MarkerUp);
+    arena.robot(0).command(Command::MarkerUp);
     let marks = arena.trace().len();
     for _ in 0..100 {
         arena.tick();
@@ -246,7 +285,7 @@ fn sensors_see_what_a_marker_has_left() {
         .robot_mut(0)
         .unwrap()
         .put(lang_diagram::stand_in::Pose::default());
-    arena.robot(0).tell(Command::Detect { mode: "line" });
+    arena.robot(0).command(Command::Detect { mode: "line" });
     line.clear();
     arena.robot(0).vector(port("ColorSensorPort"), &mut line);
     assert_eq!(line.len(), 3);

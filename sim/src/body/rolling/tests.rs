@@ -32,6 +32,7 @@ fn refused(text: &str, said: &Said) -> String {
     Rolling::new(&model(text), said, Pose::default())
         .err()
         .unwrap()
+        .to_string()
 }
 
 /// A motor that turns at 10 rad/s, for so many seconds.

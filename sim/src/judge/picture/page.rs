@@ -3,7 +3,7 @@
 //! Owns the page, which needs no network and no other file. Its frame is `page.html`; every text of a run comes into it as
 //! data, never as a tag.
 
-use super::{body, head, marker, shapes, way};
+use super::{body, ground};
 use crate::field::Field;
 use crate::judge::json;
 use crate::judge::trajectory::Trajectory;
@@ -37,16 +37,13 @@ pub fn page(
     entries: &[Entry],
     caption: Caption<'_>,
 ) -> String {
-    let mut svg = head(field, trajectory);
-    shapes::field(field, &mut svg);
-    marker(trajectory, &mut svg);
+    let mut svg = ground(field, trajectory);
     for robot in 0..trajectory.robots.len() {
-        way(trajectory, robot, &mut svg);
+        svg.tag("g").with("id", format_args!("robot{robot}")).open();
+        body(robot, &mut svg);
+        svg.end();
     }
-    for robot in 0..trajectory.robots.len() {
-        let _ = writeln!(svg, "<g id=\"robot{robot}\">{}</g>", body(robot));
-    }
-    svg.push_str("</svg>");
+    let svg = svg.finish();
     let names = words::page(caption.locale);
     let language = match caption.locale {
         Locale::English => "en",
@@ -60,7 +57,7 @@ pub fn page(
         ("VERDICT", &escaped(caption.verdict)),
         ("TIME", names[0]),
         ("SPEED", names[1]),
-        ("SVG", &svg),
+        ("SVG", svg.trim_end()),
         ("DATA", &data),
     ];
     // One walk, so that a text of the run cannot bring a mark of its own.
@@ -121,7 +118,7 @@ fn data(trajectory: &Trajectory, entries: &[Entry]) -> String {
         out.push_str(if is_first { "" } else { "," });
         is_first = false;
         let _ = write!(out, "[{},\"{level}\",", entry.at_ms);
-        json::text(&mut out, &entry.text);
+        json::text(&mut out, &entry.line());
         out.push(']');
     }
     let _ = write!(out, "],\"end\":{end}}}");

@@ -6,8 +6,7 @@ use super::is_near;
 use crate::field::{Blob, Drawn, Field, Pen, Region, Shape, Solid, SolidKind};
 use crate::geometry::Point;
 use crate::limits;
-use lang_text::escape::escaped;
-use std::fmt::Write as _;
+use lang_text::svg::{Svg, Tag};
 
 /// A rectangle around points.
 #[derive(Clone, Copy, Debug, Default)]
@@ -110,7 +109,7 @@ fn upright(at: Point, size: Point) -> [f64; 4] {
 }
 
 /// Everything of a field, lowest first.
-pub(super) fn field(field: &Field, out: &mut String) {
+pub(super) fn field(field: &Field, svg: &mut Svg) {
     let mut bytes = 0;
     for image in &field.images {
         let Some(blob) = field.blobs.get(&image.image) else {
@@ -121,36 +120,54 @@ pub(super) fn field(field: &Field, out: &mut String) {
             continue;
         }
         if let Some(source) = data(blob) {
-            let [x, y, width, height] = upright(image.at, image.size);
-            let _ = writeln!(
-                out,
-                "<image x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" \
-                 preserveAspectRatio=\"none\" href=\"{source}\"/>"
-            );
+            let place = upright(image.at, image.size);
+            placed(svg.tag("image"), 1, place)
+                .with("preserveAspectRatio", "none")
+                .with("href", source)
+                .close();
         }
     }
     for one in &field.drawn {
-        drawn(one, out);
+        drawn(one, svg);
     }
     for stroke in &field.trace {
         let ink = colour(&stroke.colour, "#000000");
         line(
             stroke.begin,
             stroke.end,
-            &format!("stroke=\"{ink}\" stroke-width=\"{:.1}\"", stroke.width),
-            out,
+            &Style::line(&ink, stroke.width),
+            svg,
         );
     }
     for one in field.regions.iter().filter(|region| region.visible) {
-        region(one, out);
+        region(one, svg);
     }
     for wall in &field.walls {
-        let style = format!("stroke=\"#6d4c41\" stroke-width=\"{:.1}\"", wall.width);
-        line(wall.begin, wall.end, &style, out);
+        line(
+            wall.begin,
+            wall.end,
+            &Style::line("#6d4c41", wall.width),
+            svg,
+        );
     }
     for one in &field.solids {
-        solid(one, out);
+        solid(one, svg);
     }
+}
+
+fn placed(tag: Tag<'_>, digits: usize, [x, y, width, height]: [f64; 4]) -> Tag<'_> {
+    let sides = [("x", x), ("y", y), ("width", width), ("height", height)];
+    tag.numbers(digits, sides)
+}
+
+/// Begins a rectangle: left, top, width and height.
+pub(super) fn rect(place: [f64; 4], svg: &mut Svg) -> Tag<'_> {
+    placed(svg.tag("rect"), 1, place)
+}
+
+/// The same on whole pixels.
+pub(super) fn whole_rect(place: [f64; 4], svg: &mut Svg) -> Tag<'_> {
+    placed(svg.tag("rect"), 0, place)
 }
 
 /// A picture as an address that holds it.
@@ -175,50 +192,87 @@ fn data(blob: &Blob) -> Option<String> {
         .then(|| format!("data:image/{kind};base64,{text}"))
 }
 
-fn line(begin: Point, end: Point, style: &str, out: &mut String) {
-    if is_near(begin) && is_near(end) {
-        let _ = writeln!(
-            out,
-            "<line x1=\"{:.1}\" y1=\"{:.1}\" x2=\"{:.1}\" y2=\"{:.1}\" {style}/>",
-            begin.x, begin.y, end.x, end.y
-        );
-    }
+/// How a line and its inside look.
+struct Style {
+    stroke: String,
+    width: f64,
+    fill: Option<String>,
+    dashes: String,
+    fill_opacity: Option<&'static str>,
 }
 
-fn style(pen: &Pen) -> String {
-    let width = pen.width.max(1.0);
-    let stroke = match &*pen.style {
-        "none" => "none".to_owned(),
-        _ => colour(&pen.colour, "#000000"),
-    };
-    let dashes = match &*pen.style {
-        "dot" => "1 2",
-        "dash" => "4 2",
-        "dashdot" => "4 2 1 2",
-        "dashdotdot" => "4 2 1 2 1 2",
-        _ => "",
-    };
-    let fill = match &*pen.fill_style {
-        "solid" => colour(&pen.fill, "none"),
-        _ => "none".to_owned(),
-    };
-    let mut style = format!("stroke=\"{stroke}\" stroke-width=\"{width:.1}\" fill=\"{fill}\"");
-    if !dashes.is_empty() {
+impl Style {
+    /// A line without an inside.
+    fn line(stroke: &str, width: f64) -> Self {
+        Self {
+            stroke: stroke.to_owned(),
+            width,
+            fill: None,
+            dashes: String::new(),
+            fill_opacity: None,
+        }
+    }
+
+    fn of(pen: &Pen) -> Self {
+        let width = pen.width.max(1.0);
+        let stroke = match &*pen.style {
+            "none" => "none".to_owned(),
+            _ => colour(&pen.colour, "#000000"),
+        };
+        let dashes: &[f64] = match &*pen.style {
+            "dot" => &[1.0, 2.0],
+            "dash" => &[4.0, 2.0],
+            "dashdot" => &[4.0, 2.0, 1.0, 2.0],
+            "dashdotdot" => &[4.0, 2.0, 1.0, 2.0, 1.0, 2.0],
+            _ => &[],
+        };
+        let fill = match &*pen.fill_style {
+            "solid" => colour(&pen.fill, "none"),
+            _ => "none".to_owned(),
+        };
         let lengths: Vec<String> = dashes
-            .split(' ')
-            .filter_map(|length| length.parse::<f64>().ok())
+            .iter()
             .map(|length| format!("{:.1}", length * width))
             .collect();
-        let _ = write!(style, " stroke-dasharray=\"{}\"", lengths.join(" "));
+        Self {
+            fill: Some(fill),
+            dashes: lengths.join(" "),
+            ..Self::line(&stroke, width)
+        }
     }
-    style
+
+    fn put<'a>(&self, tag: Tag<'a>) -> Tag<'a> {
+        let mut tag = tag
+            .with("stroke", &self.stroke)
+            .numbers(1, [("stroke-width", self.width)]);
+        if !self.dashes.is_empty() {
+            tag = tag.with("stroke-dasharray", &self.dashes);
+        }
+        if let Some(fill) = &self.fill {
+            tag = tag.with("fill", fill);
+        }
+        match self.fill_opacity {
+            Some(opacity) => tag.with("fill-opacity", opacity),
+            None => tag,
+        }
+    }
 }
 
-fn drawn(drawn: &Drawn, out: &mut String) {
+fn line(begin: Point, end: Point, style: &Style, svg: &mut Svg) {
+    if is_near(begin) && is_near(end) {
+        let tag = svg
+            .tag("line")
+            .numbers(1, [("x1", begin.x), ("y1", begin.y)])
+            .numbers(1, [("x2", end.x), ("y2", end.y)]);
+        style.put(tag).close();
+    }
+}
+
+fn drawn(drawn: &Drawn, svg: &mut Svg) {
     if !points(&drawn.shape).all(is_near) {
         return;
     }
-    let style = style(&drawn.pen);
+    let style = Style::of(&drawn.pen);
     let corners = |a: &Point, b: &Point| {
         upright(
             *a,
@@ -228,80 +282,63 @@ fn drawn(drawn: &Drawn, out: &mut String) {
             },
         )
     };
+    let at = |point: &Point| (point.x, point.y);
     match &drawn.shape {
-        Shape::Line(a, b) => line(*a, *b, &style, out),
-        Shape::Rectangle(a, b) => {
-            let [x, y, width, height] = corners(a, b);
-            let _ = writeln!(
-                out,
-                "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" {style}/>"
-            );
-        }
-        Shape::Ellipse(a, b) => ellipse(corners(a, b), &style, out),
+        Shape::Line(a, b) => line(*a, *b, &style, svg),
+        Shape::Rectangle(a, b) => style.put(rect(corners(a, b), svg)).close(),
+        Shape::Ellipse(a, b) => ellipse(corners(a, b), &style, svg),
         Shape::Curve(a, b, c, d) => {
-            let _ = writeln!(
-                out,
-                "<path d=\"M{:.1} {:.1} C{:.1} {:.1} {:.1} {:.1} {:.1} {:.1}\" {style}/>",
-                a.x, a.y, b.x, b.y, c.x, c.y, d.x, d.y
-            );
+            let steps = [('M', at(a)), ('C', at(b)), (' ', at(c)), (' ', at(d))];
+            style.put(svg.tag("path").path(1, steps)).close();
         }
         Shape::Stylus(strokes) => {
-            out.push_str("<path d=\"");
-            for stroke in strokes {
-                let _ = write!(
-                    out,
-                    "M{:.1} {:.1}L{:.1} {:.1}",
-                    stroke.begin.x, stroke.begin.y, stroke.end.x, stroke.end.y
-                );
-            }
-            let _ = writeln!(out, "\" {style}/>");
+            let steps = strokes
+                .iter()
+                .flat_map(|stroke| [('M', at(&stroke.begin)), ('L', at(&stroke.end))]);
+            style.put(svg.tag("path").path(1, steps)).close();
         }
     }
 }
 
-fn ellipse([x, y, width, height]: [f64; 4], style: &str, out: &mut String) {
+fn ellipse([x, y, width, height]: [f64; 4], style: &Style, svg: &mut Svg) {
     let (a, b) = (width / 2.0, height / 2.0);
-    let _ = writeln!(
-        out,
-        "<ellipse cx=\"{:.1}\" cy=\"{:.1}\" rx=\"{a:.1}\" ry=\"{b:.1}\" {style}/>",
-        x + a,
-        y + b
-    );
+    let tag = svg
+        .tag("ellipse")
+        .numbers(1, [("cx", x + a), ("cy", y + b), ("rx", a), ("ry", b)]);
+    style.put(tag).close();
 }
 
-fn region(region: &Region, out: &mut String) {
+fn region(region: &Region, svg: &mut Svg) {
     if !is_near(region.at) || !is_near(region.size) {
         return;
     }
-    let [x, y, width, height] = upright(region.at, region.size);
+    let place = upright(region.at, region.size);
     let ink = colour(&region.colour, "#87cefa");
-    let fill = if region.filled { "0.18" } else { "0" };
-    let style = format!(
-        "stroke=\"{ink}\" stroke-width=\"1.5\" stroke-dasharray=\"6 4\" fill=\"{ink}\" fill-opacity=\"{fill}\""
-    );
+    let style = Style {
+        fill: Some(ink.clone()),
+        dashes: "6 4".to_owned(),
+        fill_opacity: Some(if region.filled { "0.18" } else { "0" }),
+        ..Style::line(&ink, 1.5)
+    };
     match &*region.kind {
-        "ellipse" => ellipse([x, y, width, height], &style, out),
-        "rectangle" => {
-            let _ = writeln!(
-                out,
-                "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" {style}/>"
-            );
-        }
+        "ellipse" => ellipse(place, &style, svg),
+        "rectangle" => style.put(rect(place, svg)).close(),
         _ => return,
     }
     if !region.text.is_empty() && is_near(region.text_at) {
         let text: String = region.text.chars().take(200).collect();
-        let _ = writeln!(
-            out,
-            "<text x=\"{:.1}\" y=\"{:.1}\" fill=\"#455a64\">{}</text>",
+        let (x, y) = (
             region.at.x + region.text_at.x,
             region.at.y + region.text_at.y,
-            escaped(&text)
         );
+        svg.tag("text")
+            .numbers(1, [("x", x), ("y", y)])
+            .with("fill", "#455a64")
+            .text(text);
     }
 }
 
-fn solid(solid: &Solid, out: &mut String) {
+fn solid(solid: &Solid, svg: &mut Svg) {
     if !is_near(solid.at) {
         return;
     }
@@ -312,20 +349,14 @@ fn solid(solid: &Solid, out: &mut String) {
         SolidKind::Ball => "#fdd835",
         SolidKind::Cube => "#78909c",
     };
-    let _ = match solid.kind {
-        SolidKind::Cube => writeln!(
-            out,
-            "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" \
-             transform=\"rotate({:.1} {x:.1} {y:.1})\" fill=\"{ink}\" stroke=\"#37474f\"/>",
-            x - half,
-            y - half,
-            solid.size,
-            solid.size,
-            solid.rotation
-        ),
-        SolidKind::Skittle | SolidKind::Ball => writeln!(
-            out,
-            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{half:.1}\" fill=\"{ink}\" stroke=\"#37474f\"/>"
-        ),
+    let tag = match solid.kind {
+        SolidKind::Cube => {
+            let turn = format_args!("rotate({:.1} {x:.1} {y:.1})", solid.rotation);
+            rect([x - half, y - half, solid.size, solid.size], svg).with("transform", turn)
+        }
+        SolidKind::Skittle | SolidKind::Ball => svg
+            .tag("circle")
+            .numbers(1, [("cx", x), ("cy", y), ("r", half)]),
     };
+    tag.style(&[("fill", ink), ("stroke", "#37474f")]).close();
 }

@@ -1,7 +1,7 @@
 //! Pictures and pages of small runs.
 
 use super::*;
-use crate::judge::trajectory::Told;
+use crate::judge::trajectory::DeviceChange;
 use lang_constraint::{Entry, Level};
 use lang_text::problem::Locale;
 
@@ -30,10 +30,10 @@ fn field() -> Field {
 fn drive() -> Trajectory {
     let mut trajectory = Trajectory::default();
     let robot = trajectory.robot("trikKitRobot");
-    let told = |ms, property: &str, value| Record::Told {
+    let change = |ms, property: &str, value| Record::Device {
         robot,
         ms,
-        told: Box::new(Told {
+        change: Box::new(DeviceChange {
             device: "marker".into(),
             port: "MarkerPort".into(),
             property: property.into(),
@@ -44,10 +44,10 @@ fn drive() -> Trajectory {
         if tick == 100 {
             trajectory
                 .records
-                .push(told(990, "isDown", Value::Bool(true)));
+                .push(change(990, "isDown", Value::Bool(true)));
             trajectory
                 .records
-                .push(told(990, "color", "#0000ff".into()));
+                .push(change(990, "color", "#0000ff".into()));
         }
         trajectory.records.push(Record::Pose {
             robot,
@@ -80,6 +80,7 @@ fn a_picture_has_all_that_stands_lies_and_drives() {
     }
     assert!(!svg.contains("<script") && !svg.contains("<b>"), "{svg}");
     assert_eq!(svg.matches("<g transform").count(), 2);
+    insta::assert_snapshot!("run", svg);
 }
 
 #[test]
@@ -87,6 +88,7 @@ fn a_page_has_all_that_was_said_and_nothing_of_it_is_a_tag() {
     let entry = |level, text: &str| Entry {
         level,
         at_ms: 2_000,
+        place: String::new(),
         text: text.to_owned(),
     };
     let entries = [

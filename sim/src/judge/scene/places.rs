@@ -1,17 +1,19 @@
 //! Where things are, and whether they are in a region.
 //!
-//! Owns the outlines that rules compare. A point on the left or upper side of a region is in it, one on the right or lower
-//! side is not; an outline that touches a side from within is in it. A robot's outline is its square without sensors; a
+//! Owns the outlines that rules compare. A point on the left or upper side of a rectangle is in it, one on the right or
+//! lower side is not; an outline that touches a side from within is not all in it. A robot's outline is its square without sensors; a
 //! device that has no body, as a display, has that of its robot, and its place is the robot's corner.
 
 use lang_constraint::{ObjectPoint, Point as Whole, Rect, Unfit};
 
 use super::Thing;
 use crate::arena::floor::MARKER_WIDTH;
+use crate::arena::graphic::Family;
 use crate::arena::outline::{Bounds, Outline, is_inside as is_inside_figure};
 use crate::arena::{Arena, solids};
-use crate::field::{Drawn, Pen, Region, Shape};
+use crate::field::{Drawn, Field, Pen, Region, Shape};
 use crate::geometry::{Point, point};
+use lang_diagram::stand_in::PIXELS_IN_CM;
 
 /// Corners of a round thing.
 const ROUND: u32 = 64;
@@ -26,54 +28,104 @@ pub(super) fn is_inside(
     how: ObjectPoint,
 ) -> Result<bool, Unfit> {
     let field = arena.field();
+    let graphic = arena.graphics.of(Family::Region, region);
     let region = field.regions.get(region).ok_or(Unfit::NoRegion)?;
-    let place = Place::of(region, &field.drawn);
+    let place = Place::of(region, field);
     if how == ObjectPoint::Center {
         let centre = centre(arena, thing).ok_or(Unfit::NoPlace)?;
-        return Ok(place.holds(centre));
+        return Ok(place.holds(graphic.back(centre)));
     }
     // A robot is asked in each tick, and needs no list of corners.
     if let Thing::Robot(index) = thing {
         let robot = arena.robots().get(index).ok_or(Unfit::NoPlace)?;
-        return Ok(place.compares(&robot.square(), how));
+        let corners = robot.square().map(|at| graphic.back(at));
+        return Ok(place.compares(&corners, how));
     }
-    let corners = outline(arena, thing).ok_or(Unfit::NoPlace)?;
+    let mut corners = outline(arena, thing).ok_or(Unfit::NoPlace)?;
+    corners.iter_mut().for_each(|at| *at = graphic.back(*at));
     Ok(place.compares(&corners, how))
 }
 
-/// The place of a region.
+/// The place of a region before it was moved.
 enum Place {
+    /// Nothing is in it.
+    Nowhere,
     /// A rectangle along the axes: its smallest and largest coordinates.
     Rectangle(Point, Point),
     /// An ellipse in such a rectangle.
     Ellipse(Point, Point),
-    /// Whatever is drawn.
-    Figure(Vec<Point>),
+    /// What is in the first figure and not in the second one.
+    Ring(Vec<Point>, Vec<Point>),
 }
 
 impl Place {
-    fn of(region: &Region, drawn: &[Drawn]) -> Self {
-        if region.kind == "bound" {
-            let bound = drawn.iter().find(|one| one.id == region.bound);
-            return Self::Figure(bound.map(figure).unwrap_or_default());
+    fn of(region: &Region, field: &Field) -> Self {
+        if region.is_bound() {
+            let bound = field.drawn.iter().find(|one| one.id == region.bound);
+            let unit = field.unit.pixels();
+            return bound.map_or(Self::Nowhere, |bound| {
+                Self::around(bound, region.ring, unit)
+            });
         }
         let (at, size) = (region.at, region.size);
         let low = point(at.x.min(at.x + size.x), at.y.min(at.y + size.y));
         let high = point(at.x.max(at.x + size.x), at.y.max(at.y + size.y));
-        if region.kind == "ellipse" {
+        if low.x >= high.x || low.y >= high.y {
+            Self::Nowhere
+        } else if region.is_ellipse() {
             Self::Ellipse(low, high)
         } else {
             Self::Rectangle(low, high)
         }
     }
 
+    /// The outline of a rectangle or an ellipse, with half of its pen in whole units of the text, filled or not; or the ring
+    /// along that outline. Lines and curves have none.
+    fn around(drawn: &Drawn, ring: f64, unit: f64) -> Self {
+        let (begin, end) = match &drawn.shape {
+            Shape::Rectangle(begin, end) | Shape::Ellipse(begin, end) => (*begin, *end),
+            Shape::Line(..) | Shape::Curve(..) | Shape::Stylus(_) => return Self::Nowhere,
+        };
+        let bounds = Bounds::of(&[begin, end]);
+        let half_pen = f64::from((drawn.pen.width / unit).round() as i32 / 2) * unit;
+        let grown = |by: f64| {
+            let (low, high) = (bounds.low, bounds.high);
+            (
+                point(low.x - by, low.y - by),
+                point(high.x + by, high.y + by),
+            )
+        };
+        let is_ellipse = matches!(drawn.shape, Shape::Ellipse(..));
+        let (low, high) = grown(half_pen);
+        let half = ring / 2.0;
+        if ring == 0.0 {
+            return match is_ellipse {
+                true => Self::Ellipse(low, high),
+                false => Self::Rectangle(low, high),
+            };
+        }
+        let (inner_low, inner_high) = grown(half_pen - half);
+        let is_hollow = inner_low.x < inner_high.x && inner_low.y < inner_high.y;
+        let inner = match (is_hollow, is_ellipse) {
+            (false, _) => Vec::new(),
+            (true, true) => ellipse(inner_low, inner_high, 0.0),
+            (true, false) => rectangle(inner_low, inner_high).to_vec(),
+        };
+        let outer = match is_ellipse {
+            true => ellipse(low, high, half),
+            false => bevelled(low, high, half),
+        };
+        Self::Ring(outer, inner)
+    }
+
     fn holds(&self, at: Point) -> bool {
         match self {
+            Self::Nowhere => false,
             Self::Rectangle(low, high) => {
                 at.x >= low.x && at.x < high.x && at.y >= low.y && at.y < high.y
             }
             Self::Ellipse(low, high) => is_in_ellipse(*low, *high, at),
-            Self::Figure(corners) => is_inside_figure(corners, at),
+            Self::Ring(outer, inner) => is_inside_figure(outer, at) && !is_inside_figure(inner, at),
         }
     }
 
@@ -85,18 +137,24 @@ impl Place {
         }
     }
 
+    /// Sides that touch are not within each other.
     fn holds_all(&self, corners: &[Point]) -> bool {
         if corners.is_empty() {
             return false;
         }
         let mut all = corners.iter();
         match self {
+            Self::Nowhere => false,
             Self::Rectangle(low, high) => {
-                all.all(|at| (low.x..=high.x).contains(&at.x) && (low.y..=high.y).contains(&at.y))
+                all.all(|at| low.x < at.x && at.x < high.x && low.y < at.y && at.y < high.y)
             }
             Self::Ellipse(low, high) => all.all(|at| is_in_ellipse(*low, *high, *at)),
-            Self::Figure(figure) => {
-                all.all(|at| is_inside_figure(figure, *at)) && !is_crossing(figure, corners)
+            Self::Ring(outer, inner) => {
+                let hole = inner.first();
+                all.all(|at| self.holds(*at))
+                    && !is_crossing(outer, corners)
+                    && !is_crossing(inner, corners)
+                    && !hole.is_some_and(|&hole| is_inside_figure(corners, hole))
             }
         }
     }
@@ -105,6 +163,7 @@ impl Place {
         let bounds = Bounds::of(corners);
         let own;
         let figure = match self {
+            Self::Nowhere => return false,
             Self::Rectangle(low, high) => {
                 if !bounds.meets(&Bounds {
                     low: *low,
@@ -119,7 +178,13 @@ impl Place {
                 own = ellipse(*low, *high, 0.0);
                 &own
             }
-            Self::Figure(figure) => figure,
+            Self::Ring(outer, inner) => {
+                let first = corners.first();
+                return is_crossing(outer, corners)
+                    || is_crossing(inner, corners)
+                    || first.is_some_and(|&first| self.holds(first))
+                    || is_inside_figure(corners, outer[0]);
+            }
         };
         let Some((&first, &own_first)) = corners.first().zip(figure.first()) else {
             return false;
@@ -128,6 +193,20 @@ impl Place {
             || is_inside_figure(figure, first)
             || is_inside_figure(corners, own_first)
     }
+}
+
+/// A rectangle with its sides so far outwards and its corners cut.
+fn bevelled(low: Point, high: Point, by: f64) -> Vec<Point> {
+    vec![
+        point(low.x, low.y - by),
+        point(high.x, low.y - by),
+        point(high.x + by, low.y),
+        point(high.x + by, high.y),
+        point(high.x, high.y + by),
+        point(low.x, high.y + by),
+        point(low.x - by, high.y),
+        point(low.x - by, low.y),
+    ]
 }
 
 fn is_crossing(figure: &[Point], corners: &[Point]) -> bool {
@@ -143,7 +222,8 @@ fn is_in_ellipse(low: Point, high: Point, at: Point) -> bool {
     }
     let x = (at.x - low.x) / width * 2.0 - 1.0;
     let y = (at.y - low.y) / height * 2.0 - 1.0;
-    x * x + y * y <= 1.0
+    // The outermost points are outside.
+    x * x + y * y < 1.0
 }
 
 fn rectangle(low: Point, high: Point) -> [Point; 4] {
@@ -251,23 +331,14 @@ fn outline(arena: &Arena, thing: Thing) -> Option<Vec<Point>> {
             .corners(0)
             .to_vec(),
         Thing::Drawn(index) => figure(field.drawn.get(index)?),
-        Thing::Image(index) => {
-            let image = field.images.get(index)?;
-            let end = point(image.at.x + image.size.x, image.at.y + image.size.y);
-            rectangle(image.at, end).to_vec()
-        }
         Thing::Region(index) => {
             let region = field.regions.get(index)?;
-            match Place::of(region, &field.drawn) {
+            match Place::of(region, field) {
+                Place::Nowhere => return None,
                 Place::Rectangle(low, high) => rectangle(low, high).to_vec(),
                 Place::Ellipse(low, high) => ellipse(low, high, 0.0),
-                Place::Figure(figure) => figure,
+                Place::Ring(figure, _) => figure,
             }
-        }
-        Thing::Comment(index) => {
-            let comment = field.comments.get(index)?;
-            let bounds = Bounds::of(&[comment.begin, comment.end]);
-            rectangle(bounds.low, bounds.high).to_vec()
         }
         Thing::Trace => return None,
     })
@@ -294,26 +365,23 @@ fn centre(arena: &Arena, thing: Thing) -> Option<Point> {
     }
 }
 
-/// The upper left corner of something on the field, and its rotation in degrees.
-pub(super) fn corner(arena: &Arena, thing: Thing) -> Option<(Point, f64)> {
-    let field = arena.field();
-    Some(match thing {
-        Thing::Solid(index) => {
-            let solid = field.solids.get(index)?;
-            let half = solid.size / 2.0;
-            (point(solid.at.x - half, solid.at.y - half), solid.rotation)
+/// The centre of a ball, skittle or cube as the original tells it: what a rule has set, else what comes back from its
+/// physics, which counts in 32 bits and in other units.
+pub(super) fn as_told(at: Point, set: Point) -> Point {
+    let told = |number: f64, set: f64| {
+        if number == set {
+            return number;
         }
-        Thing::Wall(index) => (field.walls.get(index)?.begin, 0.0),
-        Thing::Image(index) => (field.images.get(index)?.at, 0.0),
-        Thing::Region(index) => (field.regions.get(index)?.at, 0.0),
-        Thing::Comment(index) => (field.comments.get(index)?.begin, 0.0),
-        Thing::Drawn(_) => (Bounds::of(&outline(arena, thing)?).low, 0.0),
-        Thing::Robot(_) | Thing::Device(..) | Thing::Part(..) | Thing::Trace => return None,
-    })
+        let unit = f64::from(0.1f32) * PIXELS_IN_CM;
+        let centimetres = (f64::from(number as f32) / unit) as f32;
+        let metres = centimetres * 0.01f32;
+        f64::from(metres * 100.0 * unit as f32)
+    };
+    point(told(at.x, set.x), told(at.y, set.y))
 }
 
 /// A place in whole pixels.
-pub(super) fn whole(at: Point) -> Whole {
+fn whole(at: Point) -> Whole {
     Whole {
         x: (at.x + 0.5).floor() as i32,
         y: (at.y + 0.5).floor() as i32,

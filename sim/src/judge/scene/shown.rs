@@ -4,7 +4,9 @@
 
 use lang_constraint::{Point, Rect, Value};
 
-use crate::arena::screen::{Form, Object, Screen, hex};
+use super::set::{colour, truth, whole};
+use crate::arena::screen::{Form, Object, Screen};
+use screen::colour::Colour;
 
 /// Which figures a list holds, by its name.
 fn is_in(list: &str) -> Option<fn(&Form) -> bool> {
@@ -36,7 +38,7 @@ pub(super) fn property(screen: &Screen, name: &str) -> Option<Value> {
     Some(match name {
         "smiles" => Value::Bool(screen.smiles()),
         "sadSmiles" => Value::Bool(screen.sad_smiles()),
-        "background" => Value::text(&hex(screen.background())),
+        "background" => Value::colour(screen.background().number()),
         _ => {
             let is_in = is_in(name)?;
             let found = screen.objects().iter().filter(|one| is_in(&one.form));
@@ -48,7 +50,7 @@ pub(super) fn property(screen: &Screen, name: &str) -> Option<Value> {
 /// A figure with its properties.
 fn figure(object: &Object) -> Value {
     let mut fields = vec![
-        ("color", Value::Colour(object.colour.number())),
+        ("color", Value::colour(object.colour.number())),
         ("thickness", Value::Int(object.thickness)),
     ];
     match &object.form {
@@ -83,7 +85,8 @@ fn figure(object: &Object) -> Value {
         }
         Form::Arc([x, y, width, height, start, span]) => {
             let around = rect([*x, *y, *width, *height]);
-            let middle = at(x.saturating_add(width / 2), y.saturating_add(height / 2));
+            let middle = |from: &i32, length: &i32| from.saturating_add((length - 1).div_euclid(2));
+            let middle = at(middle(x, width), middle(y, height));
             fields.extend([
                 ("ellipseCenter", middle),
                 ("ellipseRect", around.clone()),
@@ -98,6 +101,57 @@ fn figure(object: &Object) -> Value {
         }
     }
     Value::Record(fields.into())
+}
+
+/// Gives a property of a figure in a list a value; false if there is no such figure or property.
+pub(super) fn set(
+    screen: &mut Screen,
+    (list, which): (&str, &str),
+    property: &str,
+    value: &Value,
+) -> bool {
+    let Some(is_in) = is_in(list) else {
+        return false;
+    };
+    let found = screen.objects_mut().iter_mut();
+    let mut found: Vec<&mut Object> = found.filter(|one| is_in(&one.form)).collect();
+    let index = match which {
+        "first" => Some(0),
+        "last" => found.len().checked_sub(1),
+        _ => which.parse().ok(),
+    };
+    let Some(object) = index.and_then(|index: usize| found.get_mut(index)) else {
+        return false;
+    };
+    let is_there = matches!(figure(object), Value::Record(fields)
+        if fields.iter().any(|(name, _)| *name == property));
+    if is_there {
+        change(object, property, value);
+    }
+    is_there
+}
+
+fn change(object: &mut Object, property: &str, value: &Value) {
+    let number = whole(value);
+    match (property, colour(value), number) {
+        ("color", Some(argb), _) => object.colour = Colour::from_number(argb & 0xff_ffff),
+        ("thickness", _, Some(number)) => object.thickness = number,
+        _ => match (&mut object.form, property, number) {
+            (Form::Point([x, _]) | Form::Text([x, _], ..), "x", Some(number)) => *x = number,
+            (Form::Point([_, y]) | Form::Text([_, y], ..), "y", Some(number)) => *y = number,
+            (Form::Text(_, text, _), "text", _) => *text = value.to_text(),
+            (Form::Text(_, _, size), "fontSize", Some(number))
+            | (Form::Ellipse([_, _, size, _], _), "w", Some(number))
+            | (Form::Ellipse([_, _, _, size], _), "h", Some(number))
+            | (Form::Arc([.., size, _]), "startAngle", Some(number))
+            | (Form::Arc([.., size]), "spanAngle", Some(number)) => *size = number,
+            (Form::Rectangle(_, filled) | Form::Ellipse(_, filled), "filled", _) => {
+                *filled = truth(value).unwrap_or(*filled);
+            }
+            // Rectangles and places are only read.
+            _ => {}
+        },
+    }
 }
 
 fn place(x: i32, y: i32) -> [(&'static str, Value); 3] {

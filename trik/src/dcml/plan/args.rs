@@ -1,4 +1,4 @@
-//! What `trik dcml plan` can be told.
+//! The options of `trik dcml plan`.
 //!
 //! Owns the options. Their forms are those of `forms`, what they do is known to `plan` and `ask`.
 
@@ -6,7 +6,7 @@ use super::forms::{self, Footing, Given, Ranges};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
-/// What `trik dcml plan` can be told.
+/// The options of `trik dcml plan`.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct PlanArgs {
     /// File with the model; - is standard input.

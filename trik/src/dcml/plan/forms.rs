@@ -1,6 +1,6 @@
 //! Names with numbers on a command line: `x=1,y=2`, `u=-1..1`, `circle:0.1`.
 //!
-//! Owns the forms. What the names mean is known to whoever asks.
+//! Owns the forms. What the names mean is known to the caller.
 
 use crate::error::Error;
 use lang_plan::obstacles::Footprint;

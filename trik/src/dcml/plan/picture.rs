@@ -8,7 +8,7 @@ use lang_dcml::system::System;
 use lang_plan::obstacles::flat::Point;
 use lang_plan::obstacles::{Obstacles, Shape};
 use lang_plan::{Outcome, Propagator};
-use std::fmt::Write;
+use lang_text::svg::{Svg, View};
 
 /// Pixels of the longer side.
 const SIDE: f64 = 900.0;
@@ -19,40 +19,46 @@ const ROBOTS: u64 = 40;
 /// Obstacles that are drawn.
 const SHAPES: usize = 100_000;
 
+/// What a pen does next, and where.
+type Step = (char, (f64, f64));
+/// Names and values of a style.
+type Style = [(&'static str, &'static str)];
+
 /// From the plane to the picture.
-struct View {
+struct Plane {
     left: f64,
     top: f64,
     scale: f64,
 }
 
-impl View {
+impl Plane {
     fn point(&self, [x, y]: Point) -> (f64, f64) {
         ((x - self.left) * self.scale, (self.top - y) * self.scale)
     }
 
-    fn line(&self, text: &mut String, points: impl IntoIterator<Item = Point>) {
+    /// The steps of a pen along points.
+    fn line(&self, points: impl IntoIterator<Item = Point>) -> impl Iterator<Item = Step> {
         let mut sign = 'M';
-        for point in points {
-            let (x, y) = self.point(point);
-            let _ = write!(text, "{sign}{x:.1} {y:.1}");
+        points.into_iter().map(move |point| {
+            let step = (sign, self.point(point));
             sign = 'L';
-        }
+            step
+        })
     }
 
-    fn circle(&self, text: &mut String, at: Point, radius: f64, style: &str) {
+    fn circle(&self, svg: &mut Svg, at: Point, radius: f64, style: &Style) {
         let (x, y) = self.point(at);
-        let radius = radius * self.scale;
-        let _ = writeln!(
-            text,
-            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius:.1}\" {style}/>"
-        );
+        svg.tag("circle")
+            .numbers(1, [("cx", x), ("cy", y), ("r", radius * self.scale)])
+            .style(style)
+            .close();
     }
 
-    fn polygon(&self, text: &mut String, corners: &[Point], style: &str) {
-        let _ = write!(text, "<path d=\"");
-        self.line(text, corners.iter().copied());
-        let _ = writeln!(text, "Z\" {style}/>");
+    fn polygon(&self, svg: &mut Svg, corners: &[Point], style: &Style) {
+        svg.tag("path")
+            .outline(1, corners.iter().map(|corner| self.point(*corner)))
+            .style(style)
+            .close();
     }
 }
 
@@ -65,49 +71,59 @@ pub(super) fn draw(
 ) -> String {
     let [(left, right), (low, high)] = asked.area;
     let margin = asked.size / 40.0;
-    let view = View {
+    let plane = Plane {
         left: left - margin,
         top: high + margin,
         scale: SIDE / (asked.size + 2.0 * margin),
     };
-    let width = (right - left + 2.0 * margin) * view.scale;
-    let height = (high - low + 2.0 * margin) * view.scale;
-    let mut text = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\" width=\"{width:.0}\" \
-         height=\"{height:.0}\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
-    );
+    let width = (right - left + 2.0 * margin) * plane.scale;
+    let height = (high - low + 2.0 * margin) * plane.scale;
+    let mut svg = Svg::new();
+    let view = View {
+        frame: [0.0, 0.0, width, height],
+        digits: 0,
+        is_sized: true,
+    };
+    svg.picture(view).open();
+    svg.tag("rect")
+        .style(&[("width", "100%"), ("height", "100%"), ("fill", "white")])
+        .close();
     let space = obstacles.workspace().unwrap_or([left, low, right, high]);
     let [a, b, c, d] = space;
-    view.polygon(
-        &mut text,
-        &[[a, b], [c, b], [c, d], [a, d]],
-        "fill=\"none\" stroke=\"#bbb\" stroke-dasharray=\"6 4\"",
-    );
-    let style = "fill=\"#667\" stroke=\"#667\"";
+    let style = [
+        ("fill", "none"),
+        ("stroke", "#bbb"),
+        ("stroke-dasharray", "6 4"),
+    ];
+    plane.polygon(&mut svg, &[[a, b], [c, b], [c, d], [a, d]], &style);
+    let style = [("fill", "#667"), ("stroke", "#667")];
     for shape in obstacles.shapes().iter().take(SHAPES) {
         match shape {
-            Shape::Circle(at, radius) => view.circle(&mut text, *at, *radius, style),
+            Shape::Circle(at, radius) => plane.circle(&mut svg, *at, *radius, &style),
             Shape::Rectangle(..) | Shape::Polygon(_) | Shape::Wall(..) => {
-                view.polygon(&mut text, &shape.corners(), style);
+                plane.polygon(&mut svg, &shape.corners(), &style);
             }
         }
     }
     if let ([Some(x), Some(y)], radius) = asked.goal {
-        let style = "fill=\"#2a2\" fill-opacity=\"0.25\" stroke=\"#2a2\"";
-        view.circle(&mut text, [x, y], radius, style);
+        let style = [
+            ("fill", "#2a2"),
+            ("fill-opacity", "0.25"),
+            ("stroke", "#2a2"),
+        ];
+        plane.circle(&mut svg, [x, y], radius, &style);
     }
-    branches(&mut text, &view, robot, asked, outcome);
-    path(&mut text, &view, robot, asked, outcome);
-    text.push_str("</svg>\n");
-    text
+    branches(&mut svg, &plane, robot, asked, outcome);
+    path(&mut svg, &plane, robot, asked, outcome);
+    svg.finish()
 }
 
-fn branches(text: &mut String, view: &View, robot: &mut Robot, asked: &Asked, outcome: &Outcome) {
+fn branches(svg: &mut Svg, plane: &Plane, robot: &mut Robot, asked: &Asked, outcome: &Outcome) {
     let states = robot.states();
     let mut propagator = Propagator::new(robot, asked.problem.step);
     let every = outcome.tree.len().div_ceil(BRANCHES).max(1);
-    text.push_str("<path fill=\"none\" stroke=\"#58c\" stroke-opacity=\"0.3\" d=\"");
-    for (from, action, steps, _) in outcome.tree.branches().step_by(every) {
+    let branches = outcome.tree.branches().step_by(every);
+    let lines = branches.flat_map(|(from, action, steps, _)| {
         let mut place = propagator.place(&from[..states]);
         let mut points = vec![asked.parts.pose(&place).at];
         for step in 1..=steps {
@@ -116,30 +132,46 @@ fn branches(text: &mut String, view: &View, robot: &mut Robot, asked: &Asked, ou
                 points.push(asked.parts.pose(&place).at);
             }
         }
-        view.line(text, points);
-    }
-    text.push_str("\"/>\n");
+        plane.line(points)
+    });
+    svg.tag("path")
+        .style(&[
+            ("fill", "none"),
+            ("stroke", "#58c"),
+            ("stroke-opacity", "0.3"),
+        ])
+        .path(1, lines)
+        .close();
 }
 
-fn path(text: &mut String, view: &View, robot: &mut Robot, asked: &Asked, outcome: &Outcome) {
-    let mut draw_robot = |place: &[f64], style: &str| {
+fn path(svg: &mut Svg, plane: &Plane, robot: &mut Robot, asked: &Asked, outcome: &Outcome) {
+    let mut draw_robot = |place: &[f64], style: &Style| {
         let pose = asked.parts.pose(place);
         let corners = asked.footprint.corners_at(pose);
         if corners.is_empty() {
-            view.circle(text, pose.at, asked.footprint.reach(), style);
+            plane.circle(svg, pose.at, asked.footprint.reach(), style);
         } else {
-            view.polygon(text, &corners, style);
+            plane.polygon(svg, &corners, style);
         }
     };
     let Some(path) = &outcome.path else {
         let start = Propagator::new(robot, asked.problem.step).place(&asked.problem.start);
-        draw_robot(&start, "fill=\"none\" stroke=\"#c60\"");
-        draw_robot(
-            &outcome.nearest,
-            "fill=\"none\" stroke=\"#c60\" stroke-dasharray=\"4 3\"",
-        );
+        draw_robot(&start, &[("fill", "none"), ("stroke", "#c60")]);
+        let dashes = ("stroke-dasharray", "4 3");
+        let style = [("fill", "none"), ("stroke", "#c60"), dashes];
+        draw_robot(&outcome.nearest, &style);
         return;
     };
+    let at_the_ends = [
+        ("fill", "#fa5"),
+        ("fill-opacity", "0.6"),
+        ("stroke", "#c60"),
+    ];
+    let on_the_way = [
+        ("fill", "none"),
+        ("stroke", "#c60"),
+        ("stroke-opacity", "0.5"),
+    ];
     let total = path.steps();
     let every = total.div_ceil(ROBOTS).max(1);
     let mut points = Vec::new();
@@ -147,16 +179,14 @@ fn path(text: &mut String, view: &View, robot: &mut Robot, asked: &Asked, outcom
     path.replay(robot, 1, |_, place, _| {
         points.push(asked.parts.pose(place).at);
         if at == 0 || at == total {
-            draw_robot(place, "fill=\"#fa5\" fill-opacity=\"0.6\" stroke=\"#c60\"");
+            draw_robot(place, &at_the_ends);
         } else if at % every == 0 {
-            draw_robot(
-                place,
-                "fill=\"none\" stroke=\"#c60\" stroke-opacity=\"0.5\"",
-            );
+            draw_robot(place, &on_the_way);
         }
         at += 1;
     });
-    text.push_str("<path fill=\"none\" stroke=\"#c30\" stroke-width=\"2\" d=\"");
-    view.line(text, points);
-    text.push_str("\"/>\n");
+    svg.tag("path")
+        .style(&[("fill", "none"), ("stroke", "#c30"), ("stroke-width", "2")])
+        .path(1, plane.line(points))
+        .close();
 }

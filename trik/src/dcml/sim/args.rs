@@ -1,11 +1,11 @@
-//! What `trik dcml sim` can be told.
+//! The options of `trik dcml sim`.
 //!
 //! Owns the options. Knows nothing of what they do.
 
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
-/// What `trik dcml sim` can be told.
+/// The options of `trik dcml sim`.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct SimArgs {
     /// A file with a model, - for standard input, or the name of a shipped model.

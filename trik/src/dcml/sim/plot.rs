@@ -1,11 +1,11 @@
 //! A solution as a picture: the path seen from above, and what changes with time.
 //!
-//! Owns the layout. Writes SVG as text, with names of the model escaped.
+//! Owns the layout.
 
 use super::table::{Column, Table};
 use crate::limits;
-use lang_text::escape::escaped;
-use std::fmt::Write as _;
+use lang_text::svg::{Svg, View};
+use std::fmt::{Arguments, Display};
 
 /// Size of the path's panel and of those below it, without their margins, in px.
 const PATH: (f64, f64) = (560.0, 400.0);
@@ -34,60 +34,65 @@ impl Panel {
     }
 
     /// Frame, numbers at the edges, names of the axes.
-    fn frame(&self, out: &mut String, across: &str, upwards: &str) {
+    fn frame(&self, svg: &mut Svg, across: &str, upwards: &str) {
         let (left, top, (width, height)) = (self.left, self.top, self.size);
         for x in ticks(self.across) {
             let (at, _) = self.point(x, 0.0);
             let low = top + height;
-            let _ = writeln!(
-                out,
-                "<path class=\"g\" d=\"M{at:.1} {top}V{low}\"/>\
-                 <text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
-                low + 14.0,
-                short(x)
-            );
+            grid(svg, format_args!("M{at:.1} {top}V{low}"));
+            text(svg, (at, low + 14.0), "middle", short(x));
         }
         for y in ticks(self.upwards) {
             let (_, at) = self.point(0.0, y);
-            let _ = writeln!(
-                out,
-                "<path class=\"g\" d=\"M{left} {at:.1}h{width}\"/>\
-                 <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
-                left - 5.0,
-                at + 4.0,
-                short(y)
-            );
+            grid(svg, format_args!("M{left} {at:.1}h{width}"));
+            text(svg, (left - 5.0, at + 4.0), "end", short(y));
         }
-        let _ = writeln!(
-            out,
-            "<rect x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\" class=\"f\"/>\n\
-             <text x=\"{left}\" y=\"{:.1}\" font-weight=\"bold\">{upwards}</text>\n\
-             <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{across}</text>",
-            top - 7.0,
-            left + width,
-            top + height + 28.0
-        );
+        svg.tag("rect")
+            .with("x", left)
+            .with("y", top)
+            .with("width", width)
+            .with("height", height)
+            .with("class", "f")
+            .close();
+        svg.tag("text")
+            .with("x", left)
+            .numbers(1, [("y", top - 7.0)])
+            .with("font-weight", "bold")
+            .text(upwards);
+        text(svg, (left + width, top + height + 28.0), "end", across);
     }
 
     /// A line through points; angles are not drawn across where they wrap, nor anything across what is no number.
-    fn line(&self, out: &mut String, points: impl Iterator<Item = (f64, f64)>, is_circle: bool) {
-        out.push_str("<path class=\"l\" d=\"");
+    fn line(&self, svg: &mut Svg, points: impl Iterator<Item = (f64, f64)>, is_circle: bool) {
         let mut last: Option<f64> = None;
-        for (x, y) in points {
+        let steps = points.filter_map(|(x, y)| {
             if !(x.is_finite() && y.is_finite()) {
                 last = None;
-                continue;
+                return None;
             }
             let wraps =
                 last.is_some_and(|last| is_circle && (y - last).abs() > std::f64::consts::PI);
             let sign = if last.is_none() || wraps { 'M' } else { 'L' };
-            let (at, down) = self.point(x, y);
-            let _ = write!(out, "{sign}{at:.2} {down:.2}");
             last = Some(y);
-        }
-        out.push_str("\"/>\n");
+            Some((sign, self.point(x, y)))
+        });
+        svg.tag("path").with("class", "l").path(2, steps).close();
     }
 }
+
+fn grid(svg: &mut Svg, path: Arguments<'_>) {
+    svg.tag("path").with("class", "g").with("d", path).close();
+}
+
+fn text(svg: &mut Svg, (x, y): (f64, f64), anchor: &str, text: impl Display) {
+    svg.tag("text")
+        .numbers(1, [("x", x), ("y", y)])
+        .with("text-anchor", anchor)
+        .text(text);
+}
+
+const STYLE: &str = "<style>.g{stroke:#e8e8e8;fill:none}.f{stroke:#808080;fill:none}\
+    .l{stroke:#0057b8;stroke-width:1.6;fill:none}</style>\n";
 
 /// The picture.
 pub(super) fn svg(title: &str, table: &Table) -> String {
@@ -102,12 +107,28 @@ pub(super) fn svg(title: &str, table: &Table) -> String {
     let path = find("x")
         .zip(find("y"))
         .or((table.configs >= 2).then_some((0, 1)));
-    let mut out = String::new();
     let mut top = TOP + 10.0;
+    let below_path = top + path.map_or(0.0, |_| PATH.1 + BOTTOM + TOP);
+    let each = PANEL.1 + BOTTOM + 16.0;
+    let (width, height) = (LEFT + PATH.0 + RIGHT, below_path + each * shown as f64);
+    let mut svg = Svg::new();
+    let view = View {
+        frame: [0.0, 0.0, width, height],
+        digits: 0,
+        is_sized: true,
+    };
+    svg.picture(view)
+        .style(&[("font-family", "sans-serif"), ("font-size", "12")])
+        .open();
+    svg.tag("title").text(title);
+    svg.raw(STYLE);
+    svg.tag("rect")
+        .numbers(0, [("width", width), ("height", height)])
+        .with("fill", "#ffffff")
+        .close();
     if let Some((x, y)) = path {
-        let (x, y) = (x + 1, y + 1);
-        draw_path(&mut out, table, (x, y), top);
-        top += PATH.1 + BOTTOM + TOP;
+        draw_path(&mut svg, table, (x + 1, y + 1), top);
+        top = below_path;
     }
     for (at, column) in names.clone().enumerate().take(shown) {
         let panel = Panel {
@@ -118,25 +139,17 @@ pub(super) fn svg(title: &str, table: &Table) -> String {
             upwards: range(table, at + 1),
         };
         let is_last = at + 1 == shown;
-        panel.frame(&mut out, if is_last { "t, s" } else { "" }, &label(column));
+        let across = if is_last { "t, s" } else { "" };
+        panel.frame(&mut svg, across, &label(column));
         let points = table.rows.iter().map(|row| (row[0], row[at + 1]));
-        panel.line(&mut out, points, column.is_circle);
-        top += PANEL.1 + BOTTOM + 16.0;
+        panel.line(&mut svg, points, column.is_circle);
+        top += each;
     }
-    let (width, height) = (LEFT + PATH.0 + RIGHT, top);
-    format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-         viewBox=\"0 0 {width} {height}\" font-family=\"sans-serif\" font-size=\"12\">\n\
-         <title>{}</title>\n\
-         <style>.g{{stroke:#e8e8e8;fill:none}}.f{{stroke:#808080;fill:none}}\
-         .l{{stroke:#0057b8;stroke-width:1.6;fill:none}}</style>\n\
-         <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n{out}</svg>\n",
-        escaped(title)
-    )
+    svg.finish()
 }
 
 /// The path, as long to the side as upwards, with its begin and its end.
-fn draw_path(out: &mut String, table: &Table, (x, y): (usize, usize), top: f64) {
+fn draw_path(svg: &mut Svg, table: &Table, (x, y): (usize, usize), top: f64) {
     let (across, upwards) = (range(table, x), range(table, y));
     let unit = ((across.1 - across.0) / PATH.0).max((upwards.1 - upwards.0) / PATH.1);
     let around = |(from, to): (f64, f64), size: f64| {
@@ -152,8 +165,8 @@ fn draw_path(out: &mut String, table: &Table, (x, y): (usize, usize), top: f64) 
     };
     let label = |at: usize| label(&table.columns[at]);
     let upwards = format!("{} over {}", label(y), label(x));
-    panel.frame(out, &label(x), &upwards);
-    panel.line(out, table.rows.iter().map(|row| (row[x], row[y])), false);
+    panel.frame(svg, &label(x), &upwards);
+    panel.line(svg, table.rows.iter().map(|row| (row[x], row[y])), false);
     let ends = [
         (table.rows.first(), "#2e8b57"),
         (table.rows.last(), "#c0392b"),
@@ -161,10 +174,10 @@ fn draw_path(out: &mut String, table: &Table, (x, y): (usize, usize), top: f64) 
     for (row, colour) in ends {
         if let Some(row) = row.filter(|row| row[x].is_finite() && row[y].is_finite()) {
             let (at, down) = panel.point(row[x], row[y]);
-            let _ = writeln!(
-                out,
-                "<circle cx=\"{at:.2}\" cy=\"{down:.2}\" r=\"4\" fill=\"{colour}\"/>"
-            );
+            svg.tag("circle")
+                .numbers(2, [("cx", at), ("cy", down)])
+                .style(&[("r", "4"), ("fill", colour)])
+                .close();
         }
     }
 }
@@ -228,7 +241,7 @@ fn short(number: f64) -> String {
 
 fn label(column: &Column) -> String {
     let unit = column.unit.as_ref().map(|unit| format!(", {unit}"));
-    escaped(&format!("{}{}", column.name, unit.unwrap_or_default()))
+    format!("{}{}", column.name, unit.unwrap_or_default())
 }
 
 #[cfg(test)]
@@ -266,6 +279,7 @@ mod tests {
         };
         assert_eq!(signs(lines[0]), "MLL");
         assert_eq!(signs(lines[3]), "MML");
+        insta::assert_snapshot!("plot", svg);
     }
 
     #[test]

@@ -117,7 +117,7 @@ fn robots_side_by_side_send_each_other_messages() {
     let Some(home) = Home::new() else { return };
     let home = Arc::new(home);
     let (one, other) = (Reachable::beside(&home, &[]), Reachable::beside(&home, &[]));
-    // Says what it has heard to whoever sends something.
+    // Repeats what it has heard to every sender.
     let echo = "mailbox.setHullNumber(1); print('listens'); var text = mailbox.receive(); mailbox.send(2, 'you said ' + text); script.wait(60000);";
     let mut listener = one.spawn("echo.js", echo);
     listener.says("listens");

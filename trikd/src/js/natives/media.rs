@@ -4,6 +4,7 @@
 //! as a text, because a program goes on without it.
 
 use super::{Own, failed, put};
+use crate::display::Unshown;
 use crate::js::platform::Shown;
 use rquickjs::{Ctx, Object};
 use std::rc::Rc;
@@ -13,7 +14,8 @@ use std::rc::Rc;
 /// # Errors
 /// No memory.
 pub fn install<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
-    let told = |done: Result<(), String>| done.err().unwrap_or_default();
+    let told =
+        |done: Result<(), Unshown>| done.err().map_or_else(String::new, |why| why.to_string());
     let o = own.clone();
     put(native, "draw", move |line: String| {
         told(o.platform.show(&o.shared, Shown::Order(&line)))
@@ -37,7 +39,7 @@ pub fn install<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()>
         "photo",
         move |ctx: Ctx<'js>, width: u16, height: u16| {
             let seen = o.platform.photo(&o.shared);
-            let seen = seen.map_err(|reason| failed(&ctx, &reason))?;
+            let seen = seen.map_err(|reason| failed(&ctx, reason))?;
             let sized = seen.scaled(width, height);
             Ok::<_, rquickjs::Error>(sized.to_rgb())
         },

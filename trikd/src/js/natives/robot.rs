@@ -50,7 +50,7 @@ impl<T> Handles<T> {
 /// The exception for a failure of the tree, with what `fault` says.
 pub fn unreadable(ctx: &Ctx<'_>, brick: &Brick, place: &str, error: &io::Error) -> Error {
     if !brick.tree().is_mounted() {
-        return failed(ctx, &format!("{place}: {error}"));
+        return failed(ctx, format!("{place}: {error}"));
     }
     let root = brick.tree().root();
     let node = root.join(place);
@@ -70,7 +70,7 @@ pub fn unreadable(ctx: &Ctx<'_>, brick: &Brick, place: &str, error: &io::Error) 
     } else {
         String::new()
     };
-    failed(ctx, &format!("{place}: {error}{hint}"))
+    failed(ctx, format!("{place}: {error}{hint}"))
 }
 
 fn is_waiting(error: &io::Error) -> bool {

@@ -43,7 +43,7 @@ fn texts<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     let o = own.clone();
     put(native, "include", move |ctx: Ctx<'js>, file: String| {
         let text = o.platform.include(&o.shared, &file);
-        let text = text.map_err(|reason| failed(&ctx, &format!("include: {reason}")))?;
+        let text = text.map_err(|reason| failed(&ctx, format!("include: {reason}")))?;
         evaluate(&ctx, &text, &file).map(drop)
     })?;
     let o = own.clone();
@@ -78,7 +78,7 @@ fn survive(own: &Own, failure: &Failure) -> bool {
 
 fn files<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     let told =
-        |ctx: &Ctx<'js>, file: &str, error: &io::Error| failed(ctx, &format!("{file}: {error}"));
+        |ctx: &Ctx<'js>, file: &str, error: &io::Error| failed(ctx, format!("{file}: {error}"));
     let o = own.clone();
     put(
         native,
@@ -100,7 +100,7 @@ fn files<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     let o = own.clone();
     put(native, "readAll", move |ctx: Ctx<'js>, file: String| {
         let text = o.platform.read_file(&o.shared, &file);
-        let text = text.map_err(|reason| failed(&ctx, &reason))?;
+        let text = text.map_err(|reason| failed(&ctx, reason))?;
         let lines = text.split_inclusive('\n').map(str::to_owned);
         Ok::<_, Error>(lines.collect::<Vec<_>>())
     })?;
@@ -115,7 +115,7 @@ fn files<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
         "system",
         move |ctx: Ctx<'js>, command: String, waits: bool| {
             let code = o.platform.system(&o.shared, &command, waits);
-            code.map_err(|error| failed(&ctx, &format!("script.system: {error}")))
+            code.map_err(|error| failed(&ctx, format!("script.system: {error}")))
         },
     )
 }
@@ -124,7 +124,7 @@ fn mailbox<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
     let o = own.clone();
     put(native, "mailbox", move |ctx: Ctx<'js>, words: String| {
         let answer = o.platform.mailbox(&o.shared, words);
-        answer.map_err(|error| failed(&ctx, &format!("mailbox: {error}")))
+        answer.map_err(|error| failed(&ctx, format!("mailbox: {error}")))
     })?;
     let o = own.clone();
     put(native, "takeMail", move || o.shared.take_mail())?;
@@ -145,7 +145,7 @@ fn threads<'js>(native: &Object<'js>, own: &Rc<Own>) -> rquickjs::Result<()> {
             };
             o.platform
                 .start(&o.shared, job)
-                .map_err(|reason| failed(&ctx, &format!("Threading: {reason}")))
+                .map_err(|reason| failed(&ctx, format!("Threading: {reason}")))
         },
     )?;
     let o = own.clone();

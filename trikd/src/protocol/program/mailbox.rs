@@ -1,6 +1,6 @@
 //! The questions of a program to the mailbox, as types, and how they are written.
 //!
-//! Owns their words. What is answered is decided by whoever has a mailbox: the daemon, a program that runs alone, the
+//! Owns their words. What is answered is decided by the owner of a mailbox: the daemon, a program that runs alone, the
 //! judge. Texts of programs stand in them, so what is no number is not refused but missing.
 
 use std::fmt;

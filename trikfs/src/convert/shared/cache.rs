@@ -3,6 +3,7 @@
 //! Owns its names, its permissions and its size. Knows nothing of what the files contain.
 //! Code from this directory is executed, so nobody else may be able to write there.
 
+use super::refusal::CacheError;
 use crate::limits;
 use std::ffi::OsString;
 use std::fs::{self, DirBuilder, File, Metadata, OpenOptions};
@@ -10,10 +11,7 @@ use std::io::{self, Read, Write};
 use std::os::unix::fs::{DirBuilderExt, MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
-use std::time::{Duration, SystemTime};
-
-/// Age from which an abandoned temporary file is swept away; far above the time limit of a compiler.
-const TEMPORARY_AGE: Duration = Duration::from_secs(3600);
+use std::time::SystemTime;
 
 /// A directory that belongs to this user alone.
 #[derive(Clone, Debug)]
@@ -27,7 +25,7 @@ impl Cache {
     /// directory of the user's own below the directory for temporary files.
     ///
     /// Fails if it belongs to somebody else or others can write to it.
-    pub fn open(dir: Option<&Path>) -> Result<Self, String> {
+    pub fn open(dir: Option<&Path>) -> Result<Self, CacheError> {
         let user = nix::unistd::geteuid().as_raw();
         if let Some(dir) = dir {
             return Self::open_at(dir, user);
@@ -41,12 +39,14 @@ impl Cache {
             return Self::open_at(&fallback, user);
         };
         Self::open_at(&usual, user).or_else(|first| {
-            Self::open_at(&fallback, user).map_err(|second| format!("{first}; {second}"))
+            Self::open_at(&fallback, user)
+                .map_err(|second| CacheError::Both(Box::new([first, second])))
         })
     }
 
-    fn open_at(dir: &Path, user: u32) -> Result<Self, String> {
-        let fail = |error: io::Error| format!("cache directory {}: {error}", dir.display());
+    fn open_at(dir: &Path, user: u32) -> Result<Self, CacheError> {
+        let shown = dir;
+        let fail = |error: io::Error| CacheError::system(shown, &error);
         let dir = std::path::absolute(dir).map_err(fail)?;
         DirBuilder::new()
             .recursive(true)
@@ -75,13 +75,12 @@ impl Cache {
     }
 
     /// Makes an entry with these contents, all at once; nothing happens if it has them already.
-    pub fn put(&self, name: &str, contents: &[u8]) -> Result<PathBuf, String> {
+    pub fn put(&self, name: &str, contents: &[u8]) -> Result<PathBuf, CacheError> {
         let path = self.path(name);
         if same_contents(&path, contents) {
             self.touch(&path);
             return Ok(path);
         }
-        let fail = |error: io::Error| format!("cache directory {}: {error}", self.dir.display());
         let temporary = self.temporary("");
         let written = (|| {
             let mut file = OpenOptions::new()
@@ -94,13 +93,13 @@ impl Cache {
         })();
         if let Err(error) = written {
             let _ = fs::remove_file(&temporary);
-            return Err(fail(error));
+            return Err(CacheError::system(&self.dir, &error));
         }
         self.adopt(&temporary, name)
     }
 
     /// Renames a finished temporary file to its final name.
-    pub fn adopt(&self, temporary: &Path, name: &str) -> Result<PathBuf, String> {
+    pub fn adopt(&self, temporary: &Path, name: &str) -> Result<PathBuf, CacheError> {
         let path = self.path(name);
         // A name must never point at a file whose bytes a power cut can still lose.
         let moved = File::open(temporary)
@@ -108,7 +107,7 @@ impl Cache {
             .and_then(|()| fs::rename(temporary, &path));
         if let Err(error) = moved {
             let _ = fs::remove_file(temporary);
-            return Err(format!("cache directory {}: {error}", self.dir.display()));
+            return Err(CacheError::system(&self.dir, &error));
         }
         self.prune(&path);
         Ok(path)
@@ -143,7 +142,9 @@ impl Cache {
             match entry.file_name().to_str() {
                 Some(name)
                     if name.starts_with("tmp-")
-                        && modified.elapsed().is_ok_and(|age| age > TEMPORARY_AGE) =>
+                        && modified
+                            .elapsed()
+                            .is_ok_and(|age| age > limits::CACHE_TEMPORARY_AGE) =>
                 {
                     let _ = fs::remove_file(entry.path());
                 }
@@ -176,22 +177,19 @@ fn usual_dir(user: u32, xdg: Option<OsString>, home: Option<OsString>) -> Option
         .map(|caches| caches.join("trikfs"))
 }
 
-fn refuse_unless_private(dir: &Path, found: &Metadata, user: u32) -> Result<(), String> {
-    let shown = dir.display();
+fn refuse_unless_private(dir: &Path, found: &Metadata, user: u32) -> Result<(), CacheError> {
     if !found.is_dir() {
-        return Err(format!("cache directory {shown}: not a directory"));
+        return Err(CacheError::NotADirectory(dir.to_owned()));
     }
     if found.uid() != user {
-        return Err(format!(
-            "cache directory {shown}: belongs to user {}, not to user {user}; choose another one with --cache",
-            found.uid()
-        ));
+        return Err(CacheError::Foreign {
+            dir: dir.to_owned(),
+            owner: found.uid(),
+            user,
+        });
     }
     if found.mode() & 0o022 != 0 {
-        return Err(format!(
-            "cache directory {shown}: others can write to it (mode {:04o}); make it private with chmod go-w",
-            found.mode() & 0o7777
-        ));
+        return Err(CacheError::Writable(dir.to_owned(), found.mode() & 0o7777));
     }
     Ok(())
 }
@@ -227,6 +225,7 @@ mod tests {
     use super::*;
     use crate::scratch::Scratch;
     use std::os::unix::fs::{PermissionsExt, symlink};
+    use std::time::Duration;
 
     #[test]
     fn a_new_directory_is_private() {
@@ -246,7 +245,7 @@ mod tests {
         let dir = scratch.path("open");
         fs::create_dir(&dir).expect("created");
         fs::set_permissions(&dir, fs::Permissions::from_mode(0o770)).expect("chmod");
-        let refusal = Cache::open(Some(&dir)).expect_err("refused");
+        let refusal = Cache::open(Some(&dir)).expect_err("refused").to_string();
         assert!(
             refusal
                 .ends_with("others can write to it (mode 0770); make it private with chmod go-w"),
@@ -259,6 +258,7 @@ mod tests {
         let scratch = Scratch::new();
         let stranger = nix::unistd::geteuid().as_raw() + 1;
         let refusal = Cache::open_at(&scratch.path("x"), stranger).expect_err("refused");
+        let refusal = refusal.to_string();
         assert!(refusal.contains("belongs to user"), "{refusal}");
     }
 
@@ -270,6 +270,7 @@ mod tests {
         assert!(
             Cache::open(Some(&scratch.path("link")))
                 .expect_err("refused")
+                .to_string()
                 .ends_with("not a directory")
         );
         fs::write(scratch.path("file"), "").expect("written");

@@ -3,6 +3,8 @@
 //!
 //! Looks at the file header and the program headers only (System V ABI, chapter 4 and 5); the linker judges the rest.
 
+use super::refusal::NotLoadable;
+
 /// e_type of a shared object, at this offset.
 const ET_DYN: u16 = 3;
 const TYPE_AT: usize = 16;
@@ -36,30 +38,26 @@ const BITS_64: Layout = Layout {
 };
 
 /// Says why `bytes` cannot be a shared library for this machine.
-pub(super) fn check(bytes: &[u8]) -> Result<(), String> {
+pub(super) fn check(bytes: &[u8]) -> Result<(), NotLoadable> {
     if !bytes.starts_with(b"\x7fELF") {
-        return Err("not a shared library".to_owned());
+        return Err(NotLoadable::NotElf);
     }
-    let cut = || "not a whole shared library: it was cut short".to_owned();
-    let class = *bytes.get(4).ok_or_else(cut)?;
-    let order = *bytes.get(5).ok_or_else(cut)?;
+    let class = *bytes.get(4).ok_or(NotLoadable::Cut)?;
+    let order = *bytes.get(5).ok_or(NotLoadable::Cut)?;
     let native_order = if cfg!(target_endian = "little") { 1 } else { 2 };
     let layout = match class {
         1 if size_of::<usize>() == 4 && order == native_order => BITS_32,
         2 if size_of::<usize>() == 8 && order == native_order => BITS_64,
-        _ => return Err("a library for another machine".to_owned()),
+        _ => return Err(NotLoadable::OtherMachine),
     };
-    let kind = u16_at(bytes, TYPE_AT).ok_or_else(cut)?;
+    let kind = u16_at(bytes, TYPE_AT).ok_or(NotLoadable::Cut)?;
     if kind != ET_DYN {
-        return Err(
-            "not a shared library, but another kind of object file; build it with -shared"
-                .to_owned(),
-        );
+        return Err(NotLoadable::OtherKind);
     }
     segments_are_inside(bytes, &layout)
         .filter(|inside| *inside)
         .map(|_| ())
-        .ok_or_else(cut)
+        .ok_or(NotLoadable::Cut)
 }
 
 /// Nothing if a header is not there.
@@ -120,13 +118,13 @@ mod tests {
         };
         assert_eq!(
             check(b"#!/bin/sh").expect_err("refused"),
-            "not a shared library"
+            NotLoadable::NotElf
         );
         assert_eq!(
             changed(4, if size_of::<usize>() == 8 { 1 } else { 2 }),
-            "a library for another machine"
+            NotLoadable::OtherMachine
         );
-        assert!(changed(16, 1).ends_with("build it with -shared"));
+        assert_eq!(changed(16, 1), NotLoadable::OtherKind);
     }
 
     #[test]

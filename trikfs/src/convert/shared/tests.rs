@@ -2,6 +2,8 @@
 
 use super::*;
 use crate::convert::inline_c::Compiler;
+use crate::errno::Error;
+use crate::failure::Blame;
 use crate::scratch::Scratch;
 use config::description::Place;
 use std::fs;
@@ -29,12 +31,13 @@ static int open_half(const trikfs_open_info *info, void **state) {
 static int half(void *state, const uint8_t *in, uint32_t in_size, uint8_t *out, uint32_t out_size) {
   struct half *half = state;
   if (in[0] == 255) return 6;
+  if (in[0] == 254) return 8;
   half->have = !half->have;
   if (half->have) { half->first = in[0]; return TRIKFS_CONSUMED; }
   out[0] = (uint8_t)((half->first + in[0]) * half->gain);
   return TRIKFS_OK;
 }
-static const char *explain(void *state, int code) { return code == 5 ? "gain must be above 0" : "255 means no echo"; }
+static const char *explain(void *state, int code) { return code == 5 ? "gain must be above 0" : code == 8 ? "ENODEV: no sensor on the cable" : "255 means no echo"; }
 static int same(void *state, const uint8_t *in, uint32_t in_size, uint8_t *out, uint32_t out_size) {
   memcpy(out, in, out_size < in_size ? out_size : in_size);
   return TRIKFS_OK;
@@ -63,7 +66,7 @@ fn plain(scratch: &Scratch, name: &str, add: u8) -> Option<PathBuf> {
     library(scratch, name, &PLAIN.replace("ADD", &add.to_string()))
 }
 
-fn open(library: &Library, size: usize, params: &[(&str, f64)]) -> Result<NativeStage, String> {
+fn open(library: &Library, size: usize, params: &[(&str, f64)]) -> Result<NativeStage, Fault> {
     open_logging(library, size, params, Arc::new(|_| {}))
 }
 
@@ -72,7 +75,7 @@ fn open_logging(
     size: usize,
     params: &[(&str, f64)],
     log: Arc<dyn Fn(&str) + Send + Sync>,
-) -> Result<NativeStage, String> {
+) -> Result<NativeStage, Fault> {
     let params: BTreeMap<String, f64> = params
         .iter()
         .map(|(name, value)| ((*name).to_owned(), *value))
@@ -87,9 +90,10 @@ fn open_logging(
     })
 }
 
-fn refusal(result: Result<Library, String>, scratch: &Scratch) -> String {
+fn refusal(result: Result<Library, LibraryError>, scratch: &Scratch) -> String {
     result
         .expect_err("refused")
+        .to_string()
         .replace(&scratch.dir().display().to_string(), "DIR")
 }
 
@@ -109,7 +113,7 @@ fn a_plain_library_converts_and_may_scribble_over_its_input() {
     assert_eq!(output, [2, 3, 0]);
     assert_eq!(
         stage.convert(&[1, 99, 3], &mut output),
-        Err("libadd.so: converter returned 7".to_owned())
+        Err("libadd.so: converter returned 7".into())
     );
     assert_eq!(
         stage.convert(&[5, 6, 7], &mut output),
@@ -157,14 +161,20 @@ fn each_opening_of_a_versioned_converter_has_a_state_of_its_own() {
     assert_eq!(output, [14]);
     assert_eq!(
         first.convert(&[255], &mut output),
-        Err("libhalf.so#half: 255 means no echo".to_owned())
+        Err("libhalf.so#half: 255 means no echo".into())
+    );
+    // The word that blames the device stays the first, where it is looked for.
+    let lost = first.convert(&[254], &mut output).expect_err("no sensor");
+    assert_eq!(
+        Error::of_converter(&lost),
+        Error::NoDevice("libhalf.so#half: no sensor on the cable".to_owned())
     );
     assert_eq!(logged.try_iter().collect::<Vec<_>>(), ["front/eye"]);
     let refused = open(&library, 1, &[("gain", -1.0)]).expect_err("refused");
-    assert_eq!(refused, "libhalf.so#half: gain must be above 0");
+    assert_eq!(refused.text(), "libhalf.so#half: gain must be above 0");
     let refused = open(&library, 2, &[]).expect_err("refused");
     assert_eq!(
-        refused,
+        refused.text(),
         "libhalf.so#half: converter 'half': input tuples must have 1 bytes, not 2"
     );
     assert_eq!(library.check_sizes(2, 1).expect_err("refused"), refused);
@@ -184,7 +194,7 @@ fn many_tuples_stop_at_the_end_of_either_side_and_at_a_fault() {
     assert_eq!(stage.convert_many(&[1, 2, 3], &mut output), (3, 1, None));
     assert_eq!(stage.convert_many(&[4, 5, 6, 7], &mut output), (3, 2, None));
     assert_eq!(output, [7, 11]);
-    let fault = Some("libhalf.so#half: 255 means no echo".to_owned());
+    let fault = Some("libhalf.so#half: 255 means no echo".into());
     assert_eq!(
         stage.convert_many(&[7, 8, 255, 9], &mut output),
         (3, 1, fault)
@@ -291,5 +301,44 @@ fn compiled_inline_code_is_loaded_from_the_cache_itself() {
             .expect("read")
             .flatten()
             .any(|entry| { entry.file_name().to_string_lossy().starts_with("lib-") })
+    );
+}
+
+#[test]
+fn who_can_mend_a_library_that_is_not_loaded_is_known() {
+    let scratch = Scratch::new();
+    let cache = scratch.cache();
+    let blame = |path: &Path| {
+        let refused = Library::load(path, None, &cache).expect_err("refused");
+        refused.blame()
+    };
+    assert_eq!(
+        blame(&scratch.path("missing.so")),
+        Blame::Configuration,
+        "its name is wrong"
+    );
+    let script = scratch.path("script.so");
+    fs::write(&script, "#!/bin/sh\n").expect("written");
+    assert_eq!(blame(&script), Blame::Converter, "its build is wrong");
+    let said = |words: &str| {
+        let wrong = explain(
+            &format!("/cache/lib-1.so: {words}"),
+            Path::new("/cache/lib-1.so"),
+            "mine.so",
+        );
+        LibraryError::Library {
+            shown: "mine.so".to_owned(),
+            why: wrong,
+        }
+    };
+    let symbol = said("undefined symbol: x");
+    assert_eq!(symbol.blame(), Blame::Converter);
+    assert_eq!(symbol.to_string(), "mine.so: undefined symbol: x");
+    let mapped = said("failed to map segment from shared object");
+    assert_eq!(mapped.blame(), Blame::Machine, "the cache cannot hold code");
+    assert!(
+        mapped
+            .to_string()
+            .ends_with("choose another place with --cache")
     );
 }

@@ -5,6 +5,8 @@
 use super::bus::Failure;
 use super::{Data, Transfer};
 use config::description::I2cTransfer;
+use config::limits::{I2C_BLOCK_BYTES_MAX, I2C_RAW_BYTES_MAX};
+use nix::errno::Errno;
 use std::fs::{File, OpenOptions};
 use std::io;
 use std::os::fd::AsRawFd;
@@ -22,14 +24,11 @@ const I2C_SMBUS_READ: u8 = 1;
 const I2C_SMBUS_BYTE_DATA: u32 = 2;
 const I2C_SMBUS_WORD_DATA: u32 = 3;
 const I2C_SMBUS_I2C_BLOCK_DATA: u32 = 8;
-const I2C_SMBUS_BLOCK_MAX: usize = 32;
-/// Bytes of one message that i2c-dev takes.
-const MESSAGE_BYTES_MAX: usize = 8192;
 
 /// `union i2c_smbus_data`: a byte, a word in the order of the processor, or a length and a block.
 #[repr(C, align(2))]
 #[derive(Clone, Copy)]
-struct SmbusData([u8; I2C_SMBUS_BLOCK_MAX + 2]);
+struct SmbusData([u8; I2C_BLOCK_BYTES_MAX + 2]);
 
 /// `struct i2c_smbus_ioctl_data`
 #[repr(C)]
@@ -68,9 +67,12 @@ fn outcome(result: libc::c_int) -> Result<(), Failure> {
         return Ok(());
     }
     let error = io::Error::last_os_error();
-    match error.raw_os_error() {
-        Some(libc::ENODEV | libc::EBADF | libc::ESHUTDOWN) | None => Err(Failure::Gone(error)),
-        Some(errno) => Err(Failure::Errno(errno)),
+    let Some(number) = error.raw_os_error() else {
+        return Err(Failure::Gone(error));
+    };
+    match Errno::from_raw(number) {
+        Errno::ENODEV | Errno::EBADF | Errno::ESHUTDOWN => Err(Failure::Gone(error)),
+        _ => Err(Failure::Errno(number)),
     }
 }
 
@@ -81,8 +83,10 @@ impl Adapter {
             .write(true)
             .custom_flags(libc::O_CLOEXEC | libc::O_NOCTTY | libc::O_NONBLOCK)
             .open(path);
-        let file = file.map_err(|error| match error.raw_os_error() {
-            Some(errno @ (libc::EACCES | libc::EPERM | libc::EBUSY)) => Failure::Errno(errno),
+        let file = file.map_err(|error| match error.raw_os_error().map(Errno::from_raw) {
+            Some(errno @ (Errno::EACCES | Errno::EPERM | Errno::EBUSY)) => {
+                Failure::Errno(errno as i32)
+            }
             _ => Failure::Gone(error),
         })?;
         // In units of 10 ms, for the whole adapter, which other drivers use as well: never longer than its usual second.
@@ -122,7 +126,7 @@ impl Adapter {
     fn smbus(&self, transfer: &mut Transfer<'_>) -> Result<(), Failure> {
         let (mut data, size) = prepare(transfer)?;
         let [command] = *transfer.register else {
-            return Err(Failure::Errno(libc::EINVAL));
+            return Err(Failure::Unfit);
         };
         let mut arguments = SmbusArguments {
             read_write: match transfer.data {
@@ -153,8 +157,8 @@ impl Adapter {
             }
         };
         let length = |bytes: usize| match u16::try_from(bytes) {
-            Ok(length) if bytes <= MESSAGE_BYTES_MAX => Ok(length),
-            _ => Err(Failure::Errno(libc::EINVAL)),
+            Ok(length) if bytes <= I2C_RAW_BYTES_MAX => Ok(length),
+            _ => Err(Failure::Unfit),
         };
         messages.push(Message {
             address,
@@ -185,7 +189,7 @@ impl Adapter {
 
 /// The union and the size word for an SMBus transfer.
 fn prepare(transfer: &Transfer<'_>) -> Result<(SmbusData, u32), Failure> {
-    let mut data = SmbusData([0; I2C_SMBUS_BLOCK_MAX + 2]);
+    let mut data = SmbusData([0; I2C_BLOCK_BYTES_MAX + 2]);
     let written: &[u8] = match &transfer.data {
         Data::Write(written) => written,
         Data::Read(_) => &[],
@@ -207,8 +211,8 @@ fn prepare(transfer: &Transfer<'_>) -> Result<(SmbusData, u32), Failure> {
                 Data::Read(wanted) => wanted.len(),
                 Data::Write(_) => written.len(),
             };
-            if !(1..=I2C_SMBUS_BLOCK_MAX).contains(&length) {
-                return Err(Failure::Errno(libc::EINVAL));
+            if !(1..=I2C_BLOCK_BYTES_MAX).contains(&length) {
+                return Err(Failure::Unfit);
             }
             data.0[0] = u8::try_from(length).unwrap_or(0);
             data.0[1..=written.len()].copy_from_slice(written);
@@ -229,7 +233,7 @@ fn take(data: &SmbusData, transfer: &mut Transfer<'_>) -> Result<(), Failure> {
         I2cTransfer::Byte => &data.0[..1],
         I2cTransfer::Word => &word,
         I2cTransfer::Block | I2cTransfer::Raw => {
-            let length = usize::from(data.0[0]).min(I2C_SMBUS_BLOCK_MAX);
+            let length = usize::from(data.0[0]).min(I2C_BLOCK_BYTES_MAX);
             &data.0[1..=length]
         }
     };
@@ -310,7 +314,7 @@ mod tests {
         );
         let mut long = [0; 33];
         let refused = prepare(&transfer(I2cTransfer::Block, Data::Read(&mut long)));
-        assert!(matches!(refused, Err(Failure::Errno(libc::EINVAL))));
+        assert!(matches!(refused, Err(Failure::Unfit)));
     }
 
     #[test]

@@ -1,11 +1,11 @@
 //! The buses of one mount: one opening for each path, used by one transfer at a time.
 //!
-//! Owns the turn (who has the bus, in which order the others follow), the reopening of a bus that vanished, what is
+//! Owns the turn (which transfer has the bus, in which order the others follow), the reopening of a bus that vanished, what is
 //! known of its speed, and what is remembered of its registers. Knows no node.
 //!
-//! A thread that would have to wait gives its role away first ([`give_way`]), so that a slow or dead bus delays nobody
-//! who does not use it. Only so many wait for one bus, fewer for one that is stuck: the others hear that it
-//! is busy, and no bus can take all threads.
+//! A thread that would have to wait gives its role away first ([`give_way`]), so that a slow or dead bus delays no
+//! program that does not use it. Only so many wait for one bus, fewer for one that is stuck: the others get an error that
+//! it is busy, and no bus can take all threads.
 
 use super::adapter::Adapter;
 use super::virtual_bus::VirtualBus;
@@ -14,6 +14,7 @@ use crate::crew::give_way;
 use crate::errno::Error;
 use crate::events::lock;
 use crate::limits;
+use nix::errno::Errno;
 use std::collections::{HashMap, VecDeque};
 use std::io;
 use std::os::unix::fs::FileTypeExt;
@@ -30,13 +31,13 @@ pub(super) type Key = (u16, u16);
 pub struct Buses(Mutex<HashMap<PathBuf, Arc<Bus>>>);
 
 impl Buses {
-    /// The bus at a path, which need not be there. The same for everybody who names the same path.
+    /// The bus at a path, which need not be there. The same for all that name the same path.
     pub fn get(&self, path: &Path) -> Arc<Bus> {
         let mut buses = lock(&self.0);
         if let Some(bus) = buses.get(path) {
             return bus.clone();
         }
-        // Of those that reloads have left behind nobody holds a handle.
+        // Nothing holds a handle of those that reloads have left.
         buses.retain(|_, bus| Arc::strong_count(bus) > 1 || bus.has_memory());
         let bus = Arc::new(Bus::new(path));
         buses.insert(path.to_owned(), bus.clone());
@@ -49,6 +50,8 @@ impl Buses {
 pub(super) enum Failure {
     /// What the bus or the device said.
     Errno(i32),
+    /// More bytes than this kind of bus carries, or a register that it cannot name: nothing was sent.
+    Unfit,
     /// No answer in time.
     Silent,
     /// The bus is not there (any more), and nothing was sent.
@@ -95,7 +98,7 @@ impl Connection {
 pub struct Bus {
     path: PathBuf,
     turn: Turn,
-    /// Only who has the turn takes this.
+    /// Only the thread that has the turn takes this.
     connection: Mutex<Option<Connection>>,
     /// How many transfers from now on are expected to be slow.
     slow: AtomicU32,
@@ -189,7 +192,7 @@ impl Bus {
             }
         };
         let result = open.transfer(transfer, time);
-        if !matches!(&result, Ok(()) | Err(Failure::Errno(_))) {
+        if !matches!(&result, Ok(()) | Err(Failure::Errno(_) | Failure::Unfit)) {
             *connection = None;
         }
         result
@@ -201,7 +204,7 @@ impl Bus {
             self.slow
                 .store(limits::BUS_SLOW_TRANSFERS, Ordering::Relaxed);
         } else if self.is_slow() {
-            // Only who has the turn comes here.
+            // Only the thread that has the turn comes here.
             self.slow.fetch_sub(1, Ordering::Relaxed);
         }
     }
@@ -225,20 +228,23 @@ impl Bus {
 
     fn error(&self, failure: Failure, address: u16, timeout: Duration) -> Error {
         let path = self.path.display();
+        let transfer = || format!("transfer with 0x{address:02x} on {path}");
         match failure {
-            // Drivers differ in what they call a missing acknowledge.
-            Failure::Errno(libc::ENXIO | libc::EREMOTEIO) => {
-                Error::no_answer(format!("no answer from 0x{address:02x} on {path}"))
-            }
-            Failure::Silent | Failure::Errno(libc::ETIMEDOUT) => Error::TimedOut(format!(
+            Failure::Errno(number) => match Errno::from_raw(number) {
+                // Drivers differ in what they call a missing acknowledge.
+                Errno::ENXIO | Errno::EREMOTEIO => {
+                    Error::no_answer(format!("no answer from 0x{address:02x} on {path}"))
+                }
+                Errno::ETIMEDOUT => self.error(Failure::Silent, address, timeout),
+                _ => Error::Device(number, transfer()),
+            },
+            Failure::Silent => Error::TimedOut(format!(
                 "0x{address:02x} on {path} did not answer within {} ms",
                 timeout.as_millis()
             )),
-            Failure::Errno(errno) => {
-                Error::Device(errno, format!("transfer with 0x{address:02x} on {path}"))
-            }
-            Failure::Gone(error) => match error.raw_os_error() {
-                Some(libc::EACCES | libc::EPERM) => Error::AccessDenied,
+            Failure::Unfit => Error::unfit_transfer(transfer()),
+            Failure::Gone(error) => match error.raw_os_error().map(Errno::from_raw) {
+                Some(Errno::EACCES | Errno::EPERM) => Error::AccessDenied,
                 _ => Error::NoDevice(format!("{path}: {error}")),
             },
             Failure::Lost => {
@@ -301,7 +307,7 @@ fn is_long(transfer: &Transfer<'_>) -> bool {
     bytes > limits::BUS_SHORT_BYTES
 }
 
-/// Who has the bus. The others follow in the order of their coming, but a write comes before the next read: what moves
+/// Which transfer has the bus. The others follow in the order of their coming, but a write comes before the next read: what moves
 /// must be stopped at once. After a write a read has its turn, so that neither can keep the other waiting for ever.
 #[derive(Default)]
 struct Turn {

@@ -4,10 +4,9 @@
 //! [`WIDE`] for registers whose number has two bytes on the wire. Bytes travel as plain messages, in the order of the
 //! wire. Knows no open file and no program.
 
-use super::super::{Device, Kind, Sink, Surroundings};
+use super::super::{Device, Kind, Positions, Sink, Surroundings};
 use super::bus::Bus;
 use super::{Data, Transfer};
-use crate::engine::Engine;
 use crate::errno::Error;
 use config::description::{I2cBusDescription, I2cTransfer};
 use config::limits::I2C_RAW_BYTES_MAX;
@@ -29,6 +28,17 @@ impl Kind for I2cBusDescription {
     fn is_shared(&self) -> Result<bool, Error> {
         Ok(false)
     }
+
+    /// The bus must be there.
+    fn open_positions(&self, around: &Surroundings) -> Result<Option<Box<dyn Positions>>, Error> {
+        let bus = around.buses.get(&self.path);
+        bus.check()?;
+        Ok(Some(Box::new(Devices {
+            bus,
+            reserved: self.reserved.clone(),
+            timeout: Duration::from_millis(around.timeout_ms.into()),
+        })))
+    }
 }
 
 /// What all other files of such a node say.
@@ -40,7 +50,7 @@ fn only_device() -> Error {
 }
 
 /// The devices of one bus.
-pub struct Devices {
+struct Devices {
     bus: Arc<Bus>,
     reserved: Vec<u16>,
     timeout: Duration,
@@ -78,31 +88,6 @@ impl Place {
 }
 
 impl Devices {
-    /// Those of a bus that is there.
-    pub fn open(
-        description: &I2cBusDescription,
-        timeout_ms: u32,
-        engine: &Engine,
-    ) -> Result<Self, Error> {
-        let bus = engine.buses.get(&description.path);
-        bus.check()?;
-        Ok(Self {
-            bus,
-            reserved: description.reserved.clone(),
-            timeout: Duration::from_millis(timeout_ms.into()),
-        })
-    }
-
-    /// Fills the buffer with what the device sends from a register on.
-    pub fn read(&self, position: u64, buffer: &mut [u8]) -> Result<(), Error> {
-        self.transfer(position, Data::Read(buffer))
-    }
-
-    /// Sends bytes to a register.
-    pub fn write(&self, position: u64, bytes: &[u8]) -> Result<(), Error> {
-        self.transfer(position, Data::Write(bytes))
-    }
-
     fn transfer(&self, position: u64, data: Data<'_>) -> Result<(), Error> {
         let place = Place::of(position)?;
         if self.reserved.contains(&place.address) {
@@ -127,6 +112,16 @@ impl Devices {
             data,
         };
         self.bus.transfer(&mut transfer, self.timeout)
+    }
+}
+
+impl Positions for Devices {
+    fn read(&self, position: u64, buffer: &mut [u8]) -> Result<(), Error> {
+        self.transfer(position, Data::Read(buffer))
+    }
+
+    fn write(&self, position: u64, bytes: &[u8]) -> Result<(), Error> {
+        self.transfer(position, Data::Write(bytes))
     }
 }
 

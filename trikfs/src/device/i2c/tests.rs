@@ -19,7 +19,7 @@ const NO_ACKNOWLEDGE: u32 = 2;
 const GARBAGE: u32 = 3;
 const HANG_UP: u32 = 4;
 
-/// A device at 0x48 with bytes by register number, behind a virtual bus.
+/// A device at 0x48 with bytes by register number, on a virtual bus.
 struct Peer {
     _scratch: Scratch,
     path: PathBuf,
@@ -40,7 +40,7 @@ impl Peer {
         peer
     }
 
-    /// Opens the bus at its path. The socket of before stays with those who are connected.
+    /// Opens the bus at its path. The socket of before stays with those that are connected.
     fn serve(&self) {
         let _ = std::fs::remove_file(&self.path);
         let listener = socket(

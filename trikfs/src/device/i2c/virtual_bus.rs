@@ -1,4 +1,4 @@
-//! A bus behind a Unix socket: each transaction is one packet there and one back, with the bytes of the wire.
+//! A bus as a Unix socket: each transaction is one packet there and one back, with the bytes of the wire.
 //!
 //! Owns the packets. Request: version 1, flags 0, address u16, length of what is written u16, length of what is read
 //! u16, then the written bytes. Answer: errno i32 (0 is fine), then the bytes read. All numbers are little-endian.
@@ -130,7 +130,7 @@ fn encode(transfer: &Transfer<'_>, packet: &mut Vec<u8>) -> Result<usize, Failur
         Data::Read(data) => (&[], data.len()),
         Data::Write(data) => (data, 0),
     };
-    let length = |bytes: usize| u16::try_from(bytes).map_err(|_| Failure::Errno(libc::EINVAL));
+    let length = |bytes: usize| u16::try_from(bytes).map_err(|_| Failure::Unfit);
     packet.clear();
     packet.extend_from_slice(&[VERSION, 0]);
     packet.extend_from_slice(&transfer.address.to_le_bytes());
@@ -195,7 +195,7 @@ mod tests {
         assert_eq!(packet, [1, 0, 0x48, 0, 4, 0, 0, 0, 0x24, 0, 7, 8]);
         let long = vec![0; 65_535];
         let refused = encode(&transfer(&[1], Data::Write(&long)), &mut packet);
-        assert!(matches!(refused, Err(Failure::Errno(libc::EINVAL))));
+        assert!(matches!(refused, Err(Failure::Unfit)));
     }
 
     #[test]

@@ -8,7 +8,40 @@ use super::super::sysfs;
 use crate::errno::Error;
 use crate::limits;
 use config::description::IioDescription;
+use std::fmt;
 use std::path::Path;
+
+/// Why a device has no scan with the wanted channels: its driver, or what the configuration wants of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum NoScan {
+    /// The channel of this name cannot be switched on.
+    Off(String),
+    /// The numbers of a channel are too long.
+    Bits {
+        /// Its name.
+        channel: String,
+        /// Of a number of the device.
+        bits: u32,
+        /// Of a number of the tuple.
+        bytes: usize,
+    },
+}
+
+impl fmt::Display for NoScan {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Off(channel) => write!(f, "the channel '{channel}' cannot be switched on"),
+            Self::Bits {
+                channel,
+                bits,
+                bytes,
+            } => write!(
+                f,
+                "the channel '{channel}' has {bits} bits, which do not fit into {bytes} bytes"
+            ),
+        }
+    }
+}
 
 /// One number in a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -122,14 +155,14 @@ impl Scan {
         }
         elements.sort_by(|a, b| (a.0, &a.1).cmp(&(b.0, &b.1)));
         Self::new(&elements, channels)
-            .map_err(|reason| Error::Malformed(format!("{}: {reason}", folder.display())))
+            .map_err(|why| Error::Malformed(format!("{}: {why}", folder.display())))
     }
 
     /// Finds the place of each channel among the elements, which are in the order of their indices.
     pub(super) fn new(
         elements: &[(u32, String, Element)],
         channels: &[String],
-    ) -> Result<Self, String> {
+    ) -> Result<Self, NoScan> {
         let mut end = 0usize;
         let mut placed = Vec::new();
         for (_, name, element) in elements {
@@ -142,14 +175,15 @@ impl Scan {
         let mut wanted = Vec::new();
         for channel in channels {
             let Some((_, at, element)) = placed.iter().find(|(name, _, _)| *name == channel) else {
-                return Err(format!("the channel '{channel}' cannot be switched on"));
+                return Err(NoScan::Off(channel.clone()));
             };
             let bytes = IioDescription::value_size(channel);
             if !element.fits(bytes) {
-                return Err(format!(
-                    "the channel '{channel}' has {} bits, which do not fit into {bytes} bytes",
-                    element.bits
-                ));
+                return Err(NoScan::Bits {
+                    channel: channel.clone(),
+                    bits: element.bits,
+                    bytes,
+                });
             }
             wanted.push((*at, *element, bytes));
         }
@@ -185,7 +219,7 @@ mod tests {
             .collect()
     }
 
-    fn scan(types: &[(&str, &str)], channels: &[&str]) -> Result<Scan, String> {
+    fn scan(types: &[(&str, &str)], channels: &[&str]) -> Result<Scan, NoScan> {
         let channels: Vec<_> = channels.iter().map(|name| (*name).to_owned()).collect();
         Scan::new(&elements(types), &channels)
     }
@@ -282,11 +316,13 @@ mod tests {
     #[test]
     fn a_channel_that_is_off_or_too_wide_is_refused() {
         assert_eq!(
-            scan(&ACCELEROMETER, &["accel_q"]).unwrap_err(),
+            scan(&ACCELEROMETER, &["accel_q"]).unwrap_err().to_string(),
             "the channel 'accel_q' cannot be switched on"
         );
         assert_eq!(
-            scan(&[("v", "le:u32/32>>0")], &["v"]).unwrap_err(),
+            scan(&[("v", "le:u32/32>>0")], &["v"])
+                .unwrap_err()
+                .to_string(),
             "the channel 'v' has 32 bits, which do not fit into 4 bytes"
         );
     }

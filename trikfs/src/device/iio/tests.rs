@@ -1,4 +1,4 @@
-//! Tests of a sampled sensor with a folder in the place of sysfs and a FIFO in that of its node.
+//! Tests of a sampled sensor with a folder instead of sysfs and a FIFO in that of its node.
 
 use super::*;
 use crate::scratch::Scratch;

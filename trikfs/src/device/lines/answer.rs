@@ -1,6 +1,6 @@
-//! The last answer of a sensor program, for those who come after it.
+//! The last answer of a sensor program, for readers that come after it.
 //!
-//! Owns when it is forgotten: when the question is asked anew, so that nobody takes an old answer for the new one.
+//! Owns when it is forgotten: when the question is asked anew, so that an old answer is never taken for the new one.
 
 use crate::events::lock;
 use config::description::{AnswerDescription, SourceDescription};

@@ -1,4 +1,4 @@
-//! JPEG pictures that stand one behind the other in a stream of bytes.
+//! JPEG pictures that follow each other in a stream of bytes.
 //!
 //! Owns where a picture begins and ends: it is a chain of markers with lengths (ITU-T T.81, annex B), so a smaller
 //! picture inside of one is no end of it. What the picture shows is not looked at. Pure; reads nothing.
@@ -127,7 +127,7 @@ impl Pictures {
     }
 }
 
-/// What stands behind a marker with its body.
+/// What follows a marker with its body.
 fn behind(kind: u8) -> Next {
     if kind == SCAN {
         Next::Points

@@ -99,7 +99,7 @@ fn without_a_program_the_pipe_has_to_be_there() {
 }
 
 #[test]
-fn what_is_written_becomes_a_line_for_whoever_reads_the_pipe() {
+fn what_is_written_becomes_a_line_for_the_reader_of_the_pipe() {
     let scratch = Scratch::new();
     let description = plain(&scratch);
     let mut sink = LinesSink::open(&description, 100, Arc::default()).unwrap();

@@ -8,6 +8,9 @@
 //! Each byte costs the same, however often a false start makes it be looked at again: sums are differences of sums
 //! from the beginning. Pure; reads nothing.
 
+// A checksum that is forgotten must not be another one in silence.
+#![deny(clippy::wildcard_enum_match_arm)]
+
 use super::super::cutter::{Cut, fill};
 use config::description::{ByteOrder, Checksum, PacketsDescription};
 
@@ -15,7 +18,7 @@ use config::description::{ByteOrder, Checksum, PacketsDescription};
 pub(super) struct Framer {
     description: PacketsDescription,
     tuple_size: usize,
-    /// Bytes from the first undecided one on, behind `at` bytes that are done with.
+    /// Bytes from the first undecided one on, after `at` bytes that are done with.
     bytes: Vec<u8>,
     /// For each byte the sum (or exclusive-or) of all before it in `bytes`, and one more at the end.
     sums: Vec<u16>,
@@ -57,7 +60,10 @@ impl Framer {
         self.bytes.push(byte);
         self.sums.push(match self.description.checksum {
             Checksum::Xor8 => before ^ u16::from(byte),
-            _ => before.wrapping_add(u16::from(byte)),
+            // Without a checksum the sums are kept and not asked for.
+            Checksum::None | Checksum::Sum8 | Checksum::Sum16 => {
+                before.wrapping_add(u16::from(byte))
+            }
         });
     }
 

@@ -80,9 +80,10 @@ impl Link {
         match send(notifier) {
             Ok(()) => true,
             Err(error) => {
+                let errno = error.raw_os_error().map(nix::Error::from_raw);
                 if !matches!(
-                    error.raw_os_error(),
-                    Some(libc::ENOENT | libc::ENODEV | libc::ENOTCONN)
+                    errno,
+                    Some(nix::Error::ENOENT | nix::Error::ENODEV | nix::Error::ENOTCONN)
                 ) {
                     complain(format_args!("the kernel refused {what}: {error}"));
                 }

@@ -3,6 +3,7 @@
 //! Pure: no system call, no allocation. The kernel is trusted no more than any other input: every length is checked.
 
 use super::abi::{self, fattr, op};
+use crate::errno::Error;
 
 /// What is common to all requests.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,7 +23,7 @@ pub(crate) struct Header {
 }
 
 /// A decoded request.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Request<'a> {
     pub(crate) header: Header,
     pub(crate) body: Body<'a>,
@@ -39,7 +40,7 @@ pub(crate) struct KernelInit {
 }
 
 /// The parts of each request that are used here.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Body<'a> {
     Init(KernelInit),
     Lookup {
@@ -105,7 +106,7 @@ pub(crate) enum Body<'a> {
     NotifyReply,
     Destroy,
     /// An operation that this filesystem does not have, with the answer to it.
-    Refused(i32),
+    Refused(Error),
 }
 
 /// A request that means nothing.
@@ -247,7 +248,7 @@ fn body<'a>(opcode: u32, fields: &mut Fields<'a>) -> Decoded<Body<'a>> {
 
 /// The answer to an operation that this filesystem does not have. ENOSYS tells the kernel not to ask again,
 /// and to do without (SEEK_HOLE, copy_file_range, access under default_permissions).
-fn refusal(opcode: u32) -> i32 {
+fn refusal(opcode: u32) -> Error {
     match opcode {
         op::MKDIR
         | op::MKNOD
@@ -257,11 +258,10 @@ fn refusal(opcode: u32) -> i32 {
         | op::RENAME2
         | op::LINK
         | op::SYMLINK
-        | op::CREATE => libc::EPERM,
-        op::SETXATTR | op::REMOVEXATTR => libc::EOPNOTSUPP,
-        // What a regular file answers; kernels before 6.0 would show the program an ENOSYS.
-        op::IOCTL => libc::ENOTTY,
-        _ => libc::ENOSYS,
+        | op::CREATE => Error::NotPermitted,
+        op::SETXATTR | op::REMOVEXATTR => Error::Unsupported,
+        op::IOCTL => Error::NoControl,
+        _ => Error::NotNeeded,
     }
 }
 

@@ -51,12 +51,12 @@ impl<const N: usize> Packed<N> {
     }
 }
 
-/// `fuse_out_header` of a message with `body` bytes behind it. `error` is 0 or a positive errno.
+/// `fuse_out_header` of a message that `body` bytes follow. `error` is 0 or a positive errno.
 pub(crate) fn answer_header(unique: u64, error: i32, body: usize) -> [u8; abi::OUT_HEADER] {
     header(unique, -error, body)
 }
 
-/// `fuse_out_header` of a notification with `body` bytes behind it.
+/// `fuse_out_header` of a notification that `body` bytes follow.
 pub(crate) fn notify_header(code: i32, body: usize) -> [u8; abi::OUT_HEADER] {
     header(0, code, body)
 }

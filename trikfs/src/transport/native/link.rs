@@ -1,7 +1,7 @@
 //! The way to the kernel: every message is one write to the device, from any thread.
 //!
 //! Owns the descriptor of the connection, which is closed (and the connection aborted) with the last user of it.
-//! Knows nothing of who waits for what.
+//! Knows nothing of the requests that wait.
 
 use super::abi::notify;
 use super::complain;
@@ -44,9 +44,9 @@ impl Link {
         again(|| uio::writev(&self.device, &slices[..count]))
     }
 
-    /// Answers a request with a positive errno.
-    pub(crate) fn refuse(&self, unique: u64, errno: i32) {
-        let sent = self.send(&encode::answer_header(unique, errno, 0));
+    /// Answers a request with an error.
+    pub(crate) fn refuse(&self, unique: u64, error: &Error) {
+        let sent = self.send(&encode::answer_header(unique, error.errno(), 0));
         report("an error", sent);
     }
 

@@ -9,7 +9,7 @@ use crate::errno::Error;
 use crate::transport::{Caller, Operations, Outcome, PollHandle, RequestId, Transfer};
 
 /// What to do about a request whose operation has run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Performed {
     /// So many bytes of the buffer are the answer.
     Reply(usize),
@@ -20,8 +20,8 @@ pub(crate) enum Performed {
         /// What to release.
         fh: u64,
     },
-    /// Answer with this errno.
-    Refuse(i32),
+    /// Answer with the errno of this.
+    Refuse(Error),
     /// The filesystem answers later.
     Wait,
     /// Nobody waits for an answer.
@@ -36,8 +36,7 @@ pub(crate) fn perform(
     request: &Request<'_>,
     out: &mut [u8],
 ) -> Performed {
-    try_perform(operations, features, request, out)
-        .unwrap_or_else(|error| Performed::Refuse(error.errno()))
+    try_perform(operations, features, request, out).unwrap_or_else(Performed::Refuse)
 }
 
 fn try_perform(
@@ -107,7 +106,7 @@ fn try_perform(
         Body::StatFs => reply(out, &encode::statfs(&operations.statfs())),
         Body::GetXattr { name, size } => attribute(&operations.getxattr(node, name)?, size, out)?,
         Body::ListXattr { size } => attribute(&operations.listxattr(node)?, size, out)?,
-        Body::Refused(errno) => Performed::Refuse(errno),
+        Body::Refused(ref why) => Performed::Refuse(why.clone()),
         Body::Forget
         | Body::NotifyReply
         | Body::Init(_)
@@ -160,7 +159,7 @@ fn reply(out: &mut [u8], body: &[u8]) -> Performed {
             place.copy_from_slice(body);
             Performed::Reply(body.len())
         }
-        None => Performed::Refuse(libc::EIO),
+        None => Performed::Refuse(too_much()),
     }
 }
 

@@ -5,20 +5,30 @@
 
 mod helpers;
 mod taken;
+mod threads;
 
-use super::super::code::{Kind, What};
+use super::super::code::{Conversion, Element, Function, Kind, Number, Truth, Turn};
 use super::super::names::Rules;
 use super::super::plan::Owner;
 use super::super::print::{
-    Dialect, NONE, Printer, Row, Syntax, apart, call, float, infix, postfix, prefix, quote,
+    Dialect, NONE, Printer, Row, Syntax, Tables, apart, call, float, infix, postfix, prefix, quote,
 };
 use super::super::routines::{Abilities, Routine};
-use super::lua::robot;
+use super::lua;
 use crate::structure::Jumps;
 
 /// The language.
 pub(in super::super) const C: Dialect = Dialect {
-    row,
+    tables: Tables {
+        number,
+        truth,
+        conversion,
+        function,
+        element,
+        robot: lua::robot,
+        turn,
+        phrase: |phrase| phrase.c,
+    },
     syntax: Syntax {
         indent: "    ",
         comment: "/* $1 */",
@@ -178,9 +188,15 @@ const RESERVED: &[&str] = &[
     "turn",
     "threads",
     "current",
-    "threadCount",
     "counters",
     "pauseFor",
+    "ended",
+    "after",
+    "mayEnd",
+    "giveTurn",
+    "findTree",
+    "getenv",
+    "threadCount",
     "runThread",
     "isRunning",
     "beginThreads",
@@ -210,9 +226,18 @@ const RESERVED: &[&str] = &[
     "INFINITY",
 ];
 
-fn row(what: What) -> Row {
-    use What::*;
-    match what {
+/// An operator on bits: compilers warn where the brackets of anything but a product in it are missing.
+const fn bits(text: &'static str, binds: u8) -> Row {
+    Row {
+        text,
+        binds,
+        needs: [13, 13],
+    }
+}
+
+fn number(number: Number) -> Row {
+    use Number::*;
+    match number {
         Add => infix("$1 + $2", 12),
         Subtract => infix("$1 - $2", 12),
         Multiply => infix("$1 * $2", 13),
@@ -227,12 +252,18 @@ fn row(what: What) -> Row {
         Power => call("pow($1, $2)"),
         Negate => prefix("-$1", 15),
         NegateSingle => prefix("-(float)$1", 15),
-        BitAnd => apart("$1 & $2", 8),
-        BitOr => apart("$1 | $2", 6),
-        BitXor => apart("$1 ^ $2", 7),
+        BitAnd => bits("$1 & $2", 8),
+        BitOr => bits("$1 | $2", 6),
+        BitXor => bits("$1 ^ $2", 7),
         BitNot => prefix("~$1", 15),
         ShiftLeft => call("shiftLeft($1, $2)"),
         ShiftRight => call("shiftRight($1, $2)"),
+    }
+}
+
+fn truth(truth: Truth) -> Row {
+    use Truth::*;
+    match truth {
         Not => prefix("!$1", 15),
         // Compilers warn where the brackets of `and` in `or` are missing.
         And => Row {
@@ -253,7 +284,14 @@ fn row(what: What) -> Row {
         NotEqual => apart("$1 != $2", 9),
         EqualText => call("sameText($1, $2)"),
         NotEqualText => prefix("!sameText($1, $2)", 15),
-        EqualAny | NotEqualAny | Mail | ValueOf => NONE,
+        EqualAny | NotEqualAny => NONE,
+        Again => call("again(&counters[$1], $2)"),
+    }
+}
+
+fn conversion(conversion: Conversion) -> Row {
+    use Conversion::*;
+    match conversion {
         Join => call("joinText($1, $2)"),
         Length => call("letters($1)"),
         FloatOfInt => call("$1"),
@@ -265,14 +303,13 @@ fn row(what: What) -> Row {
         TextOfInt | TextOfFloat | TextOfAny => call("toText($1)"),
         TextOfBool => call("toTextOfTruth($1)"),
         Printed => call("toPrinted($1)"),
-        other => functions(other),
+        ValueOf => NONE,
     }
 }
 
-/// Functions of the language, tables, threads, readings.
-fn functions(what: What) -> Row {
-    use What::*;
-    match what {
+fn function(function: Function) -> Row {
+    use Function::*;
+    match function {
         Sin => call("sin($1)"),
         Cos => call("cos($1)"),
         Ln => call("log($1)"),
@@ -291,18 +328,29 @@ fn functions(what: What) -> Row {
         Pi => call("3.14159265358979323846"),
         Time => infix("milliseconds() - started", 12),
         Random => call("randomWhole($1, $2)"),
+    }
+}
+
+fn element(element: Element) -> Row {
+    use Element::*;
+    match element {
         At => call("item($1, $2)"),
         AtWhole => call("(Whole)item($1, $2)"),
         AtPlain => postfix("$1.at[$2]"),
         Put => call("put(&$1, $2, $3)"),
         Copy => call("$1"),
-        StartThread => call("startThread($1, $2)"),
-        JoinThread => call("joinThread($1)"),
-        KillThread => call("killThread($1)"),
-        SendThread | ReceiveThread | ReceiveThreadNow => NONE,
-        Again => call("again(&counters[$1], $2)"),
-        Command(command) => call(command.phrase.c),
-        other => robot(other),
+    }
+}
+
+fn turn(turn: Turn) -> Row {
+    use Turn::*;
+    match turn {
+        Wait => call("wait($1)"),
+        AnyButton => call("anyButton($1)"),
+        Start => call("startThread($1, $2)"),
+        Join => call("joinThread($1)"),
+        Kill => call("killThread($1)"),
+        Mail | Send | Receive | ReceiveNow => NONE,
     }
 }
 
@@ -330,7 +378,7 @@ fn head(printer: &Printer<'_>, index: usize, routine: &Routine) -> String {
     };
     let name = match routine.owner {
         Owner::Main => "program",
-        _ => &printer.functions[index],
+        Owner::Subprogram(_) | Owner::Thread(..) => &printer.functions[index],
     };
     format!("static void {name}({parameters})")
 }
@@ -372,18 +420,18 @@ fn assemble(printer: &Printer<'_>) -> String {
             ));
         }
     }
-    let end = if script.has_threads {
+    let end = if script.names_threads {
         "    endThreads();\n"
     } else {
         ""
     };
-    let begin = if script.has_threads {
+    let begin = if script.names_threads {
         "    beginThreads();\n"
     } else {
         ""
     };
     let main = format!(
-        "int main(int count, char **arguments)\n{{\n    if (count > 1)\n        tree = arguments[1];\n    started = milliseconds();\n{begin}    program();\n{end}    return 0;\n}}\n"
+        "int main(int count, char **arguments)\n{{\n    findTree(count, arguments);\n    started = milliseconds();\n{begin}    program();\n{end}    return 0;\n}}\n"
     );
     let unused = if functions.contains("started") {
         ""
@@ -395,7 +443,11 @@ fn assemble(printer: &Printer<'_>) -> String {
     let helpers = printer.helpers(&format!("{functions}{variables}{main}"));
     let helpers = helpers.replace("counters[1000]", &loops);
     let title = printer.comment(&printer.title);
-    let threads = if script.has_threads { " -pthread" } else { "" };
+    let threads = if script.names_threads {
+        " -pthread"
+    } else {
+        ""
+    };
     format!(
         "{title}\n/* cc{threads} -o program FILE.c -lm && ./program [TREE] */\n{}\n{helpers}{variables}\n{functions}{main}",
         helpers::HEAD

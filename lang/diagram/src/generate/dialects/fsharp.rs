@@ -3,11 +3,11 @@
 //! Owns words of one language. It has no way out of the middle of a loop, so such programs become loops over states.
 //! There is no compiler for it here: what is printed has only been read.
 
-use super::super::code::{Kind, What};
+use super::super::code::{Conversion, Element, Function, Kind, Number, Truth, Turn};
 use super::super::names::Rules;
 use super::super::plan::Owner;
 use super::super::print::{
-    Dialect, Printer, Row, Syntax, apart, call, float, infix, postfix, quote,
+    Dialect, NONE, Printer, Row, Syntax, Tables, apart, call, float, infix, postfix, quote,
 };
 use super::super::routines::{Abilities, Routine};
 use super::library;
@@ -15,7 +15,16 @@ use crate::structure::Jumps;
 
 /// The language.
 pub(in super::super) const FSHARP: Dialect = Dialect {
-    row,
+    tables: Tables {
+        number,
+        truth,
+        conversion,
+        function,
+        element,
+        robot: library::robot,
+        turn,
+        phrase: |phrase| phrase.dotnet,
+    },
     syntax: Syntax {
         indent: "    ",
         comment: "// $1",
@@ -208,9 +217,9 @@ const RESERVED: &[&str] = &[
     "volatile",
 ];
 
-fn row(what: What) -> Row {
-    use What::*;
-    match what {
+fn number(number: Number) -> Row {
+    use Number::*;
+    match number {
         Add => call("($1 + $2)"),
         Subtract => call("($1 - $2)"),
         Multiply => call("($1 * $2)"),
@@ -227,6 +236,12 @@ fn row(what: What) -> Row {
         BitNot => call("(~~~$1)"),
         ShiftLeft => call("($1 <<< $2)"),
         ShiftRight => call("($1 >>> $2)"),
+    }
+}
+
+fn truth(truth: Truth) -> Row {
+    use Truth::*;
+    match truth {
         Not => call("not ($1)"),
         And => infix("$1 && $2", 2),
         Or => infix("$1 || $2", 1),
@@ -236,6 +251,14 @@ fn row(what: What) -> Row {
         GreaterEqual => apart("$1 >= $2", 3),
         Equal | EqualText => apart("$1 = $2", 3),
         NotEqual | NotEqualText => apart("$1 <> $2", 3),
+        Again => call("again ($1, $2)"),
+        EqualAny | NotEqualAny => NONE,
+    }
+}
+
+fn conversion(conversion: Conversion) -> Row {
+    use Conversion::*;
+    match conversion {
         Join => infix("$1 + $2", 12),
         Length => postfix("$1.Length"),
         FloatOfInt => call("float ($1)"),
@@ -248,14 +271,13 @@ fn row(what: What) -> Row {
         TextOfFloat | TextOfAny => call("toText ($1)"),
         TextOfBool => call("(if $1 then \"true\" else \"false\")"),
         Printed => call("toPrinted ($1)"),
-        other => functions(other),
+        ValueOf => NONE,
     }
 }
 
-/// The robot, and what the library of .NET has.
-fn functions(what: What) -> Row {
-    use What::*;
-    match what {
+fn function(function: Function) -> Row {
+    use Function::*;
+    match function {
         Sin => call("sin ($1)"),
         Cos => call("cos ($1)"),
         Ln => call("log ($1)"),
@@ -274,16 +296,29 @@ fn functions(what: What) -> Row {
         Pi => call("System.Math.PI"),
         Time => infix("milliseconds () - started", 12),
         Random => call("randomWhole (int ($1), int ($2))"),
+    }
+}
+
+fn element(element: Element) -> Row {
+    use Element::*;
+    match element {
         At => call("item ($1, $2)"),
         AtWhole => call("int (item ($1, $2))"),
         AtPlain => call("int ($1.[$2])"),
         Put => call("put ($1, $2, float ($3))"),
         Copy => call("ResizeArray<float> ($1)"),
-        StartThread => call("startThread ($1, $2)"),
-        JoinThread => call("joinThread ($1)"),
-        KillThread => call("killThread ($1)"),
-        Again => call("again ($1, $2)"),
-        other => library::commands(other),
+    }
+}
+
+fn turn(turn: Turn) -> Row {
+    use Turn::*;
+    match turn {
+        Wait => call("wait($1)"),
+        AnyButton => call("anyButton($1)"),
+        Start => call("startThread ($1, $2)"),
+        Join => call("joinThread ($1)"),
+        Kill => call("killThread ($1)"),
+        Mail | Send | Receive | ReceiveNow => NONE,
     }
 }
 
@@ -347,9 +382,14 @@ fn assemble(printer: &Printer<'_>) -> String {
             variables.push_str(&format!("let mutable {name} : {of} = {start}\n"));
         }
     }
-    let helpers = printer.helpers(&functions);
+    let begin = if script.names_threads {
+        "    threads.[\"main\"] <- Thread.CurrentThread\n"
+    } else {
+        ""
+    };
+    let helpers = printer.helpers(&format!("{functions}{begin}"));
     let title = printer.comment(&printer.title);
     format!(
-        "{title}\nmodule Program\n\nopen System\nopen System.Threading\nopen Trik\n\nlet model = new Model ()\nlet mutable started = 0\n{variables}\n{helpers}{functions}[<EntryPoint>]\nlet entry _ =\n    started <- Environment.TickCount\n    main ()\n    0\n"
+        "{title}\nmodule Program\n\nopen System\nopen System.Threading\nopen Trik\n\nlet model = new Model ()\nlet mutable started = 0\n{variables}\n{helpers}{functions}[<EntryPoint>]\nlet entry _ =\n    started <- Environment.TickCount\n{begin}    main ()\n    0\n"
     )
 }

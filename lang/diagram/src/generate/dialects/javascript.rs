@@ -4,18 +4,27 @@
 
 pub(in super::super) mod turns;
 
-use super::super::code::{Own, What};
+use super::super::code::{Conversion, Element, Function, Number, Own, Robot, Truth, Turn};
 use super::super::names::Rules;
 use super::super::plan::Owner;
 use super::super::print::{
-    Dialect, NONE, Printer, Row, Syntax, apart, call, float, infix, postfix, prefix, quote,
+    Dialect, Printer, Row, Syntax, Tables, apart, call, float, infix, postfix, prefix, quote,
 };
 use super::super::routines::Abilities;
 use crate::structure::Jumps;
 
 /// The language.
 pub(in super::super) const JAVASCRIPT: Dialect = Dialect {
-    row,
+    tables: Tables {
+        number,
+        truth,
+        conversion,
+        function,
+        element,
+        robot,
+        turn,
+        phrase: |phrase| phrase.javascript,
+    },
     syntax: Syntax {
         indent: "    ",
         comment: "// $1",
@@ -167,9 +176,9 @@ const RESERVED: &[&str] = &[
     "Error",
 ];
 
-fn row(what: What) -> Row {
-    use What::*;
-    match what {
+fn number(number: Number) -> Row {
+    use Number::*;
+    match number {
         Add => infix("$1 + $2", 12),
         Subtract => infix("$1 - $2", 12),
         Multiply => infix("$1 * $2", 13),
@@ -186,6 +195,12 @@ fn row(what: What) -> Row {
         BitNot => prefix("~$1", 15),
         ShiftLeft => infix("$1 << $2", 11),
         ShiftRight => infix("$1 >> $2", 11),
+    }
+}
+
+fn truth(truth: Truth) -> Row {
+    use Truth::*;
+    match truth {
         Not => prefix("!$1", 15),
         And => infix("$1 && $2", 5),
         Or => infix("$1 || $2", 4),
@@ -197,6 +212,13 @@ fn row(what: What) -> Row {
         NotEqual | NotEqualText => apart("$1 != $2", 9),
         EqualAny => call("same($1, $2)"),
         NotEqualAny => prefix("!same($1, $2)", 15),
+        Again => call("again($1, $2)"),
+    }
+}
+
+fn conversion(conversion: Conversion) -> Row {
+    use Conversion::*;
+    match conversion {
         Join => infix("$1 + $2", 12),
         Length => postfix("$1.length"),
         FloatOfInt => call("$1"),
@@ -209,14 +231,12 @@ fn row(what: What) -> Row {
         TextOfAny => call("toText($1)"),
         Printed => call("toPrinted($1)"),
         ValueOf => call("toValue($1)"),
-        other => functions(other),
     }
 }
 
-/// Functions of the language, tables, threads.
-fn functions(what: What) -> Row {
-    use What::*;
-    match what {
+fn function(function: Function) -> Row {
+    use Function::*;
+    match function {
         Sin => call("Math.sin($1)"),
         Cos => call("Math.cos($1)"),
         Ln => call("Math.log($1)"),
@@ -235,76 +255,45 @@ fn functions(what: What) -> Row {
         Pi => call("Math.PI"),
         Time => infix("script.time() - __interpretation_started_timestamp__", 12),
         Random => call("script.random($1, $2)"),
+    }
+}
+
+fn element(element: Element) -> Row {
+    use Element::*;
+    match element {
         At => call("item($1, $2)"),
         AtWhole => call("item($1, $2)"),
         AtPlain => postfix("$1[$2]"),
         Put => call("put($1, $2, $3)"),
         Copy => call("copy($1)"),
-        StartThread => call("Threading.startThread($1, $2)"),
-        JoinThread => call("Threading.joinThread($1)"),
-        KillThread => call("Threading.killThread($1)"),
-        SendThread => call("Threading.sendMessage($1, $2)"),
-        ReceiveThread => call("Threading.receiveMessage(true)"),
-        ReceiveThreadNow => call("Threading.receiveMessage(false)"),
-        Again => call("again($1, $2)"),
-        other => brick(other, false),
     }
 }
 
-/// What the robot is told and tells: the same words in JavaScript and Python, but for truths as numbers.
-pub(super) fn brick(what: What, is_python: bool) -> Row {
-    use What::*;
-    let number = |javascript: &'static str, python: &'static str| {
-        call(if is_python { python } else { javascript })
-    };
-    match what {
-        Sensor => call("brick.sensor($1).read()"),
-        Encoder => call("brick.encoder($1).read()"),
-        Gyroscope => call("brick.gyroscope().read()"),
-        Accelerometer => call("brick.accelerometer().read()"),
-        LineSensor => call("brick.lineSensor(\"video2\").read()"),
-        ObjectSensor => call("brick.objectSensor(\"video2\").read()"),
-        ColorSensor => call("brick.colorSensor(\"video2\").read(1, 1)"),
-        Lidar => call("brick.lidar().read()"),
-        Button => number(
-            "Number(brick.keys().isPressed($1))",
-            "int(brick.keys().isPressed($1))",
-        ),
-        AnyButton => call("brick.keys().buttonCode($1)"),
-        PadButton => number(
-            "Number(gamepad.buttonIsPressed($1))",
-            "int(gamepad.buttonIsPressed($1))",
-        ),
-        PadX => call("gamepad.padX($1)"),
-        PadY => call("gamepad.padY($1)"),
-        PadPressed => number(
-            "Number(gamepad.isPadPressed($1))",
-            "int(gamepad.isPadPressed($1))",
-        ),
-        Wheel => call("gamepad.wheel()"),
-        GamepadConnected => number(
-            "Number(gamepad.isConnected())",
-            "int(gamepad.isConnected())",
-        ),
-        Mail => call("mailbox.receive($1)"),
-        other => commands(other, is_python),
-    }
-}
-
-/// What the robot is told.
-fn commands(what: What, is_python: bool) -> Row {
-    use What::*;
-    match what {
+/// What the robot is told: the same words in JavaScript and Python.
+pub(super) fn robot(robot: Robot) -> Row {
+    use Robot::*;
+    match robot {
         SetPower | Servo => call("brick.motor($1).setPower($2)"),
         PowerOff => call("brick.motor($1).powerOff()"),
         ResetEncoder => call("brick.encoder($1).reset()"),
-        Command(command) if is_python => call(command.phrase.python),
-        Command(command) => call(command.phrase.javascript),
         Print => call("print($1)"),
         Redraw => call("brick.display().redraw()"),
-        Wait => call("script.wait($1)"),
         Finish => call("brick.stop()"),
-        _ => NONE,
+    }
+}
+
+fn turn(turn: Turn) -> Row {
+    use Turn::*;
+    match turn {
+        Wait => call("script.wait($1)"),
+        AnyButton => call("brick.keys().buttonCode($1)"),
+        Mail => call("mailbox.receive($1)"),
+        Start => call("Threading.startThread($1, $2)"),
+        Join => call("Threading.joinThread($1)"),
+        Kill => call("Threading.killThread($1)"),
+        Send => call("Threading.sendMessage($1, $2)"),
+        Receive => call("Threading.receiveMessage(true)"),
+        ReceiveNow => call("Threading.receiveMessage(false)"),
     }
 }
 

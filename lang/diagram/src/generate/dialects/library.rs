@@ -2,28 +2,19 @@
 //!
 //! Owns the few calls of that library that are used, each in one helper. Knows no statements.
 
-use super::super::code::What;
+use super::super::code::Robot;
 use super::super::print::{NONE, Row, call};
 
-/// What the robot tells and is told, the same in both languages.
-pub(super) fn commands(what: What) -> Row {
-    use What::*;
-    match what {
-        Sensor => call("readSensor($1)"),
-        Encoder => call("readEncoder($1)"),
-        Gyroscope => call("readGyroscope()"),
-        Accelerometer => call("readAccelerometer()"),
-        LineSensor => call("readLine()"),
-        Button => call("isPressed($1)"),
-        AnyButton => call("anyButton($1)"),
+/// What the robot is told, the same in both languages.
+pub(super) fn robot(robot: Robot) -> Row {
+    use Robot::*;
+    match robot {
         SetPower => call("setPower($1, $2)"),
         PowerOff => call("powerOff($1)"),
         Servo => call("setServo($1, $2)"),
         ResetEncoder => call("resetEncoder($1)"),
-        Command(command) => call(command.phrase.dotnet),
         Print => call("Console.WriteLine($1)"),
-        Wait => call("wait($1)"),
-        _ => NONE,
+        Redraw | Finish => NONE,
     }
 }
 
@@ -121,7 +112,7 @@ procedure run(command: string);
 begin
   System.Diagnostics.Process.Start('/bin/sh', '-c \"' + command + '\"');
 end;"),
-    ("label", "
+    ("label_", "
 procedure label_(text: string; x, y, size: integer);
 begin
   Writeln(text);
@@ -141,7 +132,7 @@ begin
       if isPressed(code) <> 0 then Result := code;
   until (Result >= 0) or not waits;
 end;"),
-    ("StartThread", "
+    ("threads StartThread JoinThread KillThread", "
 var
   threads := new Dictionary<string, Thread>;
 
@@ -232,8 +223,8 @@ let setServo (port: string, degrees: int) = model.Servo.[port].SetPower degrees"
 let resetEncoder (port: string) = model.Encoder.[port].Reset ()"),
     ("run", "
 let run (command: string) = Diagnostics.Process.Start (\"/bin/sh\", \"-c \\\"\" + command + \"\\\"\") |> ignore"),
-    ("label", "
-let label (text: string, x: int, y: int, size: int) = printfn \"%s\" text"),
+    ("label_", "
+let label_ (text: string, x: int, y: int, size: int) = printfn \"%s\" text"),
     ("wait", "
 let wait (ms: int) = Thread.Sleep (max ms 10)"),
     ("anyButton", "
@@ -242,7 +233,7 @@ let rec anyButton (waits: bool) : int =
     match List.tryFind (fun code -> isPressed code <> 0) [ 105; 106; 103; 108; 28; 1; 116 ] with
     | Some code -> code
     | None -> if waits then anyButton waits else -1"),
-    ("startThread", "
+    ("threads startThread joinThread killThread", "
 let threads = System.Collections.Generic.Dictionary<string, Thread> ()
 
 let startThread (name: string, run: unit -> unit) =

@@ -4,18 +4,27 @@
 
 mod helpers;
 
-use super::super::code::{Own, What};
+use super::super::code::{Conversion, Element, Function, Number, Own, Robot, Truth, Turn};
 use super::super::names::Rules;
 use super::super::plan::Owner;
 use super::super::print::{
-    Dialect, NONE, Printer, Row, Syntax, apart, call, float, infix, postfix, prefix, quote,
+    Dialect, NONE, Printer, Row, Syntax, Tables, apart, call, float, infix, postfix, prefix, quote,
 };
 use super::super::routines::Abilities;
 use crate::structure::Jumps;
 
 /// The language.
 pub(in super::super) const LUA: Dialect = Dialect {
-    row,
+    tables: Tables {
+        number,
+        truth,
+        conversion,
+        function,
+        element,
+        robot,
+        turn,
+        phrase: |phrase| phrase.lua,
+    },
     syntax: Syntax {
         indent: "  ",
         comment: "-- $1",
@@ -122,22 +131,18 @@ const RESERVED: &[&str] = &[
     "counters",
     "ffi",
     "find",
-    "joinThread",
     "keys",
-    "killThread",
+    "mayEnd",
     "opened",
     "order",
     "pcall",
-    "receiveMessage",
-    "runThreads",
-    "sendMessage",
     "step",
     "threads",
 ];
 
-fn row(what: What) -> Row {
-    use What::*;
-    match what {
+fn number(number: Number) -> Row {
+    use Number::*;
+    match number {
         Add => infix("$1 + $2", 12),
         Subtract => infix("$1 - $2", 12),
         Multiply => infix("$1 * $2", 13),
@@ -158,6 +163,12 @@ fn row(what: What) -> Row {
         BitNot => call("bit.bnot($1)"),
         ShiftLeft => call("bit.lshift($1, $2)"),
         ShiftRight => call("bit.arshift($1, $2)"),
+    }
+}
+
+fn truth(truth: Truth) -> Row {
+    use Truth::*;
+    match truth {
         Not => prefix("not $1", 14),
         And => infix("$1 and $2", 2),
         Or => infix("$1 or $2", 1),
@@ -169,6 +180,13 @@ fn row(what: What) -> Row {
         NotEqual | NotEqualText => apart("$1 ~= $2", 3),
         EqualAny => call("same($1, $2)"),
         NotEqualAny => prefix("not same($1, $2)", 14),
+        Again => call("again($1, $2)"),
+    }
+}
+
+fn conversion(conversion: Conversion) -> Row {
+    use Conversion::*;
+    match conversion {
         Join => infix("$1 .. $2", 11),
         Length => call("letters($1)"),
         FloatOfInt => call("$1"),
@@ -181,14 +199,12 @@ fn row(what: What) -> Row {
         TextOfFloat | TextOfAny => call("toText($1)"),
         Printed => call("toPrinted($1)"),
         ValueOf => call("toValue($1)"),
-        other => functions(other),
     }
 }
 
-/// Functions of the language, tables, threads, readings.
-fn functions(what: What) -> Row {
-    use What::*;
-    match what {
+fn function(function: Function) -> Row {
+    use Function::*;
+    match function {
         Sin => call("math.sin($1)"),
         Cos => call("math.cos($1)"),
         Ln => call("math.log($1)"),
@@ -207,51 +223,46 @@ fn functions(what: What) -> Row {
         Pi => call("math.pi"),
         Time => infix("milliseconds() - started", 12),
         Random => call("random($1, $2)"),
+    }
+}
+
+fn element(element: Element) -> Row {
+    use Element::*;
+    match element {
         At => call("item($1, $2)"),
         AtWhole => call("item($1, $2)"),
         AtPlain => postfix("$1[$2]"),
         Put => call("put($1, $2, $3)"),
         Copy => call("copy($1)"),
-        StartThread => call("startThread($1, $2)"),
-        JoinThread => call("joinThread($1)"),
-        KillThread => call("killThread($1)"),
-        SendThread => call("sendMessage($1, $2)"),
-        ReceiveThread => call("receiveMessage(true)"),
-        ReceiveThreadNow => call("receiveMessage(false)"),
-        Again => call("again($1, $2)"),
-        Command(command) => call(command.phrase.lua),
-        other => robot(other),
     }
 }
 
-/// What the robot tells and is told: functions that Lua and C share.
-pub(super) fn robot(what: What) -> Row {
-    use What::*;
-    match what {
-        Sensor => call("sensor($1)"),
-        Encoder => call("encoder($1)"),
-        Gyroscope => call("gyroscope()"),
-        Accelerometer => call("accelerometer()"),
-        LineSensor => call("lineSensor()"),
-        ObjectSensor => call("objectSensor()"),
-        ColorSensor => call("colorSensor()"),
-        Lidar => call("lidar()"),
-        Button => call("button($1)"),
-        AnyButton => call("anyButton($1)"),
-        PadButton => call("padButton($1)"),
-        PadX => call("pad($1, 0)"),
-        PadY => call("pad($1, 1)"),
-        PadPressed => call("pad($1, 2)"),
-        Wheel => call("wheel()"),
-        GamepadConnected => call("gamepadConnected()"),
+/// What the robot is told: functions that Lua and C share.
+pub(super) fn robot(robot: Robot) -> Row {
+    use Robot::*;
+    match robot {
         SetPower => call("setPower($1, $2)"),
         PowerOff => call("powerOff($1)"),
         Servo => call("setServo($1, $2)"),
         ResetEncoder => call("resetEncoder($1)"),
         Print => call("say_text($1)"),
-        Wait => call("wait($1)"),
         Finish => call("rest()"),
-        _ => NONE,
+        Redraw => NONE,
+    }
+}
+
+fn turn(turn: Turn) -> Row {
+    use Turn::*;
+    match turn {
+        Wait => call("wait($1)"),
+        AnyButton => call("anyButton($1)"),
+        Start => call("startThread($1, $2)"),
+        Join => call("joinThread($1)"),
+        Kill => call("killThread($1)"),
+        Send => call("sendMessage($1, $2)"),
+        Receive => call("receiveMessage(true)"),
+        ReceiveNow => call("receiveMessage(false)"),
+        Mail => NONE,
     }
 }
 
@@ -285,7 +296,7 @@ fn assemble(printer: &Printer<'_>) -> String {
             variables.push_str(&format!("{} = {start}\n", printer.variables[number]));
         }
     }
-    let start = if script.has_threads {
+    let start = if script.names_threads {
         "runThreads(main)\n"
     } else {
         "main()\n"

@@ -2,11 +2,11 @@
 //!
 //! Owns words of one language. There is no compiler for it here: what is printed has only been read.
 
-use super::super::code::{Kind, What};
+use super::super::code::{Conversion, Element, Function, Kind, Number, Truth, Turn};
 use super::super::names::Rules;
 use super::super::plan::Owner;
 use super::super::print::{
-    Dialect, Printer, Row, Syntax, apart, call, float, infix, postfix, prefix,
+    Dialect, NONE, Printer, Row, Syntax, Tables, apart, call, float, infix, postfix, prefix,
 };
 use super::super::routines::{Abilities, Routine};
 use super::library;
@@ -14,7 +14,16 @@ use crate::structure::Jumps;
 
 /// The language.
 pub(in super::super) const PASCAL: Dialect = Dialect {
-    row,
+    tables: Tables {
+        number,
+        truth,
+        conversion,
+        function,
+        element,
+        robot: library::robot,
+        turn,
+        phrase: |phrase| phrase.dotnet,
+    },
     syntax: Syntax {
         indent: "  ",
         comment: "// $1",
@@ -223,9 +232,9 @@ fn quote(text: &str) -> String {
     }
 }
 
-fn row(what: What) -> Row {
-    use What::*;
-    match what {
+fn number(number: Number) -> Row {
+    use Number::*;
+    match number {
         Add => infix("$1 + $2", 12),
         Subtract => infix("$1 - $2", 12),
         Multiply => infix("$1 * $2", 13),
@@ -243,6 +252,12 @@ fn row(what: What) -> Row {
         BitNot => prefix("not $1", 14),
         ShiftLeft => infix("$1 shl $2", 13),
         ShiftRight => infix("$1 shr $2", 13),
+    }
+}
+
+fn truth(truth: Truth) -> Row {
+    use Truth::*;
+    match truth {
         Not => call("not ($1)"),
         And => call("($1) and ($2)"),
         Or => call("(($1) or ($2))"),
@@ -252,6 +267,14 @@ fn row(what: What) -> Row {
         GreaterEqual => apart("$1 >= $2", 3),
         Equal | EqualText => apart("$1 = $2", 3),
         NotEqual | NotEqualText => apart("$1 <> $2", 3),
+        Again => call("Again($1, $2)"),
+        EqualAny | NotEqualAny => NONE,
+    }
+}
+
+fn conversion(conversion: Conversion) -> Row {
+    use Conversion::*;
+    match conversion {
         Join => infix("$1 + $2", 12),
         Length => postfix("$1.Length"),
         FloatOfInt => call("$1"),
@@ -264,6 +287,13 @@ fn row(what: What) -> Row {
         TextOfFloat | TextOfAny => call("ToText($1)"),
         TextOfBool => postfix("$1.ToString.ToLower"),
         Printed => call("ToPrinted($1)"),
+        ValueOf => NONE,
+    }
+}
+
+fn function(function: Function) -> Row {
+    use Function::*;
+    match function {
         Sin => call("Sin($1)"),
         Cos => call("Cos($1)"),
         Ln => call("Ln($1)"),
@@ -276,30 +306,35 @@ fn row(what: What) -> Row {
         Sgn => call("Sign($1)"),
         Ceil => call("Ceil($1)"),
         Floor => call("Floor($1)"),
-        other => robot(other),
-    }
-}
-
-/// The robot, and what the library of .NET has.
-fn robot(what: What) -> Row {
-    use What::*;
-    match what {
         Min => call("Min($1, $2)"),
         Max => call("Max($1, $2)"),
         Atan2 => call("System.Math.Atan2($1, $2)"),
         Pi => call("Pi"),
         Time => infix("Milliseconds - started", 12),
         Random => call("Random($1, $2)"),
+    }
+}
+
+fn element(element: Element) -> Row {
+    use Element::*;
+    match element {
         At => call("Item($1, $2)"),
         AtWhole => call("Round(Item($1, $2))"),
         AtPlain => call("Round($1[$2])"),
         Put => call("Put($1, $2, $3)"),
         Copy => postfix("$1.ToList"),
-        StartThread => call("StartThread($1, $2)"),
-        JoinThread => call("JoinThread($1)"),
-        KillThread => call("KillThread($1)"),
-        Again => call("Again($1, $2)"),
-        other => library::commands(other),
+    }
+}
+
+fn turn(turn: Turn) -> Row {
+    use Turn::*;
+    match turn {
+        Wait => call("wait($1)"),
+        AnyButton => call("anyButton($1)"),
+        Start => call("StartThread($1, $2)"),
+        Join => call("JoinThread($1)"),
+        Kill => call("KillThread($1)"),
+        Mail | Send | Receive | ReceiveNow => NONE,
     }
 }
 
@@ -327,7 +362,7 @@ fn head(printer: &Printer<'_>, index: usize, routine: &Routine) -> String {
     };
     let name = match routine.owner {
         Owner::Main => "Main_",
-        _ => &printer.functions[index],
+        Owner::Subprogram(_) | Owner::Thread(..) => &printer.functions[index],
     };
     format!("procedure {name}{parameters};")
 }
@@ -366,15 +401,20 @@ fn assemble(printer: &Printer<'_>) -> String {
             let start = match kind {
                 Kind::List(_) => " := new List<real>",
                 Kind::Text => " := ''",
-                _ => "",
+                Kind::Any | Kind::Bool | Kind::Int | Kind::Float => "",
             };
             let name = &printer.variables[number];
             variables.push_str(&format!("  {name}: {}{start};\n", type_of(&kind)));
         }
     }
-    let helpers = printer.helpers(&functions);
+    let begin = if script.names_threads {
+        "  threads['main'] := Thread.CurrentThread;\n"
+    } else {
+        ""
+    };
+    let helpers = printer.helpers(&format!("{functions}{begin}"));
     let title = printer.comment(&printer.title);
     format!(
-        "{title}\n{{$reference Trik.Core.dll}}\nuses System, System.Threading, System.Collections.Generic, Trik;\n\nvar\n  model := new Model;\n  started: integer;\n{variables}\n{helpers}{functions}begin\n  started := Environment.TickCount;\n  Main_;\nend.\n"
+        "{title}\n{{$reference Trik.Core.dll}}\nuses System, System.Threading, System.Collections.Generic, Trik;\n\nvar\n  model := new Model;\n  started: integer;\n{variables}\n{helpers}{functions}begin\n  started := Environment.TickCount;\n{begin}  Main_;\nend.\n"
     )
 }

@@ -1,20 +1,32 @@
 //! Python for TRIK: the module `trik` of the controller.
 //!
-//! Owns words of one language.
+//! Owns words of one language. It has only what the controller's own runtime has, too: programs with threads are in
+//! `turns`.
 
-use super::super::code::What;
+pub(in super::super) mod turns;
+
+use super::super::code::{Conversion, Element, Function, Number, Truth, Turn};
 use super::super::names::Rules;
 use super::super::plan::Owner;
 use super::super::print::{
-    Dialect, Printer, Row, Syntax, apart, call, float, infix, postfix, prefix, quote,
+    Dialect, NONE, Printer, Row, Syntax, Tables, apart, call, float, infix, postfix, prefix, quote,
 };
 use super::super::routines::Abilities;
-use super::javascript::brick;
+use super::javascript;
 use crate::structure::Jumps;
 
 /// The language.
 pub(in super::super) const PYTHON: Dialect = Dialect {
-    row,
+    tables: Tables {
+        number,
+        truth,
+        conversion,
+        function,
+        element,
+        robot: javascript::robot,
+        turn,
+        phrase: |phrase| phrase.python,
+    },
     syntax: Syntax {
         indent: "  ",
         comment: "# $1",
@@ -126,14 +138,16 @@ const RESERVED: &[&str] = &[
     "while",
     "with",
     "yield",
+    "Turns",
+    "turns",
     "__init__",
     "__class__",
     "__dict__",
 ];
 
-fn row(what: What) -> Row {
-    use What::*;
-    match what {
+fn number(number: Number) -> Row {
+    use Number::*;
+    match number {
         Add => infix("$1 + $2", 12),
         Subtract => infix("$1 - $2", 12),
         Multiply => infix("$1 * $2", 13),
@@ -150,6 +164,12 @@ fn row(what: What) -> Row {
         BitNot => prefix("~$1", 15),
         ShiftLeft => call("shift_left($1, $2)"),
         ShiftRight => infix("$1 >> $2", 11),
+    }
+}
+
+fn truth(truth: Truth) -> Row {
+    use Truth::*;
+    match truth {
         Not => prefix("not $1", 4),
         And => infix("$1 and $2", 3),
         Or => infix("$1 or $2", 2),
@@ -161,6 +181,13 @@ fn row(what: What) -> Row {
         NotEqual | NotEqualText => apart("$1 != $2", 6),
         EqualAny => call("same($1, $2)"),
         NotEqualAny => prefix("not same($1, $2)", 4),
+        Again => call("again($1, $2)"),
+    }
+}
+
+fn conversion(conversion: Conversion) -> Row {
+    use Conversion::*;
+    match conversion {
         Join => infix("$1 + $2", 12),
         Length => call("len($1)"),
         FloatOfInt => call("$1"),
@@ -173,14 +200,12 @@ fn row(what: What) -> Row {
         TextOfFloat | TextOfBool | TextOfAny => call("to_text($1)"),
         Printed => call("to_printed($1)"),
         ValueOf => call("to_value($1)"),
-        other => functions(other),
     }
 }
 
-/// Functions of the language, tables, threads.
-fn functions(what: What) -> Row {
-    use What::*;
-    match what {
+fn function(function: Function) -> Row {
+    use Function::*;
+    match function {
         Sin => call("math.sin($1)"),
         Cos => call("math.cos($1)"),
         Ln => call("math.log($1)"),
@@ -199,19 +224,28 @@ fn functions(what: What) -> Row {
         Pi => call("math.pi"),
         Time => call("int(script.time() - self.__interpretation_started_timestamp__)"),
         Random => call("script.random($1, $2)"),
+    }
+}
+
+fn element(element: Element) -> Row {
+    use Element::*;
+    match element {
         At => call("item($1, $2)"),
         AtWhole => call("item($1, $2)"),
         AtPlain => postfix("$1[$2]"),
         Put => call("put($1, $2, $3)"),
         Copy => call("copy($1)"),
-        StartThread => call("Threading.startThread($1, $2)"),
-        JoinThread => call("Threading.joinThread($1)"),
-        KillThread => call("Threading.killThread($1)"),
-        SendThread => call("Threading.sendMessage($1, $2)"),
-        ReceiveThread => call("Threading.receiveMessage(True)"),
-        ReceiveThreadNow => call("Threading.receiveMessage(False)"),
-        Again => call("again($1, $2)"),
-        other => brick(other, true),
+    }
+}
+
+fn turn(turn: Turn) -> Row {
+    use Turn::*;
+    match turn {
+        Wait => call("script.wait($1)"),
+        AnyButton => call("brick.keys().buttonCode($1)"),
+        Mail => call("mailbox.receive($1)"),
+        // `turns` has them.
+        Start | Join | Kill | Send | Receive | ReceiveNow => NONE,
     }
 }
 
@@ -380,12 +414,17 @@ def again(loop, times):
 ];
 
 fn assemble(printer: &Printer<'_>) -> String {
+    assembled(printer, false)
+}
+
+/// The whole program. In one with turns each function is a generator.
+fn assembled(printer: &Printer<'_>, has_turns: bool) -> String {
     let script = printer.script;
     let mut functions = String::new();
     for (index, routine) in script.routines.iter().enumerate() {
         let name = match routine.owner {
             Owner::Main => "execMain",
-            _ => &printer.functions[index],
+            Owner::Subprogram(_) | Owner::Thread(..) => &printer.functions[index],
         };
         let mut parameters = vec!["self"];
         let names = routine
@@ -403,12 +442,23 @@ fn assemble(printer: &Printer<'_>) -> String {
         if routine.owner == Owner::Main {
             functions.push_str("    self.__interpretation_started_timestamp__ = script.time()\n");
         }
-        let body = printer.body(routine, 2);
-        functions.push_str(if body.trim().is_empty() {
-            "    pass\n"
-        } else {
-            &body
-        });
+        let is_inside = has_turns && routine.owner == Owner::Main;
+        let depth = if is_inside { 3 } else { 2 };
+        let indent = PYTHON.syntax.indent.repeat(depth);
+        if is_inside {
+            functions.push_str("    def body():\n");
+        }
+        let body = printer.body(routine, depth);
+        functions.push_str(&body);
+        if has_turns {
+            // What makes it a generator, whatever it does.
+            functions.push_str(&format!("{indent}if False:\n{indent}  yield\n"));
+        } else if body.trim().is_empty() {
+            functions.push_str("    pass\n");
+        }
+        if is_inside {
+            functions.push_str("    turns.run(body)\n");
+        }
         functions.push('\n');
     }
     let mut variables = String::new();

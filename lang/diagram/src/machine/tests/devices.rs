@@ -1,10 +1,9 @@
 //! Motors, encoders, sensors, buttons, screen, files: against numbers that the real program gave.
 
 use super::{Ran, Sketch, chain, code, run, run_with};
-use crate::blocks::{Does, Row, Silent, table};
 use crate::lower::World;
 use crate::machine::Options;
-use crate::ports::{Kit, Port};
+use crate::ports::Port;
 use crate::stand_in::StandIn;
 
 fn near(ran: &Ran, x: f64, y: f64, degrees: f64) {
@@ -376,66 +375,6 @@ fn a_person_is_asked_until_he_answers() {
     assert_eq!(asked("").text("x"), "9");
     assert_eq!(run(&sketch, 1000).end(), None);
     assert!(asked("nonsense").errors()[0].contains("Undeclared identifier"));
-}
-
-/// Where a block does what its examples say: not where it is silent.
-fn world(row: &Row) -> World {
-    match row.silent {
-        Silent::Simulated | Silent::WithoutMailbox | Silent::WithoutGamepad => World::Robot,
-        Silent::Never | Silent::Real | Silent::Always => World::default(),
-    }
-}
-
-#[test]
-fn every_block_that_tells_something_tells_what_its_examples_say() {
-    for row in table() {
-        let Does::Act(act) = row.does else {
-            continue;
-        };
-        assert!(!act.examples.is_empty(), "{} has no example", row.kind);
-        for example in act.examples {
-            let mut sketch = chain(&[(row.kind, example.properties)]);
-            let kit = if row.is_of(Kit::V62) {
-                "trikV62Kit"
-            } else {
-                "trikV6Kit"
-            };
-            sketch.meta("lastKitId", kit);
-            let world = world(row);
-            let ran = run_with(&sketch, 100, Options::of(world), world, |_| {});
-            let log = ran.robot.log.iter().map(|(_, line)| line.as_str());
-            let lines: Vec<_> = log.collect();
-            let mut told = example.told.to_vec();
-            if row.silent == Silent::Always {
-                // A former block shares the row of the present one.
-                told.clear();
-            }
-            told.push("rest");
-            assert_eq!(
-                (lines, ran.errors()),
-                (told, vec![]),
-                "{} {:?}",
-                row.kind,
-                example.properties
-            );
-        }
-    }
-}
-
-#[test]
-fn what_is_silent_somewhere_tells_nothing_there() {
-    for row in table() {
-        let silent = match row.silent {
-            Silent::Never => continue,
-            Silent::Simulated | Silent::WithoutMailbox | Silent::WithoutGamepad => World::default(),
-            Silent::Real | Silent::Always => World::Robot,
-        };
-        let sketch = chain(&[(row.kind, &[]), ("Function", &[("Body", "print(1)")])]);
-        let ran = run_with(&sketch, 100, Options::of(silent), silent, |_| {});
-        let log = ran.robot.log.iter().map(|(_, line)| line.as_str());
-        let lines: Vec<_> = log.collect();
-        assert_eq!(lines, ["print \"1\"", "rest"], "{}", row.kind);
-    }
 }
 
 #[test]

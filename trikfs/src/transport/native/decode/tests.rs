@@ -175,16 +175,20 @@ fn operations_that_change_names_are_not_permitted() {
         op::CREATE,
     ] {
         let bytes = message(opcode, b"x\0");
-        assert_eq!(decode(&bytes).unwrap().body, Body::Refused(libc::EPERM));
+        assert_eq!(
+            decode(&bytes).unwrap().body,
+            Body::Refused(Error::NotPermitted)
+        );
     }
-    for (opcode, errno) in [
-        (op::SETXATTR, libc::EOPNOTSUPP),
-        (op::IOCTL, libc::ENOTTY),
-        (46, libc::ENOSYS),
-        (9999, libc::ENOSYS),
+    for (opcode, why, errno) in [
+        (op::SETXATTR, Error::Unsupported, libc::EOPNOTSUPP),
+        (op::IOCTL, Error::NoControl, libc::ENOTTY),
+        (46, Error::NotNeeded, libc::ENOSYS),
+        (9999, Error::NotNeeded, libc::ENOSYS),
     ] {
         let bytes = message(opcode, &[]);
-        assert_eq!(decode(&bytes).unwrap().body, Body::Refused(errno));
+        assert_eq!(decode(&bytes).unwrap().body, Body::Refused(why.clone()));
+        assert_eq!(why.errno(), errno);
     }
 }
 

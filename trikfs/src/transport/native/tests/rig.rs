@@ -109,7 +109,7 @@ impl TestFs {
         state.at_gate -= 1;
     }
 
-    /// Lets everybody go who waits, so that the end of a failed test does not hang.
+    /// Ends all requests that wait, so that the end of a failed test does not hang.
     fn let_go(&self) {
         self.open_gate();
         let Some(kernel) = self.kernel.lock().unwrap().clone() else {
@@ -120,7 +120,7 @@ impl TestFs {
         }
     }
 
-    /// Appends to `stream` and serves whoever waits for it.
+    /// Appends to `stream` and serves the reads that wait for it.
     pub(crate) fn feed(&self, data: &[u8]) {
         let mut state = self.state();
         state.queue.extend(data);
@@ -341,7 +341,7 @@ impl Operations for TestFs {
     }
 }
 
-/// A [`TestFs`], mounted and served; unmounted on drop, with everybody let go who waits in it.
+/// A [`TestFs`], mounted and served; unmounted on drop, with all requests that wait in it ended.
 pub(crate) struct Rig {
     pub(crate) fs: Arc<TestFs>,
     path: PathBuf,

@@ -24,6 +24,16 @@ typedef struct { int count; double at[512]; } Table;
 static const char *tree = \"/trikfs\";
 static Whole started;
 
+static void findTree(int count, char **arguments)
+{
+    const char *named = getenv(\"TRIK_TREE\");
+
+    if (named && *named)
+        tree = named;
+    if (count > 1)
+        tree = arguments[1];
+}
+
 static __attribute__((unused)) void fail(const char *what)
 {
     fprintf(stderr, \"%s: %s\\n\", what, errno ? strerror(errno) : \"not possible\");
@@ -144,95 +154,7 @@ static Whole readNumber(const char *group, const char *port, const char *file)
     return (Whole)numbers.at[0];
 }",
     ),
-    (
-        "startThread",
-        "
-#define HAS_THREADS
-/* Threads take turns: one runs until it waits. */
-static pthread_mutex_t turn = PTHREAD_MUTEX_INITIALIZER;
-static struct Thread { Text name; void (*run)(void); pthread_t id; int runs, killed; } threads[100];
-static int threadCount;
-static __thread struct Thread *current;
-
-static void pauseFor(Whole ms)
-{
-    struct timespec time;
-
-    time.tv_sec = ms / 1000;
-    time.tv_nsec = ms % 1000 * 1000000;
-    pthread_mutex_unlock(&turn);
-    nanosleep(&time, NULL);
-    pthread_mutex_lock(&turn);
-    if (current && current->killed) {
-        current->runs = 0;
-        pthread_mutex_unlock(&turn);
-        pthread_exit(NULL);
-    }
-}
-
-static void *runThread(void *thread)
-{
-    current = thread;
-    pthread_mutex_lock(&turn);
-    current->run();
-    current->runs = 0;
-    pthread_mutex_unlock(&turn);
-    return NULL;
-}
-
-static void startThread(Text name, void (*run)(void))
-{
-    struct Thread *thread = &threads[threadCount];
-
-    if (threadCount == 100)
-        fail(\"too many threads\");
-    threadCount++;
-    thread->name = name;
-    thread->run = run;
-    thread->runs = 1;
-    if (pthread_create(&thread->id, NULL, runThread, thread) != 0)
-        fail(\"pthread_create\");
-}
-
-static int isRunning(const Text *name)
-{
-    int index, found = 0;
-
-    for (index = 0; index < threadCount; index++)
-        found |= threads[index].runs && strcmp(threads[index].name.at, name->at) == 0;
-    return found;
-}
-
-static __attribute__((unused)) void joinThread(Text name)
-{
-    while (isRunning(&name))
-        pauseFor(10);
-}
-
-static __attribute__((unused)) void killThread(Text name)
-{
-    int index;
-
-    for (index = 0; index < threadCount; index++)
-        if (strcmp(threads[index].name.at, name.at) == 0)
-            threads[index].killed = 1;
-}
-
-static void beginThreads(void)
-{
-    pthread_mutex_lock(&turn);
-}
-
-/* The program ends when all its threads have ended. */
-static void endThreads(void)
-{
-    int index;
-
-    for (index = 0; index < threadCount; index++)
-        while (threads[index].runs)
-            pauseFor(10);
-}",
-    ),
+    super::threads::THREADS,
     (
         "wait",
         "

@@ -1,15 +1,18 @@
 //! JavaScript whose threads share variables: they take turns in one engine, as generators.
 //!
-//! Owns what is different from plain JavaScript: each function is a generator, and whoever waits yields. `Threading` of
+//! Owns what is different from plain JavaScript: each function is a generator, and a thread that waits yields. `Threading` of
 //! the controller gives each thread an engine of its own, in which others' variables never change.
 
-use super::super::super::code::What;
-use super::super::super::print::{Dialect, Printer, Row, Syntax, call};
+use super::super::super::code::Turn;
+use super::super::super::print::{Dialect, Printer, Row, Syntax, Tables, call};
 use super::{HELPERS, JAVASCRIPT, assembled};
 
 /// The language.
 pub(in super::super::super) const TURNS: Dialect = Dialect {
-    row,
+    tables: Tables {
+        turn,
+        ..JAVASCRIPT.tables
+    },
     syntax: Syntax {
         call: "yield* $1($2)",
         ..JAVASCRIPT.syntax
@@ -52,10 +55,19 @@ var turns = {
     find: function(name) {
         return turns.threads.find(function(thread) { return thread.name == name && !thread.ended; });
     },
-    start: function(name, run) {
+    // Who was killed goes no further.
+    mayEnd: function*() {
+        if (turns.current && turns.current.ended)
+            yield 0;
+    },
+    begin: function(name, run) {
         var thread = { name: name, run: run(), mail: [], due: 0, ended: false, receives: false };
         turns.threads.push(thread);
         turns.step(thread);
+    },
+    start: function*(name, run) {
+        turns.begin(name, run);
+        yield* turns.mayEnd();
     },
     wait: function*(ms) {
         yield script.time() + Math.max(ms, 10);
@@ -68,17 +80,17 @@ var turns = {
         var thread = turns.find(name);
         if (thread)
             thread.ended = true;
-        if (thread && thread === turns.current)
-            yield 0;
+        yield* turns.mayEnd();
     },
-    send: function(name, text) {
+    send: function*(name, text) {
         var thread = turns.find(name);
-        if (!thread)
-            return;
-        thread.mail.push(text);
-        // Who has waited for it goes first.
-        if (thread.receives)
-            turns.step(thread);
+        if (thread) {
+            thread.mail.push(text);
+            // The thread that waited for it goes first.
+            if (thread.receives)
+                turns.step(thread);
+        }
+        yield* turns.mayEnd();
     },
     receive: function*(waits) {
         var me = turns.current;
@@ -103,7 +115,7 @@ var turns = {
         return mailbox.receive(false);
     },
     run: function(main) {
-        turns.start(\"main\", main);
+        turns.begin(\"main\", main);
         for (;;) {
             turns.threads = turns.threads.filter(function(thread) { return !thread.ended; });
             if (turns.threads.length == 0)
@@ -122,19 +134,18 @@ var turns = {
 };",
 );
 
-fn row(what: What) -> Row {
-    use What::*;
-    match what {
+fn turn(turn: Turn) -> Row {
+    use Turn::*;
+    match turn {
         Wait => call("yield* turns.wait($1)"),
-        StartThread => call("turns.start($1, $2)"),
-        JoinThread => call("yield* turns.join($1)"),
-        KillThread => call("yield* turns.kill($1)"),
-        SendThread => call("turns.send($1, $2)"),
-        ReceiveThread => call("(yield* turns.receive(true))"),
-        ReceiveThreadNow => call("(yield* turns.receive(false))"),
+        Start => call("yield* turns.start($1, $2)"),
+        Join => call("yield* turns.join($1)"),
+        Kill => call("yield* turns.kill($1)"),
+        Send => call("yield* turns.send($1, $2)"),
+        Receive => call("(yield* turns.receive(true))"),
+        ReceiveNow => call("(yield* turns.receive(false))"),
         AnyButton => call("(yield* turns.buttonCode($1))"),
         Mail => call("(yield* turns.mail($1))"),
-        other => (JAVASCRIPT.row)(other),
     }
 }
 

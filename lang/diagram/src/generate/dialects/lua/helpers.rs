@@ -79,7 +79,7 @@ function wait(ms)
 end",
     ),
     (
-        "startThread",
+        "startThread joinThread killThread sendMessage receiveMessage runThreads",
         "
 -- Threads take turns: one runs until it waits.
 local threads, order = {}, 0
@@ -98,10 +98,15 @@ local function find(name)
     if thread.name == name and not thread.ended then return thread end
   end
 end
+-- Who was killed goes no further.
+local function mayEnd()
+  if current and current.ended then coroutine.yield(0) end
+end
 function startThread(name, run)
   local thread = { name = name, run = coroutine.create(run), mail = {} }
   threads[#threads + 1] = thread
   step(thread)
+  mayEnd()
 end
 function joinThread(name)
   while find(name) do wait(10) end
@@ -109,14 +114,16 @@ end
 function killThread(name)
   local thread = find(name)
   if thread then thread.ended = true end
-  if thread == current then coroutine.yield(0) end
+  mayEnd()
 end
 function sendMessage(name, text)
   local thread = find(name)
-  if not thread then return end
-  table.insert(thread.mail, text)
-  -- Who has waited for it goes first.
-  if thread.receives then step(thread) end
+  if thread then
+    table.insert(thread.mail, text)
+    -- The thread that waited for it goes first.
+    if thread.receives then step(thread) end
+  end
+  mayEnd()
 end
 function receiveMessage(waits)
   while waits and #current.mail == 0 do

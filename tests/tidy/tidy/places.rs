@@ -1,0 +1,118 @@
+//! Rules of where things stand: limits, numbers of errors, texts instead of errors.
+//!
+//! Owns the lists of crates and files that they are for, and of what they let pass.
+
+use super::{Source, none, sources};
+
+/// Crates whose limits all stand in their `limits.rs`. Those of `filters` are ranges of parameters, which stand with them.
+const LIMITED: [&str; 4] = ["config", "converter", "sample-bus", "trikfs"];
+/// Constants of such a crate that are named like limits and are none of ours, as beginnings of paths with a name.
+const NO_LIMITS: [(&str, &str); 4] = [
+    ("config/src/vm/memory", "SMALL_MAX"),
+    ("trikfs/src/device/i2c/virtual_bus", "ERRNO_MAX"),
+    ("trikfs/src/transport/native/abi", "MAX_PAGES"),
+    ("trikfs/src/transport/native/abi", "MINOR_MIN"),
+];
+/// Files that give errors their numbers: of the filesystem, of the words of `faulty`, of a reader of the sample bus.
+const NUMBERS: [&str; 3] = [
+    "config/src/source/faulty.rs",
+    "sample-bus/src/reader.rs",
+    "trikfs/src/errno.rs",
+];
+
+/// Sources of the product in one of the crates.
+fn product(all: &[Source]) -> impl Iterator<Item = &Source> {
+    all.iter().filter(|source| {
+        let of = |name: &str| source.path.starts_with(&format!("{name}/src/"));
+        LIMITED.iter().any(|name| of(name)) && !source.is_test()
+    })
+}
+
+/// Lines of code before the module of tests.
+fn lines(source: &Source) -> impl Iterator<Item = (usize, &str)> {
+    let count = source.product().lines().count();
+    source
+        .code()
+        .take_while(move |(number, _)| *number <= count)
+}
+
+/// The name of the constant that a line declares.
+fn constant(line: &str) -> Option<&str> {
+    let (before, rest) = line.split_once("const ")?;
+    let is_item = before.trim().is_empty() || before.trim_start().starts_with("pub");
+    let name = rest.split(':').next().unwrap_or_default();
+    let is_name = |c: char| c.is_ascii_uppercase() || c.is_ascii_digit() || c == '_';
+    (is_item && name.chars().all(is_name)).then_some(name)
+}
+
+#[test]
+fn limits_stand_in_limits() {
+    let mut complaints = Vec::new();
+    let all = sources();
+    for source in product(&all).filter(|source| !source.path.ends_with("/limits.rs")) {
+        for (number, line) in lines(source) {
+            let Some(name) = constant(line) else { continue };
+            let words: Vec<&str> = name.split('_').collect();
+            let is_limit = ["MAX", "MIN", "LIMIT"]
+                .iter()
+                .any(|word| words.first() == Some(word) || words.last() == Some(word));
+            let passes =
+                |(path, known): &(&str, &str)| source.path.starts_with(path) && *known == name;
+            if is_limit && !NO_LIMITS.iter().any(passes) {
+                complaints.push(format!("{}:{number}: {name}", source.path));
+            }
+        }
+    }
+    none(&complaints);
+}
+
+#[test]
+fn errors_get_their_numbers_in_one_file() {
+    let mut complaints = Vec::new();
+    let all = sources();
+    for source in product(&all).filter(|source| !NUMBERS.contains(&source.path.as_str())) {
+        for (number, line) in lines(source) {
+            let is_number = line.split("libc::").skip(1).any(|rest| {
+                let mut letters = rest.chars();
+                letters.next() == Some('E')
+                    && letters.next().is_some_and(|c| c.is_ascii_uppercase())
+            });
+            if is_number {
+                complaints.push(format!("{}:{number}: {}", source.path, line.trim()));
+            }
+        }
+    }
+    none(&complaints);
+}
+
+/// Functions of one of the crates that may give a text instead of an error: values of options, whose errors `clap` shows.
+const TEXTS: [&str; 1] = ["fn group_id("];
+
+/// Whether the types after `Result<` end with a text as the error.
+fn gives_text(types: &str) -> bool {
+    let mut depth = 1;
+    let end = types.bytes().position(|byte| {
+        match byte {
+            b'<' | b'(' => depth += 1,
+            b'>' | b')' => depth -= 1,
+            _ => {}
+        }
+        depth == 0
+    });
+    end.is_some_and(|end| types[..end].ends_with(", String"))
+}
+
+#[test]
+fn what_goes_wrong_is_no_text() {
+    let mut complaints = Vec::new();
+    let all = sources();
+    for source in product(&all) {
+        for (number, line) in lines(source) {
+            let is_text = line.split("Result<").skip(1).any(gives_text);
+            if is_text && !TEXTS.iter().any(|name| line.contains(name)) {
+                complaints.push(format!("{}:{number}: {}", source.path, line.trim()));
+            }
+        }
+    }
+    none(&complaints);
+}

@@ -1,0 +1,94 @@
+//! Rules of waiting: a test waits for what it needs, never for a time in which that should have come.
+
+use super::{none, sources};
+
+/// Tests that pause for a time, how often, and why that is no waiting for something else to be done.
+const PAUSES: [(&str, usize, &str); 17] = [
+    ("tests/harness/i2c_bus.rs", 1, "a slow bus is slow"),
+    ("tests/harness/mount.rs", 1, "between two looks"),
+    ("tests/harness/wait.rs", 1, "between two looks"),
+    ("tests/it/devices/program.rs", 1, "between two looks"),
+    ("tests/it/mount/sample_bus.rs", 1, "between two looks"),
+    ("trik/src/remote/output.rs", 1, "between two looks"),
+    ("trik/src/script/tests.rs", 2, "in model time"),
+    ("trik/tests/it/examples.rs", 2, "between two looks"),
+    ("trik/tests/it/hold.rs", 1, "between two looks"),
+    (
+        "trik/tests/it/programs.rs",
+        2,
+        "a program that drives for a second, and a slow one",
+    ),
+    ("trik/tests/it/rig.rs", 1, "between two looks"),
+    ("trikd/tests/it/crash.rs", 1, "between two looks"),
+    (
+        "trikd/tests/it/frames.rs",
+        3,
+        "keepalives at their rate, and programs that print at theirs",
+    ),
+    (
+        "trikd/tests/it/gamepad.rs",
+        1,
+        "lines at a rate below that of the clock",
+    ),
+    (
+        "trikd/tests/it/javascript_served.rs",
+        1,
+        "between two looks",
+    ),
+    ("trikd/tests/it/programs.rs", 2, "programs at their rate"),
+    (
+        "trikd/tests/it/rig.rs",
+        2,
+        "keepalives at their rate, and between two looks",
+    ),
+];
+
+/// Seconds from which a program that sleeps is one that has to be ended.
+const FOR_EVER_S: f64 = 20.0;
+
+/// Whether a line pauses: a call, or the program `sleep` for a time that somebody waits out.
+fn pauses(line: &str) -> bool {
+    let calls = line
+        .match_indices("sleep(")
+        .filter(|(at, _)| {
+            let before = line[..*at].chars().next_back();
+            !before.is_some_and(|letter| letter.is_alphanumeric() || letter == '_')
+        })
+        .any(|(at, word)| seconds(&line[at + word.len()..]).is_none_or(|time| time < FOR_EVER_S));
+    let programs = line
+        .match_indices("sleep ")
+        .any(|(at, word)| seconds(&line[at + word.len()..]).is_some_and(|time| time < FOR_EVER_S));
+    calls || programs
+}
+
+/// The number that a text begins with.
+fn seconds(text: &str) -> Option<f64> {
+    let end = text.find(|letter: char| !letter.is_ascii_digit() && letter != '.');
+    text[..end.unwrap_or(text.len())].parse().ok()
+}
+
+#[test]
+fn no_test_sleeps_until_something_should_have_happened() {
+    assert!(
+        pauses("std::thread::sleep(PAUSE)") && pauses("time.sleep(0.5)") && pauses("sleep 0.2;")
+    );
+    assert!(!pauses("asleep(pid)") && !pauses("exec sleep 1000") && !pauses("time.sleep(1000)"));
+    let mut complaints = Vec::new();
+    for source in sources() {
+        let product = source.product().lines().count();
+        let first = if source.is_test() { 0 } else { product };
+        let found = source
+            .code()
+            .filter(|(number, line)| *number > first && pauses(line))
+            .count();
+        let listed = PAUSES.iter().find(|(path, ..)| *path == source.path);
+        let allowed = listed.map_or(0, |(_, count, _)| *count);
+        if found != allowed && !source.path.starts_with("tests/tidy/") {
+            complaints.push(format!(
+                "{}: {found} pauses, not {allowed}: wait with `eventually`, or list why time is what is tested",
+                source.path
+            ));
+        }
+    }
+    none(&complaints);
+}
