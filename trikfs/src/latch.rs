@@ -19,9 +19,14 @@ struct Content {
     error: Option<Error>,
     /// Counts samples and failures; a reader that has seen this number has nothing new to read.
     events: u32,
+    era: Era,
     /// The same for programs that read shared memory.
     ring: Option<Ring>,
 }
+
+/// The time between two moments at which everything known was forgotten.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Era(u32);
 
 /// One sample and when it was taken.
 pub struct Sample {
@@ -48,13 +53,18 @@ impl Latch {
             stamp: None,
             error: None,
             events: 0,
+            era: Era::default(),
             ring: None,
         }))
     }
 
-    /// A sample, taken now. `tuple` has the size of the latch.
-    pub fn publish(&self, tuple: &[u8]) {
+    /// A sample that is complete now. `tuple` has the size of the latch. `era` is that in which taking it began: if it is
+    /// over, the sample tells what was before and is left out. True if the sample is published.
+    pub fn publish(&self, era: Era, tuple: &[u8]) -> bool {
         let mut content = lock(&self.0);
+        if content.era != era {
+            return false;
+        }
         content.tuple.copy_from_slice(tuple);
         let stamp = Stamp::now();
         content.stamp = Some(stamp);
@@ -63,6 +73,7 @@ impl Latch {
         if let Some(ring) = &mut content.ring {
             ring.publish(stamp, tuple);
         }
+        true
     }
 
     /// A failure. True if it is another one than stands there already.
@@ -79,10 +90,16 @@ impl Latch {
         is_new
     }
 
-    /// From now on there is neither a sample nor a failure.
+    /// From now on there is neither a sample nor a failure, and what is being sampled at this moment does not count.
     pub fn forget(&self) {
         let mut content = lock(&self.0);
         (content.stamp, content.error) = (None, None);
+        content.era = Era(content.era.0.wrapping_add(1));
+    }
+
+    /// The era that a sample belongs to whose taking begins now.
+    pub fn era(&self) -> Era {
+        lock(&self.0).era
     }
 
     /// Copies the sample to `tuple`. None, and nothing copied: there is none yet.
@@ -198,5 +215,30 @@ impl Content {
             tuple: self.tuple.clone(),
             stamp,
         }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sample_that_was_begun_before_everything_was_forgotten_does_not_count() {
+        let latch = Latch::new(1);
+        let before = latch.era();
+        assert!(latch.publish(before, &[1]));
+        latch.forget();
+        assert!(!latch.publish(before, &[2]));
+        let mut tuple = Vec::new();
+        assert_eq!(
+            latch.get(None, &mut tuple).map(|got| got.is_some()),
+            Ok(false)
+        );
+        assert!(latch.publish(latch.era(), &[3]));
+        assert_eq!(
+            latch.get(None, &mut tuple).map(|got| got.is_some()),
+            Ok(true)
+        );
+        assert_eq!(tuple, [3]);
     }
 }

@@ -16,7 +16,7 @@ use crate::crew::lock_patiently;
 use crate::device::Got;
 use crate::errno::Error;
 use crate::events::{Due, Ready, lock};
-use crate::latch::{Glimpse, Latch};
+use crate::latch::{Era, Glimpse, Latch};
 use crate::limits;
 use crate::node::{Feed, Node};
 use crate::reader::Reader;
@@ -41,6 +41,8 @@ pub struct Newest {
     waiting: Mutex<Vec<Waiting>>,
     watchers: Mutex<Vec<Weak<dyn Ready>>>,
     jobs: Mutex<Vec<Arc<dyn Due>>>,
+    /// The sample out of turn that no writer waits for any longer; that of a later write is in its place.
+    renewal: Mutex<Option<Arc<dyn Due>>>,
     page: Page,
 }
 
@@ -81,6 +83,7 @@ impl Newest {
             waiting: Mutex::default(),
             watchers: Mutex::default(),
             jobs: Mutex::default(),
+            renewal: Mutex::default(),
             page: Page::default(),
         }
     }
@@ -160,6 +163,7 @@ impl Newest {
     /// Stops sampling and answers all reads that wait with ESTALE.
     pub fn stop(&self) {
         lock(&self.jobs).clear();
+        lock(&self.renewal).take();
         self.leave_bus();
         for waiting in std::mem::take(&mut *lock(&self.waiting)) {
             self.finish(&waiting, Some(Error::Stale));
@@ -224,6 +228,19 @@ impl Newest {
             self.sample(&node);
         }
         Ok(())
+    }
+
+    /// A write has made the newest sample wrong, and no other has come in time: it is forgotten, and reads wait for the
+    /// sample that `renewal` takes. The page goes later, because this is inside an operation.
+    fn outdate(&self, node: &Arc<Node>, renewal: Arc<dyn Due>) {
+        self.latch.forget();
+        // Once more: what it samples at this moment does not count any longer.
+        node.sampling_schedule()
+            .at(Instant::now(), Arc::downgrade(&renewal));
+        *lock(&self.renewal) = Some(renewal);
+        self.page.unwant();
+        let due: Arc<dyn Due> = node.clone();
+        (node.engine.schedule).at(Instant::now(), Arc::downgrade(&due));
     }
 
     /// The newest sample. None: there is none yet.
@@ -350,11 +367,12 @@ impl Newest {
     /// Takes one sample (a state, an own stream) or everything that has come (a shared stream).
     fn sample(&self, node: &Arc<Node>) {
         let mut work = lock_patiently(&self.work);
+        let era = self.latch.era();
         if let Err(error) = work.open(node) {
             drop(work);
             return self.fail(error);
         }
-        let outcome = work.take(node, |tuple| self.publish(node, tuple));
+        let outcome = work.take(node, |tuple| self.publish(node, era, tuple));
         if matches!(&outcome, Err(error) if error.is_gone()) || node.is_retired() {
             work.source = Source::Closed;
         }
@@ -382,7 +400,7 @@ impl Newest {
         }
     }
 
-    fn publish(&self, node: &Node, tuple: &[u8]) {
+    fn publish(&self, node: &Node, era: Era, tuple: &[u8]) {
         if node
             .format
             .fields()
@@ -394,7 +412,9 @@ impl Newest {
             node.report(&error);
             return self.fail(error);
         }
-        self.latch.publish(tuple);
+        if !self.latch.publish(era, tuple) {
+            return;
+        }
         node.stats.samples.add(1);
         self.page.fill(&node.engine, tuple);
         self.tell();

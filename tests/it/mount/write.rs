@@ -221,3 +221,41 @@ fn who_reads_after_a_write_gets_nothing_from_before_it() {
     assert_eq!(m.text("e/value"), "119 120 121 122\n");
     assert_eq!(m.read("e/bin_data").unwrap(), b"wxyz");
 }
+
+#[test]
+fn what_was_sampled_before_a_write_is_not_shown_while_the_next_sample_takes_long() {
+    let board = Board::new();
+    board.file("position", "abcd");
+    // Each sample takes some tenths of a second: longer than a write waits for it.
+    let Some(m) = mount_on(
+        board,
+        "trikfs = { e = { src = '$DIR/position', input_tuple_size = 4, output_tuple_size = 4, format = 'u8 a, u8 b, u8 c, u8 d',
+  poll_ms = 3600000, timeout_ms = 20000, budget_us = 10000000,
+  converter = function(a_s, a, b_s, b)
+    local sum = 0
+    for i = 1, 2e8 do sum = sum + i end
+    for i = 0, 3 do ba.u8(b, i, sum > 0 and ba.u8(a, i) or 0) end
+  end,
+} }",
+    ) else {
+        return;
+    };
+    harness::eventually("the first sample", || m.stat("e", "samples") > 0.0);
+    let cached = m.open("e/bin_data");
+    let mut seen = [0; 4];
+    cached.read_exact_at(&mut seen, 0).unwrap();
+    assert_eq!(&seen, b"abcd");
+    m.sh("printf wxyz > e/device");
+    m.python(
+        "fd = open_ro(M + '/e/value', os.O_NONBLOCK)
+expect('EAGAIN', os.read, fd, 100)
+",
+    );
+    assert_eq!(m.text("e/value"), "119 120 121 122\n");
+    // The page goes a moment later than the sample.
+    harness::eventually("the new bytes", || {
+        cached
+            .read_exact_at(&mut seen, 0)
+            .is_ok_and(|()| &seen == b"wxyz")
+    });
+}

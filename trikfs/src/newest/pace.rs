@@ -72,7 +72,7 @@ impl Due for Renewal {
 
 /// After a write: what the clock had sampled before is not what the device says now. Waits for a sample of the thread that
 /// takes the others, which alone may wait for the page cache, but not for ever: that thread may be busy with a device that
-/// hangs.
+/// hangs. Then the sample from before the write is forgotten, so that nobody takes it for an answer to the write.
 pub fn renew(node: &Arc<Node>) {
     let by_clock = matches!(node.description.pace, Pace::Every { .. });
     if !by_clock || node.driving.takes_orders() || node.is_retired() {
@@ -85,7 +85,9 @@ pub fn renew(node: &Arc<Node>) {
     });
     node.sampling_schedule()
         .at(Instant::now(), Arc::downgrade(&renewal));
-    let _ = sampled.recv_timeout(Duration::from_millis(limits::RENEWAL_MS));
+    if (sampled.recv_timeout(Duration::from_millis(limits::RENEWAL_MS))).is_err() {
+        node.sampling.newest.outdate(node, renewal);
+    }
 }
 
 /// Takes a value out of the page cache when it has become too old although the sampler still waits for the device.

@@ -47,8 +47,13 @@ impl Page {
     pub(super) fn count_polled(&self, comes: bool) {
         count(&self.polled, comes);
         if comes {
-            self.is_unwanted.store(true, Ordering::SeqCst);
+            self.unwant();
         }
+    }
+
+    /// The page is dropped by the schedule, as soon as it can.
+    pub(super) fn unwant(&self) {
+        self.is_unwanted.store(true, Ordering::SeqCst);
     }
 
     /// There is a new sample.
@@ -82,7 +87,7 @@ impl Page {
         was_filled
     }
 
-    /// Drops the page if somebody began to poll.
+    /// Drops the page if it was said that it must go.
     pub(super) fn drop_unwanted(&self, engine: &Engine) {
         if self.is_unwanted.swap(false, Ordering::SeqCst) {
             self.drop(engine);
