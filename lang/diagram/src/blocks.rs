@@ -236,6 +236,14 @@ impl Row {
         }
     }
 
+    /// A property that is known by its own name or by the one that the editor shows in English, as the editor shows it; the
+    /// name itself if there is none.
+    pub fn label<'a>(&self, name: &'a str, locale: Locale) -> &'a str {
+        let mut all = self.properties.iter();
+        let found = all.find(|one| one.name == name || one.shown == name);
+        found.map_or(name, |property| property.shown_in(locale))
+    }
+
     /// Whether it is there only to be drawn: programs in words and in other languages do not have it.
     pub fn is_mark(&self) -> bool {
         match self.does {
@@ -289,6 +297,11 @@ impl Property {
             Locale::Russian => self.russian,
         }
     }
+}
+
+/// The row of a block by the name that a person sees in English.
+pub fn find_shown(shown: &str) -> Option<&'static Row> {
+    table().find(|row| row.shown == shown)
 }
 
 /// All rows, by category and in the order of the palette.

@@ -1,6 +1,7 @@
 //! What is said of diagrams, in English and Russian: links, threads, subprograms, devices.
 //!
-//! Owns the words. Where the original program has a text, the English one is that text.
+//! Owns the words. Where the original program has a text, the English one is that text, and the Russian one too where it
+//! is known from recorded runs.
 
 use lang_text::problem::Words;
 
@@ -11,7 +12,7 @@ pub(super) fn too_many_links() -> Words {
 pub(super) fn no_links() -> Words {
     Words::new(
         "No outgoing links, please connect this block to something or use Final Node to end program",
-        "Нет исходящих связей: соедините этот блок с чем-нибудь или закончите программу блоком «Конец»",
+        "Нет исходящих связей. Пожалуйста, подключите этот блок к чему-нибудь или используйте блок \"Конец\", чтобы завершить выполнение программы",
     )
 }
 
@@ -25,7 +26,7 @@ pub(super) fn loose_link() -> Words {
 pub(super) fn two_links() -> Words {
     Words::new(
         "There must be exactly TWO links outgoing from if block",
-        "Из блока «Условие» должны выходить ровно ДВЕ связи",
+        "От условного блока должно отходить ровно ДВЕ связи",
     )
 }
 
@@ -102,7 +103,7 @@ pub(super) fn fork_needs_two() -> Words {
 pub(super) fn thread_twice(id: &str) -> Words {
     Words::new(
         format!("Cannot create two threads with the same id {id}"),
-        format!("Нельзя создать две задачи с одним именем {id}"),
+        format!("Невозможно создать две задачи с одинаковыми идентификаторами {id}"),
     )
 }
 
@@ -139,7 +140,7 @@ pub(super) fn too_many_threads(limit: usize) -> Words {
 pub(super) fn no_such_thread(id: &str) -> Words {
     Words::new(
         format!("Killing non-existent thread {id}"),
-        format!("Нет задачи {id}, которую надо завершить"),
+        format!("Попытка завершить несуществующий поток {id}"),
     )
 }
 
@@ -174,7 +175,7 @@ pub(super) fn mailbox_full(thread: &str, limit: usize) -> Words {
 pub(super) fn no_entry() -> Words {
     Words::new(
         "No entry point found, please add Initial Node to a diagram",
-        "Нет начала: добавьте на диаграмму блок «Начало»",
+        "Не найдено начало программы. Пожалуйста, добавьте блок \"Начало\"",
     )
 }
 

@@ -318,7 +318,7 @@ impl What {
                 limits::EXPRESSION_TEXT_MAX
             ),
             Self::UnknownSymbols(text) => unknown_in_russian(text),
-            Self::UnexpectedToken => "Этого здесь быть не может".into(),
+            Self::UnexpectedToken => "Неожиданная лексема".into(),
             Self::UnexpectedEnd => "Текст неожиданно кончился: после этого места чего-то не хватает".into(),
             Self::Expected(wanted, got) => {
                 format!("Здесь нужно «{}», а стоит «{}»", token(wanted), token(got))
@@ -340,15 +340,15 @@ impl What {
             }
             Self::FunctionAsName => "Имя встроенной функции использовано как переменная".into(),
             Self::AssignToValue => "Присваивать можно только переменной или элементу таблицы.".into(),
-            Self::Mismatched => "Типы слева и справа от «=» не подходят друг другу.".into(),
+            Self::Mismatched => "Левый и правый операнд имеют несовпадающие типы.".into(),
             Self::ImplicitCast(kind) => format!("Значение справа будет приведено к типу «{}»", kinds_in_russian(kind)),
-            Self::TypeMismatch => "Неподходящий тип.".into(),
+            Self::TypeMismatch => "Несоответствие типов".into(),
             Self::NoType => "Неподходящий тип".into(),
             Self::CannotDeduce(kinds) => {
-                format!("Тип неизвестен, возможны: {}", kinds_in_russian(kinds))
+                format!("Не могу вывести тип, это выражение может быть следующих типов: {}", kinds_in_russian(kinds))
             }
             Self::Undeclared(name) => {
-                format!("Неизвестное имя: {}. Сначала дайте ему значение.", short(name))
+                format!("Неизвестная переменная: {}. Сначала дайте ей значение.", short(name))
             }
             Self::ReadOnly(name) => format!(
                 "Переменную {} менять нельзя: она принадлежит роботу. Выберите другое имя.",
@@ -382,10 +382,10 @@ impl What {
 
     fn russian_of_running(&self) -> String {
         match self {
-            Self::DivisionByZero => "Деление на ноль".into(),
+            Self::DivisionByZero => "Деление на 0".into(),
             Self::RandomOfNothing => "random(0) не из чего выбирать. Нужно хотя бы 1.".into(),
             Self::Uninitialized(name) => format!(
-                "У переменной {} нет значения. Присвойте его до первого использования.",
+                "Обращение к неинициализированной переменной {}. Присвойте ей значение до первого использования.",
                 short(name)
             ),
             Self::NegativeIndex => "Отрицательный номер элемента таблицы".into(),
@@ -484,8 +484,8 @@ fn kinds_in_russian(kinds: &str) -> String {
     let mut text = kinds.to_owned();
     for (english, russian) in [
         ("boolean", "логический"),
-        ("integer", "целое"),
-        ("float", "дробное"),
+        ("integer", "целый"),
+        ("float", "вещественный"),
         ("string", "текст"),
         ("table", "таблица"),
         ("function", "функция"),

@@ -4,6 +4,7 @@
 
 use super::json::{self, Value};
 use lang_constraint::{Entry, Level};
+use lang_diagram::blocks;
 use lang_text::problem::{Locale, Place, Problem};
 
 /// The name of a level in reports.
@@ -26,9 +27,14 @@ pub fn place(problem: &Problem) -> String {
 
 /// A problem in the words of the original, which gives no advice.
 pub fn text(problem: &Problem, locale: Locale) -> String {
+    let row = problem.place.block.as_deref().and_then(blocks::find_shown);
+    let label = |name: &String| {
+        row.map_or(name.as_str(), |row| row.label(name, locale))
+            .to_owned()
+    };
     let bare = Problem {
         place: Place {
-            property: problem.place.property.clone(),
+            property: problem.place.property.as_ref().map(label),
             position: problem.place.position,
             ..Place::default()
         },

@@ -98,7 +98,8 @@ impl<'a> Reporter<'a> {
             line.push_str(&format!("{}: ", harmless(block)));
         }
         let property = place.property.as_deref().filter(|name| !name.is_empty());
-        let property = property.map(|name| harmless(self.property(row, name)));
+        let property =
+            property.map(|name| harmless(row.map_or(name, |row| row.label(name, self.locale))));
         match (property, place.position) {
             (Some(name), Some(at)) => {
                 line.push_str(&format!("'{name}' {}:{}: ", at.line, at.column));
@@ -109,15 +110,6 @@ impl<'a> Reporter<'a> {
         }
         line.push_str(&harmless(problem.words.in_locale(self.locale)));
         line
-    }
-
-    /// A property as the editor shows it.
-    fn property<'b>(&self, row: Option<&'static Row>, name: &'b str) -> &'b str {
-        let shown = row.and_then(|row| {
-            let mut all = row.properties.iter();
-            all.find(|one| one.name == name || one.shown == name)
-        });
-        shown.map_or(name, |property| property.shown_in(self.locale))
     }
 }
 
