@@ -1,6 +1,7 @@
 //! Constraints read and checked on a world that a test writes down.
 
 mod checking;
+mod naive;
 mod reading;
 mod templates;
 mod values;
