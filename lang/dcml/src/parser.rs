@@ -6,6 +6,7 @@
 
 mod cursor;
 mod expression;
+mod paper;
 mod section;
 
 use super::diagnostic::{Code, Diagnostic, Findings};
@@ -13,6 +14,7 @@ use super::lexer::{Keyword, Token, TokenKind};
 use super::nearest::nearest;
 use super::syntax::{Damage, Document, EquationText, ExprText, ModelText, Name, Node, Span};
 use crate::limits::DCML_SHOWN;
+use paper::Part;
 use std::collections::HashSet;
 
 /// Reads a document. Where `paper` is set, what the published language does not have is an error.
@@ -28,6 +30,8 @@ pub(super) fn parse(text: &str, paper: bool, findings: &mut Findings) -> Documen
         bad: Vec::new(),
         damage: Damage::default(),
         paper,
+        furthest: None,
+        may_be_signed: false,
         is_cut: false,
     };
     if parser.read_tokens() {
@@ -52,6 +56,10 @@ struct Parser<'a, 'f> {
     bad: Vec<u32>,
     damage: Damage,
     paper: bool,
+    /// The last part of this model in the order of the published grammar.
+    furthest: Option<Part>,
+    /// The next sign belongs to the number of a constant.
+    may_be_signed: bool,
     /// The text ends inside a comment.
     is_cut: bool,
 }
@@ -138,6 +146,7 @@ impl<'a> Parser<'a, '_> {
 
     fn model(&mut self) -> ModelText {
         self.damage = Damage::default();
+        self.furthest = None;
         let mut model = ModelText {
             doc: self.doc_before(),
             ..ModelText::default()
@@ -330,6 +339,7 @@ impl<'a> Parser<'a, '_> {
 
     fn equation(&mut self, model: &mut ModelText, is_derivative: bool) {
         let first = self.token().span;
+        self.paper_order(Part::Equation);
         let target = if is_derivative {
             self.bump();
             self.derivative_target()
@@ -411,6 +421,9 @@ impl<'a> Parser<'a, '_> {
     }
 
     fn package(&mut self, model: &mut ModelText) {
+        if model.package.is_none() {
+            self.paper_order(Part::Package);
+        }
         let keyword = self.bump().span;
         if self.take(TokenKind::Colon).is_none() {
             self.unexpected("`:`");

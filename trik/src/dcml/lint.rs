@@ -16,7 +16,8 @@ pub(crate) struct LintArgs {
     /// Files with models; - is standard input.
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
-    /// Refuse what the published language does not have: units, ranges, piecewise, comments with // and /* */.
+    /// Refuse everything that the grammar of the paper (Listing 2) does not have: units, ranges, piecewise and comparisons,
+    /// signs before values, comments and documentation but the one before BEGIN, sections twice or in another order.
     #[arg(long)]
     pub paper: bool,
     /// Write a line of JSON for each error and warning to standard output instead, for programs.

@@ -5,6 +5,7 @@
 use super::super::diagnostic::{Code, Diagnostic};
 use super::super::lexer::{self, Token, TokenKind, slice};
 use super::super::syntax::{Doc, Span};
+use super::paper::Beyond;
 use super::{Parser, shown};
 use crate::limits::{DCML_SHOWN, DCML_TOKENS};
 
@@ -18,7 +19,7 @@ impl<'a> Parser<'a, '_> {
                     if self.paper {
                         self.bad.push(one.span.start);
                     }
-                    self.extension(one.span, "a comment that is no `/** documentation */`");
+                    self.extension(one.span, Beyond::Comment);
                 }
                 kind => {
                     self.tell_bad(kind, one.span);
@@ -39,6 +40,7 @@ impl<'a> Parser<'a, '_> {
         let span = Span { start: end, end };
         let kind = TokenKind::EndOfText;
         self.tokens.push(Token { kind, span });
+        self.paper_documentation();
         true
     }
 
@@ -74,15 +76,6 @@ impl<'a> Parser<'a, '_> {
         };
         self.bad.push(span.start);
         self.findings.add(found);
-    }
-
-    pub(super) fn extension(&mut self, span: Span, what: &str) {
-        if self.paper {
-            let message = format!("the published language does not have {what}");
-            let found = Diagnostic::new(Code::Extension, span, message, "an extension");
-            self.findings.add(found);
-            self.damage.any = true;
-        }
     }
 
     pub(super) fn token(&self) -> Token {

@@ -5,6 +5,7 @@
 use super::super::diagnostic::{Code, Diagnostic};
 use super::super::lexer::{TokenKind, slice};
 use super::super::syntax::{Comparison, ExprText, Name, Node, Operator, Span};
+use super::paper::Beyond;
 use super::{Parser, join, shown};
 use crate::limits::DCML_DEPTH;
 
@@ -32,7 +33,7 @@ impl Parser<'_, '_> {
             _ => return Some((left, left_depth)),
         };
         let sign = self.bump().span;
-        self.extension(sign, "comparisons");
+        self.extension(sign, Beyond::Comparison);
         let (right, right_depth) = self.binary(SUM, level)?;
         let span = join(left.span, right.span);
         let depth = left_depth.max(right_depth) + 1;
@@ -94,6 +95,9 @@ impl Parser<'_, '_> {
             }
             TokenKind::Plus | TokenKind::Minus => {
                 let is_minus = self.bump().kind == TokenKind::Minus;
+                if !std::mem::take(&mut self.may_be_signed) {
+                    self.extension(span, Beyond::Sign);
+                }
                 let (inside, depth) = self.factor(level + 1)?;
                 let span = join(span, inside.span);
                 self.deep(depth + 1, span)?;
@@ -125,7 +129,7 @@ impl Parser<'_, '_> {
         let text = self.word().to_owned();
         let span = self.bump().span;
         if text == "piecewise" {
-            self.extension(span, "`piecewise`");
+            self.extension(span, Beyond::Piecewise);
         }
         let open = self.bump().span;
         let mut arguments = Vec::new();

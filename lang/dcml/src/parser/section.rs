@@ -6,6 +6,7 @@
 use super::super::diagnostic::{Code, Diagnostic};
 use super::super::lexer::{Keyword, TokenKind, slice};
 use super::super::syntax::{Declaration, Domain, Kind, ModelText, Name, Node, Section, Span};
+use super::paper::{Beyond, Part};
 use super::{Parser, join, shown};
 
 /// What follows a name.
@@ -18,14 +19,17 @@ impl Parser<'_, '_> {
     /// From the keyword to the semicolon.
     pub(super) fn section(&mut self, kind: Kind, model: &mut ModelText) {
         let doc = self.doc_before();
+        let earlier = model.sections.iter().any(|one| one.kind == kind);
+        if !earlier {
+            self.paper_order(Part::of(kind));
+        }
         let first = self.bump().span;
         let doc = doc.or(self.doc_before());
         if self.take(TokenKind::Colon).is_none() {
             self.unexpected("`:`");
         }
-        let earlier = model.sections.iter().any(|one| one.kind == kind);
         if earlier {
-            self.extension(first, "two sections of one kind");
+            self.extension(first, Beyond::SecondSection);
         }
         let mut names = Vec::new();
         while let Some((name, next)) = self.declaration(kind) {
@@ -171,7 +175,7 @@ impl Parser<'_, '_> {
         let Some(open) = self.take(TokenKind::OpenBracket) else {
             return true;
         };
-        self.extension(open, "units");
+        self.extension(open, Beyond::Units);
         while !matches!(
             self.kind(),
             TokenKind::CloseBracket
@@ -236,7 +240,7 @@ impl Parser<'_, '_> {
             return true;
         }
         let first = self.bump().span;
-        self.extension(first, "ranges and angles that wrap");
+        self.extension(first, Beyond::Domain);
         if self.kind() == TokenKind::Word && self.word() == "S1" {
             let last = self.bump().span;
             one.domain = Some((Domain::Circle, join(first, last)));
@@ -262,7 +266,12 @@ impl Parser<'_, '_> {
             return true;
         }
         let first = self.token().span;
-        let Some(value) = self.expression() else {
+        let from = self.at;
+        self.may_be_signed = matches!(self.kind(), TokenKind::Plus | TokenKind::Minus)
+            && self.kind_after(1) == TokenKind::Number;
+        let value = self.expression();
+        self.may_be_signed = false;
+        let Some(value) = value else {
             self.damage.any = true;
             // It has a value, whatever it is.
             one.value = Some((0.0, first));
@@ -277,6 +286,10 @@ impl Parser<'_, '_> {
             },
             _ => None,
         };
+        // A sign and a number are two words; what is a number and longer has parentheses.
+        if number.is_some() && self.at > from + 2 {
+            self.extension(value.span, Beyond::Parentheses);
+        }
         if number.is_none() {
             let text = shown(slice(self.text, value.span));
             let message = format!(
