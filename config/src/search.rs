@@ -69,7 +69,10 @@ impl Search {
                 let shipped = name.strip_suffix(".dcml").unwrap_or(&name);
                 match lang_dcml::models::named(shipped) {
                     Some(found) => Ok((shipped.to_owned(), found.text.as_bytes().to_vec())),
-                    None => Err(Error::Named(format!("model {reason}"))),
+                    None => Err(Error::Named(format!(
+                        "model {reason}; {}",
+                        lang_dcml::models::advice(shipped)
+                    ))),
                 }
             }
         }

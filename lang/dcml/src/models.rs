@@ -2,6 +2,11 @@
 //!
 //! Owns their names; what they mean is what their texts say.
 
+use super::nearest::nearest;
+
+/// A part of a name with fewer letters could mean anything.
+const LIKE_LETTERS: usize = 3;
+
 /// A model that comes with the language.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Shipped {
@@ -65,6 +70,35 @@ pub const ALL: [Shipped; 9] = [
 /// The one with this name.
 pub fn named(name: &str) -> Option<&'static Shipped> {
     ALL.iter().find(|one| one.name == name)
+}
+
+/// Those that a name which is none of them could mean: mistyped, one of its words, its beginning, the name of the model in
+/// its text, a file `NAME.dcml`, or a word of what it is. In the order of [`ALL`].
+pub fn like(name: &str) -> Vec<&'static Shipped> {
+    let file = name.rsplit(['/', '\\']).next().unwrap_or_default();
+    let word = file.strip_suffix(".dcml").unwrap_or(file);
+    let word = word.to_lowercase().replace(['_', ' '], "-");
+    let is_near = |known: &str| nearest(&word, [known]).is_some();
+    let is_like = |one: &&Shipped| {
+        let is_part = word.len() >= LIKE_LETTERS
+            && (one.name.starts_with(&word) || one.about.split([' ', ',']).any(|it| it == word));
+        is_near(one.name) || is_part || one.name.split('-').any(is_near)
+    };
+    ALL.iter().filter(is_like).collect()
+}
+
+/// What to say of a name that is no file and no shipped model: `did you mean A or B?`, or which there are.
+pub fn advice(name: &str) -> String {
+    let names = |all: &[&Shipped]| -> Vec<&str> { all.iter().map(|one| one.name).collect() };
+    let all: Vec<&Shipped> = ALL.iter().collect();
+    match names(&like(name)).as_slice() {
+        [] => format!("shipped models are {}", names(&all).join(", ")),
+        [one] => format!("did you mean the shipped model {one}?"),
+        [first @ .., last] => format!(
+            "did you mean one of the shipped models {} and {last}?",
+            first.join(", ")
+        ),
+    }
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 use crate::output::standard;
 use crate::refusal::Refusal;
 use clap::Args;
-use lang_dcml::models::{ALL, named};
+use lang_dcml::models::{ALL, advice, named};
 
 /// What `trik dcml models` can be told.
 #[derive(Args, Clone, Debug)]
@@ -24,8 +24,7 @@ pub(super) fn run(args: &ModelsArgs) -> Result<u8, Refusal> {
         Some(name) => match named(name) {
             Some(one) => one.text.to_owned(),
             None => {
-                let all: Vec<&str> = ALL.iter().map(|one| one.name).collect();
-                let why = format!("there is no model {name}; there are {}", all.join(", "));
+                let why = format!("there is no model {name}; {}", advice(name));
                 return Err(Refusal::new(why));
             }
         },

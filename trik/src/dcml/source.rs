@@ -42,7 +42,7 @@ pub(crate) fn read(path: &Path) -> Result<Source, Refusal> {
     }
     let bytes = bytes.map_err(|unread| {
         unreadable(match unread {
-            Unread::Missing => "there is no such file".to_owned(),
+            Unread::Missing => format!("there is no such file; {}", shipped::advice(&name)),
             Unread::Directory => "this is a directory: name a file with models".to_owned(),
             Unread::TooLong => format!("longer than {} MiB, which no model is", most >> 20),
             Unread::Failed(error) => format!("cannot be read: {error}"),

@@ -89,13 +89,9 @@ fn robot_name(text: &str) -> Result<String, String> {
         Some(_) => Ok(text.to_owned()),
         None if is_model(text) => Ok(text.to_owned()),
         None => Err(format!(
-            "there is no such robot; there are {}, models FILE.dcml, and the shipped models {}",
+            "there is no such robot; there are {}, and models FILE.dcml; {}",
             sim::robots::names().collect::<Vec<_>>().join(", "),
-            models::ALL
-                .iter()
-                .map(|one| one.name)
-                .collect::<Vec<_>>()
-                .join(", ")
+            models::advice(text)
         )),
     }
 }

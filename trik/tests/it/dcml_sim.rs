@@ -325,7 +325,7 @@ fn shipped_models_are_listed_and_printed_and_are_files_for_other_commands() {
     assert_eq!(none.code(), 1);
     assert!(
         none.stderr
-            .contains("there is no model tank; there are differential-drive")
+            .contains("there is no model tank; shipped models are differential-drive")
     );
 }
 

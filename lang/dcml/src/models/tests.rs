@@ -72,6 +72,35 @@ fn all_are_understood_and_say_what_they_are() {
 }
 
 #[test]
+fn a_mistyped_name_finds_the_models_that_it_could_mean() {
+    for (name, meant) in [
+        ("diferential", &["differential-drive"][..]),
+        ("differential_drive", &["differential-drive"]),
+        ("DifferentialDrive", &["differential-drive"]),
+        ("models/Bart.dcml", &["bart"]),
+        ("bycicle", &["bicycle"]),
+        ("unicylce", &["bicycle", "unicycle", "dynamic-unicycle"]),
+        (
+            "car",
+            &["bart", "bicycle", "trailer", "dubins", "reeds-shepp"],
+        ),
+        ("diff", &["differential-drive"]),
+        ("reeds", &["reeds-shepp"]),
+        ("submarine", &[]),
+        ("", &[]),
+    ] {
+        let found: Vec<&str> = like(name).iter().map(|one| one.name).collect();
+        assert_eq!(found, meant, "{name}");
+    }
+    assert_eq!(
+        advice("diferential"),
+        "did you mean the shipped model differential-drive?"
+    );
+    assert!(advice("reed-sheep").ends_with("reeds-shepp?"));
+    assert!(advice("submarine").starts_with("shipped models are differential-drive, bart, "));
+}
+
+#[test]
 fn texts_mean_the_models_that_were_made_by_hand() -> Outcome {
     use crate::{lower, sketch};
     for (name, by_hand) in [
