@@ -89,6 +89,9 @@ impl Target {
     }
 }
 
+/// The interface that all classes of Java implement: where the file stands below the folder of sources, and its text.
+pub const JAVA_INTERFACE: (&str, &str) = ("trik/dcml/RobotModel.java", java::INTERFACE);
+
 /// What may be chosen.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
 pub struct Options {

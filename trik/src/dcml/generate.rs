@@ -6,14 +6,15 @@ use super::load::load;
 use crate::output::Output;
 use crate::refusal::Refusal;
 use clap::Args;
-use lang_dcml::generate::{Options, Target, generate};
+use lang_dcml::generate::{JAVA_INTERFACE, Options, Target, generate};
 use std::path::PathBuf;
 
 /// What `trik dcml gen` can be told.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct GenArgs {
     /// A file with a model; - is standard input.
-    pub file: PathBuf,
+    #[arg(required_unless_present = "interface")]
+    pub file: Option<PathBuf>,
     /// The language: rust, c, java, java-hipparchus, python, lua, javascript or latex.
     #[arg(long, alias = "target", value_name = "LANGUAGE", value_parser = target)]
     pub lang: Target,
@@ -26,6 +27,10 @@ pub(crate) struct GenArgs {
     /// Also write the Jacobians df/dx and df/du.
     #[arg(long)]
     pub jacobian: bool,
+    /// Write the interface that the classes of all models implement, for java and java-hipparchus; it belongs into the file
+    /// trik/dcml/RobotModel.java below the folder of sources.
+    #[arg(long, conflicts_with_all = ["file", "model", "jacobian"])]
+    pub interface: bool,
     /// Overwrite OUT if it exists.
     #[arg(long, requires = "output")]
     pub force: bool,
@@ -41,12 +46,23 @@ fn target(name: &str) -> Result<Target, String> {
 
 /// Writes the text.
 pub(super) fn run(args: &GenArgs) -> Result<u8, Refusal> {
+    let file = args.file.clone().unwrap_or_else(|| PathBuf::from("-"));
     let output = Output {
         path: args.output.as_deref(),
         force: args.force,
-        source: &args.file,
+        source: &file,
     };
-    let (_, model) = load(&args.file, args.model.as_deref())?;
+    if args.interface {
+        let (Target::Java | Target::JavaHipparchus) = args.lang else {
+            let name = args.lang.name();
+            let why = format!("--interface: {name} has none; java and java-hipparchus have one");
+            return Err(Refusal::new(why));
+        };
+        output.refuse_present()?;
+        output.write(JAVA_INTERFACE.1.as_bytes())?;
+        return Ok(0);
+    }
+    let (_, model) = load(&file, args.model.as_deref())?;
     output.refuse_present()?;
     let options = Options {
         jacobian: args.jacobian,

@@ -10,7 +10,7 @@ use super::plan::{Body, Dialect, Level, Planner, Text, digits, sign};
 use super::row::Row;
 use crate::function::Function;
 use crate::model::Symbol;
-use crate::syntax::Comparison;
+use crate::syntax::{Comparison, Domain};
 use crate::tape::{Input, ValueId};
 
 /// For Commons Math 3.
@@ -43,7 +43,13 @@ const TAKEN: &str = "abstract assert boolean break byte case catch char class co
     OrdinaryDifferentialEquation org java javax t state derivative jacobian outputs parameters action values names expected what \
     pow min max checkSize setParameters setAction getDimension computeDerivatives computeOutputs computeStateJacobian \
     computeActionJacobian STATES ACTIONS PARAMETERS OUTPUTS getClass hashCode equals clone toString notify notifyAll \
-    wait finalize init";
+    wait finalize init current names List trik RobotModel getModelName getParameterNames getActionNames getStateNames \
+    getOutputNames isAngle getParameters getAction getState setState computeDerivative getParameter setParameter getOutputs \
+    getOutput step place";
+
+/// The interface that all classes implement, a file `trik/dcml/RobotModel.java` of its own.
+pub(super) const INTERFACE: &str = include_str!("RobotModel.java");
+
 const KEYWORDS: &str = "abstract assert boolean break byte case catch char class const continue default do double else \
     enum extends final finally float for goto if implements import instanceof int interface long native new package \
     private protected public return short static strictfp super switch synchronized this throw throws transient try \
@@ -114,6 +120,9 @@ fn package(name: &str) -> String {
     parts.join(".")
 }
 
+/// Letters of a name in the lists of names; the names of fields are as long.
+const NAME_LETTERS: usize = 60;
+
 /// The whole class.
 fn print(scene: &Scene<'_>, library: Library) -> String {
     let mut planner = Planner::new(scene, &[TAKEN]);
@@ -132,12 +141,16 @@ fn print(scene: &Scene<'_>, library: Library) -> String {
         ),
         Library::Hipparchus => ("org.hipparchus.ode", "OrdinaryDifferentialEquation"),
     };
-    out.push_str(&format!("import {of}.{interface};\n\n"));
+    out.push_str(&format!(
+        "import {of}.{interface};\nimport trik.dcml.RobotModel;\n\n"
+    ));
     let mut lines = vec!["<pre>".to_owned()];
     lines.extend(header.iter().map(|line| html(line)));
     lines.push("</pre>".to_owned());
     out.push_str(&about::block("/**", &lines, ""));
-    out.push_str(&format!("public class {class} implements {interface} {{\n"));
+    out.push_str(&format!(
+        "public class {class} implements {interface}, RobotModel {{\n"
+    ));
     out.push_str(&fields(&planner));
     out.push_str(&setter(
         &planner,
@@ -146,6 +159,9 @@ fn print(scene: &Scene<'_>, library: Library) -> String {
         &scene.params,
     ));
     out.push_str(&setter(&planner, "setAction", "action", &scene.actions));
+    out.push_str(&getter(&planner, "getParameters", &scene.params));
+    out.push_str(&getter(&planner, "getAction", &scene.actions));
+    out.push_str(&of_robot(&planner));
     out.push_str(
         "    /** How many numbers a state has. */\n    @Override\n    public int getDimension() {\n        return STATES;\n    }\n\n",
     );
@@ -197,7 +213,7 @@ fn fields(planner: &Planner<'_, '_>) -> String {
         }
         out.push_str(&format!("    private double {};\n", planner.symbol(symbol)));
     }
-    out.push('\n');
+    out.push_str("    private double[] current = new double[STATES];\n\n");
     out
 }
 
@@ -234,6 +250,57 @@ fn helper(function: Function) -> &'static str {
     }
 }
 
+/// A copy of numbers that the class has as fields.
+fn getter(planner: &Planner<'_, '_>, name: &str, symbols: &[&Symbol]) -> String {
+    let all: Vec<_> = symbols.iter().map(|one| planner.symbol(one)).collect();
+    format!(
+        "    @Override\n    public double[] {name}() {{\n        return new double[] {{{}}};\n    }}\n\n",
+        all.join(", ")
+    )
+}
+
+/// Names, the state, and which of its numbers are angles.
+fn of_robot(planner: &Planner<'_, '_>) -> String {
+    let scene = planner.scene;
+    let mut out = format!(
+        "    @Override\n    public String getModelName() {{\n        return \"{}\";\n    }}\n\n",
+        letters(&scene.model.name, NAME_LETTERS)
+    );
+    for (method, symbols) in [
+        ("getParameterNames", &scene.params),
+        ("getActionNames", &scene.actions),
+        ("getStateNames", &scene.states),
+        ("getOutputNames", &scene.outputs),
+    ] {
+        let quoted: Vec<String> = symbols
+            .iter()
+            .map(|one| format!("\"{}\"", letters(&one.name, NAME_LETTERS)))
+            .collect();
+        out.push_str(&format!(
+            "    @Override\n    public String[] {method}() {{\n        return new String[] {{{}}};\n    }}\n\n",
+            quoted.join(", ")
+        ));
+    }
+    let angles: Vec<String> = scene
+        .states
+        .iter()
+        .enumerate()
+        .filter(|(_, one)| one.domain == Some(Domain::Circle))
+        .map(|(at, _)| format!("state == {at}"))
+        .collect();
+    let angles = match angles.as_slice() {
+        [] => "false".to_owned(),
+        all => all.join(" || "),
+    };
+    out.push_str(&format!(
+        "    @Override\n    public boolean isAngle(int state) {{\n        return {angles};\n    }}\n\n    \
+         @Override\n    public double[] getState() {{\n        return current.clone();\n    }}\n\n    \
+         @Override\n    public void setState(double[] state) {{\n        checkSize(\"state\", state, STATES);\n        \
+         current = state.clone();\n    }}\n\n"
+    ));
+    out
+}
+
 fn setter(planner: &Planner<'_, '_>, name: &str, array: &str, symbols: &[&Symbol]) -> String {
     let (count, what) = match array {
         "action" => ("ACTIONS", "the action that is held from now on"),
@@ -242,7 +309,7 @@ fn setter(planner: &Planner<'_, '_>, name: &str, array: &str, symbols: &[&Symbol
     let mut out = format!(
         "    /**\n     * Sets {what}.\n     *\n     * @param {array} as many numbers as {count} says\n     \
          * @throws IllegalArgumentException if there are more or fewer\n     */\n    \
-         public void {name}(double[] {array}) {{\n        checkSize(\"{array}\", {array}, {count});\n"
+         @Override\n    public void {name}(double[] {array}) {{\n        checkSize(\"{array}\", {array}, {count});\n"
     );
     for (at, symbol) in symbols.iter().enumerate() {
         out.push_str(&format!(
@@ -258,35 +325,31 @@ fn methods(planner: &mut Planner<'_, '_>, scene: &Scene<'_>, library: Library) -
     let (states, actions) = (scene.states.len(), scene.actions.len());
     let mut out = String::new();
     let body = planner.body(&scene.derivative, &Java);
-    out.push_str("    /** The derivative of the state. */\n    @Override\n");
-    match library {
+    out.push_str(
+        "    @Override\n    public void computeDerivative(double[] state, double[] derivative) {\n        \
+         checkSize(\"state\", state, STATES);\n        checkSize(\"derivative\", derivative, STATES);\n",
+    );
+    out.push_str(&lines(&body, "derivative", 0));
+    out.push_str("    }\n\n    /** The derivative of the state, for solvers. */\n    @Override\n");
+    out.push_str(match library {
         Library::CommonsMath => {
-            out.push_str(
-                "    public void computeDerivatives(double t, double[] state, double[] derivative) {\n        \
-                 checkSize(\"state\", state, STATES);\n        checkSize(\"derivative\", derivative, STATES);\n",
-            );
-            out.push_str(&lines(&body, "derivative", 0));
+            "    public void computeDerivatives(double t, double[] state, double[] derivative) {\n        \
+             computeDerivative(state, derivative);\n    }\n\n"
         }
         Library::Hipparchus => {
-            out.push_str(
-                "    public double[] computeDerivatives(double t, double[] state) {\n        \
-                 checkSize(\"state\", state, STATES);\n        double[] derivative = new double[STATES];\n",
-            );
-            out.push_str(&lines(&body, "derivative", 0));
-            out.push_str("        return derivative;\n");
+            "    public double[] computeDerivatives(double t, double[] state) {\n        \
+             double[] derivative = new double[STATES];\n        computeDerivative(state, derivative);\n        \
+             return derivative;\n    }\n\n"
         }
-    }
+    });
+    let body = planner.body(&scene.output_values, &Java);
+    out.push_str(
+        "    /** What is computed from the state and the action. */\n    \
+         @Override\n    public void computeOutputs(double[] state, double[] outputs) {\n        \
+         checkSize(\"state\", state, STATES);\n        checkSize(\"outputs\", outputs, OUTPUTS);\n",
+    );
+    out.push_str(&lines(&body, "outputs", 0));
     out.push_str("    }\n\n");
-    if !scene.outputs.is_empty() {
-        let body = planner.body(&scene.output_values, &Java);
-        out.push_str(
-            "    /** What is computed from the state and the action. */\n    \
-             public void computeOutputs(double[] state, double[] outputs) {\n        checkSize(\"state\", state, STATES);\n        \
-             checkSize(\"outputs\", outputs, OUTPUTS);\n",
-        );
-        out.push_str(&lines(&body, "outputs", 0));
-        out.push_str("    }\n\n");
-    }
     let mut jacobian = |name: &str, by: &str, columns: usize, roots: &[ValueId]| {
         let body = planner.body(roots, &Java);
         out.push_str(&format!(

@@ -3,12 +3,12 @@
 use crate::models;
 use crate::outcome::{Case, DT, cases, expected};
 use crate::tools::{has_file, python, run, scratch};
-use lang_dcml::generate::{Options, Target, generate};
+use lang_dcml::generate::{JAVA_INTERFACE, Options, Target, generate};
 use lang_dcml::model::Model;
 use lang_dcml::syntax::Kind;
 use std::path::Path;
 
-const COMMONS_MATH: &str = "/usr/share/java/commons-math3.jar";
+pub const COMMONS_MATH: &str = "/usr/share/java/commons-math3.jar";
 const RANDOM: usize = 40;
 const CASES: usize = 12;
 
@@ -408,6 +408,7 @@ fn java_agrees_for_both_libraries() {
             let path = folder.join("src/OrdinaryDifferentialEquation.java");
             std::fs::write(path, HIPPARCHUS).unwrap();
         }
+        write_interface(&folder);
         compile_java(&folder);
         let path = format!("{COMMONS_MATH}:out");
         let printed = run(&folder, &["java", "-cp", &path, "Main"]);
@@ -416,8 +417,16 @@ fn java_agrees_for_both_libraries() {
     }
 }
 
+/// The interface of all classes, in `src`.
+pub fn write_interface(folder: &Path) {
+    let (path, text) = JAVA_INTERFACE;
+    let path = folder.join("src").join(path);
+    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+    std::fs::write(path, text).unwrap();
+}
+
 /// Compiles all files in `src`.
-fn compile_java(folder: &Path) {
+pub fn compile_java(folder: &Path) {
     let mut files = Vec::new();
     let mut folders = vec![folder.join("src")];
     while let Some(folder) = folders.pop() {

@@ -3,6 +3,7 @@
 
 mod agree;
 mod hostile;
+mod java;
 mod models;
 mod outcome;
 mod tools;
