@@ -118,6 +118,14 @@ fn print(scene: &Scene<'_>) -> String {
              return x > 0.0 ? 1.0 : (x < 0.0 ? -1.0 : x + 0.0);\n}}\n\n"
         ));
     }
+    if functions.contains(&format!("{model}_READ_AGAIN(")) {
+        out.push_str(&format!(
+            "/* gcc for x86 makes one call of a sine and a cosine of one value, and then waits for both in memory. */\n\
+             #if defined(__GNUC__) && !defined(__clang__) && defined(__SSE2__)\n\
+             #define {model}_READ_AGAIN(x) (*(const volatile double *)&(x))\n#else\n\
+             #define {model}_READ_AGAIN(x) (x)\n#endif\n\n"
+        ));
+    }
     out.push_str(&functions);
     out.push_str(&format!("#endif /* {model}_H */\n"));
     out
@@ -183,7 +191,8 @@ impl Printer<'_, '_, '_> {
 
     fn function(&mut self, name: &str, about: &str, roots: &[ValueId], result: (&str, usize)) {
         let scene = self.planner.scene;
-        let body = self.planner.body(roots, &self.dialect);
+        let mut body = self.planner.body(roots, &self.dialect);
+        let again = self.read_again(&mut body);
         let model = &self.dialect.model;
         let state = array("state", scene.states.len());
         let action = array("action", scene.actions.len());
@@ -192,9 +201,44 @@ impl Printer<'_, '_, '_> {
             "/* {about} */\nstatic inline void {model}_{name}(const {state}, const {action},\n    \
              const {model}_params *p, {results})\n{{\n"
         ));
-        let inner = lines(&body, result.0);
+        let inner = lines(&body, &again, result.0);
         self.out.push_str(&inner);
         self.out.push_str("}\n\n");
+    }
+
+    /// Reads each state a second time whose sine and cosine are parts of one result each: gives the lines.
+    ///
+    /// gcc makes one call of both, keeps its two numbers in memory, and loads them as one vector before they are there.
+    fn read_again(&mut self, body: &mut Body) -> Vec<String> {
+        let mut read = Vec::new();
+        for (input, name) in &body.inputs {
+            let Input::State(at) = input else { continue };
+            let is_in_lines = ["sin", "cos"].iter().any(|function| {
+                let has = |(_, text): &(String, String)| !call_of(text, function, name).is_empty();
+                body.lines.iter().any(has)
+            });
+            let places = |function: &str| -> Vec<(usize, usize)> {
+                let all = body.results.iter().enumerate();
+                all.flat_map(|(result, text)| {
+                    let calls = call_of(text, function, name).into_iter();
+                    calls.map(move |place| (result, place))
+                })
+                .collect()
+            };
+            if is_in_lines || places("cos").len() != 1 {
+                continue;
+            }
+            if let [(result, place)] = places("sin")[..] {
+                let other = self.planner.take(&format!("{name}_again"));
+                let model = &self.dialect.model;
+                read.push(format!(
+                    "    const double {other} = {model}_READ_AGAIN(state[{at}]);\n"
+                ));
+                let place = place + "sin(".len();
+                body.results[result].replace_range(place..place + name.len(), &other);
+            }
+        }
+        read
     }
 
     /// One step of the classical method of Runge and Kutta.
@@ -234,7 +278,16 @@ impl Printer<'_, '_, '_> {
     }
 }
 
-fn lines(body: &Body, result: &str) -> String {
+/// Where a function of a name stands: `cos(theta)`, but not the end of `acos(theta)`.
+fn call_of(text: &str, function: &str, name: &str) -> Vec<usize> {
+    let call = format!("{function}({name})");
+    text.match_indices(&call)
+        .map(|(at, _)| at)
+        .filter(|at| !text[..*at].ends_with(|it: char| it.is_ascii_alphanumeric() || it == '_'))
+        .collect()
+}
+
+fn lines(body: &Body, again: &[String], result: &str) -> String {
     let mut out = String::new();
     for (input, name) in &body.inputs {
         match input {
@@ -245,6 +298,7 @@ fn lines(body: &Body, result: &str) -> String {
             Input::Param(_) => {}
         }
     }
+    out.extend(again.iter().map(String::as_str));
     for (name, text) in &body.lines {
         out.push_str(&format!("    const double {name} = {text};\n"));
     }
