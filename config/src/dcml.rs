@@ -38,7 +38,7 @@ impl<'n> Named<'n> {
 }
 
 /// The chunk of one model of a text: it gives a table with `name`, lists of names `states`, `actions`, `params` and
-/// `outputs`, `ranges` of actions by their numbers, `derivative(x, u, p, dx)` and `output(x, u, p, y)`, whose parameters
+/// `outputs`, `angles` by their names, `ranges` of actions by their numbers, `derivative(x, u, p, dx)` and `output(x, u, p, y)`, whose parameters
 /// have the names `keys`.
 ///
 /// `place` gives the words for a line and a column of the text.
@@ -130,8 +130,14 @@ fn adapted(model: &Model, code: &str) -> String {
             let _ = write!(ranges, "[{}] = {{ {low:?}, {high:?} }}, ", index + 1);
         }
     }
+    let mut angles = String::new();
+    for one in model.of_kind(Kind::Config) {
+        if one.domain == Some(Domain::Circle) {
+            let _ = write!(angles, "['{}'] = true, ", one.name);
+        }
+    }
     format!(
-        "local module = (function()\n{code}\nend)()\nreturn {{\n  name = '{}', states = {{ {states} }}, outputs = {{ {outputs} }}, actions = {{ {} }}, params = {{ {} }}, ranges = {{ {ranges}}},\n  keys = module.PARAMS, derivative = module.derivative, output = module.outputs,\n}}\n",
+        "local module = (function()\n{code}\nend)()\nreturn {{\n  name = '{}', states = {{ {states} }}, outputs = {{ {outputs} }}, actions = {{ {} }}, params = {{ {} }}, ranges = {{ {ranges}}}, angles = {{ {angles}}},\n  keys = module.PARAMS, derivative = module.derivative, output = module.outputs,\n}}\n",
         model.name,
         of(Kind::Action),
         of(Kind::Param),

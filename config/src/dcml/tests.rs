@@ -52,8 +52,8 @@ fn refused(options: &str) -> String {
     refused_in(None, options)
 }
 
-/// A converter, and what it is fed with.
-struct Follower(Vm, StageId);
+/// A converter, and how many bytes it gives.
+struct Follower(Vm, StageId, usize);
 
 impl Follower {
     fn of(base: Option<&Path>, options: &str, inputs: usize) -> Self {
@@ -66,22 +66,31 @@ impl Follower {
             .find(|node| node.path == "pose")
             .unwrap();
         let size = 4 * inputs + 4;
-        assert_eq!((node.input_tuple_size, node.output_tuple_size), (size, 12));
+        assert_eq!(node.input_tuple_size, size);
+        let shown = node.output_tuple_size;
         let mut vm = loaded.program.prepare().unwrap();
         vm.set_params("pose", &node.params).unwrap();
-        let stage = vm.bind("pose", Direction::Read, 0, size, 12).unwrap();
-        Self(vm, stage)
+        let stage = vm.bind("pose", Direction::Read, 0, size, shown).unwrap();
+        Self(vm, stage, shown)
     }
 
     fn feed(&mut self, values: &[i32], us: u32) -> Result<[f32; 3], String> {
+        let all = self.all(values, us)?;
+        Ok([all[0], all[1], all[2]])
+    }
+
+    /// All numbers of the node.
+    fn all(&mut self, values: &[i32], us: u32) -> Result<Vec<f32>, String> {
         let mut input: Vec<u8> = values.iter().flat_map(|one| one.to_le_bytes()).collect();
         input.extend(us.to_le_bytes());
-        let mut output = [0; 12];
+        let mut output = vec![0; self.2];
         let done = self.0.convert(self.1, &input, &mut output);
         let done = done.map_err(|fault| fault.to_string())?;
         assert_eq!(done, Conversion::Produced);
-        let number = |at: usize| f32::from_le_bytes(output[at..at + 4].try_into().unwrap());
-        Ok([number(0), number(4), number(8)])
+        let numbers = output.chunks_exact(4);
+        Ok(numbers
+            .map(|one| f32::from_le_bytes(one.try_into().unwrap()))
+            .collect())
     }
 }
 
@@ -155,6 +164,59 @@ actions = {{ v = {{ 'd(left)', scale = 0.001 }}, s = {{ 'right', scale = 0.01 }}
 }
 
 #[test]
+fn every_state_and_output_of_a_model_is_shown_after_the_place() {
+    let format_of = |options: &str| {
+        let loaded = Loader::default().load("robot.lua", None, config(options).as_bytes());
+        let loaded = loaded.unwrap_or_else(|problem| panic!("{problem}"));
+        let node = loaded
+            .config
+            .nodes
+            .iter()
+            .find(|node| node.path == "pose")
+            .unwrap();
+        let fields = node.format.iter().flat_map(|format| format.fields());
+        fields
+            .map(|field| field.name.clone())
+            .collect::<Vec<String>>()
+    };
+    let trailer =
+        "model = 'trailer', params = { L = 0.5, hitch = 0.5 }, start = { theta_trailer = 4 },
+        actions = { speed = { 'd(left)', scale = 0.001 }, steer = { 'right', scale = 0.01 } }";
+    assert_eq!(format_of(trailer), ["x", "y", "theta", "theta_trailer"]);
+    let mut follower = Follower::of(None, trailer, 2);
+    // An angle of a circle is shown from -pi to pi.
+    let angle = follower.all(&[0, 0], 0).unwrap()[3];
+    assert!(
+        (f64::from(angle) - 4.0 + std::f64::consts::TAU).abs() < 1e-6,
+        "{angle}"
+    );
+    // Straight ahead it comes behind the car: tan(a / 2) shrinks by e^(-way / hitch).
+    let mut angle = 0.0;
+    for step in 1..=100 {
+        angle = f64::from(follower.all(&[10 * step, 0], 20_000).unwrap()[3]);
+    }
+    let begun = (4.0 - std::f64::consts::TAU) / 2.0;
+    let wanted = 2.0 * (begun.tan() * (-1.0_f64 / 0.5).exp()).atan();
+    assert!((angle - wanted).abs() < 1e-4, "{angle} {wanted}");
+    let bart = "model = 'bart', params = { tt_wheel_half_axis = 1, tt_wheel_radius = 1, tt_steer_offset = 1 },
+        actions = { left_f_s = 'left', right_f_s = 'left', left_r_s = 'left', right_r_s = 'left' }";
+    assert_eq!(
+        format_of(bart),
+        [
+            "x",
+            "y",
+            "theta",
+            "x_front",
+            "y_front",
+            "phi_front",
+            "x_rear",
+            "y_rear",
+            "phi_rear"
+        ]
+    );
+}
+
+#[test]
 fn the_heading_may_come_from_a_node_of_its_own() {
     let options =
         format!("model = 'differential-drive', heading = {{ 'gyro', scale = 0.001 }}, {WHEELS}");
@@ -170,7 +232,7 @@ fn the_heading_may_come_from_a_node_of_its_own() {
     )
     .unwrap();
     let stage = vm.bind("pose", Direction::Read, 0, 16, 12).unwrap();
-    let mut follower = Follower(vm, stage);
+    let mut follower = Follower(vm, stage, 12);
     follower.feed(&[5000, 0, 0], 0).unwrap();
     // Both wheels say straight ahead, a radian each; the gyroscope says half a radian to the left: an arc of 0.1 m.
     let way = (180.0 / std::f64::consts::PI) as i32;
@@ -251,6 +313,11 @@ BEGIN C ACTION: u; CONFIG: x; d(x) = w; END;";
     assert!(refused("two.dcml#D").contains("two.dcml:3:38: "));
     assert!(refused("latin.dcml").starts_with("robot.lua:3: latin.dcml:1:4: the byte 0xe9"));
     assert!(refused("../two.dcml").contains("leads outside the search path"));
+    let near = refused("diferential");
+    assert!(
+        near.ends_with("; did you mean the shipped model differential-drive?"),
+        "{near}"
+    );
     let missing = refused("none.dcml");
     assert!(
         missing.starts_with("robot.lua:3: model 'none.dcml' was not found in "),

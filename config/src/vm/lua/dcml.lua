@@ -72,20 +72,28 @@ local function source(key, given)
   return { node = inner or entry[1], is_rate = inner ~= nil, scale = scale, kind = kind, size = SIZES[kind] }
 end
 
--- Where the model has the place: in its states or in its outputs.
+-- What the node shows: the place first, then all other states, then all other outputs, in the order of the model.
 local function places(model)
-  local found, whole = {}, true
-  for _, name in ipairs(PLACE) do
-    for index, state in ipairs(model.states) do
-      if state == name then found[#found + 1] = { index = index, is_state = true } end
+  local found, is_place, all = {}, {}, {}
+  local function every(names, is_state)
+    for index, name in ipairs(names) do
+      all[#all + 1] = { name = name, index = index, is_state = is_state, is_angle = name == 'theta' or model.angles[name] }
     end
-    for index, output in ipairs(model.outputs) do
-      if output == name then found[#found + 1] = { index = index } end
+  end
+  every(model.states, true)
+  every(model.outputs, false)
+  for _, name in ipairs(PLACE) do
+    is_place[name] = true
+    for _, one in ipairs(all) do
+      if one.name == name then found[#found + 1] = one end
     end
   end
   if #found ~= #PLACE then
     fail("the model '" .. model.name .. "' must have x, y and theta in its CONFIG; it has "
       .. table.concat(model.states, ', ') .. (model.outputs[1] and ', ' .. table.concat(model.outputs, ', ') or ''))
+  end
+  for _, one in ipairs(all) do
+    if not is_place[one.name] then found[#found + 1] = one end
   end
   return found
 end
@@ -124,7 +132,7 @@ local function stepper(model, count)
   end
 end
 
--- The converter from the values of `inputs`, in this order, and the time since the tuple before to the place.
+-- The converter from the values of `inputs`, in this order, and the time since the tuple before to what the node shows.
 local function follower(model, inputs, defaults, start, place)
   local count, step = #model.states, stepper(model, #model.states)
   local x, u, p, y, before = {}, {}, {}, {}, {}
@@ -174,8 +182,8 @@ local function follower(model, inputs, defaults, start, place)
     model.output(x, u, p, y)
     for index, one in ipairs(place) do
       local value = one.is_state and x[one.index] or y[one.index]
-      if value - value ~= 0 then lose("the model's " .. PLACE[index] .. ' is no finite number') end
-      if index == 3 then value = value - 2 * pi * floor((value + pi) / (2 * pi)) end
+      if value - value ~= 0 then lose("the model's " .. one.name .. ' is no finite number') end
+      if one.is_angle then value = value - 2 * pi * floor((value + pi) / (2 * pi)) end
       ba.f32(b, 4 * (index - 1), value)
     end
   end
@@ -234,11 +242,13 @@ local function describe(given)
   local start = numbers('start', table_of(given, 'start'), model.states, 'state')
   local place = places(model)
   local inputs, src, format = sources(given, model)
+  local shows = {}
+  for index, one in ipairs(place) do shows[index] = 'f32 ' .. one.name end
   if #inputs == 0 then fail('the model has no actions: nothing says how it moves') end
   return {
-    about = 'place by the model ' .. model.name .. ': x, y and theta in its units, from where it began', mode = 0444,
+    about = 'place by the model ' .. model.name .. ': x, y, theta and all else of its state in its units, from where it began', mode = 0444,
     src = src, interval = true, input_format = format, poll_ms = given.poll_ms or PERIOD_MS,
-    format = 'f32 x, f32 y, f32 theta', params = next(params) and params or nil,
+    format = table.concat(shows, ', '), params = next(params) and params or nil,
     converter = follower(model, inputs, defaults, start, place),
   }
 end
