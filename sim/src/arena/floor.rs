@@ -259,14 +259,17 @@ impl Floor {
         let (top, bottom) = ends(sine * full, cosine * full);
         let middle = |low: f64, high: f64| low + ((high - low - 1.0) / 2.0).floor() - cut as f64;
         let (first_x, first_y) = (middle(left, right) + 0.5, middle(top, bottom) + 0.5);
-        for row in 0..window.side {
-            for column in 0..window.side {
-                let (x, y) = (first_x + column as f64, first_y + row as f64);
-                let from_x = cosine * x + sine * y - SHIFT;
-                let from_y = cosine * y - sine * x - SHIFT;
-                let index = |value: f64| (value.max(0.0) as usize).min(size - 1);
-                window.pixels[row * window.side + column] =
-                    self.canvas[index(from_y) * size + index(from_x)];
+        // A canvas is far smaller than the largest i32.
+        let last = i32::try_from(size - 1).unwrap_or(i32::MAX);
+        let index = |value: f64| (value as i32).clamp(0, last) as usize;
+        for (row, pixels) in window.pixels.chunks_exact_mut(window.side).enumerate() {
+            let y = first_y + row as f64;
+            let (sine_y, cosine_y) = (sine * y, cosine * y);
+            for (column, pixel) in pixels.iter_mut().enumerate() {
+                let x = first_x + column as f64;
+                let from_x = index(cosine * x + sine_y - SHIFT);
+                let from_y = index(cosine_y - sine * x - SHIFT);
+                *pixel = self.canvas[from_y * size + from_x];
             }
         }
     }
