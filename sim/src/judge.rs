@@ -17,9 +17,9 @@ pub mod trajectory;
 mod words;
 
 pub use picture::{Caption, page, svg};
-pub use program::{Diagram, Program};
+pub use program::{Diagram, Program, Running};
 pub use replay::{judge_recorded, strange_in_record};
-pub use run::{Outcome, Settings, Verdict, judge};
+pub use run::{Failure, Outcome, Settings, Verdict, judge};
 pub use task::{Task, Texts};
 pub use trajectory::Trajectory;
 pub use words::too_slow;

@@ -104,3 +104,7 @@ pub const DRAWING_BYTES: usize = 8 << 20;
 pub const OBJECTS_TOLD: usize = 200;
 /// Things that a person does beside the robot in one run.
 pub const DEEDS: usize = 100_000;
+/// Threads of a diagram that an explanation tells of.
+pub const RUNNING_MAX: usize = 32;
+/// Characters of a name in it.
+pub const RUNNING_CHARS_MAX: usize = 200;

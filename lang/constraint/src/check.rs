@@ -5,65 +5,15 @@
 use std::collections::HashMap;
 use std::rc::Rc;
 
+use super::explain::{Explanation, Watch};
 use super::operand::Context;
+use super::report::{Entry, Failure, Level, Verdict, json, seconds};
 use super::rules::{Condition, EventIndex, Message, Named, Operand, Path, Rules, Trigger};
 use super::scene::{Object, Scene, Unfit};
-use super::value::{Value, shown};
+use super::value::Value;
 use super::words;
 use crate::limits;
 use lang_text::problem::{Locale, Words};
-
-/// How a message of the report is meant.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Level {
-    /// Worth knowing; so is success.
-    Info,
-    /// The task is failed.
-    Error,
-    /// The constraints themselves are wrong.
-    Critical,
-    /// For the author's log.
-    Log,
-    /// The variables at the end, as JSON: `{"variables":[{"name":"total_score","value":0}]}`.
-    Variables,
-}
-
-/// A line of the report.
-#[derive(Clone, Debug, Eq, PartialEq)]
-pub struct Entry {
-    /// How it is meant.
-    pub level: Level,
-    /// When, in milliseconds of model time.
-    pub at_ms: u64,
-    /// Where, for people, as the diagram and block of an error; empty for what has no place. The original tells none.
-    pub place: String,
-    /// What.
-    pub text: String,
-}
-
-impl Entry {
-    /// Place and text, as a person reads them.
-    pub fn line(&self) -> String {
-        format!("{}{}", self.place, self.text)
-    }
-}
-
-/// What a run has come to. A run that is decided is to be stopped.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum Verdict {
-    /// Nothing yet.
-    Open,
-    /// The task is done, after so many milliseconds of model time since the start.
-    Accomplished {
-        /// Milliseconds since the start.
-        after_ms: u64,
-    },
-    /// It is not; the report says why.
-    Failed {
-        /// Milliseconds since the start.
-        after_ms: u64,
-    },
-}
 
 /// The variable that every set of rules has.
 const SCORE: &str = "total_score";
@@ -83,6 +33,12 @@ struct Outcome {
     success: bool,
     deferred: bool,
     failed: bool,
+    /// Why it failed first.
+    failure: Option<Failure>,
+    /// The event that has said so first: of a success that waits for the end, of a success, and of a failure.
+    deferred_by: Option<EventIndex>,
+    succeeded_by: Option<EventIndex>,
+    failed_by: Option<EventIndex>,
     /// Nothing more can come: success, or the time is over, or a failure that is not to be gone on after.
     decided: bool,
 }
@@ -107,6 +63,8 @@ pub struct Checker {
     is_full: bool,
     outcome: Outcome,
     verdict: Verdict,
+    /// What is kept for an explanation, if one is wanted.
+    watch: Option<Box<Watch>>,
 }
 
 impl Checker {
@@ -130,6 +88,7 @@ impl Checker {
             is_full: false,
             outcome: Outcome::default(),
             verdict: Verdict::Open,
+            watch: None,
             rules,
         }
     }
@@ -152,9 +111,33 @@ impl Checker {
         self
     }
 
+    /// The same, keeping what [`Self::explain`] tells. It changes nothing else.
+    #[must_use]
+    pub fn explaining(mut self) -> Self {
+        self.watch = Some(Box::new(Watch::new(&self.rules)));
+        self
+    }
+
+    /// Why the run has come to what it has; none if it was not asked to explain.
+    pub fn explain(&self) -> Option<Explanation> {
+        let watch = self.watch.as_ref()?;
+        let (decider, is_open) = match (self.verdict, self.outcome.failure) {
+            (Verdict::Accomplished { .. }, _) => (self.outcome.succeeded_by, false),
+            (Verdict::Failed { .. }, Some(Failure::Rule)) => (self.outcome.failed_by, false),
+            (Verdict::Failed { .. } | Verdict::Open, _) => (self.outcome.failed_by, true),
+        };
+        let is_alive = |event: EventIndex| self.states[event].is_alive;
+        Some(watch.explain(&self.rules, decider, is_open, &is_alive))
+    }
+
     /// The verdict so far.
     pub fn verdict(&self) -> Verdict {
         self.verdict
+    }
+
+    /// Why the task is failed, if it is: the first reason.
+    pub fn failure(&self) -> Option<Failure> {
+        self.outcome.failure
     }
 
     /// The value of a variable of the rules.
@@ -202,7 +185,7 @@ impl Checker {
             if outcome.deferred && !with_errors {
                 run.accomplish();
             } else {
-                run.fail(None);
+                run.fail(Failure::Unfinished, None);
             }
         }
         if self.continues {
@@ -258,6 +241,8 @@ impl Checker {
             outcome: &mut self.outcome,
             entries,
             is_succeeding: false,
+            current: None,
+            watch: self.watch.as_deref_mut(),
             context: Context {
                 scene,
                 variables: &mut self.variables,
@@ -282,6 +267,9 @@ struct Run<'a> {
     entries: &'a mut Vec<Entry>,
     /// Whether events are checked that come before success is told.
     is_succeeding: bool,
+    /// The event that is looked at; none at the end of the program.
+    current: Option<EventIndex>,
+    watch: Option<&'a mut Watch>,
     context: Context<'a>,
 }
 
@@ -291,15 +279,40 @@ impl Run<'_> {
             is_alive: true,
             since_ms: self.now_ms,
         };
+        if let Some(watch) = &mut self.watch {
+            watch.was_set_up(event);
+        }
+    }
+
+    /// Looks at the conditions of an event, for an explanation.
+    fn watch(&mut self, index: EventIndex) {
+        let states = &*self.states;
+        if let Some(watch) = &mut self.watch
+            && states[index].is_alive
+        {
+            let is_alive = |event: EventIndex| states[event].is_alive;
+            let times = [self.now_ms, states[index].since_ms];
+            let context = &mut self.context;
+            let (scene, variables) = (&mut *context.scene, &mut *context.variables);
+            watch.look(index, self.rules, scene, variables, &is_alive, times);
+        }
     }
 
     fn check(&mut self, index: EventIndex) {
         let rules = self.rules;
         let event = &rules.events[index];
+        if self.watch.is_some() {
+            self.watch(index);
+        }
         if !self.states[index].is_alive || !self.holds(&event.condition, index) {
             return;
         }
+        if let Some(watch) = &mut self.watch {
+            watch.fired(index, self.now_ms);
+        }
+        let outer = self.current.replace(index);
         self.fire(&event.trigger);
+        self.current = outer;
         if event.drops {
             self.states[index].is_alive = false;
         }
@@ -362,13 +375,16 @@ impl Run<'_> {
                     self.fire(one);
                 }
             }
-            Trigger::Fail(message) => self.fail(Some(message)),
+            Trigger::Fail(message) => self.fail(Failure::Rule, Some(message)),
             Trigger::TimeOver => {
                 let message = words::too_long();
-                self.fail(Some(message.in_locale(self.locale)));
+                self.fail(Failure::TimeOver, Some(message.in_locale(self.locale)));
                 self.outcome.decided = true;
             }
-            Trigger::Success { deferred: true } => self.outcome.deferred = true,
+            Trigger::Success { deferred: true } => {
+                self.outcome.deferred = true;
+                self.outcome.deferred_by = self.outcome.deferred_by.or(self.current);
+            }
             Trigger::Success { deferred: false } => self.accomplish(),
             Trigger::Say(message) => {
                 let text = self.filled(message);
@@ -469,9 +485,13 @@ impl Run<'_> {
     }
 
     /// The task is failed; without a message, because the program has ended before it was done.
-    fn fail(&mut self, message: Option<&str>) {
+    fn fail(&mut self, failure: Failure, message: Option<&str>) {
         let is_first = !self.outcome.failed;
         self.outcome.failed = true;
+        if is_first {
+            self.outcome.failure = Some(failure);
+            self.outcome.failed_by = self.current;
+        }
         let unfinished = words::unfinished();
         let message = message.unwrap_or(unfinished.in_locale(self.locale));
         self.report(Level::Error, message.to_owned(), is_first);
@@ -498,6 +518,9 @@ impl Run<'_> {
         self.is_succeeding = false;
         let is_first = !self.outcome.success;
         self.outcome.success = true;
+        if is_first {
+            self.outcome.succeeded_by = self.current.or(self.outcome.deferred_by);
+        }
         self.outcome.decided = true;
         if self.continues && self.outcome.failed {
             return;
@@ -543,44 +566,5 @@ impl Run<'_> {
             place: String::new(),
             text,
         });
-    }
-}
-
-/// Seconds as the original tells them: at most six digits, and no more than needed.
-pub(super) fn seconds(ms: u64) -> String {
-    #[allow(clippy::cast_precision_loss)] // A run of 2^53 ms is no run.
-    let seconds = ms as f64 / 1000.0;
-    let rounded = format!("{seconds:.5e}").parse().unwrap_or(seconds);
-    shown(rounded)
-}
-
-/// A value as JSON.
-fn json(value: &Value) -> String {
-    match value {
-        Value::Bool(_) | Value::Int(_) => value.to_text(),
-        Value::Double(number) if number.is_finite() => value.to_text(),
-        Value::Text(text) => {
-            let mut json = String::from("\"");
-            for c in text.chars() {
-                match c {
-                    '"' | '\\' => json.extend(['\\', c]),
-                    c if c < ' ' => json.push_str(&format!("\\u{:04x}", u32::from(c))),
-                    c => json.push(c),
-                }
-            }
-            json.push('"');
-            json
-        }
-        Value::Null
-        | Value::Double(_)
-        | Value::NoText
-        | Value::Point(_)
-        | Value::Place(_)
-        | Value::Rect(_)
-        | Value::Colour(_)
-        | Value::Opaque
-        | Value::List(_)
-        | Value::Record(_)
-        | Value::Object(_) => "null".to_owned(),
     }
 }

@@ -92,6 +92,11 @@ pub fn constraints(bytes: &[u8]) {
         if bytes.len().is_multiple_of(2) {
             checker = checker.continuing();
         }
+        // Whether it is asked why makes no difference.
+        let explains = locale == Locale::Russian;
+        if explains {
+            checker = checker.explaining();
+        }
         let (mut scene, mut entries) = (Anything::default(), Vec::new());
         for tick in 1..=20 {
             let limit = u64::from(rules.time_limit_ms());
@@ -103,6 +108,11 @@ pub fn constraints(bytes: &[u8]) {
         assert!(entries.len() <= limits::CONSTRAINT_ENTRIES_MAX + 1 + verdicts);
         for entry in &entries {
             assert!(entry.text.len() <= bytes.len().max(limits::CONSTRAINT_MESSAGE_BYTES) + 1000);
+        }
+        assert_eq!(checker.explain().is_some(), explains);
+        let explanation = checker.explain().into_iter();
+        for rule in explanation.flat_map(|one| one.rules) {
+            assert!(rule.conditions.len() <= limits::EXPLAINED_CONDITIONS_MAX);
         }
         (verdict, entries.len())
     };

@@ -14,20 +14,25 @@
 
 mod check;
 mod expand;
+mod explain;
 mod former;
 pub mod fuzz;
 mod library;
 pub mod limits;
 mod operand;
 mod read;
+mod report;
 mod rules;
 mod scene;
+mod spell;
 mod value;
 mod words;
 
-pub use check::{Checker, Entry, Level, Verdict};
+pub use check::Checker;
+pub use explain::{Explained, Explanation, Near, Seen, Standing, Unit};
 pub use read::{read, read_with_templates};
-pub use rules::Rules;
+pub use report::{Entry, Failure, Level, Verdict};
+pub use rules::{Kind, Rules};
 pub use scene::{Missing, Object, ObjectPoint, Scene, Unfit};
 pub use value::{Point, Rect, Value};
 pub use words::unread;

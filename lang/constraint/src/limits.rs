@@ -16,3 +16,9 @@ pub const CONSTRAINT_ENTRIES_MAX: usize = 10_000;
 pub const CONSTRAINT_COMPLAINTS_MAX: usize = 100;
 /// Bytes of one message with its places filled.
 pub const CONSTRAINT_MESSAGE_BYTES: usize = 64 << 10;
+/// Rules that an explanation tells of.
+pub const EXPLAINED_RULES_MAX: usize = 8;
+/// Conditions of one of them.
+pub const EXPLAINED_CONDITIONS_MAX: usize = 24;
+/// Characters of a condition or a value in one.
+pub const EXPLAINED_CHARS_MAX: usize = 120;

@@ -12,7 +12,7 @@ use std::cmp::Reverse;
 use std::collections::HashMap;
 
 use super::expand::{self, Expanded};
-use super::rules::{Condition, Event, EventIndex, Named, Rules, Trigger};
+use super::rules::{Condition, Event, EventIndex, Kind, Named, Rules, Trigger};
 use super::words;
 use crate::limits;
 use lang_text::problem::{Place, Problem, Severity, Words, keep};
@@ -119,7 +119,7 @@ impl Reader {
             } else {
                 format!("{} '{id}'", element.name)
             });
-            events[places[top]] = self.top(element);
+            events[places[top]] = self.top(element, top + 1);
             self.path.pop();
         }
         self.stray_text(element);
@@ -144,12 +144,12 @@ impl Reader {
         problems.any(|problem| problem.severity == Severity::Error)
     }
 
-    fn top(&mut self, element: &Element<'_>) -> Option<Event> {
+    fn top(&mut self, element: &Element<'_>, number: usize) -> Option<Event> {
         self.count();
         match element.name.to_ascii_lowercase().as_str() {
-            "event" => self.event(element),
-            "constraint" => self.constraint(element),
-            "timelimit" => self.time_limit(element),
+            "event" => self.event(element, number),
+            "constraint" => self.constraint(element, number),
+            "timelimit" => self.time_limit(element, number),
             "init" | "initialization" => {
                 if std::mem::replace(&mut self.has_init, true) {
                     self.error(words::two_inits());
@@ -157,6 +157,8 @@ impl Reader {
                 self.known(element, &[]);
                 let trigger = self.triggers(element);
                 Some(Event {
+                    kind: Kind::Init,
+                    number,
                     id: "".into(),
                     initially: true,
                     drops: true,
@@ -171,7 +173,7 @@ impl Reader {
         }
     }
 
-    fn event(&mut self, element: &Element<'_>) -> Option<Event> {
+    fn event(&mut self, element: &Element<'_>, number: usize) -> Option<Event> {
         self.known(element, &["id", "settedUpInitially", "dropsOnFire"]);
         let [first, second] = self.exactly(element)?;
         let is_condition = |one: &Element<'_>| is(one, "condition") || is(one, "conditions");
@@ -194,6 +196,8 @@ impl Reader {
         let trigger = self.trigger(trigger);
         let condition = self.condition(condition);
         Some(Event {
+            kind: Kind::Event,
+            number,
             id: element.attribute("id").unwrap_or_default().into(),
             initially,
             drops,
@@ -203,7 +207,7 @@ impl Reader {
     }
 
     /// A constraint is an event that fails the task when its condition is not true.
-    fn constraint(&mut self, element: &Element<'_>) -> Option<Event> {
+    fn constraint(&mut self, element: &Element<'_>, number: usize) -> Option<Event> {
         self.known(element, &["id", "failMessage", "checkOnce"]);
         let [child] = self.exactly(element)?;
         let message: Box<str> = self.filled(element, "failMessage")?.into();
@@ -220,6 +224,8 @@ impl Reader {
             condition
         };
         Some(Event {
+            kind: Kind::Constraint,
+            number,
             id: element.attribute("id").unwrap_or_default().into(),
             initially: true,
             drops: true,
@@ -228,7 +234,7 @@ impl Reader {
         })
     }
 
-    fn time_limit(&mut self, element: &Element<'_>) -> Option<Event> {
+    fn time_limit(&mut self, element: &Element<'_>, number: usize) -> Option<Event> {
         self.known(element, &["id", "value"]);
         let ms = self.whole(element, "value")?;
         let Ok(limit) = u32::try_from(ms) else {
@@ -239,6 +245,8 @@ impl Reader {
             self.error(words::two_time_limits());
         }
         Some(Event {
+            kind: Kind::TimeLimit,
+            number,
             id: element.attribute("id").unwrap_or_default().into(),
             initially: true,
             drops: true,

@@ -49,9 +49,25 @@ impl Rules {
 /// The index of an event.
 pub(super) type EventIndex = usize;
 
+/// Which tag a rule is.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Kind {
+    /// `event`.
+    Event,
+    /// `constraint`.
+    Constraint,
+    /// `timelimit`.
+    TimeLimit,
+    /// `init`.
+    Init,
+}
+
 /// Something that is watched.
 #[derive(Debug)]
 pub(super) struct Event {
+    pub kind: Kind,
+    /// Its place among the tags, from 1.
+    pub number: usize,
     /// Its id, empty for none.
     pub id: Box<str>,
     /// Whether it is there from the start.

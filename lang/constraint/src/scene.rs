@@ -88,6 +88,12 @@ pub trait Scene {
         point: ObjectPoint,
     ) -> Result<bool, Unfit>;
 
+    /// How far an object is from being in a region, in pixels; for explanations, and `None` where it has no meaning. It is
+    /// asked only of what is not in the region.
+    fn distance(&mut self, _object: Object, _region: Object, _point: ObjectPoint) -> Option<f64> {
+        None
+    }
+
     /// The smallest rectangle around an object, or around everything in it if it is a set; `None` if it has none.
     fn bounding_rect(&mut self, object: Object) -> Option<Rect>;
 }

@@ -2,6 +2,7 @@
 
 mod checking;
 mod naive;
+mod explain;
 mod reading;
 mod templates;
 mod values;

@@ -3,10 +3,11 @@
 //! Owns the border between the judge and whatever runs. Model time moves only between steps, so a program is as
 //! repeatable as its steps are.
 
+use crate::limits;
 use lang_diagram::brick::Brick;
-use lang_diagram::machine::trace::Deaf;
+use lang_diagram::machine::trace::{Deaf, Trace};
 use lang_diagram::machine::{Machine, Options, Status};
-use lang_diagram::program::Program as Lowered;
+use lang_diagram::program::{Node, Program as Lowered};
 use lang_text::problem::Problem;
 use std::rc::Rc;
 
@@ -31,16 +32,78 @@ pub trait Program {
         None
     }
 
+    /// Which block each of its threads was at last, for an explanation; nothing for programs without blocks.
+    fn running(&self) -> Vec<Running> {
+        Vec::new()
+    }
+
     /// Whether it was ended because it took too much real time, which says nothing of the task.
     fn is_out_of_time(&self) -> bool {
         false
     }
 }
 
+/// A thread of a diagram and its block.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub struct Running {
+    /// The thread.
+    pub thread: String,
+    /// When it ended, in milliseconds of model time, if it has.
+    pub ended_ms: Option<u32>,
+    /// The name of the diagram.
+    pub diagram: String,
+    /// The id of the block.
+    pub id: String,
+    /// Its type, as `Timer`.
+    pub kind: String,
+    /// Its name in the editor, in English and Russian.
+    pub caption: [String; 2],
+}
+
 /// A diagram as a program, with the oddities of the original's simulator.
 #[derive(Debug)]
 pub struct Diagram {
     machine: Machine,
+    /// Blocks that threads were at, if somebody wants to know.
+    steps: Option<Steps>,
+}
+
+/// Where threads are, by their numbers.
+#[derive(Debug, Default)]
+struct Steps(Vec<Step>);
+
+#[derive(Clone, Debug, Default)]
+struct Step {
+    name: String,
+    node: Option<Node>,
+    ended_ms: Option<u32>,
+}
+
+impl Steps {
+    fn of(&mut self, thread: u16) -> &mut Step {
+        let index = usize::from(thread);
+        if self.0.len() <= index {
+            self.0.resize_with(index + 1, Step::default);
+        }
+        &mut self.0[index]
+    }
+}
+
+impl Trace for Steps {
+    fn entered(&mut self, _now: u32, thread: u16, node: Node) {
+        self.of(thread).node = Some(node);
+    }
+
+    fn thread_started(&mut self, _now: u32, thread: u16, name: &str) {
+        *self.of(thread) = Step {
+            name: name.to_owned(),
+            ..Step::default()
+        };
+    }
+
+    fn thread_ended(&mut self, now: u32, thread: u16) {
+        self.of(thread).ended_ms = Some(now);
+    }
 }
 
 impl Diagram {
@@ -48,7 +111,15 @@ impl Diagram {
     pub fn new(program: Rc<Lowered>) -> Self {
         Self {
             machine: Machine::new(program, Options::simulated()),
+            steps: None,
         }
+    }
+
+    /// The same, remembering which blocks its threads are at.
+    #[must_use]
+    pub fn remembering(mut self) -> Self {
+        self.steps = Some(Steps::default());
+        self
     }
 
     /// The machine, for its variables.
@@ -59,11 +130,17 @@ impl Diagram {
 
 impl Program for Diagram {
     fn step(&mut self, now_ms: u32, robot: &mut dyn Brick) -> Status {
-        self.machine.step(now_ms, robot, &mut Deaf)
+        match &mut self.steps {
+            None => self.machine.step(now_ms, robot, &mut Deaf),
+            Some(steps) => self.machine.step(now_ms, robot, steps),
+        }
     }
 
     fn last_tick(&mut self, now_ms: u32, robot: &mut dyn Brick) {
-        self.machine.last_tick(now_ms, robot, &mut Deaf);
+        match &mut self.steps {
+            None => self.machine.last_tick(now_ms, robot, &mut Deaf),
+            Some(steps) => self.machine.last_tick(now_ms, robot, steps),
+        }
     }
 
     fn stop(&mut self, robot: &mut dyn Brick) {
@@ -76,5 +153,35 @@ impl Program for Diagram {
 
     fn refusal(&self) -> Option<&Problem> {
         self.machine.program().refusal()
+    }
+
+    fn running(&self) -> Vec<Running> {
+        let steps = self.steps.as_ref().map_or(&[][..], |steps| &steps.0);
+        let lives = steps.iter().any(|step| step.ended_ms.is_none());
+        // Of a program that has ended its last threads are told, and of one that runs those that live.
+        let last = steps.iter().filter_map(|step| step.ended_ms).max();
+        let told = steps.iter().filter(|step| match lives {
+            true => step.ended_ms.is_none(),
+            false => step.ended_ms == last,
+        });
+        let program = self.machine.program();
+        let running = told.filter_map(|step| {
+            let node = step.node?;
+            let row = program.row(node);
+            let cut = |text: &str| text.chars().take(limits::RUNNING_CHARS_MAX).collect();
+            let text = |text: Option<&str>| -> String { text.map_or_else(String::new, cut) };
+            Some(Running {
+                thread: text(Some(&step.name)),
+                ended_ms: step.ended_ms,
+                diagram: text(program.diagram(node)),
+                id: text(program.id(node)),
+                kind: text(row.map(|row| row.kind)),
+                caption: [
+                    text(row.map(|row| row.shown)),
+                    text(row.map(|row| row.russian)),
+                ],
+            })
+        });
+        running.take(limits::RUNNING_MAX).collect()
     }
 }

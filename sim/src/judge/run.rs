@@ -5,7 +5,7 @@
 //! verdict.
 
 use super::hands::{self, Deed};
-use super::program::Program;
+use super::program::{Program, Running};
 use super::recorder::Recorder;
 use super::report;
 use super::task::Task;
@@ -13,7 +13,9 @@ use super::trajectory::{Record, Trajectory};
 use super::words;
 use crate::arena::{Arena, Gamepad, Setup};
 use crate::limits;
-use lang_constraint::{Checker, Entry, Level, Value, Verdict as Decision};
+use lang_constraint::{
+    self as rules, Checker, Entry, Explanation, Level, Value, Verdict as Decision,
+};
 use lang_diagram::machine::{STEP_MS, Status};
 use lang_text::problem::{Locale, Problem};
 use std::time::{Duration, Instant};
@@ -29,6 +31,19 @@ pub enum Verdict {
     Failed,
     /// It took too much real time, so nothing is known.
     Unknown,
+}
+
+/// What kind of failure a failed run is.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Failure {
+    /// The program did something else than the rules demand.
+    Wrong,
+    /// The model time of the rules or of the settings was over.
+    ModelTime,
+    /// The program had an error while it ran.
+    Program,
+    /// The program is not one that could begin.
+    Structure,
 }
 
 /// How a run is judged.
@@ -55,6 +70,8 @@ pub struct Settings {
     pub is_recording: bool,
     /// Whether a picture of the display at the end is made.
     pub is_showing: bool,
+    /// Whether it is kept why the run ends as it does.
+    pub is_explaining: bool,
 }
 
 impl Default for Settings {
@@ -70,6 +87,7 @@ impl Default for Settings {
             is_marking: false,
             is_recording: false,
             is_showing: false,
+            is_explaining: false,
         }
     }
 }
@@ -79,6 +97,8 @@ impl Default for Settings {
 pub struct Outcome {
     /// How it ended.
     pub verdict: Verdict,
+    /// What kind of failure it is, if it is one.
+    pub failure: Option<Failure>,
     /// When, in milliseconds of model time.
     pub ms: u32,
     /// What was said, in order.
@@ -91,6 +111,10 @@ pub struct Outcome {
     pub trajectory: Trajectory,
     /// The display at the end, as a PNG file, if it was wanted.
     pub display: Option<Vec<u8>>,
+    /// Why the rules have decided so, if that was wanted and there are rules.
+    pub explanation: Option<Explanation>,
+    /// Where the threads of the program were at the end.
+    pub running: Vec<Running>,
 }
 
 /// How often the clock is looked at, in ticks.
@@ -117,6 +141,7 @@ pub fn judge(task: &Task, program: &mut dyn Program, settings: &Settings) -> Out
         // It does not begin, and so the rules have nothing to say.
         run.hear(0, std::slice::from_ref(why));
         run.verdict = Some(Verdict::Failed);
+        run.failure = Some(Failure::Structure);
         return run.outcome(0, &arena);
     }
     loop {
@@ -143,6 +168,7 @@ pub fn judge(task: &Task, program: &mut dyn Program, settings: &Settings) -> Out
         }
         if now >= settings.longest_ms {
             run.fail(now, words::too_long(f64::from(now) / 1000.0));
+            run.failure = Some(Failure::ModelTime);
             break;
         }
         if (now / STEP_MS).is_multiple_of(CLOCK_TICKS) && began.elapsed() > settings.longest {
@@ -153,6 +179,7 @@ pub fn judge(task: &Task, program: &mut dyn Program, settings: &Settings) -> Out
         now += STEP_MS;
     }
     let mut outcome = run.outcome(now, &arena);
+    outcome.running = program.running();
     program.stop(&mut arena.robot(0));
     outcome
         .printed
@@ -169,12 +196,17 @@ pub(super) struct Run<'a> {
     heard: usize,
     /// Once it is known.
     pub verdict: Option<Verdict>,
+    failure: Option<Failure>,
 }
 
 impl<'a> Run<'a> {
     pub fn new(task: &Task, settings: &'a Settings, arena: &Arena) -> Self {
         let checker = task.rules.clone().map(|rules| {
             let checker = Checker::new(rules, settings.locale);
+            let checker = match settings.is_explaining {
+                true => checker.explaining(),
+                false => checker,
+            };
             if settings.keep_going {
                 checker.continuing()
             } else {
@@ -202,6 +234,7 @@ impl<'a> Run<'a> {
             trajectory,
             heard: 0,
             verdict: None,
+            failure: None,
         }
     }
 
@@ -299,6 +332,11 @@ impl<'a> Run<'a> {
             Decision::Failed { .. } => Verdict::Failed,
         };
         self.verdict = Some(verdict);
+        let failure = self.checker.as_ref().and_then(Checker::failure);
+        self.failure = failure.map(|failure| match failure {
+            rules::Failure::TimeOver => Failure::ModelTime,
+            rules::Failure::Rule | rules::Failure::Unfinished => Failure::Wrong,
+        });
         true
     }
 
@@ -337,15 +375,26 @@ impl<'a> Run<'a> {
             .checker
             .as_ref()
             .and_then(|checker| checker.variable("total_score"));
+        // A run that ends without a word of the rules is no success.
+        let verdict = self.verdict.unwrap_or(Verdict::Failed);
+        let failure = match (self.failure, verdict) {
+            (_, Verdict::Accomplished | Verdict::Ended | Verdict::Unknown) => None,
+            (Some(Failure::Structure), Verdict::Failed) => Some(Failure::Structure),
+            // Whatever came of an error, the error came first.
+            (_, Verdict::Failed) if self.heard > 0 => Some(Failure::Program),
+            (failure, Verdict::Failed) => Some(failure.unwrap_or(Failure::Wrong)),
+        };
         Outcome {
-            // A run that ends without a word of the rules is no success.
-            verdict: self.verdict.unwrap_or(Verdict::Failed),
+            verdict,
+            failure,
             ms: now,
             total_score: score.and_then(|score| match score {
                 Value::Int(number) => Some(f64::from(*number)),
                 Value::Double(number) => Some(*number),
                 _ => None,
             }),
+            explanation: self.checker.as_ref().and_then(Checker::explain),
+            running: Vec::new(),
             entries: self.entries,
             printed: Vec::new(),
             trajectory: self.trajectory,

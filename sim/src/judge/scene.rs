@@ -334,6 +334,13 @@ impl Scene for Arena {
         places::is_inside(self, thing, region, point)
     }
 
+    fn distance(&mut self, object: Object, region: Object, point: ObjectPoint) -> Option<f64> {
+        let Some(Thing::Region(region)) = Thing::of(region) else {
+            return None;
+        };
+        places::distance(self, Thing::of(object)?, region, point)
+    }
+
     fn bounding_rect(&mut self, object: Object) -> Option<Rect> {
         let thing = Thing::of(object)?;
         if thing == Thing::Trace {

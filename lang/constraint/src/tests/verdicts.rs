@@ -29,7 +29,7 @@ fn seconds_have_no_more_digits_than_needed() {
         (40_110, "40.11"),
         (1_234_567, "1234.57"),
     ] {
-        assert_eq!(crate::check::seconds(ms), text);
+        assert_eq!(crate::report::seconds(ms), text);
     }
 }
 

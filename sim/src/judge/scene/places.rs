@@ -12,7 +12,7 @@ use crate::arena::graphic::Family;
 use crate::arena::outline::{Bounds, Outline, is_inside as is_inside_figure};
 use crate::arena::{Arena, solids};
 use crate::field::{Drawn, Field, Pen, Region, Shape};
-use crate::geometry::{Point, point};
+use crate::geometry::{Point, Segment, point};
 use lang_diagram::stand_in::PIXELS_IN_CM;
 
 /// Corners of a round thing.
@@ -44,6 +44,46 @@ pub(super) fn is_inside(
     let mut corners = outline(arena, thing).ok_or(Unfit::NoPlace)?;
     corners.iter_mut().for_each(|at| *at = graphic.back(*at));
     Ok(place.compares(&corners, how))
+}
+
+/// How far a thing is from being in a region, in pixels; nothing if one of them has no place.
+pub(super) fn distance(
+    arena: &Arena,
+    thing: Thing,
+    region: usize,
+    how: ObjectPoint,
+) -> Option<f64> {
+    let field = arena.field();
+    let graphic = arena.graphics.of(Family::Region, region);
+    let place = Place::of(field.regions.get(region)?, field);
+    if how == ObjectPoint::Center {
+        return place.distance(graphic.back(centre(arena, thing)?));
+    }
+    let corners = outline(arena, thing)?.into_iter();
+    let corners: Vec<Point> = corners.map(|at| graphic.back(at)).collect();
+    if how == ObjectPoint::All {
+        // The corner that is farthest out has the longest way.
+        let mut ways = corners.iter().map(|at| place.distance(*at));
+        return ways.try_fold(0.0, |most: f64, way| Some(most.max(way?)));
+    }
+    let figures = place.figures();
+    let ways = figures.iter().flat_map(|figure| {
+        let to = corners.iter().map(|at| to_outline(figure, *at));
+        let back = figure.iter().map(|at| to_outline(&corners, *at));
+        to.chain(back)
+    });
+    ways.reduce(f64::min)
+}
+
+/// How far a point is from the outline of a figure.
+fn to_outline(figure: &[Point], at: Point) -> f64 {
+    let ends = figure.iter().cycle().skip(1);
+    let sides = figure.iter().zip(ends);
+    let ways = sides.map(|(begin, end)| {
+        let nearest = Segment::new(*begin, *end).nearest(at);
+        nearest.from(at).length()
+    });
+    ways.fold(f64::INFINITY, f64::min)
 }
 
 /// The place of a region before it was moved.
@@ -116,6 +156,26 @@ impl Place {
             false => bevelled(low, high, half),
         };
         Self::Ring(outer, inner)
+    }
+
+    /// Its outlines.
+    fn figures(&self) -> Vec<Vec<Point>> {
+        match self {
+            Self::Nowhere => Vec::new(),
+            Self::Rectangle(low, high) => vec![rectangle(*low, *high).to_vec()],
+            Self::Ellipse(low, high) => vec![ellipse(*low, *high, 0.0)],
+            Self::Ring(outer, inner) => vec![outer.clone(), inner.clone()],
+        }
+    }
+
+    /// How far a point is from it: 0 inside, and nothing if it is nowhere.
+    fn distance(&self, at: Point) -> Option<f64> {
+        if self.holds(at) {
+            return Some(0.0);
+        }
+        let figures = self.figures();
+        let ways = figures.iter().map(|figure| to_outline(figure, at));
+        ways.reduce(f64::min).filter(|way| way.is_finite())
     }
 
     fn holds(&self, at: Point) -> bool {
