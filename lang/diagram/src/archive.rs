@@ -82,8 +82,21 @@ pub fn open(bytes: &[u8], problems: &mut Vec<Problem>) -> Result<Archive, Proble
 /// # Errors
 /// More entries or bytes than a save may have, and a name that is there twice or too long for a zip.
 pub fn pack(entries: &[Entry]) -> Result<Vec<u8>, Problem> {
-    let mut folders = HashSet::new();
+    fill(zip::Packer::new(), entries)
+}
+
+/// The same as an OpenDocument file has it: its type comes first, not packed, as the piece `mimetype`.
+///
+/// # Errors
+/// As [`pack`].
+pub fn pack_document(kind: &str, entries: &[Entry]) -> Result<Vec<u8>, Problem> {
     let mut packer = zip::Packer::new();
+    packer.add_stored("mimetype", kind.as_bytes())?;
+    fill(packer, entries)
+}
+
+fn fill(mut packer: zip::Packer, entries: &[Entry]) -> Result<Vec<u8>, Problem> {
+    let mut folders = HashSet::new();
     for entry in entries {
         let mut end = 0;
         while let Some(at) = entry.name[end..].find('/') {

@@ -103,6 +103,24 @@ impl Packer {
 
     /// Adds a file, or a folder if the name ends with `/`.
     pub(super) fn add(&mut self, name: &str, bytes: &[u8]) -> Result<(), Problem> {
+        let method = match bytes.is_empty() {
+            true => CompressionMethod::Stored,
+            false => CompressionMethod::Deflated,
+        };
+        self.add_by(method, name, bytes)
+    }
+
+    /// Adds a file as it is.
+    pub(super) fn add_stored(&mut self, name: &str, bytes: &[u8]) -> Result<(), Problem> {
+        self.add_by(CompressionMethod::Stored, name, bytes)
+    }
+
+    fn add_by(
+        &mut self,
+        method: CompressionMethod,
+        name: &str,
+        bytes: &[u8],
+    ) -> Result<(), Problem> {
         self.count += 1;
         if self.count > limits::ENTRIES {
             return Err(in_file(name, words::too_many()));
@@ -119,10 +137,6 @@ impl Packer {
             self.inner
                 .add_directory(name, options.unix_permissions(0o755))
         } else {
-            let method = match bytes.is_empty() {
-                true => CompressionMethod::Stored,
-                false => CompressionMethod::Deflated,
-            };
             let options = options.unix_permissions(0o644).compression_method(method);
             let started = self.inner.start_file(name, options);
             started.and_then(|()| Ok(self.inner.write_all(bytes)?))
