@@ -5,12 +5,19 @@
 //! rules mean is in crate `sim`.
 
 mod args;
+mod class;
+mod explain;
+mod grade_args;
+mod grades;
 mod jobs;
 pub(crate) mod original;
+mod platform;
+mod points;
 mod pool;
 mod row;
 mod run;
 mod script;
+mod verdict;
 mod words;
 mod worker;
 
@@ -18,12 +25,15 @@ use crate::output::{Output, standard};
 use crate::refusal::{Refusal, UNREADABLE, say};
 use crate::terminal::named;
 pub(crate) use args::CheckArgs;
+use grades::Grades;
 use jobs::Job;
 use lang_text::problem::Locale;
-use row::{Row, Verdict, Widths};
+use platform::Platform;
+use row::{Row, Widths};
 use std::io::{self, IsTerminal, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+use verdict::{Counts, Verdict};
 
 /// How often progress is shown.
 const PROGRESS_EVERY: Duration = Duration::from_millis(200);
@@ -35,7 +45,7 @@ const PROGRESS_EVERY: Duration = Duration::from_millis(200);
 pub(crate) fn run(args: &CheckArgs) -> Result<u8, Refusal> {
     // What could not be told is no verdict: 1 is for tasks that were not accomplished.
     checked(args).map_err(|refusal| Refusal {
-        code: UNREADABLE,
+        code: args.platform.map_or(UNREADABLE, Platform::failed),
         ..refusal
     })
 }
@@ -45,10 +55,10 @@ fn checked(args: &CheckArgs) -> Result<u8, Refusal> {
         worker::serve(args)?;
         return Ok(0);
     }
-    let jobs = jobs::jobs(args).map_err(|why| Refusal {
-        code: UNREADABLE,
-        ..Refusal::from(why)
-    })?;
+    if !args.grades.out.is_empty() {
+        return class(args);
+    }
+    let jobs = jobs::jobs(args)?;
     let results = args.results.as_deref().map(|path| Output {
         path: Some(path),
         force: args.force,
@@ -57,19 +67,86 @@ fn checked(args: &CheckArgs) -> Result<u8, Refusal> {
     if let Some(results) = &results {
         results.refuse_present()?;
     }
-    refuse_present(&jobs, args)?;
+    refuse_present(&jobs, args, jobs.len() == 1)?;
+    tell_left_out(args);
+    if let Some(platform) = args.platform {
+        return answer(&jobs, args, platform);
+    }
+    match &jobs[..] {
+        [job] => one(job, args, results),
+        _ => many(&jobs, args, results, None),
+    }
+}
+
+/// What a platform is told of all runs.
+fn answer(jobs: &[Job], args: &CheckArgs, platform: Platform) -> Result<u8, Refusal> {
+    let mut rows = Vec::new();
+    match jobs {
+        [job] => rows.push(pool::run_one(job.clone(), args)),
+        jobs => {
+            make_folders(args)?;
+            pool::run(jobs, args, |_, row| {
+                rows.push(row);
+                Ok(())
+            })?;
+        }
+    }
+    let answer = platform.answer(&rows, args.full_points, args.language);
+    standard(answer.output.as_bytes())?;
+    say(&answer.error);
+    Ok(answer.code)
+}
+
+fn tell_left_out(args: &CheckArgs) {
     let left_out = jobs::left_out(args);
     if left_out > 0 {
         say(&[words::left_out(left_out, args.language)]);
     }
-    match &jobs[..] {
-        [job] => one(job, args, results),
-        _ => many(&jobs, args, results),
+}
+
+/// A class, with the tables that are wanted of it.
+fn class(args: &CheckArgs) -> Result<u8, Refusal> {
+    let mut args = args.clone();
+    args.html = args.html.or_else(|| args.grades.replays());
+    let mut plan = class::plan(&args)?;
+    if plan.columns.is_empty() || plan.pupils.is_empty() {
+        return Err(Refusal::new(words::nobody(args.language)));
     }
+    let jobs = std::mem::take(&mut plan.jobs);
+    let outputs: Vec<PathBuf> = args.grades.out.clone();
+    let outputs: Vec<Output<'_>> = outputs
+        .iter()
+        .map(|path| Output {
+            path: Some(path),
+            force: args.force,
+            source: args.grades.pupils.as_deref().unwrap_or(Path::new("")),
+        })
+        .collect();
+    let results = args.results.as_deref().map(|path| Output {
+        path: Some(path),
+        force: args.force,
+        source: Path::new(""),
+    });
+    for (index, output) in outputs.iter().enumerate() {
+        output.refuse_present()?;
+        let others = outputs[..index].iter().filter_map(|other| other.path);
+        let others: Vec<&Path> = others.chain(args.results.as_deref()).collect();
+        output.spare(&others)?;
+    }
+    if let Some(results) = &results {
+        results.refuse_present()?;
+    }
+    refuse_present(&jobs, &args, false)?;
+    say(&plan.notes);
+    if args.grades.tasks.is_none() {
+        tell_left_out(&args);
+    }
+    let grades = Grades::new(plan, &args.grades, args.language);
+    many(&jobs, &args, results, Some((grades, &outputs)))
 }
 
 /// Refuses files that are there before anything runs: afterwards a verdict would be lost with them.
-fn refuse_present(jobs: &[Job], args: &CheckArgs) -> Result<(), Refusal> {
+fn refuse_present(jobs: &[Job], args: &CheckArgs, is_one: bool) -> Result<(), Refusal> {
     let wanted = [
         (&args.report, run::REPORT),
         (&args.trajectory, run::TRAJECTORY),
@@ -80,7 +157,7 @@ fn refuse_present(jobs: &[Job], args: &CheckArgs) -> Result<(), Refusal> {
     for (path, ending) in wanted {
         let Some(path) = path else { continue };
         for job in jobs {
-            let path = job.place(path, ending, jobs.len() == 1);
+            let path = job.place(path, ending, is_one);
             let output = Output {
                 path: Some(&path),
                 force: args.force,
@@ -108,8 +185,8 @@ fn one(job: &Job, args: &CheckArgs, results: Option<Output<'_>>) -> Result<u8, R
     Ok(row.verdict.code())
 }
 
-/// Many runs, in processes.
-fn many(jobs: &[Job], args: &CheckArgs, results: Option<Output<'_>>) -> Result<u8, Refusal> {
+/// Makes the directories for files of several runs.
+fn make_folders(args: &CheckArgs) -> Result<(), Refusal> {
     let outputs = [&args.report, &args.trajectory, &args.svg, &args.html];
     let folders = outputs.into_iter().chain([&args.display]);
     for folder in folders.flatten() {
@@ -120,16 +197,43 @@ fn many(jobs: &[Job], args: &CheckArgs, results: Option<Output<'_>>) -> Result<u
             ))
         })?;
     }
+    Ok(())
+}
+
+/// Many runs, in processes.
+fn many(
+    jobs: &[Job],
+    args: &CheckArgs,
+    results: Option<Output<'_>>,
+    mut class: Option<(Grades, &[Output<'_>])>,
+) -> Result<u8, Refusal> {
+    make_folders(args)?;
     let mut report = Report::new(jobs, args, results)?;
-    pool::run(jobs, args, |index, row| report.add(index, &row))?;
-    report.finish()
+    pool::run(jobs, args, |index, row| {
+        if let Some((grades, _)) = &mut class {
+            let replay = args.html.as_deref();
+            let replay = replay.map(|folder| jobs[index].place(folder, run::HTML, false));
+            grades.add(index, &row, replay.filter(|page| page.is_file()));
+        }
+        report.add(index, &row)
+    })?;
+    let has_table = report.has_table();
+    let code = report.finish()?;
+    if let Some((grades, outputs)) = class {
+        let lines = grades.finish(outputs)?;
+        match has_table {
+            true => standard((lines.join("\n") + "\n").as_bytes())?,
+            false => say(&lines),
+        }
+    }
+    Ok(code)
 }
 
 /// The table of many runs and their lines of JSON, as far as they are written.
 struct Report<'a> {
     locale: Locale,
     widths: Widths,
-    counts: [usize; 4],
+    counts: Counts,
     worst: Option<Verdict>,
     all: usize,
     /// Lines of JSON, written as they come: to a file beside the place of the result, or to standard output.
@@ -158,7 +262,7 @@ impl<'a> Report<'a> {
         let report = Self {
             locale,
             widths,
-            counts: [0; 4],
+            counts: Counts::default(),
             worst: None,
             all: jobs.len(),
             results: results.map(|output| Results {
@@ -197,7 +301,10 @@ impl<'a> Report<'a> {
         if has_table {
             let line = self.widths.line(&row.cells(self.locale));
             self.clear();
-            standard(format!("{line}\n").as_bytes())?;
+            let mut lines = format!("{line}\n");
+            row.explanation()
+                .for_each(|line| lines.push_str(&format!("    {line}\n")));
+            standard(lines.as_bytes())?;
         }
         self.progress(index + 1);
         Ok(())
@@ -233,6 +340,6 @@ impl<'a> Report<'a> {
             let summary = words::summary(self.counts, self.locale);
             standard(format!("{summary}\n").as_bytes())?;
         }
-        Ok(self.worst.map_or(UNREADABLE, Verdict::code))
+        Ok(self.worst.map_or(0, Verdict::code))
     }
 }

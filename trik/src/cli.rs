@@ -103,10 +103,12 @@ enum Command {
     /// A solution is a diagram of TRIK Studio in a file NAME.qrs, with a world in it and rules that say what the task is;
     /// --field puts it into other worlds. The world is simulated as in TRIK Studio, much faster than real time, and
     /// the same run always ends in the same way. One run prints its messages, several make a table. A directory means
-    /// all solutions below it, which run on all cores; a run that crashes or hangs does not affect the others.
+    /// all solutions below it, which run on all cores; a run that crashes or hangs does not affect the others. --grades
+    /// writes the table of a class, --explain says why a run ended as it did.
     ///
-    /// Exit status: 0 all tasks were accomplished, or there were no rules and no errors; 1 one was not; 2 a solution could
-    /// not be run or judged, or the command line was not understood.
+    /// Exit status: 0 all tasks were accomplished, or there were no rules and no errors; 1 one was not: wrong, out of time,
+    /// or an error of the program; 2 a solution is broken or could not be run or judged, a file could not be written, or
+    /// the command line was not understood. With --for the exit status is that of the platform.
     Check(Box<check::CheckArgs>),
     /// Robots as equations: models in the Differential Constraints Modeling Language.
     Dcml {

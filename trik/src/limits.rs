@@ -80,6 +80,8 @@ pub const RUN_GRACE_MS: u32 = 300;
 pub const SOLUTIONS_MAX: usize = 100_000;
 /// Fields of one command.
 pub const FIELDS_MAX: usize = 1_000;
+/// Cells of the table of a class.
+pub const CELLS_MAX: usize = 1_000_000;
 /// How deep directories of solutions may nest.
 pub const FOLDERS_DEEP: usize = 8;
 /// Bytes of a world, a program or a file of inputs.

@@ -2,6 +2,8 @@
 //!
 //! Owns the options and how they are passed to a worker process. Knows nothing of what they do.
 
+use super::grade_args::GradeArgs;
+use super::platform::Platform;
 use crate::{language, limits};
 use clap::Args;
 use lang_text::problem::Locale;
@@ -28,6 +30,10 @@ pub(crate) struct CheckArgs {
     /// A program in JavaScript or Python that drives the robot instead of the diagram.
     #[arg(long, value_name = "PROG.js|.py", conflicts_with = "log")]
     pub script: Option<PathBuf>,
+    /// Tell why each run ended as it did: the rule that decided and when, the last values of its conditions, how near the
+    /// others came, and the block that each thread was at.
+    #[arg(long)]
+    pub explain: bool,
     /// Lines that the program is given when it asks: answers for Input blocks, and what textual programs read.
     #[arg(long, value_name = "FILE")]
     pub inputs: Option<PathBuf>,
@@ -57,6 +63,15 @@ pub(crate) struct CheckArgs {
     /// Write a line of JSON for each run, in the order of the runs; - is standard output, instead of the table.
     #[arg(long, value_name = "OUT.jsonl")]
     pub results: Option<PathBuf>,
+    /// Answer as a grader of this platform, with its exit codes, instead of the table.
+    #[arg(long = "for", value_name = "PLATFORM", value_enum, conflicts_with_all = ["results", "out"])]
+    pub platform: Option<Platform>,
+    /// With --for stepik: the points that make the whole score. Without it the score is 1 for an accomplished task, else 0.
+    #[arg(long, value_name = "NUMBER", requires = "platform", value_parser = positive)]
+    pub full_points: Option<f64>,
+    /// The table of a class.
+    #[command(flatten)]
+    pub grades: GradeArgs,
     /// Overwrite existing files.
     #[arg(long)]
     pub force: bool,
@@ -122,6 +137,7 @@ impl CheckArgs {
         for (name, is_set) in [
             ("--force", self.force),
             ("--continue", self.keep_going),
+            ("--explain", self.explain),
             ("--marker-traces", self.marker_traces),
             ("--one", self.is_one),
             ("--embedded", self.is_embedded),
@@ -147,6 +163,12 @@ fn model_seconds(text: &str) -> Result<f64, String> {
 
 fn wall_seconds(text: &str) -> Result<f64, String> {
     seconds(text, limits::WALL_SECONDS_MAX)
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let number: Option<f64> = text.parse().ok();
+    let number = number.filter(|number| number.is_finite() && *number > 0.0);
+    number.ok_or_else(|| "not a number above 0".to_owned())
 }
 
 fn seconds(text: &str, max: f64) -> Result<f64, String> {

@@ -22,6 +22,8 @@ pub(super) struct Job {
     pub field: Option<PathBuf>,
     /// A record that is judged in place of running the solution.
     pub log: Option<PathBuf>,
+    /// The save that pupils were given for this task, if not that of all runs.
+    pub given: Option<PathBuf>,
     /// What files of this run are called, below a directory for results and without an ending.
     pub name: PathBuf,
 }
@@ -61,20 +63,7 @@ pub(super) fn shown(path: &Path) -> String {
 /// # Errors
 /// A path that cannot be read, a directory without solutions or fields, more than the limits allow.
 pub(super) fn jobs(args: &CheckArgs) -> Result<Vec<Job>, Error> {
-    let mut fields: Vec<Option<PathBuf>> = Vec::new();
-    if args.own || args.field.is_empty() {
-        fields.push(None);
-    }
-    for path in &args.field {
-        let found = below(path, &["xml"], 1, limits::FIELDS_MAX)?;
-        fields.extend(found.into_iter().map(|(field, _)| Some(field)));
-        if fields.len() > limits::FIELDS_MAX {
-            return Err(Error::Refused(format!(
-                "there are more than {} fields",
-                limits::FIELDS_MAX
-            )));
-        }
-    }
+    let fields = fields(args)?;
     let solutions = match args.log.is_empty() {
         true => solutions(args)?,
         false => return recorded(args, &fields),
@@ -86,17 +75,46 @@ pub(super) fn jobs(args: &CheckArgs) -> Result<Vec<Job>, Error> {
                 solution: solution.clone(),
                 field: field.clone(),
                 log: None,
+                given: None,
                 name: free(&name, field.as_deref(), fields.len() > 1, &mut names),
             });
         }
-        if all.len() > limits::SOLUTIONS_MAX {
-            let max = limits::SOLUTIONS_MAX;
-            return Err(Error::Refused(format!(
-                "there are more than {max} runs to do"
-            )));
-        }
+        bound(&all)?;
     }
     Ok(all)
+}
+
+/// The worlds of all solutions; `None` is a solution's own.
+pub(super) fn fields(args: &CheckArgs) -> Result<Vec<Option<PathBuf>>, Error> {
+    let mut fields: Vec<Option<PathBuf>> = Vec::new();
+    if args.own || args.field.is_empty() {
+        fields.push(None);
+    }
+    for path in &args.field {
+        let found = below(path, &["xml"], 1, limits::FIELDS_MAX)?;
+        fields.extend(found.into_iter().map(|(field, _)| Some(field)));
+        if fields.len() > limits::FIELDS_MAX {
+            return Err(too_many_fields());
+        }
+    }
+    Ok(fields)
+}
+
+/// Why no more fields are taken.
+pub(super) fn too_many_fields() -> Error {
+    let max = limits::FIELDS_MAX;
+    Error::Refused(format!("there are more than {max} fields"))
+}
+
+/// Refuses more runs than a command does.
+pub(super) fn bound(jobs: &[Job]) -> Result<(), Error> {
+    let max = limits::SOLUTIONS_MAX;
+    match jobs.len() > max {
+        true => Err(Error::Refused(format!(
+            "there are more than {max} runs to do"
+        ))),
+        false => Ok(()),
+    }
 }
 
 /// All solutions, with their names from where they were looked for.
@@ -159,21 +177,17 @@ fn recorded(args: &CheckArgs, fields: &[Option<PathBuf>]) -> Result<Vec<Job>, Er
                 solution: save.unwrap_or(&log).clone(),
                 field: field.clone(),
                 log: Some(log.clone()),
+                given: None,
                 name: free(&name, field.as_deref(), fields.len() > 1, &mut names),
             }));
         }
-        if all.len() > limits::SOLUTIONS_MAX {
-            let max = limits::SOLUTIONS_MAX;
-            return Err(Error::Refused(format!(
-                "there are more than {max} runs to do"
-            )));
-        }
+        bound(&all)?;
     }
     Ok(all)
 }
 
 /// A name for files that no other run has.
-fn free(
+pub(super) fn free(
     name: &Path,
     field: Option<&Path>,
     are_many: bool,
@@ -197,7 +211,7 @@ fn free(
 }
 
 /// A file as it is, or those with an ending below a directory, sorted, with their names from there.
-fn below(
+pub(super) fn below(
     path: &Path,
     endings: &[&str],
     deep: usize,

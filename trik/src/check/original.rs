@@ -7,7 +7,6 @@
 use super::args::CheckArgs;
 use super::jobs::Job;
 use super::pool;
-use super::row::Verdict;
 use super::run::text;
 use crate::diagrams::generate::{self, GenArgs};
 use crate::diagrams::save::must_open;
@@ -212,6 +211,7 @@ pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> u8 {
         solution: args.file.clone(),
         field: None,
         log: None,
+        given: None,
         name: PathBuf::new(),
     };
     let is_input_there = named(&args.input).is_none_or(|path| path.exists());
@@ -225,11 +225,7 @@ pub(crate) fn model(arguments: impl Iterator<Item = OsString>) -> u8 {
     }
     say(&row.lines(check.language));
     let has_error = row.messages.iter().any(|(level, _)| level == "error");
-    match row.verdict {
-        Verdict::Broken => 2,
-        Verdict::Failed => 1,
-        Verdict::Accomplished | Verdict::Ended => u8::from(has_error),
-    }
+    row.verdict.code().max(u8::from(has_error))
 }
 
 /// The same in the words of `trik check`.
@@ -241,6 +237,9 @@ fn wanted(args: Model, is_script: bool) -> CheckArgs {
         field: Vec::new(),
         own: false,
         task: None,
+        explain: false,
+        platform: None,
+        full_points: None,
         gamepad: None,
         log: Vec::new(),
         report: args.report,
@@ -249,6 +248,7 @@ fn wanted(args: Model, is_script: bool) -> CheckArgs {
         html: None,
         display: None,
         results: None,
+        grades: Default::default(),
         force: true,
         keep_going: false,
         marker_traces: false,

@@ -229,8 +229,8 @@ impl Worker {
     fn ask(&mut self, job: &Job, args: &CheckArgs) -> Result<String, Error> {
         let mut bytes = Vec::new();
         let path = |path: &'_ Option<PathBuf>| path.clone().unwrap_or_default();
-        let (field, log) = (path(&job.field), path(&job.log));
-        for path in [&job.solution, &field, &log, &job.name] {
+        let (field, log, given) = (path(&job.field), path(&job.log), path(&job.given));
+        for path in [&job.solution, &field, &log, &given, &job.name] {
             bytes.extend_from_slice(path.as_os_str().as_bytes());
             bytes.push(0);
         }

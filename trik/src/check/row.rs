@@ -2,49 +2,12 @@
 //!
 //! Owns both forms. The line is also what a worker process tells.
 
-use super::words;
+use super::verdict::Verdict;
+use super::{explain, points, words};
 use crate::limits;
 use crate::terminal::harmless;
 use lang_text::problem::Locale;
 use sim::judge::json::{self, Value};
-
-/// How a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Verdict {
-    /// The task was accomplished.
-    Accomplished,
-    /// There are no rules, and the program ended without an error.
-    Ended,
-    /// The task was not accomplished, or the program has errors.
-    Failed,
-    /// It could not be run or judged.
-    Broken,
-}
-
-impl Verdict {
-    /// The exit code.
-    pub fn code(self) -> u8 {
-        match self {
-            Self::Accomplished | Self::Ended => 0,
-            Self::Failed => 1,
-            Self::Broken => 2,
-        }
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Accomplished => "accomplished",
-            Self::Ended => "ended",
-            Self::Failed => "failed",
-            Self::Broken => "broken",
-        }
-    }
-
-    fn named(name: &str) -> Option<Self> {
-        let all = [Self::Accomplished, Self::Ended, Self::Failed, Self::Broken];
-        all.into_iter().find(|verdict| verdict.name() == name)
-    }
-}
 
 /// One run.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,6 +28,8 @@ pub(super) struct Row {
     pub more: usize,
     /// What the program printed.
     pub printed: Vec<String>,
+    /// Why it ended so, if that was asked for.
+    pub explain: Option<Value>,
 }
 
 impl Row {
@@ -73,12 +38,13 @@ impl Row {
         Self {
             solution,
             field,
-            verdict: Verdict::Broken,
+            verdict: Verdict::NotRun,
             ms: 0,
             total_score: None,
             messages: vec![("error".to_owned(), why)],
             more: 0,
             printed: Vec::new(),
+            explain: None,
         }
     }
 
@@ -97,8 +63,8 @@ impl Row {
     }
 
     /// The last whole number in what the rules said, for tasks that tell points in words.
-    fn last_number(&self) -> Option<i64> {
-        if self.verdict == Verdict::Broken {
+    pub fn last_number(&self) -> Option<i64> {
+        if !self.verdict.is_judged() {
             return None;
         }
         // Seconds of the run are no points: neither the time of success nor the limit that a run met.
@@ -117,6 +83,26 @@ impl Row {
         numbers.next()
     }
 
+    /// The points that its rules have said in words, the last time that they did.
+    pub fn points_in_words(&self) -> Option<f64> {
+        let said = self.messages.iter().rev();
+        let mut said = said.filter(|(level, _)| level != words::WARNING);
+        said.find_map(|(_, text)| points::told(text))
+            .filter(|_| self.verdict.is_judged())
+    }
+
+    /// Its points: what the rules have counted, or what they have said in words.
+    pub fn points(&self) -> Option<f64> {
+        self.score().or_else(|| self.points_in_words())
+    }
+
+    /// The first error in what was said, or else nothing.
+    pub fn why(&self) -> &str {
+        let mut messages = self.messages.iter();
+        let first = messages.find(|(level, _)| level == "error");
+        first.map_or("", |(_, text)| text)
+    }
+
     /// As one line of JSON, without its end.
     pub fn write(&self) -> String {
         let mut line = String::from("{\"solution\":");
@@ -127,10 +113,14 @@ impl Row {
             None => line.push_str("null"),
         }
         line.push_str(&format!(
-            ",\"verdict\":\"{}\",\"ms\":{}",
+            ",\"verdict\":\"{}\",\"failure\":",
             self.verdict.name(),
-            self.ms
         ));
+        match self.verdict.failure() {
+            Some(failure) => json::text(&mut line, failure),
+            None => line.push_str("null"),
+        }
+        line.push_str(&format!(",\"ms\":{}", self.ms));
         line.push_str(",\"total_score\":");
         json::number(&mut line, self.total_score.unwrap_or(f64::NAN));
         line.push_str(",\"last_number\":");
@@ -138,6 +128,8 @@ impl Row {
             Some(number) => line.push_str(&number.to_string()),
             None => line.push_str("null"),
         }
+        line.push_str(",\"points\":");
+        json::number(&mut line, self.points().unwrap_or(f64::NAN));
         line.push_str(",\"messages\":[");
         for (index, (level, text)) in self.messages.iter().enumerate() {
             line.push_str(if index == 0 { "" } else { "," });
@@ -154,7 +146,12 @@ impl Row {
             line.push_str(if index == 0 { "" } else { "," });
             json::text(&mut line, text);
         }
-        line.push_str("]}");
+        line.push(']');
+        if let Some(explain) = &self.explain {
+            line.push_str(",\"explain\":");
+            json::write(&mut line, explain);
+        }
+        line.push('}');
         line
     }
 
@@ -177,12 +174,13 @@ impl Row {
         Some(Self {
             solution: text("solution")?.to_owned(),
             field: text("field").map(str::to_owned),
-            verdict: Verdict::named(text("verdict")?)?,
+            verdict: Verdict::named(text("verdict")?, text("failure"))?,
             ms: number("ms")? as u32,
             total_score: number("total_score"),
             messages: messages.collect::<Option<_>>()?,
             more: number("more")? as usize,
             printed: printed.collect::<Option<_>>()?,
+            explain: value.get("explain").cloned(),
         })
     }
 
@@ -203,44 +201,46 @@ impl Row {
         }
         let solution = harmless(&self.solution);
         let verdict = words::verdict(self.verdict, locale);
-        let at = match self.verdict {
-            Verdict::Broken => String::new(),
-            Verdict::Accomplished | Verdict::Ended | Verdict::Failed => {
-                format!(", {}", words::seconds(self.ms, locale))
-            }
+        let at = match self.verdict.is_judged() {
+            false => String::new(),
+            true => format!(", {}", words::seconds(self.ms, locale)),
         };
         let score = self.score().map_or_else(String::new, |score| {
             format!(", {}: {score}", words::heading(locale)[4])
         });
+        lines.extend(self.explanation());
         lines.push(format!("{solution}: {verdict}{at}{score}"));
         lines
     }
 
-    fn score(&self) -> Option<f64> {
+    /// Why it ended so, in lines for a person.
+    pub fn explanation(&self) -> impl Iterator<Item = String> {
+        self.explain.iter().flat_map(explain::lines).map(|line| {
+            // What stands at its beginning is the place of a condition in others.
+            let text = line.trim_start();
+            format!("{}{}", &line[..line.len() - text.len()], harmless(text))
+        })
+    }
+
+    /// What the rules have counted, if that is something.
+    pub fn score(&self) -> Option<f64> {
         self.total_score.filter(|score| *score != 0.0)
     }
 
     /// The cells of its row in the table.
     pub fn cells(&self, locale: Locale) -> [String; 6] {
         let field = self.field.as_deref();
-        let first = self
-            .messages
-            .iter()
-            .find(|(level, _)| level == "error")
-            .map_or("", |(_, text)| text);
-        let is_broken = self.verdict == Verdict::Broken;
         [
             harmless(&self.solution),
             field.map_or_else(|| words::own(locale).to_owned(), harmless),
             words::verdict(self.verdict, locale).to_owned(),
-            if is_broken {
-                "-".to_owned()
-            } else {
-                words::seconds(self.ms, locale)
+            match self.verdict.is_judged() {
+                false => "-".to_owned(),
+                true => words::seconds(self.ms, locale),
             },
-            self.score()
-                .map_or_else(|| "-".to_owned(), |score| score.to_string()),
-            harmless(first),
+            self.points()
+                .map_or_else(|| "-".to_owned(), |points| points.to_string()),
+            harmless(self.why()),
         ]
     }
 }
@@ -261,13 +261,7 @@ impl Widths {
             widths[0] = widths[0].max(count(solution));
             widths[1] = widths[1].max(field.map_or(count(words::own(locale)), count));
         }
-        let all = [
-            Verdict::Accomplished,
-            Verdict::Ended,
-            Verdict::Failed,
-            Verdict::Broken,
-        ];
-        for verdict in all {
+        for verdict in Verdict::ALL {
             widths[2] = widths[2].max(count(words::verdict(verdict, locale)));
         }
         Self(widths)
@@ -293,7 +287,7 @@ mod tests {
         Row {
             solution: "a\nb.qrs".into(),
             field: Some("f.xml".into()),
-            verdict: Verdict::Failed,
+            verdict: Verdict::Wrong,
             ms: 19_830,
             total_score: Some(2.5),
             messages: vec![
@@ -303,6 +297,7 @@ mod tests {
             ],
             more: 3,
             printed: vec!["1 \"a\"\n2".into()],
+            explain: Some(serde_json::json!({"text": ["why: 1 < 2"], "ms": 3})),
         }
     }
 
@@ -311,7 +306,7 @@ mod tests {
         let line = row().write();
         assert!(!line.contains('\n'), "{line}");
         assert!(
-            line.contains(r#""ms":19830,"total_score":2.5,"last_number":20,"#),
+            line.contains(r#""verdict":"failed","failure":"wrong","ms":19830,"total_score":2.5,"last_number":20,"points":2.5,"#),
             "{line}"
         );
         assert_eq!(Row::read(&line), Some(row()));

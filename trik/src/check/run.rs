@@ -4,9 +4,11 @@
 //! in `sim`.
 
 use super::args::CheckArgs;
+use super::explain;
 use super::jobs::{Job, shown};
-use super::row::{Row, Verdict};
+use super::row::Row;
 use super::script::{self, Given, Language};
+use super::verdict::Verdict;
 use super::words;
 use crate::diagrams::save::{Unreadable, open};
 use crate::error::Error;
@@ -45,24 +47,29 @@ pub(super) fn run(job: &Job, args: &CheckArgs, report_phase: &mut dyn FnMut(Phas
     let mut row = Row {
         solution: shown(job.judged(args)),
         field: job.rules(args).map(shown),
-        verdict: Verdict::Broken,
+        verdict: Verdict::NotRun,
         ms: 0,
         total_score: None,
         messages: Vec::new(),
         more: 0,
         printed: Vec::new(),
+        explain: None,
     };
     match judged(job, args, report_phase) {
         Ok((task, outcome, strange)) => {
             let some = strange.iter().take(limits::ROW_WARNINGS_MAX);
             some.for_each(|line| row.say(words::WARNING, line));
             fill(&outcome, &mut row);
+            if args.explain {
+                row.explain = Some(explain::explanation(&outcome, args.language));
+            }
             if let Err(lines) = write(job, args, &task, &outcome) {
-                row.verdict = Verdict::Broken;
+                row.verdict = Verdict::NotRun;
                 lines.iter().for_each(|line| row.say("error", line));
             }
         }
         Err(refused) => {
+            row.verdict = refused.verdict;
             let lines = &refused.lines;
             lines.iter().for_each(|line| row.say("error", line));
             let said = refused.bare.into_iter();
@@ -84,12 +91,7 @@ pub(super) fn report(job: &Job, args: &CheckArgs, row: &mut Row, said: &[(String
 
 /// What came out, as a row.
 fn fill(outcome: &Outcome, row: &mut Row) {
-    row.verdict = match outcome.verdict {
-        judge::Verdict::Accomplished => Verdict::Accomplished,
-        judge::Verdict::Ended => Verdict::Ended,
-        judge::Verdict::Failed => Verdict::Failed,
-        judge::Verdict::Unknown => Verdict::Broken,
-    };
+    row.verdict = Verdict::of(outcome);
     row.ms = outcome.ms;
     row.total_score = outcome.total_score;
     row.printed.clone_from(&outcome.printed);
@@ -109,12 +111,17 @@ type Lines = Vec<String>;
 struct Refused {
     lines: Lines,
     bare: Lines,
+    verdict: Verdict,
 }
 
 impl From<Lines> for Refused {
     fn from(lines: Lines) -> Self {
         let bare = lines.clone();
-        Self { lines, bare }
+        Self {
+            lines,
+            bare,
+            verdict: Verdict::NotRun,
+        }
     }
 }
 
@@ -128,6 +135,15 @@ impl Refused {
         Self {
             lines: lines(path, problems, locale),
             bare: bare.collect(),
+            verdict: Verdict::NotRun,
+        }
+    }
+
+    /// The same where the solution is to blame.
+    fn broken(lines: Lines) -> Self {
+        Self {
+            verdict: Verdict::Structure,
+            ..lines.into()
         }
     }
 }
@@ -177,7 +193,7 @@ fn judged(
     let refused = |problems: Vec<Problem>| Refused::of(place, &problems, args.language);
     let (mut task, strange) = task.map_err(refused)?;
     let mut strange = lines(place, &strange, args.language);
-    if let Some(given) = &args.task {
+    if let Some(given) = job.given.as_ref().or(args.task.as_ref()) {
         let changed = hold(&mut task, given, args)?;
         strange.extend(
             changed
@@ -207,7 +223,9 @@ fn judged(
 
 /// Puts what a given task locks into the world of a solution.
 fn hold(task: &mut Task, given: &Path, args: &CheckArgs) -> Result<Lines, Lines> {
-    let project = Solution::read(given, args)?.project;
+    let project = Solution::read(given, args)
+        .map_err(|why| why.lines)?
+        .project;
     let Some(world) = &project.world else {
         return Err(vec![format!("{}: there is no world in it", shown(given))]);
     };
@@ -247,6 +265,7 @@ fn settings(args: &CheckArgs) -> Result<Settings, Error> {
         deeds,
         is_marking: args.marker_traces,
         is_showing: args.display.is_some(),
+        is_explaining: args.explain,
         is_recording: [&args.trajectory, &args.svg, &args.html]
             .into_iter()
             .any(Option::is_some),
@@ -263,13 +282,14 @@ struct Solution {
 }
 
 impl Solution {
-    fn read(path: &Path, args: &CheckArgs) -> Result<Self, Lines> {
+    fn read(path: &Path, args: &CheckArgs) -> Result<Self, Refused> {
         if path.extension().is_some_and(|ending| ending == "xml") && path.is_file() {
             return Err(vec![format!(
                 "{}: {}",
                 shown(path),
                 words::is_world(args.language)
-            )]);
+            )]
+            .into());
         }
         let script = args.script.as_deref();
         let own = Language::of(path);
@@ -277,8 +297,10 @@ impl Solution {
             Some(_) => (Project::default(), script.or(Some(path))),
             None => {
                 let opened = open(path).map_err(|why| match why {
-                    Unreadable::File(why) => vec![format!("{}: {why}", shown(path))],
-                    Unreadable::Save(problems) => lines(path, &problems, args.language),
+                    Unreadable::File(why) => vec![format!("{}: {why}", shown(path))].into(),
+                    Unreadable::Save(problems) => {
+                        Refused::broken(lines(path, &problems, args.language))
+                    }
                 })?;
                 (opened.project, script)
             }
@@ -297,7 +319,7 @@ impl Solution {
             }
         };
         let script = match script {
-            None if args.is_embedded => Some(embedded(&project, path)?),
+            None if args.is_embedded => Some(embedded(&project, path).map_err(Refused::broken)?),
             script => script,
         };
         let file = args.script.as_deref().unwrap_or(path).to_owned();
@@ -309,23 +331,28 @@ impl Solution {
     }
 
     /// The program, ready for its first step; the task gets the sensors that it needs.
-    fn program(self, task: &mut Task, args: &CheckArgs) -> Result<Box<dyn Program>, Lines> {
+    fn program(self, task: &mut Task, args: &CheckArgs) -> Result<Box<dyn Program>, Refused> {
         if let Some((language, text)) = &self.script {
             let given = Given {
                 file: &self.file,
                 seed: args.seed,
                 wall_seconds: args.wall_limit,
             };
-            return script::open(*language, text, given).map_err(line);
+            return script::open(*language, text, given).map_err(|why| line(why).into());
         }
         let world = World::Simulated {
             mailbox: false,
             gamepad: args.gamepad.is_some(),
         };
         let lowered = lower(&self.project, world);
-        let lowered = lowered.map_err(|problem| vec![problem.in_locale(args.language)])?;
+        let lowered =
+            lowered.map_err(|problem| Refused::broken(vec![problem.in_locale(args.language)]))?;
         task.plug_in(&self.project, &lowered.program);
-        Ok(Box::new(Diagram::new(Rc::new(lowered.program))))
+        let diagram = Diagram::new(Rc::new(lowered.program));
+        Ok(Box::new(match args.explain {
+            true => diagram.remembering(),
+            false => diagram,
+        }))
     }
 }
 
@@ -396,7 +423,7 @@ fn write(job: &Job, args: &CheckArgs, task: &Task, outcome: &Outcome) -> Result<
         let caption = Caption {
             title: &row.solution,
             verdict: &verdict,
-            is_good: row.verdict.code() == 0,
+            is_good: row.verdict.is_good(),
             locale: args.language,
         };
         let (poses, entries) = (&outcome.trajectory, &outcome.entries);

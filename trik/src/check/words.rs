@@ -1,14 +1,22 @@
 //! What `trik check` says itself, in English and Russian.
 
-use super::row::Verdict;
+use super::verdict::{Counts, Verdict};
 use lang_text::problem::{Locale, Words};
 
-fn choose(locale: Locale, english: &'static str, russian: &'static str) -> &'static str {
+/// A text in a language.
+pub(super) fn choose(locale: Locale, english: &'static str, russian: &'static str) -> &'static str {
     match locale {
         Locale::English => english,
         Locale::Russian => russian,
     }
 }
+
+/// How Russian words begin that mean points.
+pub(super) const POINTS_RUSSIAN: [&str; 2] = ["балл", "очк"];
+/// Words that stand between a word for points and their number.
+pub(super) const BETWEEN_POINTS: [&str; 5] = ["is", "are", "total", "всего", "итого"];
+/// Words after which the highest possible number of points comes.
+pub(super) const OUT_OF: [&str; 3] = ["of", "из", "out"];
 
 /// How messages begin that tell seconds and not points: those of TRIK Studio for a success, those of the judge for limits.
 pub(super) const TIMES: [&str; 6] = [
@@ -25,8 +33,11 @@ pub(super) fn verdict(verdict: Verdict, locale: Locale) -> &'static str {
     match verdict {
         Verdict::Accomplished => choose(locale, "accomplished", "выполнено"),
         Verdict::Ended => choose(locale, "ended (no rules)", "завершено (без правил)"),
-        Verdict::Failed => choose(locale, "not accomplished", "не выполнено"),
-        Verdict::Broken => choose(locale, "could not be run", "не запущено"),
+        Verdict::Wrong => choose(locale, "not accomplished", "не выполнено"),
+        Verdict::ModelTime => choose(locale, "out of time", "время вышло"),
+        Verdict::Program => choose(locale, "program error", "ошибка программы"),
+        Verdict::Structure => choose(locale, "broken solution", "решение испорчено"),
+        Verdict::NotRun => choose(locale, "could not be run", "не запущено"),
     }
 }
 
@@ -70,30 +81,25 @@ pub(super) fn more(count: usize, locale: Locale) -> String {
     }
 }
 
-/// The last line of a table.
-pub(super) fn summary(counts: [usize; 4], locale: Locale) -> String {
-    let [accomplished, ended, failed, broken] = counts;
+/// The last line of a table: how many runs ended in which way. Kinds that are rare are told when there are any.
+pub(super) fn summary(counts: Counts, locale: Locale) -> String {
     let all: usize = counts.iter().sum();
+    let is_always = |verdict: Verdict| match verdict {
+        Verdict::Accomplished | Verdict::Wrong | Verdict::NotRun => true,
+        Verdict::Ended | Verdict::ModelTime | Verdict::Program | Verdict::Structure => false,
+    };
+    let kinds = Verdict::ALL.into_iter().zip(counts);
+    let kinds = kinds.filter(|(verdict, count)| *count > 0 || is_always(*verdict));
+    let kinds: Vec<String> = kinds
+        .map(|(verdict, count)| format!("{count} {}", self::verdict(verdict, locale)))
+        .collect();
+    let kinds = kinds.join(", ");
     match locale {
         Locale::English => {
             let s = if all == 1 { "" } else { "s" };
-            let ended = match ended {
-                0 => String::new(),
-                _ => format!(", {ended} ended without rules"),
-            };
-            format!(
-                "{all} run{s}: {accomplished} accomplished{ended}, {failed} not accomplished, {broken} could not be run"
-            )
+            format!("{all} run{s}: {kinds}")
         }
-        Locale::Russian => {
-            let ended = match ended {
-                0 => String::new(),
-                _ => format!(", завершено без правил: {ended}"),
-            };
-            format!(
-                "запусков: {all}; выполнено: {accomplished}{ended}, не выполнено: {failed}, не запущено: {broken}"
-            )
-        }
+        Locale::Russian => format!("запусков: {all}; {kinds}"),
     }
 }
 
@@ -131,5 +137,151 @@ pub(super) fn progress(done: usize, all: usize, locale: Locale) -> String {
     match locale {
         Locale::English => format!("{done} of {all}"),
         Locale::Russian => format!("{done} из {all}"),
+    }
+}
+
+/// Titles of the table of a class.
+pub(super) struct Titles {
+    pub grades: &'static str,
+    pub runs: &'static str,
+    pub pupil: &'static str,
+    pub task: &'static str,
+    pub result: &'static str,
+    pub points: &'static str,
+    pub weight: &'static str,
+    pub sum: &'static str,
+    pub passed: &'static str,
+}
+
+/// See [`Titles`].
+pub(super) fn table(locale: Locale) -> Titles {
+    match locale {
+        Locale::English => Titles {
+            grades: "Grades",
+            runs: "Runs",
+            pupil: "pupil",
+            task: "task",
+            result: "result",
+            points: "points",
+            weight: "weight",
+            sum: "sum",
+            passed: "passed",
+        },
+        Locale::Russian => Titles {
+            grades: "Оценки",
+            runs: "Запуски",
+            pupil: "ученик",
+            task: "задание",
+            result: "результат",
+            points: "баллы",
+            weight: "вес",
+            sum: "сумма",
+            passed: "зачтено",
+        },
+    }
+}
+
+/// The only task of a class, if nothing says what it is called.
+pub(super) fn task(locale: Locale) -> &'static str {
+    table(locale).task
+}
+
+/// There is no solution.
+pub(super) fn missing(locale: Locale) -> &'static str {
+    choose(locale, "missing", "нет решения")
+}
+
+/// Whether somebody has passed.
+pub(super) fn yes_or_no(yes: bool, locale: Locale) -> &'static str {
+    match yes {
+        true => choose(locale, "yes", "да"),
+        false => choose(locale, "no", "нет"),
+    }
+}
+
+/// The code of a language in a page.
+pub(super) fn code(locale: Locale) -> &'static str {
+    choose(locale, "en", "ru")
+}
+
+/// A table of a class is written: pupils, columns, and how many solutions are missing.
+pub(super) fn graded(path: &str, counts: [usize; 3], locale: Locale) -> String {
+    let [pupils, columns, missing] = counts;
+    match locale {
+        Locale::English => {
+            format!("{path}: pupils {pupils}, columns {columns}, missing solutions {missing}")
+        }
+        Locale::Russian => {
+            format!("{path}: учеников {pupils}, столбцов {columns}, нет решений {missing}")
+        }
+    }
+}
+
+/// A file of a class of which nothing says which task it is for.
+pub(super) fn unmatched(path: &str, locale: Locale) -> String {
+    match locale {
+        Locale::English => format!(
+            "trik: {path} is left out: its name and its folders name no task; call the file as the task, in a folder of the pupil"
+        ),
+        Locale::Russian => format!(
+            "trik: {path} пропущен: ни имя, ни папки не называют задание; назовите файл как задание, в папке ученика"
+        ),
+    }
+}
+
+/// Somebody has a solution and is not in the list.
+pub(super) fn unlisted(name: &str, locale: Locale) -> String {
+    let name = crate::terminal::harmless(name);
+    match locale {
+        Locale::English => {
+            format!("trik: '{name}' is not in the list of --pupils; the row is added")
+        }
+        Locale::Russian => format!("trik: '{name}' нет в списке --pupils; строка добавлена"),
+    }
+}
+
+/// A task has fields and a save; the save is not used.
+pub(super) fn save_left_out(path: &str, locale: Locale) -> String {
+    match locale {
+        Locale::English => {
+            format!("trik: {path} is left out: fields of this task are there, and they are used")
+        }
+        Locale::Russian => format!("trik: {path} пропущен: у задания есть поля, берутся они"),
+    }
+}
+
+/// A class without pupils or without tasks.
+pub(super) fn nobody(locale: Locale) -> &'static str {
+    choose(
+        locale,
+        "there are no solutions here and no list of --pupils: there is nothing for a table",
+        "здесь нет ни решений, ни списка --pupils: таблица была бы пустой",
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::check::points::told;
+
+    #[test]
+    fn points_are_told_in_russian_too() {
+        for (message, points) in [
+            (
+                "Успешная остановка в зеленой зоне. Получено баллов: 20",
+                Some(20.0),
+            ),
+            (
+                "Робот остановился вне зоны финиша. Задание не выполнено. Набрано баллов: 0",
+                Some(0.0),
+            ),
+            ("12,5 балла", Some(12.5)),
+            ("20 баллов из 100", Some(20.0)),
+            ("баллов 20 из 100", Some(20.0)),
+            ("Итого баллов: всего 7", Some(7.0)),
+            ("10 очков за финиш 2", Some(10.0)),
+            ("Точка 7", None),
+        ] {
+            assert_eq!(told(message), points, "{message}");
+        }
     }
 }

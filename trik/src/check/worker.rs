@@ -100,18 +100,20 @@ fn guarded(job: &Job, args: &CheckArgs, report_phase: &mut dyn FnMut(Phase)) -> 
 }
 
 fn next(input: &mut impl BufRead) -> io::Result<Option<Job>> {
-    let mut parts: [Vec<u8>; 4] = Default::default();
+    let mut parts: [Vec<u8>; 5] = Default::default();
     for part in &mut parts {
         input.by_ref().take(JOB_BYTES_MAX).read_until(0, part)?;
         if part.pop() != Some(0) {
             return Ok(None);
         }
     }
-    let [solution, field, log, name] = parts.map(|part| PathBuf::from(OsString::from_vec(part)));
+    let [solution, field, log, given, name] =
+        parts.map(|part| PathBuf::from(OsString::from_vec(part)));
     Ok(Some(Job {
         solution,
         field: Some(field).filter(|field| !field.as_os_str().is_empty()),
         log: Some(log).filter(|log| !log.as_os_str().is_empty()),
+        given: Some(given).filter(|given| !given.as_os_str().is_empty()),
         name,
     }))
 }

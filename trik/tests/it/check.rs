@@ -2,6 +2,7 @@
 //!
 //! Saves and worlds are made here.
 
+mod class;
 mod limits;
 
 use crate::diagrams::root;
@@ -102,7 +103,9 @@ fn folder() -> Board {
         hands.expect("an example of what a person does"),
     );
     board.file("fields/far.xml", world(300));
-    board.file("fields/near.xml", near);
+    board.file("fields/near.xml", &near);
+    class::school(&board, &near);
+    class::checkers(&board);
     board
 }
 
@@ -116,7 +119,9 @@ fn what_documents_say_of_checking_is_what_really_happens() {
     for document in [
         "README.md",
         "docs/teacher/checking.md",
+        "docs/teacher/class.md",
         "docs/teacher/grading.md",
+        "docs/teacher/platforms.md",
     ] {
         let text = fs::read_to_string(root().join(document)).expect(document);
         let (steps, wrong) = transcripts(&folder(), document, &text, "sh check");
@@ -145,7 +150,7 @@ const CASES: &[(&[&str], i32, &str)] = &[
         0,
         "nowhere.qrs: ended (no rules), ",
     ),
-    (&["check", "class/damaged.qrs"], 2, "could not be run"),
+    (&["check", "class/damaged.qrs"], 2, "broken solution"),
     (
         &["check", "nothing.qrs"],
         2,
@@ -175,12 +180,12 @@ const CASES: &[(&[&str], i32, &str)] = &[
     (
         &["check", "class"],
         2,
-        "3 runs: 1 accomplished, 1 not accomplished, 1 could not be run",
+        "3 runs: 1 accomplished, 1 not accomplished, 1 broken solution, 0 could not be run",
     ),
     (
         &["check", "endless.qrs"],
         1,
-        "endless.qrs: not accomplished, 10.0",
+        "endless.qrs: out of time, 10.0",
     ),
     (
         &["check", "endless.qrs", "--time-limit", "2"],
@@ -328,7 +333,9 @@ fn reports_trajectories_pictures_and_pages_are_written_for_each_run() {
     assert!(read("p.svg").contains("finish</text>") && read("p.html").contains("At the finish"));
     let line = read("all.jsonl");
     assert!(
-        line.starts_with(r#"{"solution":"line.qrs","field":null,"verdict":"accomplished","ms":"#),
+        line.starts_with(
+            r#"{"solution":"line.qrs","field":null,"verdict":"accomplished","failure":null,"ms":"#
+        ),
         "{line}"
     );
     assert!(line.contains(r#""total_score":5,"#), "{line}");
