@@ -129,6 +129,12 @@ fn class(args: &CheckArgs) -> Result<u8, Refusal> {
     });
     for (index, output) in outputs.iter().enumerate() {
         output.refuse_present()?;
+        let folder = output.path.and_then(Path::parent);
+        let folder = folder.filter(|folder| !folder.as_os_str().is_empty());
+        if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+            let why = words::no_folder(&named(folder), args.language);
+            return Err(Refusal::new(why));
+        }
         let others = outputs[..index].iter().filter_map(|other| other.path);
         let others: Vec<&Path> = others.chain(args.results.as_deref()).collect();
         output.spare(&others)?;

@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::limits;
 use crate::terminal::named;
 use std::collections::{BTreeMap, BTreeSet, HashSet};
-use std::ffi::OsStr;
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
 /// A class, before it is judged.
@@ -85,7 +85,9 @@ pub(super) fn plan(args: &CheckArgs) -> Result<Plan, Error> {
         notes,
         ..Plan::default()
     };
-    plan.set_pupils(args, owners.iter().flatten().map(|(pupil, _)| pupil))?;
+    let empty = empty_folders(args, &found, &tasks)?;
+    let owned = owners.iter().flatten().map(|(pupil, _)| pupil);
+    plan.set_pupils(args, owned.chain(&empty))?;
     let mut firsts = Vec::new();
     for task in &tasks {
         firsts.push(plan.columns.len());
@@ -296,6 +298,40 @@ fn found(args: &CheckArgs, tasks: Option<&[Task]>) -> Result<Vec<Found>, Error> 
         }
     }
     Ok(all)
+}
+
+/// Folders of pupils in which there is no solution: they have handed in nothing, and have a row all the same.
+fn empty_folders(args: &CheckArgs, found: &[Found], tasks: &[Task]) -> Result<Vec<String>, Error> {
+    let mut folders = Vec::new();
+    match &args.paths[..] {
+        [class] if class.is_dir() => {
+            let failed = |error| Error::system(format!("{} cannot be read", named(class)), error);
+            for entry in std::fs::read_dir(class).map_err(failed)? {
+                let entry = entry.map_err(failed)?;
+                if entry.file_type().map_err(failed)?.is_dir() {
+                    folders.push(entry.file_name());
+                }
+            }
+        }
+        paths => {
+            let pupils = paths.iter().filter(|path| path.is_dir());
+            folders.extend(
+                pupils
+                    .filter_map(|path| path.file_name())
+                    .map(OsString::from),
+            );
+        }
+    }
+    let firsts: HashSet<&String> = found.iter().filter_map(|one| one.parts.first()).collect();
+    let names = folders
+        .iter()
+        .map(|name| name.to_string_lossy().into_owned());
+    let names = names.filter(|name| !name.starts_with('.') && !firsts.contains(name));
+    let is_task = |name: &String| {
+        let name = name.to_lowercase();
+        tasks.iter().any(|task| task.name.to_lowercase() == name)
+    };
+    Ok(names.filter(|name| !is_task(name)).collect())
 }
 
 type Owner = Option<(String, usize)>;

@@ -250,6 +250,14 @@ pub(super) fn save_left_out(path: &str, locale: Locale) -> String {
     }
 }
 
+/// There is no directory for the table of a class.
+pub(super) fn no_folder(path: &str, locale: Locale) -> String {
+    match locale {
+        Locale::English => format!("{path}: there is no such directory for the table"),
+        Locale::Russian => format!("{path}: нет такой папки для таблицы"),
+    }
+}
+
 /// A class without pupils or without tasks.
 pub(super) fn nobody(locale: Locale) -> &'static str {
     choose(

@@ -155,6 +155,10 @@ const MISTAKES: &[(&[&str], &str)] = &[
         &["--grades", "c.xlsx"],
         "its name ends with .csv, .ods or .html",
     ),
+    (
+        &["--grades", "none/d.csv"],
+        "none: there is no such directory",
+    ),
     (&["--tasks", "school/tasks"], "--grades"),
     (&["--pass-mark", "3"], "--grades"),
     (
@@ -194,13 +198,15 @@ const MISTAKES: &[(&[&str], &str)] = &[
 #[test]
 fn a_class_without_tasks_is_understood_from_its_files_and_mistakes_are_refused() {
     let board = folder();
+    // Somebody has handed in an empty folder.
+    fs::create_dir(board.path("class/dora")).expect("a folder");
     let done = trik(&board, &["check", "class", "--grades", "c.csv"]);
     assert_eq!(done.code(), 2, "{}{}", done.stdout, done.stderr);
     let csv = fs::read_to_string(board.path("c.csv")).expect("a table");
     assert_eq!(
         csv,
         "\u{feff}pupil,task,task: result,sum\r\nanna,5,accomplished,5\r\nboris,0,not accomplished,0\r\n\
-         damaged,,broken solution,0\r\n"
+         damaged,,broken solution,0\r\ndora,,missing,0\r\n"
     );
     let both = ["check", "school/pupils/anna", "school/pupils/boris"];
     let words = [
