@@ -10,6 +10,7 @@ mod attributes;
 mod hold;
 mod items;
 mod read;
+mod table;
 mod visit;
 mod words;
 mod write;
@@ -19,6 +20,7 @@ pub use items::{
     SensorKind, Settings, Shape, Solid, SolidKind, Start, Stroke, Trace, Unit, Wall,
 };
 pub use read::Opened;
+pub use table::{KINDS, Kind};
 
 use std::collections::BTreeMap;
 

@@ -7,6 +7,7 @@ use lang_diagram::ports::{Port, Sort};
 
 use crate::arena::{Arena, Setup};
 use crate::field::Field;
+use crate::judge::{Texts, lint};
 
 /// Ticks that a strange world is driven through.
 const TICKS: usize = 20;
@@ -17,6 +18,10 @@ pub fn field(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else {
         return;
     };
+    let _ = lint(Texts {
+        world: text,
+        ..Texts::default()
+    });
     let Ok(opened) = Field::read(text) else {
         return;
     };
@@ -55,7 +60,9 @@ mod tests {
     const SEED: &str = "<root><world><walls><wall id=\"w\" begin=\"10:0\" end=\"20:1e3\" stroke-width=\"2\"/></walls><balls><ball id=\"b\" \
         begin=\"1:2\" rotation=\"30\" diameter=\"9\"/></balls><colorFields><stylus><stylusLine begin=\"1:2\" end=\"3:4\"/></stylus></colorFields>\
         <regions><region id=\"r\" type=\"ellipse\" x=\"1\" y=\"2\" width=\"3\" height=\"4\"/></regions></world><settings sizeUnit=\"cm\"/>\
-        <robots><robot id=\"trikKitRobot\" position=\"1:2\" direction=\"-90\"><sensors><sensor port=\"A1###input######sensorA1\" \
+        <constraints><timelimit value=\"90\"/><event id=\"a\" settedUpInitially=\"true\"><condition><inside objectId=\"robot1\" \
+        regionId=\"r\"/></condition><triggers><setState object=\"w\" property=\"x\" _1=\"${robot1.A1.value}\"/><success/></triggers></event>\
+        </constraints><robots><robot id=\"trikKitRobot\" position=\"1:2\" direction=\"-90\"><sensors><sensor port=\"A1###input######sensorA1\" \
         type=\"x::TrikInfraredSensor\" position=\"75:25\" direction=\"9\"/></sensors></robot></robots></root>";
 
     #[test]

@@ -5,6 +5,7 @@
 
 pub mod hands;
 pub mod json;
+mod lint;
 pub mod picture;
 pub mod program;
 mod recorder;
@@ -16,6 +17,7 @@ pub mod task;
 pub mod trajectory;
 mod words;
 
+pub use lint::lint;
 pub use picture::{Caption, page, svg};
 pub use program::{Diagram, Program, Running};
 pub use replay::{judge_recorded, strange_in_record};

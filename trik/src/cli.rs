@@ -7,7 +7,7 @@ use crate::check::{self, original};
 use crate::dcml::{self, Dcml};
 use crate::output::standard;
 use crate::refusal::{Refusal, end};
-use crate::{diagrams, fault, remote, up};
+use crate::{diagrams, fault, remote, task, up};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -32,6 +32,8 @@ Examples:
   trik lint maze.qrs                 what is wrong with a diagram of TRIK Studio
   trik gen --lang python maze.qrs -o maze.py   the diagram as a program
   trik show maze.qrs --svg maze.svg  the diagram as a picture
+  trik lint maze.xml                 what is wrong with a world and its rules
+  trik new-task maze                 a world with rules, and solutions, to change
   trik check maze.qrs                does it solve its task?
   trik check class/ --field hard.xml --results all.jsonl   a class, in another world
   trik fault D1 unplug               pull the plug of the distance sensor D1
@@ -90,14 +92,22 @@ enum Command {
     /// Exit status: 0 shown; 1 it is not clear what the diagram does, there is no diagram with this name, or the picture
     /// could not be written; 2 the diagram cannot be read, or the command line was not understood.
     Show(diagrams::show::ShowArgs),
-    /// Find mistakes in diagrams of TRIK Studio, without running them.
+    /// Find mistakes in diagrams of TRIK Studio, and in worlds and their rules, without running them.
     ///
     /// A line for each problem: file, severity, diagram, block and its position on the sheet in px, property, line and column
-    /// in its text, what is wrong. The most severe come first. The last line counts them.
+    /// in its text, what is wrong. Of a world: file, severity, event of the rules, line and column, what is wrong, and what
+    /// was probably meant. The most severe come first. The last line counts them.
     ///
-    /// Exit status: 0 no errors, perhaps warnings and notes; 1 errors; 2 a diagram cannot be read, or the command line
+    /// Exit status: 0 no errors, perhaps warnings and notes; 1 errors; 2 a file cannot be read, or the command line
     /// was not understood.
     Lint(diagrams::lint::LintArgs),
+    /// Make a task that works, to be changed: a world with rules, a text for pupils, a solution, a wrong program.
+    ///
+    /// Prints the commands that judge it. The folder has world.xml, README.md, and both programs; the text says what to do
+    /// with them.
+    ///
+    /// Exit status: 0 made; 1 a file of it is there already or cannot be written; 2 the command line was not understood.
+    NewTask(task::NewTaskArgs),
     /// Run solutions of tasks in simulated time and judge them.
     ///
     /// A solution is a diagram of TRIK Studio in a file NAME.qrs, with a world in it and rules that say what the task is;
@@ -204,6 +214,7 @@ fn run(command: Command) -> Result<u8, Refusal> {
         Command::Gen(args) => diagrams::generate::run(&args),
         Command::Show(args) => diagrams::show::run(&args),
         Command::Lint(args) => diagrams::lint::run(&args),
+        Command::NewTask(args) => task::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Dcml { command } => dcml::run(&command),
         Command::Model { arguments } => Ok(original::model(arguments.into_iter())),

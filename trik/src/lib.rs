@@ -23,5 +23,6 @@ pub mod place;
 mod refusal;
 mod remote;
 pub mod script;
+mod task;
 mod terminal;
 mod up;

@@ -16,9 +16,9 @@ use crate::limits;
 use lang_text::problem::{Locale, Words};
 
 /// The variable that every set of rules has.
-const SCORE: &str = "total_score";
+pub(super) const SCORE: &str = "total_score";
 /// Events whose ids begin so are checked when the task is done, before that is told.
-const ON_SUCCESS: &str = "on_success";
+pub(super) const ON_SUCCESS: &str = "on_success";
 
 #[derive(Clone, Copy, Debug, Default)]
 struct State {
@@ -350,7 +350,7 @@ impl Run<'_> {
                 Some(other) => !self.states[other].is_alive,
                 None => true,
             },
-            Condition::Timer { ms, drops } => {
+            Condition::Timer { ms, drops, .. } => {
                 let passed = self.now_ms.saturating_sub(self.states[event].since_ms);
                 let over = i64::try_from(passed).unwrap_or(i64::MAX) >= i64::from(*ms);
                 if over && *drops {
@@ -394,7 +394,7 @@ impl Run<'_> {
                 let text = self.filled(message);
                 self.report(Level::Log, text, false);
             }
-            Trigger::SetVariable(name, operand) => {
+            Trigger::SetVariable(name, _, operand) => {
                 let value = self.context.value(operand);
                 match self.context.variables.get_mut(name) {
                     Some(old) => *old = value,

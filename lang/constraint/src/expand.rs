@@ -17,11 +17,12 @@ use super::former::FORMER;
 use super::library::LIBRARY;
 use super::words;
 use crate::limits;
+use lang_text::near::nearest;
 use lang_text::problem::{Place, Problem, Severity, Words, keep};
-use lang_text::xml::{self, Element, Node};
+use lang_text::xml::{self, Element, Node, Start};
 
 /// Tags of the language, in lower case: no template takes one away.
-const LANGUAGE: [&str; 48] = [
+pub(super) const LANGUAGE: [&str; 48] = [
     "abs",
     "bool",
     "boundingrect",
@@ -125,6 +126,7 @@ pub(super) fn expand(constraints: &Element<'_>, files: &[&str]) -> Result<Expand
         expander.declare_all(declared, |_| 1, false);
     }
     let mut expanded = Element::new(constraints.name.clone().into_owned());
+    expanded.start = constraints.start;
     if expander.problems.is_empty() {
         expanded.nodes = expander.nodes(constraints, 1, 0);
     }
@@ -205,6 +207,8 @@ struct Expander {
     chain: Vec<(String, String)>,
     /// Whether names without a prefix are templates.
     has_plain_names: bool,
+    /// Where the outermost use stands in the constraints: there everything stands that comes of it.
+    at: Start,
     tags: usize,
     bytes: usize,
 }
@@ -215,6 +219,7 @@ impl Expander {
             severity: Severity::Error,
             place: Place {
                 block: Some(block),
+                offset: Some(self.at.0).filter(|&at| at > 0),
                 ..Place::default()
             },
             words,
@@ -360,12 +365,16 @@ impl Expander {
             );
             return;
         }
+        if self.chain.is_empty() {
+            self.at = element.start;
+        }
         let Some(name) = self.used(element) else {
             let mut copy = Element::new(element.name.clone().into_owned());
             let attributes = element.attributes.iter();
             copy.attributes = attributes
                 .map(|(name, value)| (owned(name), owned(value)))
                 .collect();
+            copy.start = self.at;
             copy.nodes = self.nodes(element, line, depth + 1);
             into.push(Node::Element(copy));
             return;
@@ -396,8 +405,22 @@ impl Expander {
                 for words in &all {
                     self.fail(block.clone(), &element.name, line, words);
                 }
+                self.suggest(&name);
                 self.tell_chain(block);
             }
+        }
+    }
+
+    /// A template whose name is near to that of one that is not there.
+    fn suggest(&mut self, name: &str) {
+        if self.templates.contains_key(name) {
+            return;
+        }
+        let known = self.templates.keys().map(String::as_str);
+        if let Some(known) = nearest(name, known) {
+            let mut problem = Problem::warning(words::meant(name, known));
+            problem.place.offset = Some(self.at.0).filter(|&at| at > 0);
+            keep(&mut self.problems, problem);
         }
     }
 

@@ -19,6 +19,7 @@ mod former;
 pub mod fuzz;
 mod library;
 pub mod limits;
+mod lint;
 mod operand;
 mod read;
 mod report;
@@ -30,6 +31,7 @@ mod words;
 
 pub use check::Checker;
 pub use explain::{Explained, Explanation, Near, Seen, Standing, Unit};
+pub use lint::{Catalogue, lint};
 pub use read::{read, read_with_templates};
 pub use report::{Entry, Failure, Level, Verdict};
 pub use rules::{Kind, Rules};

@@ -15,8 +15,10 @@ use super::expand::{self, Expanded};
 use super::rules::{Condition, Event, EventIndex, Kind, Named, Rules, Trigger};
 use super::words;
 use crate::limits;
+use lang_text::limits::PROBLEMS_KEPT;
+use lang_text::near::{did_you_mean, nearest};
 use lang_text::problem::{Place, Problem, Severity, Words, keep};
-use lang_text::xml::{Element, Node};
+use lang_text::xml::{Element, Node, Start};
 
 /// Reads constraints; templates stand in an element `templates` in them, if anywhere.
 ///
@@ -79,6 +81,8 @@ struct Reader {
     problems: Vec<Problem>,
     /// Tags on the way to where we are.
     path: Vec<String>,
+    /// Where the tag stands in which we are.
+    at: Start,
     /// Events by their ids.
     ids: HashMap<String, EventIndex>,
     objects: Vec<Box<str>>,
@@ -114,6 +118,7 @@ impl Reader {
         events.resize_with(tops.len(), || None);
         for (top, element) in tops.iter().enumerate() {
             let id = element.attribute("id").unwrap_or_default();
+            self.at = element.start;
             self.path.push(if id.is_empty() {
                 format!("{} ({})", element.name, top + 1)
             } else {
@@ -122,6 +127,7 @@ impl Reader {
             events[places[top]] = self.top(element, top + 1);
             self.path.pop();
         }
+        self.at = element.start;
         self.stray_text(element);
         if self.time_limit_ms.is_none() && !self.has_error() {
             self.error(words::no_time_limit());
@@ -160,6 +166,8 @@ impl Reader {
                     kind: Kind::Init,
                     number,
                     id: "".into(),
+                    label: self.label(),
+                    at: element.start,
                     initially: true,
                     drops: true,
                     condition: Condition::True,
@@ -167,10 +175,15 @@ impl Reader {
                 })
             }
             _ => {
-                self.error(words::unknown_tag(&element.name));
+                self.unknown(&element.name, words::unknown_tag(&element.name));
                 None
             }
         }
+    }
+
+    /// The tag and id of the event in which we are.
+    fn label(&self) -> Box<str> {
+        self.path.first().map_or("", |label| label).into()
     }
 
     fn event(&mut self, element: &Element<'_>, number: usize) -> Option<Event> {
@@ -199,6 +212,8 @@ impl Reader {
             kind: Kind::Event,
             number,
             id: element.attribute("id").unwrap_or_default().into(),
+            label: self.label(),
+            at: element.start,
             initially,
             drops,
             condition,
@@ -218,7 +233,11 @@ impl Reader {
         }
         let condition = if once.eq_ignore_ascii_case("true") {
             // A timer of nothing drops the event at its first check, which may fire all the same.
-            let timer = Condition::Timer { ms: 0, drops: true };
+            let timer = Condition::Timer {
+                ms: 0,
+                drops: true,
+                at: element.start,
+            };
             Condition::All([timer, condition].into())
         } else {
             condition
@@ -227,6 +246,8 @@ impl Reader {
             kind: Kind::Constraint,
             number,
             id: element.attribute("id").unwrap_or_default().into(),
+            label: self.label(),
+            at: element.start,
             initially: true,
             drops: true,
             condition: Condition::Not(Box::new(condition)),
@@ -248,9 +269,15 @@ impl Reader {
             kind: Kind::TimeLimit,
             number,
             id: element.attribute("id").unwrap_or_default().into(),
+            label: self.label(),
+            at: element.start,
             initially: true,
             drops: true,
-            condition: Condition::Timer { ms, drops: true },
+            condition: Condition::Timer {
+                ms,
+                drops: true,
+                at: element.start,
+            },
             trigger: Trigger::TimeOver,
         })
     }
@@ -261,7 +288,11 @@ impl Reader {
         let id = self.filled(element, "id")?;
         let event = self.ids.get(id).copied();
         if event.is_none() {
-            self.warn(words::no_event(id));
+            // Looking for a near name takes time, and more problems are kept no longer.
+            let known = self.ids.keys().map(String::as_str);
+            let is_full = self.problems.len() >= PROBLEMS_KEPT;
+            let near = did_you_mean(id, known.take(if is_full { 0 } else { usize::MAX }));
+            self.warn(words::and(&words::no_event(id), &near));
         }
         Some(Named {
             id: id.into(),
@@ -276,6 +307,7 @@ impl Reader {
             severity,
             place: Place {
                 block: (!self.path.is_empty()).then(|| self.path.join(" > ")),
+                offset: Some(self.at.0).filter(|&at| at > 0),
                 ..Place::default()
             },
             words,
@@ -285,6 +317,14 @@ impl Reader {
 
     fn error(&mut self, words: Words) {
         self.problem(Severity::Error, words::in_rules(&words));
+    }
+
+    /// A tag that means nothing here, and what it may have been meant to be.
+    fn unknown(&mut self, tag: &str, words: Words) {
+        self.error(words);
+        if let Some(known) = nearest(&tag.to_ascii_lowercase(), expand::LANGUAGE) {
+            self.warn(words::meant(tag, known));
+        }
     }
 
     fn warn(&mut self, words: Words) {
@@ -314,7 +354,9 @@ impl Reader {
             return None;
         }
         self.path.push(element.name.to_string());
+        let outside = std::mem::replace(&mut self.at, element.start);
         let found = read(self);
+        self.at = outside;
         self.path.pop();
         found
     }

@@ -6,6 +6,7 @@
 use super::scene::ObjectPoint;
 use super::value::Value;
 use lang_text::problem::Problem;
+use lang_text::xml::Start;
 
 /// Constraints, ready to be checked as often as wanted.
 #[derive(Debug)]
@@ -70,6 +71,10 @@ pub(super) struct Event {
     pub number: usize,
     /// Its id, empty for none.
     pub id: Box<str>,
+    /// Its tag and id, for people.
+    pub label: Box<str>,
+    /// Where it stands.
+    pub at: Start,
     /// Whether it is there from the start.
     pub initially: bool,
     /// Whether it is gone when it has fired.
@@ -84,6 +89,8 @@ pub(super) struct Name {
     pub text: Box<str>,
     /// Where a checker keeps what it found.
     pub slot: usize,
+    /// Where it stands.
+    pub at: Start,
 }
 
 /// A property by the names on the way to it, the first of which are those of an object.
@@ -95,6 +102,8 @@ pub(super) struct Path {
     pub parts: Box<[Box<str>]>,
     /// Where a checker keeps what it found.
     pub slot: usize,
+    /// Where it stands.
+    pub at: Start,
 }
 
 /// An event that is named; it need not be there.
@@ -133,6 +142,7 @@ pub(super) enum Condition {
     Timer {
         ms: i32,
         drops: bool,
+        at: Start,
     },
     Using(Box<[Trigger]>, Box<Condition>),
 }
@@ -187,7 +197,8 @@ pub(super) enum Trigger {
     },
     Say(Message),
     Log(Message),
-    SetVariable(Box<str>, Operand),
+    /// With the place where it stands.
+    SetVariable(Box<str>, Start, Operand),
     SetUp(Named),
     Drop(Named),
     SetState {

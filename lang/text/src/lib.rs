@@ -8,6 +8,7 @@
 
 pub mod escape;
 pub mod limits;
+pub mod near;
 pub mod problem;
 pub mod svg;
 pub mod xml;

@@ -78,6 +78,23 @@ pub struct Place {
     pub property: Option<String>,
     /// The place in the text of the property or the file.
     pub position: Option<Position>,
+    /// Bytes of the file before that place, where whoever told it does not have the text: [`Problem::locate`].
+    pub offset: Option<u32>,
+}
+
+/// The place of a byte of a text.
+pub fn position(text: &str, at: usize) -> Position {
+    let at = (0..=at.min(text.len()))
+        .rev()
+        .find(|&at| text.is_char_boundary(at))
+        .unwrap_or(0);
+    let before = &text[..at];
+    let line = before.bytes().filter(|&byte| byte == b'\n').count() + 1;
+    let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
+    Position {
+        line: u32::try_from(line).unwrap_or(u32::MAX),
+        column: u32::try_from(column).unwrap_or(u32::MAX),
+    }
 }
 
 /// Something that is wrong.
@@ -106,6 +123,14 @@ impl Problem {
         Self {
             severity: Severity::Warning,
             ..Self::error(words)
+        }
+    }
+
+    /// Says line and column, of the text in which it was found.
+    pub fn locate(&mut self, text: &str) {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        if let (None, Some(at)) = (self.place.position, self.place.offset) {
+            self.place.position = Some(position(text, at as usize));
         }
     }
 

@@ -21,6 +21,18 @@ pub struct Element<'a> {
     pub attributes: Vec<(Cow<'a, str>, Cow<'a, str>)>,
     /// What stands between its beginning and its end.
     pub nodes: Vec<Node<'a>>,
+    /// Where it began in the text that it was read from.
+    pub start: Start,
+}
+
+/// Bytes of a text before a tag; 0 for a tag that was made. Two tags that differ in nothing else are the same tag.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Start(pub u32);
+
+impl PartialEq for Start {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 /// Something between the beginning and the end of a tag.
@@ -77,6 +89,7 @@ impl<'a> Element<'a> {
                     Node::Comment(text) => Node::Comment(owned(text)),
                 })
                 .collect(),
+            start: self.start,
         }
     }
 

@@ -19,6 +19,16 @@ pub(super) enum Mode<'p> {
     ReadAgain,
     /// From values to text.
     Write,
+    /// Only which attributes are asked for.
+    List(&'p mut Names),
+}
+
+/// Which attributes a kind of thing asks for.
+#[derive(Debug, Default)]
+pub(super) struct Names {
+    pub all: Vec<String>,
+    /// What is answered where it is asked whether an attribute is there.
+    pub is_there: bool,
 }
 
 /// The attributes of a tag, being read or written.
@@ -34,7 +44,7 @@ pub(super) struct Codec<'e, 'p> {
 impl Codec<'_, '_> {
     /// Whether values come from text.
     pub fn is_reading(&self) -> bool {
-        matches!(self.mode, Mode::Read(_) | Mode::ReadAgain)
+        matches!(self.mode, Mode::Read(_) | Mode::ReadAgain | Mode::List(_))
     }
 
     /// The same tag, to be read whatever is done with it; what is wrong has been told before.
@@ -42,6 +52,7 @@ impl Codec<'_, '_> {
         let mode = match &mut self.mode {
             Mode::Read(problems) => Mode::Read(problems),
             Mode::Write | Mode::ReadAgain => Mode::ReadAgain,
+            Mode::List(names) => Mode::List(names),
         };
         Codec {
             element: self.element,
@@ -57,6 +68,7 @@ impl Codec<'_, '_> {
             Mode::Read(problems) => Mode::Read(problems),
             Mode::ReadAgain => Mode::ReadAgain,
             Mode::Write => Mode::Write,
+            Mode::List(names) => Mode::List(names),
         };
         Codec {
             element,
@@ -67,8 +79,21 @@ impl Codec<'_, '_> {
     }
 
     /// Whether the tag has an attribute.
-    pub fn has(&self, name: &str) -> bool {
-        self.element.attribute(name).is_some()
+    pub fn has(&mut self, name: &str) -> bool {
+        match &mut self.mode {
+            Mode::Read(_) | Mode::ReadAgain | Mode::Write => self.element.attribute(name).is_some(),
+            Mode::List(names) => names.is_there,
+        }
+    }
+
+    /// The text of an attribute.
+    pub fn attribute(&mut self, name: &str) -> Option<&str> {
+        if let Mode::List(names) = &mut self.mode
+            && !names.all.iter().any(|one| one == name)
+        {
+            names.all.push(name.to_owned());
+        }
+        self.element.attribute(name)
     }
 
     fn complain(&mut self, severity: Severity, name: &str, text: &str) {
@@ -80,6 +105,7 @@ impl Codec<'_, '_> {
             if !id.is_empty() {
                 problem.place.object = Some(id.to_owned());
             }
+            problem.place.offset = Some(self.element.start.0).filter(|&at| at > 0);
             keep(problems, problem);
         }
     }
@@ -98,7 +124,7 @@ impl Codec<'_, '_> {
     }
 
     fn numbers<const N: usize>(&mut self, name: &str) -> Option<[f64; N]> {
-        let text = self.element.attribute(name)?.to_owned();
+        let text = self.attribute(name)?.to_owned();
         let parts: Vec<&str> = text.split(':').take(N + 1).collect();
         if parts.len() != N {
             self.complain(Severity::Warning, name, &text);
@@ -192,17 +218,17 @@ impl Codec<'_, '_> {
 
     /// A text.
     pub fn text(&mut self, name: &str, value: &mut String, default: &str) {
-        let there = self.element.attribute(name).unwrap_or(default);
+        let there = self.attribute(name).unwrap_or(default).to_owned();
         if self.is_reading() {
-            there.clone_into(value);
-        } else if value != there {
+            *value = there;
+        } else if *value != there {
             self.element.set(name, value);
         }
     }
 
     /// A truth: `true`, and nothing else, is true.
     pub fn flag(&mut self, name: &str, value: &mut bool, default: bool) {
-        let text = self.element.attribute(name);
+        let text = self.attribute(name);
         let there = text.map_or(default, |text| text == "true");
         if self.is_reading() {
             *value = there;

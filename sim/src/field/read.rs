@@ -137,17 +137,7 @@ impl Reader {
                     Err(element)
                 }
             });
-            const CONTAINERS: [&str; 8] = [
-                "trace",
-                "walls",
-                "skittles",
-                "balls",
-                "cubes",
-                "colorFields",
-                "comments",
-                "images",
-            ];
-            for name in CONTAINERS {
+            for name in super::table::LISTS {
                 for list in world.elements_mut().filter(|one| one.name == name) {
                     self.take(list, Self::thing);
                 }
@@ -190,6 +180,7 @@ impl Reader {
         }
         let mut problem = Problem::warning(words::same_id(&element.name, id));
         problem.place.object = Some(id.to_owned());
+        problem.place.offset = Some(element.start.0);
         keep(&mut self.problems, problem);
         false
     }
@@ -312,10 +303,9 @@ impl Reader {
         region.visit(&mut self.codec(&mut element, ordinal));
         let kind = region.kind.to_lowercase();
         if !["ellipse", "rectangle", "bound"].contains(&kind.as_str()) {
-            keep(
-                &mut self.problems,
-                Problem::warning(words::bad_region(&region.kind)),
-            );
+            let mut problem = Problem::warning(words::bad_region(&region.kind));
+            problem.place.offset = Some(element.start.0);
+            keep(&mut self.problems, problem);
             return Err(element);
         }
         region.source = element;
@@ -341,6 +331,7 @@ impl Reader {
             if region.is_bound() && !ids.contains(region.bound.as_str()) {
                 let mut problem = Problem::warning(words::bad_bound(&region.bound));
                 problem.place.object = Some(region.id.clone());
+                problem.place.offset = Some(region.source.start.0);
                 keep(&mut self.problems, problem);
             }
         }
@@ -427,7 +418,8 @@ impl Reader {
                 *wheel = port(text, Direction::Out);
                 let is_named = !text.starts_with("None") && !text.starts_with("###");
                 if wheel.is_none() && is_named && robot.id.starts_with("trik") {
-                    let problem = Problem::warning(words::bad_port(text));
+                    let mut problem = Problem::warning(words::bad_port(text));
+                    problem.place.offset = Some(wheels.start.0);
                     keep(&mut self.problems, problem);
                 }
             }
@@ -513,6 +505,7 @@ pub(super) fn add_blobs(field: &mut Field, text: &str) -> Vec<Problem> {
         if !field.blobs.contains_key(&image.image) {
             let mut problem = Problem::warning(words::no_blob(&image.image));
             problem.place.object = Some(image.id.clone());
+            problem.place.offset = Some(image.source.start.0);
             keep(&mut problems, problem);
         }
     }

@@ -159,7 +159,7 @@ impl Region {
         codec.flag("visible", &mut self.visible, false);
         if codec.is_reading() {
             // Only a whole number of units counts, and of pixels too.
-            let whole = codec.element.attribute("stroke");
+            let whole = codec.attribute("stroke");
             let whole: i32 = whole.and_then(|text| text.trim().parse().ok()).unwrap_or(0);
             self.ring = (f64::from(whole.max(0)) * codec.scale).trunc();
         }
@@ -237,7 +237,7 @@ impl Sensor {
         codec.point("position", &mut self.at, Point::default());
         codec.plain("direction", &mut self.direction, 0.0);
         if codec.is_reading() {
-            let text = codec.element.attribute("port").unwrap_or_default();
+            let text = codec.attribute("port").unwrap_or_default();
             // A port has exactly four parts; another text is none.
             let is_whole = text.split("###").count() == 4;
             self.port = is_whole.then(|| port(text, Direction::In)).flatten();
@@ -247,19 +247,28 @@ impl Sensor {
 }
 
 impl SensorKind {
+    /// Types of sensors, without what stands before their names, and what they are.
+    pub const TYPES: [(&'static str, Self); 13] = [
+        ("TrikInfraredSensor", Self::Infrared),
+        ("TrikSonarSensor", Self::Sonar),
+        ("TrikLightSensor", Self::Light),
+        ("LightSensor", Self::Light),
+        ("TrikTouchSensor", Self::Touch),
+        ("TouchSensor", Self::Touch),
+        ("TrikVideoCamera", Self::Camera),
+        ("TrikLineSensor", Self::Camera),
+        ("TrikColorSensor", Self::Camera),
+        ("TrikObjectSensor", Self::Camera),
+        ("TrikLidarSensor", Self::Lidar),
+        ("LidarSensor", Self::Lidar),
+        ("TrikLidar", Self::Lidar),
+    ];
+
     /// The kind with a type's name, as `trik::robotModel::parts::TrikTouchSensor`.
     pub fn named(name: &str) -> Self {
-        match name.rsplit("::").next().unwrap_or(name) {
-            "TrikInfraredSensor" => Self::Infrared,
-            "TrikSonarSensor" => Self::Sonar,
-            "TrikLightSensor" | "LightSensor" => Self::Light,
-            "TrikTouchSensor" | "TouchSensor" => Self::Touch,
-            "TrikVideoCamera" | "TrikLineSensor" | "TrikColorSensor" | "TrikObjectSensor" => {
-                Self::Camera
-            }
-            "TrikLidarSensor" | "LidarSensor" | "TrikLidar" => Self::Lidar,
-            _ => Self::Other,
-        }
+        let name = name.rsplit("::").next().unwrap_or(name);
+        let found = Self::TYPES.iter().find(|(known, _)| *known == name);
+        found.map_or(Self::Other, |(_, kind)| *kind)
     }
 }
 

@@ -6,7 +6,8 @@
 //!
 //! A number of an object is good as long as the field is not edited.
 
-mod places;
+mod names;
+pub(super) mod places;
 mod set;
 mod shown;
 
@@ -148,6 +149,11 @@ fn named(arena: &Arena, name: &str) -> Option<Thing> {
         .or_else(|| at(&field.drawn, |one| one.id == name).map(Thing::Drawn))
 }
 
+/// Whether rules mean a robot or its trace by a name, whatever else has it.
+pub(super) fn is_taken(name: &str) -> bool {
+    name == "trace" || name == "robot1"
+}
+
 fn at<T>(all: &[T], is_it: impl Fn(&T) -> bool) -> Option<usize> {
     all.iter().position(is_it)
 }
@@ -281,7 +287,9 @@ impl Scene for Arena {
     }
 
     fn type_of(&mut self, object: Object) -> Option<&'static str> {
-        class_of(self, Thing::of(object)?)
+        let class = class_of(self, Thing::of(object)?)?;
+        debug_assert!(names::CLASSES.contains(&class), "{class}");
+        Some(class)
     }
 
     fn property(&mut self, object: Object, chain: &[Box<str>]) -> Result<Value, Missing> {
@@ -358,6 +366,15 @@ impl Scene for Arena {
 
 /// A property of a thing; nothing if it has none of this name.
 fn property(arena: &Arena, thing: Thing, name: &str) -> Option<Value> {
+    let found = known_property(arena, thing, name);
+    debug_assert!(
+        found.is_none() || names::PROPERTIES.contains(&name),
+        "{name}"
+    );
+    found
+}
+
+fn known_property(arena: &Arena, thing: Thing, name: &str) -> Option<Value> {
     match thing {
         Thing::Robot(index) => {
             let robot = arena.robots().get(index)?;

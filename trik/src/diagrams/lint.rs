@@ -1,9 +1,11 @@
-//! `trik lint`: everything that is wrong with diagrams, and the way back for blocks that an earlier editor has lost.
+//! `trik lint`: everything that is wrong with diagrams and worlds, and the way back for blocks that an earlier editor has
+//! lost.
 //!
-//! Owns the order of files, the summary and the exit code. What is wrong is found in `lang`.
+//! Owns the order of files, the summary and the exit code, and what is a world: a file that begins with a tag, and the
+//! world model of a save. What is wrong is found in `lang` and by the judge in `sim`.
 
 use super::report::{Count, Reporter};
-use super::save::{Unreadable, open};
+use super::save::{Unreadable, bytes};
 use super::words;
 use crate::language;
 use crate::output::{Output, standard};
@@ -12,21 +14,26 @@ use crate::terminal::named;
 use clap::Args;
 use lang_diagram::check::check;
 use lang_diagram::lower::World;
-use lang_diagram::read::Opened;
+use lang_diagram::project::Project;
+use lang_diagram::read::{self, Opened};
 use lang_text::problem::{Locale, Problem};
+use sim::judge::{self, Texts};
 use std::path::{Path, PathBuf};
+
+/// The part of a save that lines and columns of its world are in.
+const WORLD: &str = "worldModel";
 
 /// What `trik lint` can be told.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct LintArgs {
-    /// Diagrams, files NAME.qrs.
+    /// Diagrams, files NAME.qrs, with the worlds in them; and worlds, files NAME.xml.
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
     /// Language of messages: en or ru.
     #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
     pub language: Locale,
     /// Write the diagram to this new file, with the blocks and links restored that are in the file but on no sheet, and
-    /// check that. For one FILE.
+    /// check that. For one FILE that is a diagram.
     #[arg(long, value_name = "OUT.qrs")]
     pub recover: Option<PathBuf>,
     /// Overwrite OUT.qrs if it exists.
@@ -43,7 +50,16 @@ pub(crate) fn run(args: &LintArgs) -> Result<u8, Refusal> {
     let mut unreadable = 0;
     for file in &args.files {
         let mut opened = match open(file) {
-            Ok(opened) => opened,
+            Ok(Found::Diagram(opened)) => opened,
+            Ok(Found::World(text)) => {
+                if args.recover.is_some() {
+                    let why = "this is a world, and --recover is for diagrams";
+                    return Err(Refusal::new(format!("{}: {why}", named(file))));
+                }
+                let lines = world(file, &text, &mut count, args.language);
+                standard(lines.as_bytes())?;
+                continue;
+            }
             Err(why) => {
                 unreadable += 1;
                 let lines = unread(file, why, &mut count, args.language);
@@ -73,6 +89,59 @@ pub(crate) fn run(args: &LintArgs) -> Result<u8, Refusal> {
     })
 }
 
+/// What a file is.
+enum Found {
+    Diagram(Opened),
+    /// The text of a world model.
+    World(String),
+}
+
+/// Reads a file; one that begins with a tag is a world.
+fn open(path: &Path) -> Result<Found, Unreadable> {
+    let bytes = bytes(path).map_err(Unreadable::File)?;
+    let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(&bytes);
+    if text.trim_ascii_start().first() != Some(&b'<') {
+        let opened = read::read(&bytes).map_err(Unreadable::Save)?;
+        return Ok(Found::Diagram(opened));
+    }
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        Unreadable::File(format!(
+            "byte {at} is not UTF-8; save the world as XML in UTF-8"
+        ))
+    })?;
+    Ok(Found::World(text))
+}
+
+/// Lines of a world in a file of its own.
+fn world(file: &Path, text: &str, count: &mut Count, locale: Locale) -> String {
+    let reporter = Reporter::new(file, None, locale);
+    let texts = Texts {
+        world: text,
+        ..Texts::default()
+    };
+    let mut problems = judge::lint(texts);
+    reporter.sort(&mut problems);
+    count.add(&problems);
+    joined(&reporter.lines(&problems))
+}
+
+/// What is wrong with the world in a save.
+fn world_of(project: &Project) -> Vec<Problem> {
+    let Some(world) = project.world.as_deref() else {
+        return Vec::new();
+    };
+    let mut problems = judge::lint(Texts {
+        world,
+        blobs: project.blobs.as_deref(),
+        templates: Some(&project.templates),
+    });
+    for problem in &mut problems {
+        problem.place.file.get_or_insert_with(|| WORLD.to_owned());
+    }
+    problems
+}
+
 /// Lines of a save that could not be read.
 fn unread(file: &Path, why: Unreadable, count: &mut Count, locale: Locale) -> String {
     let reporter = Reporter::new(file, None, locale);
@@ -96,6 +165,7 @@ fn found(file: &Path, opened: &Opened, count: &mut Count, locale: Locale) -> Str
     let reporter = Reporter::new(file, Some(&opened.project), locale);
     let mut problems: Vec<Problem> = opened.problems.clone();
     problems.extend(check(&opened.project, World::Robot));
+    problems.extend(world_of(&opened.project));
     reporter.sort(&mut problems);
     count.add(&problems);
     joined(&reporter.lines(&problems))

@@ -37,7 +37,7 @@ pub(crate) fn must_open(path: &Path, locale: Locale) -> Result<Opened, Refusal> 
 }
 
 /// The bytes of a file that is no longer than a save may be.
-fn bytes(path: &Path) -> Result<Vec<u8>, String> {
+pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, String> {
     let limit = SAVE_BYTES as u64;
     input::read(path, limit).map_err(|unread| match unread {
         Unread::Missing => "there is no such file".to_owned(),

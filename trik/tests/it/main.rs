@@ -38,6 +38,7 @@ mod raw;
 mod rig;
 /// Programs with text as solutions.
 mod scripts;
+mod tasks;
 /// What is said to a person, and what is refused.
 mod words;
 mod world;

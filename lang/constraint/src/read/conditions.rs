@@ -43,12 +43,16 @@ impl Reader {
                 self.known(element, &["timeout", "forceDropOnTimeout"]);
                 let ms = self.whole(element, "timeout");
                 let drops = self.yes_or_no(element, "forceDropOnTimeout", true);
-                Some(Condition::Timer { ms: ms?, drops })
+                Some(Condition::Timer {
+                    ms: ms?,
+                    drops,
+                    at: element.start,
+                })
             }
             "using" => self.using(element),
             _ if tag.starts_with("notequal") => self.compare(element, Comparison::NotEqual),
             _ => {
-                self.error(words::unknown_tag(&element.name));
+                self.unknown(&element.name, words::unknown_tag(&element.name));
                 None
             }
         }

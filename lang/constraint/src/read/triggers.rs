@@ -46,7 +46,7 @@ impl Reader {
             "setter" => {
                 let name = self.filled(element, "name")?;
                 let [value] = self.operands(element, &["name"])?;
-                Some(Trigger::SetVariable(name.into(), value))
+                Some(Trigger::SetVariable(name.into(), element.start, value))
             }
             "setup" => self.named(element).map(Trigger::SetUp),
             "drop" => self.named(element).map(Trigger::Drop),
@@ -61,7 +61,7 @@ impl Reader {
                 })
             }
             _ => {
-                self.error(words::unknown_tag(&element.name));
+                self.unknown(&element.name, words::unknown_tag(&element.name));
                 None
             }
         }
@@ -76,7 +76,7 @@ impl Reader {
         for child in element.elements() {
             let read = self.inside(child, |reader| {
                 if !is(child, "replace") {
-                    reader.error(words::unknown_tag(&child.name));
+                    reader.unknown(&child.name, words::unknown_tag(&child.name));
                     return None;
                 }
                 let name = reader.filled(child, "var")?;

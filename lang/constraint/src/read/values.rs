@@ -36,6 +36,7 @@ impl Reader {
         Name {
             text: text.into(),
             slot: self.slot(),
+            at: self.at,
         }
     }
 
@@ -52,6 +53,7 @@ impl Reader {
             text: text.into(),
             parts,
             slot: self.slot(),
+            at: self.at,
         }
     }
 
@@ -129,6 +131,7 @@ impl Reader {
                     text: name.into(),
                     parts,
                     slot: 0,
+                    at: element.start,
                 }))
             }
             "objectstate" => {
@@ -151,7 +154,7 @@ impl Reader {
             "max" => self.binary(element, Binary::Max),
             "distance" => self.binary(element, Binary::Distance),
             _ => {
-                self.error(words::unknown_value(&element.name));
+                self.unknown(&element.name, words::unknown_value(&element.name));
                 None
             }
         }

@@ -53,7 +53,13 @@ fn names_of_tags_may_be_written_in_any_case_and_names_of_attributes_not() {
 
 #[test]
 fn an_unknown_tag_is_named_wherever_it_stands() {
-    refused("<evnt/>", &[r#"evnt (2): Unknown tag "evnt"."#]);
+    refused(
+        "<evnt/>",
+        &[
+            r#"evnt (2): Unknown tag "evnt"."#,
+            r#"?evnt (2): the tag "evnt" is unknown; did you mean "event"?"#,
+        ],
+    );
     for (inside, tag, place) in [
         (
             "<condition><blue/></condition><trigger><success/></trigger>",

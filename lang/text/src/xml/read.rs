@@ -4,9 +4,9 @@
 //! crate takes some text that is no XML; what matters is refused here: signs in names and `<` in values. Missing space
 //! between two attributes is let through.
 
-use super::{Element, Node, words};
+use super::{Element, Node, Start, words};
 use crate::limits;
-use crate::problem::{Position, Problem, Words};
+use crate::problem::{Problem, Words, position};
 use quick_xml::errors::{Error, IllFormedError, SyntaxError};
 use quick_xml::events::attributes::{AttrError, Attributes};
 use quick_xml::events::{BytesStart, Event};
@@ -28,9 +28,9 @@ pub fn parse(text: &str) -> Result<Element<'_>, Problem> {
         let event = reader.read_event();
         let event = event.map_err(|error| located(refusal(&error, text, at)))?;
         match event {
-            Event::Start(tag) => builder.start(raw(text, at, &tag)).map_err(located)?,
+            Event::Start(tag) => builder.start(raw(text, at, &tag), at).map_err(located)?,
             Event::Empty(tag) => {
-                builder.start(raw(text, at, &tag)).map_err(located)?;
+                builder.start(raw(text, at, &tag), at).map_err(located)?;
                 builder.end();
             }
             Event::End(_) => builder.end(),
@@ -141,7 +141,7 @@ struct Builder<'a> {
 
 impl<'a> Builder<'a> {
     /// Opens a tag and takes its attributes.
-    fn start(&mut self, (content, length): (&'a str, usize)) -> Result<(), Words> {
+    fn start(&mut self, (content, length): (&'a str, usize), at: usize) -> Result<(), Words> {
         self.tags += 1;
         if self.tags > limits::XML_TAGS {
             return Err(words::too_many_tags());
@@ -154,6 +154,7 @@ impl<'a> Builder<'a> {
         }
         self.keep_text();
         let mut element = Element::new(name(content.get(..length).unwrap_or_default())?);
+        element.start = Start(u32::try_from(at).unwrap_or_default());
         for found in Attributes::new(content, length) {
             let found = found.map_err(|error| attribute_refusal(&error, content, length))?;
             let attributes = &mut element.attributes;
@@ -283,17 +284,7 @@ fn entity(name: &str) -> Option<char> {
 
 /// A problem at a byte of the text.
 fn located(words: Words, text: &str, at: usize) -> Problem {
-    let at = (0..=at.min(text.len()))
-        .rev()
-        .find(|&at| text.is_char_boundary(at))
-        .unwrap_or(0);
-    let before = &text[..at];
-    let line = before.bytes().filter(|&byte| byte == b'\n').count() + 1;
-    let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
     let mut problem = Problem::error(words);
-    problem.place.position = Some(Position {
-        line: u32::try_from(line).unwrap_or(u32::MAX),
-        column: u32::try_from(column).unwrap_or(u32::MAX),
-    });
+    problem.place.position = Some(position(text, at));
     problem
 }

@@ -98,6 +98,11 @@ enum Place {
     Ring(Vec<Point>, Vec<Point>),
 }
 
+/// Whether nothing can be in a region.
+pub(in super::super) fn is_nowhere(region: &Region, field: &Field) -> bool {
+    matches!(Place::of(region, field), Place::Nowhere)
+}
+
 impl Place {
     fn of(region: &Region, field: &Field) -> Self {
         if region.is_bound() {

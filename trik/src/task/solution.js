@@ -1,0 +1,8 @@
+// {GOOD}
+brick.motor("M3").setPower(60);
+brick.motor("M4").setPower(60);
+while (brick.sensor("D1").read() > 20) {
+    script.wait(10);
+}
+brick.stop();
+script.wait(200);

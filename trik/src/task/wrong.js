@@ -1,0 +1,5 @@
+// {BAD}
+brick.motor("M3").setPower(40);
+brick.motor("M4").setPower(60);
+script.wait(15000);
+brick.stop();
