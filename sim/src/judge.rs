@@ -14,6 +14,7 @@ pub mod report;
 pub mod run;
 mod scene;
 pub mod task;
+pub mod track;
 pub mod trajectory;
 mod words;
 

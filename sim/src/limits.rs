@@ -88,6 +88,12 @@ pub const FIELD_ROBOTS: usize = 16;
 pub const FIELD_SENSORS: usize = 64;
 /// Messages of other robots that wait for one.
 pub const MAIL_MAX: usize = 10_000;
+/// Bytes of all changes of motors, readings, variables and blocks that an animated page holds, about.
+pub const TRACK_BYTES: usize = 1 << 20;
+/// Motors, readings, variables and threads whose changes a page holds.
+pub const TRACK_COLUMNS: usize = 200;
+/// Characters of a name or a value there.
+pub const TRACK_CHARS: usize = 60;
 /// Poses of one robot that an animated page holds.
 pub const PAGE_POSES: usize = 6_000;
 /// Remarks on pictures and colours of one floor.

@@ -235,6 +235,26 @@ impl Value {
         }
     }
 
+    /// As a person sees it who looks on: a table by its first eight elements, nothing as nothing.
+    pub fn brief(&self) -> String {
+        let Self::List(list) = self else {
+            return self.to_text().to_string();
+        };
+        let some = list.items.iter().take(8);
+        let mut texts: Vec<String> = some
+            .map(|item| match item {
+                Self::List(_) => "[...]".to_owned(),
+                Self::Nil | Self::Bool(_) | Self::Int(_) | Self::Float(_) | Self::Text(_) => {
+                    item.to_text().to_string()
+                }
+            })
+            .collect();
+        if list.items.len() > texts.len() {
+            texts.push("...".to_owned());
+        }
+        format!("[{}]", texts.join(", "))
+    }
+
     /// As text in the list that a block asks for (ports): a single text is a list of one.
     pub fn to_texts(&self) -> Vec<Rc<str>> {
         match self {

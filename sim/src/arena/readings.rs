@@ -52,6 +52,11 @@ impl Readings {
         self.last[place(port)]
     }
 
+    /// Whether program or rules have read it.
+    pub fn is_read(&self, port: Port) -> bool {
+        self.read_at[place(port)] > 0
+    }
+
     /// A sensor was read.
     pub(super) fn note(&mut self, port: Port, reading: i32, now: u32) {
         self.last[place(port)] = reading;

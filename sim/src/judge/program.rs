@@ -7,9 +7,12 @@ use crate::limits;
 use lang_diagram::brick::Brick;
 use lang_diagram::machine::trace::{Deaf, Trace};
 use lang_diagram::machine::{Machine, Options, Status};
+use lang_diagram::ports::Port;
 use lang_diagram::program::{Node, Program as Lowered};
-use lang_text::problem::Problem;
+use lang_text::problem::{Locale, Problem};
 use std::rc::Rc;
+
+use super::track::Group;
 
 /// A program under judgement.
 pub trait Program {
@@ -23,6 +26,10 @@ pub trait Program {
 
     /// Ends it from outside: motors off, nothing runs any more.
     fn stop(&mut self, robot: &mut dyn Brick);
+
+    /// Says what it does at this moment, for people who look on: variables, and the blocks at which its threads are.
+    /// Programs in languages with text say nothing.
+    fn tell(&self, _locale: Locale, _tell: &mut dyn FnMut(Group, &str, &str)) {}
 
     /// What went wrong in it so far, in order; it only grows.
     fn errors(&self) -> &[Problem];
@@ -145,6 +152,21 @@ impl Program for Diagram {
 
     fn stop(&mut self, robot: &mut dyn Brick) {
         self.machine.stop(robot, &mut Deaf);
+    }
+
+    fn tell(&self, locale: Locale, tell: &mut dyn FnMut(Group, &str, &str)) {
+        let program = self.machine.program();
+        for (thread, node) in self.machine.threads() {
+            let block = program.row(node).map_or("", |row| row.shown_in(locale));
+            tell(Group::Block, thread, block);
+        }
+        let is_of_port = |name: &str| Port::all().any(|port| port.variable() == Some(name));
+        for (name, value) in self.machine.variables() {
+            // Readings have their own place.
+            if !is_of_port(name) {
+                tell(Group::Variable, name, &value.brief());
+            }
+        }
     }
 
     fn errors(&self) -> &[Problem] {

@@ -9,6 +9,7 @@ use super::program::{Program, Running};
 use super::recorder::Recorder;
 use super::report;
 use super::task::Task;
+use super::track::{Group, Track};
 use super::trajectory::{Record, Trajectory};
 use super::words;
 use crate::arena::{Arena, Gamepad, Setup};
@@ -17,6 +18,7 @@ use lang_constraint::{
     self as rules, Checker, Entry, Explanation, Level, Value, Verdict as Decision,
 };
 use lang_diagram::machine::{STEP_MS, Status};
+use lang_diagram::ports::{Port, Sort};
 use lang_text::problem::{Locale, Problem};
 use std::time::{Duration, Instant};
 
@@ -68,6 +70,8 @@ pub struct Settings {
     pub is_marking: bool,
     /// Whether a trajectory is kept.
     pub is_recording: bool,
+    /// Whether motors, readings, variables and blocks are kept, for a page.
+    pub is_tracking: bool,
     /// Whether a picture of the display at the end is made.
     pub is_showing: bool,
     /// Whether it is kept why the run ends as it does.
@@ -86,6 +90,7 @@ impl Default for Settings {
             deeds: None,
             is_marking: false,
             is_recording: false,
+            is_tracking: false,
             is_showing: false,
             is_explaining: false,
         }
@@ -109,6 +114,8 @@ pub struct Outcome {
     pub printed: Vec<String>,
     /// Where robots were; empty if it was not recorded.
     pub trajectory: Trajectory,
+    /// What the first robot and its program did beside moving; empty if it was not kept.
+    pub track: Track,
     /// The display at the end, as a PNG file, if it was wanted.
     pub display: Option<Vec<u8>>,
     /// Why the rules have decided so, if that was wanted and there are rules.
@@ -158,6 +165,7 @@ pub fn judge(task: &Task, program: &mut dyn Program, settings: &Settings) -> Out
         }
         let status = run.step(now, program, &mut arena);
         run.hear(now, program.errors());
+        run.track(now, program, &arena);
         arena.renew();
         if let Status::Ended { with_errors, .. } = status {
             match program.is_out_of_time() {
@@ -193,6 +201,7 @@ pub(super) struct Run<'a> {
     checker: Option<Checker>,
     entries: Vec<Entry>,
     trajectory: Trajectory,
+    track: Track,
     heard: usize,
     /// Once it is known.
     pub verdict: Option<Verdict>,
@@ -232,6 +241,7 @@ impl<'a> Run<'a> {
             checker,
             entries: entries.collect(),
             trajectory,
+            track: Track::default(),
             heard: 0,
             verdict: None,
             failure: None,
@@ -256,6 +266,46 @@ impl<'a> Run<'a> {
                 degrees: pose.degrees,
             });
         }
+    }
+
+    /// Keeps what can be seen of the first robot and its program. Only what was read anyway is shown as a reading: one more
+    /// would draw from the noise of sensors, and change the run.
+    fn track(&mut self, now: u32, program: &dyn Program, arena: &Arena) {
+        let (true, Some(robot)) = (self.settings.is_tracking, arena.robots().first()) else {
+            return;
+        };
+        let track = &mut self.track;
+        program.tell(self.settings.locale, &mut |group, name, value| {
+            track.note(group, name, now, value);
+        });
+        for port in Port::all() {
+            match port.sort() {
+                Sort::Motor => {
+                    let power = robot.power(port);
+                    let is_wheel = [robot.description().left, robot.description().right];
+                    if power != 0
+                        || is_wheel.contains(&Some(port))
+                        || track.has(Group::Motor, port.name())
+                    {
+                        track.note(Group::Motor, port.name(), now, &power.to_string());
+                    }
+                }
+                Sort::Servo => {
+                    let degrees = robot.servo(port);
+                    if degrees != 0 || track.has(Group::Motor, port.name()) {
+                        track.note(Group::Motor, port.name(), now, &degrees.to_string());
+                    }
+                }
+                Sort::Encoder | Sort::Scalar | Sort::Button(_) => {
+                    if robot.readings.is_read(port) {
+                        let reading = robot.readings.last(port);
+                        track.note(Group::Sensor, port.name(), now, &reading.to_string());
+                    }
+                }
+                Sort::Vector => {}
+            }
+        }
+        track.round(now);
     }
 
     /// A step of the program; what it tells its robot is kept.
@@ -398,6 +448,7 @@ impl<'a> Run<'a> {
             entries: self.entries,
             printed: Vec::new(),
             trajectory: self.trajectory,
+            track: self.track,
             display: self.settings.is_showing.then(display).flatten(),
         }
     }

@@ -1,13 +1,44 @@
 //! What the judge says itself, in English and Russian.
 
+use super::track::Group;
 use lang_diagram::devices::Sensor;
 use lang_text::problem::{Locale, Words};
 
-/// Names of what can be moved on a page: time, speed.
-pub(super) fn page(locale: Locale) -> [&'static str; 2] {
+/// Names of what can be moved on a page, and of its lists: time, speed, messages, state.
+pub(super) fn page(locale: Locale) -> [&'static str; 4] {
     match locale {
-        Locale::English => ["time", "speed"],
-        Locale::Russian => ["время", "скорость"],
+        Locale::English => ["time", "speed", "messages", "robot and program"],
+        Locale::Russian => ["время", "скорость", "сообщения", "робот и программа"],
+    }
+}
+
+/// What the button of a page does.
+pub(super) fn play(locale: Locale) -> &'static str {
+    match locale {
+        Locale::English => "play or pause",
+        Locale::Russian => "пуск или пауза",
+    }
+}
+
+/// Keys of a page.
+pub(super) fn keys(locale: Locale) -> &'static str {
+    match locale {
+        Locale::English => "Space: play or pause; arrows: 0.1 s, with Shift 1 s; Home, End",
+        Locale::Russian => "Пробел: пуск или пауза; стрелки: 0,1 с, с Shift 1 с; Home, End",
+    }
+}
+
+/// What a page calls a group of values.
+pub(super) fn group(group: Group, locale: Locale) -> &'static str {
+    let [english, russian] = match group {
+        Group::Block => ["Blocks", "Блоки"],
+        Group::Motor => ["Motors", "Моторы"],
+        Group::Sensor => ["Sensors, as read last", "Датчики, последние показания"],
+        Group::Variable => ["Variables", "Переменные"],
+    };
+    match locale {
+        Locale::English => english,
+        Locale::Russian => russian,
     }
 }
 

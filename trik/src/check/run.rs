@@ -264,6 +264,7 @@ fn settings(args: &CheckArgs) -> Result<Settings, Error> {
         answers,
         deeds,
         is_marking: args.marker_traces,
+        is_tracking: args.html.is_some(),
         is_showing: args.display.is_some(),
         is_explaining: args.explain,
         is_recording: [&args.trajectory, &args.svg, &args.html]
@@ -425,6 +426,7 @@ fn write(job: &Job, args: &CheckArgs, task: &Task, outcome: &Outcome) -> Result<
             verdict: &verdict,
             is_good: row.verdict.is_good(),
             locale: args.language,
+            track: &outcome.track,
         };
         let (poses, entries) = (&outcome.trajectory, &outcome.entries);
         judge::page(&task.field, poses, entries, caption).into()

@@ -50,7 +50,7 @@ pub(crate) fn run(args: &LintArgs) -> Result<u8, Refusal> {
     let mut unreadable = 0;
     for file in &args.files {
         let mut opened = match open(file) {
-            Ok(Found::Diagram(opened)) => opened,
+            Ok(Found::Diagram(opened)) => *opened,
             Ok(Found::World(text)) => {
                 if args.recover.is_some() {
                     let why = "this is a world, and --recover is for diagrams";
@@ -91,7 +91,7 @@ pub(crate) fn run(args: &LintArgs) -> Result<u8, Refusal> {
 
 /// What a file is.
 enum Found {
-    Diagram(Opened),
+    Diagram(Box<Opened>),
     /// The text of a world model.
     World(String),
 }
@@ -102,7 +102,7 @@ fn open(path: &Path) -> Result<Found, Unreadable> {
     let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(&bytes);
     if text.trim_ascii_start().first() != Some(&b'<') {
         let opened = read::read(&bytes).map_err(Unreadable::Save)?;
-        return Ok(Found::Diagram(opened));
+        return Ok(Found::Diagram(Box::new(opened)));
     }
     let text = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();

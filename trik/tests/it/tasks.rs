@@ -33,7 +33,7 @@ fn mistakes_in_rules_are_told_with_place_and_what_was_meant() {
     );
     assert!(told.stdout.contains(&wanted), "{}", told.stdout);
     let russian = trik(&board, &["lint", "wrong.xml", "--language", "ru"]);
-    let wanted = "Нет такого региона: finnish; может быть, 'finish'?";
+    let wanted = "\u{41d}\u{435}\u{442} \u{442}\u{430}\u{43a}\u{43e}\u{433}\u{43e} \u{440}\u{435}\u{433}\u{438}\u{43e}\u{43d}\u{430}: finnish; \u{43c}\u{43e}\u{436}\u{435}\u{442} \u{431}\u{44b}\u{442}\u{44c}, 'finish'?";
     assert!(russian.stdout.contains(wanted), "{}", russian.stdout);
 }
 
@@ -128,7 +128,10 @@ fn a_new_task_is_without_mistakes_and_its_commands_work_as_printed() {
         assert_eq!(good.0, 0, "{}", good.1);
         assert!(good.1.contains("100"), "{}", good.1);
         assert_eq!(bad.0, 1, "{}", bad.1);
-        let said = ["The robot has left the road", "Робот покинул дорогу"];
+        let said = [
+            "The robot has left the road",
+            "\u{420}\u{43e}\u{431}\u{43e}\u{442} \u{43f}\u{43e}\u{43a}\u{438}\u{43d}\u{443}\u{43b} \u{434}\u{43e}\u{440}\u{43e}\u{433}\u{443}",
+        ];
         assert!(said.iter().any(|text| bad.1.contains(text)), "{}", bad.1);
     }
     let readme = fs::read_to_string(board.path("js/README.md")).expect("a text");
@@ -202,4 +205,59 @@ fn what_the_page_of_worlds_says_is_what_really_happens() {
     let (steps, wrong) = transcripts(&board, "docs/teacher/world.md", &text, "sh task");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     assert!(steps >= 2, "only {steps}");
+}
+
+#[test]
+fn a_page_has_what_robot_and_program_did_and_making_it_changes_no_verdict() {
+    let board = Board::new();
+    let world = made(&board).replacen("realisticSensors=\"false\"", "realisticSensors=\"true\"", 1);
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let body = "x = 1; name = 'a'; far = sensorD1; list = {1, 2, 3}";
+    let set = sketch.block("Function", &[("Body", body)]);
+    let ahead = [("Ports", "M3, M4"), ("Power", "60")];
+    let ahead = sketch.block("TrikV6EnginesForward", &ahead);
+    let wait = sketch.block("Timer", &[("Delay", "1000")]);
+    let again = sketch.block("Function", &[("Body", "far = sensorD1; x = x + 1")]);
+    let end = sketch.block("FinalNode", &[]);
+    sketch.chain(&[start, set, ahead, wait, again, end]);
+    sketch.world(&world);
+    board.file("task.qrs", sketch.qrs().expect("a save"));
+    let plain = trik(&board, &["check", "task.qrs", "--trajectory", "one.json"]);
+    let words = [
+        "check",
+        "task.qrs",
+        "--html",
+        "run.html",
+        "--trajectory",
+        "two.json",
+    ];
+    let shown = trik(&board, &words);
+    assert_eq!((plain.code(), &plain.stdout), (shown.code(), &shown.stdout));
+    let read = |name: &str| fs::read_to_string(board.path(name)).expect(name);
+    assert!(
+        read("one.json") == read("two.json"),
+        "the way is another one"
+    );
+    let page = read("run.html");
+    for part in [
+        "[\"Blocks\",[\"main\",",
+        "\"Timer\"",
+        "[\"Motors\",[\"M3\",",
+        "[\"x\",",
+        "[\"list\",",
+        "\"[1, 2, 3]\"",
+        "[\"D1\",",
+    ] {
+        assert!(page.contains(part), "{part}: {page}");
+    }
+    assert!(
+        !page.contains("[\"sensorD1\","),
+        "a reading has its own place"
+    );
+    // Nothing comes from outside, and nothing could.
+    assert!(page.contains("default-src 'none'") && page.matches("://").count() == 1);
+    let words = ["check", "task.qrs", "--html", "ru.html", "--language", "ru"];
+    trik(&board, &words);
+    assert!(read("ru.html").contains("[\"\u{41c}\u{43e}\u{442}\u{43e}\u{440}\u{44b}\",[\"M3\","));
 }

@@ -6,6 +6,7 @@
 use super::{body, ground};
 use crate::field::Field;
 use crate::judge::json;
+use crate::judge::track::{Group, Track};
 use crate::judge::trajectory::Trajectory;
 use crate::judge::words;
 use crate::limits;
@@ -28,6 +29,8 @@ pub struct Caption<'a> {
     pub is_good: bool,
     /// Language of the page's own words.
     pub locale: Locale,
+    /// What the robot and its program did.
+    pub track: &'a Track,
 }
 
 /// The page of a run.
@@ -45,18 +48,23 @@ pub fn page(
     }
     let svg = svg.finish();
     let names = words::page(caption.locale);
+    let (play, keys) = (words::play(caption.locale), words::keys(caption.locale));
     let language = match caption.locale {
         Locale::English => "en",
         Locale::Russian => "ru",
     };
-    let data = data(trajectory, entries);
-    let parts: [(&str, &str); 8] = [
+    let data = data(trajectory, entries, caption);
+    let parts: [(&str, &str); 12] = [
         ("LANG", language),
         ("TITLE", &escaped(caption.title)),
         ("CLASS", if caption.is_good { "good" } else { "bad" }),
         ("VERDICT", &escaped(caption.verdict)),
         ("TIME", names[0]),
         ("SPEED", names[1]),
+        ("SAID", names[2]),
+        ("STATE", names[3]),
+        ("PLAY", play),
+        ("KEYS", keys),
         ("SVG", svg.trim_end()),
         ("DATA", &data),
     ];
@@ -86,7 +94,7 @@ pub fn page(
     out
 }
 
-fn data(trajectory: &Trajectory, entries: &[Entry]) -> String {
+fn data(trajectory: &Trajectory, entries: &[Entry], caption: Caption<'_>) -> String {
     let mut out = String::from("{\"robots\":[");
     let mut end = 0.0f64;
     for robot in 0..trajectory.robots.len() {
@@ -119,6 +127,25 @@ fn data(trajectory: &Trajectory, entries: &[Entry]) -> String {
         is_first = false;
         let _ = write!(out, "[{},\"{level}\",", entry.at_ms);
         json::text(&mut out, &entry.line());
+        out.push(']');
+    }
+    out.push_str("],\"groups\":[");
+    for (index, group) in Group::ALL.into_iter().enumerate() {
+        out.push_str(if index == 0 { "[" } else { ",[" });
+        json::text(&mut out, words::group(group, caption.locale));
+        for column in caption.track.columns() {
+            if column.group != group {
+                continue;
+            }
+            out.push_str(",[");
+            json::text(&mut out, &column.name);
+            for (ms, value) in &column.changes {
+                end = end.max(f64::from(*ms));
+                let _ = write!(out, ",{ms},");
+                json::text(&mut out, value);
+            }
+            out.push(']');
+        }
         out.push(']');
     }
     let _ = write!(out, "],\"end\":{end}}}");

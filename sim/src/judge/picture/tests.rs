@@ -1,6 +1,7 @@
 //! Pictures and pages of small runs.
 
 use super::*;
+use crate::judge::track::{Group, Track};
 use crate::judge::trajectory::DeviceChange;
 use lang_constraint::{Entry, Level};
 use lang_text::problem::Locale;
@@ -95,22 +96,27 @@ fn a_page_has_all_that_was_said_and_nothing_of_it_is_a_tag() {
         entry(Level::Error, "</script><script>alert(1)</script> {DATA}"),
         entry(Level::Variables, "{}"),
     ];
+    let mut track = Track::default();
+    track.note(Group::Variable, "</script>{DATA}", 10, "\u{2028}<b>");
+    track.note(Group::Motor, "M3", 20, "60");
+    track.round(20);
     let caption = Caption {
         title: "<i>{VERDICT}</i>.qrs",
         verdict: "good",
         is_good: true,
         locale: Locale::Russian,
+        track: &track,
     };
     let page = page(&field(), &drive(), &entries, caption);
     assert!(page.contains("&lt;i&gt;{VERDICT}&lt;/i&gt;.qrs"), "{page}");
     assert!(page.contains(r#"[2000,"error","\u003c/script>\u003cscript>alert(1)"#));
     assert!(page.contains("\"end\":3000}") && page.contains("[3000,300.00,0.00,0.00]"));
     assert!(page.contains("<html lang=\"ru\">") && page.contains("id=\"robot0\""));
+    assert!(page.contains(r#"["\u003c/script>{DATA}",10,""#), "{page}");
+    assert!(page.contains(r#"["M3",20,"60"]"#), "{page}");
     assert_eq!(page.matches("<script").count(), 1);
-    assert!(
-        !page.contains("http://") || page.matches("http").count() == 1,
-        "only the name of SVG"
-    );
+    // An address stands in it once: the name of SVG.
+    assert_eq!(page.matches("://").count(), 1);
 }
 
 #[test]
