@@ -15,6 +15,7 @@ use std::collections::BTreeMap;
 
 use super::former::FORMER;
 use super::library::LIBRARY;
+use super::lint::words as near;
 use super::words;
 use crate::limits;
 use lang_text::near::nearest;
@@ -418,7 +419,7 @@ impl Expander {
         }
         let known = self.templates.keys().map(String::as_str);
         if let Some(known) = nearest(name, known) {
-            let mut problem = Problem::warning(words::meant(name, known));
+            let mut problem = Problem::warning(near::meant(name, known));
             problem.place.offset = Some(self.at.0).filter(|&at| at > 0);
             keep(&mut self.problems, problem);
         }

@@ -3,13 +3,15 @@
 //! Owns what is certain without a program; whatever a program may change is left alone. What there is in a world it asks
 //! the same [`Scene`] that a run asks, so nothing is known twice.
 
+pub(crate) mod words;
+
 use std::collections::{BTreeSet, HashSet};
 
 use super::check::{ON_SUCCESS, SCORE};
 use super::rules::{Condition, Event, Named, Operand, Path, Rules, Trigger};
 use super::scene::{Missing, Object, ObjectPoint, Scene, Unfit};
 use super::value::Value;
-use super::words;
+use super::words as said;
 use crate::limits;
 use lang_text::limits::PROBLEMS_KEPT;
 use lang_text::near::did_you_mean;
@@ -286,18 +288,18 @@ impl<'a> Lint<'a, '_> {
                 };
                 let Some(place) = self.scene.find(&region.text) else {
                     let known = self.regions(thing);
-                    let words = words::no_region(&region.text);
+                    let words = said::no_region(&region.text);
                     self.unknown(Severity::Error, region.at, &words, &region.text, &known);
                     return;
                 };
                 match self.scene.is_inside(thing, place, *point) {
                     Ok(_) => {}
                     Err(Unfit::NoRegion) => {
-                        let words = words::not_a_region(&region.text);
+                        let words = said::not_a_region(&region.text);
                         self.tell(Severity::Error, region.at, words);
                     }
                     Err(Unfit::NoPlace) => {
-                        let words = words::not_matched(&object.text);
+                        let words = said::not_matched(&object.text);
                         self.tell(Severity::Error, object.at, words);
                     }
                 }
@@ -340,7 +342,7 @@ impl<'a> Lint<'a, '_> {
                     // What is on a display is there when a program has drawn it.
                     Followed::Found(Value::Record(_)) | Followed::Later | Followed::Nowhere => {}
                     Followed::Found(value) => {
-                        let words = words::no_state(value.type_name());
+                        let words = said::no_state(value.type_name());
                         self.tell(Severity::Error, object.at, words);
                     }
                 }
@@ -358,7 +360,7 @@ impl<'a> Lint<'a, '_> {
             return;
         }
         let known: Vec<String> = self.known_properties(object);
-        let words = words::no_settable(&path.text, property);
+        let words = said::no_settable(&path.text, property);
         self.unknown(Severity::Error, path.at, &words, property, &known);
     }
 
@@ -390,13 +392,13 @@ impl<'a> Lint<'a, '_> {
                 }
                 let mut known = self.variables();
                 known.extend(self.names.iter().cloned());
-                let words = words::no_name(&path.text);
+                let words = said::no_name(&path.text);
                 self.unknown(Severity::Error, path.at, &words, name, &known);
             }
             Operand::TypeOf(name) => {
                 if self.scene.find(&name.text).is_none() && !self.scene.may_come(&name.text) {
                     let known = self.names.clone();
-                    let words = words::no_object(&name.text);
+                    let words = said::no_object(&name.text);
                     self.unknown(Severity::Warning, name.at, &words, &name.text, &known);
                 }
             }
@@ -438,7 +440,7 @@ impl<'a> Lint<'a, '_> {
             let known = self.names.clone();
             let (severity, words) = match self.scene.may_come(name) {
                 true => (Severity::Warning, words::not_yet(name)),
-                false => (Severity::Error, words::no_object(name)),
+                false => (Severity::Error, said::no_object(name)),
             };
             self.unknown(severity, at, &words, name, &known);
         }
@@ -499,7 +501,7 @@ impl<'a> Lint<'a, '_> {
         let Some((object, own)) = self.head(path) else {
             let name = &path.parts[0];
             let known = self.names.clone();
-            let words = words::no_object(name);
+            let words = said::no_object(name);
             self.unknown(Severity::Error, path.at, &words, name, &known);
             return Followed::Nowhere;
         };
@@ -529,7 +531,7 @@ impl<'a> Lint<'a, '_> {
         let name = path.parts[..end].join(".");
         let part = &path.parts[end];
         match missing {
-            Missing::Type(_) => self.tell(Severity::Error, path.at, words::no_type(&name)),
+            Missing::Type(_) => self.tell(Severity::Error, path.at, said::no_type(&name)),
             Missing::Property(_) => {
                 let mut known = Vec::new();
                 if let Value::Object(object) = before {
@@ -543,7 +545,7 @@ impl<'a> Lint<'a, '_> {
                 let names = self.names.clone();
                 let devices = names.iter().filter_map(|one| one.strip_prefix(&inside));
                 known.extend(devices.map(str::to_owned));
-                let words = words::no_property(&name, part);
+                let words = said::no_property(&name, part);
                 self.unknown(Severity::Error, path.at, &words, part, &known);
             }
         }

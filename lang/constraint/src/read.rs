@@ -12,6 +12,7 @@ use std::cmp::Reverse;
 use std::collections::HashMap;
 
 use super::expand::{self, Expanded};
+use super::lint::words as near;
 use super::rules::{Condition, Event, EventIndex, Kind, Named, Rules, Trigger};
 use super::words;
 use crate::limits;
@@ -292,7 +293,7 @@ impl Reader {
             let known = self.ids.keys().map(String::as_str);
             let is_full = self.problems.len() >= PROBLEMS_KEPT;
             let near = did_you_mean(id, known.take(if is_full { 0 } else { usize::MAX }));
-            self.warn(words::and(&words::no_event(id), &near));
+            self.warn(near::and(&words::no_event(id), &near));
         }
         Some(Named {
             id: id.into(),
@@ -323,7 +324,7 @@ impl Reader {
     fn unknown(&mut self, tag: &str, words: Words) {
         self.error(words);
         if let Some(known) = nearest(&tag.to_ascii_lowercase(), expand::LANGUAGE) {
-            self.warn(words::meant(tag, known));
+            self.warn(near::meant(tag, known));
         }
     }
 
