@@ -1,8 +1,8 @@
 //! Constraints read and checked on a world that a test writes down.
 
 mod checking;
-mod naive;
 mod explain;
+mod naive;
 mod reading;
 mod templates;
 mod values;

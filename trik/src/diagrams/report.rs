@@ -4,7 +4,7 @@
 
 use super::words;
 use crate::terminal::{harmless, named};
-use lang_diagram::blocks::{self, Row};
+use lang_diagram::blocks;
 use lang_diagram::project::{Block, Project};
 use lang_text::problem::{Locale, Problem, Severity};
 use std::cmp::Reverse;
