@@ -182,7 +182,10 @@ fn every_state_and_output_of_a_model_is_shown_after_the_place() {
     let trailer =
         "model = 'trailer', params = { L = 0.5, hitch = 0.5 }, start = { theta_trailer = 4 },
         actions = { speed = { 'd(left)', scale = 0.001 }, steer = { 'right', scale = 0.01 } }";
-    assert_eq!(format_of(trailer), ["x", "y", "theta", "theta_trailer"]);
+    assert_eq!(
+        format_of(trailer),
+        ["x", "y", "theta", "theta_trailer", "bend"]
+    );
     let mut follower = Follower::of(None, trailer, 2);
     // An angle of a circle is shown from -pi to pi.
     let angle = follower.all(&[0, 0], 0).unwrap()[3];

@@ -54,6 +54,7 @@ fn problem() -> Problem {
         actions: vec![(0.0, 1.0), (-2.0, 2.0)],
         step: 0.05,
         hold: (2, 20),
+        links: Vec::new(),
     }
 }
 

@@ -3,7 +3,7 @@
 //! Owns the reasons and their words. The blame is always the caller's: with the text, if there is a line, else with the
 //! numbers.
 
-use crate::limits::{PLAN_COORDINATE_MAX, PLAN_CORNERS_MAX, PLAN_OBSTACLES_MAX};
+use crate::limits::{PLAN_BODIES_MAX, PLAN_COORDINATE_MAX, PLAN_CORNERS_MAX, PLAN_OBSTACLES_MAX};
 use std::fmt;
 
 /// One reason.
@@ -27,6 +27,8 @@ pub enum Fault {
     NoWorkspace,
     /// So many obstacles.
     Obstacles(usize),
+    /// So many bodies of one robot.
+    Bodies(usize),
     /// More obstacles than [`PLAN_OBSTACLES_MAX`], and how many is not known.
     TooManyObstacles,
     /// More corners than [`PLAN_CORNERS_MAX`].
@@ -68,6 +70,7 @@ impl fmt::Display for Fault {
             Self::Obstacles(count) => {
                 write!(f, "{count} obstacles are more than {PLAN_OBSTACLES_MAX}")
             }
+            Self::Bodies(count) => write!(f, "{count} bodies are more than {PLAN_BODIES_MAX}"),
             Self::TooManyObstacles => write!(f, "more than {PLAN_OBSTACLES_MAX} obstacles"),
             Self::TooManyCorners => write!(f, "more than {PLAN_CORNERS_MAX} corners"),
             Self::Obstacle(number, fault) => write!(f, "obstacle {number}: {fault}"),

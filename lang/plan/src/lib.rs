@@ -9,6 +9,7 @@
 
 pub mod fault;
 pub mod limits;
+pub mod link;
 mod motion;
 pub mod nearest;
 pub mod obstacles;
@@ -22,6 +23,7 @@ pub mod tree;
 use std::fmt;
 
 pub use fault::Fault;
+pub use link::Link;
 pub use motion::Propagator;
 pub use path::Path;
 
@@ -47,6 +49,8 @@ pub struct Problem {
     pub step: f64,
     /// An action is held for so many steps, at least and at most.
     pub hold: (u32, u32),
+    /// Points whose distance stays what it is at the start.
+    pub links: Vec<Link>,
 }
 
 /// A part of the place.
@@ -310,6 +314,7 @@ fn check<S: System + ?Sized>(system: &S, problem: &Problem) -> Result<(), Refusa
             "an action is held for 1 to {PLAN_HOLD_MAX} steps, not for {least} to {most}"
         ));
     }
+    link::check(problem, parts)?;
     check_axes(problem, parts)
 }
 
@@ -391,3 +396,5 @@ fn check_options(options: &Options) -> Result<(), Refusal> {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod whole;

@@ -26,3 +26,10 @@ pub const PLAN_OBSTACLES_TEXT_MAX: usize = 128 << 20;
 pub const PLAN_COORDINATE_MAX: f64 = 1e9;
 /// Poses between two steps of a solver; a robot that moves further than so many resolutions is refused.
 pub const PLAN_SWEEP_STEPS_MAX: u32 = 100_000;
+
+/// Rigid links of a robot.
+pub const PLAN_LINKS_MAX: usize = 16;
+/// Bodies of a robot that each have a footprint.
+pub const PLAN_BODIES_MAX: usize = 64;
+/// Rounds of Newton's method in which an action is bent to keep the links.
+pub const PLAN_LINK_ROUNDS: u32 = 3;

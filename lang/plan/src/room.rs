@@ -5,7 +5,7 @@
 use super::obstacles::flat::{Point, wrapped};
 use super::obstacles::{Footprint, Obstacles, Pose};
 use super::{Fault, Problem, Surroundings};
-use crate::limits::PLAN_GOAL_TRIES;
+use crate::limits::{PLAN_BODIES_MAX, PLAN_GOAL_TRIES};
 
 /// Which parts of a place are a pose.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -29,12 +29,23 @@ impl Parts {
     }
 }
 
+/// One more body of a robot, such as a trailer or a steered block.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Body {
+    /// Where it is.
+    pub parts: Parts,
+    /// What it covers, seen from there.
+    pub footprint: Footprint,
+}
+
 /// A robot among obstacles.
 #[derive(Clone, Debug)]
 pub struct Room<'a> {
     obstacles: &'a Obstacles,
     footprint: &'a Footprint,
     parts: Parts,
+    /// Other bodies of the robot.
+    bodies: &'a [Body],
     resolution: f64,
     corners: Vec<Point>,
 }
@@ -57,25 +68,49 @@ impl<'a> Room<'a> {
             obstacles,
             footprint,
             parts,
+            bodies: &[],
             resolution,
             corners: Vec::new(),
         })
+    }
+
+    /// The same robot with more bodies: none of them may meet an obstacle.
+    ///
+    /// # Errors
+    /// There are too many.
+    pub fn with_bodies(self, bodies: &'a [Body]) -> Result<Self, Fault> {
+        if bodies.len() > PLAN_BODIES_MAX {
+            return Err(Fault::Bodies(bodies.len()));
+        }
+        Ok(Self { bodies, ..self })
     }
 }
 
 impl Surroundings for Room<'_> {
     fn allows(&mut self, place: &[f64]) -> bool {
-        let pose = self.parts.pose(place);
-        !self
-            .obstacles
-            .meets(self.footprint, pose, self.resolution / 2.0)
+        let (obstacles, margin) = (self.obstacles, self.resolution / 2.0);
+        let is_free = |footprint: &Footprint, parts: Parts| {
+            !obstacles.meets(footprint, parts.pose(place), margin)
+        };
+        is_free(self.footprint, self.parts)
+            && self
+                .bodies
+                .iter()
+                .all(|body| is_free(&body.footprint, body.parts))
     }
 
     fn allows_way(&mut self, from: &[f64], to: &[f64]) -> bool {
-        let (from, to) = (self.parts.pose(from), self.parts.pose(to));
-        !self
-            .obstacles
-            .meets_between(self.footprint, from, to, self.resolution, &mut self.corners)
+        let (obstacles, resolution) = (self.obstacles, self.resolution);
+        let corners = &mut self.corners;
+        let mut is_free = |footprint: &Footprint, parts: Parts| {
+            let (from, to) = (parts.pose(from), parts.pose(to));
+            !obstacles.meets_between(footprint, from, to, resolution, corners)
+        };
+        is_free(self.footprint, self.parts)
+            && self
+                .bodies
+                .iter()
+                .all(|body| is_free(&body.footprint, body.parts))
     }
 
     /// Looks at poses all over the goal.

@@ -3,6 +3,7 @@
 //! Owns one search. RRT keeps every place; SST keeps the best of a neighbourhood and cuts off what no longer leads
 //! anywhere (Li, Littlefield, Bekris, *Asymptotically optimal sampling-based kinodynamic planning*, 2016).
 
+use super::link::Links;
 use super::motion::Propagator;
 use super::nearest::{Key, Nearest};
 use super::random::Random;
@@ -27,6 +28,7 @@ pub(super) struct Search<'a, S: System + ?Sized, W: ?Sized> {
     /// So many places have room in memory.
     nodes: usize,
     space: Space,
+    links: Links,
     random: Random,
     tree: Tree,
     /// The points of all places that may be gone on from.
@@ -85,6 +87,7 @@ impl<'a, S: System + ?Sized, W: Surroundings + ?Sized> Search<'a, S, W> {
             propagator,
             surroundings,
             space,
+            links: Links::new(problem, root),
             random: Random::new(options.seed),
             near,
             standings: vec![Standing { key }],
@@ -215,6 +218,15 @@ impl<'a, S: System + ?Sized, W: Surroundings + ?Sized> Search<'a, S, W> {
         }
         let wanted = self.random.whole(least, most);
         self.counts.propagations += 1;
+        let place = self.tree.place(from);
+        let problem = self.problem;
+        self.links.bend(
+            &mut self.propagator,
+            problem,
+            place,
+            wanted,
+            &mut reached.action,
+        );
         reached.place.copy_from_slice(self.tree.place(from));
         reached.steps = 0;
         reached.is_in_goal = false;
@@ -225,6 +237,7 @@ impl<'a, S: System + ?Sized, W: Surroundings + ?Sized> Search<'a, S, W> {
             self.counts.steps += 1;
             self.propagator.advance(&mut next, &reached.action);
             if !space::is_inside(&self.problem.axes, &next)
+                || !self.links.hold(&next)
                 || !self.surroundings.allows_way(&reached.place, &next)
             {
                 self.counts.collisions += 1;

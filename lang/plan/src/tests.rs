@@ -100,6 +100,7 @@ fn across() -> Problem {
         actions: vec![(0.0, 1.0), (-2.0, 2.0)],
         step: 0.05,
         hold: (2, 20),
+        links: Vec::new(),
     }
 }
 
@@ -236,6 +237,7 @@ fn a_path_of_an_exact_system_is_the_same_on_every_machine() {
         actions: vec![(-1.0, 1.0)],
         step: 0.125,
         hold: (1, 8),
+        links: Vec::new(),
     };
     let outcome = plan(&mut mass, &mut Anywhere, &problem, &sst(3000), &mut |_| {
         true

@@ -159,6 +159,7 @@ fn searched(
         (limit, _) => Some(limit.unwrap_or(60.0)),
     };
     let mut room = Room::new(obstacles, &asked.footprint, asked.parts, args.resolution)
+        .and_then(|room| room.with_bodies(&asked.bodies))
         .map_err(|fault| Refusal::new(fault.to_string()))?;
     let is_watched = io::stderr().is_terminal() && !args.json;
     let mut shown = begun;

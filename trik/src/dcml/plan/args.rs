@@ -2,7 +2,7 @@
 //!
 //! Owns the options. Their forms are those of `forms`, what they do is known to `plan` and `ask`.
 
-use super::forms::{self, Footing, Given, Ranges};
+use super::forms::{self, Bodied, Footing, Given, Linked, Ranges};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -36,7 +36,8 @@ pub(crate) struct PlanArgs {
     /// States that are angles though the model does not say `in S1`; the heading is one anyway.
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub angles: Vec<String>,
-    /// Ranges of states: x=0..3,y=0..2 [default: as the model says; for x and y around start, goal and obstacles].
+    /// Ranges of states and outputs, which no step of the path leaves: x=0..3,bend=-1..1 [default: as the model says; for x
+    /// and y around start, goal and obstacles].
     #[arg(long, value_name = "NAME=LOW..HIGH,...", value_parser = forms::ranges)]
     pub bounds: Vec<Ranges>,
     /// Ranges of actions: u=-1..1 [default: as the model says].
@@ -56,6 +57,14 @@ pub(crate) struct PlanArgs {
     /// --world the robot of TRIK].
     #[arg(long, value_name = "SHAPE", value_parser = forms::footing)]
     pub footprint: Option<Footing>,
+    /// One more body of the robot, such as a trailer: X,Y,HEADING=SHAPE, names of states or outputs that say where it is, and
+    /// its area as --footprint has it. No body touches an obstacle. May be said several times.
+    #[arg(long = "body", value_name = "X,Y[,HEADING]=SHAPE", value_parser = forms::body)]
+    pub bodies: Vec<Bodied>,
+    /// A rigid link of two points that only the actions keep: X,Y,X,Y=TOLERANCE, names of states or outputs. Their distance
+    /// stays what it is at the start, as exactly as the tolerance says, after each step. May be said several times.
+    #[arg(long = "link", value_name = "X,Y,X,Y=TOLERANCE", value_parser = forms::link)]
+    pub links: Vec<Linked>,
     /// How finely paths are checked for obstacles; half of it is kept as distance from them.
     #[arg(long, value_name = "LENGTH", default_value_t = 0.01, value_parser = forms::positive)]
     pub resolution: f64,

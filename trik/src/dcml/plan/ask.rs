@@ -4,13 +4,13 @@
 
 use super::args::PlanArgs;
 use super::field::Stand;
-use super::forms::{Given, Named, Ranges};
+use super::forms::{Bodied, Given, Linked, Named, Ranges};
 use crate::refusal::Refusal;
 use lang_dcml::robot::{Part, Robot};
 use lang_dcml::syntax::Domain;
 use lang_plan::obstacles::{Footprint, Obstacles};
-use lang_plan::room::Parts;
-use lang_plan::{Axis, Goal, Problem};
+use lang_plan::room::{Body, Parts};
+use lang_plan::{Axis, Goal, Link, Problem};
 use std::f64::consts::PI;
 
 /// Radius of a robot of which nothing is said.
@@ -23,6 +23,8 @@ pub(super) struct Asked {
     pub problem: Problem,
     pub parts: Parts,
     pub footprint: Footprint,
+    /// Other bodies of the robot.
+    pub bodies: Vec<Body>,
     /// States, then outputs.
     pub names: Vec<String>,
     /// The longer side of where it is planned.
@@ -140,6 +142,7 @@ pub(super) fn ask(
              --footprint circle:RADIUS",
         ));
     }
+    let bodies = bodies(args, &names)?;
     let start = start(args, &names, parts, stands)?;
     let goal = names.table(numbers(&args.goal), "--goal")?;
     let bounds = names.table(spans(&args.bounds), "--bounds")?;
@@ -164,16 +167,48 @@ pub(super) fn ask(
         actions: actions(args, robot)?,
         step: args.step,
         hold: steps(args),
+        links: links(args, &names)?,
     };
     Ok(Asked {
         problem,
         parts,
         footprint,
+        bodies,
         names: names.all.iter().map(|part| part.name.clone()).collect(),
         size,
         area,
         goal: ([goal[parts.x], goal[parts.y]], args.goal_radius),
     })
+}
+
+fn bodies(args: &PlanArgs, names: &Names<'_>) -> Result<Vec<Body>, Refusal> {
+    let one = |body: &Bodied| {
+        let Bodied(named, footprint) = body;
+        let find = |name: &String| names.find(name, "--body");
+        let heading = named.get(2).map(find).transpose()?;
+        if heading.is_none() && !footprint.corners_at(Default::default()).is_empty() {
+            let why = "--body: a polygon turns with its body: say X,Y,HEADING=polygon:..., or take a circle";
+            return Err(Refusal::new(why));
+        }
+        let (x, y) = (find(&named[0])?, find(&named[1])?);
+        let parts = Parts { x, y, heading };
+        let footprint = footprint.clone();
+        Ok(Body { parts, footprint })
+    };
+    args.bodies.iter().map(one).collect()
+}
+
+fn links(args: &PlanArgs, names: &Names<'_>) -> Result<Vec<Link>, Refusal> {
+    let one = |link: &Linked| {
+        let Linked(named, tolerance) = link;
+        let find = |at: usize| names.find(&named[at], "--link");
+        Ok(Link {
+            from: [find(0)?, find(1)?],
+            to: [find(2)?, find(3)?],
+            tolerance: *tolerance,
+        })
+    };
+    args.links.iter().map(one).collect()
 }
 
 fn start(

@@ -20,6 +20,14 @@ pub(crate) struct Ranges(pub Vec<Named<(f64, f64)>>);
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Footing(pub Footprint);
 
+/// One more body: X, Y and perhaps HEADING, and what it covers.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Bodied(pub Vec<String>, pub Footprint);
+
+/// A rigid link: X, Y of both of its ends, and its tolerance.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Linked(pub Vec<String>, pub f64);
+
 /// Numbers beyond this are no place, angle or speed.
 const MOST: f64 = 1e9;
 
@@ -106,6 +114,38 @@ pub(crate) fn footing(text: &str) -> Result<Footing, Error> {
     footprint
         .map(Footing)
         .map_err(|why| Error::Refused(why.to_string()))
+}
+
+fn names_of(text: &str) -> Vec<String> {
+    text.split(',').map(|name| name.trim().to_owned()).collect()
+}
+
+/// `X,Y[,HEADING]=SHAPE`
+pub(crate) fn body(text: &str) -> Result<Bodied, Error> {
+    let split = text
+        .split_once('=')
+        .map(|(names, shape)| (names_of(names), shape));
+    match split {
+        Some((names, shape)) if matches!(names.len(), 2 | 3) => {
+            Ok(Bodied(names, footing(shape)?.0))
+        }
+        _ => Err(Error::Refused(format!(
+            "{text:?} is no body: write X,Y,HEADING=SHAPE with names of states or outputs"
+        ))),
+    }
+}
+
+/// `X,Y,X,Y=TOLERANCE`
+pub(crate) fn link(text: &str) -> Result<Linked, Error> {
+    let split = text
+        .split_once('=')
+        .map(|(names, rest)| (names_of(names), rest));
+    match split {
+        Some((names, tolerance)) if names.len() == 4 => Ok(Linked(names, positive(tolerance)?)),
+        _ => Err(Error::Refused(format!(
+            "{text:?} is no link: write X,Y,X,Y=TOLERANCE with names of states or outputs"
+        ))),
+    }
 }
 
 #[cfg(test)]

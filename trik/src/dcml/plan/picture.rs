@@ -146,12 +146,15 @@ fn branches(svg: &mut Svg, plane: &Plane, robot: &mut Robot, asked: &Asked, outc
 
 fn path(svg: &mut Svg, plane: &Plane, robot: &mut Robot, asked: &Asked, outcome: &Outcome) {
     let mut draw_robot = |place: &[f64], style: &Style| {
-        let pose = asked.parts.pose(place);
-        let corners = asked.footprint.corners_at(pose);
-        if corners.is_empty() {
-            plane.circle(svg, pose.at, asked.footprint.reach(), style);
-        } else {
-            plane.polygon(svg, &corners, style);
+        let others = asked.bodies.iter().map(|one| (&one.footprint, one.parts));
+        for (footprint, parts) in others.chain([(&asked.footprint, asked.parts)]) {
+            let pose = parts.pose(place);
+            let corners = footprint.corners_at(pose);
+            if corners.is_empty() {
+                plane.circle(svg, pose.at, footprint.reach(), style);
+            } else {
+                plane.polygon(svg, &corners, style);
+            }
         }
     };
     let Some(path) = &outcome.path else {
