@@ -6,6 +6,7 @@
 //! Exit codes: 0 done, 1 refused or failed, 2 a file that cannot be read, or a command line that was not understood.
 
 mod doc;
+mod drive;
 mod fmt;
 mod generate;
 mod lint;
@@ -49,6 +50,17 @@ pub(crate) enum Dcml {
     ///
     /// Exit status: 0 a path was found; 1 none, and what was reached is told; 2 it could not be searched.
     Plan(Box<plan::args::PlanArgs>),
+    /// Drive a robot along a planned path.
+    ///
+    /// Gives the actions of a path of `trik dcml plan -o` to the motors and servos of a robot, through its tree: the virtual
+    /// robot that runs here, or the real one on the controller. Encoders of motors keep each wheel at its place on the path.
+    /// Before anything moves, a path that a motor or servo cannot do is refused. Motors are stopped at the end, on Ctrl-C
+    /// and other signals, after any error, and if a wheel stays behind. Where the robot stands when it begins is taken to be
+    /// the start of the path, and obstacles are not looked at.
+    ///
+    /// Exit status: 0 the end is reached; 1 refused, failed or stopped, and why is told; 2 a file cannot be read, or the
+    /// command line was not understood.
+    Drive(Box<drive::DriveArgs>),
     /// Serve an editor: errors as you type, documentation, completion, rename and more.
     ///
     /// Speaks the Language Server Protocol on standard input and output, so an editor starts it. Exit status: 0 the editor
@@ -80,6 +92,7 @@ pub(crate) fn run(command: &Dcml) -> Result<u8, Refusal> {
         Dcml::Fmt(args) => fmt::run(args),
         Dcml::Doc(args) => doc::run(args),
         Dcml::Plan(args) => plan::run(args),
+        Dcml::Drive(args) => drive::run(args),
         Dcml::Lsp => Ok(lsp::serve()),
         Dcml::Sim(args) => sim::run(args),
         Dcml::Models(args) => models::run(args),

@@ -130,3 +130,18 @@ pub(crate) const DCML_ROWS_MAX: usize = 1_000_000;
 pub(crate) const DCML_ACTIONS_BYTES_MAX: u64 = 64 << 20;
 /// Panels of the picture of a simulation.
 pub(crate) const DCML_PANELS_MAX: usize = 40;
+
+/// How often a drive looks at encoders and writes to motors.
+pub(crate) const DRIVE_TICK_MS: u64 = 20;
+/// Servos have so long before a drive begins, and wheels twice as long after its end.
+pub(crate) const DRIVE_SETTLE_MS: u64 = 300;
+/// Degrees per second of a motor of TRIK at full power and 12 V.
+pub(crate) const DRIVE_TOP_DEG_S: f64 = 1200.0;
+/// A wheel that is farther away from its path ends a drive.
+pub(crate) const DRIVE_LAG_DEG: f64 = 180.0;
+/// A wheel that is so near to the end of its path has arrived.
+pub(crate) const DRIVE_NEAR_DEG: f64 = 2.0;
+/// Percent of power for each degree that a wheel is behind.
+pub(crate) const DRIVE_GAIN: f64 = 0.5;
+/// Servos turn so far to each side.
+pub(crate) const DRIVE_SERVO_DEG: f64 = 90.0;

@@ -60,6 +60,7 @@ fn every_transcript_of_a_robot_is_what_really_happens() {
         "docs/user/trik.md",
         "docs/user/ev3dev.md",
         "docs/user/run.md",
+        "docs/user/drive.md",
     ] {
         let Ok(text) = std::fs::read_to_string(root.join(document)) else {
             continue;

@@ -7,6 +7,7 @@ mod check;
 /// Models of robots: what their document shows, files and exit codes.
 mod dcml;
 /// Paths of robots that are models.
+mod dcml_drive;
 mod dcml_gen;
 mod dcml_plan;
 /// `trik dcml sim`: models under actions.

@@ -123,7 +123,8 @@ fn formulas(text: &str, names: &[&str]) -> Result<Formulas, Refusal> {
     })
 }
 
-fn read(path: &str) -> Result<String, Refusal> {
+/// The text of a table.
+pub(in crate::dcml) fn read(path: &str) -> Result<String, Refusal> {
     let unreadable = |why: String| Refusal {
         lines: vec![format!("trik: {path}: {why}")],
         code: UNREADABLE,
@@ -146,7 +147,11 @@ fn read(path: &str) -> Result<String, Refusal> {
 }
 
 /// Times and lines of actions in the order of the names; else `LINE:COLUMN` and what is wrong there.
-fn table_of(text: &str, names: &[&str], others: &[&str]) -> Result<Rows, (String, String)> {
+pub(in crate::dcml) fn table_of(
+    text: &str,
+    names: &[&str],
+    others: &[&str],
+) -> Result<Rows, (String, String)> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut lines = (1..)
         .zip(text.lines())
@@ -216,7 +221,8 @@ fn table_of(text: &str, names: &[&str], others: &[&str]) -> Result<Rows, (String
     Ok((times, rows))
 }
 
-type Rows = (Vec<f64>, Vec<Vec<f64>>);
+/// Times, and a line of numbers for each.
+pub(in crate::dcml) type Rows = (Vec<f64>, Vec<Vec<f64>>);
 
 /// What a column is.
 #[derive(Clone, Copy, PartialEq)]
