@@ -11,7 +11,7 @@ pub const TEMPLATE_TEXT_MAX: usize = 4 << 20;
 /// How deep templates may use templates.
 pub const TEMPLATE_DEPTH_MAX: usize = 32;
 /// Names that are compared with one that is nobody's, to find what was meant.
-pub const NAMES_COMPARED: usize = 2_000;
+pub const NAMES_COMPARED: usize = 500;
 /// A limit of time below this, in ms, was meant in seconds: no robot does anything in it.
 pub const TIME_LIMIT_SHORT_MS: u32 = 100;
 /// Entries of one report that are no verdict.

@@ -292,7 +292,10 @@ impl Reader {
             // Looking for a near name takes time, and more problems are kept no longer.
             let known = self.ids.keys().map(String::as_str);
             let is_full = self.problems.len() >= PROBLEMS_KEPT;
-            let near = did_you_mean(id, known.take(if is_full { 0 } else { usize::MAX }));
+            let near = did_you_mean(
+                id,
+                known.take(if is_full { 0 } else { limits::NAMES_COMPARED }),
+            );
             self.warn(near::and(&words::no_event(id), &near));
         }
         Some(Named {

@@ -78,7 +78,7 @@ pub struct Place {
     pub property: Option<String>,
     /// The place in the text of the property or the file.
     pub position: Option<Position>,
-    /// Bytes of the file before that place, where whoever told it does not have the text: [`Problem::locate`].
+    /// Bytes of the file before that place, where whoever told it does not have the text: [`locate`].
     pub offset: Option<u32>,
 }
 
@@ -126,14 +126,6 @@ impl Problem {
         }
     }
 
-    /// Says line and column, of the text in which it was found.
-    pub fn locate(&mut self, text: &str) {
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        if let (None, Some(at)) = (self.place.position, self.place.offset) {
-            self.place.position = Some(position(text, at as usize));
-        }
-    }
-
     /// The problem in one line: place, severity, words.
     pub fn in_locale(&self, locale: Locale) -> String {
         let place = &self.place;
@@ -155,6 +147,26 @@ impl Problem {
         }
         line.push_str(self.words.in_locale(locale));
         line
+    }
+}
+
+/// Says lines and columns of problems that have offsets, in one walk through their text.
+pub fn locate(problems: &mut [Problem], text: &str) {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let is_open = |one: &&mut Problem| one.place.position.is_none() && one.place.offset.is_some();
+    let mut open: Vec<&mut Problem> = problems.iter_mut().filter(is_open).collect();
+    open.sort_by_key(|problem| problem.place.offset);
+    let mut chars = text.char_indices().peekable();
+    let (mut line, mut column) = (1u32, 1u32);
+    for problem in open {
+        let to = problem.place.offset.unwrap_or_default() as usize;
+        while let Some((_, c)) = chars.next_if(|(at, _)| *at < to) {
+            (line, column) = match c {
+                '\n' => (line.saturating_add(1), 1),
+                _ => (line, column.saturating_add(1)),
+            };
+        }
+        problem.place.position = Some(Position { line, column });
     }
 }
 

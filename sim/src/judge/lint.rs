@@ -11,7 +11,7 @@ use super::{Settings, scene};
 use crate::arena::{Arena, Setup};
 use crate::field::{Field, KINDS, Kind, Sensor, SensorKind};
 use lang_text::near::{did_you_mean, nearest};
-use lang_text::problem::{Problem, Severity, Words, keep};
+use lang_text::problem::{Problem, Severity, Words, keep, locate};
 use lang_text::xml::{self, Element, Start};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -35,9 +35,7 @@ pub fn lint(texts: Texts<'_>) -> Vec<Problem> {
             tags(root, "", &mut problems);
         }
     }
-    for problem in &mut problems {
-        problem.locate(texts.world);
-    }
+    locate(&mut problems, texts.world);
     problems.sort_by_key(|problem| problem.place.position);
     problems.dedup();
     problems
