@@ -15,6 +15,7 @@ pub mod lsp;
 mod models;
 mod plan;
 mod report;
+mod rows;
 mod sim;
 mod source;
 mod values;

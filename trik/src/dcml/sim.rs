@@ -3,7 +3,7 @@
 //! Owns the way from the command line to a solution and what is kept of it. Solutions are made in `lang`; where actions
 //! come from is known to `sim/actions`, the picture to `sim/plot`.
 
-pub(in crate::dcml) mod actions;
+mod actions;
 pub(crate) mod args;
 mod plot;
 mod table;

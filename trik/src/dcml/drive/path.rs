@@ -1,9 +1,9 @@
 //! A planned path as a drive needs it: which action holds when, how much of each is done until then, and where it ends.
 //!
-//! Owns what a path must be. The form of its table is known to `sim/actions`.
+//! Owns what a path must be. The form of its table is known to `rows`.
 
+use super::super::rows::{read, table_of};
 use super::port::Driven;
-use crate::dcml::sim::actions::{read, table_of};
 use crate::refusal::Refusal;
 use lang_dcml::robot::{Part, Robot};
 use std::path::Path;
