@@ -45,6 +45,28 @@ fn along(robot: &mut Robot, path: &Path, mut look: impl FnMut(&[f64])) -> u64 {
     looks
 }
 
+/// From one end of the yard to the other, with a bound for the output `bend`.
+fn yard(bend: f64) -> Problem {
+    Problem {
+        start: vec![0.7, 0.4, 0.0, 0.0],
+        axes: vec![
+            axis(0, 0.0, 4.5, 1.0),
+            axis(1, 0.0, 2.2, 1.0),
+            axis(2, -PI, PI, 0.2),
+            axis(3, -PI, PI, 0.1),
+            axis(4, -bend, bend, 0.0),
+        ],
+        goal: vec![Goal {
+            wanted: vec![(0, 3.8), (1, 1.6)],
+            tolerance: 0.25,
+        }],
+        actions: vec![(-0.4, 0.5), (-0.6, 0.6)],
+        step: 0.05,
+        hold: (2, 20),
+        links: Vec::new(),
+    }
+}
+
 #[test]
 fn a_trailer_in_a_narrow_place_touches_nothing_and_does_not_jack_knife() {
     // Two walls with gaps at opposite ends: an S of which each bend is too narrow for a straight way.
@@ -70,24 +92,7 @@ fn a_trailer_in_a_narrow_place_touches_nothing_and_does_not_jack_knife() {
         },
         footprint: rectangle(-0.45, -0.15, 0.12),
     }];
-    let problem = Problem {
-        start: vec![0.7, 0.4, 0.0, 0.0],
-        axes: vec![
-            axis(0, 0.0, 4.5, 1.0),
-            axis(1, 0.0, 2.2, 1.0),
-            axis(2, -PI, PI, 0.2),
-            axis(3, -PI, PI, 0.1),
-            axis(4, -bend, bend, 0.0),
-        ],
-        goal: vec![Goal {
-            wanted: vec![(0, 3.8), (1, 1.6)],
-            tolerance: 0.25,
-        }],
-        actions: vec![(-0.4, 0.5), (-0.6, 0.6)],
-        step: 0.05,
-        hold: (2, 20),
-        links: Vec::new(),
-    };
+    let problem = yard(bend);
     let free = |place: &[f64]| {
         !obstacles.meets(&car, parts.pose(place), 0.0)
             && !obstacles.meets(&bodies[0].footprint, bodies[0].parts.pose(place), 0.0)
