@@ -135,10 +135,10 @@ impl Naive<'_> {
             }
             (None, Some(_) | None) => Plain::Null,
         };
-        match found {
-            Plain::Null => self.complain(),
-            value => value,
+        if found == Plain::Null {
+            return self.complain();
         }
+        found
     }
 
     fn value(&mut self, val: &Val) -> Plain {
@@ -290,7 +290,7 @@ impl Naive<'_> {
         let value = match &self.variables["total_score"] {
             Plain::Null => "null".to_owned(),
             Plain::Text(text) => format!("\"{text}\""),
-            other => text(other),
+            other @ (Plain::Bool(_) | Plain::Int(_) | Plain::Double(_)) => text(other),
         };
         let words = format!(r#"{{"variables":[{{"name":"total_score","value":{value}}}]}}"#);
         self.said.push((Level::Variables, self.now, words));

@@ -69,42 +69,43 @@ type Case = (
     &'static str,
 );
 
+const CASES: [Case; 3] = [
+    (
+        "differential-drive",
+        "robotics.models.DifferentialDrive",
+        &[0.4, 0.1],
+        &[0.5, -0.5, 1.0],
+        &[1.0, 3.0],
+        "there is no action wings; there are u_l, u_r\nstate has 0 numbers, not 3",
+    ),
+    (
+        "bart",
+        "robotics.models.Bart",
+        &[0.1, 0.05, 0.03],
+        &[1.0, 1.0, 0.25, 0.0, 0.0, -0.5],
+        &[3.0, 1.0, 2.0, 2.5],
+        "there is no action wings; there are left_f_s, right_f_s, left_r_s, right_r_s\nstate has 0 numbers, not 6",
+    ),
+    (
+        "bicycle",
+        "robotics.models.Bicycle",
+        &[0.3],
+        &[0.0, 0.0, 3.0],
+        &[0.5, 0.4],
+        "there is no action wings; there are speed, steer\nstate has 0 numbers, not 3",
+    ),
+];
+
 #[test]
 fn one_simulator_drives_all_models() {
     if !needs::tool("javac") || !has_file(COMMONS_MATH) {
         return;
     }
-    let cases: [Case; 3] = [
-        (
-            "differential-drive",
-            "robotics.models.DifferentialDrive",
-            &[0.4, 0.1],
-            &[0.5, -0.5, 1.0],
-            &[1.0, 3.0],
-            "there is no action wings; there are u_l, u_r\nstate has 0 numbers, not 3",
-        ),
-        (
-            "bart",
-            "robotics.models.Bart",
-            &[0.1, 0.05, 0.03],
-            &[1.0, 1.0, 0.25, 0.0, 0.0, -0.5],
-            &[3.0, 1.0, 2.0, 2.5],
-            "there is no action wings; there are left_f_s, right_f_s, left_r_s, right_r_s\nstate has 0 numbers, not 6",
-        ),
-        (
-            "bicycle",
-            "robotics.models.Bicycle",
-            &[0.3],
-            &[0.0, 0.0, 3.0],
-            &[0.5, 0.4],
-            "there is no action wings; there are speed, steer\nstate has 0 numbers, not 3",
-        ),
-    ];
     let folder = scratch("dcml-java-simulator");
     std::fs::create_dir(folder.join("src")).unwrap();
     write_interface(&folder);
     std::fs::write(folder.join("src/Simulator.java"), SIMULATOR).unwrap();
-    let models = cases.map(|(name, class, ..)| {
+    let models = CASES.map(|(name, class, ..)| {
         let text = lang_dcml::models::named(name).unwrap().text;
         let model = lang_dcml::understand(text).models.remove(0);
         let source = generate(&model, Target::Java, &Options::default()).unwrap();
@@ -113,7 +114,7 @@ fn one_simulator_drives_all_models() {
         model
     });
     compile_java(&folder);
-    for (model, (_, class, params, state, action, refused)) in models.iter().zip(cases) {
+    for (model, (_, class, params, state, action, refused)) in models.iter().zip(CASES) {
         let mut robot = Robot::new(model, params).unwrap();
         let mut given = Vec::new();
         let params = model
