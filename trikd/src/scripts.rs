@@ -387,7 +387,7 @@ mod tests {
         );
         assert!(
             !scratch.path().join("outside/new").exists(),
-            "no folder is made behind a link"
+            "no folder is made through a link"
         );
         std::os::unix::fs::symlink(scratch.path().join("outside/x.js"), folder.join("x.js"))
             .unwrap();

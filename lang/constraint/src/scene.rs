@@ -55,7 +55,7 @@ pub trait Scene {
     fn type_of(&mut self, object: Object) -> Option<&'static str>;
 
     /// What stands at the end of a chain of properties of an object; the chain is not empty. A scene knows its own
-    /// properties and leaves what stands behind them to [`Value::descend`].
+    /// properties and leaves what follows them to [`Value::descend`].
     ///
     /// # Errors
     /// [`Missing`], with the index of the link that has no value.

@@ -188,7 +188,7 @@ impl<'a, 'f> Checker<'a, 'f> {
                     Code::MissingValue,
                     one.name.span,
                     message,
-                    "`= NUMBER` expected behind it",
+                    "`= NUMBER` expected after it",
                 )
                 .hint("what is known only later is a `PARAM`")
             }

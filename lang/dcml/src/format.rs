@@ -2,7 +2,7 @@
 //!
 //! Owns the layout. A text that cannot be read is not touched; what is wrong with its meaning is no hindrance. Formatting
 //! what is formatted changes nothing, because the layout follows from the tokens, blank lines, and whether a comment
-//! stands behind something or alone, all of which it keeps.
+//! stands after something or alone, all of which it keeps.
 
 mod equation;
 

@@ -211,12 +211,12 @@ impl<'a> Parser<'a, '_> {
             TokenKind::Word | TokenKind::ForeignWord => {
                 let text = self.word().to_owned();
                 let span = self.bump().span;
-                // A semicolon behind the name is a common slip, and harmless.
+                // A semicolon after the name is a common slip, and harmless.
                 if let Some(span) = self.take(TokenKind::Semicolon) {
                     let found = Diagnostic::new(
                         Code::Unexpected,
                         span,
-                        "no `;` stands behind `BEGIN Name`",
+                        "no `;` stands after `BEGIN Name`",
                         "remove it",
                     );
                     self.report(found);
@@ -228,7 +228,7 @@ impl<'a> Parser<'a, '_> {
                     Code::Unexpected,
                     begin,
                     "this model has no name",
-                    "a name expected behind it",
+                    "a name expected after it",
                 )
                 .hint("write `BEGIN Name`");
                 self.report(found);
@@ -253,7 +253,7 @@ impl<'a> Parser<'a, '_> {
             let found = Diagnostic::new(
                 Code::Unexpected,
                 span,
-                "no name stands behind `END`",
+                "no name stands after `END`",
                 "remove it",
             );
             self.report(found.hint("a model ends with `END;`"));
@@ -262,7 +262,7 @@ impl<'a> Parser<'a, '_> {
         let found = Diagnostic::new(
             Code::MissingSemicolon,
             end,
-            "`;` is missing behind `END`",
+            "`;` is missing after `END`",
             "no `;` here",
         );
         self.report(found.hint("a model ends with `END;`"));

@@ -149,7 +149,7 @@ impl Tree {
         }
     }
 
-    /// Whether nothing that stands behind it is reached.
+    /// Whether nothing that follows it is reached.
     pub fn leaves(&self) -> bool {
         match self {
             Self::Break(_) | Self::Continue(_) | Self::End(_) | Self::Goto(_) => true,

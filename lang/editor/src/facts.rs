@@ -49,7 +49,7 @@ pub(super) const fn function(function: Function) -> &'static str {
 /// How `piecewise` is called.
 pub(super) const PIECEWISE: &str = "piecewise(condition, value, ..., otherwise)";
 /// What it gives.
-pub(super) const PIECEWISE_MEANS: &str = "The value behind the first condition that holds, or else the last one. A condition compares two values with `<`, `<=`, `>` or `>=`. An extension of the language.";
+pub(super) const PIECEWISE_MEANS: &str = "The value after the first condition that holds, or else the last one. A condition compares two values with `<`, `<=`, `>` or `>=`. An extension of the language.";
 /// What `d(x)` is.
 pub(super) const DERIVATIVE: &str = "How fast a part of the configuration changes: its derivative with respect to time. What has such an equation is a state.";
 /// What `S1` is.

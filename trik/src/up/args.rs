@@ -109,7 +109,7 @@ fn number_of(text: &str) -> Result<(String, f64), String> {
         .parse()
         .ok()
         .filter(|one: &f64| one.is_finite());
-    let number = number.ok_or_else(|| format!("'{text}': a number belongs behind ="))?;
+    let number = number.ok_or_else(|| format!("'{text}': a number belongs after ="))?;
     Ok((name.trim().to_owned(), number))
 }
 

@@ -108,7 +108,7 @@ fn owner(place: Place<'_>, name: &str) -> Option<String> {
     (begin < found).then(|| line[begin..found].iter().collect())
 }
 
-/// What was called: the name at the place, with what stands before it. The other is whether it stands behind `new`.
+/// What was called: the name at the place, with what stands before it. The other is whether it follows `new`.
 fn callee(place: Place<'_>) -> Option<(String, bool)> {
     let line: Vec<char> = place.line.chars().collect();
     // In its first line the engine counts from 0.

@@ -187,7 +187,7 @@ impl<'a> Parser<'a, '_> {
             let found = Diagnostic::new(
                 Code::MissingSemicolon,
                 span,
-                "`;` is missing behind this",
+                "`;` is missing after this",
                 "no `;` here",
             );
             self.report(found.hint("end each statement with `;`"));

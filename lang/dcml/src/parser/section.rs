@@ -132,11 +132,11 @@ impl Parser<'_, '_> {
             let found = Diagnostic::new(
                 Code::MissingComma,
                 span,
-                "`,` is missing behind this",
+                "`,` is missing after this",
                 "no `,` here",
             );
             self.report(
-                found.hint("put a comma between names, and a semicolon behind the last one"),
+                found.hint("put a comma between names, and a semicolon after the last one"),
             );
             return Some(Next::Name);
         }
@@ -145,7 +145,7 @@ impl Parser<'_, '_> {
             let found = Diagnostic::new(
                 Code::MissingSemicolon,
                 span,
-                "`;` is missing behind this",
+                "`;` is missing after this",
                 "no `;` here",
             );
             self.report(found.hint("end each section with `;`"));
@@ -235,7 +235,7 @@ impl Parser<'_, '_> {
         if self.kind() != TokenKind::Word || self.word() != "in" {
             return true;
         }
-        // A name that is `in` and lacks its comma would have a comma or semicolon behind it.
+        // A name that is `in` and lacks its comma would have a comma or semicolon after it.
         if matches!(self.kind_after(1), TokenKind::Comma | TokenKind::Semicolon) {
             return true;
         }

@@ -160,7 +160,7 @@ impl Emitter<'_> {
         None
     }
 
-    /// Writes a loop; gives what stands behind it.
+    /// Writes a loop; gives what follows it.
     fn looped(
         &mut self,
         head: usize,
@@ -262,7 +262,7 @@ impl Emitter<'_> {
         Some(Some(*last))
     }
 
-    /// Writes one node and its branches; gives what stands behind it.
+    /// Writes one node and its branches; gives what follows it.
     fn place(
         &mut self,
         node: usize,

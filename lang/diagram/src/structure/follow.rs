@@ -1,4 +1,4 @@
-//! What stands behind a loop.
+//! What follows a loop.
 //!
 //! Owns the choice among the places that a loop is left to: the others are written inside of it, before a break.
 

@@ -393,7 +393,7 @@ fn actions(args: &PlanArgs, robot: &Robot) -> Result<Vec<(f64, f64)>, Refusal> {
         Ok(ranges.into_iter().flatten().collect())
     } else {
         Err(Refusal::new(format!(
-            "actions have no range: say --actions {}, or write `in LOW .. HIGH` behind their names in the model",
+            "actions have no range: say --actions {}, or write `in LOW .. HIGH` after their names in the model",
             missing.join(",")
         )))
     }
