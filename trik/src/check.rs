@@ -29,6 +29,7 @@ use grades::Grades;
 use jobs::Job;
 use lang_text::problem::Locale;
 use platform::Platform;
+pub(crate) use platform::of_misuse;
 use row::{Row, Widths};
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};

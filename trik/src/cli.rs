@@ -3,7 +3,7 @@
 //! Owns the words, the help and the exit codes: 0 done, 1 refused or failed, 2 not understood, or a robot that could not
 //! be reached.
 
-use crate::check::{self, original};
+use crate::check::{self, of_misuse, original};
 use crate::dcml::{self, Dcml};
 use crate::output::standard;
 use crate::refusal::{Refusal, end};
@@ -169,7 +169,8 @@ pub fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => {
             let _ = error.print();
-            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
+            let code = u8::try_from(error.exit_code()).unwrap_or(2);
+            return ExitCode::from(of_misuse(code, std::env::args_os()));
         }
     };
     end(run(cli.command))

@@ -131,6 +131,8 @@ pub(crate) const DCML_ACTIONS_BYTES_MAX: u64 = 64 << 20;
 /// Panels of the picture of a simulation.
 pub(crate) const DCML_PANELS_MAX: usize = 40;
 
+/// Seconds that a drive takes at most: an hour.
+pub(crate) const DRIVE_LONGEST_S: f64 = 3600.0;
 /// How often a drive looks at encoders and writes to motors.
 pub(crate) const DRIVE_TICK_MS: u64 = 20;
 /// Servos have so long before a drive begins, and wheels twice as long after its end.
@@ -145,3 +147,5 @@ pub(crate) const DRIVE_NEAR_DEG: f64 = 2.0;
 pub(crate) const DRIVE_GAIN: f64 = 0.5;
 /// Servos turn so far to each side.
 pub(crate) const DRIVE_SERVO_DEG: f64 = 90.0;
+/// The weight of a task in the sum of a class, to either side of 0.
+pub(crate) const WEIGHT_MAX: f64 = 1e6;

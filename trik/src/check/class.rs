@@ -11,6 +11,7 @@ use crate::limits;
 use crate::terminal::named;
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::ffi::{OsStr, OsString};
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 /// A class, before it is judged.
@@ -140,7 +141,20 @@ fn stem_of(world: Option<&Path>, args: &CheckArgs) -> String {
 
 fn stem(path: &Path) -> String {
     let stem = path.file_stem().unwrap_or(path.as_os_str());
-    stem.to_string_lossy().into_owned()
+    shown(stem)
+}
+
+/// A name of a file as a text. Bytes that are no UTF-8, as those of a zip from Windows, are shown by their numbers: two
+/// pupils stay two.
+fn shown(name: &OsStr) -> String {
+    let mut text = String::new();
+    for chunk in name.as_encoded_bytes().utf8_chunks() {
+        text.push_str(chunk.valid());
+        for byte in chunk.invalid() {
+            let _ = write!(text, "\\x{byte:02X}");
+        }
+    }
+    text
 }
 
 impl Plan {
@@ -213,11 +227,7 @@ fn tasks(folder: &Path, args: &CheckArgs, notes: &mut Vec<String>) -> Result<Vec
         let ending = path.extension().and_then(OsStr::to_str);
         let is_folder = path.is_dir();
         let name = match is_folder {
-            true => path
-                .file_name()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .into(),
+            true => shown(path.file_name().unwrap_or_default()),
             false => stem(&path),
         };
         let worlds: Vec<Option<PathBuf>> = match ending {
@@ -289,7 +299,7 @@ fn found(args: &CheckArgs, tasks: Option<&[Task]>) -> Result<Vec<Found>, Error> 
             };
             let parts = name.with_extension("");
             let parts = parts.components();
-            let parts = parts.map(|part| part.as_os_str().to_string_lossy().into_owned());
+            let parts = parts.map(|part| shown(part.as_os_str()));
             all.push(Found {
                 path: solution,
                 parts: parts.collect(),
@@ -323,9 +333,7 @@ fn empty_folders(args: &CheckArgs, found: &[Found], tasks: &[Task]) -> Result<Ve
         }
     }
     let firsts: HashSet<&String> = found.iter().filter_map(|one| one.parts.first()).collect();
-    let names = folders
-        .iter()
-        .map(|name| name.to_string_lossy().into_owned());
+    let names = folders.iter().map(|name| shown(name));
     let names = names.filter(|name| !name.starts_with('.') && !firsts.contains(name));
     let is_task = |name: &String| {
         let name = name.to_lowercase();
@@ -419,6 +427,27 @@ mod tests {
             }
         };
         paths.iter().map(one).collect()
+    }
+
+    #[test]
+    fn names_of_other_encodings_stay_different() {
+        use std::os::unix::ffi::OsStrExt;
+        let names = [
+            &b"\xC0\xED\xED\xE0"[..],
+            b"\xC2\xE5\xF0\xE0",
+            b"a\xFFb",
+            "\u{410}".as_bytes(),
+        ];
+        let shown = names.map(|name| shown(OsStr::from_bytes(name)));
+        assert_eq!(
+            shown,
+            [
+                "\\xC0\\xED\\xED\\xE0",
+                "\\xC2\\xE5\\xF0\\xE0",
+                "a\\xFFb",
+                "\u{410}"
+            ]
+        );
     }
 
     fn task(name: &str) -> Task {

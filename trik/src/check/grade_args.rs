@@ -2,6 +2,7 @@
 //!
 //! Owns these options, which forms a table has, and where points can come from. Knows nothing of what they do.
 
+use crate::limits::WEIGHT_MAX;
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
 
@@ -96,7 +97,11 @@ fn finite(text: &str) -> Result<f64, String> {
 fn weight(text: &str) -> Result<(String, f64), String> {
     let wrong = || "not TASK=NUMBER or TASK/FIELD=NUMBER".to_owned();
     let (name, number) = text.rsplit_once('=').ok_or_else(wrong)?;
-    Ok((name.trim().to_owned(), finite(number.trim())?))
+    let number = finite(number.trim())?;
+    if number.abs() > WEIGHT_MAX {
+        return Err(format!("a weight is {WEIGHT_MAX} at most"));
+    }
+    Ok((name.trim().to_owned(), number))
 }
 
 impl GradeArgs {
@@ -120,7 +125,7 @@ mod tests {
     fn options_that_mean_nothing_are_refused() {
         assert_eq!(weight("a=b=2"), Ok(("a=b".into(), 2.0)));
         assert_eq!(weight("maze/far=0.5"), Ok(("maze/far".into(), 0.5)));
-        for text in ["maze", "maze=", "maze=NaN", "maze=inf", "=x"] {
+        for text in ["maze", "maze=", "maze=NaN", "maze=inf", "maze=1e308", "=x"] {
             assert!(weight(text).is_err(), "{text}");
         }
         assert!(form("a.xlsx").is_err() && form("csv").is_err() && form("A.CSV").is_ok());

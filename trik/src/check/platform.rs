@@ -9,6 +9,7 @@ use crate::terminal::harmless;
 use clap::ValueEnum;
 use lang_text::problem::Locale;
 use serde_json::json;
+use std::ffi::OsString;
 
 /// A platform.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -18,6 +19,18 @@ pub(crate) enum Platform {
     YandexContest,
     /// A line of JSON with the score from 0 to 1 and a text, for the function check of a code challenge.
     Stepik,
+}
+
+/// The exit code of a command line that is not understood. A checker with codes of testlib has failed then: the 2 that
+/// other commands give would blame the pupil.
+pub(crate) fn of_misuse(code: u8, mut words: impl Iterator<Item = OsString>) -> u8 {
+    let contest = "yandex-contest";
+    let is_for = words.any(|word| word == contest || word == *format!("--for={contest}"));
+    if is_for && code != 0 {
+        testlib(Verdict::NotRun).0
+    } else {
+        code
+    }
 }
 
 /// What a platform is told.

@@ -130,6 +130,18 @@ fn what_no_motor_can_do_is_refused_before_anything_moves() {
             &[],
             "at 1 s u_l on M3 would need 1719 degrees per second, and 1200",
         ),
+        // The last line, too.
+        (
+            "t,u_l,u_r\n0,1,1\n1,30,0\n",
+            &[],
+            "at 1 s u_l on M3 would need 1719 degrees per second, and 1200",
+        ),
+        (
+            "t,u_l,u_r\n0,1,1\n1e300,0,0\n",
+            &[],
+            "a drive takes 3600 s at most",
+        ),
+        ("t,u_l,u_r\n-1e308,1,1\n1e308,0,0\n", &[], "it takes inf s"),
         ("t,u_l\n0,1\n1,0\n", &[], "u_r"),
         ("t,u_l,u_r\n0,1,1\n", &[], "one line is no path"),
         ("", &[], "the table is empty"),
@@ -159,4 +171,24 @@ fn what_no_motor_can_do_is_refused_before_anything_moves() {
     }
     stands(&robot);
     assert!(robot.pose().away_from(&begun) < 1e-6);
+}
+
+#[test]
+fn two_actions_on_one_motor_are_refused() {
+    let Some(robot) = robot(&[]) else { return };
+    robot.home.0.file("path.csv", "t,u_l,u_r\n0,1,1\n1,0,0\n");
+    let same: Vec<&str> = words(&[])
+        .into_iter()
+        .map(|word| {
+            word.strip_suffix("u_r=M4")
+                .map_or(word, |_| "u_l=M3,u_r=M3")
+        })
+        .collect();
+    let output = robot.home.run(&same);
+    assert!(
+        output.code() > 0 && output.stderr.contains("u_r on M3 would drive the same one"),
+        "{same:?}: {}",
+        output.stderr
+    );
+    stands(&robot);
 }

@@ -111,8 +111,7 @@ fn points(out: &mut String, grades: &Grades) {
         }
         sum(out, grades, pupil);
         if let Some(passed) = grades.has_passed(pupil) {
-            let style = if passed { "good" } else { "wrong" };
-            text(out, words::yes_or_no(passed, grades.locale), style);
+            mark(out, grades, pupil, passed);
         }
         out.push_str("</table:table-row>");
     }
@@ -133,6 +132,23 @@ fn sum(out: &mut String, grades: &Grades, pupil: usize) {
     let _ = write!(
         out,
         "<table:table-cell office:value-type=\"float\" office:value=\"{value}\"{formula}><text:p>{value}</text:p>\
+         </table:table-cell>"
+    );
+}
+
+/// Whether a sum reaches the mark in the second row; it follows both, so it has no colour of its own.
+fn mark(out: &mut String, grades: &Grades, pupil: usize, passed: bool) {
+    let (row, sum, mark) = (
+        pupil + 3,
+        letters(grades.columns.len() + 1),
+        letters(grades.columns.len() + 2),
+    );
+    let [yes, no] = [true, false].map(|one| words::yes_or_no(one, grades.locale));
+    let shown = words::yes_or_no(passed, grades.locale);
+    let _ = write!(
+        out,
+        "<table:table-cell office:value-type=\"string\" office:string-value=\"{shown}\" \
+         table:formula=\"of:=IF([.{sum}{row}]&gt;=[.{mark}$2];&quot;{yes}&quot;;&quot;{no}&quot;)\"><text:p>{shown}</text:p>\
          </table:table-cell>"
     );
 }

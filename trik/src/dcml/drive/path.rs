@@ -4,6 +4,7 @@
 
 use super::super::rows::{read, table_of};
 use super::port::Driven;
+use crate::limits::DRIVE_LONGEST_S;
 use crate::refusal::Refusal;
 use lang_dcml::robot::{Part, Robot};
 use std::path::Path;
@@ -62,16 +63,29 @@ impl Plan {
 
     /// Refuses a path that the ports cannot do, before anything moves.
     pub fn check(&self, ports: &[Driven]) -> Result<(), Refusal> {
-        // The last line only says where it ends.
-        let rows = self
-            .actions
-            .iter()
-            .zip(&self.times)
-            .take(self.times.len() - 1);
+        let (name, seconds) = (&self.name, self.duration());
+        // What is no number is longer than everything.
+        let is_short = seconds <= DRIVE_LONGEST_S;
+        if !is_short {
+            let why = format!(
+                "it takes {seconds} s, and a drive takes {DRIVE_LONGEST_S} s at most: look at the column t"
+            );
+            return Err(Refusal::new(format!("{name}: {why}")));
+        }
+        let shares = |at: usize| ports[..at].iter().find(|one| one.shares(&ports[at]));
+        if let Some((at, other)) = (0..ports.len()).find_map(|at| Some((at, shares(at)?))) {
+            let why = format!(
+                "{} and {} would drive the same one: give each action a port of its own with --drive",
+                other.name(),
+                ports[at].name()
+            );
+            return Err(Refusal::new(why));
+        }
+        // The actions of the last line are not done, and refused all the same: a path with such a number is not what it should be.
+        let rows = self.actions.iter().zip(&self.times);
         for (row, time) in rows {
             for (action, port) in row.iter().zip(ports) {
                 if let Some(why) = port.refuses(*action) {
-                    let name = &self.name;
                     return Err(Refusal::new(format!("{name}: at {time} s {why}")));
                 }
             }

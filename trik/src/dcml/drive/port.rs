@@ -71,6 +71,11 @@ impl Driven {
         &self.name
     }
 
+    /// Whether another action has the same port.
+    pub fn shares(&self, other: &Self) -> bool {
+        self.value == other.value
+    }
+
     pub fn is_servo(&self) -> bool {
         matches!(self.actuator.port, Port::Servo(_))
     }
