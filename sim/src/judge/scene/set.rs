@@ -59,7 +59,16 @@ pub(super) fn whole(value: &Value) -> Option<i32> {
     match value {
         Value::Int(_) | Value::Bool(_) | Value::Double(_) => Some(value.to_int()),
         Value::Text(text) => text.trim().parse().ok(),
-        _ => None,
+        Value::Colour(_)
+        | Value::Null
+        | Value::NoText
+        | Value::Point(_)
+        | Value::Place(_)
+        | Value::Rect(_)
+        | Value::Opaque
+        | Value::List(_)
+        | Value::Record(_)
+        | Value::Object(_) => None,
     }
 }
 
@@ -70,7 +79,16 @@ pub(super) fn truth(value: &Value) -> Option<bool> {
         Value::Int(number) => Some(*number != 0),
         Value::Double(number) => Some(*number != 0.0),
         Value::Text(text) => Some(!["", "0", "false"].contains(&text.to_lowercase().as_str())),
-        _ => None,
+        Value::Colour(_)
+        | Value::Null
+        | Value::NoText
+        | Value::Point(_)
+        | Value::Place(_)
+        | Value::Rect(_)
+        | Value::Opaque
+        | Value::List(_)
+        | Value::Record(_)
+        | Value::Object(_) => None,
     }
 }
 
@@ -79,7 +97,18 @@ pub(super) fn colour(value: &Value) -> Option<u32> {
     match value {
         Value::Colour(argb) => Some(*argb),
         Value::Text(text) => argb(text),
-        _ => None,
+        Value::Bool(_)
+        | Value::Int(_)
+        | Value::Double(_)
+        | Value::Null
+        | Value::NoText
+        | Value::Point(_)
+        | Value::Place(_)
+        | Value::Rect(_)
+        | Value::Opaque
+        | Value::List(_)
+        | Value::Record(_)
+        | Value::Object(_) => None,
     }
 }
 
