@@ -28,9 +28,9 @@ fn a_diagram_and_the_programs_made_of_it_drive_and_print_alike() {
         // The last side began with 0. How far the wheels run out is the robot's business, not the program's.
         let left = one.robot.number("encoders/E3/value");
         let right = one.robot.number("encoders/E4/value");
-        assert!((380.0..900.0).contains(&left), "{name}: {left}, {right}");
-        // The other one went the same way forwards, and then backwards.
-        assert!((-400.0..200.0).contains(&right), "{name}: {left}, {right}");
+        assert!(left >= 400.0, "{name}: {left}, {right}; {}", output.stderr);
+        // The other one went the same way forwards, and then backwards: how far each depends on when the program was heard.
+        assert!(right < left, "{name}: {left}, {right}");
         assert!(one.rests(), "{name}");
         let after = one.robot.pose();
         let driven = after.away_from(&before);
