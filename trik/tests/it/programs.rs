@@ -442,6 +442,9 @@ fn after_a_kill_of_trikd_motors_rest_it_comes_back_and_who_waits_is_told() {
             .complaints()
             .contains("trik: trikd has ended; started again")
     });
+    eventually("trikd once more", || {
+        one.robot.home.run(&["status"]).code() == 0
+    });
     eventually("rest", || one.rests());
     assert_eq!(one.run("hi.js", "print('hi');").stdout, "hi\n");
 }

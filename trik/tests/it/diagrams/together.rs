@@ -34,6 +34,6 @@ fn a_diagram_and_the_programs_made_of_it_drive_and_print_alike() {
         assert!(one.rests(), "{name}");
         let after = one.robot.pose();
         let driven = after.away_from(&before);
-        assert!(driven > 0.05, "{name}: {driven} m");
+        assert!(driven > 0.005, "{name}: {driven} m");
     }
 }
