@@ -8,6 +8,7 @@
 //! only as far as the functions of the system do.
 
 pub mod fault;
+pub mod hindrance;
 pub mod limits;
 pub mod link;
 mod motion;
@@ -23,6 +24,7 @@ pub mod tree;
 use std::fmt;
 
 pub use fault::Fault;
+pub use hindrance::Hindrance;
 pub use link::Link;
 pub use motion::Propagator;
 pub use path::Path;
@@ -129,6 +131,11 @@ pub trait Surroundings {
     /// Whether it may go from a place where it may be to one a step of the solver further.
     fn allows_way(&mut self, from: &[f64], to: &[f64]) -> bool;
 
+    /// What is in the way at a place where it may not be.
+    fn hindrance(&mut self, _place: &[f64]) -> Hindrance {
+        Hindrance::Other
+    }
+
     /// Whether there may be a place in the goal at all; where this cannot be said it may.
     fn allows_goal(&mut self, _problem: &Problem) -> bool {
         true
@@ -206,27 +213,35 @@ pub enum Refusal {
     /// A part of the question means nothing.
     Wrong(String),
     /// The robot cannot stand where it is to start.
-    Start,
+    Start(Hindrance),
     /// No place of the goal is free.
     Goal,
     /// Whatever is done at the start, what comes of it is no number.
     NoNumbers,
 }
 
-impl fmt::Display for Refusal {
-    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
-        to.write_str(match self {
+impl Refusal {
+    /// Why, for people; `names` are those of the parts of a place.
+    pub fn told(&self, names: &[String]) -> String {
+        let text = match self {
             Self::NoStates => "the model has no states: nothing moves",
             Self::NoActions => "the model has no actions: nothing can be chosen",
             Self::Wrong(reason) => reason,
-            Self::Start => {
-                "the start is not free: it is out of bounds, in an obstacle or too near to one"
+            Self::Start(hindrance) => {
+                return format!("the start is not free: {}", hindrance.told(names));
             }
             Self::Goal => "no place in the goal is free: it is out of bounds or in an obstacle",
             Self::NoNumbers => {
                 "at the start the model gives no finite numbers: check parameters and start"
             }
-        })
+        };
+        text.to_owned()
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        to.write_str(&self.told(&[]))
     }
 }
 
@@ -250,9 +265,11 @@ where
     check_options(options)?;
     let mut propagator = Propagator::new(system, problem.step);
     let place = propagator.place(&problem.start);
-    let is_inside = space::is_inside(&problem.axes, &place);
-    if !is_inside || !surroundings.allows(&place) {
-        return Err(Refusal::Start);
+    if let Some(hindrance) = hindrance::of_ranges(problem, &place) {
+        return Err(Refusal::Start(hindrance));
+    }
+    if !surroundings.allows(&place) {
+        return Err(Refusal::Start(surroundings.hindrance(&place)));
     }
     if !moves_from(&mut propagator, &place, &problem.actions) {
         return Err(Refusal::NoNumbers);

@@ -44,6 +44,10 @@ pub(super) fn check(problem: &Problem, parts: usize) -> Result<(), Refusal> {
             let why = "a link names a part of the place that is not there";
             return Err(Refusal::Wrong(why.to_owned()));
         }
+        if link.from == link.to {
+            let why = "a link joins a point to itself: name two points";
+            return Err(Refusal::Wrong(why.to_owned()));
+        }
         if !(link.tolerance > 0.0 && link.tolerance.is_finite()) {
             let why = format!(
                 "{} is no tolerance of a link: it is above 0",

@@ -67,6 +67,19 @@ impl Shape {
         }
     }
 
+    /// What it is and where, as a line of [`text`] has it; of a polygon the first corner.
+    pub fn told(&self) -> String {
+        match self {
+            Self::Rectangle([a, b], [c, d]) => format!("rectangle {a} {b} {c} {d}"),
+            Self::Polygon(corners) => match corners.first() {
+                Some([x, y]) => format!("polygon {x} {y} ..."),
+                None => "polygon".to_owned(),
+            },
+            Self::Wall([a, b], [c, d], thickness) => format!("wall {a} {b} {c} {d} {thickness}"),
+            Self::Circle([x, y], radius) => format!("circle {x} {y} {radius}"),
+        }
+    }
+
     fn check(&self) -> Result<(), Fault> {
         let (points, lengths): (&[Point], &[f64]) = match self {
             Self::Rectangle(a, b) => (&[*a, *b], &[]),

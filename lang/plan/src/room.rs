@@ -2,6 +2,7 @@
 //!
 //! Owns the way from places to poses. Knows no planner.
 
+use super::hindrance::{self, Hindrance};
 use super::obstacles::flat::{Point, wrapped};
 use super::obstacles::{Footprint, Obstacles, Pose};
 use super::{Fault, Problem, Surroundings};
@@ -111,6 +112,18 @@ impl Surroundings for Room<'_> {
                 .bodies
                 .iter()
                 .all(|body| is_free(&body.footprint, body.parts))
+    }
+
+    fn hindrance(&mut self, place: &[f64]) -> Hindrance {
+        let bodies = self.bodies.iter().map(|body| (&body.footprint, body.parts));
+        let mut all = std::iter::once((self.footprint, self.parts))
+            .chain(bodies)
+            .enumerate();
+        let margin = self.resolution / 2.0;
+        let found = all.find_map(|(body, (footprint, parts))| {
+            hindrance::of_body(self.obstacles, body, footprint, parts.pose(place), margin)
+        });
+        found.unwrap_or(Hindrance::Other)
     }
 
     /// Looks at poses all over the goal.

@@ -80,10 +80,12 @@ fn scaled(axis: &Axis, value: f64) -> f64 {
 
 /// Whether a place is a number everywhere and within the bounds of its axes.
 pub(super) fn is_inside(axes: &[Axis], place: &[f64]) -> bool {
-    place.iter().all(|one| one.is_finite())
-        && axes
-            .iter()
-            .all(|axis| axis.is_angle || (axis.low..=axis.high).contains(&place[axis.part]))
+    place.iter().all(|one| one.is_finite()) && axes.iter().all(|axis| is_within(axis, place))
+}
+
+/// Whether a place is within the bounds of one axis; an angle has none.
+pub(super) fn is_within(axis: &Axis, place: &[f64]) -> bool {
+    axis.is_angle || (axis.low..=axis.high).contains(&place[axis.part])
 }
 
 fn difference(axis: &Axis, value: f64, wanted: f64) -> f64 {

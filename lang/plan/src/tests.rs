@@ -414,7 +414,32 @@ fn start_and_goal_in_a_wall_are_refused_at_once() {
     let at_goal = room(vec![Shape::Rectangle([3.2, 2.2], [4.0, 3.0])]);
     assert_eq!(refused(&at_goal, &across()), Refusal::Goal);
     let at_start = room(vec![Shape::Circle([0.5, 0.7], 0.05)]);
-    assert_eq!(refused(&at_start, &across()), Refusal::Start);
+    let told = |refusal: Refusal| refusal.told(&["x".to_owned(), "y".to_owned()]);
+    assert_eq!(
+        told(refused(&at_start, &across())),
+        "the start is not free: the robot touches the circle 0.5 0.7 0.05"
+    );
+    let near = room(vec![
+        Shape::Wall([2.0, 0.0], [2.0, 1.0], 0.02),
+        Shape::Rectangle([0.5 + 0.15 + RESOLUTION / 4.0, 0.0], [1.0, 1.0]),
+    ]);
+    let why = told(refused(&near, &across()));
+    assert!(
+        why.starts_with("the start is not free: the robot is nearer than "),
+        "{why}"
+    );
+    let mut beyond = across();
+    beyond.start[1] = -3.0;
+    let why = told(refused(&room(vec![]), &beyond));
+    assert!(
+        why.starts_with("the start is not free: y is -3 there, outside of "),
+        "{why}"
+    );
+    assert!(
+        refused(&room(vec![]), &beyond)
+            .to_string()
+            .contains("part 2 of the place is -3"),
+    );
     let mut outside = across();
     outside.goal[0].wanted[0].1 = 9.0;
     assert_eq!(refused(&room(vec![]), &outside), Refusal::Goal);

@@ -72,7 +72,7 @@ impl Actuator {
             .trim()
             .parse()
             .ok()
-            .filter(|number: &f64| number.is_finite());
+            .filter(|number: &f64| number.is_finite() && *number != 0.0);
         let factor = factor.ok_or_else(|| Refusal::NoFactor(words.to_owned()))?;
         Ok(Self { port, factor })
     }

@@ -175,5 +175,5 @@ fn searched(
     if is_watched {
         eprint!("\r\x1b[K");
     }
-    outcome.map_err(|refusal| Refusal::new(refusal.to_string()))
+    outcome.map_err(|refusal| Refusal::new(refusal.told(&asked.names)))
 }

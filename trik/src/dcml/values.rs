@@ -3,6 +3,8 @@
 //! Owns their form and what is said of names that are missing, strange or there twice.
 
 use crate::refusal::Refusal;
+use lang_text::near::did_you_mean;
+use lang_text::problem::Locale;
 
 /// The numbers of an option, in the order of these names; names may be missing.
 pub(crate) fn values(
@@ -42,7 +44,11 @@ pub(crate) fn in_order<'a>(
                 [] => "there are none".to_owned(),
                 _ => format!("there are {}", names.join(", ")),
             };
-            return Err(refused(format!("there is no {name:?}; {all}")));
+            let meant = did_you_mean(name, names.iter().copied());
+            return Err(refused(format!(
+                "there is no {name:?}; {all}{}",
+                meant.in_locale(Locale::English)
+            )));
         };
         if values[at].replace(value).is_some() {
             return Err(refused(format!("{name} is there twice")));

@@ -267,7 +267,25 @@ const CASES: &[(&str, &str, i32, &str)] = &[
         "Car",
         "--goal X=1,Y=1 --start X=2,Y=1 --obstacles room.txt",
         2,
-        "the start is not free",
+        "the start is not free: the robot touches the ",
+    ),
+    (
+        "Car",
+        "--goal X=1,Y=1 --start X=9,Y=1 --obstacles room.txt",
+        2,
+        "the start is not free: X is 9 there, outside of ",
+    ),
+    (
+        "Car",
+        "--goal Xx=1,Y=1 --link X,Y,X,Y=0.01",
+        2,
+        "there is no state or output \"Xx\"",
+    ),
+    (
+        "Car",
+        "--goal X=1,Y=1 --link X,Y,X,Y=0.01",
+        2,
+        "a link joins a point to itself: name two points",
     ),
     (
         "Car",

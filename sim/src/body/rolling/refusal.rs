@@ -41,7 +41,9 @@ impl fmt::Display for Refusal {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoPort(word) => write!(out, "'{word}' is no port: M1 to M4 or S1 to S6"),
-            Self::NoFactor(words) => write!(out, "'{words}': a number belongs after *"),
+            Self::NoFactor(words) => {
+                write!(out, "'{words}': a number other than 0 belongs after *")
+            }
             Self::Documented(name, why) => write!(out, "{TAG} of the action '{name}': {why}"),
             Self::Equations(why) => write!(out, "{why}"),
             Self::Steps(why) => write!(out, "{why}"),

@@ -153,7 +153,7 @@ fn what_is_missing_or_unknown_is_told_with_what_to_do() {
         "@port of the action 'steer': 'T1' is no port: M1 to M4 or S1 to S6"
     );
     for words in [
-        "", "M0", "M5", "S7", "M3*", "M3*x", "M3*inf", "M", "\u{439}3",
+        "", "M0", "M5", "S7", "M3*", "M3*x", "M3*inf", "M3*0", "M", "\u{439}3",
     ] {
         assert!(Actuator::read(words).is_err(), "{words}");
     }

@@ -11,6 +11,8 @@ use lang_dcml::syntax::Domain;
 use lang_plan::obstacles::{Footprint, Obstacles};
 use lang_plan::room::{Body, Parts};
 use lang_plan::{Axis, Goal, Link, Problem};
+use lang_text::near::did_you_mean;
+use lang_text::problem::Locale;
 use std::f64::consts::PI;
 
 /// Radius of a robot of which nothing is said.
@@ -47,8 +49,9 @@ impl Names<'_> {
         found.ok_or_else(|| {
             let all: Vec<&str> = self.all.iter().map(|part| part.name.as_str()).collect();
             Refusal::new(format!(
-                "{option}: there is no state or output {name:?}; there are {}",
-                all.join(", ")
+                "{option}: there is no state or output {name:?}; there are {}{}",
+                all.join(", "),
+                did_you_mean(name, all).in_locale(Locale::English)
             ))
         })
     }
