@@ -2,8 +2,14 @@
 //!
 //! Owns what can keep a file from being read. What a person is told of it is said where the file is known.
 
+pub(crate) mod words;
+
+use crate::limits;
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::fs::File;
 use std::io::{self, Read};
+use std::os::fd::AsFd;
+use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
 use std::path::Path;
 
 /// Why a file was not read.
@@ -15,6 +21,8 @@ pub(crate) enum Unread {
     Directory,
     /// It has more bytes than it may have.
     TooLong,
+    /// It is a FIFO or a device that gives nothing.
+    Silent,
     /// What the system says.
     Failed(io::Error),
 }
@@ -25,18 +33,44 @@ impl From<io::Error> for Unread {
             Self::Missing
         } else if error.kind() == io::ErrorKind::IsADirectory {
             Self::Directory
+        } else if error.kind() == io::ErrorKind::TimedOut {
+            Self::Silent
         } else {
             Self::Failed(error)
         }
     }
 }
 
-/// The bytes of a file, at most so many.
+/// The bytes of a file, at most so many. A FIFO or a device that says nothing for a while is given up.
 ///
 /// # Errors
 /// It cannot be read, or has more bytes.
 pub(crate) fn read(path: &Path, most: u64) -> Result<Vec<u8>, Unread> {
-    all_of(File::open(path)?, most)
+    // An open of a FIFO would wait for somebody who writes into it, perhaps for ever.
+    let mut options = File::options();
+    let file = options
+        .read(true)
+        .custom_flags(libc::O_NONBLOCK | libc::O_CLOEXEC)
+        .open(path)?;
+    let kind = file.metadata()?.file_type();
+    match kind.is_fifo() || kind.is_char_device() {
+        true => all_of(Patient(file), most),
+        false => all_of(file, most),
+    }
+}
+
+/// What waits for a file that may have nothing yet, but not for ever.
+struct Patient(File);
+
+impl Read for Patient {
+    fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+        let mut ready = [PollFd::new(self.0.as_fd(), PollFlags::POLLIN)];
+        let wait = PollTimeout::from(limits::INPUT_SILENCE_MS);
+        match poll(&mut ready, wait)? {
+            0 => Err(io::ErrorKind::TimedOut.into()),
+            _ => self.0.read(into),
+        }
+    }
 }
 
 /// The bytes of a stream, at most so many.

@@ -1,5 +1,7 @@
 //! Every limit of the tool, and nothing else.
 
+/// How long a FIFO or a device that is read may say nothing.
+pub const INPUT_SILENCE_MS: u16 = 3_000;
 /// Robots of one user that run side by side.
 pub const ROBOTS_MAX: usize = 32;
 /// Slowest and fastest course of simulated time: far below nothing moves, far above the threads cannot follow.

@@ -224,6 +224,7 @@ impl Expander {
                 ..Place::default()
             },
             words,
+            hint: None,
         };
         keep(&mut self.problems, problem);
     }
@@ -412,16 +413,16 @@ impl Expander {
         }
     }
 
-    /// A template whose name is near to that of one that is not there.
+    /// Adds to what was told last the template whose name is near to that of one that is not there.
     fn suggest(&mut self, name: &str) {
         if self.templates.contains_key(name) {
             return;
         }
         let known = self.templates.keys().map(String::as_str);
         if let Some(known) = nearest(name, known) {
-            let mut problem = Problem::warning(near::meant(name, known));
-            problem.place.offset = Some(self.at.0).filter(|&at| at > 0);
-            keep(&mut self.problems, problem);
+            let told = self.problems.last_mut();
+            told.into_iter()
+                .for_each(|told| told.hint = Some(near::meant(known)));
         }
     }
 

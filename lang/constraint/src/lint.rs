@@ -3,6 +3,7 @@
 //! Owns what is certain without a program; whatever a program may change is left alone. What there is in a world it asks
 //! the same [`Scene`] that a run asks, so nothing is known twice.
 
+mod start;
 pub(crate) mod words;
 
 use std::collections::{BTreeSet, HashSet};
@@ -14,7 +15,7 @@ use super::value::Value;
 use super::words as said;
 use crate::limits;
 use lang_text::limits::PROBLEMS_KEPT;
-use lang_text::near::did_you_mean;
+use lang_text::near::{did_you_mean, nearest};
 use lang_text::problem::{Place, Problem, Severity, Words, keep};
 use lang_text::xml::Start;
 
@@ -60,16 +61,30 @@ pub fn lint(rules: &Rules, scene: &mut dyn Catalogue) -> Vec<Problem> {
         }
         lint.condition(&event.condition);
         lint.trigger(&event.trigger);
+        lint.start(event);
     }
     lint.event = None;
+    let has_score = used.set.iter().any(|(name, _)| *name == SCORE);
     for (name, at) in &used.set {
-        if !used.read.contains(name) && *name != SCORE {
+        if !has_score && is_like_score(name) {
+            lint.tell(Severity::Warning, *at, words::like_score(name, SCORE));
+        } else if !used.read.contains(name) && *name != SCORE {
             lint.tell(Severity::Note, *at, words::never_read(name));
         }
     }
     let mut problems = lint.problems;
     problems.dedup();
     problems
+}
+
+/// Whether a name is that of the score, but for its spelling.
+fn is_like_score(name: &str) -> bool {
+    let is_letter = |c: &char| c.is_alphanumeric();
+    let bare = |name: &str| -> String {
+        let letters = name.chars().filter(is_letter);
+        letters.flat_map(char::to_lowercase).collect()
+    };
+    bare(name) == bare(SCORE) || nearest(name, [SCORE]).is_some()
 }
 
 /// Whether a condition can never be true, by itself.
@@ -243,6 +258,7 @@ impl<'a> Lint<'a, '_> {
                 ..Place::default()
             },
             words,
+            hint: None,
         };
         keep(&mut self.problems, problem);
     }

@@ -112,7 +112,11 @@ impl Reader {
                 && !is_init(element)
                 && self.ids.insert(id.to_owned(), places[top]).is_some()
             {
+                self.at = element.start;
                 self.error(words::duplicate(id));
+                if let Some(told) = self.problems.last_mut() {
+                    told.hint = Some(near::rename());
+                }
             }
         }
         let mut events: Vec<Option<Event>> = Vec::new();
@@ -315,6 +319,7 @@ impl Reader {
                 ..Place::default()
             },
             words,
+            hint: None,
         };
         keep(&mut self.problems, problem);
     }
@@ -325,9 +330,13 @@ impl Reader {
 
     /// A tag that means nothing here, and what it may have been meant to be.
     fn unknown(&mut self, tag: &str, words: Words) {
+        let before = self.problems.len();
         self.error(words);
-        if let Some(known) = nearest(&tag.to_ascii_lowercase(), expand::LANGUAGE) {
-            self.warn(near::meant(tag, known));
+        if self.problems.len() > before
+            && let Some(known) = nearest(&tag.to_ascii_lowercase(), expand::LANGUAGE)
+            && let Some(told) = self.problems.last_mut()
+        {
+            told.hint = Some(near::meant(known));
         }
     }
 

@@ -291,9 +291,11 @@ pub(super) fn duplicate(id: &str) -> Words {
 pub(super) fn object_point(value: &str) -> Words {
     Words::new(
         format!(
-            "objectPoint is \"{value}\", and is taken for \"center\": \"all\" and \"any\" are the others"
+            "objectPoint=\"{value}\" is unknown, and \"center\" is taken; write \"center\", \"all\" or \"any\""
         ),
-        format!("objectPoint=\"{value}\" понимается как \"center\": ещё бывают \"all\" и \"any\""),
+        format!(
+            "objectPoint=\"{value}\" неизвестно, и берётся \"center\"; напишите \"center\", \"all\" или \"any\""
+        ),
     )
 }
 

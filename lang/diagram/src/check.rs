@@ -396,6 +396,7 @@ fn dead_ends(project: &Project, program: &Program, flow: &Flow) -> Vec<Problem> 
                     severity: Severity::Note,
                     place: program.place(node),
                     words,
+                    hint: None,
                 });
             }
             node += 1;
@@ -449,6 +450,7 @@ fn endless_calls(program: &Program) -> Vec<Problem> {
                         ..program.place(node)
                     },
                     words: words::endless_call(name),
+                    hint: None,
                 });
             }
             if visited[at] != 0 {

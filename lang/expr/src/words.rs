@@ -123,6 +123,7 @@ impl Fault {
                 ..Place::default()
             },
             words: self.what.words(),
+            hint: None,
         }
     }
 }

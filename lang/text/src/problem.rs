@@ -106,6 +106,8 @@ pub struct Problem {
     pub place: Place,
     /// What, why, and what to do.
     pub words: Words,
+    /// A sentence of advice that people are given and reports in the form of others are not.
+    pub hint: Option<Words>,
 }
 
 impl Problem {
@@ -115,6 +117,19 @@ impl Problem {
             severity: Severity::Error,
             place: Place::default(),
             words,
+            hint: None,
+        }
+    }
+
+    /// What people are told: the words, and the hint if there is one.
+    pub fn said(&self, locale: Locale) -> String {
+        let words = self.words.in_locale(locale);
+        match &self.hint {
+            None => words.to_owned(),
+            Some(hint) => {
+                let end = if words.ends_with('.') { "" } else { "." };
+                format!("{words}{end} {}", hint.in_locale(locale))
+            }
         }
     }
 
@@ -145,7 +160,7 @@ impl Problem {
             (None, Some(at)) => line.push_str(&format!("{}:{} ", at.line, at.column)),
             (None, None) => {}
         }
-        line.push_str(self.words.in_locale(locale));
+        line.push_str(&self.said(locale));
         line
     }
 }

@@ -3,6 +3,7 @@
 //! Owns what can be said of the tags of a world and of things on its field without a run. What tags mean is in
 //! [`crate::field`], what rules name is asked in an arena that is made of the field and thrown away.
 
+mod values;
 mod words;
 
 use super::scene::places;
@@ -31,8 +32,9 @@ pub fn lint(texts: Texts<'_>) -> Vec<Problem> {
             "root" => &document,
             _ => document.child("root").unwrap_or(&document),
         };
-        if root.child("world").is_some() {
+        if let Some(world) = root.child("world") {
             tags(root, "", &mut problems);
+            regions(world, &mut problems);
         }
     }
     locate(&mut problems, texts.world);
@@ -162,6 +164,7 @@ fn tags(element: &Element<'_>, outside: &str, problems: &mut Vec<Problem>) {
         warn(element.start, words, problems);
         return;
     };
+    values::check(element, kind, problems);
     let known = kind.attributes();
     for (name, _) in &element.attributes {
         if known.iter().any(|one| one == name) || kind.idle.contains(&&**name) {
@@ -185,6 +188,21 @@ fn tags(element: &Element<'_>, outside: &str, problems: &mut Vec<Problem>) {
     if !is_other.contains(&&*element.name) {
         for inside in element.elements() {
             tags(inside, &element.name, problems);
+        }
+    }
+}
+
+/// Regions of which a later one takes the place: the field has the last one alone.
+fn regions(world: &Element<'_>, problems: &mut Vec<Problem>) {
+    let mut ids = BTreeSet::new();
+    for region in world
+        .child("regions")
+        .into_iter()
+        .flat_map(Element::elements)
+    {
+        let id = region.attribute("id").unwrap_or_default();
+        if region.name == "region" && !id.is_empty() && !ids.insert(id) {
+            warn(region.start, words::region_twice(id), problems);
         }
     }
 }

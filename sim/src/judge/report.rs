@@ -38,6 +38,7 @@ pub fn text(problem: &Problem, locale: Locale) -> String {
             position: problem.place.position,
             ..Place::default()
         },
+        hint: None,
         ..problem.clone()
     };
     let text = bare.in_locale(locale);

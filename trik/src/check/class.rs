@@ -165,7 +165,7 @@ impl Plan {
         found: impl Iterator<Item = &'a String>,
     ) -> Result<(), Error> {
         if let Some(path) = &args.grades.pupils {
-            let text = super::run::text(path, limits::WORLD_BYTES_MAX)?;
+            let text = super::run::text(path, limits::WORLD_BYTES_MAX, args.language)?;
             let mut seen = HashSet::new();
             let names = text.trim_start_matches('\u{feff}').lines().map(str::trim);
             let names = names.filter(|name| !name.is_empty() && seen.insert(*name));
@@ -215,7 +215,7 @@ impl Plan {
 
 /// The tasks of a folder: `NAME.xml` and folders of such files are fields, `NAME.qrs` is what was given out.
 fn tasks(folder: &Path, args: &CheckArgs, notes: &mut Vec<String>) -> Result<Vec<Task>, Error> {
-    let failed = |error| Error::system(format!("{} cannot be read", named(folder)), error);
+    let failed = |error: std::io::Error| jobs::unread(folder, error, args.language);
     let mut all: BTreeMap<String, Task> = BTreeMap::new();
     let mut saves = Vec::new();
     let mut entries = Vec::new();

@@ -5,8 +5,11 @@
 
 use super::args::CheckArgs;
 use crate::error::Error;
+use crate::input::Unread;
+use crate::input::words::{A_FILE, why};
 use crate::limits;
 use crate::terminal::named;
+use lang_text::problem::Locale;
 use std::collections::HashSet;
 use std::ffi::OsStr;
 use std::fs;
@@ -210,6 +213,12 @@ pub(super) fn free(
     found
 }
 
+/// Why a file or a directory cannot be looked at.
+pub(super) fn unread(path: &Path, error: io::Error, locale: Locale) -> Error {
+    let words = why(&Unread::from(error), 0, A_FILE);
+    Error::Refused(format!("{}: {}", named(path), words.in_locale(locale)))
+}
+
 /// A file as it is, or those with an ending below a directory, sorted, with their names from there.
 pub(super) fn below(
     path: &Path,
@@ -217,14 +226,7 @@ pub(super) fn below(
     deep: usize,
     max: usize,
 ) -> Result<Vec<(PathBuf, PathBuf)>, Error> {
-    let refused = Error::Refused;
-    let failed = |error: io::Error| {
-        refused(if error.kind() == io::ErrorKind::NotFound {
-            format!("{}: there is no such file", named(path))
-        } else {
-            format!("{} cannot be read: {error}", named(path))
-        })
-    };
+    let failed = |error: io::Error| unread(path, error, Locale::English);
     if !fs::metadata(path).map_err(failed)?.is_dir() {
         let name = path.file_name().map_or_else(|| path.into(), PathBuf::from);
         return Ok(vec![(path.to_owned(), name)]);

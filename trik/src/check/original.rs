@@ -320,8 +320,8 @@ fn patched(args: &Patcher) -> Result<(), Refused> {
     let mut opened = must_open(&args.file, locale).map_err(|refusal| (refusal.lines, 1))?;
     let told = |problem: lang_text::problem::Problem| because(1)(problem.in_locale(locale));
     if let Some(path) = fields.into_iter().flatten().next() {
-        let world =
-            text(path, limits::WORLD_BYTES_MAX).map_err(|why| because(1)(why.to_string()))?;
+        let world = text(path, limits::WORLD_BYTES_MAX, locale)
+            .map_err(|why| because(1)(why.to_string()))?;
         let world = match &args.field {
             Some(_) => world,
             None => {
@@ -332,8 +332,8 @@ fn patched(args: &Patcher) -> Result<(), Refused> {
         opened.save.set_world(&world).map_err(told)?;
     }
     if let Some(path) = named(&args.script) {
-        let code =
-            text(&path, limits::WORLD_BYTES_MAX).map_err(|why| because(1)(why.to_string()))?;
+        let code = text(&path, limits::WORLD_BYTES_MAX, locale)
+            .map_err(|why| because(1)(why.to_string()))?;
         let ending = path
             .extension()
             .and_then(OsStr::to_str)

@@ -12,13 +12,14 @@ use super::verdict::Verdict;
 use super::words;
 use crate::diagrams::save::{Unreadable, open};
 use crate::error::Error;
-use crate::input::{self, Unread};
+use crate::input;
+use crate::input::words::{A_FILE, no_text, why};
 use crate::limits;
 use crate::output::Output;
 use lang_constraint::Level;
 use lang_diagram::lower::{World, lower};
 use lang_diagram::project::Project;
-use lang_text::problem::{Locale, Problem, Severity};
+use lang_text::problem::{Locale, Problem, Severity, Words};
 use sim::field::Locks;
 use sim::judge::{self, Caption, Diagram, Outcome, Program, Settings, Task, Texts, Trajectory};
 use std::collections::BTreeSet;
@@ -166,7 +167,7 @@ fn judged(
     };
     let field = match &job.field {
         None => None,
-        Some(path) => Some(text(path, limits::WORLD_BYTES_MAX).map_err(line)?),
+        Some(path) => Some(text(path, limits::WORLD_BYTES_MAX, args.language).map_err(line)?),
     };
     if let Some(world) = field {
         solution.project.world = Some(world);
@@ -202,7 +203,7 @@ fn judged(
         );
     }
     if let Some(log) = &job.log {
-        let text = text(log, limits::LOG_BYTES_MAX).map_err(line)?;
+        let text = text(log, limits::LOG_BYTES_MAX, args.language).map_err(line)?;
         let trajectory = Trajectory::read(&text);
         let trajectory = trajectory.map_err(|why| vec![format!("{}: {why}", shown(log))])?;
         let names = judge::strange_in_record(&task, &trajectory);
@@ -243,7 +244,7 @@ fn hold(task: &mut Task, given: &Path, args: &CheckArgs) -> Result<Lines, Lines>
 fn settings(args: &CheckArgs) -> Result<Settings, Error> {
     let answers = match &args.inputs {
         None => Vec::new(),
-        Some(path) => text(path, limits::WORLD_BYTES_MAX)?
+        Some(path) => text(path, limits::WORLD_BYTES_MAX, args.language)?
             .lines()
             .map(str::to_owned)
             .collect(),
@@ -251,7 +252,7 @@ fn settings(args: &CheckArgs) -> Result<Settings, Error> {
     let deeds = match &args.gamepad {
         None => None,
         Some(path) => {
-            let deeds = judge::hands::read(&text(path, limits::WORLD_BYTES_MAX)?);
+            let deeds = judge::hands::read(&text(path, limits::WORLD_BYTES_MAX, args.language)?);
             Some(deeds.map_err(|why| Error::file(path, why))?)
         }
     };
@@ -298,7 +299,10 @@ impl Solution {
             Some(_) => (Project::default(), script.or(Some(path))),
             None => {
                 let opened = open(path).map_err(|why| match why {
-                    Unreadable::File(why) => vec![format!("{}: {why}", shown(path))].into(),
+                    Unreadable::File(why) => {
+                        let why = why.in_locale(args.language);
+                        vec![format!("{}: {why}", shown(path))].into()
+                    }
                     Unreadable::Save(problems) => {
                         Refused::broken(lines(path, &problems, args.language))
                     }
@@ -315,7 +319,7 @@ impl Solution {
                         shown(path)
                     )]
                 })?;
-                let text = text(path, limits::WORLD_BYTES_MAX).map_err(line)?;
+                let text = text(path, limits::WORLD_BYTES_MAX, args.language).map_err(line)?;
                 Some((language, text))
             }
         };
@@ -381,14 +385,10 @@ fn lines(path: &Path, problems: &[Problem], locale: Locale) -> Lines {
 }
 
 /// A text file that is no longer than it may be.
-pub(super) fn text(path: &Path, max: u64) -> Result<String, Error> {
-    let bytes = input::read(path, max).map_err(|unread| match unread {
-        Unread::Missing => Error::file(path, "there is no such file"),
-        Unread::Directory => Error::file(path, "this is a directory: name a file"),
-        Unread::TooLong => Error::file(path, format!("longer than {} MiB", max >> 20)),
-        Unread::Failed(error) => Error::system(format!("{} cannot be read", path.display()), error),
-    })?;
-    String::from_utf8(bytes).map_err(|_| Error::file(path, "this is no text in UTF-8"))
+pub(super) fn text(path: &Path, max: u64, locale: Locale) -> Result<String, Error> {
+    let failed = |words: Words| Error::file(path, words.in_locale(locale));
+    let bytes = input::read(path, max).map_err(|unread| failed(why(&unread, max, A_FILE)))?;
+    String::from_utf8(bytes).map_err(|_| failed(no_text()))
 }
 
 /// Writes the files of a run.

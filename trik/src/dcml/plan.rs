@@ -16,6 +16,8 @@ use self::ask::Asked;
 use super::load::load;
 use super::values;
 use crate::error::Error;
+use crate::input;
+use crate::input::words::{A_FILE, why};
 use crate::output::{Output, standard};
 use crate::refusal::{Refusal, UNREADABLE};
 use crate::terminal::named;
@@ -25,8 +27,7 @@ use lang_plan::limits::{PLAN_ITERATIONS_MAX, PLAN_OBSTACLES_TEXT_MAX};
 use lang_plan::obstacles::{Obstacles, text};
 use lang_plan::room::Room;
 use lang_plan::{Counts, Method, Options, Outcome, plan};
-use std::fs::File;
-use std::io::{self, IsTerminal, Read, Write};
+use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -115,11 +116,10 @@ fn surroundings(args: &PlanArgs) -> Result<(Obstacles, Option<field::Stand>), Re
 
 fn read(path: &Path) -> Result<String, Error> {
     let refused = |why: String| Error::Refused(format!("{}: {why}", named(path)));
-    let mut bytes = Vec::new();
+    // One more than may be, so that whoever reads the text can say it.
     let limit = PLAN_OBSTACLES_TEXT_MAX as u64 + 1;
-    File::open(path)
-        .and_then(|file| file.take(limit).read_to_end(&mut bytes))
-        .map_err(|error| refused(error.to_string()))?;
+    let bytes =
+        input::read(path, limit).map_err(|unread| refused(why(&unread, limit, A_FILE).english))?;
     String::from_utf8(bytes).map_err(|_| refused("is no text in UTF-8".to_owned()))
 }
 

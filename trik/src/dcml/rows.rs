@@ -22,6 +22,7 @@ pub(super) fn read(path: &str) -> Result<String, Refusal> {
             }
             Unread::Directory => "this is a directory: name a table".to_owned(),
             Unread::TooLong => format!("longer than {} MiB", most >> 20),
+            Unread::Silent => "nothing comes out of this FIFO or device: name a file".to_owned(),
             Unread::Failed(error) => format!("cannot be read: {error}"),
         })
     })?;

@@ -45,6 +45,7 @@ pub(crate) fn read(path: &Path) -> Result<Source, Refusal> {
             Unread::Missing => format!("there is no such file; {}", shipped::advice(&name)),
             Unread::Directory => "this is a directory: name a file with models".to_owned(),
             Unread::TooLong => format!("longer than {} MiB, which no model is", most >> 20),
+            Unread::Silent => "nothing comes out of this FIFO or device: name a file".to_owned(),
             Unread::Failed(error) => format!("cannot be read: {error}"),
         })
     })?;

@@ -32,6 +32,10 @@ pub(crate) struct LintArgs {
     /// Language of messages: en or ru.
     #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
     pub language: Locale,
+    /// Write a line of JSON for each problem to standard output instead, for programs: file, level and message as in the
+    /// results of trik check, and where it is.
+    #[arg(long, conflicts_with = "recover")]
+    pub json: bool,
     /// Write the diagram to this new file, with the blocks and links restored that are in the file but on no sheet, and
     /// check that. For one FILE that is a diagram.
     #[arg(long, value_name = "OUT.qrs")]
@@ -56,14 +60,18 @@ pub(crate) fn run(args: &LintArgs) -> Result<u8, Refusal> {
                     let why = "this is a world, and --recover is for diagrams";
                     return Err(Refusal::new(format!("{}: {why}", named(file))));
                 }
-                let lines = world(file, &text, &mut count, args.language);
-                standard(lines.as_bytes())?;
+                let reporter = Reporter::new(file, None, args.language);
+                tell(&reporter, world(&text), &mut count, args)?;
                 continue;
             }
             Err(why) => {
                 unreadable += 1;
-                let lines = unread(file, why, &mut count, args.language);
-                standard(lines.as_bytes())?;
+                let problems = match why {
+                    Unreadable::File(words) => vec![Problem::error(words)],
+                    Unreadable::Save(problems) => problems,
+                };
+                let reporter = Reporter::new(file, None, args.language);
+                tell(&reporter, problems, &mut count, args)?;
                 continue;
             }
         };
@@ -77,11 +85,13 @@ pub(crate) fn run(args: &LintArgs) -> Result<u8, Refusal> {
                 }
             }
         };
-        let text = found(name, &opened, &mut count, args.language);
-        standard(text.as_bytes())?;
+        let reporter = Reporter::new(name, Some(&opened.project), args.language);
+        tell(&reporter, found(&opened), &mut count, args)?;
     }
-    let summary = words::summary(args.files.len(), unreadable, count, args.language);
-    standard(format!("{summary}\n").as_bytes())?;
+    if !args.json {
+        let summary = words::summary(args.files.len(), unreadable, count, args.language);
+        standard(format!("{summary}\n").as_bytes())?;
+    }
     Ok(match (unreadable, count.errors) {
         (0, 0) => 0,
         (0, _) => REFUSED,
@@ -99,31 +109,34 @@ enum Found {
 /// Reads a file; one that begins with a tag is a world.
 fn open(path: &Path) -> Result<Found, Unreadable> {
     let bytes = bytes(path).map_err(Unreadable::File)?;
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        return Err(Unreadable::File(words::utf_16()));
+    }
+    if is_program(path) {
+        return Err(Unreadable::File(words::is_program()));
+    }
     let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(&bytes);
     if text.trim_ascii_start().first() != Some(&b'<') {
         let opened = read::read(&bytes).map_err(Unreadable::Save)?;
         return Ok(Found::Diagram(Box::new(opened)));
     }
-    let text = String::from_utf8(bytes).map_err(|error| {
-        let at = error.utf8_error().valid_up_to();
-        Unreadable::File(format!(
-            "byte {at} is not UTF-8; save the world as XML in UTF-8"
-        ))
-    })?;
+    let text = String::from_utf8(bytes)
+        .map_err(|error| Unreadable::File(words::no_utf_8(error.utf8_error().valid_up_to())))?;
     Ok(Found::World(text))
 }
 
-/// Lines of a world in a file of its own.
-fn world(file: &Path, text: &str, count: &mut Count, locale: Locale) -> String {
-    let reporter = Reporter::new(file, None, locale);
-    let texts = Texts {
+/// Whether a file is a program by its name.
+fn is_program(path: &Path) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|ending| ["js", "py"].contains(&&*ending.to_ascii_lowercase()))
+}
+
+/// What is wrong with a world in a file of its own.
+fn world(text: &str) -> Vec<Problem> {
+    judge::lint(Texts {
         world: text,
         ..Texts::default()
-    };
-    let mut problems = judge::lint(texts);
-    reporter.sort(&mut problems);
-    count.add(&problems);
-    joined(&reporter.lines(&problems))
+    })
 }
 
 /// What is wrong with the world in a save.
@@ -142,37 +155,29 @@ fn world_of(project: &Project) -> Vec<Problem> {
     problems
 }
 
-/// Lines of a save that could not be read.
-fn unread(file: &Path, why: Unreadable, count: &mut Count, locale: Locale) -> String {
-    let reporter = Reporter::new(file, None, locale);
-    let lines = match why {
-        Unreadable::File(why) => {
-            count.errors += 1;
-            let error = words::severity(lang_text::problem::Severity::Error, locale);
-            vec![format!("{}: {error}: {why}", named(file))]
-        }
-        Unreadable::Save(mut problems) => {
-            reporter.sort(&mut problems);
-            count.add(&problems);
-            reporter.lines(&problems)
-        }
-    };
-    joined(&lines)
-}
-
-/// Lines of a save that could be read.
-fn found(file: &Path, opened: &Opened, count: &mut Count, locale: Locale) -> String {
-    let reporter = Reporter::new(file, Some(&opened.project), locale);
+/// What is wrong with a save that could be read.
+fn found(opened: &Opened) -> Vec<Problem> {
     let mut problems: Vec<Problem> = opened.problems.clone();
     problems.extend(check(&opened.project, World::Robot));
     problems.extend(world_of(&opened.project));
-    reporter.sort(&mut problems);
-    count.add(&problems);
-    joined(&reporter.lines(&problems))
+    problems
 }
 
-fn joined(lines: &[String]) -> String {
-    lines.iter().map(|line| format!("{line}\n")).collect()
+/// Tells and counts problems.
+fn tell(
+    reporter: &Reporter<'_>,
+    mut problems: Vec<Problem>,
+    count: &mut Count,
+    args: &LintArgs,
+) -> Result<(), Refusal> {
+    reporter.sort(&mut problems);
+    count.add(&problems);
+    let lines = match args.json {
+        true => reporter.json(&problems),
+        false => reporter.lines(&problems),
+    };
+    let text: String = lines.iter().map(|line| format!("{line}\n")).collect();
+    standard(text.as_bytes())
 }
 
 /// Puts back what was lost and writes the save; whether there was anything.

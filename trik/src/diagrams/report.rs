@@ -1,12 +1,14 @@
-//! Problems of a diagram as lines for a person: file, how bad, diagram, block with its place, property, words.
+//! Problems of a diagram as lines for a person: file, how bad, diagram, block with its place, property, words; and as lines
+//! of JSON.
 //!
-//! Owns the order of problems and the form of a line.
+//! Owns the order of problems and both forms of a line.
 
 use super::words;
 use crate::terminal::{harmless, named};
 use lang_diagram::blocks;
 use lang_diagram::project::{Block, Project};
 use lang_text::problem::{Locale, Problem, Severity};
+use serde_json::json;
 use std::cmp::Reverse;
 use std::collections::HashMap;
 use std::path::Path;
@@ -74,6 +76,33 @@ impl<'a> Reporter<'a> {
         problems.iter().map(|problem| self.line(problem)).collect()
     }
 
+    /// A line of JSON for each: level and message as in the results of `trik check`, and where it is.
+    pub fn json(&self, problems: &[Problem]) -> Vec<String> {
+        let line = |problem: &Problem| {
+            let place = &problem.place;
+            let level = match problem.severity {
+                Severity::Error => "error",
+                Severity::Warning => "warning",
+                Severity::Note => "note",
+            };
+            let at = place.position;
+            let line = json!({
+                "file": self.file,
+                "level": level,
+                "message": problem.said(self.locale),
+                "part": place.file,
+                "diagram": place.diagram,
+                "object": place.object,
+                "block": place.block,
+                "property": place.property,
+                "line": at.map(|at| at.line),
+                "column": at.map(|at| at.column),
+            });
+            line.to_string()
+        };
+        problems.iter().map(line).collect()
+    }
+
     fn block(&self, problem: &Problem) -> Option<&(usize, usize, &'a Block)> {
         self.blocks.get(problem.place.object.as_deref()?)
     }
@@ -108,7 +137,7 @@ impl<'a> Reporter<'a> {
             (None, Some(at)) => line.push_str(&format!("{}:{}: ", at.line, at.column)),
             (None, None) => {}
         }
-        line.push_str(&harmless(problem.words.in_locale(self.locale)));
+        line.push_str(&harmless(&problem.said(self.locale)));
         line
     }
 }

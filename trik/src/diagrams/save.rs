@@ -3,18 +3,19 @@
 //! Owns which files are read, and what is said of one that cannot be.
 
 use super::report::Reporter;
-use crate::input::{self, Unread};
+use crate::input;
+use crate::input::words::{A_DIAGRAM, why};
 use crate::refusal::{Refusal, UNREADABLE};
 use crate::terminal::named;
 use lang_diagram::limits::SAVE_BYTES;
 use lang_diagram::read::{self, Opened};
-use lang_text::problem::{Locale, Problem};
+use lang_text::problem::{Locale, Problem, Words};
 use std::path::Path;
 
 /// Why a save cannot be read.
 pub(crate) enum Unreadable {
     /// The file itself.
-    File(String),
+    File(Words),
     /// What is in it.
     Save(Vec<Problem>),
 }
@@ -29,7 +30,9 @@ pub(crate) fn open(path: &Path) -> Result<Opened, Unreadable> {
 pub(crate) fn must_open(path: &Path, locale: Locale) -> Result<Opened, Refusal> {
     open(path).map_err(|why| Refusal {
         lines: match why {
-            Unreadable::File(why) => vec![format!("trik: {}: {why}", named(path))],
+            Unreadable::File(why) => {
+                vec![format!("trik: {}: {}", named(path), why.in_locale(locale))]
+            }
             Unreadable::Save(problems) => Reporter::new(path, None, locale).lines(&problems),
         },
         code: UNREADABLE,
@@ -37,12 +40,7 @@ pub(crate) fn must_open(path: &Path, locale: Locale) -> Result<Opened, Refusal> 
 }
 
 /// The bytes of a file that is no longer than a save may be.
-pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, String> {
+pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Words> {
     let limit = SAVE_BYTES as u64;
-    input::read(path, limit).map_err(|unread| match unread {
-        Unread::Missing => "there is no such file".to_owned(),
-        Unread::Directory => "this is a directory: name a diagram, a file NAME.qrs".to_owned(),
-        Unread::TooLong => format!("longer than {} MiB, which no diagram is", limit >> 20),
-        Unread::Failed(error) => format!("cannot be read: {error}"),
-    })
+    input::read(path, limit).map_err(|unread| why(&unread, limit, A_DIAGRAM))
 }

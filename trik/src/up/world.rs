@@ -22,6 +22,7 @@ pub(crate) fn read(path: &Path) -> Result<(Field, Locks), Error> {
         Unread::Missing => refused(&"there is no such file"),
         Unread::Directory => refused(&"this is a directory: name a world or a project"),
         Unread::TooLong => refused(&format!("longer than {} MiB", BYTES >> 20)),
+        Unread::Silent => refused(&"nothing comes out of this FIFO or device: name a file"),
         Unread::Failed(error) => refused(&error),
     })?;
     let all = |problems: Vec<Problem>| {

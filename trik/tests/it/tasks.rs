@@ -38,6 +38,48 @@ fn mistakes_in_rules_are_told_with_place_and_what_was_meant() {
 }
 
 #[test]
+fn programs_are_told_the_same_in_lines_of_json() {
+    let board = Board::new();
+    let wrong = made(&board).replacen("regionId=\"finish\"", "regionId=\"finnish\"", 1);
+    board.file(
+        "wrong.xml",
+        wrong.replacen("sizeUnit=\"cm\"", "sizeUnit=\"CM\"", 1),
+    );
+    let told = trik(&board, &["lint", "--json", "wrong.xml", "nowhere.xml"]);
+    assert_eq!(told.code(), 2, "{}", told.stderr);
+    let lines: Vec<serde_json::Value> = told
+        .stdout
+        .lines()
+        .map(|line| serde_json::from_str(line).expect(line))
+        .collect();
+    let first = &lines[0];
+    assert_eq!(
+        (&first["file"], &first["level"]),
+        (&"wrong.xml".into(), &"error".into())
+    );
+    assert_eq!(
+        (&first["block"], &first["column"]),
+        (&"event 'done'".into(), &17.into())
+    );
+    assert_eq!(
+        first["message"],
+        "No such region: finnish; did you mean 'finish'?"
+    );
+    assert!(
+        lines
+            .iter()
+            .any(|one| one["level"] == "warning" && one["line"] == 3),
+        "{}",
+        told.stdout
+    );
+    let last = lines.last().expect("a line");
+    assert_eq!(
+        (&last["file"], &last["line"]),
+        (&"nowhere.xml".into(), &serde_json::Value::Null)
+    );
+}
+
+#[test]
 fn a_save_is_looked_at_with_the_world_in_it() {
     let board = Board::new();
     let world = made(&board).replacen("objectId=\"robot1\"", "objectId=\"robot7\"", 1);
@@ -80,6 +122,39 @@ fn what_is_no_world_is_told_and_never_a_crash() {
         told.stdout.contains("byte 9 is not UTF-8"),
         "{}",
         told.stdout
+    );
+    let wide: Vec<u8> = "\u{feff}<root/>"
+        .encode_utf16()
+        .flat_map(u16::to_le_bytes)
+        .collect();
+    board.file("wide.xml", wide);
+    board.file("solution.js", "brick.stop();");
+    let mut fifo = tools::shell("mkfifo silent.xml");
+    tools::run(fifo.current_dir(board.dir()), b"").good();
+    for (name, said) in [
+        (
+            "wide.xml",
+            "this is a text in UTF-16; save it again in UTF-8",
+        ),
+        ("solution.js", "this is a program, and only diagrams"),
+        ("silent.xml", "nothing comes out of this FIFO"),
+        ("nowhere.xml", "there is no such file"),
+    ] {
+        let told = trik(&board, &["lint", name]);
+        assert_eq!(told.code(), 2, "{}", told.stdout);
+        assert!(told.stdout.contains(said), "{}", told.stdout);
+        let russian = trik(&board, &["lint", name, "--language=ru"]);
+        assert!(!russian.stdout.contains("this"), "{}", russian.stdout);
+    }
+    // One that somebody writes into is read as any file.
+    let mut piped =
+        tools::shell("printf '<root><world/></root>' > silent.xml & exec \"$0\" lint silent.xml");
+    let told = tools::run(piped.arg(TRIK).current_dir(board.dir()), b"");
+    assert!(
+        told.stdout.contains("1 file: 0 errors"),
+        "{}{}",
+        told.stdout,
+        told.stderr
     );
     board.file("world.xml", "<root><world/></root>");
     let refused = trik(&board, &["lint", "world.xml", "--recover", "x.qrs"]);

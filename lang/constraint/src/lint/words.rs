@@ -93,9 +93,51 @@ pub(crate) fn and(one: &Words, other: &Words) -> Words {
 }
 
 /// A tag or a template that was meant by one that is not there.
-pub(crate) fn meant(tag: &str, known: &str) -> Words {
+pub(crate) fn meant(known: &str) -> Words {
     Words::new(
-        format!("the tag \"{tag}\" is unknown; did you mean \"{known}\"?"),
-        format!("тег \"{tag}\" неизвестен; может быть, \"{known}\"?"),
+        format!("Did you mean \"{known}\"?"),
+        format!("Может быть, \"{known}\"?"),
+    )
+}
+
+/// What to do about two rules with one id.
+pub(crate) fn rename() -> Words {
+    Words::new(
+        "A rule before has this id too: give one of them another id",
+        "У правила выше тот же id: дайте одному из них другой",
+    )
+}
+
+/// A constraint that is broken before the program can do anything.
+pub(super) fn broken_at_start(object: &str, region: &str, is_inside: bool) -> Words {
+    match is_inside {
+        false => Words::new(
+            format!(
+                "every solution fails at once: '{object}' begins outside the region '{region}', and this constraint needs it inside; move one of them, or check objectPoint"
+            ),
+            format!(
+                "любое решение сразу провалится: '{object}' в начале вне области '{region}', а это ограничение требует быть внутри; передвиньте что-то из них или проверьте objectPoint"
+            ),
+        ),
+        true => Words::new(
+            format!(
+                "every solution fails at once: '{object}' begins in the region '{region}', and this constraint needs it outside; move one of them, or check objectPoint"
+            ),
+            format!(
+                "любое решение сразу провалится: '{object}' в начале в области '{region}', а это ограничение требует быть снаружи; передвиньте что-то из них или проверьте objectPoint"
+            ),
+        ),
+    }
+}
+
+/// A variable that looks like that of the score, which nothing sets.
+pub(super) fn like_score(name: &str, score: &str) -> Words {
+    Words::new(
+        format!(
+            "the variable '{name}' is not the score, and no rule sets that: points are counted in '{score}'; did you mean it?"
+        ),
+        format!(
+            "переменная '{name}' - не счёт, а счёт не задаёт ни одно правило: баллы считаются в '{score}'; может быть, это она?"
+        ),
     )
 }

@@ -39,7 +39,11 @@ fn shown(problems: &[Problem]) -> Vec<String> {
     let line = |problem: &Problem| {
         let at = problem.place.position;
         let at = at.map_or_else(String::new, |at| format!("{}:{} ", at.line, at.column));
-        format!("{at}{:?}: {}", problem.severity, problem.words.english)
+        format!(
+            "{at}{:?}: {}",
+            problem.severity,
+            problem.said(lang_text::problem::Locale::English)
+        )
     };
     problems.iter().map(line).collect()
 }
@@ -145,7 +149,7 @@ const MISTAKES: &[(&str, &str, &str, &str)] = &[
         "<timer timeout=\"100\"/>",
         "<tmer timeout=\"100\"/>",
         "19:",
-        "the tag \"tmer\" is unknown; did you mean \"timer\"?",
+        "Unknown tag \"tmer\". Did you mean \"timer\"?",
     ),
     (
         "boundItem=\"box\"",
@@ -202,6 +206,114 @@ const MISTAKES: &[(&str, &str, &str, &str)] = &[
         "no sensor is of the type 'TrikLigthSensor', so nothing is on its port; did you mean 'TrikLightSensor'?",
     ),
     (
+        "<settings sizeUnit=\"px\"",
+        "<settings sizeUnit=\"CM\"",
+        "9:",
+        "sizeUnit=\"CM\" is unknown, and \"px\" is taken; did you mean \"cm\"?",
+    ),
+    (
+        "<settings ",
+        "<settings realisticPhysics=\"yes\" ",
+        "9:",
+        "realisticPhysics=\"yes\" is unknown, and \"false\" is taken; there are true, false",
+    ),
+    (
+        "<settings ",
+        "<settings backgroundColor=\"gren\" ",
+        "9:",
+        "backgroundColor=\"gren\" is no colour, and white is taken",
+    ),
+    (
+        "stroke-width=\"6\"",
+        "stroke=\"blakc\" stroke-width=\"6\"",
+        "4:",
+        "stroke=\"blakc\" is no colour, and black is taken",
+    ),
+    (
+        "stroke-width=\"6\"",
+        "stroke-style=\"dahs\" stroke-width=\"6\"",
+        "4:",
+        "stroke-style=\"dahs\" is unknown, and \"solid\" is taken; did you mean \"dash\"?",
+    ),
+    (
+        "stroke-width=\"6\"",
+        "fill-style=\"full\" stroke-width=\"6\"",
+        "4:",
+        "fill-style=\"full\" is unknown, and \"none\" is taken; there are none, solid",
+    ),
+    (
+        "stroke-width=\"6\"",
+        "stroke-width=\"-6\"",
+        "4:",
+        "stroke-width=\"-6\" is below 0",
+    ),
+    (
+        "<wall id=\"wall\"",
+        "<wall id=\"wall\" mass=\"-1\"",
+        "3:",
+        "mass=\"-1\" is below 0",
+    ),
+    (
+        "<wall id",
+        "<ball id=\"b\" x=\"9\" y=\"9\" diameter=\"0\"/><wall id",
+        "3:",
+        "diameter=\"0\" is not above 0",
+    ),
+    (
+        "<wall id",
+        "<ball id=\"b\" x=\"9\"/><wall id",
+        "3:",
+        "'x' is there and 'y' is not, so 'y' is 0",
+    ),
+    (
+        " y=\"0\" width=\"100\"",
+        " width=\"100\"",
+        "6:",
+        "'x' means nothing without 'y'",
+    ),
+    (
+        " height=\"100\"",
+        "",
+        "6:",
+        "'width' means nothing without 'height'",
+    ),
+    (
+        "boundItem=\"box\"",
+        "boundItem=\"box\" stroke=\"red\"",
+        "7:",
+        "stroke=\"red\" of a region is no whole number",
+    ),
+    (
+        "id=\"ring\"",
+        "id=\"finish\"",
+        "7:",
+        "a region before has the id 'finish' too, and this one takes its place",
+    ),
+    (
+        "<event id=\"later\">",
+        "<event id=\"end\">",
+        "17:",
+        "Duplicate id: \"end\". A rule before has this id too",
+    ),
+    (
+        "<event id=\"later\">",
+        "<constraint failMessage=\"x\"><inside objectId=\"robot1\" regionId=\"finish\"/></constraint><event id=\"later\">",
+        "16:",
+        "every solution fails at once: 'robot1' begins outside the region 'finish'",
+    ),
+    (
+        "<event id=\"later\">",
+        "<constraint failMessage=\"x\"><conditions glue=\"and\"><true/><not><inside objectId=\"robot1\" regionId=\"ring\"/></not></conditions></constraint><event id=\"later\">",
+        "16:",
+        "every solution fails at once: 'robot1' begins in the region 'ring'",
+    ),
+    (
+        "<setter name=\"count\">",
+        "<setter name=\"totalscore\"><int value=\"1\"/></setter><setter name=\"count\">",
+        "20:",
+        "the variable 'totalscore' is not the score",
+    ),
+    (
         "trikKitRobot",
         "ev3KitUsbRobot",
         "",
@@ -221,6 +333,32 @@ fn each_mistake_is_found_at_its_place() {
             told.join("\n")
         );
     }
+}
+
+#[test]
+fn a_start_that_rules_may_change_is_left_alone_and_a_mistake_is_told_once() {
+    let world = WORLD.replacen(
+        "<event id=\"later\">",
+        "<constraint failMessage=\"x\"><inside objectId=\"robot1\" regionId=\"finish\"/></constraint><event id=\"later\">",
+        1,
+    );
+    // The region is moved to the robot before the first check.
+    let moved = world.replace("object=\"box\" property", "object=\"finish\" property");
+    for (world, count) in [(&world, 1), (&moved, 0)] {
+        let told = lines(world);
+        let told: Vec<_> = told
+            .iter()
+            .filter(|one| one.contains("fails at once"))
+            .collect();
+        assert_eq!(told.len(), count, "{told:?}");
+    }
+    // A tag that is misspelt is one mistake and has one line.
+    let told = lines(&WORLD.replace("<success/>", "<sucess/>"));
+    let told: Vec<_> = told.iter().filter(|one| one.contains("ucess")).collect();
+    assert!(
+        told.len() == 1 && told[0].contains("Did you mean \"success\"?"),
+        "{told:?}"
+    );
 }
 
 #[test]

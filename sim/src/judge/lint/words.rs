@@ -144,3 +144,108 @@ pub(super) fn unknown_attribute(tag: &str, name: &str, near: Option<&str>) -> Wo
         format!("атрибут '{name}' у <{tag}> ничего не значит{russian}"),
     )
 }
+
+/// The beginning of a text of an attribute.
+fn brief(text: &str) -> String {
+    text.chars().take(40).collect()
+}
+
+/// A colour that is none.
+pub(super) fn no_colour(name: &str, text: &str) -> Words {
+    let text = brief(text);
+    let (usual, usual_ru) = match name {
+        "backgroundColor" => ("white", "белый"),
+        _ => ("black", "чёрный"),
+    };
+    Words::new(
+        format!(
+            "{name}=\"{text}\" is no colour, and {usual} is taken; write a name such as red, #rrggbb or #aarrggbb"
+        ),
+        format!(
+            "{name}=\"{text}\" не цвет, и берётся {usual_ru}; напишите имя, например red, #rrggbb или #aarrggbb"
+        ),
+    )
+}
+
+/// A word that is none of those that an attribute knows.
+pub(super) fn no_word(
+    name: &str,
+    text: &str,
+    known: &[&str],
+    other: &str,
+    near: Option<&str>,
+) -> Words {
+    let (text, known) = (brief(text), known.join(", "));
+    let (meant, meant_ru) = match near {
+        Some(near) => (
+            format!("did you mean \"{near}\"?"),
+            format!("может быть, \"{near}\"?"),
+        ),
+        None => (format!("there are {known}"), format!("бывают {known}")),
+    };
+    Words::new(
+        format!("{name}=\"{text}\" is unknown, and \"{other}\" is taken; {meant}"),
+        format!("{name}=\"{text}\" неизвестно, и берётся \"{other}\"; {meant_ru}"),
+    )
+}
+
+/// A number below 0 where there is no such thing.
+pub(super) fn negative(name: &str, text: &str) -> Words {
+    let text = brief(text);
+    Words::new(
+        format!("{name}=\"{text}\" is below 0, which nothing has; write a number from 0 on"),
+        format!("{name}=\"{text}\" меньше нуля, чего не бывает; напишите число от 0"),
+    )
+}
+
+/// A size of nothing or less.
+pub(super) fn not_positive(name: &str, text: &str) -> Words {
+    let text = brief(text);
+    Words::new(
+        format!(
+            "{name}=\"{text}\" is not above 0, so nothing can have this size; write a number above 0"
+        ),
+        format!(
+            "{name}=\"{text}\" не больше нуля, такого размера не бывает; напишите число больше 0"
+        ),
+    )
+}
+
+/// A width of a ring that is no whole number.
+pub(super) fn not_whole(name: &str, text: &str) -> Words {
+    let text = brief(text);
+    Words::new(
+        format!(
+            "{name}=\"{text}\" of a region is no whole number from 0 on, and counts as 0: it is the width of the ring, not a colour"
+        ),
+        format!(
+            "{name}=\"{text}\" у области не целое число от 0 и считается нулём: это ширина кольца, а не цвет"
+        ),
+    )
+}
+
+/// One of two attributes that are meant together.
+pub(super) fn half(there: &str, missing: &str, is_void: bool) -> Words {
+    match is_void {
+        true => Words::new(
+            format!("'{there}' means nothing without '{missing}'; write both"),
+            format!("'{there}' ничего не значит без '{missing}'; напишите оба"),
+        ),
+        false => Words::new(
+            format!("'{there}' is there and '{missing}' is not, so '{missing}' is 0; write both"),
+            format!("есть '{there}', но нет '{missing}', и '{missing}' равно 0; напишите оба"),
+        ),
+    }
+}
+
+/// A region takes the place of another one.
+pub(super) fn region_twice(id: &str) -> Words {
+    Words::new(
+        format!(
+            "a region before has the id '{id}' too, and this one takes its place; give one of them another id"
+        ),
+        format!(
+            "у другой области выше тот же id '{id}', и эта занимает её место; дайте одной из них другой id"
+        ),
+    )
+}

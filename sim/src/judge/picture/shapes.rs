@@ -3,6 +3,7 @@
 //! Owns how each kind of thing looks. What is too far away for a picture is left out.
 
 use super::is_near;
+use crate::arena::floor::colour::Tint;
 use crate::field::{Blob, Drawn, Field, Pen, Region, Shape, Solid, SolidKind};
 use crate::geometry::Point;
 use crate::limits;
@@ -36,18 +37,14 @@ impl Bounds {
 
 /// A colour of a file as one of a page: `#aarrggbb` has its first part last there. What is none becomes `other`.
 pub(super) fn colour(text: &str, other: &str) -> String {
-    let digits = text.strip_prefix('#').unwrap_or("");
-    let are_hex = digits.bytes().all(|digit| digit.is_ascii_hexdigit());
-    match digits.len() {
-        8 if are_hex => format!("#{}{}", &digits[2..], &digits[..2]),
-        3 | 6 if are_hex => text.to_owned(),
-        _ if !text.is_empty()
-            && text.len() < 24
-            && text.bytes().all(|letter| letter.is_ascii_alphabetic()) =>
-        {
-            text.to_owned()
-        }
-        _ => other.to_owned(),
+    let text = text.trim();
+    // The same names as for sensors, so that nothing is seen by the one and not by the other.
+    if Tint::named(text).is_none() {
+        return other.to_owned();
+    }
+    match text.strip_prefix('#') {
+        Some(digits) if digits.len() == 8 => format!("#{}{}", &digits[2..], &digits[..2]),
+        Some(_) | None => text.to_owned(),
     }
 }
 
@@ -227,7 +224,7 @@ impl Style {
             _ => &[],
         };
         let fill = match &*pen.fill_style {
-            "solid" => colour(&pen.fill, "none"),
+            "solid" => colour(&pen.fill, "#000000"),
             _ => "none".to_owned(),
         };
         let lengths: Vec<String> = dashes

@@ -179,7 +179,7 @@ const MISTAKES: &[(&[&str], &str)] = &[
     ),
     (
         &["--grades", "d.csv", "--tasks", "nowhere"],
-        "nowhere cannot be read",
+        "nowhere: there is no such file",
     ),
     (
         &["--grades", "d.csv", "--pupils", "nobody.txt"],
