@@ -36,9 +36,23 @@ impl Machine {
         match value {
             Ok(value) => Some(value),
             Err(problems) => {
-                let text = self.program.sources.get(source as usize);
-                let property = text.map_or("", |text| text.property);
-                self.tell_all(node, property, problems, env);
+                self.tell_of(node, source, problems, env);
+                None
+            }
+        }
+    }
+
+    /// The value of an expression as a whole number; `None` after errors that were told.
+    fn whole(&mut self, node: Node, source: Source, env: &mut Env<'_>) -> Option<i32> {
+        let mut robot = Robot {
+            sensors: &mut self.sensors,
+            brick: env.brick,
+            now: self.now,
+        };
+        match self.formulas.whole(source, &mut robot) {
+            Ok(whole) => Some(whole),
+            Err(problems) => {
+                self.tell_of(node, source, problems, env);
                 None
             }
         }
@@ -71,7 +85,15 @@ impl Machine {
         }
     }
 
-    /// Errors of an expression, at its block and property.
+    /// Errors of an expression of the program, at its block and property.
+    #[cold]
+    fn tell_of(&mut self, node: Node, source: Source, problems: Vec<Problem>, env: &mut Env<'_>) {
+        let text = self.program.sources.get(source as usize);
+        let property = text.map_or("", |text| text.property);
+        self.tell_all(node, property, problems, env);
+    }
+
+    /// Errors of an expression, at this block and property.
     fn tell_all(&mut self, node: Node, property: &str, problems: Vec<Problem>, env: &mut Env<'_>) {
         for mut problem in problems {
             let position = problem.place.position;
@@ -93,8 +115,7 @@ impl Machine {
         match action.act.effect {
             Effect::Drive(sign) => {
                 let source = *action.sources.get(1)?;
-                let value = self.evaluate(node, source, Type::Whole, env)?;
-                let power = value.to_int().saturating_mul(sign);
+                let power = self.whole(node, source, env)?.saturating_mul(sign);
                 self.for_motors(node, action, env, |port| match port.sort() {
                     Sort::Servo => Command::Servo {
                         port,
@@ -170,7 +191,7 @@ impl Machine {
             if self.wanted(source) != Type::Whole {
                 computed = Some(source);
             } else if let Some(whole) = wholes.get_mut(count) {
-                *whole = self.evaluate(node, source, Type::Whole, env)?.to_int();
+                *whole = self.whole(node, source, env)?;
                 count += 1;
             }
         }
