@@ -298,13 +298,13 @@ const MISTAKES: &[(&str, &str, &str, &str)] = &[
     (
         "<event id=\"later\">",
         "<constraint failMessage=\"x\"><inside objectId=\"robot1\" regionId=\"finish\"/></constraint><event id=\"later\">",
-        "16:",
+        "17:",
         "every solution fails at once: 'robot1' begins outside the region 'finish'",
     ),
     (
         "<event id=\"later\">",
         "<constraint failMessage=\"x\"><conditions glue=\"and\"><true/><not><inside objectId=\"robot1\" regionId=\"ring\"/></not></conditions></constraint><event id=\"later\">",
-        "16:",
+        "17:",
         "every solution fails at once: 'robot1' begins in the region 'ring'",
     ),
     (
