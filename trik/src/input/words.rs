@@ -23,11 +23,9 @@ pub(crate) fn why(unread: &Unread, most: u64, directory: [&str; 2]) -> Words {
         ),
         Unread::Failed(error) => Words::new(
             format!("cannot be read: {error}"),
-            match error.kind() {
-                io::ErrorKind::PermissionDenied => {
-                    "не читается: нет прав на чтение этого файла".to_owned()
-                }
-                _ => format!("не читается: {error}"),
+            match error.kind() == io::ErrorKind::PermissionDenied {
+                true => "не читается: нет прав на чтение этого файла".to_owned(),
+                false => format!("не читается: {error}"),
             },
         ),
     }
