@@ -113,8 +113,11 @@ impl Reader {
                 && self.ids.insert(id.to_owned(), places[top]).is_some()
             {
                 self.at = element.start;
+                let before = self.problems.len();
                 self.error(words::duplicate(id));
-                if let Some(told) = self.problems.last_mut() {
+                if self.problems.len() > before
+                    && let Some(told) = self.problems.last_mut()
+                {
                     told.hint = Some(near::rename());
                 }
             }
