@@ -13,9 +13,16 @@ fn state(pid: u32) -> Option<(char, u32)> {
     Some((fields.next()?.chars().next()?, fields.next()?.parse().ok()?))
 }
 
-/// Threads of a process; 0 if it is gone.
-pub fn threads(pid: u32) -> usize {
-    std::fs::read_dir(format!("/proc/{pid}/task")).map_or(0, Iterator::count)
+/// Threads of a process that bear a name (the first 15 bytes of it, as the kernel keeps them); 0 if it is gone.
+pub fn threads_named(pid: u32, name: &str) -> usize {
+    let Ok(threads) = fs::read_dir(format!("/proc/{pid}/task")) else {
+        return 0;
+    };
+    threads
+        .flatten()
+        .filter_map(|thread| fs::read_to_string(thread.path().join("comm")).ok())
+        .filter(|comm| comm.trim_end() == name)
+        .count()
 }
 
 /// Runs or sleeps; a zombie is dead.
