@@ -6,7 +6,7 @@
 //! are means over the same states.
 
 use config::load::Loader;
-use config::program::{Program, Vm};
+use config::program::{Blank, Program, Vm};
 use converter::Direction;
 use std::time::{Duration, Instant};
 
@@ -48,8 +48,14 @@ fn states(
 ) -> Result<(), Box<dyn std::error::Error>> {
     let mut vms: Vec<Vm> = Vec::with_capacity(STATES);
     let (memory, start) = (resident_kib(), Instant::now());
+    let mut blanks = Vec::with_capacity(STATES);
     for _ in 0..STATES {
-        vms.push(program.prepare()?);
+        blanks.push(Blank::new()?);
+    }
+    let blank = start.elapsed();
+    let start = Instant::now();
+    for blank in blanks {
+        vms.push(program.prepare(blank, node.unwrap_or("copy"))?);
     }
     let prepared = start.elapsed();
     let mut bound = Duration::ZERO;
@@ -69,8 +75,9 @@ fn states(
     let start = Instant::now();
     drop(vms);
     println!(
-        "{:8} {conversions:5} conversions: prepare {:5.1} us, bind {:5.1} us, close {:5.1} us, lua {lua:5.1} KiB, resident {resident:5.1} KiB",
+        "{:8} {conversions:5} conversions: blank {:5.1} us, prepare {:5.1} us, bind {:5.1} us, close {:5.1} us, lua {lua:5.1} KiB, resident {resident:5.1} KiB",
         node.unwrap_or("-"),
+        each(blank),
         each(prepared),
         each(bound),
         each(start.elapsed()),
@@ -79,7 +86,7 @@ fn states(
 }
 
 fn speed(program: &Program, node: &str) -> Result<(), Box<dyn std::error::Error>> {
-    let mut vm = program.prepare()?;
+    let mut vm = program.open(node)?;
     let stage = vm.bind(node, Direction::Read, 0, 8, 8)?;
     let (input, mut output) = (vec![7; TUPLES * 8], vec![0; TUPLES * 8]);
     let start = Instant::now();
@@ -108,7 +115,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     // The first states pay for what is made once per process.
     drop(
         (0..4)
-            .map(|_| program.prepare())
+            .map(|_| program.open("copy"))
             .collect::<Result<Vec<_>, _>>()?,
     );
     if node == "-" {

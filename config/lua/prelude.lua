@@ -58,8 +58,8 @@ function ba.len(array)
 end
 
 raw.get, raw.set = ba.get, ba.set
--- What is used of the foreign function interface. The library itself is kept as well: it holds tables that LuaJIT reaches
--- without the collector's knowledge whenever a pointer or a union is made.
+-- What is used of the foreign function interface. The library itself is kept as well, whole: its functions hold tables
+-- that LuaJIT reaches without the collector's knowledge whenever a pointer or a union is made.
 local pointer, new, copy, text_of, scratch, kept
 
 local function open_ffi()
@@ -81,6 +81,7 @@ setmetatable(ba, {
   __index = function(_, name)
     if name == 'text' then
       rawset(ba, name, text)
+      if raw.note_member then raw.note_member('ba', name, text) end
       return text
     end
     local make = accessor(name)
@@ -90,6 +91,7 @@ setmetatable(ba, {
       'union { uint8_t b[8]; uint16_t h[4]; int16_t i16; uint16_t u16; int32_t i32; uint32_t u32; float f32; double f64; }')
     local access = make(sizes, bytes, scratch, copy, refuse, wrap, type, error, select)
     rawset(ba, name, access)
+    if raw.note_member then raw.note_member('ba', name, access) end
     return access
   end,
 })
@@ -109,7 +111,8 @@ end
 
 local globals
 
--- Globals that were made late, by name: a fingerprint tells them from the program's own.
+-- Globals that were made late, by name. In the state of which others are copies, `raw.note` and `raw.note_member` note what
+-- is made here (permanents.lua).
 local late = {}
 raw.late = late
 
@@ -118,9 +121,16 @@ local function global(_, name)
   if value ~= nil then
     late[name] = value
     rawset(globals, name, value)
+    if raw.note then raw.note(name, value) end
   end
   return value
 end
+
+-- What nobody here uses would only take memory in every state.
+for _, name in raw.ipairs {
+  'collectgarbage', 'dofile', 'gcinfo', 'getfenv', 'loadfile', 'loadstring', 'module', 'newproxy', 'print', 'require',
+  'setfenv', 'xpcall', '_G',
+} do raw[name] = nil end
 
 local params = {}
 globals = {

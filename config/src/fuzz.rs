@@ -7,7 +7,7 @@ use crate::limits::{FUZZ_MEMORY_BYTES, FUZZ_TIME_MS};
 use crate::load::Loader;
 use crate::vm::pattern;
 
-/// Loads the bytes as a configuration; if it is good, prepares a state and converts a tuple with each Lua stage.
+/// Loads the bytes as a configuration; if it is good, makes a state for each node and converts a tuple with each of its Lua stages.
 pub fn fuzz_load(bytes: &[u8]) {
     use converter::Direction;
     let Ok(loaded) =
@@ -15,11 +15,11 @@ pub fn fuzz_load(bytes: &[u8]) {
     else {
         return;
     };
-    let Ok(mut vm) = loaded.program.prepare() else {
-        return;
-    };
-    vm.limit(1024, 1_000);
     for node in &loaded.config.nodes {
+        let Ok(mut vm) = loaded.program.open(&node.path) else {
+            continue;
+        };
+        vm.limit(1024, 1_000);
         for (position, stage) in node.converter.iter().enumerate() {
             let (input_size, output_size) = (stage.input_size, stage.output_size);
             let Ok(id) = vm.bind(

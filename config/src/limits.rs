@@ -42,6 +42,16 @@ pub const INCLUDES_MAX: usize = 64;
 pub const LOAD_TIME_MS: u32 = 5_000;
 /// Bytes of Lua memory while the configuration program runs for the first time.
 pub const LOAD_MEMORY_BYTES: usize = 64 << 20;
+/// Bytes of what the converters of one node may reach to be copied; beyond it every open file runs the program anew.
+pub const IMAGE_BYTES_MAX: usize = 4 << 20;
+/// Bytes of such copies that are kept for later openings.
+pub const IMAGES_BYTES_MAX: usize = 1 << 20;
+/// Entries that the copy of a table has room for before the first is there.
+pub const ENTRIES_AHEAD_MAX: i32 = 1 << 16;
+/// Bytes of Lua memory that a state without any program stays below.
+pub const BLANK_BYTES: usize = 48 << 10;
+/// Nodes whose state is made when a configuration is loaded, to see whether `memory_kb` has room for it.
+pub const NODES_TRIED_MAX: usize = 64;
 /// Bytes of one `trikfs_log` line; the rest is cut.
 pub const LOG_LINE_BYTES_MAX: usize = 1024;
 /// Steps of one pattern match before it is refused.

@@ -4,10 +4,11 @@
 
 use crate::check::check;
 use crate::dcml::{self, Named};
-use crate::description::Config;
+use crate::description::{Config, NodeDescription};
 use crate::error::Error;
 use crate::limits::{
-    CONFIG_BYTES_MAX, INCLUDES_MAX, LOAD_MEMORY_BYTES, LOAD_TIME_MS, LOG_LINES_MAX,
+    BLANK_BYTES, CONFIG_BYTES_MAX, INCLUDES_MAX, LOAD_MEMORY_BYTES, LOAD_TIME_MS, LOG_LINES_MAX,
+    NODES_TRIED_MAX,
 };
 use crate::problem::Problem;
 use crate::program::Program;
@@ -15,7 +16,8 @@ use crate::search::Search;
 use crate::texts::Texts;
 use crate::vm::bytecode::{Code, compile};
 use crate::vm::extract::extract;
-use crate::vm::fingerprint::{digest_functions, hash, keep_pristine};
+use crate::vm::fingerprint::{digest_functions, hash};
+use crate::vm::persist::keep_pristine;
 use crate::vm::state::{Include, LogSink, State};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -116,42 +118,65 @@ impl Loader {
         })?;
         let salt = locked(&run).salt;
         digest_functions(&mut state, &mut values, salt);
-        let held_kib = state.collect().map_err(problem)?.div_ceil(1024);
-        drop(state);
+        let held_bytes = state.collect().map_err(problem)?;
+        // From here on it is only read.
+        state.set_log(None);
+        state.set_include(None);
+        state
+            .host()
+            .memory
+            .set_limit(memory_bytes.saturating_mul(2));
         let mut run = locked(&run);
         let (mut config, mut warnings) = check(&values, &run.texts, &run.search)?;
-        enough_memory(&config, held_kib)?;
+        let original = lua_nodes(&config).next().is_some().then_some(state);
+        let files = std::mem::take(&mut run.files);
+        let program = Arc::new(Program::new(code, files, original));
+        enough_memory(&config, &program, held_bytes)?;
         if let Some(root) = &self.device_root {
             crate::device_root::take_below(&mut config, root);
         }
         warnings.extend(undefined.iter().map(|name| run.texts.undefined(name)));
         Ok(Loaded {
             config,
-            program: Arc::new(Program::new(code, std::mem::take(&mut run.files))),
+            program,
             warnings,
             log: std::mem::take(&mut run.log),
         })
     }
 }
 
-/// Every open file of a Lua node has a state in which the program has run: its memory must have room for that.
-fn enough_memory(config: &Config, held_kib: usize) -> Result<(), Problem> {
-    let all = config
-        .nodes
-        .iter()
-        .flat_map(|node| std::iter::once(node).chain(&node.attributes));
-    for node in all.filter(|node| node.uses_lua()) {
-        if held_kib > usize::try_from(node.memory_kb).unwrap_or(usize::MAX) {
-            let reason = format!(
-                "node {}: the program alone holds {held_kib} KiB in each open file's lua state, memory_kb = {} leaves no room",
-                node.path, node.memory_kb
-            );
-            return Err(Problem::new(
-                node.place.file.clone(),
-                node.place.line,
-                reason,
-            ));
-        }
+/// Nodes and attributes with a converter in Lua.
+fn lua_nodes(config: &Config) -> impl Iterator<Item = &NodeDescription> {
+    let nodes = config.nodes.iter();
+    nodes
+        .flat_map(|node| std::iter::once(node).chain(&node.attributes))
+        .filter(|node| node.uses_lua())
+}
+
+/// Every open file of a Lua node has a state with what its converters hold: the node's memory must have room for that.
+/// Only a node with less memory than the whole program holds is tried, and only the first few of those: each costs a state.
+fn enough_memory(config: &Config, program: &Program, held_bytes: usize) -> Result<(), Problem> {
+    let bytes_of = |node: &NodeDescription| {
+        let kib = usize::try_from(node.memory_kb).unwrap_or(usize::MAX);
+        kib.saturating_mul(1024)
+    };
+    let doubtful =
+        lua_nodes(config).filter(|node| held_bytes.saturating_add(BLANK_BYTES) > bytes_of(node));
+    for node in doubtful.take(NODES_TRIED_MAX) {
+        let reason = match program.open(&node.path) {
+            Ok(vm) if vm.memory() <= bytes_of(node) => continue,
+            Ok(vm) => format!(
+                "what its converters hold takes {} KiB in each open file's lua state, memory_kb = {} leaves no room",
+                vm.memory().div_ceil(1024),
+                node.memory_kb
+            ),
+            Err(error) => format!("no lua state can be made for its converters: {error}"),
+        };
+        return Err(Problem::new(
+            node.place.file.clone(),
+            node.place.line,
+            format!("node {}: {reason}", node.path),
+        ));
     }
     Ok(())
 }

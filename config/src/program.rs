@@ -1,27 +1,42 @@
 //! A loaded configuration program, and the private Lua states in which its converters run.
 //!
-//! Owns the compiled text of the program and of everything it included. Closures cannot move between Lua states, so each
-//! state runs the whole program again, silently and with the same files, and takes the converters of its own run.
+//! Owns the compiled text of the program and of everything it included, the state in which it ran once, and images of what
+//! single nodes reach there. An open file gets a blank state and a copy of its own node's functions and what they hold, so
+//! that it costs the same however many nodes there are. What cannot be copied (a coroutine, for one) is made anew instead:
+//! the whole program runs again in the file's state, silently and with the same files.
 
 use crate::error::Error;
-use crate::limits::{BUDGET_US, LOAD_MEMORY_BYTES, LOAD_TIME_MS, MEMORY_KB};
+use crate::limits::{BUDGET_US, IMAGES_BYTES_MAX, LOAD_MEMORY_BYTES, LOAD_TIME_MS, MEMORY_KB};
 use crate::vm::bytecode::Code;
+use crate::vm::persist::{Image, persist};
+use crate::vm::restore::restore;
 use crate::vm::stage::Stages;
 use crate::vm::state::{Include, State};
 use converter::{Conversion, Direction, Fault};
 use std::collections::BTreeMap;
 use std::fmt;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A converter bound in a [`Vm`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StageId(usize);
 
-/// The text of a configuration with everything it included, compiled.
+/// A configuration program: its text with everything it included, compiled, and the state in which it ran.
 pub struct Program {
     code: Code,
     /// By the name that `include` was given.
     files: Arc<BTreeMap<Vec<u8>, Code>>,
+    copies: Mutex<Copies>,
+}
+
+/// What states are copied from.
+struct Copies {
+    /// The state in which the program ran when it was loaded; none if no node needs it.
+    original: Option<State>,
+    /// What single nodes reach in it, by their paths; none where it cannot be copied.
+    images: BTreeMap<String, Option<Arc<Image>>>,
+    /// Bytes of all images.
+    bytes: usize,
 }
 
 impl fmt::Debug for Program {
@@ -34,20 +49,96 @@ impl fmt::Debug for Program {
 }
 
 impl Program {
-    pub(crate) fn new(code: Code, files: BTreeMap<Vec<u8>, Code>) -> Self {
+    pub(crate) fn new(code: Code, files: BTreeMap<Vec<u8>, Code>, original: Option<State>) -> Self {
         Self {
             code,
             files: Arc::new(files),
+            copies: Mutex::new(Copies {
+                original,
+                images: BTreeMap::new(),
+                bytes: 0,
+            }),
         }
     }
 
-    /// A fresh private state in which the program has run silently, ready to bind converters.
+    /// Makes a blank state one in which the converters of `node`, the path of a node or attribute, can be bound. A node that
+    /// is not there is told of by [`Vm::bind`].
+    ///
+    /// # Errors
+    /// The Lua error, if the program must run anew and fails this time; no memory.
+    pub fn prepare(&self, blank: Blank, node: &str) -> Result<Vm, Error> {
+        let Some(image) = self.image(node) else {
+            drop(blank);
+            return self.anew(Some(node));
+        };
+        let stages = blank.stages;
+        restore(stages.state(), &image)?;
+        stages.state().set_include(Some(self.include()));
+        Ok(Vm::new(stages))
+    }
+
+    /// A state for the converters of `node`, as [`prepare`](Self::prepare) makes it of a new blank one.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn open(&self, node: &str) -> Result<Vm, Error> {
+        self.prepare(Blank::new()?, node)
+    }
+
+    /// A state in which the program ran anew, for the converters of all nodes.
     ///
     /// # Errors
     /// The Lua error, if the program fails this time; no memory.
-    pub fn prepare(&self) -> Result<Vm, Error> {
+    pub fn run_anew(&self) -> Result<Vm, Error> {
+        self.anew(None)
+    }
+
+    /// As `run_anew`; of the nodes only `node` is kept, if one is given.
+    fn anew(&self, node: Option<&str>) -> Result<Vm, Error> {
+        let mut state = State::new(LOAD_MEMORY_BYTES, None, Some(self.include()))?;
+        state.run(&self.code, LOAD_TIME_MS.saturating_mul(1_000))?;
+        state.keep_tree()?;
+        let mut stages = Stages::new(state);
+        if let Some(node) = node {
+            stages.keep_only(node)?;
+        }
+        stages.prepare_arrays()?;
+        // What lies about would count against the converters' memory, and what they need first fits into its place.
+        stages.state().collect()?;
+        Ok(Vm::new(stages))
+    }
+
+    /// What the converters of a node reach; None if it cannot be copied.
+    fn image(&self, node: &str) -> Option<Arc<Image>> {
+        let mut copies = self.copies();
+        if let Some(known) = copies.images.get(node) {
+            return known.clone();
+        }
+        let original = copies.original.as_mut()?;
+        let image = persist(original, node).ok().map(Arc::new);
+        let bytes = image.as_ref().map_or(0, |image| image.bytes());
+        if copies.bytes.saturating_add(bytes) > IMAGES_BYTES_MAX {
+            copies.images.clear();
+            copies.bytes = 0;
+        }
+        copies.bytes += bytes;
+        copies.images.insert(node.to_owned(), image.clone());
+        image
+    }
+
+    /// Whether a state for the node is a copy, and not one in which the program runs anew.
+    pub fn is_copied(&self, node: &str) -> bool {
+        self.image(node).is_some()
+    }
+
+    fn copies(&self) -> MutexGuard<'_, Copies> {
+        self.copies.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Finds the files that were included when the program was loaded, and no others.
+    fn include(&self) -> Include {
         let files = Arc::clone(&self.files);
-        let include: Include = Box::new(move |name| {
+        Box::new(move |name| {
             let code = files.get(name).map(Arc::clone);
             code.ok_or_else(|| {
                 Error::Script(format!(
@@ -55,20 +146,37 @@ impl Program {
                     String::from_utf8_lossy(name)
                 ))
             })
-        });
-        let mut state = State::new(LOAD_MEMORY_BYTES, None, Some(include))?;
-        state.run(&self.code, LOAD_TIME_MS.saturating_mul(1_000))?;
-        state.keep_tree()?;
-        let mut stages = Stages::new(state);
+        })
+    }
+}
+
+/// Gives memory of closed states back to the system, as far as the C library can: it keeps what was freed between blocks that
+/// live. Takes some milliseconds of a heap of megabytes.
+pub fn give_memory_back() {
+    crate::vm::memory::give_back();
+}
+
+/// A Lua state with the sandbox, in which no program ran yet; it suits any program.
+pub struct Blank {
+    stages: Stages,
+}
+
+impl fmt::Debug for Blank {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Blank").finish_non_exhaustive()
+    }
+}
+
+impl Blank {
+    /// Makes a state. What its first converter would have to wait for is done here.
+    ///
+    /// # Errors
+    /// No memory.
+    pub fn new() -> Result<Self, Error> {
+        let mut stages = Stages::new(State::new(LOAD_MEMORY_BYTES, None, None)?);
         stages.prepare_arrays()?;
-        // What lies about would count against the converters' memory, and what they need first fits into its place.
         stages.state().collect()?;
-        let mut vm = Vm {
-            stages,
-            budget_us: BUDGET_US,
-        };
-        vm.limit(MEMORY_KB, BUDGET_US);
-        Ok(vm)
+        Ok(Self { stages })
     }
 }
 
@@ -87,7 +195,16 @@ impl fmt::Debug for Vm {
 }
 
 impl Vm {
-    /// Limits of everything that runs from here on: KiB of Lua memory (with the program itself), microseconds of
+    fn new(stages: Stages) -> Self {
+        let mut vm = Self {
+            stages,
+            budget_us: BUDGET_US,
+        };
+        vm.limit(MEMORY_KB, BUDGET_US);
+        vm
+    }
+
+    /// Limits of everything that runs from here on: KiB of Lua memory (with what the converters hold), microseconds of
     /// processor time of one conversion.
     pub fn limit(&mut self, memory_kb: u32, budget_us: u32) {
         let bytes = usize::try_from(memory_kb)
@@ -133,15 +250,6 @@ impl Vm {
         self.stages
             .bind(node, direction, position, input_size, output_size)
             .map(StageId)
-    }
-
-    /// Lets go of all nodes but the one whose converters this state is for: of the global `trikfs` remain that node and the
-    /// groups on the way to it. A node that is not there is told of by [`bind`](Self::bind).
-    ///
-    /// # Errors
-    /// No memory.
-    pub fn keep_only(&mut self, node: &str) -> Result<(), Error> {
-        self.stages.keep_only(node)
     }
 
     /// Converts one tuple. `output` is zeroed before the converter sees it and keeps its old bytes unless the tuple was

@@ -16,12 +16,15 @@ mod ratios {
     pub mod reads;
     pub mod reload;
     pub mod samples;
+    pub mod states;
     pub mod together;
     pub mod torn;
 }
 
 use ratios::measure::Plan;
-use ratios::{bulk, bus, events, newest, open, peers, reads, reload, samples, together, torn};
+use ratios::{
+    bulk, bus, events, newest, open, peers, reads, reload, samples, states, together, torn,
+};
 
 /// A section's name and what it runs.
 type Section = (&'static str, fn(&Plan) -> Outcome);
@@ -29,11 +32,12 @@ type Section = (&'static str, fn(&Plan) -> Outcome);
 /// Benchmarks fail with a sentence.
 type Outcome = Result<(), String>;
 
-const SECTIONS: [Section; 9] = [
+const SECTIONS: [Section; 10] = [
     ("reads", reads::run),
     ("newest", newest::run),
     ("events", events::run),
     ("open", open::run),
+    ("states", states::run),
     ("reload", reload::run),
     ("bulk", bulk::run),
     ("together", together::run),

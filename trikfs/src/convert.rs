@@ -104,10 +104,9 @@ impl Recipe {
         let vm = match &pool {
             None => None,
             Some(pool) => {
-                let mut vm = pool.take().map_err(unusable)?;
+                let mut vm = pool.take(&self.node).map_err(unusable)?;
                 vm.set_log(log.clone());
                 vm.set_params(&self.node, &params).map_err(unusable)?;
-                vm.keep_only(&self.node).map_err(unusable)?;
                 Some(vm)
             }
         };

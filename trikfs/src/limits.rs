@@ -55,11 +55,13 @@ pub const PRESENCE_MS: u64 = 500;
 pub const RENEWAL_MS: u64 = 100;
 /// Milliseconds between attempts to open a lost device again.
 pub const REOPEN_MS: u64 = 250;
-/// Bytes of Lua memory that prepared states may hold together, beyond the first.
-pub const LUA_STATES_BYTES: usize = 4 << 20;
+/// Milliseconds without an opening or closing after which the stock of Lua states is small again.
+pub const LUA_STATES_QUIET_MS: u64 = 200;
 /// Milliseconds that the making and closing of Lua states is put off, to do more of it at once.
 pub const LUA_STATES_BATCH_MS: u64 = 2;
-/// Prepared Lua states of the configuration in force.
+/// Nice value of the thread that makes and closes Lua states.
+pub const LUA_STATES_NICE: i32 = 10;
+/// Prepared Lua states after many openings in a row.
 pub const LUA_STATES_READY: usize = 32;
 /// Bytes of the text of one number that is written.
 pub const TEXT_BYTES_MAX: usize = 64 << 10;
@@ -179,7 +181,7 @@ pub const READY_LINE_BYTES_MAX: u64 = 16 << 10;
 pub const ATTRIBUTE_BYTES_MAX: u64 = 4096;
 /// Time between two attempts to bring an actuator to rest whose device is busy.
 pub const REST_PAUSE: Duration = Duration::from_millis(1);
-/// Prepared Lua states before any program was seen to need more.
+/// Prepared Lua states at rest.
 pub const LUA_STATES_FIRST: usize = 4;
 /// Threads with which the crate fuser serves the mount. More cost every request some 15 %, fewer let a single late
 /// operation stop it.

@@ -294,7 +294,7 @@ impl Reloader {
             ));
         }
         set_actuators(&nodes);
-        let old_pool = {
+        {
             let mut state = lock(&self.state);
             let tree = Tree::build(
                 nodes,
@@ -305,8 +305,8 @@ impl Reloader {
             );
             setup.forest.replace(tree);
             state.bytes = Arc::new(bytes);
-            std::mem::replace(&mut state.pool, pool)
-        };
+            state.pool = pool;
+        }
         let tree = setup.forest.tree();
         for old in gone {
             old.retire();
@@ -320,9 +320,6 @@ impl Reloader {
         }
         for node in &new {
             node.sampling.newest.start();
-        }
-        if let Some(old_pool) = old_pool {
-            old_pool.retire();
         }
         if let Some(kernel) = setup.engine.kernel() {
             for gone in tree.gone_since(before) {

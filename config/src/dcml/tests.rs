@@ -68,7 +68,7 @@ impl Follower {
         let size = 4 * inputs + 4;
         assert_eq!(node.input_tuple_size, size);
         let shown = node.output_tuple_size;
-        let mut vm = loaded.program.prepare().unwrap();
+        let mut vm = loaded.program.open("pose").unwrap();
         vm.set_params("pose", &node.params).unwrap();
         let stage = vm.bind("pose", Direction::Read, 0, size, shown).unwrap();
         Self(vm, stage, shown)
@@ -228,7 +228,7 @@ fn the_heading_may_come_from_a_node_of_its_own() {
     let loaded = Loader::default()
         .load("robot.lua", None, source.as_bytes())
         .unwrap();
-    let mut vm = loaded.program.prepare().unwrap();
+    let mut vm = loaded.program.open("pose").unwrap();
     vm.set_params(
         "pose",
         &[("L".to_owned(), 0.2), ("r".to_owned(), 0.1)].into(),

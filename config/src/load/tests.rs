@@ -216,7 +216,7 @@ fn an_included_file_is_part_of_the_program() {
         loaded.config.nodes[0].converter[0].place.to_string(),
         "board.lua:3"
     );
-    let mut vm = loaded.program.prepare().unwrap();
+    let mut vm = loaded.program.open("a").unwrap();
     let stage = vm.bind("a", Direction::Read, 0, 1, 1).unwrap();
     let mut output = [0];
     vm.convert(stage, &[0], &mut output).unwrap();
@@ -278,7 +278,7 @@ fn the_program_runs_again_with_the_files_of_the_load() {
         converter = function(_, a, _, b) ba.set(b, 0, n) end } }";
     let loaded = folder.load(source).unwrap();
     fs::write(folder.0.join("n.lua"), "return 2").unwrap();
-    let mut vm = loaded.program.prepare().unwrap();
+    let mut vm = loaded.program.open("x").unwrap();
     let stage = vm.bind("x", Direction::Read, 0, 1, 1).unwrap();
     let mut output = [0];
     vm.convert(stage, &[0], &mut output).unwrap();
@@ -296,7 +296,7 @@ fn the_log_of_the_first_run_is_kept_and_later_runs_are_silent() {
     assert_eq!(loaded.log, ["hello\t5", "nil"]);
     let loaded = load("for i = 1, 5000 do print(i) end trikfs = {}").unwrap();
     assert_eq!(loaded.log.len(), 1000);
-    loaded.program.prepare().unwrap();
+    loaded.program.run_anew().unwrap();
 }
 
 fn fingerprint(source: &str) -> u128 {
@@ -437,7 +437,7 @@ fn a_program_that_leaves_its_converters_no_memory_is_refused() {
     );
     let reason = load(&source).unwrap_err().reason;
     assert!(
-        reason.starts_with("node x: the program alone holds ")
+        reason.starts_with("node x: what its converters hold takes ")
             && reason
                 .ends_with(" KiB in each open file's lua state, memory_kb = 1024 leaves no room"),
         "{reason}"
@@ -468,7 +468,7 @@ fn the_examples_that_are_shipped_load() {
     let loaded = Loader::default()
         .load("filters", Some(&folder), filters.as_bytes())
         .unwrap();
-    let mut vm = loaded.program.prepare().unwrap();
+    let mut vm = loaded.program.open("x").unwrap();
     let stage = vm.bind("x", Direction::Read, 0, 4, 4).unwrap();
     let mut output = [0; 4];
     for (input, expected) in [(5i32, 5i32), (100, 5), (6, 6)] {

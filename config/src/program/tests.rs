@@ -2,19 +2,21 @@
 
 use super::*;
 use crate::vm::bytecode::compile;
+use crate::vm::persist::keep_pristine;
 use std::sync::Mutex;
 
 fn program(source: &str) -> Program {
-    Program::new(
-        compile("@test.lua", source.as_bytes(), false).unwrap(),
-        BTreeMap::new(),
-    )
+    let code = compile("@test.lua", source.as_bytes(), false).unwrap();
+    let mut state = State::new(LOAD_MEMORY_BYTES, None, None).unwrap();
+    keep_pristine(&state).unwrap();
+    let ran = state.run(&code, 5_000_000).and_then(|()| state.keep_tree());
+    Program::new(code, BTreeMap::new(), ran.is_ok().then_some(state))
 }
 
 /// A state with `converter` bound as the one stage of the node `x`.
 fn bound(converter: &str, input_size: usize, output_size: usize) -> (Vm, StageId) {
     let source = format!("trikfs = {{ x = {{ src = '/dev/null', converter = {converter} }} }}");
-    let mut vm = program(&source).prepare().unwrap();
+    let mut vm = program(&source).open("x").unwrap();
     let stage = vm
         .bind("x", Direction::Read, 0, input_size, output_size)
         .unwrap();
@@ -311,7 +313,7 @@ fn two_arrays_of_a_stage_and_two_stages_do_not_mix() {
     let source = "trikfs = { x = { src = '/dev/null', converter = {
         function(n, a, m, b) for i = 0, n - 1 do ba.set(b, i, ba.get(a, i) + 1) end end,
         { converter = function(n, a, m, b) ba.set(b, 0, ba.get(a, 0) * 2) end, output_tuple_size = 1 } } } }";
-    let mut vm = program(source).prepare().unwrap();
+    let mut vm = program(source).open("x").unwrap();
     let first = vm.bind("x", Direction::Read, 0, 2, 2).unwrap();
     let second = vm.bind("x", Direction::Write, 1, 2, 1).unwrap();
     let (mut middle, mut output) = ([0; 2], [0]);
@@ -331,12 +333,15 @@ fn a_converter_is_found_through_groups_lists_and_attributes() {
     let source = "local function f(x) return function(n, a, m, b) ba.set(b, 0, x) end end
         trikfs = { motors = { left = { src = '/dev/null', converter = f(1), write_converter = { f(2), f(3) },
         attributes = { speed = { src = '/dev/null', converter = { converter = f(4) } } } } } }";
-    let mut vm = program(source).prepare().unwrap();
-    let mut at = |node: &str, direction, position| {
+    let program = program(source);
+    let at = |node: &str, direction, position| {
+        let mut vm = program.open(node).unwrap();
         let bound = vm.bind(node, direction, position, 1, 1);
         let stage = bound.map_err(|error| error.to_string())?;
         let mut output = [0];
         let done = vm.convert(stage, &[0], &mut output);
+        // A failed search leaves the state as it was.
+        vm.bind("other", direction, 0, 1, 1).unwrap_err();
         done.map(|_| output[0]).map_err(|fault| fault.to_string())
     };
     assert_eq!(at("motors/left", Direction::Read, 0), Ok(1));
@@ -348,11 +353,6 @@ fn a_converter_is_found_through_groups_lists_and_attributes() {
     assert_eq!(at("motors/right", Direction::Read, 0), Err(missing.into()));
     let missing = "motors/left: the program made no lua converter here this time";
     assert_eq!(at("motors/left", Direction::Write, 7), Err(missing.into()));
-    assert_eq!(
-        at("motors/left", Direction::Read, 0),
-        Ok(1),
-        "a failed search leaves the state as it was"
-    );
 }
 
 #[test]
@@ -361,7 +361,7 @@ fn states_share_nothing() {
     let program = program(source);
     let mut ends = Vec::new();
     for rounds in [1, 3] {
-        let mut vm = program.prepare().unwrap();
+        let mut vm = program.open("x").unwrap();
         let stage = vm.bind("x", Direction::Read, 0, 1, 1).unwrap();
         let mut output = [0];
         for _ in 0..rounds {
@@ -724,7 +724,7 @@ fn params_can_be_changed_while_the_converter_lives() {
     let source = "local own = { gain = 2 }
         trikfs = { x = { src = '/dev/null', params = own, converter = function(_, a, _, b)
           ba.set(b, 0, own.gain) ba.set(b, 1, params.gain or 0) end } }";
-    let mut vm = program(source).prepare().unwrap();
+    let mut vm = program(source).open("x").unwrap();
     let stage = vm.bind("x", Direction::Read, 0, 1, 2).unwrap();
     let mut output = [0; 2];
     vm.convert(stage, &[0], &mut output).unwrap();
@@ -803,7 +803,7 @@ fn a_state_can_move_between_threads() {
 fn a_program_that_fails_this_time_is_an_error() {
     let program = program("local n = nil\nerror('no luck')");
     assert_eq!(
-        program.prepare().unwrap_err(),
+        program.open("x").unwrap_err(),
         Error::Script("test.lua:2: no luck".to_owned())
     );
 }
@@ -837,35 +837,38 @@ fn of_the_tree_remains_the_way_to_the_own_node() {
             for name in pairs(trikfs.group.inner) do names = names .. name .. ' ' end
             error(names .. trikfs.group.inner.x.attributes.extra.params.gain, 0)
           end } } } } } }";
-    let mut vm = program(source).prepare().unwrap();
     let (node, direction) = ("group/inner/x/extra", Direction::Read);
-    let stage = vm.bind(node, direction, 0, 4, 4).unwrap();
-    let before = vm.memory();
-    vm.keep_only(node).unwrap();
-    vm.stages.state().collect().unwrap();
-    assert!(vm.memory() + 200_000 < before, "{} {before}", vm.memory());
-    let mut told = || {
-        let fault = vm.convert(stage, &[0; 4], &mut [0; 4]).unwrap_err();
-        fault.to_string()
-    };
-    assert_eq!(told(), "group inner x 3");
-    let params = BTreeMap::from([("gain".to_owned(), 7.0)]);
-    vm.set_params(node, &params).unwrap();
-    let mut told = || {
-        let fault = vm.convert(stage, &[0; 4], &mut [0; 4]).unwrap_err();
-        fault.to_string()
-    };
-    assert_eq!(told(), "group inner x 7");
-    // Another node is not there any more, and that is an error and no crash.
-    vm.bind("other", direction, 0, 4, 4).unwrap_err();
-    vm.keep_only("absent/node").unwrap();
-    vm.bind(node, direction, 0, 4, 4).unwrap_err();
-    assert!(vm.convert(stage, &[0; 4], &mut [0; 4]).is_err());
+    let program = program(source);
+    let copied = program.open(node).unwrap();
+    let mut anew = program.run_anew().unwrap();
+    let before = anew.memory();
+    anew.stages.keep_only(node).unwrap();
+    anew.stages.state().collect().unwrap();
+    for mut vm in [copied, anew] {
+        assert!(vm.memory() + 200_000 < before, "{} {before}", vm.memory());
+        let stage = vm.bind(node, direction, 0, 4, 4).unwrap();
+        let mut told = || {
+            let fault = vm.convert(stage, &[0; 4], &mut [0; 4]).unwrap_err();
+            fault.to_string()
+        };
+        assert_eq!(told(), "group inner x 3");
+        let params = BTreeMap::from([("gain".to_owned(), 7.0)]);
+        vm.set_params(node, &params).unwrap();
+        let mut told = || {
+            let fault = vm.convert(stage, &[0; 4], &mut [0; 4]).unwrap_err();
+            fault.to_string()
+        };
+        assert_eq!(told(), "group inner x 7");
+        // Another node is not there any more, and that is an error and no crash.
+        vm.bind("other", direction, 0, 4, 4).unwrap_err();
+    }
+    let mut absent = program.open("absent/node").unwrap();
+    absent.bind(node, direction, 0, 4, 4).unwrap_err();
 }
 
 #[test]
 fn a_state_keeps_only_the_filters_that_it_uses() {
-    let memory = |source: &str| program(source).prepare().unwrap().memory();
+    let memory = |source: &str| program(source).open("x").unwrap().memory();
     let none = memory("trikfs = {}");
     let one = memory("trikfs = { x = { src = '/dev/null', converter = filter.median3{} } }");
     let all = "local kept, names = {}, { 'identity', 'median3', 'moving_average', 'low_pass', 'scale', 'inverse',

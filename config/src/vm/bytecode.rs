@@ -40,6 +40,10 @@ pub(crate) enum Part {
     Dcml,
     /// Digests functions.
     Fingerprint,
+    /// Notes what every state has.
+    Permanents,
+    /// Writes what a node's converters reach.
+    Persist,
 }
 
 impl Part {
@@ -54,6 +58,8 @@ impl Part {
             Self::Sources => include_str!("lua/sources.lua"),
             Self::Dcml => include_str!("lua/dcml.lua"),
             Self::Fingerprint => include_str!("lua/fingerprint.lua"),
+            Self::Permanents => include_str!("lua/permanents.lua"),
+            Self::Persist => include_str!("lua/persist.lua"),
             Self::Filter => include_str!("lua/filter.lua"),
             Self::Filters => include_str!("../../lua/filters.lua"),
         }

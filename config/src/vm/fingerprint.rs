@@ -3,7 +3,8 @@
 //! Owns the hash. Equal digests let a reload keep open files; a digest that differs without need only costs a reopening.
 
 use super::bytecode::Part;
-use super::library;
+use super::own;
+use super::persist;
 use super::state::{State, text_of};
 use crate::error::Error;
 use crate::limits::LOAD_TIME_MS;
@@ -11,9 +12,6 @@ use crate::value::Values;
 use mlua_sys as lua;
 use std::ffi::c_int;
 use std::hash::{DefaultHasher, Hasher};
-
-/// Registry place of the globals' first contents.
-const PRISTINE: c_int = 4;
 
 /// A hash of 128 bits, not for secrets: two runs of the standard library's SipHash with different beginnings.
 pub(crate) fn hash(bytes: &[u8]) -> u128 {
@@ -24,26 +22,6 @@ pub(crate) fn hash(bytes: &[u8]) -> u128 {
         u128::from(hasher.finish())
     };
     half(1) << 64 | half(2)
-}
-
-/// Remembers what the globals hold, before the program runs.
-pub(crate) fn keep_pristine(state: &State) -> Result<(), Error> {
-    state.protect(&[], |l| {
-        // SAFETY: inside a protected call; the loop keeps the key in place as `lua_next` wants.
-        unsafe {
-            lua::lua_newtable(l);
-            lua::lua_pushvalue(l, lua::LUA_GLOBALSINDEX);
-            lua::lua_pushnil(l);
-            while lua::lua_next(l, 2) != 0 {
-                lua::lua_pushvalue(l, -2);
-                lua::lua_insert(l, -2);
-                lua::lua_rawset(l, 1);
-            }
-            lua::lua_pushvalue(l, 1);
-            lua::lua_rawseti_(l, lua::LUA_REGISTRYINDEX, PRISTINE);
-            lua::lua_settop(l, 0);
-        }
-    })
 }
 
 /// Fills in the digests of all functions. The list of functions that `extract` made must be on the top of the stack;
@@ -72,12 +50,14 @@ fn digests(state: &mut State, salt: u128) -> Result<Vec<u8>, Error> {
             lua::luaL_loadbuffer(l, bytes.as_ptr().cast(), bytes.len(), c"=trikfs".as_ptr());
             lua::lua_pushvalue(l, 1);
             lua::lua_pushvalue(l, lua::LUA_GLOBALSINDEX);
-            lua::lua_rawgeti_(l, lua::LUA_REGISTRYINDEX, PRISTINE);
+            persist::push_pristine(l);
             lua::lua_pushlstring_(l, salt.as_ptr().cast(), salt.len());
-            library::push_inspection(l);
-            // The digest function goes before the table library.
+            own::push_raw(l);
+            own::push_string(l);
+            own::push_debug(l);
+            own::push_constants(l);
             lua::lua_pushcfunction(l, digest);
-            lua::lua_insert(l, -2);
+            own::push_table(l);
         }
     });
     let result = match pushed {

@@ -5,6 +5,7 @@
 //! panic out.
 
 use super::bytecode::{self, Code, Part};
+use super::own::{self, forget_library, push_raw_library};
 use super::pattern::{self, Capture, Match};
 use super::state::Host;
 use crate::error::Error;
@@ -21,9 +22,6 @@ pub(super) const NO_PLACE: &str = "trikfs:0: ";
 
 /// Registry place of the function that turns the compiler on; 1 is taken by `State`.
 const START_COMPILER: c_int = 2;
-
-/// Registry place of the function that gives what fingerprints need.
-const INSPECTION: c_int = 3;
 
 /// Opens the sandbox in a bare state: leaves the array maker and `params` on the stack and makes the new globals.
 /// Gives Lua's status; the message is on the top if it is not LUA_OK.
@@ -42,8 +40,7 @@ pub(super) unsafe fn install(l: *mut lua::lua_State, prelude: &[u8]) -> c_int {
         }
         push_with_raw(l, start_compiler);
         lua::lua_rawseti_(l, lua::LUA_REGISTRYINDEX, START_COMPILER);
-        push_with_raw(l, inspection);
-        lua::lua_rawseti_(l, lua::LUA_REGISTRYINDEX, INSPECTION);
+        own::keep_raw(l);
         lua::lua_pushvalue(l, lua::LUA_GLOBALSINDEX);
         push_with_raw(l, part);
         lua::lua_pushcfunction(l, accessor);
@@ -269,59 +266,22 @@ unsafe fn push_library(
             Some(part) => push_maker(l, part),
             None => lua::lua_pushnil(l),
         }
-        push_raw_library(l, name, open);
+        push_raw_library(l, lua::lua_upvalueindex(1), name, open);
     }
     2
-}
-
-/// Pushes LuaJIT's own library `name`, opening it with the raw table as the globals if need be.
-unsafe fn push_raw_library(
-    l: *mut lua::lua_State,
-    name: &std::ffi::CStr,
-    open: lua::lua_CFunction,
-) {
-    // SAFETY: as `push_library`. The globals are put back whether opening succeeds or not.
-    unsafe {
-        let raw = lua::lua_upvalueindex(1);
-        lua::lua_getfield(l, raw, name.as_ptr());
-        if lua::lua_type(l, -1) != lua::LUA_TNIL {
-            return;
-        }
-        lua::lua_settop(l, -2);
-        lua::lua_pushvalue(l, lua::LUA_GLOBALSINDEX);
-        lua::lua_pushcfunction(l, open);
-        lua::lua_pushstring_(l, name.as_ptr());
-        lua::lua_pushvalue(l, raw);
-        lua::lua_replace(l, lua::LUA_GLOBALSINDEX);
-        let status = lua::lua_pcall(l, 1, 1, 0);
-        lua::lua_pushvalue(l, -2);
-        lua::lua_replace(l, lua::LUA_GLOBALSINDEX);
-        lua::lua_remove(l, -2);
-        if status != lua::LUA_OK {
-            lua::lua_error(l);
-        }
-        // `luaopen_ffi` gives its table and makes no global; `luaopen_jit` makes a global and gives something else.
-        if lua::lua_type(l, -1) == lua::LUA_TTABLE {
-            lua::lua_pushvalue(l, -1);
-            lua::lua_setfield(l, raw, name.as_ptr());
-        } else {
-            lua::lua_settop(l, -2);
-            lua::lua_getfield(l, raw, name.as_ptr());
-        }
-    }
 }
 
 /// `library(name)`: LuaJIT's own table library.
 unsafe extern "C-unwind" fn library(l: *mut lua::lua_State) -> c_int {
     // SAFETY: Lua calls with a live state; upvalue 1 is the table of the raw libraries.
-    unsafe { push_raw_library(l, c"table", lua::luaopen_table) };
+    unsafe { push_raw_library(l, lua::lua_upvalueindex(1), c"table", lua::luaopen_table) };
     1
 }
 
 /// `ffi()`: LuaJIT's foreign function interface.
 unsafe extern "C-unwind" fn ffi(l: *mut lua::lua_State) -> c_int {
     // SAFETY: as above.
-    unsafe { push_raw_library(l, c"ffi", lua::luaopen_ffi) };
+    unsafe { push_raw_library(l, lua::lua_upvalueindex(1), c"ffi", lua::luaopen_ffi) };
     1
 }
 
@@ -349,7 +309,7 @@ unsafe extern "C-unwind" fn start_compiler(l: *mut lua::lua_State) -> c_int {
         // The prelude has kept what it needs of the foreign function interface.
         forget_library(l, c"ffi");
         lua::lua_gc(l, lua::LUA_GCCOLLECT, 0);
-        push_raw_library(l, c"jit", lua::luaopen_jit);
+        push_raw_library(l, lua::lua_upvalueindex(1), c"jit", lua::luaopen_jit);
         lua::lua_getfield(l, -1, c"opt".as_ptr());
         lua::lua_getfield(l, -1, c"start".as_ptr());
         lua::lua_pushstring_(l, c"hotloop=12".as_ptr());
@@ -363,58 +323,6 @@ unsafe extern "C-unwind" fn start_compiler(l: *mut lua::lua_State) -> c_int {
         lua::lua_gc(l, lua::LUA_GCCOLLECT, 0);
     }
     0
-}
-
-/// Releases a library that is not needed again.
-unsafe fn forget_library(l: *mut lua::lua_State, name: &std::ffi::CStr) {
-    // SAFETY: called by functions whose upvalue 1 is the table of the raw libraries.
-    unsafe {
-        lua::lua_pushnil(l);
-        lua::lua_setfield(l, lua::lua_upvalueindex(1), name.as_ptr());
-        for list in [c"_LOADED", c"_PRELOAD"] {
-            lua::lua_pushnil(l);
-            lua::lua_setfield(l, lua::LUA_REGISTRYINDEX, list.as_ptr());
-        }
-    }
-}
-
-/// Pushes what the fingerprint needs of LuaJIT: the raw base library, the string library, `debug.getupvalue`,
-/// `jit.util.funck`, and the table library with our sort.
-///
-/// # Safety
-/// As [`compile_from_here`].
-pub(super) unsafe fn push_inspection(l: *mut lua::lua_State) {
-    // SAFETY: `install` put the function there.
-    unsafe {
-        lua::lua_rawgeti_(l, lua::LUA_REGISTRYINDEX, INSPECTION);
-        lua::lua_call(l, 0, 5);
-    }
-}
-
-unsafe extern "C-unwind" fn inspection(l: *mut lua::lua_State) -> c_int {
-    // SAFETY: called by Lua with a live state; upvalue 1 is the table of the raw libraries. `luaopen_jit` registers the
-    // opener of `jit.util` as a preload function.
-    unsafe {
-        let raw = lua::lua_upvalueindex(1);
-        lua::lua_pushvalue(l, raw);
-        push_raw_library(l, c"string", lua::luaopen_string);
-        push_raw_library(l, c"debug", lua::luaopen_debug);
-        lua::lua_getfield(l, -1, c"getupvalue".as_ptr());
-        lua::lua_remove(l, -2);
-        push_raw_library(l, c"jit", lua::luaopen_jit);
-        lua::lua_settop(l, -2);
-        lua::lua_getfield(l, lua::LUA_REGISTRYINDEX, c"_PRELOAD".as_ptr());
-        lua::lua_getfield(l, -1, c"jit.util".as_ptr());
-        lua::lua_remove(l, -2);
-        lua::lua_call(l, 0, 1);
-        lua::lua_getfield(l, -1, c"funck".as_ptr());
-        lua::lua_remove(l, -2);
-        push_maker(l, Part::Table);
-        push_raw_library(l, c"table", lua::luaopen_table);
-        lua::lua_pushvalue(l, raw);
-        lua::lua_call(l, 2, 1);
-    }
-    5
 }
 
 /// `accessor(type)`: the maker of a typed accessor, or nothing.

@@ -26,6 +26,15 @@ const TRIM_BYTES: usize = 16 << 10;
 
 const _: () = assert!(GRAIN >= size_of::<*mut c_void>());
 
+/// Gives pages back to the system that hold no block of malloc's any more.
+pub(crate) fn give_back() {
+    // SAFETY: needs nothing; other threads' calls of malloc wait for it.
+    #[cfg(target_env = "gnu")]
+    unsafe {
+        libc::malloc_trim(0);
+    }
+}
+
 /// Account and blocks of one state. Its address is the allocator's user data for the life of the state.
 #[derive(Debug)]
 pub(crate) struct Memory {

@@ -5,6 +5,7 @@
 use super::bytecode::{Code, Part};
 use super::library;
 use super::memory::{Memory, allocate};
+use super::persist::Image;
 use crate::error::Error;
 use crate::limits::LOG_LINE_BYTES_MAX;
 use crate::watchdog::lua_budget;
@@ -40,6 +41,8 @@ pub(crate) struct Host {
     pub(super) code: RefCell<Option<Code>>,
     /// A message that a callback is about to hand to Lua.
     pub(super) message: RefCell<String>,
+    /// An image that is being written.
+    pub(super) image: RefCell<Option<Image>>,
     /// What `State::protect` wants to run.
     pending: Cell<Option<Pending>>,
 }
@@ -115,6 +118,7 @@ impl State {
             undefined: RefCell::default(),
             code: RefCell::new(None),
             message: RefCell::new(String::new()),
+            image: RefCell::new(None),
             pending: Cell::new(None),
         })));
         // SAFETY: `Host` begins with its `Memory` (repr(C)) and lives until `drop`, after the state is closed.
@@ -132,7 +136,8 @@ impl State {
         }
     }
 
-    /// A state with the sandbox's globals, ready to run programs.
+    /// A state with the sandbox's globals, ready to run programs. What is made in it is not garbage soon, so the collector
+    /// rests until `run` or `collect`.
     pub(crate) fn new(
         memory_limit: usize,
         log: Option<LogSink>,
@@ -145,7 +150,10 @@ impl State {
         let code: &[u8] = &prelude;
         let status = state.protect(&[], |l| {
             // SAFETY: inside a protected call on a live state; the code outlives it.
-            unsafe { library::install(l, code) }
+            unsafe {
+                lua::lua_gc(l, lua::LUA_GCSTOP, 0);
+                library::install(l, code)
+            }
         })?;
         if status != lua::LUA_OK {
             return Err(Error::Script(text_of(&state)));
@@ -161,6 +169,11 @@ impl State {
     /// The raw state, for code of this module that makes its own calls.
     pub(super) fn raw(&self) -> *mut lua::lua_State {
         self.lua.as_ptr()
+    }
+
+    /// Replaces what finds included files.
+    pub(crate) fn set_include(&self, include: Option<Include>) {
+        *self.host().include.borrow_mut() = include;
     }
 
     /// Replaces the log.
@@ -224,6 +237,10 @@ impl State {
     /// # Errors
     /// Lua's message.
     pub(crate) fn run(&mut self, code: &[u8], budget_us: u32) -> Result<(), Error> {
+        self.protect(&[], |l| {
+            // SAFETY: inside a protected call.
+            unsafe { lua::lua_gc(l, lua::LUA_GCRESTART, 0) };
+        })?;
         let l = self.raw();
         // SAFETY: the state is live and ours; `luaL_loadbuffer` is protected by itself and the code outlives it.
         let status = unsafe {

@@ -47,7 +47,7 @@ impl Robot {
     pub fn new(text: &str) -> Self {
         let loaded = load(text).unwrap_or_else(|problem| panic!("{problem}"));
         assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
-        let mut vm = loaded.program.prepare().unwrap();
+        let mut vm = loaded.program.run_anew().unwrap();
         // One state for all nodes, and on a busy machine: neither limit is what is tested here.
         vm.limit(16 << 10, 5_000_000);
         Self {

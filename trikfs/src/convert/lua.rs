@@ -1,104 +1,161 @@
 //! Lua states prepared ahead: every open file gets one of its own, and opening should not wait for its making.
 //!
-//! Owns a small stock of states in which a configuration has already run, and the thread that fills it and that
-//! closes used ones. A state that was used is never used again.
+//! Owns a small stock of blank states, which suit any configuration, and the thread that fills it, that closes used ones
+//! and that gives their memory back. A state that was used is never used again.
 
 use crate::events::lock;
 use crate::limits;
 use config::error::Error;
-use config::program::{Program, Vm};
+use config::program::{Blank, Program, Vm, give_memory_back};
 use std::io;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc::{Sender, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 enum Work {
-    Fill(Arc<StatePool>),
+    Fill,
     Close(Box<Vm>),
 }
 
-/// The thread that makes and closes Lua states.
+/// The thread that makes and closes Lua states, and its stock.
 #[derive(Clone)]
 pub struct StateMaker {
     work: Sender<Work>,
+    stock: Arc<Stock>,
+}
+
+/// States that are ready to be taken.
+struct Stock {
+    ready: Mutex<Vec<Blank>>,
+    wanted: AtomicUsize,
+    is_filling: AtomicBool,
     /// States that wait to be closed.
-    used: Arc<AtomicUsize>,
+    used: AtomicUsize,
+    /// Pools that take from here; without any there is no stock.
+    pools: AtomicUsize,
 }
 
 impl StateMaker {
     /// Starts the thread; it ends with the last maker and pool.
     pub fn start() -> io::Result<Self> {
         let (work, todo) = channel();
-        let used = Arc::new(AtomicUsize::new(0));
-        let waiting = used.clone();
+        let stock = Arc::new(Stock {
+            ready: Mutex::default(),
+            wanted: AtomicUsize::new(limits::LUA_STATES_FIRST),
+            is_filling: AtomicBool::new(false),
+            used: AtomicUsize::new(0),
+            pools: AtomicUsize::new(0),
+        });
+        let own = stock.clone();
         std::thread::Builder::new()
             .name("lua-states".to_owned())
             .spawn(move || {
-                while let Ok(first) = todo.recv() {
-                    // A program that opens files in a row should not be interrupted at each of them: the work waits until
-                    // a stock's worth of it may have come, and is then done in one go.
-                    std::thread::sleep(Duration::from_millis(limits::LUA_STATES_BATCH_MS));
-                    for item in std::iter::once(first).chain(todo.try_iter()) {
-                        match item {
-                            Work::Fill(pool) => pool.fill(),
-                            Work::Close(vm) => {
-                                drop(vm);
-                                waiting.fetch_sub(1, Ordering::Relaxed);
-                            }
-                        }
-                    }
-                }
+                // Whoever opens a file goes first. Everybody may give way; if it fails, nothing is lost.
+                let _ = rustix::process::setpriority_process(None, limits::LUA_STATES_NICE);
+                own.serve(&todo);
             })?;
-        Ok(Self { work, used })
+        Ok(Self { work, stock })
     }
 
-    /// A stock of states for one configuration.
+    /// States for one configuration.
     pub fn pool(&self, program: Arc<Program>) -> Arc<StatePool> {
+        self.stock.pools.fetch_add(1, Ordering::Relaxed);
         let pool = Arc::new(StatePool {
             program,
             maker: self.clone(),
-            ready: Mutex::default(),
-            wanted: AtomicUsize::new(limits::LUA_STATES_FIRST),
-            filling: AtomicBool::new(false),
-            retired: AtomicBool::new(false),
         });
         pool.ask_to_fill();
         pool
     }
 }
 
-/// States in which one configuration has run, ready to be taken.
+impl Stock {
+    /// Does what is asked until nobody can ask any more.
+    fn serve(&self, todo: &Receiver<Work>) {
+        let quiet = Duration::from_millis(limits::LUA_STATES_QUIET_MS);
+        while let Ok(mut first) = todo.recv() {
+            loop {
+                // A program that opens files in a row should not be interrupted at each of them: the work waits until
+                // a stock's worth of it may have come, and is then done in one go.
+                std::thread::sleep(Duration::from_millis(limits::LUA_STATES_BATCH_MS));
+                for item in std::iter::once(first).chain(todo.try_iter()) {
+                    match item {
+                        Work::Fill => self.fill(),
+                        Work::Close(vm) => {
+                            drop(vm);
+                            self.used.fetch_sub(1, Ordering::Relaxed);
+                        }
+                    }
+                }
+                match todo.recv_timeout(quiet) {
+                    Ok(next) => first = next,
+                    Err(RecvTimeoutError::Timeout) => break,
+                    Err(RecvTimeoutError::Disconnected) => return,
+                }
+            }
+            self.rest();
+        }
+    }
+
+    fn fill(&self) {
+        self.is_filling.store(false, Ordering::Relaxed);
+        while self.pools.load(Ordering::Relaxed) > 0
+            && lock(&self.ready).len() < self.wanted.load(Ordering::Relaxed)
+        {
+            // If there is no memory, the next open of a file reports it.
+            let Ok(blank) = Blank::new() else { return };
+            lock(&self.ready).push(blank);
+        }
+    }
+
+    /// After a burst of openings and closings: the stock is small again, and memory goes back to the system.
+    fn rest(&self) {
+        let few = if self.pools.load(Ordering::Relaxed) > 0 {
+            limits::LUA_STATES_FIRST
+        } else {
+            0
+        };
+        self.wanted
+            .store(limits::LUA_STATES_FIRST, Ordering::Relaxed);
+        let mut ready = lock(&self.ready);
+        let kept = ready.len().min(few);
+        let surplus = ready.split_off(kept);
+        drop(ready);
+        drop(surplus);
+        give_memory_back();
+    }
+}
+
+/// States for the converters of one configuration.
 pub struct StatePool {
     program: Arc<Program>,
     maker: StateMaker,
-    ready: Mutex<Vec<Vm>>,
-    wanted: AtomicUsize,
-    filling: AtomicBool,
-    retired: AtomicBool,
 }
 
 impl StatePool {
-    /// A state of one's own; made on the spot if the stock is empty.
-    pub fn take(self: &Arc<Self>) -> Result<Vm, Error> {
-        let (vm, left) = {
-            let mut ready = lock(&self.ready);
+    /// A state of one's own for the converters of a node; made on the spot if the stock is empty.
+    pub fn take(&self, node: &str) -> Result<Vm, Error> {
+        let stock = &self.maker.stock;
+        let (blank, left) = {
+            let mut ready = lock(&stock.ready);
             (ready.pop(), ready.len())
         };
-        if vm.is_none() {
-            let more = (self.wanted.load(Ordering::Relaxed) * 2).min(limits::LUA_STATES_READY);
-            self.wanted.store(more, Ordering::Relaxed);
+        if blank.is_none() {
+            let more = (stock.wanted.load(Ordering::Relaxed) * 2).min(limits::LUA_STATES_READY);
+            stock.wanted.store(more, Ordering::Relaxed);
         }
         // Filling in bursts keeps the maker from waking at every open.
-        if left * 2 <= self.wanted.load(Ordering::Relaxed) {
+        if left * 2 <= stock.wanted.load(Ordering::Relaxed) {
             self.ask_to_fill();
         }
-        vm.map_or_else(|| self.program.prepare(), Ok)
+        let blank = blank.map_or_else(Blank::new, Ok)?;
+        self.program.prepare(blank, node)
     }
 
     /// Closes a used state, later and elsewhere; here if many wait already, because each holds its memory.
     pub fn discard(&self, vm: Vm) {
-        let used = &self.maker.used;
+        let used = &self.maker.stock.used;
         if used.fetch_add(1, Ordering::Relaxed) >= limits::LUA_STATES_READY {
             used.fetch_sub(1, Ordering::Relaxed);
             return;
@@ -107,38 +164,17 @@ impl StatePool {
         let _ = self.maker.work.send(Work::Close(Box::new(vm)));
     }
 
-    /// No more states are kept ready: the configuration is no longer in force.
-    pub fn retire(&self) {
-        self.retired.store(true, Ordering::Relaxed);
-        lock(&self.ready).clear();
-    }
-
-    fn ask_to_fill(self: &Arc<Self>) {
-        if !self.retired.load(Ordering::Relaxed) && !self.filling.swap(true, Ordering::Relaxed) {
-            let _ = self.maker.work.send(Work::Fill(self.clone()));
+    fn ask_to_fill(&self) {
+        if !self.maker.stock.is_filling.swap(true, Ordering::Relaxed) {
+            let _ = self.maker.work.send(Work::Fill);
         }
     }
+}
 
-    fn fill(&self) {
-        self.filling.store(false, Ordering::Relaxed);
-        loop {
-            let ready = lock(&self.ready).len();
-            if ready >= self.wanted.load(Ordering::Relaxed) || self.retired.load(Ordering::Relaxed)
-            {
-                return;
-            }
-            // If the program no longer runs, the next open of a file reports it.
-            let Ok(vm) = self.program.prepare() else {
-                return;
-            };
-            // A program that holds much is not held many times for nobody.
-            if (ready + 1) * vm.memory() > limits::LUA_STATES_BYTES {
-                self.wanted.store(ready.max(1), Ordering::Relaxed);
-                if ready > 0 {
-                    return;
-                }
-            }
-            lock(&self.ready).push(vm);
-        }
+impl Drop for StatePool {
+    fn drop(&mut self) {
+        self.maker.stock.pools.fetch_sub(1, Ordering::Relaxed);
+        // The thread lets go of the stock if this was the last.
+        let _ = self.maker.work.send(Work::Fill);
     }
 }

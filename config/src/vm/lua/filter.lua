@@ -13,6 +13,7 @@ return raw.setmetatable({}, {
       made.all = all
     end
     rawset(self, name, all[name])
+    if raw.note_member then raw.note_member('filter', name, all[name]) end
     return all[name]
   end,
 })

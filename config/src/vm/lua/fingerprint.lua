@@ -1,10 +1,11 @@
 -- Digests the functions of a configuration: equal digests mean that the functions do the same with the same.
 --
 -- functions: the list; globals: the program's; pristine: what the globals held before it ran, by name; salt: what changes
--- with every change of the program's text. getupvalue(f, i) and constant(f, i) look into functions, digest(text) gives
--- 16 bytes. Gives the digests one after the other.
-local functions, globals, pristine, salt, raw, string, getupvalue, constant, digest, table = ...
+-- with every change of the program's text. debug and constant(f, i) look into functions, digest(text) gives 16 bytes.
+-- Gives the digests one after the other.
+local functions, globals, pristine, salt, raw, string, debug, constant, digest, table = ...
 local error, next, pcall, rawget, tostring, type = raw.error, raw.next, raw.pcall, raw.rawget, raw.tostring, raw.type
+local getupvalue = debug.getupvalue
 local dump, format, match, concat, sort = raw.dump or string.dump, string.format, string.match, table.concat, table.sort
 
 -- What is ours, by name: the globals of the beginning and those that are made on first use.
