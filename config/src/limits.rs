@@ -42,6 +42,8 @@ pub const INCLUDES_MAX: usize = 64;
 pub const LOAD_TIME_MS: u32 = 5_000;
 /// Bytes of Lua memory while the configuration program runs for the first time.
 pub const LOAD_MEMORY_BYTES: usize = 64 << 20;
+/// Bytes that a program may hold for its state to be kept as the one that others are copied from.
+pub const ORIGINAL_BYTES_MAX: usize = 16 << 20;
 /// Bytes of what the converters of one node may reach to be copied; beyond it every open file runs the program anew.
 pub const IMAGE_BYTES_MAX: usize = 4 << 20;
 /// Bytes of such copies that are kept for later openings.

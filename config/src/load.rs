@@ -8,7 +8,7 @@ use crate::description::{Config, NodeDescription};
 use crate::error::Error;
 use crate::limits::{
     BLANK_BYTES, CONFIG_BYTES_MAX, INCLUDES_MAX, LOAD_MEMORY_BYTES, LOAD_TIME_MS, LOG_LINES_MAX,
-    NODES_TRIED_MAX,
+    NODES_TRIED_MAX, ORIGINAL_BYTES_MAX,
 };
 use crate::problem::Problem;
 use crate::program::Program;
@@ -128,7 +128,8 @@ impl Loader {
             .set_limit(memory_bytes.saturating_mul(2));
         let mut run = locked(&run);
         let (mut config, mut warnings) = check(&values, &run.texts, &run.search)?;
-        let original = lua_nodes(&config).next().is_some().then_some(state);
+        let is_kept = held_bytes <= ORIGINAL_BYTES_MAX && lua_nodes(&config).next().is_some();
+        let original = is_kept.then_some(state);
         let files = std::mem::take(&mut run.files);
         let program = Arc::new(Program::new(code, files, original));
         enough_memory(&config, &program, held_bytes)?;

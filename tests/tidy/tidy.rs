@@ -151,6 +151,31 @@ fn no_file_is_longer_than_six_hundred_lines() {
     none(&sources().iter().filter_map(long).collect::<Vec<_>>());
 }
 
+/// What the repository keeps is written by people, or a picture or recording of theirs; what a program leaves behind, such
+/// as the image of one that crashed, is larger.
+#[test]
+fn no_tracked_file_is_larger_than_two_mebibytes() {
+    let git = std::process::Command::new("git")
+        .args(["ls-files", "-z"])
+        .current_dir(root())
+        .output()
+        .expect("git");
+    assert!(git.status.success(), "git ls-files: {}", git.status);
+    let names = String::from_utf8_lossy(&git.stdout);
+    let mut complaints = Vec::new();
+    let mut count = 0;
+    for name in names.split_terminator('\0') {
+        count += 1;
+        // A file that was removed and is not committed yet is no concern of this rule.
+        let size = std::fs::metadata(root().join(name)).map_or(0, |file| file.len());
+        if size > 2 << 20 {
+            complaints.push(format!("{name}: {size} bytes"));
+        }
+    }
+    assert!(count > 500, "only {count} files");
+    none(&complaints);
+}
+
 #[test]
 fn long_tests_stand_in_a_file_of_their_own() {
     let long = |source: &Source| {

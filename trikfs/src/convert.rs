@@ -105,6 +105,8 @@ impl Recipe {
             None => None,
             Some(pool) => {
                 let mut vm = pool.take(&self.node).map_err(unusable)?;
+                // First: what the converters hold may be more than the default allows.
+                vm.limit(self.memory_kb, self.budget_us);
                 vm.set_log(log.clone());
                 vm.set_params(&self.node, &params).map_err(unusable)?;
                 Some(vm)
@@ -130,9 +132,6 @@ impl Recipe {
         if let Some(write) = &self.write {
             let vm = pipeline.vm.as_mut();
             pipeline.write = Some(self.chain(write, Direction::Write, &params, vm, log)?);
-        }
-        if let Some(vm) = pipeline.vm.as_mut() {
-            vm.limit(self.memory_kb, self.budget_us);
         }
         Ok(pipeline)
     }

@@ -23,22 +23,59 @@ unsafe extern "C-unwind" {
 }
 
 /// Operations that make objects; the numbers stand in lua/persist.lua, too.
-mod create {
-    pub(super) const TABLE: u8 = 1;
-    pub(super) const FUNCTION: u8 = 2;
-    pub(super) const PERMANENT: u8 = 3;
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+enum Create {
+    /// Entries of the list, other entries.
+    Table = 1,
+    /// Bytecode.
+    Function = 2,
+    /// The number of keys, and the keys.
+    Permanent = 3,
 }
 
 /// Operations that fill them.
-mod fill {
-    pub(super) const END: u8 = 0;
-    pub(super) const ENTRY: u8 = 1;
-    pub(super) const METATABLE: u8 = 2;
-    pub(super) const UPVALUE: u8 = 3;
-    pub(super) const JOIN: u8 = 4;
-    pub(super) const ENVIRONMENT: u8 = 5;
-    pub(super) const GLOBAL: u8 = 6;
-    pub(super) const ROOT: u8 = 7;
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+enum Fill {
+    End = 0,
+    /// Table, key, value.
+    Entry = 1,
+    /// Table, metatable.
+    Metatable = 2,
+    /// Function, index, value.
+    Upvalue = 3,
+    /// Function, index, another function, index there.
+    Join = 4,
+    /// Function, table.
+    Environment = 5,
+    /// Name, value.
+    Global = 6,
+    /// The tree.
+    Root = 7,
+}
+
+impl Create {
+    fn of(byte: u8) -> Option<Self> {
+        let all = [Self::Table, Self::Function, Self::Permanent];
+        all.into_iter().find(|operation| *operation as u8 == byte)
+    }
+}
+
+impl Fill {
+    fn of(byte: u8) -> Option<Self> {
+        let all = [
+            Self::End,
+            Self::Entry,
+            Self::Metatable,
+            Self::Upvalue,
+            Self::Join,
+            Self::Environment,
+            Self::Global,
+            Self::Root,
+        ];
+        all.into_iter().find(|operation| *operation as u8 == byte)
+    }
 }
 
 /// Stack place of the list of objects while an image is restored.
@@ -78,23 +115,22 @@ unsafe fn make(l: *mut lua::lua_State, mut from: Reader<'_>) -> Option<()> {
     unsafe {
         let mut number = 0;
         while !from.0.is_empty() {
-            match from.small()? {
-                create::TABLE => {
+            match Create::of(from.small()?)? {
+                Create::Table => {
                     let (list, others) = (from.count()?, from.count()?);
                     lua::lua_createtable(l, list, others);
                 }
-                create::FUNCTION => {
+                Create::Function => {
                     let code = from.text()?;
                     let (start, size) = (code.as_ptr().cast(), code.len());
                     if lua::luaL_loadbuffer(l, start, size, CHUNK.as_ptr()) != lua::LUA_OK {
                         lua::lua_error(l);
                     }
                 }
-                create::PERMANENT => {
+                Create::Permanent => {
                     let keys = from.small()?;
                     push_permanent(l, &mut from, keys)?;
                 }
-                _ => return None,
             }
             number += 1;
             lua::lua_rawseti_(l, OBJECTS, number);
@@ -136,29 +172,29 @@ unsafe fn complete(l: *mut lua::lua_State, mut from: Reader<'_>) -> Option<()> {
     // pushed; the types that a call wants are looked at before it.
     unsafe {
         loop {
-            match from.small()? {
-                fill::END => {
+            match Fill::of(from.small()?)? {
+                Fill::End => {
                     lua::lua_settop(l, OBJECTS + 1);
                     return Some(());
                 }
-                fill::ENTRY => {
+                Fill::Entry => {
                     from.push_object(l, lua::LUA_TTABLE)?;
                     from.push(l)?;
                     from.push(l)?;
                     lua::lua_rawset(l, -3);
                 }
-                fill::METATABLE => {
+                Fill::Metatable => {
                     from.push_object(l, lua::LUA_TTABLE)?;
                     from.push(l)?;
                     lua::lua_setmetatable(l, -2);
                 }
-                fill::UPVALUE => {
+                Fill::Upvalue => {
                     from.push_object(l, lua::LUA_TFUNCTION)?;
                     let index = from.count()?;
                     from.push(l)?;
                     lua::lua_setupvalue(l, -2, index);
                 }
-                fill::JOIN => {
+                Fill::Join => {
                     from.push_object(l, lua::LUA_TFUNCTION)?;
                     let index = from.count()?;
                     from.push_object(l, lua::LUA_TFUNCTION)?;
@@ -171,24 +207,23 @@ unsafe fn complete(l: *mut lua::lua_State, mut from: Reader<'_>) -> Option<()> {
                     }
                     lua_upvaluejoin(l, -2, index, -1, other);
                 }
-                fill::ENVIRONMENT => {
+                Fill::Environment => {
                     from.push_object(l, lua::LUA_TFUNCTION)?;
                     from.push_object(l, lua::LUA_TTABLE)?;
                     lua::lua_setfenv(l, -2);
                 }
-                fill::GLOBAL => {
+                Fill::Global => {
                     let name = from.text()?;
                     lua::lua_pushlstring_(l, name.as_ptr().cast(), name.len());
                     from.push(l)?;
                     lua::lua_rawset(l, lua::LUA_GLOBALSINDEX);
                 }
-                fill::ROOT => {
+                Fill::Root => {
                     // Below what the operations after it push and take off.
                     from.push_object(l, lua::LUA_TTABLE)?;
                     lua::lua_insert(l, OBJECTS + 1);
                     continue;
                 }
-                _ => return None,
             }
             lua::lua_settop(l, OBJECTS);
         }
