@@ -374,7 +374,7 @@ impl<T> Watched<T> {
     }
 
     /// Remembers a number. True if it is new.
-    fn look(&mut self, number: u32, now: Instant) -> bool {
+    fn remember(&mut self, number: u32, now: Instant) -> bool {
         let new = number != self.seen;
         if new {
             self.seen = number;
@@ -398,11 +398,11 @@ struct Rounds {
 
 impl Rounds {
     /// One look at everything. Collects what is to be called after the lock is released; true if anybody works.
-    fn look(&mut self, now: Instant, late: &mut Vec<Arc<dyn Fn() + Send + Sync>>) -> bool {
+    fn run(&mut self, now: Instant, late: &mut Vec<Arc<dyn Fn() + Send + Sync>>) -> bool {
         let mut busy = false;
         for seat in &mut self.seats {
             let number = seat.what.work.number();
-            busy |= seat.look(number, now) || number & 1 == 1;
+            busy |= seat.remember(number, now) || number & 1 == 1;
             if number & 1 == 1 && !seat.told && now - seat.since >= TICK {
                 seat.told = true;
                 late.push(Arc::clone(&seat.what.on_late));
@@ -410,7 +410,7 @@ impl Rounds {
         }
         for call in &mut self.calls {
             let number = call.what.work.number();
-            let new = call.look(number, now);
+            let new = call.remember(number, now);
             busy |= new || number & 1 == 1;
             if number & 1 == 0 {
                 continue;
@@ -488,11 +488,11 @@ impl Dog {
         let mut idle = 0;
         loop {
             let mut rounds = self.lock();
-            let busy = rounds.look(Instant::now(), &mut late);
+            let busy = rounds.run(Instant::now(), &mut late);
             idle = if busy { 0 } else { idle + 1 };
             if idle >= IDLE_TICKS {
                 self.asleep.store(true, Ordering::SeqCst);
-                if rounds.look(Instant::now(), &mut late) {
+                if rounds.run(Instant::now(), &mut late) {
                     self.asleep.store(false, Ordering::SeqCst);
                 }
                 while self.asleep.load(Ordering::SeqCst) {

@@ -200,7 +200,7 @@ impl Changes {
     }
 
     /// Counts a change and wakes programs that poll. Call it without any lock that an operation takes.
-    pub fn tell(&self) {
+    pub fn notify(&self) {
         self.count.fetch_add(1, Ordering::SeqCst);
         let handles: Vec<PollHandle> = lock(&self.watchers)
             .iter()
@@ -243,7 +243,7 @@ mod tests {
         changes.watch(2, PollHandle(12));
         changes.forget(2);
         assert_eq!(*lock(&changes.watchers), [(1, PollHandle(11))]);
-        changes.tell();
+        changes.notify();
         assert_eq!(changes.count(), 1);
     }
 }

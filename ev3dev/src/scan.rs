@@ -77,7 +77,7 @@ pub struct Found {
     pub key: String,
     /// How its directory is called.
     pub name: Name,
-    what: What,
+    hardware: Hardware,
 }
 
 /// How the directory of a device is called.
@@ -90,7 +90,7 @@ pub enum Name {
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
-enum What {
+enum Hardware {
     Motor(String, Paths),
     Servo(String, bool),
     Sensor(String, String, Kind),
@@ -103,26 +103,26 @@ impl Found {
     /// Makes the device. Touches no file.
     pub fn make(&self, tree: &Tree, options: &Options, kernel: &KernelSlot) -> Arc<dyn Device> {
         let tree = tree.clone();
-        match &self.what {
-            What::Motor(address, paths) => Arc::new(Motor::new(
+        match &self.hardware {
+            Hardware::Motor(address, paths) => Arc::new(Motor::new(
                 tree,
                 address.clone(),
                 paths.clone(),
                 options.max_speed,
                 Arc::clone(kernel),
             )),
-            What::Servo(address, in_degrees) => Arc::new(Servo::new(
+            Hardware::Servo(address, in_degrees) => Arc::new(Servo::new(
                 tree,
                 address.clone(),
                 self.key.clone(),
                 *in_degrees,
             )),
-            What::Sensor(address, node, kind) => {
+            Hardware::Sensor(address, node, kind) => {
                 Arc::new(Sensor::new(&tree, address.clone(), node, *kind))
             }
-            What::Led(file) => Arc::new(Led::new(tree, (*file).to_owned())),
-            What::Battery => Arc::new(Battery::new(tree)),
-            What::Board => Arc::new(BoardInfo),
+            Hardware::Led(file) => Arc::new(Led::new(tree, (*file).to_owned())),
+            Hardware::Battery => Arc::new(Battery::new(tree)),
+            Hardware::Board => Arc::new(BoardInfo),
         }
     }
 }
@@ -136,7 +136,7 @@ pub fn scan(tree: &Tree, options: &Options) -> Option<Vec<Found>> {
         class: "board-info",
         key: String::new(),
         name: Name::Exact("board0"),
-        what: What::Board,
+        hardware: Hardware::Board,
     }];
     add_motors(tree, options, &mut found);
     add_sensors(tree, &mut found);
@@ -144,8 +144,8 @@ pub fn scan(tree: &Tree, options: &Options) -> Option<Vec<Found>> {
         let node = format!("servos/{port}");
         if has(tree, &node) {
             let in_degrees = tree.text(&format!("{node}/units")).as_deref() == Ok("deg");
-            let what = What::Servo(address(name, port), in_degrees);
-            found.push(numbered("servo-motor", &node, "motor", what));
+            let hardware = Hardware::Servo(address(name, port), in_degrees);
+            found.push(numbered("servo-motor", &node, "motor", hardware));
         }
     }
     for (name, file) in LIGHTS {
@@ -154,7 +154,7 @@ pub fn scan(tree: &Tree, options: &Options) -> Option<Vec<Found>> {
                 class: "leds",
                 key: name.to_owned(),
                 name: Name::Exact(name),
-                what: What::Led(file),
+                hardware: Hardware::Led(file),
             });
         }
     }
@@ -163,19 +163,19 @@ pub fn scan(tree: &Tree, options: &Options) -> Option<Vec<Found>> {
             class: "power_supply",
             key: "battery".to_owned(),
             name: Name::Exact("trik-battery"),
-            what: What::Battery,
+            hardware: Hardware::Battery,
         });
     }
     // The tree may have gone meanwhile, and what it seemed to lack then says nothing.
     tree.is_there().then_some(found)
 }
 
-fn numbered(class: &'static str, node: &str, prefix: &'static str, what: What) -> Found {
+fn numbered(class: &'static str, node: &str, prefix: &'static str, hardware: Hardware) -> Found {
     Found {
         class,
         key: node.to_owned(),
         name: Name::Numbered(prefix),
-        what,
+        hardware,
     }
 }
 
@@ -208,8 +208,8 @@ fn add_motors(tree: &Tree, options: &Options, found: &mut Vec<Found>) {
             power: format!("{node}/value"),
             encoder,
         };
-        let what = What::Motor(address(name, port), paths);
-        found.push(numbered(class, &node, "motor", what));
+        let hardware = Hardware::Motor(address(name, port), paths);
+        found.push(numbered(class, &node, "motor", hardware));
     }
 }
 
@@ -224,16 +224,16 @@ fn add_sensors(tree: &Tree, found: &mut Vec<Found>) {
         } else {
             Kind::of_format(&tree.text(&format!("{node}/format")).unwrap_or_default())
         };
-        let what = What::Sensor(address(name, port), node.clone(), kind);
-        found.push(numbered("lego-sensor", &node, "sensor", what));
+        let hardware = Hardware::Sensor(address(name, port), node.clone(), kind);
+        found.push(numbered("lego-sensor", &node, "sensor", hardware));
     }
     for (node, kind) in [
         ("gyroscope", Kind::Gyroscope),
         ("accelerometer", Kind::Accelerometer),
     ] {
         if has(tree, node) {
-            let what = What::Sensor(format!("trik:{node}"), node.to_owned(), kind);
-            found.push(numbered("lego-sensor", node, "sensor", what));
+            let hardware = Hardware::Sensor(format!("trik:{node}"), node.to_owned(), kind);
+            found.push(numbered("lego-sensor", node, "sensor", hardware));
         }
     }
 }
@@ -292,8 +292,8 @@ mod tests {
         std::fs::write(root.join("status"), "").unwrap();
         let pairs = |said: &[&str]| -> Vec<_> {
             let found = scan(&Tree::new(root.clone()), &options(said)).unwrap();
-            let of = |one: Found| match one.what {
-                What::Motor(_, paths) => Some((one.class, paths.encoder.unwrap_or_default())),
+            let of = |one: Found| match one.hardware {
+                Hardware::Motor(_, paths) => Some((one.class, paths.encoder.unwrap_or_default())),
                 _ => None,
             };
             found.into_iter().filter_map(of).collect()

@@ -251,7 +251,7 @@ impl Machine {
             (1, mlx90640::ADDRESS) if self.body.has_infrared_camera() => {
                 let now_s = self.time_s();
                 let body = self.body.as_ref();
-                self.mlx90640.look(now_s, body, &mut self.random);
+                self.mlx90640.capture(now_s, body, &mut self.random);
                 self.mlx90640.transact(written, read)
             }
             (2, msp430::ADDRESS) => self.ask_msp430(chip.stuck, written, read),

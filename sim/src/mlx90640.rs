@@ -77,7 +77,7 @@ impl Mlx90640 {
     }
 
     /// Takes a picture if one is due by now.
-    pub fn look(&mut self, now_s: f64, body: &dyn Body, random: &mut Random) {
+    pub fn capture(&mut self, now_s: f64, body: &dyn Body, random: &mut Random) {
         if now_s < self.due_s {
             return;
         }
@@ -188,7 +188,7 @@ mod tests {
         let mut camera = Mlx90640::new(1);
         let mut random = Random::new(2);
         let body = robots::by_name("two-wheels").unwrap().body();
-        camera.look(0.0, body.as_ref(), &mut random);
+        camera.capture(0.0, body.as_ref(), &mut random);
         assert_eq!(words(&mut camera, STATUS, 1), [NEW_DATA | 1]);
         let picture = words(&mut camera, PICTURE, WORDS);
         let calibration = words(&mut camera, CALIBRATION, WORDS);
@@ -204,21 +204,21 @@ mod tests {
         let mut camera = Mlx90640::new(1);
         let mut random = Random::new(2);
         let body = robots::by_name("bare").unwrap().body();
-        camera.look(0.0, body.as_ref(), &mut random);
+        camera.capture(0.0, body.as_ref(), &mut random);
         camera.transact(&[0x80, 0, 0, 0x30], &mut []).unwrap();
         assert_eq!(words(&mut camera, STATUS, 1), [1]);
         // 4 Hz.
         camera.transact(&[0x80, 0x0D, 0x19, 0x81], &mut []).unwrap();
         assert_eq!(words(&mut camera, CONTROL, 1), [0x1981]);
-        camera.look(0.49, body.as_ref(), &mut random);
+        camera.capture(0.49, body.as_ref(), &mut random);
         assert_eq!(
             words(&mut camera, STATUS, 1),
             [1],
             "the first one took 2 Hz"
         );
-        camera.look(0.5, body.as_ref(), &mut random);
+        camera.capture(0.5, body.as_ref(), &mut random);
         assert_eq!(words(&mut camera, STATUS, 1), [NEW_DATA]);
-        camera.look(0.75, body.as_ref(), &mut random);
+        camera.capture(0.75, body.as_ref(), &mut random);
         assert_eq!(words(&mut camera, STATUS, 1), [NEW_DATA | 1]);
     }
 

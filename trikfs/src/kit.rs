@@ -180,7 +180,7 @@ const CRATE: &[File] = &[
 
 /// What was made, and how to go on.
 #[derive(Debug)]
-pub struct Made {
+pub struct NewProject {
     /// The folder.
     pub folder: PathBuf,
     /// Paths in the folder, in the order in which they are worth reading.
@@ -198,7 +198,7 @@ pub fn new_converter(
     language: Language,
     name: &str,
     folder: Option<&Path>,
-) -> Result<Made, Failure> {
+) -> Result<NewProject, Failure> {
     check_name(name)?;
     let folder = folder.unwrap_or(Path::new(name));
     fs::create_dir(folder).map_err(|error| match error.kind() {
@@ -223,14 +223,14 @@ pub fn new_converter(
             return Err(Failure::file(&path, error));
         }
     }
-    Ok(Made {
+    Ok(NewProject {
         folder: folder.to_owned(),
         next: next(folder, &files),
         files: files.into_iter().map(|(path, _)| path).collect(),
     })
 }
 
-impl Made {
+impl NewProject {
     /// For people.
     pub fn render(&self) -> String {
         let mut text = format!("made {}:\n", self.folder.display());

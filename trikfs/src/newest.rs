@@ -417,7 +417,7 @@ impl Newest {
         }
         node.stats.samples.add(1);
         self.page.fill(&node.engine, tuple);
-        self.tell();
+        self.notify();
         node.driving.measured(node, tuple);
     }
 
@@ -429,10 +429,10 @@ impl Newest {
             }
             node.driving.not_measured(&node, &error);
         }
-        self.tell();
+        self.notify();
     }
 
-    fn tell(&self) {
+    fn notify(&self) {
         self.serve_waiting();
         let watchers: Vec<_> = lock(&self.watchers)
             .iter()

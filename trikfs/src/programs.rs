@@ -4,7 +4,7 @@
 //! and stopped by a thread of its own, never by one that serves the kernel or samples. A start that has failed is not
 //! tried again for a while. Knows no device and no node.
 
-mod told;
+mod texts;
 
 use crate::command::{self, Ended, Groups, Limits};
 use crate::errno::Error;
@@ -23,7 +23,7 @@ pub struct Programs {
     log: Arc<Log>,
     all: Mutex<Vec<Arc<Program>>>,
     /// Those that are run once for each text.
-    told: Mutex<Vec<told::Told>>,
+    text_queues: Mutex<Vec<texts::TextQueue>>,
     /// The mount ends.
     is_ending: AtomicBool,
     /// Everything that runs now.
@@ -92,7 +92,7 @@ impl Programs {
         Arc::new(Self {
             log,
             all: Mutex::default(),
-            told: Mutex::default(),
+            text_queues: Mutex::default(),
             is_ending: AtomicBool::new(false),
             groups: Arc::default(),
         })

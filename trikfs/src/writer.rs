@@ -13,13 +13,13 @@ use std::sync::{Arc, Mutex};
 /// One program's way to a device.
 pub struct Writer {
     node: Arc<Node>,
-    way: Way,
+    destination: Destination,
     partial: Vec<u8>,
     output: Vec<u8>,
 }
 
 /// What becomes of a written tuple.
-enum Way {
+enum Destination {
     /// It is converted and goes to the device.
     Device {
         sink: Box<dyn Sink>,
@@ -35,7 +35,7 @@ impl Writer {
         let output = vec![0; node.device_tuple_size()];
         Self {
             node,
-            way: Way::Device { sink, pipeline },
+            destination: Destination::Device { sink, pipeline },
             partial: Vec::new(),
             output,
         }
@@ -45,7 +45,7 @@ impl Writer {
     pub fn to_regulation(node: Arc<Node>) -> Self {
         Self {
             node,
-            way: Way::Regulation,
+            destination: Destination::Regulation,
             partial: Vec::new(),
             output: Vec::new(),
         }
@@ -94,9 +94,9 @@ impl Writer {
                 tuple.len()
             )));
         }
-        let (sink, pipeline) = match &mut self.way {
-            Way::Device { sink, pipeline } => (sink, pipeline),
-            Way::Regulation => return self.node.driving.order(&self.node, tuple),
+        let (sink, pipeline) = match &mut self.destination {
+            Destination::Device { sink, pipeline } => (sink, pipeline),
+            Destination::Regulation => return self.node.driving.order(&self.node, tuple),
         };
         let batch = self.node.convert(
             &mut lock(pipeline),

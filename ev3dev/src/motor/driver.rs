@@ -184,7 +184,7 @@ impl Driver {
 
     fn tell_if_changed(&self, before: String) {
         if self.state() != before {
-            self.changes.tell();
+            self.changes.notify();
         }
     }
 

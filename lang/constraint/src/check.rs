@@ -294,7 +294,7 @@ impl Run<'_> {
             let times = [self.now_ms, states[index].since_ms];
             let context = &mut self.context;
             let (scene, variables) = (&mut *context.scene, &mut *context.variables);
-            watch.look(index, self.rules, scene, variables, &is_alive, times);
+            watch.observe(index, self.rules, scene, variables, &is_alive, times);
         }
     }
 

@@ -149,7 +149,7 @@ impl Watch {
     }
 
     /// Looks at the conditions of an event, before it is checked.
-    pub fn look(
+    pub fn observe(
         &mut self,
         event: EventIndex,
         rules: &Rules,
@@ -200,7 +200,7 @@ impl Watch {
             let mut conditions = Vec::new();
             let mut next = 0;
             let shown = shown_condition(&rules.events[event]);
-            tell(shown, 0, false, &watched.leaves, &mut next, &mut conditions);
+            describe(shown, 0, false, &watched.leaves, &mut next, &mut conditions);
             let more = conditions
                 .len()
                 .saturating_sub(limits::EXPLAINED_CONDITIONS_MAX);
@@ -417,8 +417,8 @@ fn number(value: &Value) -> Option<f64> {
     }
 }
 
-/// Tells conditions with what was seen of them.
-fn tell(
+/// Describes conditions with what was seen of them.
+fn describe(
     condition: &Condition,
     depth: usize,
     negated: bool,
@@ -447,11 +447,11 @@ fn tell(
             }
             for one in all {
                 let depth = depth + usize::from(needs_head);
-                tell(one, depth, negated, leaves, next, into);
+                describe(one, depth, negated, leaves, next, into);
             }
         }
-        Condition::Not(one) => tell(one, depth, !negated, leaves, next, into),
-        Condition::Using(_, one) => tell(one, depth, negated, leaves, next, into),
+        Condition::Not(one) => describe(one, depth, !negated, leaves, next, into),
+        Condition::Using(_, one) => describe(one, depth, negated, leaves, next, into),
         Condition::Compare(..)
         | Condition::Inside { .. }
         | Condition::SettedUp(_)

@@ -57,7 +57,7 @@ pub fn lint(rules: &Rules, scene: &mut dyn Catalogue) -> Vec<Problem> {
     for (index, event) in rules.events.iter().enumerate() {
         lint.event = Some((event, reached.contains(&index)));
         if !reached.contains(&index) {
-            lint.tell(Severity::Warning, event.at, words::never_set_up(&event.id));
+            lint.report(Severity::Warning, event.at, words::never_set_up(&event.id));
         }
         lint.condition(&event.condition);
         lint.trigger(&event.trigger);
@@ -67,9 +67,9 @@ pub fn lint(rules: &Rules, scene: &mut dyn Catalogue) -> Vec<Problem> {
     let has_score = used.set.iter().any(|(name, _)| *name == SCORE);
     for (name, at) in &used.set {
         if !has_score && is_like_score(name) {
-            lint.tell(Severity::Warning, *at, words::like_score(name, SCORE));
+            lint.report(Severity::Warning, *at, words::like_score(name, SCORE));
         } else if !used.read.contains(name) && *name != SCORE {
-            lint.tell(Severity::Note, *at, words::never_read(name));
+            lint.report(Severity::Note, *at, words::never_read(name));
         }
     }
     let mut problems = lint.problems;
@@ -223,7 +223,7 @@ impl<'a> Lint<'a, '_> {
             .map(|event| event.at);
         if limit < limits::TIME_LIMIT_SHORT_MS {
             let words = words::short_limit(limit);
-            self.tell(Severity::Warning, at.unwrap_or_default(), words);
+            self.report(Severity::Warning, at.unwrap_or_default(), words);
         }
         let can_succeed = reached.iter().any(|&index| {
             let event = &self.rules.events[index];
@@ -235,7 +235,7 @@ impl<'a> Lint<'a, '_> {
             used.succeeds
         });
         if !can_succeed {
-            self.tell(
+            self.report(
                 Severity::Warning,
                 at.unwrap_or_default(),
                 words::no_success(),
@@ -243,7 +243,7 @@ impl<'a> Lint<'a, '_> {
         }
     }
 
-    fn tell(&mut self, severity: Severity, at: Start, words: Words) {
+    fn report(&mut self, severity: Severity, at: Start, words: Words) {
         let is_dead = self.event.is_some_and(|(_, is_reached)| !is_reached);
         let problem = Problem {
             // What is never looked at does no harm.
@@ -273,7 +273,7 @@ impl<'a> Lint<'a, '_> {
         known: &[String],
     ) {
         let near = did_you_mean(name, known.iter().map(String::as_str));
-        self.tell(severity, at, words::and(words, &near));
+        self.report(severity, at, words::and(words, &near));
     }
 
     /// Whether more problems would be kept no longer, and looking for near names would only take time.
@@ -312,18 +312,18 @@ impl<'a> Lint<'a, '_> {
                     Ok(_) => {}
                     Err(Unfit::NoRegion) => {
                         let words = said::not_a_region(&region.text);
-                        self.tell(Severity::Error, region.at, words);
+                        self.report(Severity::Error, region.at, words);
                     }
                     Err(Unfit::NoPlace) => {
                         let words = said::not_matched(&object.text);
-                        self.tell(Severity::Error, object.at, words);
+                        self.report(Severity::Error, object.at, words);
                     }
                 }
             }
             Condition::Timer { ms, at, .. } => {
                 let limit = self.rules.time_limit_ms;
                 if i64::from(*ms) > i64::from(limit) {
-                    self.tell(Severity::Warning, *at, words::late_timer(*ms, limit));
+                    self.report(Severity::Warning, *at, words::late_timer(*ms, limit));
                 }
             }
             Condition::Using(triggers, condition) => {
@@ -359,7 +359,7 @@ impl<'a> Lint<'a, '_> {
                     Followed::Found(Value::Record(_)) | Followed::Later | Followed::Nowhere => {}
                     Followed::Found(value) => {
                         let words = said::no_state(value.type_name());
-                        self.tell(Severity::Error, object.at, words);
+                        self.report(Severity::Error, object.at, words);
                     }
                 }
             }
@@ -523,7 +523,7 @@ impl<'a> Lint<'a, '_> {
         };
         if own == 1 && self.may_come(path) {
             let name = path.parts[..2].join(".");
-            self.tell(Severity::Warning, path.at, words::not_yet(&name));
+            self.report(Severity::Warning, path.at, words::not_yet(&name));
             return Followed::Later;
         }
         let mut value = Value::Object(object);
@@ -547,7 +547,7 @@ impl<'a> Lint<'a, '_> {
         let name = path.parts[..end].join(".");
         let part = &path.parts[end];
         match missing {
-            Missing::Type(_) => self.tell(Severity::Error, path.at, said::no_type(&name)),
+            Missing::Type(_) => self.report(Severity::Error, path.at, said::no_type(&name)),
             Missing::Property(_) => {
                 let mut known = Vec::new();
                 if let Value::Object(object) = before {

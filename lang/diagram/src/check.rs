@@ -15,7 +15,7 @@ use super::program::{ArgumentKind, NOWHERE, Node, Op, Program};
 use super::project::Project;
 use super::words;
 use lang_expr::tree::{Id, Node as Part, Tree};
-use lang_expr::words::{Fault, What};
+use lang_expr::words::{Fault, Reason};
 use lang_expr::{Compat, Kind, Names, Source, Value};
 use lang_text::problem::{Place, Problem, Severity};
 
@@ -296,8 +296,8 @@ fn without_value(tree: &Tree, names: &Names, given: &HashSet<Rc<str>>) -> Vec<Pr
             && !given.contains(name)
             && let Some(Kind::Variable) = names.find(name).and_then(|slot| names.kind(slot))
         {
-            let what = What::Undeclared(name.to_string());
-            found.push(Fault::new(what, tree.place(id)).problem());
+            let reason = Reason::Undeclared(name.to_string());
+            found.push(Fault::new(reason, tree.place(id)).problem());
         }
     });
     found.sort_by_key(|problem| problem.place.position);

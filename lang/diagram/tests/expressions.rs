@@ -39,7 +39,7 @@ fn expressions_of_real_saves_are_read_and_print_the_same() {
                 let is_typed = analyse(&mut source, &mut names).is_ok();
                 let place = format!("{}: {} {property} {text:?}", path.display(), block.kind);
                 for fault in source.faults() {
-                    let stage = fault.what.stage();
+                    let stage = fault.reason.stage();
                     assert!(matches!(stage, Stage::Semantic), "{place}: {fault:?}");
                 }
                 let printed = source.tree().to_string();

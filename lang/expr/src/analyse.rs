@@ -10,7 +10,7 @@ use super::reserved::{FUNCTIONS, Function};
 use super::tree::{Binary, Id, Node, Tree, Unary};
 use super::types::{Element, Possible, Type, Variable};
 use super::value::Compat;
-use super::words::{Fault, What};
+use super::words::{Fault, Reason};
 use crate::limits;
 use lang_text::problem::Position;
 
@@ -86,14 +86,14 @@ impl<'a> Analysis<'a> {
         }
     }
 
-    fn fault(&mut self, what: What, at: Position) {
+    fn fault(&mut self, reason: Reason, at: Position) {
         if self.faults.len() < limits::EXPRESSION_PROBLEMS_MAX {
-            self.faults.push(Fault::new(what, at));
+            self.faults.push(Fault::new(reason, at));
         }
     }
 
-    fn fault_on(&mut self, what: What, id: Id) {
-        self.fault(what, self.tree.place(id));
+    fn fault_on(&mut self, reason: Reason, id: Id) {
+        self.fault(reason, self.tree.place(id));
     }
 
     fn is_fixed(&self) -> bool {
@@ -117,7 +117,7 @@ impl<'a> Analysis<'a> {
                 matches!(self.tree.node(parent), Node::Call { function, .. } if *function == id)
             });
             if !called {
-                self.fault_on(What::FunctionAsName, id);
+                self.fault_on(Reason::FunctionAsName, id);
             }
         }
         let tree = self.tree;
@@ -189,12 +189,12 @@ impl<'a> Analysis<'a> {
     /// Narrows a part to some types, on behalf of an operation, which is where it is told.
     fn constrain(&mut self, operation: Id, id: Id, wanted: &[Type]) {
         let Some(had) = self.possible(id) else {
-            self.fault_on(What::NotAnalysed, id);
+            self.fault_on(Reason::NotAnalysed, id);
             return;
         };
         let left = self.names.types.constrained(had, Possible::of(wanted));
         if left.is_empty() {
-            self.fault_on(What::TypeMismatch, operation);
+            self.fault_on(Reason::TypeMismatch, operation);
             if self.is_fixed() {
                 return;
             }
@@ -209,13 +209,13 @@ impl<'a> Analysis<'a> {
             Node::Name(name) => self.name(id, name),
             Node::Int(text) => {
                 if is_first && let Some(counts) = literal::odd_whole(text, self.names.compat()) {
-                    self.fault_on(What::OddNumber(text.to_string(), counts), id);
+                    self.fault_on(Reason::OddNumber(text.to_string(), counts), id);
                 }
                 self.give(id, Type::Int);
             }
             Node::Float(text) => {
                 if is_first && let Some(counts) = literal::odd_float(text, self.names.compat()) {
-                    self.fault_on(What::OddNumber(text.to_string(), counts), id);
+                    self.fault_on(Reason::OddNumber(text.to_string(), counts), id);
                 }
                 self.give(id, Type::Float);
             }
@@ -236,7 +236,7 @@ impl<'a> Analysis<'a> {
                 self.give(id, table);
             }
             Node::Index { table, .. } => self.index(id, *table),
-            Node::Method { .. } => self.fault_on(What::NotAnalysed, id),
+            Node::Method { .. } => self.fault_on(Reason::NotAnalysed, id),
             Node::Block(_) => {}
         }
     }
@@ -246,7 +246,7 @@ impl<'a> Analysis<'a> {
             return;
         }
         let Some(slot) = self.names.slot(name) else {
-            self.fault_on(What::TooManyNames, id);
+            self.fault_on(Reason::TooManyNames, id);
             return;
         };
         let entry = &mut self.names.entries[slot as usize];
@@ -325,7 +325,7 @@ impl<'a> Analysis<'a> {
 
     fn index(&mut self, id: Id, table: Id) {
         if self.possible(table).is_none() {
-            self.fault_on(What::NotAnalysed, table);
+            self.fault_on(Reason::NotAnalysed, table);
             return;
         }
         match self.names.types.element(self.type_of(table)) {
@@ -335,7 +335,7 @@ impl<'a> Analysis<'a> {
             }
             None => {
                 if self.names.types.variables() >= limits::NAMES_MAX + limits::OPEN_TYPES_MAX {
-                    self.fault_on(What::TooManyNames, id);
+                    self.fault_on(Reason::TooManyNames, id);
                     return;
                 }
                 let variable = self.names.types.variable(Possible::one(Type::Open));
@@ -349,13 +349,13 @@ impl<'a> Analysis<'a> {
     fn call(&mut self, id: Id, function: Id, arguments: &[Id]) {
         let tree = self.tree;
         let Node::Name(name) = tree.node(function) else {
-            self.fault_on(What::IndirectCall, id);
+            self.fault_on(Reason::IndirectCall, id);
             self.give(function, Type::Any);
             self.give(id, Type::Any);
             return;
         };
         let Some(known) = self.function(name) else {
-            self.fault_on(What::UnknownFunction, id);
+            self.fault_on(Reason::UnknownFunction, id);
             self.give(function, Type::Any);
             self.give(id, Type::Any);
             return;
@@ -367,9 +367,9 @@ impl<'a> Analysis<'a> {
         self.give(function, Type::Function);
         self.give(id, of_letter(*result));
         if arguments.len() > formal.len() {
-            self.fault_on(What::TooManyArguments(formal.len()), id);
+            self.fault_on(Reason::TooManyArguments(formal.len()), id);
         } else if arguments.len() < formal.len() {
-            self.fault_on(What::TooFewArguments(formal.len()), id);
+            self.fault_on(Reason::TooFewArguments(formal.len()), id);
         } else {
             for (&argument, letter) in arguments.iter().zip(formal.chars()) {
                 self.constrain(argument, argument, &[of_letter(letter)]);
@@ -383,7 +383,7 @@ impl<'a> Analysis<'a> {
             && let Some(slot) = self.names.find(name)
             && !matches!(self.names.kind(slot), Some(Kind::Variable))
         {
-            self.fault_on(What::ReadOnly(name.to_string()), target);
+            self.fault_on(Reason::ReadOnly(name.to_string()), target);
             return;
         }
         self.constrain_assignment(id, target, value);
@@ -393,7 +393,7 @@ impl<'a> Analysis<'a> {
     fn constrain_assignment(&mut self, id: Id, target: Id, value: Id) {
         let tree = self.tree;
         if !matches!(tree.node(target), Node::Name(_) | Node::Index { .. }) {
-            self.fault_on(What::AssignToValue, id);
+            self.fault_on(Reason::AssignToValue, id);
             return;
         }
         let (Some(had), Some(given)) = (self.possible(target), self.possible(value)) else {
@@ -402,7 +402,7 @@ impl<'a> Analysis<'a> {
         let widens = self.names.widens;
         let assigned = self.names.types.assigned(had, given, widens);
         if assigned.target.is_empty() {
-            self.fault_on(What::Mismatched, id);
+            self.fault_on(Reason::Mismatched, id);
             if !self.is_fixed() {
                 self.set(target, assigned.target);
             }
@@ -414,7 +414,7 @@ impl<'a> Analysis<'a> {
         }
         if !widens {
             let name = self.names.types.names(assigned.target);
-            self.fault_on(What::ImplicitCast(name), id);
+            self.fault_on(Reason::ImplicitCast(name), id);
             return;
         }
         if let Node::Index { table, .. } = tree.node(target)
@@ -444,17 +444,17 @@ impl<'a> Analysis<'a> {
             matches!(entry.kind, Kind::Variable).then_some(entry.declared)?
         });
         if declared == Some((self.reading, id)) {
-            self.fault_on(What::Undeclared(name.to_string()), id);
+            self.fault_on(Reason::Undeclared(name.to_string()), id);
         }
     }
 
     fn check_settled(&mut self, id: Id) {
         if let Some(possible) = self.possible(id) {
             if possible.is_empty() {
-                self.fault_on(What::NoType, id);
+                self.fault_on(Reason::NoType, id);
             } else if !possible.is_settled() && possible.first() != Type::Any {
                 let names = self.names.types.names(possible);
-                self.fault_on(What::CannotDeduce(names), id);
+                self.fault_on(Reason::CannotDeduce(names), id);
             }
         }
         let tree = self.tree;

@@ -7,7 +7,7 @@ use super::reserved::{Function, SENSORS};
 use super::run::Run;
 use super::tree::Id;
 use super::value::Value;
-use super::words::What;
+use super::words::Reason;
 
 impl Run<'_> {
     fn argument(&self, span: Span, position: usize) -> Id {
@@ -86,7 +86,7 @@ impl Run<'_> {
     fn random(&mut self, id: Id, argument: Id) -> f64 {
         match self.whole(argument).checked_abs().unwrap_or(i32::MAX) {
             0 => {
-                self.fault(What::RandomOfNothing, id);
+                self.fault(Reason::RandomOfNothing, id);
                 0.0
             }
             below => f64::from(self.outside.random(below)),
@@ -109,7 +109,7 @@ impl Run<'_> {
         match self.names.find(&name).and_then(|slot| self.store.get(slot)) {
             Some(value) => Value::Int(value.to_int()),
             None => {
-                self.fault(What::Uninitialized(name), id);
+                self.fault(Reason::Uninitialized(name), id);
                 Value::Int(0)
             }
         }

@@ -11,7 +11,7 @@ use super::reserved::{Function, SensorIndex};
 use super::tree::{Binary, Id, Node, Unary};
 use super::types::Type;
 use super::value::{Compat, Value};
-use super::words::What;
+use super::words::Reason;
 use crate::limits;
 use lang_text::problem::Position;
 
@@ -72,7 +72,7 @@ pub(super) struct Code {
     pub(super) places: Vec<Position>,
     pub(super) operands: Vec<Id>,
     pub(super) constants: Vec<Value>,
-    pub(super) faults: Vec<What>,
+    pub(super) faults: Vec<Reason>,
     pub(super) root: Id,
 }
 
@@ -122,8 +122,8 @@ impl Compiler<'_> {
         }
     }
 
-    fn broken(&mut self, what: What) -> Op {
-        self.code.faults.push(what);
+    fn broken(&mut self, reason: Reason) -> Op {
+        self.code.faults.push(reason);
         Op::Broken(index(self.code.faults.len() - 1))
     }
 
@@ -154,21 +154,21 @@ impl Compiler<'_> {
             Node::Index { .. } => match self.path(id) {
                 Ok((base, path)) if path.len() == 1 => Op::Element(base, path[0]),
                 Ok((base, path)) => Op::Elements(base, self.span(path)),
-                Err(what) => self.broken(what),
+                Err(reason) => self.broken(reason),
             },
             Node::Call {
                 function,
                 arguments,
             } => {
                 let Node::Name(name) = self.analysis.tree.node(*function) else {
-                    return self.broken(What::IndirectCall);
+                    return self.broken(Reason::IndirectCall);
                 };
                 let Some((_, Kind::Function(function))) = self.kind(name) else {
-                    return self.broken(What::UnknownFunction);
+                    return self.broken(Reason::UnknownFunction);
                 };
                 Op::Call(function, self.span(arguments.iter().copied()))
             }
-            Node::Method { .. } => self.broken(What::NotInterpreted),
+            Node::Method { .. } => self.broken(Reason::NotInterpreted),
             Node::Table { fields, .. } => self.table(fields),
             Node::Assign { target, value } => self.assign(*target, *value),
             Node::Block(statements) => Op::Block(self.span(statements.iter().copied())),
@@ -209,21 +209,21 @@ impl Compiler<'_> {
     }
 
     /// What an index expression belongs to, and its indices from the first.
-    fn path(&self, id: Id) -> Result<(Base, Vec<Id>), What> {
+    fn path(&self, id: Id) -> Result<(Base, Vec<Id>), Reason> {
         let mut path = Vec::new();
         let mut at = id;
         loop {
             match self.analysis.tree.node(at) {
                 Node::Index { table, index } => {
                     if path.len() >= usize::from(limits::LIST_DEPTH_MAX) {
-                        return Err(What::ValueTooDeep);
+                        return Err(Reason::ValueTooDeep);
                     }
                     path.push(*index);
                     at = *table;
                 }
                 Node::Name(name) => {
                     if !path.iter().all(|&index| self.is_number(index)) {
-                        return Err(What::IndexNotNumber);
+                        return Err(Reason::IndexNotNumber);
                     }
                     path.reverse();
                     let base = match self.kind(name) {
@@ -245,7 +245,7 @@ impl Compiler<'_> {
                 | Node::Method { .. }
                 | Node::Table { .. }
                 | Node::Assign { .. }
-                | Node::Block(_) => return Err(What::IndexOfValue),
+                | Node::Block(_) => return Err(Reason::IndexOfValue),
             }
         }
     }
@@ -255,7 +255,7 @@ impl Compiler<'_> {
             if let Some(key) = field.key
                 && !self.is_number(key)
             {
-                return self.broken(What::KeyNotNumber);
+                return self.broken(Reason::KeyNotNumber);
             }
         }
         let pairs = fields
@@ -268,15 +268,15 @@ impl Compiler<'_> {
         match self.analysis.tree.node(target) {
             Node::Name(name) => match self.kind(name) {
                 Some((slot, Kind::Variable)) => Op::Assign(slot, value),
-                _ => self.broken(What::ReadOnly(name.to_string())),
+                _ => self.broken(Reason::ReadOnly(name.to_string())),
             },
             Node::Index { .. } => match self.path(target) {
                 Ok((Base::Variable(slot), path)) => {
                     let span = self.span(path.into_iter().chain([value]));
                     Op::AssignElement(Base::Variable(slot), span)
                 }
-                Ok(_) => self.broken(What::ReadOnly(String::new())),
-                Err(what) => self.broken(what),
+                Ok(_) => self.broken(Reason::ReadOnly(String::new())),
+                Err(reason) => self.broken(reason),
             },
             Node::Nil
             | Node::Bool(_)
@@ -290,7 +290,7 @@ impl Compiler<'_> {
             | Node::Method { .. }
             | Node::Table { .. }
             | Node::Assign { .. }
-            | Node::Block(_) => self.broken(What::NotInterpreted),
+            | Node::Block(_) => self.broken(Reason::NotInterpreted),
         }
     }
 }

@@ -6,19 +6,19 @@ use super::code::{Base, Span};
 use super::run::Run;
 use super::tree::Id;
 use super::value::{List, ListError, Value};
-use super::words::What;
+use super::words::Reason;
 use crate::limits;
 use std::rc::Rc;
 
 impl Run<'_> {
     #[cold]
     fn list_fault(&mut self, error: ListError, id: Id) {
-        let what = match error {
-            ListError::Negative => What::NegativeIndex,
-            ListError::TooLong => What::ValueTooLong,
-            ListError::TooDeep => What::ValueTooDeep,
+        let reason = match error {
+            ListError::Negative => Reason::NegativeIndex,
+            ListError::TooLong => Reason::ValueTooLong,
+            ListError::TooDeep => Reason::ValueTooDeep,
         };
-        self.fault(what, id);
+        self.fault(reason, id);
     }
 
     fn base(&mut self, base: Base) -> Option<Rc<List>> {
@@ -43,7 +43,7 @@ impl Run<'_> {
 
     fn element_of(&mut self, id: Id, list: Option<&List>, index: i32) -> Value {
         let Ok(index) = usize::try_from(index) else {
-            self.fault(What::NegativeIndex, id);
+            self.fault(Reason::NegativeIndex, id);
             return Value::Nil;
         };
         list.and_then(|list| list.items().get(index).cloned())
@@ -69,7 +69,7 @@ impl Run<'_> {
                 return Value::Nil;
             }
             if index < 0 {
-                self.fault(What::NegativeIndex, id);
+                self.fault(Reason::NegativeIndex, id);
                 return Value::Nil;
             }
             found = self.element_of(id, list.as_deref(), index);
@@ -103,7 +103,7 @@ impl Run<'_> {
         }
         self.pay(grown, id);
         if self.store.set(slot, Value::List(list)).is_err() {
-            self.fault(What::StoreFull, id);
+            self.fault(Reason::StoreFull, id);
         }
     }
 

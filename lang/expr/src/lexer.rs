@@ -2,7 +2,7 @@
 //!
 //! What fits nothing is skipped up to the next space and told. Knows no grammar.
 
-use super::words::{Fault, What};
+use super::words::{Fault, Reason};
 use crate::limits;
 use lang_text::problem::Position;
 use std::ops::Range;
@@ -74,7 +74,7 @@ pub fn tokens(text: &str) -> (Vec<Placed>, Vec<Fault>) {
             end -= 1;
         }
         lexer.advance(end);
-        faults.push(Fault::new(What::TextTooLong, lexer.at));
+        faults.push(Fault::new(Reason::TextTooLong, lexer.at));
         return (found, faults);
     }
     while let Some(next) = lexer.rest().chars().next() {
@@ -98,7 +98,7 @@ pub fn tokens(text: &str) -> (Vec<Placed>, Vec<Fault>) {
             let skipped = rest[..length].to_owned();
             lexer.advance(length);
             if faults.len() < limits::EXPRESSION_PROBLEMS_MAX {
-                faults.push(Fault::new(What::UnknownSymbols(skipped), at));
+                faults.push(Fault::new(Reason::UnknownSymbols(skipped), at));
             }
         }
     }

@@ -41,7 +41,7 @@ use lang_text::problem::{Problem, Severity};
 use run::Run;
 use std::rc::Rc;
 use tree::{Id, Tree};
-use words::{Fault, What};
+use words::{Fault, Reason};
 
 /// What a block asks an expression for.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
@@ -119,7 +119,7 @@ impl Source {
     pub fn warnings(&self) -> Vec<Problem> {
         self.faults
             .iter()
-            .filter(|fault| fault.what.severity() == Severity::Warning)
+            .filter(|fault| fault.reason.severity() == Severity::Warning)
             .map(Fault::problem)
             .collect()
     }
@@ -171,7 +171,7 @@ pub fn analyse(source: &mut Source, names: &mut Names) -> Result<(), Vec<Problem
     let faults = std::mem::take(&mut analysis.faults);
     let is_good = faults
         .iter()
-        .all(|fault| fault.what.severity() != Severity::Error);
+        .all(|fault| fault.reason.severity() != Severity::Error);
     if is_good {
         source.code = code::compile(&analysis);
         source.good_at = Some(names.epoch());
@@ -239,7 +239,7 @@ fn run<T>(
 ) -> Result<T, Vec<Problem>> {
     if source.good_at.is_none() {
         let not_analysed = Fault::new(
-            What::NotAnalysed,
+            Reason::NotAnalysed,
             lang_text::problem::Position { line: 1, column: 1 },
         );
         return Err(if source.faults.is_empty() {

@@ -6,7 +6,7 @@
 use super::escape;
 use super::lexer::{Placed, Token, tokens};
 use super::tree::{Binary, Field, Id, Node, Tree, UNARY_PRECEDENCE, Unary};
-use super::words::{Fault, What};
+use super::words::{Fault, Reason};
 use crate::limits;
 use lang_text::problem::Position;
 
@@ -29,7 +29,7 @@ pub fn parse(text: &str) -> (Tree, Vec<Fault>) {
     };
     let root = parser.block();
     if parser.position < parser.tokens.len() {
-        parser.fault(What::UnexpectedToken);
+        parser.fault(Reason::UnexpectedToken);
     }
     if parser.faults.is_empty() {
         parser.tree.root = root.ok();
@@ -79,13 +79,13 @@ impl<'a> Parser<'a> {
             .map_or("", |placed| &self.text[placed.bytes.clone()])
     }
 
-    fn fault(&mut self, what: What) -> Failed {
-        self.fault_at(what, self.here())
+    fn fault(&mut self, reason: Reason) -> Failed {
+        self.fault_at(reason, self.here())
     }
 
-    fn fault_at(&mut self, what: What, at: Position) -> Failed {
+    fn fault_at(&mut self, reason: Reason, at: Position) -> Failed {
         if self.faults.len() < limits::EXPRESSION_PROBLEMS_MAX {
-            self.faults.push(Fault::new(what, at));
+            self.faults.push(Fault::new(reason, at));
         }
         Failed
     }
@@ -96,12 +96,12 @@ impl<'a> Parser<'a> {
             return Ok(());
         }
         let got = self.next().map_or("", |placed| placed.token.shown());
-        let what = if self.is_end() {
-            What::ExpectedAtEnd(word, got)
+        let reason = if self.is_end() {
+            Reason::ExpectedAtEnd(word, got)
         } else {
-            What::Expected(word, got)
+            Reason::Expected(word, got)
         };
-        Err(self.fault(what))
+        Err(self.fault(reason))
     }
 
     fn add(&mut self, node: Node, at: Position) -> Parsed<Id> {
@@ -114,7 +114,7 @@ impl<'a> Parser<'a> {
         });
         self.depths.push(below + 1);
         if below + 1 > limits::EXPRESSION_DEPTH_MAX {
-            return Err(self.fault_at(What::TooDeep, at));
+            return Err(self.fault_at(Reason::TooDeep, at));
         }
         Ok(id)
     }
@@ -176,11 +176,11 @@ impl<'a> Parser<'a> {
         let (left, right) = (left?, right?);
         let at = self.at(left[0]);
         if left.len() != right.len() {
-            return Err(self.fault_at(What::CountsDiffer, at));
+            return Err(self.fault_at(Reason::CountsDiffer, at));
         }
         for (&target, &value) in left.iter().zip(&right) {
             if matches!(self.tree.node(target), Node::Call { .. }) {
-                self.fault_at(What::AssignToCall, at);
+                self.fault_at(Reason::AssignToCall, at);
                 continue;
             }
             let place = self.at(target);
@@ -211,7 +211,7 @@ impl<'a> Parser<'a> {
     fn binary(&mut self, least: u8) -> Parsed<Id> {
         if self.depth >= limits::EXPRESSION_DEPTH_MAX {
             // What follows is of no use, and would be told again at each level.
-            let failed = self.fault(What::TooDeep);
+            let failed = self.fault(Reason::TooDeep);
             self.position = self.tokens.len();
             return Err(failed);
         }
@@ -238,7 +238,7 @@ impl<'a> Parser<'a> {
 
     fn primary(&mut self) -> Parsed<Id> {
         let Some(token) = self.peek() else {
-            return Err(self.fault(What::UnexpectedEnd));
+            return Err(self.fault(Reason::UnexpectedEnd));
         };
         let at = self.here();
         let text = self.lexeme();
@@ -250,7 +250,7 @@ impl<'a> Parser<'a> {
             Token::Word("true") => Node::Bool(true),
             Token::Word("false") => Node::Bool(false),
             Token::Word("...") => {
-                let failed = self.fault(What::NotSupportedYet);
+                let failed = self.fault(Reason::NotSupportedYet);
                 self.position += 1;
                 return Err(failed);
             }
@@ -260,7 +260,7 @@ impl<'a> Parser<'a> {
             Token::Word("not") => return self.unary(Unary::Not),
             Token::Word("#") => return self.unary(Unary::Length),
             Token::Word("~") => return self.unary(Unary::BitNot),
-            Token::Word(_) => return Err(self.fault(What::UnexpectedToken)),
+            Token::Word(_) => return Err(self.fault(Reason::UnexpectedToken)),
         };
         self.position += 1;
         self.add(simple, at)
@@ -333,7 +333,7 @@ impl<'a> Parser<'a> {
     fn name(&mut self) -> Parsed<Id> {
         if self.peek() != Some(Token::Name) {
             let got = self.next().map_or("", |placed| placed.token.shown());
-            return Err(self.fault(What::Expected("identifier", got)));
+            return Err(self.fault(Reason::Expected("identifier", got)));
         }
         let at = self.here();
         let name = Node::Name(self.lexeme().into());
@@ -353,7 +353,7 @@ impl<'a> Parser<'a> {
         let at = self.here();
         if self.peek() != Some(Token::Name) {
             let got = self.next().map_or("", |placed| placed.token.shown());
-            return Err(self.fault(What::Expected("identifier", got)));
+            return Err(self.fault(Reason::Expected("identifier", got)));
         }
         let name = Node::Text(self.lexeme().into());
         self.position += 1;
@@ -368,7 +368,7 @@ impl<'a> Parser<'a> {
                     self.expressions()
                 } else if self.is_end() {
                     // As the real program has it: what is missing is the expression, then the bracket.
-                    Err(self.fault(What::UnexpectedEnd))
+                    Err(self.fault(Reason::UnexpectedEnd))
                 } else {
                     Ok(Vec::new())
                 };
@@ -383,8 +383,8 @@ impl<'a> Parser<'a> {
                 self.position += 1;
                 self.add(text, at).map(|id| vec![id])
             }
-            Some(_) => Err(self.fault(What::UnexpectedToken)),
-            None => Err(self.fault(What::UnexpectedEnd)),
+            Some(_) => Err(self.fault(Reason::UnexpectedToken)),
+            None => Err(self.fault(Reason::UnexpectedEnd)),
         }
     }
 

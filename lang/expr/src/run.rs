@@ -9,7 +9,7 @@ use super::reserved::SensorIndex;
 use super::store::Store;
 use super::tree::{Binary, Id};
 use super::value::{Compat, Value, round};
-use super::words::{Fault, What};
+use super::words::{Fault, Reason};
 use crate::limits;
 use std::rc::Rc;
 
@@ -57,23 +57,23 @@ impl<'a> Run<'a> {
     }
 
     #[cold]
-    pub(super) fn fault(&mut self, what: What, id: Id) {
+    pub(super) fn fault(&mut self, reason: Reason, id: Id) {
         if self.faults.len() < limits::EXPRESSION_PROBLEMS_MAX {
             let at = self.code.places[id as usize];
-            self.faults.push(Fault::new(what, at));
+            self.faults.push(Fault::new(reason, at));
         }
     }
 
     #[cold]
     fn uninitialized(&mut self, slot: u32, id: Id) {
         let name = self.names.name(slot).to_owned();
-        self.fault(What::Uninitialized(name), id);
+        self.fault(Reason::Uninitialized(name), id);
     }
 
     #[cold]
     fn broken(&mut self, index: u32, id: Id) {
-        let what = self.code.faults.get(index as usize).cloned();
-        self.fault(what.unwrap_or(What::NotInterpreted), id);
+        let reason = self.code.faults.get(index as usize).cloned();
+        self.fault(reason.unwrap_or(Reason::NotInterpreted), id);
     }
 
     /// Pays for work on large values.
@@ -82,7 +82,7 @@ impl<'a> Run<'a> {
             self.cells = left;
             return true;
         }
-        self.fault(What::TooMuchWork, id);
+        self.fault(Reason::TooMuchWork, id);
         false
     }
 
@@ -132,7 +132,7 @@ impl<'a> Run<'a> {
             Binary::Divide => {
                 let (left, right) = (self.number(left), self.number(right));
                 if right == 0.0 {
-                    self.fault(What::DivisionByZero, id);
+                    self.fault(Reason::DivisionByZero, id);
                     return 0.0;
                 }
                 left / right
@@ -237,7 +237,7 @@ impl<'a> Run<'a> {
         let left = self.whole(left);
         let right = self.whole(right);
         if right == 0 {
-            self.fault(What::DivisionByZero, id);
+            self.fault(Reason::DivisionByZero, id);
             return None;
         }
         Some((left, right))
@@ -412,7 +412,7 @@ impl<'a> Run<'a> {
             Op::Assign(slot, value) => {
                 let value = self.value(value);
                 if self.store.set(slot, value).is_err() {
-                    self.fault(What::StoreFull, id);
+                    self.fault(Reason::StoreFull, id);
                 }
                 Value::Nil
             }
@@ -456,7 +456,7 @@ impl<'a> Run<'a> {
         let right = self.value(right);
         let (left, right) = (self.text(&left), self.text(&right));
         if left.len() + right.len() > limits::TEXT_MAX {
-            self.fault(What::ValueTooLong, id);
+            self.fault(Reason::ValueTooLong, id);
             return Value::text("");
         }
         let joined = Value::text([&*left, &*right].concat());

@@ -565,7 +565,7 @@ fn steps_have_names_and_russian_words() {
     ] {
         let mut source = Source::new(text, Wanted::Any);
         let problems = analyse(&mut source, &mut Names::new(Kit::V62, Compat::Studio)).unwrap_err();
-        assert_eq!(source.faults()[0].what.stage(), stage, "{text}");
+        assert_eq!(source.faults()[0].reason.stage(), stage, "{text}");
         assert!(!problems[0].words.russian.is_ascii(), "{text}");
     }
 }

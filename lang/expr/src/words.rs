@@ -20,7 +20,7 @@ pub enum Stage {
 
 /// What is wrong.
 #[derive(Clone, Debug, PartialEq)]
-pub enum What {
+pub enum Reason {
     /// Longer than `limits::EXPRESSION_TEXT_MAX`.
     TextTooLong,
     /// Characters that begin nothing.
@@ -102,33 +102,33 @@ pub enum What {
 /// What is wrong, in its place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// What.
-    pub what: What,
+    /// Why.
+    pub reason: Reason,
     /// Where in the text.
     pub at: Position,
 }
 
 impl Fault {
     /// Something wrong at a place.
-    pub fn new(what: What, at: Position) -> Self {
-        Self { what, at }
+    pub fn new(reason: Reason, at: Position) -> Self {
+        Self { reason, at }
     }
 
     /// As a problem for people; the caller knows block and property.
     pub fn problem(&self) -> Problem {
         Problem {
-            severity: self.what.severity(),
+            severity: self.reason.severity(),
             place: Place {
                 position: Some(self.at),
                 ..Place::default()
             },
-            words: self.what.words(),
+            words: self.reason.words(),
             hint: None,
         }
     }
 }
 
-impl What {
+impl Reason {
     /// In which step it is found.
     pub fn stage(&self) -> Stage {
         match self {
@@ -504,7 +504,7 @@ mod tests {
 
     #[test]
     fn a_message_does_not_repeat_a_very_long_name() {
-        let words = What::Undeclared("x".repeat(10_000)).words();
+        let words = Reason::Undeclared("x".repeat(10_000)).words();
         assert!(words.english.len() < 200, "{}", words.english);
         assert!(words.russian.len() < 300, "{}", words.russian);
     }

@@ -123,7 +123,7 @@ impl Runs {
         }
     }
 
-    fn tell(&mut self, name: &str) -> f64 {
+    fn print(&mut self, name: &str) -> f64 {
         let mean = self.seconds.iter().sum::<f64>() / self.seconds.len() as f64;
         let middle = median(&mut self.seconds);
         let length = if self.durations.is_empty() {
@@ -248,20 +248,20 @@ fn main() {
             "{:<34} {bare:>9.0} propagations of 10 steps per second",
             "solver alone"
         );
-        let mine = ours(&mut room, Method::Rrt, 1, SEEDS).tell("RRT, one action for a sample");
+        let mine = ours(&mut room, Method::Rrt, 1, SEEDS).print("RRT, one action for a sample");
         if let Ok((program, lib)) = &program {
             let (mut runs, rate) = theirs(program, lib);
             println!(
                 "{:<34} {rate:>9.0} propagations of 10 steps per second",
                 "ODEBasicSolver of OMPL alone"
             );
-            let middle = runs.tell("RRT of OMPL");
+            let middle = runs.print("RRT of OMPL");
             bare_ratios.push(bare / rate);
             ratios.push(middle / mine);
         }
-        ours(&mut room, Method::Rrt, 4, SEEDS).tell("RRT, best of 4 actions");
-        ours(&mut Anywhere, Method::Rrt, 1, SEEDS).tell("RRT, nothing in the way");
-        ours(&mut room, sst, 1, 5).tell("SST, 50000 samples");
+        ours(&mut room, Method::Rrt, 4, SEEDS).print("RRT, best of 4 actions");
+        ours(&mut Anywhere, Method::Rrt, 1, SEEDS).print("RRT, nothing in the way");
+        ours(&mut room, sst, 1, 5).print("SST, 50000 samples");
     }
     println!(
         "solver alone, median: {:.0} propagations/s",

@@ -53,17 +53,17 @@ impl Handle<'_> {
     }
 
     /// Looks at the floor through a sensor that stands somewhere and looks somewhere.
-    fn look(&mut self, (at, degrees): (Point, f64), side: u16, part: f64) {
+    fn view_floor(&mut self, (at, degrees): (Point, f64), side: u16, part: f64) {
         let arena = &mut *self.arena;
         let floor = laid(&mut arena.floor, &arena.field);
-        floor.look(at, degrees, side, part, &mut arena.window);
+        floor.view(at, degrees, side, part, &mut arena.window);
     }
 
     /// What a light sensor says.
     fn light(&mut self, port: Port) -> Option<i32> {
         let robot = &self.arena.robots[self.index];
         let place = robot.sensor_pose(robot.sensor(port)?);
-        self.look(place, sensors::LIGHT_SIDE, 1.0);
+        self.view_floor(place, sensors::LIGHT_SIDE, 1.0);
         let arena = &mut *self.arena;
         let is_noisy = arena.field.settings.realistic_sensors;
         let noise = is_noisy.then_some(arena.robots[self.index].noise_mut());
@@ -76,7 +76,7 @@ impl Handle<'_> {
         let camera = robot.sensor_of(SensorKind::Camera);
         let place = camera.map(|camera| robot.sensor_pose(camera));
         if let Some(place) = place {
-            self.look(place, sensors::CAMERA_SIDE, part);
+            self.view_floor(place, sensors::CAMERA_SIDE, part);
         }
         place.is_some()
     }

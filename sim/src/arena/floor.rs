@@ -230,9 +230,9 @@ impl Floor {
         self.things.push(thing);
     }
 
-    /// Looks at the floor around `at`, turned by `degrees`. The sensor's picture has sides of `side` pixels, and `part` of
+    /// Draws the floor as it is seen around `at`, turned by `degrees`. The sensor's picture has sides of `side` pixels, and `part` of
     /// it is seen: 1 is all of it, 2 is twice as far to each side.
-    pub fn look(&mut self, at: Point, degrees: f64, side: u16, part: f64, window: &mut Window) {
+    pub fn view(&mut self, at: Point, degrees: f64, side: u16, part: f64, window: &mut Window) {
         let half = f64::from(side) * part / 2.0;
         let (sine, cosine) = turn(degrees);
         let room = half * (sine.abs() + cosine.abs());

@@ -132,7 +132,7 @@ impl Studio {
             is_locked: false,
         };
         studio.senses.pose = studio.pose();
-        studio.look();
+        studio.read_sensors();
         studio
     }
 
@@ -153,7 +153,7 @@ impl Studio {
     }
 
     /// What the connectors carry after a tick.
-    fn look(&mut self) {
+    fn read_sensors(&mut self) {
         let before = self.senses.pose;
         let pose = self.pose();
         let moved = pose.at.from(before.at);
@@ -195,7 +195,7 @@ impl Studio {
             if let Some(camera) = robot.sensor_of(SensorKind::Camera) {
                 let (at, degrees) = robot.sensor_pose(camera);
                 let floor = self.arena.floor();
-                floor.look(
+                floor.view(
                     at,
                     degrees,
                     sensors::CAMERA_SIDE,
@@ -220,7 +220,7 @@ impl Studio {
                 .background
                 .clone_from(&to.settings.background);
         });
-        self.look();
+        self.read_sensors();
     }
 
     fn analog(&mut self, index: usize) -> Option<f64> {
@@ -268,7 +268,7 @@ impl Body for Studio {
                 }
             }
             self.arena.tick();
-            self.look();
+            self.read_sensors();
         }
     }
 

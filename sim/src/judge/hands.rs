@@ -13,11 +13,11 @@ use std::fmt;
 pub struct Deed {
     /// When, in milliseconds of model time.
     pub ms: u32,
-    what: What,
+    gesture: Gesture,
 }
 
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-enum What {
+enum Gesture {
     /// A finger on a pad, or off it.
     Pad(usize, Option<[i32; 2]>),
     Button(usize, bool),
@@ -94,14 +94,14 @@ pub fn read(text: &str) -> Result<Vec<Deed>, Refusal> {
             reason,
         };
         let ms = ms(seconds).map_err(place)?;
-        let what = what(words).map_err(place)?;
+        let gesture = gesture(words).map_err(place)?;
         if deeds.last().is_some_and(|last| last.ms > ms) {
             return Err(place(Reason::Back));
         }
         if deeds.len() == limits::DEEDS {
             return Err(place(Reason::TooMany));
         }
-        deeds.push(Deed { ms, what });
+        deeds.push(Deed { ms, gesture });
     }
     Ok(deeds)
 }
@@ -116,7 +116,7 @@ fn ms(text: &str) -> Result<u32, Reason> {
     }
 }
 
-fn what(words: &[&str]) -> Result<What, Reason> {
+fn gesture(words: &[&str]) -> Result<Gesture, Reason> {
     let is_down = |word: &str| match word {
         "down" => Some(true),
         "up" => Some(false),
@@ -130,22 +130,22 @@ fn what(words: &[&str]) -> Result<What, Reason> {
     };
     let unknown = || Reason::Unknown(words.join(" "));
     Ok(match *words {
-        ["pad", pad, "up"] => What::Pad(within(pad, 1, 2)? as usize - 1, None),
+        ["pad", pad, "up"] => Gesture::Pad(within(pad, 1, 2)? as usize - 1, None),
         ["pad", pad, x, y] => {
             let at = [within(x, -100, 100)?, within(y, -100, 100)?];
-            What::Pad(within(pad, 1, 2)? as usize - 1, Some(at))
+            Gesture::Pad(within(pad, 1, 2)? as usize - 1, Some(at))
         }
         ["btn", button, state] => {
             let is_down = is_down(state).ok_or_else(unknown)?;
-            What::Button(within(button, 1, 5)? as usize - 1, is_down)
+            Gesture::Button(within(button, 1, 5)? as usize - 1, is_down)
         }
-        ["wheel", percent] => What::Wheel(within(percent, -100, 100)?),
-        ["gamepad", "on"] => What::Connected(true),
-        ["gamepad", "off"] => What::Connected(false),
+        ["wheel", percent] => Gesture::Wheel(within(percent, -100, 100)?),
+        ["gamepad", "on"] => Gesture::Connected(true),
+        ["gamepad", "off"] => Gesture::Connected(false),
         ["key", name, state] => {
             let is_down = is_down(state).ok_or_else(unknown)?;
             match Port::named(name).map(Port::sort) {
-                Some(Sort::Button(code)) => What::Key(code, is_down),
+                Some(Sort::Button(code)) => Gesture::Key(code, is_down),
                 _ => return Err(Reason::NoKey(name.to_owned())),
             }
         }
@@ -161,26 +161,26 @@ pub(super) fn act(deeds: &mut &[Deed], now: u32, robot: &mut Robot) {
         *deeds = rest;
         let mut gamepad = robot.gamepad().copied().unwrap_or_default();
         gamepad.is_away = false;
-        match deed.what {
-            What::Key(code, is_down) => {
+        match deed.gesture {
+            Gesture::Key(code, is_down) => {
                 robot.press(code, is_down);
                 continue;
             }
-            What::Connected(is_there) => {
+            Gesture::Connected(is_there) => {
                 gamepad = Gamepad {
                     is_away: !is_there,
                     ..Gamepad::default()
                 };
             }
-            What::Pad(pad, at) => {
+            Gesture::Pad(pad, at) => {
                 gamepad.pads[pad] = at.map_or_else(Pad::default, |[x, y]| Pad {
                     x,
                     y,
                     is_pressed: true,
                 });
             }
-            What::Button(button, is_down) => gamepad.buttons[button] = is_down,
-            What::Wheel(percent) => gamepad.wheel = percent,
+            Gesture::Button(button, is_down) => gamepad.buttons[button] = is_down,
+            Gesture::Wheel(percent) => gamepad.wheel = percent,
         }
         robot.set_gamepad(Some(gamepad));
     }

@@ -29,7 +29,7 @@ pub trait Program {
 
     /// Says what it does at this moment, for people who look on: variables, and the blocks at which its threads are.
     /// Programs in languages with text say nothing.
-    fn tell(&self, _locale: Locale, _tell: &mut dyn FnMut(Group, &str, &str)) {}
+    fn describe(&self, _locale: Locale, _tell: &mut dyn FnMut(Group, &str, &str)) {}
 
     /// What went wrong in it so far, in order; it only grows.
     fn errors(&self) -> &[Problem];
@@ -154,7 +154,7 @@ impl Program for Diagram {
         self.machine.stop(robot, &mut Deaf);
     }
 
-    fn tell(&self, locale: Locale, tell: &mut dyn FnMut(Group, &str, &str)) {
+    fn describe(&self, locale: Locale, tell: &mut dyn FnMut(Group, &str, &str)) {
         let program = self.machine.program();
         for (thread, node) in self.machine.threads() {
             let block = program.row(node).map_or("", |row| row.shown_in(locale));

@@ -66,7 +66,7 @@ pub fn judge_recorded(task: &Task, trajectory: &Trajectory, settings: &Settings)
         }
         run.record(now, &arena);
         arena.renew();
-        if now > 0 && run.look(now, &mut arena) {
+        if now > 0 && run.check(now, &mut arena) {
             break;
         }
         if now >= end.min(settings.longest_ms) {

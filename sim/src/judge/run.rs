@@ -155,7 +155,7 @@ pub fn judge(task: &Task, program: &mut dyn Program, settings: &Settings) -> Out
         if now > 0 {
             arena.tick();
             run.record(now, &arena);
-            if run.look(now, &mut arena) {
+            if run.check(now, &mut arena) {
                 run.last_tick(now, program, &mut arena);
                 break;
             }
@@ -275,7 +275,7 @@ impl<'a> Run<'a> {
             return;
         };
         let track = &mut self.track;
-        program.tell(self.settings.locale, &mut |group, name, value| {
+        program.describe(self.settings.locale, &mut |group, name, value| {
             track.note(group, name, now, value);
         });
         for port in Port::all() {
@@ -336,8 +336,8 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Lets the rules look; whether they have decided.
-    pub fn look(&mut self, now: u32, arena: &mut Arena) -> bool {
+    /// Lets the rules check the world; whether they have decided.
+    pub fn check(&mut self, now: u32, arena: &mut Arena) -> bool {
         let Some(checker) = &mut self.checker else {
             return false;
         };

@@ -61,7 +61,7 @@ pub(crate) fn run(args: &LintArgs) -> Result<u8, Refusal> {
                     return Err(Refusal::new(format!("{}: {why}", named(file))));
                 }
                 let reporter = Reporter::new(file, None, args.language);
-                tell(&reporter, world(&text), &mut count, args)?;
+                report(&reporter, world(&text), &mut count, args)?;
                 continue;
             }
             Err(why) => {
@@ -71,7 +71,7 @@ pub(crate) fn run(args: &LintArgs) -> Result<u8, Refusal> {
                     Unreadable::Save(problems) => problems,
                 };
                 let reporter = Reporter::new(file, None, args.language);
-                tell(&reporter, problems, &mut count, args)?;
+                report(&reporter, problems, &mut count, args)?;
                 continue;
             }
         };
@@ -86,7 +86,7 @@ pub(crate) fn run(args: &LintArgs) -> Result<u8, Refusal> {
             }
         };
         let reporter = Reporter::new(name, Some(&opened.project), args.language);
-        tell(&reporter, found(&opened), &mut count, args)?;
+        report(&reporter, found(&opened), &mut count, args)?;
     }
     if !args.json {
         let summary = words::summary(args.files.len(), unreadable, count, args.language);
@@ -163,8 +163,8 @@ fn found(opened: &Opened) -> Vec<Problem> {
     problems
 }
 
-/// Tells and counts problems.
-fn tell(
+/// Reports and counts problems.
+fn report(
     reporter: &Reporter<'_>,
     mut problems: Vec<Problem>,
     count: &mut Count,

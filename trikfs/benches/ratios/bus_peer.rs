@@ -116,7 +116,7 @@ pub fn serve(path: &Path, delay_ms: u32) {
             std::thread::spawn(move || answer_all(client, delay_ms));
         }
     });
-    tell(&[0; 8]);
+    send_bytes(&[0; 8]);
     let mut asked = [0];
     while std::io::stdin().read_exact(&mut asked).is_ok() {
         let time = clock_gettime(ClockId::CLOCK_PROCESS_CPUTIME_ID).expect("a clock");
@@ -129,11 +129,11 @@ pub fn serve(path: &Path, delay_ms: u32) {
         ] {
             bytes.extend_from_slice(&number.to_ne_bytes());
         }
-        tell(&bytes);
+        send_bytes(&bytes);
     }
 }
 
-fn tell(bytes: &[u8]) {
+fn send_bytes(bytes: &[u8]) {
     let mut out = std::io::stdout().lock();
     let _ = out.write_all(bytes).and_then(|()| out.flush());
 }
@@ -157,7 +157,7 @@ fn answer_all(client: RawFd, delay_ms: u32) {
         }
         answer[4] = answer[4].wrapping_add(1);
         if read == 0 {
-            tell(&arrived.to_ne_bytes());
+            send_bytes(&arrived.to_ne_bytes());
         }
     }
 }

@@ -56,6 +56,6 @@ impl Sink for ProgramSink {
                 "the program would take a text that begins with '-' for an option".to_owned(),
             ));
         }
-        self.programs.tell(&self.command, text)
+        self.programs.enqueue(&self.command, text)
     }
 }

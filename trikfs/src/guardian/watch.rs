@@ -74,7 +74,7 @@ impl Watch {
             let [signal, mounts, word] = self.wait(child, deadline.min())?;
             let mut stop = signal && self.asks_to_end()?;
             stop |= mounts && !mounted();
-            standstill.look(child, Instant::now());
+            standstill.update(child, Instant::now());
             if word {
                 match child.hear()? {
                     Heard::Ready(nodes) => {
@@ -169,7 +169,7 @@ struct Standstill {
 
 impl Standstill {
     /// Begins or ends with what the kernel says now; a stop that lasted is ended by force.
-    fn look(&mut self, child: &Child, now: Instant) {
+    fn update(&mut self, child: &Child, now: Instant) {
         if !child.is_stopped() {
             self.until = None;
             return;

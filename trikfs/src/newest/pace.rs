@@ -106,7 +106,7 @@ impl Due for Ageing {
             .map_or(limit, |stamp| Duration::from_nanos(stamp.age_ns()));
         if age >= limit {
             if node.sampling.newest.page.drop_filled(&node.engine) {
-                node.sampling.newest.tell();
+                node.sampling.newest.notify();
             }
             return Some(Instant::now() + limit);
         }

@@ -49,7 +49,7 @@ impl Trouble {
         stats.faults.add(1);
         let mut fault = lock(&self.fault);
         if fault.as_ref() != Some(error) {
-            self.tell(error);
+            self.write_line(error);
             *fault = Some(error.clone());
         }
         self.is_faulty.store(true, Ordering::Relaxed);
@@ -66,12 +66,12 @@ impl Trouble {
             told == error && now_ms.wrapping_sub(*at_ms) < limits::MISTAKE_MS
         };
         if !mistake.as_ref().is_some_and(is_old) {
-            self.tell(error);
+            self.write_line(error);
             *mistake = Some((error.clone(), now_ms));
         }
     }
 
-    fn tell(&self, error: &Error) {
+    fn write_line(&self, error: &Error) {
         let line = format!("{}: {}: {error}", self.path, error.blame());
         self.log.line(&line);
     }

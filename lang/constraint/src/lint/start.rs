@@ -14,7 +14,7 @@ impl<'a> Lint<'a, '_> {
         };
         if let Some((object, region, is_inside)) = self.broken(needed, true) {
             let words = words::broken_at_start(&object.text, &region.text, is_inside);
-            self.tell(Severity::Warning, event.at, words);
+            self.report(Severity::Warning, event.at, words);
         }
     }
 

@@ -56,7 +56,7 @@ impl Solver {
                 }
             };
             self.step(system, actions, next)?;
-            let is_over = self.look(course.events, &mut happened)?;
+            let is_over = self.find_events(course.events, &mut happened)?;
             seen(self);
             if is_over {
                 break;
@@ -66,7 +66,7 @@ impl Solver {
     }
 
     /// Finds the events of the last step; goes back to the first one that ends the solution.
-    fn look(
+    fn find_events(
         &mut self,
         events: &mut [Event<'_>],
         happened: &mut Vec<Happened>,

@@ -67,7 +67,7 @@ impl Machine {
             Every::Ms(ms) => ms,
         };
         let flow = self.wait_for(handle, node, Purpose::Watch, every_ms);
-        match self.look(node, watching, env) {
+        match self.measure(node, watching, env) {
             Look::Waits => flow,
             Look::Holds => {
                 self.satisfy(node);
@@ -156,7 +156,7 @@ impl Machine {
         let Some(Op::Watch { watch, .. }) = program.ops.get(node as usize) else {
             return;
         };
-        let look = self.look(node, &program.watches[*watch as usize], env);
+        let look = self.measure(node, &program.watches[*watch as usize], env);
         self.conclude(node, look, env);
     }
 
@@ -177,7 +177,7 @@ impl Machine {
         self.posted.push_back(node);
     }
 
-    fn look(&mut self, node: Node, watching: &Watching, env: &mut Env<'_>) -> Look {
+    fn measure(&mut self, node: Node, watching: &Watching, env: &mut Env<'_>) -> Look {
         let Ok(port) = watching.port else {
             return Look::Absent;
         };

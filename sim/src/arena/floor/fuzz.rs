@@ -22,7 +22,7 @@ pub fn picture(bytes: &[u8]) {
     floor.add_picture(&picture, &Affine([300.0, 0.0, 0.0, 200.0, -150.0, -100.0]));
     let mut window = Window::default();
     for degrees in [0.0, 33.3, 180.0] {
-        floor.look(point(0.0, 0.0), degrees, 18, 2.0, &mut window);
+        floor.view(point(0.0, 0.0), degrees, 18, 2.0, &mut window);
         assert_eq!(window.pixels.len(), 35 * 35);
     }
 }

@@ -13,7 +13,7 @@ fn black_right_half() -> Floor {
 
 fn seen(floor: &mut Floor, at: Point, degrees: f64, side: u16, part: f64) -> Window {
     let mut window = Window::default();
-    floor.look(at, degrees, side, part, &mut window);
+    floor.view(at, degrees, side, part, &mut window);
     window
 }
 

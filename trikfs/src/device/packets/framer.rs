@@ -67,7 +67,7 @@ impl Framer {
         });
     }
 
-    fn look(&self) -> Found {
+    fn examine(&self) -> Found {
         let here = self.bytes.get(self.at..).unwrap_or_default();
         let start = &self.description.start;
         let common = start.len().min(here.len());
@@ -119,7 +119,7 @@ impl Framer {
     /// Goes on until a packet is found or more bytes are needed.
     fn search(&mut self, is_end: bool, tuple: &mut [u8]) -> bool {
         while self.at < self.bytes.len() {
-            match self.look() {
+            match self.examine() {
                 Found::Good(size) => {
                     fill(tuple, &self.bytes[self.at..self.at + size]);
                     self.at += size;

@@ -15,28 +15,32 @@ use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 /// A program and the texts that wait for it; the one that it is busy with is not among them.
-pub(super) struct Told {
+pub(super) struct TextQueue {
     command: CommandDescription,
     texts: VecDeque<String>,
 }
 
 impl Programs {
-    /// Runs a program with a text as its last argument, after those that it was told before.
+    /// Runs a program with a text as its last argument, after those that it was given before before.
     ///
     /// # Errors
     /// EBUSY while as many wait as the limit allows; EAGAIN if there is no thread for it.
-    pub fn tell(self: &Arc<Self>, command: &CommandDescription, text: &str) -> Result<(), Error> {
-        let mut all = lock(&self.told);
-        if let Some(told) = all.iter_mut().find(|told| told.command == *command) {
-            if told.texts.len() >= limits::PROGRAM_TEXTS_MAX {
+    pub fn enqueue(
+        self: &Arc<Self>,
+        command: &CommandDescription,
+        text: &str,
+    ) -> Result<(), Error> {
+        let mut all = lock(&self.text_queues);
+        if let Some(queue) = all.iter_mut().find(|queue| queue.command == *command) {
+            if queue.texts.len() >= limits::PROGRAM_TEXTS_MAX {
                 let what = format!(
                     "{} texts wait for {} already",
-                    told.texts.len(),
+                    queue.texts.len(),
                     command.program.display()
                 );
                 return Err(Error::Busy(what));
             }
-            told.texts.push_back(text.to_owned());
+            queue.texts.push_back(text.to_owned());
             return Ok(());
         }
         let (programs, own) = (self.clone(), command.clone());
@@ -49,7 +53,7 @@ impl Programs {
         if let Err(error) = started {
             return Err(Error::of_system(format!("no thread: {error}"), &error));
         }
-        all.push(Told {
+        all.push(TextQueue {
             command: command.clone(),
             texts: VecDeque::from([text.to_owned()]),
         });
@@ -57,8 +61,8 @@ impl Programs {
     }
 
     fn next_text(&self, command: &CommandDescription) -> Option<String> {
-        let mut all = lock(&self.told);
-        let at = all.iter().position(|told| told.command == *command)?;
+        let mut all = lock(&self.text_queues);
+        let at = all.iter().position(|queue| queue.command == *command)?;
         let text = all[at].texts.pop_front();
         if text.is_none() {
             all.remove(at);
