@@ -115,8 +115,6 @@ pub const FUZZ_TIME_MS: u32 = 50;
 pub const FUZZ_MEMORY_BYTES: usize = 4 << 20;
 /// Longest chunk name that Lua does not shorten in messages (LUA_IDSIZE less the terminator).
 pub const CHUNK_NAME_BYTES_MAX: usize = 59;
-/// Longest word, in bytes, that is compared with known ones; longer ones are not typing errors.
-pub const WORD_BYTES_MAX: usize = 64;
 /// Keys whose lines are remembered; a text with more was not written by hand.
 pub const KEYS_MAX: usize = 1 << 16;
 /// Nesting of keys whose lines are remembered.

@@ -1,23 +1,8 @@
-//! The known word that a mistyped one was probably meant to be.
+//! What a message appends when a word is not known: the known one that was probably meant.
 //!
-//! Distance: optimal string alignment (Damerau 1964, Levenshtein 1966): insertions, deletions, substitutions and
-//! swaps of neighbours each count one. Pure.
+//! Owns the sentence. Which word is near enough is decided in `lang-dcml`, whose models a configuration names.
 
-use crate::limits::WORD_BYTES_MAX;
-use strsim::osa_distance;
-
-/// The nearest of `known` if it is near enough: at most a third of the word's letters, at least one, are wrong.
-pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    if word.len() > WORD_BYTES_MAX {
-        return None;
-    }
-    let most = (word.chars().count() / 3).max(1);
-    let distances = known.into_iter().map(|k| (osa_distance(word, k), k));
-    distances
-        .filter(|(d, _)| *d <= most)
-        .min_by_key(|(d, _)| *d)
-        .map(|(_, k)| k)
-}
+pub use lang_dcml::nearest::nearest;
 
 /// `, did you mean 'X'` to append to a reason, or nothing.
 pub fn suggestion<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> String {
