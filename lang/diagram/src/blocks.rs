@@ -6,9 +6,6 @@
 //!
 //! Names, defaults and choices are those of the editor's metamodels (`robotsMetamodel`, `trikMetamodel`).
 
-// A kind of block that is forgotten must not compile.
-#![deny(clippy::wildcard_enum_match_arm)]
-
 pub mod act;
 mod actions;
 mod core;
@@ -26,6 +23,7 @@ mod tests;
 
 use super::ports::Kit;
 pub use act::Act;
+pub use core::Does;
 use example::Example;
 use lang_text::problem::{Locale, Words};
 pub(crate) use parts::{EVALUATE, REDRAW};
@@ -156,59 +154,6 @@ pub enum Type {
     List,
 }
 
-/// What a block does, as far as the table knows.
-#[derive(Clone, Copy, Debug)]
-pub enum Does {
-    /// The program or subprogram begins here.
-    Start,
-    /// The present diagram ends here.
-    End,
-    /// A note for people.
-    Comment,
-    /// Nothing: two branches meet.
-    Merge,
-    /// Runs statements.
-    Statements,
-    /// Assigns a value.
-    Assign,
-    /// Assigns a random number.
-    Random,
-    /// Asks a person.
-    Ask,
-    /// Takes one of two branches.
-    If,
-    /// Takes one of many branches.
-    Switch,
-    /// A loop with a counter.
-    Loop,
-    /// A loop with a condition.
-    While,
-    /// Begins threads.
-    Fork,
-    /// Threads meet.
-    Join,
-    /// Ends a thread.
-    Kill,
-    /// Sends to a thread.
-    Send,
-    /// Receives from a thread.
-    Receive,
-    /// Runs another diagram.
-    Call,
-    /// Waits for some time.
-    Timer,
-    /// Waits for any button.
-    AnyButton,
-    /// Waits for a message of another robot.
-    Mail,
-    /// Copies a sensor into a variable.
-    Copy(&'static Copied),
-    /// Tells a device something and goes on.
-    Act(&'static Act),
-    /// Waits until a device says something.
-    Wait(&'static Wait),
-}
-
 /// What is copied into a variable.
 #[derive(Clone, Copy, Debug)]
 pub struct Copied {
@@ -246,30 +191,7 @@ impl Row {
 
     /// Whether it is there only to be drawn: programs in words and in other languages do not have it.
     pub fn is_mark(&self) -> bool {
-        match self.does {
-            Does::Start | Does::Merge | Does::Comment => true,
-            Does::End
-            | Does::Statements
-            | Does::Assign
-            | Does::Random
-            | Does::Ask
-            | Does::If
-            | Does::Switch
-            | Does::Loop
-            | Does::While
-            | Does::Fork
-            | Does::Join
-            | Does::Kill
-            | Does::Send
-            | Does::Receive
-            | Does::Call
-            | Does::Timer
-            | Does::AnyButton
-            | Does::Mail
-            | Does::Copy(_)
-            | Does::Act(_)
-            | Does::Wait(_) => false,
-        }
+        self.does.is_mark()
     }
 
     /// The property by its name in the save.

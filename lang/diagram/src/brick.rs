@@ -248,7 +248,7 @@ pub trait Brick {
         None
     }
 
-    /// Asks a person, again and again until he answers.
+    /// Asks a person, again and again until there is an answer.
     fn ask(&mut self, _question: Question<'_>) -> Answer {
         Answer::Cancelled
     }

@@ -1,17 +1,14 @@
-//! Everything that is wrong with a project, at once and without running it: for a person who looks before he drives.
+//! Everything that is wrong with a project, found at once and without running it.
 //!
 //! Owns the order: links and properties as `lower` finds them, expressions as far as types can be known beforehand, and
 //! what no way leads to. The machine tells only what the flow comes to; this tells all.
-
-// A kind of block, operation or value that is forgotten must not compile.
-#![deny(clippy::wildcard_enum_match_arm)]
 
 use std::collections::{HashMap, HashSet, VecDeque};
 use std::rc::Rc;
 
 use super::lower::{Lowered, World, lower};
 use super::machine::wanted;
-use super::program::{ArgumentKind, NOWHERE, Node, Op, Program};
+use super::program::{ArgumentKind, Given, Leads, NOWHERE, Node, Program};
 use super::project::Project;
 use super::words;
 use lang_expr::tree::{Id, Node as Part, Tree};
@@ -96,97 +93,32 @@ impl Flow {
 
 /// Where the flow may go from a node, the inside of a call first.
 pub(super) fn successors(program: &Program, node: Node, tell: &mut dyn FnMut(Node)) {
-    let Some(op) = program.ops.get(node as usize) else {
-        return;
-    };
-    match *op {
-        Op::End | Op::Fault { .. } => {}
-        Op::If { yes, no, .. } => [yes, no].into_iter().for_each(tell),
-        Op::Loop { body, next, .. } => [body, next].into_iter().for_each(tell),
-        Op::Ask { next, cancel, .. } => {
+    match program.leads(node) {
+        None | Some(Leads::End | Leads::Fault(_)) => {}
+        Some(Leads::To(next) | Leads::Join(_, next)) => tell(next),
+        Some(Leads::Test(_, yes, no)) => [yes, no].into_iter().for_each(tell),
+        Some(Leads::Ask(next, cancel)) => {
             tell(next);
             if cancel != NOWHERE {
                 tell(cancel);
             }
         }
-        Op::Switch { switch } => {
-            let switch = &program.switches[switch as usize];
+        Some(Leads::Switch(switch)) => {
             for (_, next) in &switch.branches {
                 tell(*next);
             }
             tell(switch.other);
         }
-        Op::Fork { fork } => {
-            for (_, next) in &program.forks[fork as usize].branches {
-                tell(*next);
-            }
-        }
-        Op::Call { call, next } => {
-            let diagram = program.calls[call as usize].diagram;
-            let entry = diagram.and_then(|one| program.entries.get(one as usize).copied());
+        Some(Leads::Fork(fork)) => fork.branches.iter().for_each(|(_, next)| tell(*next)),
+        Some(Leads::Call(call, next)) => {
+            let entry = call
+                .diagram
+                .and_then(|one| program.entries.get(one as usize).copied());
             if let Some(entry) = entry.flatten() {
                 tell(entry);
             }
             tell(next);
         }
-        op @ (Op::Pass { .. }
-        | Op::Run { .. }
-        | Op::Join { .. }
-        | Op::Kill { .. }
-        | Op::Send { .. }
-        | Op::Receive { .. }
-        | Op::Timer { .. }
-        | Op::Random { .. }
-        | Op::AnyButton { .. }
-        | Op::Mail { .. }
-        | Op::Copy { .. }
-        | Op::Act { .. }
-        | Op::Watch { .. }) => op.next().into_iter().for_each(tell),
-    }
-}
-
-/// Expressions of a node.
-fn sources(program: &Program, node: Node, tell: &mut dyn FnMut(u32)) {
-    let Some(op) = program.ops.get(node as usize) else {
-        return;
-    };
-    match *op {
-        Op::Run { source, .. }
-        | Op::If { source, .. }
-        | Op::Loop { source, .. }
-        | Op::Timer { source, .. } => tell(source),
-        Op::Switch { switch } => tell(program.switches[switch as usize].source),
-        Op::Send { message, .. } => tell(program.messages[message as usize].source),
-        Op::Call { call, .. } => {
-            for argument in &program.calls[call as usize].arguments {
-                tell(argument.source);
-            }
-        }
-        Op::Random { assignment, .. } => {
-            if let Some((low, high)) = program.assignments[assignment as usize].bounds {
-                tell(low);
-                tell(high);
-            }
-        }
-        Op::Copy { copy, .. } => tell(program.copies[copy as usize].source),
-        Op::Act { action, .. } => program.actions[action as usize]
-            .sources
-            .iter()
-            .for_each(|&one| tell(one)),
-        Op::Watch { watch, .. } => program.watches[watch as usize]
-            .source()
-            .into_iter()
-            .for_each(tell),
-        Op::Pass { .. }
-        | Op::End
-        | Op::Fault { .. }
-        | Op::Fork { .. }
-        | Op::Join { .. }
-        | Op::Kill { .. }
-        | Op::Receive { .. }
-        | Op::Ask { .. }
-        | Op::AnyButton { .. }
-        | Op::Mail { .. } => {}
     }
 }
 
@@ -201,15 +133,15 @@ fn expressions(project: &Project, program: &Program, flow: &Flow) -> Vec<Problem
     // The first time teaches all names; what is still wrong the second time is wrong.
     for _ in 0..2 {
         for &node in &flow.order {
-            sources(program, node, &mut |index| {
+            for index in program.texts(node) {
                 let Some(text) = program.sources.get(index as usize) else {
-                    return;
+                    continue;
                 };
                 let source = texts
                     .entry(index)
                     .or_insert_with(|| Source::new(&text.text, wanted(text.wanted)));
                 let _ = lang_expr::analyse(source, &mut names);
-            });
+            }
         }
     }
     let mut given = given(program, flow, &texts);
@@ -218,17 +150,17 @@ fn expressions(project: &Project, program: &Program, flow: &Flow) -> Vec<Problem
     let unknown = spread(unknown, &texts);
     let mut problems = Vec::new();
     for &node in &flow.order {
-        sources(program, node, &mut |index| {
+        for index in program.texts(node) {
             let (Some(text), Some(source)) =
                 (program.sources.get(index as usize), texts.get_mut(&index))
             else {
-                return;
+                continue;
             };
             // A message of another thread is an expression of its own: nobody knows its type.
             if problems.len() >= lang_text::limits::PROBLEMS
                 || unknown.iter().any(|name| text.text.contains(name.as_str()))
             {
-                return;
+                continue;
             }
             let mut found = match lang_expr::analyse(source, &mut names) {
                 Ok(()) => source.warnings(),
@@ -244,7 +176,7 @@ fn expressions(project: &Project, program: &Program, flow: &Flow) -> Vec<Problem
                 problem.place.position = position;
                 problems.push(problem);
             }
-        });
+        }
     }
     problems
 }
@@ -267,22 +199,12 @@ fn given(program: &Program, flow: &Flow, texts: &HashMap<u32, Source>) -> HashSe
         });
     }
     for &node in &flow.order {
-        match program.ops.get(node as usize) {
-            Some(
-                Op::Random { assignment, .. }
-                | Op::AnyButton { assignment, .. }
-                | Op::Mail { assignment, .. }
-                | Op::Receive { assignment, .. }
-                | Op::Ask { assignment, .. },
-            ) => {
-                let variable = &program.assignments[*assignment as usize].variable;
-                given.insert((&**variable).into());
-            }
-            Some(Op::Call { call, .. }) => {
-                let arguments = program.calls[*call as usize].arguments.iter();
-                given.extend(arguments.map(|argument| Rc::from(&*argument.name)));
-            }
-            _ => {}
+        if let Some((assignment, _)) = program.given(node) {
+            given.insert((&*assignment.variable).into());
+        }
+        if let Some(Leads::Call(call, _)) = program.leads(node) {
+            let arguments = call.arguments.iter();
+            given.extend(arguments.map(|argument| Rc::from(&*argument.name)));
         }
     }
     given
@@ -345,30 +267,29 @@ fn declare<'a>(
     names: &mut Names,
     unknown: &mut HashSet<&'a str>,
 ) {
-    match program.ops.get(node as usize) {
-        Some(Op::Random { assignment, .. } | Op::AnyButton { assignment, .. }) => {
-            let variable = &program.assignments[*assignment as usize].variable;
-            names.declare(variable, &Value::Int(0));
-        }
-        Some(Op::Mail { assignment, .. }) => {
-            let variable = &program.assignments[*assignment as usize].variable;
-            names.declare(variable, &Value::text(""));
-        }
-        Some(Op::Receive { assignment, .. } | Op::Ask { assignment, .. }) => {
-            unknown.insert(&program.assignments[*assignment as usize].variable);
-        }
-        Some(Op::Call { call, .. }) => {
-            for argument in &program.calls[*call as usize].arguments {
-                let value = match argument.kind {
-                    ArgumentKind::Truth => Value::Bool(false),
-                    ArgumentKind::Whole => Value::Int(0),
-                    ArgumentKind::Number => Value::Float(0.0),
-                    ArgumentKind::Text => Value::text(""),
-                };
-                names.declare(&argument.name, &value);
+    if let Some((assignment, given)) = program.given(node) {
+        match given {
+            Given::Whole => {
+                names.declare(&assignment.variable, &Value::Int(0));
+            }
+            Given::Text => {
+                names.declare(&assignment.variable, &Value::text(""));
+            }
+            Given::Any | Given::Answer => {
+                unknown.insert(&assignment.variable);
             }
         }
-        _ => {}
+    }
+    if let Some(Leads::Call(call, _)) = program.leads(node) {
+        for argument in &call.arguments {
+            let value = match argument.kind {
+                ArgumentKind::Truth => Value::Bool(false),
+                ArgumentKind::Whole => Value::Int(0),
+                ArgumentKind::Number => Value::Float(0.0),
+                ArgumentKind::Text => Value::text(""),
+            };
+            names.declare(&argument.name, &value);
+        }
     }
 }
 
@@ -417,21 +338,20 @@ fn endless_calls(program: &Program) -> Vec<Problem> {
                 break;
             }
             at = None;
-            match program.ops.get(node as usize) {
-                Some(Op::Call { call, .. }) => {
-                    found = program.calls[*call as usize]
-                        .diagram
-                        .map(|diagram| (diagram, node));
+            match program.leads(node) {
+                Some(Leads::Call(call, _)) => {
+                    found = call.diagram.map(|diagram| (diagram, node));
                 }
-                Some(
-                    Op::If { .. }
-                    | Op::Loop { .. }
-                    | Op::Switch { .. }
-                    | Op::Fork { .. }
-                    | Op::Ask { .. },
-                )
-                | None => {}
-                Some(_) => successors(program, node, &mut |next| at = Some(next)),
+                Some(Leads::To(next) | Leads::Join(_, next)) => at = Some(next),
+                None
+                | Some(
+                    Leads::End
+                    | Leads::Fault(_)
+                    | Leads::Test(..)
+                    | Leads::Switch(_)
+                    | Leads::Fork(_)
+                    | Leads::Ask(..),
+                ) => {}
             }
         }
         certain.push(found);

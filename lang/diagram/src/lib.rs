@@ -1,5 +1,7 @@
 //! Diagrams: a save as a graph of blocks, and what can be done with it.
 
+// A kind of block, operation, command or value that is forgotten must not compile.
+#![deny(clippy::wildcard_enum_match_arm)]
 // Problems are rare, and their size costs nothing where none is.
 #![allow(clippy::result_large_err)]
 

@@ -4,9 +4,6 @@
 //! no expressions: it only keeps their texts. What the original says when the flow reaches a bad block is told here at
 //! once, and the machine tells it then.
 
-// A kind of block, operation or value that is forgotten must not compile.
-#![deny(clippy::wildcard_enum_match_arm)]
-
 mod links;
 mod properties;
 

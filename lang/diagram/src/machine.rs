@@ -4,9 +4,6 @@
 //! order of blocks, then sensor variables, then what has been put off. Knows no robot and no clock: the caller gives both.
 //! The same program with the same readings does the same.
 
-// A kind of block, operation or value that is forgotten must not compile.
-#![deny(clippy::wildcard_enum_match_arm)]
-
 mod clocks;
 mod flow;
 mod formulas;
@@ -98,7 +95,7 @@ pub struct Machine {
     began: Option<u32>,
     /// Milliseconds since then.
     now: u32,
-    /// Who runs now, and beneath him who goes on when he waits.
+    /// The thread that runs now, and beneath it those that go on when it waits.
     active: Vec<Handle>,
     /// What of the beginning is kept, and until when.
     kept: Option<(Vec<Handle>, u32)>,
@@ -416,7 +413,7 @@ impl Machine {
 
     /// Where the flow goes after a block with one link.
     fn next_of(&self, node: Node) -> Option<Node> {
-        self.program.ops.get(node as usize)?.next()
+        self.program.next(node)
     }
 
     /// Tells an error at a block.

@@ -1,9 +1,11 @@
 //! A project ready to run: blocks as numbered nodes with few kinds of operations, names and texts in tables.
 //!
-//! Owns plain data, made by `lower` and run by `machine`. Several machines may share one program.
+//! Owns plain data, made by `lower` and run by `machine`, and what each operation is to everybody who only looks at
+//! programs: where it leads, its texts, its variable, what it waits for. Several machines may share one program.
 
 use std::rc::Rc;
 
+use super::blocks::act::Effect;
 use super::blocks::wait::Measure;
 use super::blocks::{Act, Copied, Row, Type, Wait};
 use super::ports::{Kit, Port};
@@ -133,33 +135,58 @@ pub(crate) enum Op {
     Watch { watch: u32, next: Node },
 }
 
-impl Op {
-    /// Where the flow goes on, if there is one place for that.
-    pub(crate) fn next(self) -> Option<Node> {
-        match self {
-            Self::Pass { next }
-            | Self::Run { next, .. }
-            | Self::Join { next, .. }
-            | Self::Kill { next, .. }
-            | Self::Send { next, .. }
-            | Self::Receive { next, .. }
-            | Self::Call { next, .. }
-            | Self::Timer { next, .. }
-            | Self::Random { next, .. }
-            | Self::Ask { next, .. }
-            | Self::AnyButton { next, .. }
-            | Self::Mail { next, .. }
-            | Self::Copy { next, .. }
-            | Self::Act { next, .. }
-            | Self::Watch { next, .. } => Some(next),
-            Self::End
-            | Self::Fault { .. }
-            | Self::If { .. }
-            | Self::Loop { .. }
-            | Self::Switch { .. }
-            | Self::Fork { .. } => None,
-        }
-    }
+/// How the flow leaves a node.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Leads<'a> {
+    /// It does not: the diagram ends here.
+    End,
+    /// The thread ends with this fault.
+    Fault(u32),
+    /// To one place.
+    To(Node),
+    /// To the first place if the test holds, else to the second.
+    Test(Test, Node, Node),
+    /// To one of many.
+    Switch(&'a Switch),
+    /// To all branches, each with a thread of its own.
+    Fork(&'a Fork),
+    /// To one place, for the thread that survives.
+    Join(&'a Join, Node),
+    /// Through another diagram, if it is there, to one place.
+    Call(&'a Call, Node),
+    /// To the first place after an answer; to the second, if there is one, without.
+    Ask(Node, Node),
+}
+
+/// What decides between two ways.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Test {
+    /// Whether this is true.
+    Truth(Source),
+    /// Whether the flow came here no more often than this says.
+    Count(Source),
+}
+
+/// What makes a thread go on after a node.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(crate) enum Wakes {
+    /// Nothing has to: it does not wait.
+    AtOnce,
+    /// The clock of the node itself.
+    ByItsClock,
+    /// Something that comes after all clocks have counted, or another thread.
+    Later,
+}
+
+/// What a node gives its variable.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(crate) enum Given {
+    Whole,
+    Text,
+    /// Anything.
+    Any,
+    /// What a person answers.
+    Answer,
 }
 
 /// No node.
@@ -348,6 +375,141 @@ impl Program {
     pub fn node(&self, id: &str) -> Option<Node> {
         let at = self.spots.iter().position(|spot| &*spot.id == id)?;
         Node::try_from(at).ok()
+    }
+
+    /// How the flow leaves a node.
+    pub(crate) fn leads(&self, node: Node) -> Option<Leads<'_>> {
+        Some(match *self.ops.get(node as usize)? {
+            Op::End => Leads::End,
+            Op::Fault { fault } => Leads::Fault(fault),
+            Op::If { source, yes, no } => Leads::Test(Test::Truth(source), yes, no),
+            Op::Loop {
+                source, body, next, ..
+            } => Leads::Test(Test::Count(source), body, next),
+            Op::Switch { switch } => Leads::Switch(&self.switches[switch as usize]),
+            Op::Fork { fork } => Leads::Fork(&self.forks[fork as usize]),
+            Op::Join { join, next } => Leads::Join(&self.joins[join as usize], next),
+            Op::Call { call, next } => Leads::Call(&self.calls[call as usize], next),
+            Op::Ask { next, cancel, .. } => Leads::Ask(next, cancel),
+            Op::Pass { next }
+            | Op::Run { next, .. }
+            | Op::Kill { next, .. }
+            | Op::Send { next, .. }
+            | Op::Receive { next, .. }
+            | Op::Timer { next, .. }
+            | Op::Random { next, .. }
+            | Op::AnyButton { next, .. }
+            | Op::Mail { next, .. }
+            | Op::Copy { next, .. }
+            | Op::Act { next, .. }
+            | Op::Watch { next, .. } => Leads::To(next),
+        })
+    }
+
+    /// Where the flow goes on after a node, if there is one place for that.
+    pub(crate) fn next(&self, node: Node) -> Option<Node> {
+        match self.leads(node)? {
+            Leads::To(next) | Leads::Join(_, next) | Leads::Call(_, next) | Leads::Ask(next, _) => {
+                Some(next)
+            }
+            Leads::End | Leads::Fault(_) | Leads::Test(..) | Leads::Switch(_) | Leads::Fork(_) => {
+                None
+            }
+        }
+    }
+
+    /// Texts of a node, in the order in which it evaluates them.
+    pub(crate) fn texts(&self, node: Node) -> Vec<Source> {
+        let Some(op) = self.ops.get(node as usize) else {
+            return Vec::new();
+        };
+        match *op {
+            Op::Run { source, .. }
+            | Op::If { source, .. }
+            | Op::Loop { source, .. }
+            | Op::Timer { source, .. } => vec![source],
+            Op::Switch { switch } => vec![self.switches[switch as usize].source],
+            Op::Send { message, .. } => vec![self.messages[message as usize].source],
+            Op::Random { assignment, .. } => match self.assignments[assignment as usize].bounds {
+                Some((low, high)) => vec![low, high],
+                None => Vec::new(),
+            },
+            Op::Copy { copy, .. } => vec![self.copies[copy as usize].source],
+            Op::Call { call, .. } => {
+                let arguments = self.calls[call as usize].arguments.iter();
+                arguments.map(|argument| argument.source).collect()
+            }
+            Op::Act { action, .. } => self.actions[action as usize].sources.to_vec(),
+            Op::Watch { watch, .. } => Vec::from_iter(self.watches[watch as usize].source()),
+            Op::Pass { .. }
+            | Op::End
+            | Op::Fault { .. }
+            | Op::Fork { .. }
+            | Op::Join { .. }
+            | Op::Kill { .. }
+            | Op::Receive { .. }
+            | Op::Ask { .. }
+            | Op::AnyButton { .. }
+            | Op::Mail { .. } => Vec::new(),
+        }
+    }
+
+    /// The variable that a node assigns by itself, not by one of its texts, and what that gets.
+    pub(crate) fn given(&self, node: Node) -> Option<(&Assignment, Given)> {
+        let (assignment, given) = match *self.ops.get(node as usize)? {
+            Op::Random { assignment, .. } | Op::AnyButton { assignment, .. } => {
+                (assignment, Given::Whole)
+            }
+            Op::Mail { assignment, .. } => (assignment, Given::Text),
+            Op::Receive { assignment, .. } => (assignment, Given::Any),
+            Op::Ask { assignment, .. } => (assignment, Given::Answer),
+            Op::Pass { .. }
+            | Op::End
+            | Op::Fault { .. }
+            | Op::Run { .. }
+            | Op::If { .. }
+            | Op::Loop { .. }
+            | Op::Switch { .. }
+            | Op::Fork { .. }
+            | Op::Join { .. }
+            | Op::Kill { .. }
+            | Op::Send { .. }
+            | Op::Call { .. }
+            | Op::Timer { .. }
+            | Op::Copy { .. }
+            | Op::Act { .. }
+            | Op::Watch { .. } => return None,
+        };
+        Some((&self.assignments[assignment as usize], given))
+    }
+
+    /// What makes a thread go on after a node, which may be within a diagram that it calls.
+    pub(crate) fn wakes(&self, node: Node) -> Wakes {
+        match self.ops[node as usize] {
+            Op::Timer { .. } | Op::AnyButton { .. } | Op::Mail { .. } => Wakes::ByItsClock,
+            Op::Watch { .. } | Op::Ask { .. } | Op::Join { .. } => Wakes::Later,
+            Op::Receive { assignment, .. } if self.assignments[assignment as usize].wait => {
+                Wakes::Later
+            }
+            Op::Act { action, .. } => match self.actions[action as usize].act.effect {
+                Effect::ResetEncoders => Wakes::Later,
+                Effect::Drive(_) | Effect::Stop | Effect::Command(_) => Wakes::AtOnce,
+            },
+            Op::Pass { .. }
+            | Op::End
+            | Op::Fault { .. }
+            | Op::Run { .. }
+            | Op::If { .. }
+            | Op::Loop { .. }
+            | Op::Switch { .. }
+            | Op::Fork { .. }
+            | Op::Kill { .. }
+            | Op::Send { .. }
+            | Op::Receive { .. }
+            | Op::Call { .. }
+            | Op::Random { .. }
+            | Op::Copy { .. } => Wakes::AtOnce,
+        }
     }
 
     /// The place of a node, for problems.

@@ -7,9 +7,6 @@
 //! Facts are those of the original: wheels of 8 px radius, 44 px apart, their axle 15 px behind the centre, 5.5 degrees
 //! of a wheel per tick at full power; shifts pass through 32-bit floats there, so they do here.
 
-// A command that is forgotten must not compile.
-#![deny(clippy::wildcard_enum_match_arm)]
-
 use std::collections::BTreeMap;
 
 use super::brick::{Answer, Brick, Command, Question};
@@ -151,7 +148,7 @@ pub struct StandIn {
     pub vectors: BTreeMap<Port, Vec<i32>>,
     /// Messages of other robots that have not been fetched.
     pub mail: std::collections::VecDeque<String>,
-    /// Answers of a person; after them he gives none.
+    /// Answers of a person; after them there is none.
     pub answers: std::collections::VecDeque<String>,
     /// Random numbers that come first, if they are within the bounds; later ones come by rule.
     pub randoms: std::collections::VecDeque<i32>,

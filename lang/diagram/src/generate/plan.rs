@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use super::words;
 use crate::limits;
-use crate::program::{NOWHERE, Node, Op, Program};
+use crate::program::{Fork, Leads, NOWHERE, Node, Op, Program};
 use crate::structure::{Exit, Graph};
 use lang_text::problem::Problem;
 
@@ -186,24 +186,23 @@ impl Planner<'_> {
     }
 
     fn follow(&mut self, node: Node, threads: &BTreeSet<Rc<str>>) -> Follow {
-        let ways = match self.program.ops[node as usize] {
-            Op::End => Exit::End,
-            Op::Fault { fault } => {
-                let fault = self.program.faults[fault as usize].clone();
+        let program = self.program;
+        let ways = match program.leads(node) {
+            None | Some(Leads::End) => Exit::End,
+            Some(Leads::Fault(fault)) => {
+                let fault = program.faults[fault as usize].clone();
                 self.problems.insert(node, fault);
                 Exit::End
             }
-            Op::If { yes, no, .. } => Exit::Test(yes as usize, no as usize),
-            Op::Loop { body, next, .. } => Exit::Test(body as usize, next as usize),
-            Op::Switch { switch } => {
-                let switch = &self.program.switches[switch as usize];
+            Some(Leads::To(next)) => Exit::Step(next as usize),
+            Some(Leads::Test(_, yes, no)) => Exit::Test(yes as usize, no as usize),
+            Some(Leads::Switch(switch)) => {
                 let ways = switch.branches.iter().map(|&(_, to)| to as usize);
                 Exit::Switch(ways.chain([switch.other as usize]).collect())
             }
-            Op::Fork { fork } => return self.fork(node, fork, threads),
-            Op::Join { join, next } => {
-                let survivor = &self.program.joins[join as usize].survivor;
-                match (threads.contains(survivor), threads.len()) {
+            Some(Leads::Fork(fork)) => return self.fork(node, fork, threads),
+            Some(Leads::Join(join, next)) => {
+                match (threads.contains(&join.survivor), threads.len()) {
                     (true, 1) => Exit::Step(next as usize),
                     (false, _) => Exit::End,
                     _ => {
@@ -212,35 +211,23 @@ impl Planner<'_> {
                     }
                 }
             }
-            Op::Call { call, next } => match self.program.calls[call as usize].diagram {
+            Some(Leads::Call(call, next)) => match call.diagram {
                 Some(diagram) => return Follow::Call(diagram, next),
                 None => {
                     self.fail(node, words::no_subprogram());
                     Exit::End
                 }
             },
-            Op::Ask { .. } => {
+            Some(Leads::Ask(..)) => {
                 self.fail(node, words::no_questions());
                 Exit::End
             }
-            Op::Pass { next }
-            | Op::Run { next, .. }
-            | Op::Kill { next, .. }
-            | Op::Send { next, .. }
-            | Op::Receive { next, .. }
-            | Op::Timer { next, .. }
-            | Op::Random { next, .. }
-            | Op::AnyButton { next, .. }
-            | Op::Mail { next, .. }
-            | Op::Copy { next, .. }
-            | Op::Act { next, .. }
-            | Op::Watch { next, .. } => Exit::Step(next as usize),
         };
         Follow::Ways(ways)
     }
 
-    fn fork(&mut self, node: Node, fork: u32, threads: &BTreeSet<Rc<str>>) -> Follow {
-        let branches = &self.program.forks[fork as usize].branches;
+    fn fork(&mut self, node: Node, fork: &Fork, threads: &BTreeSet<Rc<str>>) -> Follow {
+        let branches = &fork.branches;
         let mut own = branches
             .iter()
             .enumerate()

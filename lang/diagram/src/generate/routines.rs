@@ -8,7 +8,7 @@ use super::build::{Variables, truth, whole};
 use super::code::{Code, Element, Kind, Operation, Own, Robot, Statement, Truth, Wholeness};
 use super::plan::{Function, Owner, Plan};
 use super::texts::Texts;
-use crate::program::{Node, Op, Program};
+use crate::program::{Leads, Node, Op, Program, Test};
 use crate::structure::{Jumps, Manner, Structured, structure};
 use crate::tree::{Condition, Tree};
 use lang_text::problem::Problem;
@@ -327,9 +327,9 @@ impl Lowerer<'_> {
         let Some(node) = self.node(block) else {
             return Code::Bool(false);
         };
-        match self.program.ops[node as usize] {
-            Op::If { source, .. } => truth(self.value(node, source)),
-            Op::Loop { source, .. } => {
+        match self.program.leads(node) {
+            Some(Leads::Test(Test::Truth(source), ..)) => truth(self.value(node, source)),
+            Some(Leads::Test(Test::Count(source), ..)) => {
                 let times = whole(self.value(node, source));
                 let new = self.counters.len();
                 let counter = *self.counters.entry(node).or_insert(new);
@@ -337,25 +337,17 @@ impl Lowerer<'_> {
                 Code::does(Truth::Again, [counter, times])
             }
             // No others have two ways out.
-            Op::Pass { .. }
-            | Op::End
-            | Op::Fault { .. }
-            | Op::Run { .. }
-            | Op::Switch { .. }
-            | Op::Fork { .. }
-            | Op::Join { .. }
-            | Op::Kill { .. }
-            | Op::Send { .. }
-            | Op::Receive { .. }
-            | Op::Call { .. }
-            | Op::Timer { .. }
-            | Op::Random { .. }
-            | Op::Ask { .. }
-            | Op::AnyButton { .. }
-            | Op::Mail { .. }
-            | Op::Copy { .. }
-            | Op::Act { .. }
-            | Op::Watch { .. } => Code::Bool(false),
+            None
+            | Some(
+                Leads::End
+                | Leads::Fault(_)
+                | Leads::To(_)
+                | Leads::Switch(_)
+                | Leads::Fork(_)
+                | Leads::Join(..)
+                | Leads::Call(..)
+                | Leads::Ask(..),
+            ) => Code::Bool(false),
         }
     }
 
@@ -400,7 +392,7 @@ impl Lowerer<'_> {
             return None;
         };
         let node = self.node(*block)?;
-        let Op::Loop { source, .. } = self.program.ops[node as usize] else {
+        let Some(Leads::Test(Test::Count(source), ..)) = self.program.leads(node) else {
             return None;
         };
         let function = &self.plan.functions[self.function];
@@ -429,10 +421,10 @@ impl Lowerer<'_> {
         let Some(node) = self.node(on) else {
             return;
         };
-        let Op::Switch { switch } = self.program.ops[node as usize] else {
+        let program = self.program;
+        let Some(Leads::Switch(switch)) = program.leads(node) else {
             return;
         };
-        let switch = &self.program.switches[switch as usize];
         let on = super::build::text(self.value(node, switch.source));
         let mut other = Vec::new();
         let mut named = Vec::new();

@@ -9,7 +9,7 @@ use super::code::{Code, Kind, Typed};
 use super::plan::Plan;
 use super::words;
 use crate::blocks::Type;
-use crate::program::{ArgumentKind, Node, Op, Program, Source};
+use crate::program::{ArgumentKind, Given, Leads, Node, Program, Source};
 use lang_expr::parser::parse;
 use lang_expr::tree::{Id, Node as Part, Tree};
 use lang_expr::value::Compat;
@@ -36,64 +36,17 @@ pub(super) enum Sentence {
     Assign(usize, Vec<Code>, Typed),
 }
 
-/// Which texts a node has, and whether they are what its variable gets.
-fn sources(program: &Program, node: Node) -> Vec<Source> {
-    match program.ops[node as usize] {
-        Op::Run { source, .. }
-        | Op::If { source, .. }
-        | Op::Loop { source, .. }
-        | Op::Timer { source, .. } => vec![source],
-        Op::Switch { switch } => vec![program.switches[switch as usize].source],
-        Op::Send { message, .. } => vec![program.messages[message as usize].source],
-        Op::Random { assignment, .. } => match program.assignments[assignment as usize].bounds {
-            Some((low, high)) => vec![low, high],
-            None => Vec::new(),
-        },
-        Op::Copy { copy, .. } => vec![program.copies[copy as usize].source],
-        Op::Call { call, .. } => {
-            let arguments = program.calls[call as usize].arguments.iter();
-            arguments.map(|argument| argument.source).collect()
-        }
-        Op::Act { action, .. } => program.actions[action as usize].sources.to_vec(),
-        Op::Watch { watch, .. } => Vec::from_iter(program.watches[watch as usize].source()),
-        Op::Pass { .. }
-        | Op::End
-        | Op::Fault { .. }
-        | Op::Fork { .. }
-        | Op::Join { .. }
-        | Op::Kill { .. }
-        | Op::Receive { .. }
-        | Op::Ask { .. }
-        | Op::AnyButton { .. }
-        | Op::Mail { .. } => Vec::new(),
-    }
-}
-
 /// The variable that a block assigns by itself, and what it gets.
 fn variable(program: &Program, node: Node) -> Option<(&str, Kind)> {
-    let (assignment, kind) = match program.ops[node as usize] {
-        Op::Random { assignment, .. } | Op::AnyButton { assignment, .. } => (assignment, Kind::Int),
-        Op::Mail { assignment, .. } => (assignment, Kind::Text),
-        Op::Receive { assignment, .. } => (assignment, Kind::Any),
-        Op::Pass { .. }
-        | Op::End
-        | Op::Fault { .. }
-        | Op::Run { .. }
-        | Op::If { .. }
-        | Op::Loop { .. }
-        | Op::Switch { .. }
-        | Op::Fork { .. }
-        | Op::Join { .. }
-        | Op::Kill { .. }
-        | Op::Send { .. }
-        | Op::Call { .. }
-        | Op::Timer { .. }
-        | Op::Ask { .. }
-        | Op::Copy { .. }
-        | Op::Act { .. }
-        | Op::Watch { .. } => return None,
+    let (assignment, given) = program.given(node)?;
+    let kind = match given {
+        Given::Whole => Kind::Int,
+        Given::Text => Kind::Text,
+        Given::Any => Kind::Any,
+        // Nobody answers a generated program: the plan has refused it.
+        Given::Answer => return None,
     };
-    Some((&program.assignments[assignment as usize].variable, kind))
+    Some((&assignment.variable, kind))
 }
 
 /// A problem at a text of a node.
@@ -169,7 +122,7 @@ impl<'a> Texts<'a> {
             }
             tree
         };
-        for source in sources(self.program, node) {
+        for source in self.program.texts(node) {
             let text = &self.program.sources[source as usize];
             let tree = read(&text.text, text.property);
             self.trees.insert(source, tree);
@@ -184,7 +137,7 @@ impl<'a> Texts<'a> {
     /// Gives numbers to all names that get values, in the order of the blocks.
     fn declare(&mut self, nodes: &[Node]) {
         for &node in nodes {
-            for source in sources(self.program, node) {
+            for source in self.program.texts(node) {
                 if let Some(tree) = self.trees.get(&source) {
                     for name in targets(tree) {
                         self.variables.declare(&name);
@@ -196,8 +149,8 @@ impl<'a> Texts<'a> {
                     self.variables.declare(&name);
                 }
             }
-            if let Op::Call { call, .. } = self.program.ops[node as usize] {
-                for argument in &self.program.calls[call as usize].arguments {
+            if let Some(Leads::Call(call, _)) = self.program.leads(node) {
+                for argument in &call.arguments {
                     self.variables.declare(&argument.name);
                 }
             }
@@ -207,7 +160,7 @@ impl<'a> Texts<'a> {
     /// Finds kinds by what a node assigns.
     fn settle(&mut self, node: Node) -> Vec<Problem> {
         let mut problems = Vec::new();
-        for source in sources(self.program, node) {
+        for source in self.program.texts(node) {
             let wanted = self.program.sources[source as usize].wanted;
             let outcome = if wanted == Type::Statements {
                 self.sentences(source).map(|_| ())
@@ -226,8 +179,8 @@ impl<'a> Texts<'a> {
             Ok(None) => {}
             Err(wrong) => problems.push(problem(self.program, node, None, wrong)),
         }
-        if let Op::Call { call, .. } = self.program.ops[node as usize] {
-            for argument in &self.program.calls[call as usize].arguments {
+        if let Some(Leads::Call(call, _)) = self.program.leads(node) {
+            for argument in &call.arguments {
                 let kind = match argument.kind {
                     ArgumentKind::Truth => Kind::Bool,
                     ArgumentKind::Whole => Kind::Int,
@@ -318,7 +271,9 @@ impl<'a> Texts<'a> {
     /// Which variables a node names in its texts.
     pub(super) fn names(&self, node: Node) -> Vec<usize> {
         let mut found = Vec::new();
-        let trees = sources(self.program, node)
+        let trees = self
+            .program
+            .texts(node)
             .into_iter()
             .filter_map(|source| self.trees.get(&source));
         for tree in trees.chain(self.targets.get(&(node, 0))) {

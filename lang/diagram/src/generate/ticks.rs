@@ -7,8 +7,7 @@
 use std::collections::BTreeSet;
 
 use super::plan::{Owner, Plan};
-use crate::blocks::act::Effect;
-use crate::program::{Node, Op, Program};
+use crate::program::{Leads, Node, Op, Program, Wakes};
 use crate::structure::Exit;
 
 /// How often answers may change before they count as unclear.
@@ -143,42 +142,21 @@ impl Flow<'_> {
 
     /// What leads on from a block.
     fn after(&mut self, node: Node, led: Led) -> Led {
-        match self.program.ops[node as usize] {
-            Op::Timer { .. } | Op::AnyButton { .. } | Op::Mail { .. } => Led::by(node),
+        if let Some(Leads::Call(call, _)) = self.program.leads(node) {
+            let callee = call
+                .diagram
+                .and_then(|diagram| self.plan.subprogram(diagram));
+            let Some(callee) = callee else {
+                return led;
+            };
+            self.enter(callee, led);
+            return self.exits[callee];
+        }
+        match self.program.wakes(node) {
+            Wakes::ByItsClock => Led::by(node),
             // Those go on when all clocks have counted, or because of another thread.
-            Op::Watch { .. } | Op::Ask { .. } | Op::Join { .. } => OTHERWISE,
-            Op::Receive { assignment, .. } => {
-                if self.program.assignments[assignment as usize].wait {
-                    OTHERWISE
-                } else {
-                    led
-                }
-            }
-            Op::Act { action, .. } => match self.program.actions[action as usize].act.effect {
-                Effect::ResetEncoders => OTHERWISE,
-                Effect::Drive(_) | Effect::Stop | Effect::Command(_) => led,
-            },
-            Op::Call { call, .. } => {
-                let diagram = self.program.calls[call as usize].diagram;
-                let callee = diagram.and_then(|diagram| self.plan.subprogram(diagram));
-                let Some(callee) = callee else {
-                    return led;
-                };
-                self.enter(callee, led);
-                self.exits[callee]
-            }
-            Op::Pass { .. }
-            | Op::End
-            | Op::Fault { .. }
-            | Op::Run { .. }
-            | Op::If { .. }
-            | Op::Loop { .. }
-            | Op::Switch { .. }
-            | Op::Fork { .. }
-            | Op::Kill { .. }
-            | Op::Send { .. }
-            | Op::Random { .. }
-            | Op::Copy { .. } => led,
+            Wakes::Later => OTHERWISE,
+            Wakes::AtOnce => led,
         }
     }
 }

@@ -36,7 +36,7 @@ pub(super) struct Loops {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Comer {
     pub node: Node,
-    /// Where he comes from, if it is the same diagram.
+    /// Where it comes from, if it is the same diagram.
     pub from: Option<Node>,
     pub life: u32,
     pub depth: usize,
