@@ -184,7 +184,7 @@ impl Arena {
         }
     }
 
-    /// What a tick moves the robots with ideal wheels; who touches something takes his last step back.
+    /// What a tick moves the robots with ideal wheels; a robot that touches something takes its last step back.
     fn ideal(&mut self) {
         for robot in &mut self.robots {
             robot.outline_into(&mut self.scratch);

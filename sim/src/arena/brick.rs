@@ -2,6 +2,9 @@
 //!
 //! Owns which command goes to which part and which sensor answers for which port. Knows no programs.
 
+// A command that is forgotten must not compile.
+#![deny(clippy::wildcard_enum_match_arm)]
+
 use lang_diagram::brick::{Answer, Brick, Command, Question};
 use lang_diagram::ports::{Port, Sort};
 
@@ -147,7 +150,28 @@ impl Brick for Handle<'_> {
             Command::Join { hull, .. } => robot.hull = hull,
             Command::Send { message, hull } => self.send(message, hull),
             Command::Detect { mode: "line" } => self.learn(),
-            _ => robot.shown.command(&command),
+            // `Shown` has those that a person sees or hears; the others do nothing in a simulator.
+            Command::Sound { .. }
+            | Command::Tone { .. }
+            | Command::Say { .. }
+            | Command::Led { .. }
+            | Command::System { .. }
+            | Command::Append { .. }
+            | Command::Remove { .. }
+            | Command::StartCamera { .. }
+            | Command::StopCamera { .. }
+            | Command::StartVideo { .. }
+            | Command::StopVideo
+            | Command::Detect { .. }
+            | Command::Console { .. }
+            | Command::PenColor { .. }
+            | Command::PenWidth { .. }
+            | Command::Background { .. }
+            | Command::Draw(_)
+            | Command::Label { .. }
+            | Command::Smile { .. }
+            | Command::ClearScreen
+            | Command::Redraw => robot.shown.command(&command),
         }
     }
 

@@ -483,7 +483,11 @@ pub(super) fn body_of(sensor: &Sensor) -> Option<[Point; 4]> {
     let (width, height) = size_of(sensor.kind)?;
     let right = match sensor.kind {
         SensorKind::Infrared | SensorKind::Sonar => 0.0,
-        _ => width / 2.0,
+        SensorKind::Light
+        | SensorKind::Touch
+        | SensorKind::Camera
+        | SensorKind::Lidar
+        | SensorKind::Other => width / 2.0,
     };
     let (left, half) = (-width / 2.0, height / 2.0);
     let (sin, cos) = sensor.direction.to_radians().sin_cos();

@@ -3,6 +3,9 @@
 //! Owns the list as the original's checker and its records have it: an ellipse by its centre and half axes, an arc by the
 //! rectangle around it, a text replaced by the next one at its place. Knows no robot; pixels are those of crate `screen`.
 
+// A command or figure that is forgotten must not compile.
+#![deny(clippy::wildcard_enum_match_arm)]
+
 use lang_diagram::brick::{Command, Figure};
 use screen::colour::{BLACK, Colour, WHITE, colour};
 use screen::drawing::{Drawing, Outline};
@@ -129,7 +132,30 @@ impl Screen {
                 });
                 change.objects = true;
             }
-            _ => {}
+            Command::Power { .. }
+            | Command::Off { .. }
+            | Command::Servo { .. }
+            | Command::ResetEncoder { .. }
+            | Command::Sound { .. }
+            | Command::Tone { .. }
+            | Command::Say { .. }
+            | Command::Led { .. }
+            | Command::System { .. }
+            | Command::Append { .. }
+            | Command::Remove { .. }
+            | Command::StartCamera { .. }
+            | Command::StopCamera { .. }
+            | Command::StartVideo { .. }
+            | Command::StopVideo
+            | Command::Detect { .. }
+            | Command::Send { .. }
+            | Command::Join { .. }
+            | Command::CalibrateGyroscope
+            | Command::Console { .. }
+            | Command::Redraw
+            | Command::MarkerDown { .. }
+            | Command::MarkerUp
+            | Command::Rest => {}
         }
         change
     }
@@ -140,8 +166,12 @@ impl Screen {
             .objects
             .iter_mut()
             .find_map(|object| match &mut object.form {
-                Form::Text(place, text, size) if *place == at => Some((text, size)),
-                _ => None,
+                Form::Text(place, text, size) => (*place == at).then_some((text, size)),
+                Form::Point(_)
+                | Form::Line(_)
+                | Form::Rectangle(..)
+                | Form::Ellipse(..)
+                | Form::Arc(_) => None,
             });
         match old {
             Some((old, old_size)) => {
@@ -295,9 +325,33 @@ impl Shown {
             Command::Tone { ms, .. } => self.beep_ms = u32::try_from(ms).unwrap_or(0),
             Command::Sound { .. } => self.beep_ms = SOUND_MS,
             Command::Rest => self.beep_ms = 0,
-            _ => {
+            Command::PenColor { .. }
+            | Command::PenWidth { .. }
+            | Command::Background { .. }
+            | Command::Draw(_)
+            | Command::Label { .. }
+            | Command::Smile { .. }
+            | Command::ClearScreen => {
                 self.screen.command(command);
             }
+            Command::Power { .. }
+            | Command::Off { .. }
+            | Command::Servo { .. }
+            | Command::ResetEncoder { .. }
+            | Command::System { .. }
+            | Command::Append { .. }
+            | Command::Remove { .. }
+            | Command::StartCamera { .. }
+            | Command::StopCamera { .. }
+            | Command::StartVideo { .. }
+            | Command::StopVideo
+            | Command::Detect { .. }
+            | Command::Send { .. }
+            | Command::Join { .. }
+            | Command::CalibrateGyroscope
+            | Command::Redraw
+            | Command::MarkerDown { .. }
+            | Command::MarkerUp => {}
         }
     }
 

@@ -61,7 +61,7 @@ impl Motor {
                 let slip = (target - self.speed_dps).abs() / FULL_SPEED_DPS;
                 IDLE_A * duty.abs() / 100.0 + STALL_A * slip
             }
-            _ => 0.0,
+            Power::Duty(_) | Power::Brake | Power::Open | Power::Blocked => 0.0,
         }
     }
 }

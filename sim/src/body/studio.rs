@@ -40,7 +40,7 @@ fn analog_type(kind: SensorKind) -> Option<(&'static str, &'static str)> {
         SensorKind::Infrared => Some(("sharpGP2", "infrared")),
         SensorKind::Touch => Some(("touch", "touch")),
         SensorKind::Light => Some(("light", "light")),
-        _ => None,
+        SensorKind::Sonar | SensorKind::Camera | SensorKind::Lidar | SensorKind::Other => None,
     }
 }
 
@@ -231,7 +231,7 @@ impl Studio {
             SensorKind::Infrared => Some(sharp_gp2_raw(reading)),
             SensorKind::Touch => Some(TOUCH_RAW[usize::from(reading == 0.0)]),
             SensorKind::Light => Some(LIGHT_RAW[0] + LIGHT_RAW[1] * reading / 99.0),
-            _ => None,
+            SensorKind::Sonar | SensorKind::Camera | SensorKind::Lidar | SensorKind::Other => None,
         }
     }
 }

@@ -3,6 +3,9 @@
 //! Owns which command is which change of which device, and the form in which TRIK Studio writes what is on a display; also
 //! the way back from such a record to commands. The robot behind it does not notice.
 
+// A command that is forgotten must not compile.
+#![deny(clippy::wildcard_enum_match_arm)]
+
 use super::json::Value;
 use super::trajectory::{DeviceChange, Record, Trajectory};
 use crate::arena::screen::{Form, Object, Shown, hex};
