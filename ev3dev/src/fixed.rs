@@ -144,13 +144,14 @@ mod tests {
 
     #[test]
     fn volts_become_microvolts_and_lights_are_on_or_off() {
-        let root = std::env::temp_dir().join(format!("ev3dev-fixed-{}", std::process::id()));
-        std::fs::create_dir_all(root.join("battery")).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path();
+        std::fs::create_dir(root.join("battery")).unwrap();
         let write = |file: &str, text: &str| std::fs::write(root.join(file), text).unwrap();
         write("battery/value0", "12.211");
         write("battery/cells", "3");
         write("light", "1");
-        let tree = Tree::new(root.clone());
+        let tree = Tree::new(root.to_owned());
         let battery = Battery::new(tree.clone());
         for (attribute, shows) in [
             ("voltage_now", "12211000"),
@@ -175,6 +176,5 @@ mod tests {
                 libc::EINVAL
             );
         }
-        std::fs::remove_dir_all(root).unwrap();
     }
 }

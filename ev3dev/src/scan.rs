@@ -278,20 +278,21 @@ mod tests {
 
     #[test]
     fn a_motor_has_the_encoder_of_its_number_or_the_one_that_was_said_or_none() {
-        let root = std::env::temp_dir().join(format!("ev3dev-scan-{}", std::process::id()));
-        for folder in [
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path();
+        for node in [
             "motors/M1",
             "motors/M2",
             "motors/M3",
             "encoders/E1",
             "encoders/E4",
         ] {
-            std::fs::create_dir_all(root.join(folder)).unwrap();
-            std::fs::write(root.join(folder).join("value0"), "").unwrap();
+            std::fs::create_dir_all(root.join(node)).unwrap();
+            std::fs::write(root.join(node).join("value0"), "").unwrap();
         }
         std::fs::write(root.join("status"), "").unwrap();
         let pairs = |said: &[&str]| -> Vec<_> {
-            let found = scan(&Tree::new(root.clone()), &options(said)).unwrap();
+            let found = scan(&Tree::new(root.to_owned()), &options(said)).unwrap();
             let of = |one: Found| match one.hardware {
                 Hardware::Motor(_, paths) => Some((one.class, paths.encoder.unwrap_or_default())),
                 _ => None,
@@ -303,7 +304,6 @@ mod tests {
         assert_eq!(pairs(&[]), [tacho("E1"), dc.clone(), dc.clone()]);
         let said = ["M1=none", "M3=E4"];
         assert_eq!(pairs(&said), [dc.clone(), dc, tacho("E4")]);
-        std::fs::remove_dir_all(root).unwrap();
         for text in ["M5=E1", "M1", "M1=", "M1=M1", "=E1", "left=E1"] {
             assert!(encoder_of(text).is_err(), "{text}");
         }

@@ -405,28 +405,22 @@ impl Device for Sensor {
 mod tests {
     use super::*;
 
-    struct Folder(std::path::PathBuf);
+    struct Folder(tempfile::TempDir);
 
     impl Folder {
-        fn new(name: &str) -> Self {
-            let name = format!("ev3dev-sensor-{}-{name}", std::process::id());
-            let path = std::env::temp_dir().join(name);
-            std::fs::create_dir_all(path.join("s")).unwrap();
-            Self(path)
+        fn new() -> Self {
+            let folder = tempfile::tempdir().unwrap();
+            std::fs::create_dir(folder.path().join("s")).unwrap();
+            Self(folder)
         }
 
         fn write(&self, file: &str, text: &str) {
-            std::fs::write(self.0.join("s").join(file), text).unwrap();
+            std::fs::write(self.0.path().join("s").join(file), text).unwrap();
         }
 
         fn sensor(&self, kind: Kind) -> Sensor {
-            Sensor::new(&Tree::new(self.0.clone()), "in1:A1".to_owned(), "s", kind)
-        }
-    }
-
-    impl Drop for Folder {
-        fn drop(&mut self) {
-            let _ = std::fs::remove_dir_all(&self.0);
+            let tree = Tree::new(self.0.path().to_owned());
+            Sensor::new(&tree, "in1:A1".to_owned(), "s", kind)
         }
     }
 
@@ -437,7 +431,7 @@ mod tests {
 
     #[test]
     fn values_are_those_of_the_sensors_that_programs_know() {
-        let folder = Folder::new("values");
+        let folder = Folder::new();
         for (kind, mode, value, shows) in [
             (Kind::Ultrasonic, "US-DIST-CM", "37", "370"),
             (Kind::Ultrasonic, "US-DIST-CM", "300", "2550"),
@@ -468,7 +462,7 @@ mod tests {
 
     #[test]
     fn an_angle_goes_on_beyond_half_a_turn_and_begins_anew_when_it_is_told_to() {
-        let folder = Folder::new("angle");
+        let folder = Folder::new();
         folder.write("value", "0 0 0");
         let sensor = folder.sensor(Kind::Gyroscope);
         sensor.opened();
@@ -494,7 +488,7 @@ mod tests {
 
     #[test]
     fn nothing_in_reach_is_far_and_a_failure_is_a_failure() {
-        let folder = Folder::new("echo");
+        let folder = Folder::new();
         let sensor = folder.sensor(Kind::Ultrasonic);
         assert_eq!(sensor.show("value0").unwrap_err().errno(), libc::ENODEV);
         folder.write("value", "");

@@ -211,19 +211,17 @@ mod tests {
     }
 
     /// What a folder with these nodes gives.
-    fn found(name: &str, nodes: &[&str]) -> Vec<Found> {
-        let root = std::env::temp_dir().join(format!("ev3dev-table-{}-{name}", std::process::id()));
+    fn found(nodes: &[&str]) -> Vec<Found> {
+        let folder = tempfile::tempdir().unwrap();
         for node in nodes {
-            std::fs::create_dir_all(root.join(node)).unwrap();
+            std::fs::create_dir_all(folder.path().join(node)).unwrap();
         }
-        std::fs::write(root.join("status"), "").unwrap();
+        std::fs::write(folder.path().join("status"), "").unwrap();
         let options = Options {
             max_speed: 1000,
             encoders: BTreeMap::new(),
         };
-        let found = scan(&Tree::new(root.clone()), &options).unwrap();
-        std::fs::remove_dir_all(root).unwrap();
-        found
+        scan(&Tree::new(folder.path().to_owned()), &options).unwrap()
     }
 
     fn names(table: &Table, parent: u64) -> Vec<&str> {
@@ -234,8 +232,8 @@ mod tests {
     fn devices_keep_their_numbers_when_they_go_and_come_back() {
         let mut table = Table::default();
         let make = |_: &Found| Arc::new(Thing) as Arc<dyn Device>;
-        let two = found("two", &["sensors/A1", "sensors/A2"]);
-        let one = found("one", &["sensors/A2"]);
+        let two = found(&["sensors/A1", "sensors/A2"]);
+        let one = found(&["sensors/A2"]);
         table.update(&two, make);
         let class = table.find(ROOT, "lego-sensor").unwrap();
         assert_eq!(names(&table, class), ["sensor0", "sensor1"]);

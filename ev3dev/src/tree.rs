@@ -232,15 +232,16 @@ pub fn error_of(error: &io::Error, name: &str) -> Error {
 mod tests {
     use super::*;
 
-    fn folder(name: &str) -> (PathBuf, Tree) {
-        let root = std::env::temp_dir().join(format!("ev3dev-tree-{}-{name}", std::process::id()));
-        std::fs::create_dir_all(&root).unwrap();
-        (root.clone(), Tree::new(root))
+    fn folder() -> (tempfile::TempDir, Tree) {
+        let folder = tempfile::tempdir().unwrap();
+        let tree = Tree::new(folder.path().to_owned());
+        (folder, tree)
     }
 
     #[test]
     fn numbers_are_read_and_rubbish_is_a_failed_device() {
-        let (root, tree) = folder("numbers");
+        let (folder, tree) = folder();
+        let root = folder.path();
         std::fs::write(root.join("value"), "1 -2.5\n").unwrap();
         assert_eq!(tree.open("value").unwrap().numbers(), Ok(vec![1.0, -2.5]));
         for rubbish in ["", "\n", "1 x", "nan", "inf"] {
@@ -250,12 +251,12 @@ mod tests {
         }
         std::fs::write(root.join("value"), [0xff, 0xfe]).unwrap();
         assert_eq!(tree.text("value").unwrap_err().errno(), libc::EIO);
-        std::fs::remove_dir_all(root).unwrap();
     }
 
     #[test]
     fn a_file_that_is_not_there_is_a_device_that_is_not_there() {
-        let (root, tree) = folder("missing");
+        let (folder, tree) = folder();
+        let root = folder.path();
         assert!(!tree.is_there());
         let error = tree.text("motors/M1/value").unwrap_err();
         assert_eq!(error.errno(), libc::ENODEV);
@@ -267,6 +268,5 @@ mod tests {
         assert_eq!(kept.number().unwrap_err().errno(), libc::ENODEV);
         std::fs::write(root.join("late"), "7").unwrap();
         assert_eq!(kept.number(), Ok(7.0));
-        std::fs::remove_dir_all(root).unwrap();
     }
 }

@@ -747,15 +747,13 @@ fn params_are_numbers_with_names() {
 
 #[test]
 fn converters_of_all_kinds_are_read() {
-    let folder = std::env::temp_dir().join(format!("trikfs-check-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
-    std::fs::write(folder.join("lib.so"), "").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("lib.so");
+    std::fs::write(&path, "").unwrap();
     let source = "trikfs = { x = { src = '/d', input_tuple_size = 1, output_tuple_size = 1,\n converter = { 'lib.so',\n\
         'lib.so#median3', { library = 'lib.so', name = 'low_pass' }, {\n code = [[\nint converter;\n]] },\n\
         function() end } } }";
-    let loaded = Loader::default().load("robot.lua", Some(&folder), source.as_bytes());
-    let path = folder.join("lib.so");
-    std::fs::remove_dir_all(&folder).unwrap();
+    let loaded = Loader::default().load("robot.lua", Some(folder.path()), source.as_bytes());
     let stages = loaded.unwrap().config.nodes[0].converter.clone();
     let library = |name: Option<&str>| StageKind::Library {
         path: path.clone(),

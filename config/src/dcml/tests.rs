@@ -4,7 +4,8 @@ use crate::load::Loader;
 use crate::program::{StageId, Vm};
 use converter::{Conversion, Direction};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use tempfile::TempDir;
 
 /// Two wheels, 0.1 m of way for each radian, 0.2 m apart.
 const WHEELS: &str =
@@ -19,23 +20,15 @@ fn config(options: &str) -> String {
 }
 
 /// A folder of this test, removed with the value.
-struct Folder(PathBuf);
+struct Folder(TempDir);
 
 impl Folder {
-    fn new(name: &str, files: &[(&str, &str)]) -> Self {
-        let path = std::env::temp_dir().join(format!("trikfs-dcml-{name}-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).unwrap();
+    fn new(files: &[(&str, &str)]) -> Self {
+        let folder = tempfile::tempdir().unwrap();
         for (file, text) in files {
-            fs::write(path.join(file), text).unwrap();
+            fs::write(folder.path().join(file), text).unwrap();
         }
-        Self(path)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
+        Self(folder)
     }
 }
 
@@ -293,9 +286,9 @@ fn a_file_is_found_beside_the_configuration_and_one_of_its_models_by_name() {
         "BEGIN A ACTION: u; CONFIG: x, y, theta; d(x) = u; d(y) = 0 * u; d(theta) = 0 * u; END;
 BEGIN B ACTION: u; CONFIG: x, y, theta; d(x) = 2 * u; d(y) = 0 * u; d(theta) = 0 * u; END;
 BEGIN C ACTION: u; CONFIG: x; d(x) = w; END;";
-    let folder = Folder::new("found", &[("two.dcml", two), ("latin.dcml", "BEGIN A;")]);
-    fs::write(folder.0.join("latin.dcml"), b"/* \xe9 */").unwrap();
-    let base = Some(folder.0.as_path());
+    let folder = Folder::new(&[("two.dcml", two), ("latin.dcml", "BEGIN A;")]);
+    fs::write(folder.0.path().join("latin.dcml"), b"/* \xe9 */").unwrap();
+    let base = Some(folder.0.path());
     let actions = "actions = { u = { 'd(left)', scale = 0.01 } }";
     for (name, way) in [("two.dcml#A", 0.1), ("two#B", 0.2)] {
         let mut follower = Follower::of(base, &format!("model = '{name}', {actions}"), 1);

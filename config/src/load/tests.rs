@@ -4,6 +4,7 @@ use super::*;
 use converter::Direction;
 use std::fs;
 use std::time::{Duration, Instant};
+use tempfile::TempDir;
 
 fn load(source: &str) -> Result<Loaded, Problem> {
     Loader::default().load("robot.lua", None, source.as_bytes())
@@ -14,31 +15,23 @@ fn refused(source: &str) -> String {
 }
 
 /// A folder of this test, removed with the value.
-struct Folder(PathBuf);
+struct Folder(TempDir);
 
 impl Folder {
-    fn new(name: &str, files: &[(&str, &str)]) -> Self {
-        let path = std::env::temp_dir().join(format!("trikfs-load-{name}-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).unwrap();
+    fn new(files: &[(&str, &str)]) -> Self {
+        let folder = tempfile::tempdir().unwrap();
         for (file, text) in files {
-            fs::write(path.join(file), text).unwrap();
+            fs::write(folder.path().join(file), text).unwrap();
         }
-        Self(path)
+        Self(folder)
     }
 
     fn load(&self, source: &str) -> Result<Loaded, Problem> {
         let loader = Loader {
-            include_dirs: vec![self.0.clone()],
+            include_dirs: vec![self.0.path().to_owned()],
             ..Loader::default()
         };
-        loader.load("robot.lua", Some(&self.0), source.as_bytes())
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
+        loader.load("robot.lua", Some(self.0.path()), source.as_bytes())
     }
 }
 
@@ -196,19 +189,16 @@ fn all_nodes_of_a_program_are_found() {
 
 #[test]
 fn an_included_file_is_part_of_the_program() {
-    let folder = Folder::new(
-        "include",
-        &[
-            (
-                "board.lua",
-                "function port(n)\n return { src = '/dev/port' .. n, input_tuple_size = 1, output_tuple_size = 1,\n converter = function(_, a, _, b) ba.set(b, 0, n) end } end return 7",
-            ),
-            ("bad.lua", "x = 1\ny = = 2"),
-            ("fails.lua", "\nerror('no port')"),
-            ("self.lua", "include 'self' x = 1"),
-            ("zero.lua", "x = 1 \0"),
-        ],
-    );
+    let folder = Folder::new(&[
+        (
+            "board.lua",
+            "function port(n)\n return { src = '/dev/port' .. n, input_tuple_size = 1, output_tuple_size = 1,\n converter = function(_, a, _, b) ba.set(b, 0, n) end } end return 7",
+        ),
+        ("bad.lua", "x = 1\ny = = 2"),
+        ("fails.lua", "\nerror('no port')"),
+        ("self.lua", "include 'self' x = 1"),
+        ("zero.lua", "x = 1 \0"),
+    ]);
     let loaded = folder
         .load("assert(include 'board' == 7) include('board.lua')\ntrikfs = { a = port(5) }")
         .unwrap();
@@ -258,7 +248,7 @@ fn too_many_included_files_are_refused() {
         .iter()
         .map(|name| (name.as_str(), "return 1"))
         .collect();
-    let folder = Folder::new("many", &files);
+    let folder = Folder::new(&files);
     let error = folder
         .load("for i = 0, 69 do include('f' .. i) end")
         .unwrap_err()
@@ -273,11 +263,11 @@ fn too_many_included_files_are_refused() {
 
 #[test]
 fn the_program_runs_again_with_the_files_of_the_load() {
-    let folder = Folder::new("again", &[("n.lua", "return 1")]);
+    let folder = Folder::new(&[("n.lua", "return 1")]);
     let source = "local n = include 'n' trikfs = { x = { src = '/dev/x', input_tuple_size = 1, output_tuple_size = 1,
         converter = function(_, a, _, b) ba.set(b, 0, n) end } }";
     let loaded = folder.load(source).unwrap();
-    fs::write(folder.0.join("n.lua"), "return 2").unwrap();
+    fs::write(folder.0.path().join("n.lua"), "return 2").unwrap();
     let mut vm = loaded.program.open("x").unwrap();
     let stage = vm.bind("x", Direction::Read, 0, 1, 1).unwrap();
     let mut output = [0];

@@ -3,38 +3,31 @@
 use super::*;
 use std::fs;
 use std::os::unix::fs::symlink;
+use tempfile::TempDir;
 
 /// A folder of this test, removed with the value.
-struct Folder(PathBuf);
+struct Folder(TempDir);
 
 impl Folder {
-    fn new(name: &str) -> Self {
-        let path =
-            std::env::temp_dir().join(format!("trikfs-search-{name}-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(path.join("inside")).unwrap();
-        Self(path)
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        fs::create_dir(folder.path().join("inside")).unwrap();
+        Self(folder)
     }
 
     fn search(&self) -> Search {
         Search {
-            base_dir: Some(self.0.join("base")),
-            include_dirs: vec![self.0.join("nowhere"), self.0.join("inside")],
-            library_dirs: vec![self.0.join("inside")],
+            base_dir: Some(self.0.path().join("base")),
+            include_dirs: vec![self.0.path().join("nowhere"), self.0.path().join("inside")],
+            library_dirs: vec![self.0.path().join("inside")],
         }
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
     }
 }
 
 #[test]
 fn a_file_is_found_with_or_without_its_ending() {
-    let folder = Folder::new("found");
-    fs::write(folder.0.join("inside/board.lua"), "x = 1").unwrap();
+    let folder = Folder::new();
+    fs::write(folder.0.path().join("inside/board.lua"), "x = 1").unwrap();
     assert_eq!(
         folder.search().include(b"board"),
         Ok(("board.lua".to_owned(), b"x = 1".to_vec()))
@@ -52,15 +45,15 @@ fn a_file_is_found_with_or_without_its_ending() {
 
 #[test]
 fn nothing_outside_the_search_path_is_included() {
-    let folder = Folder::new("outside");
-    fs::write(folder.0.join("secret.lua"), "x = 1").unwrap();
+    let folder = Folder::new();
+    fs::write(folder.0.path().join("secret.lua"), "x = 1").unwrap();
     symlink(
-        folder.0.join("secret.lua"),
-        folder.0.join("inside/link.lua"),
+        folder.0.path().join("secret.lua"),
+        folder.0.path().join("inside/link.lua"),
     )
     .unwrap();
-    fs::write(folder.0.join("inside/own.lua"), "x = 2").unwrap();
-    symlink("own.lua", folder.0.join("inside/alias.lua")).unwrap();
+    fs::write(folder.0.path().join("inside/own.lua"), "x = 2").unwrap();
+    symlink("own.lua", folder.0.path().join("inside/alias.lua")).unwrap();
     let refused = |name: &str| {
         let error = folder.search().include(name.as_bytes()).unwrap_err();
         error.to_string()
@@ -96,15 +89,15 @@ fn nothing_outside_the_search_path_is_included() {
 
 #[test]
 fn what_is_no_file_or_too_large_is_refused() {
-    let folder = Folder::new("kinds");
-    fs::create_dir(folder.0.join("inside/folder.lua")).unwrap();
+    let folder = Folder::new();
+    fs::create_dir(folder.0.path().join("inside/folder.lua")).unwrap();
     nix::unistd::mkfifo(
-        &folder.0.join("inside/pipe.lua"),
+        &folder.0.path().join("inside/pipe.lua"),
         nix::sys::stat::Mode::S_IRWXU,
     )
     .unwrap();
     fs::write(
-        folder.0.join("inside/large.lua"),
+        folder.0.path().join("inside/large.lua"),
         vec![b' '; CONFIG_BYTES_MAX + 1],
     )
     .unwrap();
@@ -132,17 +125,17 @@ fn what_is_no_file_or_too_large_is_refused() {
 
 #[test]
 fn a_library_is_found_beside_the_file_and_then_in_the_library_folder() {
-    let folder = Folder::new("library");
-    fs::create_dir_all(folder.0.join("base")).unwrap();
-    fs::write(folder.0.join("inside/x.so"), "1").unwrap();
+    let folder = Folder::new();
+    fs::create_dir_all(folder.0.path().join("base")).unwrap();
+    fs::write(folder.0.path().join("inside/x.so"), "1").unwrap();
     assert_eq!(
         folder.search().library(b"x.so"),
-        Ok(folder.0.join("inside/x.so"))
+        Ok(folder.0.path().join("inside/x.so"))
     );
-    fs::write(folder.0.join("base/x.so"), "2").unwrap();
+    fs::write(folder.0.path().join("base/x.so"), "2").unwrap();
     assert_eq!(
         folder.search().library(b"x.so"),
-        Ok(folder.0.join("base/x.so"))
+        Ok(folder.0.path().join("base/x.so"))
     );
     assert_eq!(
         folder.search().library(b"/nowhere/x.so"),

@@ -438,15 +438,14 @@ mod tests {
 
     #[test]
     fn a_command_is_written_also_where_somebody_else_has_written_since() {
-        let root = std::env::temp_dir().join(format!("ev3dev-driver-{}", std::process::id()));
-        let value = root.join("value");
-        std::fs::create_dir_all(&root).unwrap();
+        let root = tempfile::tempdir().unwrap();
+        let value = root.path().join("value");
         std::fs::write(&value, "").unwrap();
         let paths = Paths {
             power: "value".to_owned(),
             encoder: None,
         };
-        let tree = Tree::new(root.clone());
+        let tree = Tree::new(root.path().to_owned());
         let changes = Changes::new(KernelSlot::default());
         let driver = Driver::new(tree, paths, Control::new(false, 100), changes);
         driver.control().setpoints.duty_cycle = 30;
@@ -458,6 +457,5 @@ mod tests {
             }
         }
         driver.retire();
-        std::fs::remove_dir_all(root).unwrap();
     }
 }
