@@ -7,6 +7,7 @@ use super::{Grades, Run, number};
 use crate::check::verdict::Verdict;
 use crate::check::words;
 use lang_diagram::archive::{Entry, pack_document};
+use lang_text::escape::escaped;
 use lang_text::problem::Words;
 use std::fmt::Write as _;
 
@@ -243,22 +244,6 @@ fn float(out: &mut String, value: f64, style: &str) {
         "<table:table-cell{style} office:value-type=\"float\" office:value=\"{value}\"><text:p>{value}</text:p>\
          </table:table-cell>"
     );
-}
-
-/// A text in XML; what XML cannot hold is a question mark.
-fn escaped(text: &str) -> String {
-    let mut out = String::new();
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => out.push('?'),
-            c => out.push(c),
-        }
-    }
-    out
 }
 
 #[cfg(test)]

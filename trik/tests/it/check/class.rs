@@ -117,8 +117,7 @@ fn a_spreadsheet_has_numbers_texts_and_sums_and_names_are_never_more_than_texts(
     );
     let page = fs::read_to_string(board.path("g.html")).expect("a page");
     assert!(
-        page.contains("=HYPERLINK(&quot;http:x&quot;)&amp;&lt;b&gt;&#39;")
-            && !page.contains("<b>'"),
+        page.contains("=HYPERLINK(&quot;http:x&quot;)&amp;&lt;b&gt;'") && !page.contains("<b>'"),
         "{page}"
     );
     // Each link leads to a page that is there; runs that could not be have none.
