@@ -13,6 +13,8 @@ use crate::program::child;
 use crate::protocol::program::mailbox::Question;
 use lang_diagram::brick::{self, Command, Figure};
 use lang_diagram::ports::Port;
+use rand_core::{Rng as _, SeedableRng as _};
+use rand_xoshiro::Xoroshiro64Star;
 use std::collections::{HashMap, HashSet, VecDeque};
 use std::fmt::Display as Show;
 use std::fs::OpenOptions;
@@ -34,29 +36,21 @@ pub struct Robot<'a> {
     random: Random,
 }
 
-/// Numbers that look random (Marsaglia, Xorshift RNGs, 2003).
-struct Random(u32);
+/// Random numbers; the generator is one for processors of 32 bits.
+struct Random(Xoroshiro64Star);
 
 impl Random {
-    /// Seeded by the address space and the time of day, which differ from run to run.
+    /// Seeded by what the standard library seeds its tables with, which differs from run to run.
     fn new() -> Self {
         use std::hash::{BuildHasher, Hasher};
-        let hash = std::hash::RandomState::new().build_hasher().finish();
-        let [a, b, c, d, ..] = hash.to_le_bytes();
-        Self(u32::from_le_bytes([a, b, c, d]).max(1))
-    }
-
-    fn next(&mut self) -> u32 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 17;
-        self.0 ^= self.0 << 5;
-        self.0
+        let seed = std::hash::RandomState::new().build_hasher().finish();
+        Self(Xoroshiro64Star::seed_from_u64(seed))
     }
 
     /// Both bounds included.
     fn between(&mut self, low: i32, high: i32) -> i32 {
         let span = u64::from(high.abs_diff(low)) + 1;
-        let offset = (u64::from(self.next()) * span) >> 32;
+        let offset = (u64::from(self.0.next_u32()) * span) >> 32;
         let drawn = i64::from(low) + i64::try_from(offset).unwrap_or(0);
         i32::try_from(drawn).unwrap_or(high)
     }
