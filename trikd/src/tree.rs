@@ -58,7 +58,7 @@ pub struct Node {
     path: PathBuf,
     access: Access,
     file: RefCell<Option<File>>,
-    /// Who answers instead of a file, and the path that he knows.
+    /// What answers instead of a file, and the path that it knows.
     answers: Option<(Rc<dyn Answers>, String)>,
 }
 

@@ -101,7 +101,7 @@ impl Reading {
         };
         let is_whole = all.len() <= DCML_EDITOR_OFFERS;
         if !is_whole {
-            // Those that the letters fit first, so that nobody misses what he writes.
+            // Those that the letters fit first, so that nobody misses the word that they are writing.
             let begun = self.slice(word).to_ascii_lowercase();
             all.sort_by_key(|one| !one.label.to_ascii_lowercase().starts_with(&begun));
             all.truncate(DCML_EDITOR_OFFERS);

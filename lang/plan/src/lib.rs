@@ -3,7 +3,7 @@
 //!
 //! Owns the question and the answer, and checks the first. Knows a robot through [`System`] and what is in its way
 //! through [`Surroundings`] only; [`room`] puts both together for robots on a plane with [`obstacles`]. No clock: a caller that
-//! wants a limit of time looks at his own in the report of progress. The same question with the same seed has the same
+//! wants a limit of time looks at its own in the report of progress. The same question with the same seed has the same
 //! answer: the planner itself uses only operations that are exact on every processor, so answers differ between machines
 //! only as far as the functions of the system do.
 

@@ -412,7 +412,7 @@ impl Python {
                 None => self.reply(word, text, robot),
             };
             if calls > limits::SCRIPT_CALLS || self.tree.has_cleared(self.now) {
-                // Who asks and asks has used up his tick.
+                // A program that asks and asks has used up its tick.
                 self.pending = Some(Pending::Answer(answer));
                 return true;
             }
