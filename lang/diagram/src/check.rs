@@ -146,7 +146,7 @@ pub(super) fn successors(program: &Program, node: Node, tell: &mut dyn FnMut(Nod
 }
 
 /// Expressions of a node.
-fn sources(program: &Program, node: Node, tell: &mut dyn FnMut(u32)) {
+pub(super) fn sources(program: &Program, node: Node, tell: &mut dyn FnMut(u32)) {
     let Some(op) = program.ops.get(node as usize) else {
         return;
     };

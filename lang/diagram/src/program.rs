@@ -2,6 +2,7 @@
 //!
 //! Owns plain data, made by `lower` and run by `machine`. Several machines may share one program.
 
+use std::collections::HashMap;
 use std::rc::Rc;
 
 use super::blocks::wait::Measure;
@@ -348,6 +349,17 @@ impl Program {
     pub fn node(&self, id: &str) -> Option<Node> {
         let at = self.spots.iter().position(|spot| &*spot.id == id)?;
         Node::try_from(at).ok()
+    }
+
+    /// The node to which each expression belongs.
+    pub(crate) fn places_of_sources(&self) -> HashMap<Source, Node> {
+        let mut found = HashMap::new();
+        for node in 0..self.ops.len() as Node {
+            super::check::sources(self, node, &mut |source| {
+                found.insert(source, node);
+            });
+        }
+        found
     }
 
     /// The place of a node, for problems.
