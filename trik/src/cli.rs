@@ -60,7 +60,16 @@ enum Command {
     ///
     /// Exit status: 0 the program has ended; 1 it has failed, or was stopped; 2 it could not be run, or the connection
     /// was lost.
+    ///
+    /// With --watch each save of a diagram changes the one that runs, and motors do not stop.
     Run(remote::run::RunArgs),
+    /// Assign a variable of the diagram that runs on a robot.
+    ///
+    /// The value is an expression as in a block, and has the type that the variable has.
+    ///
+    /// Exit status: 0 it is assigned; 1 it is refused, or no diagram runs; 2 the robot could not be reached, or does not
+    /// answer.
+    Set(remote::live::SetArgs),
     /// End the program of a robot, and bring everything to rest.
     ///
     /// Several robots are stopped at once. Exit status: 0 all are at rest; 1 a robot does not say so; 2 one could not be
@@ -208,6 +217,7 @@ fn run(command: Command) -> Result<u8, Refusal> {
     match command {
         Command::Up(args) => up::run(*args),
         Command::Run(args) => Ok(remote::run::run(&args)),
+        Command::Set(args) => Ok(remote::live::set(&args)),
         Command::Stop(args) => Ok(remote::fleet::stop(&args)),
         Command::Send(args) => remote::fleet::send(&args),
         Command::Status(args) => Ok(remote::fleet::status(&args)),

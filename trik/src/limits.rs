@@ -48,6 +48,8 @@ pub const MESSAGE_BYTES_MAX: usize = 1 << 20;
 pub const KEEPALIVE_MS: u32 = 2_000;
 /// Silence after which a robot counts as lost; it says something every 3 s.
 pub const SILENCE_MS: u32 = 10_000;
+/// How often a file that is watched is looked at.
+pub const SAVE_LOOK_MS: u32 = 200;
 /// Longest wait before clocks are looked at again.
 pub const TURN_MS: u32 = 250;
 /// Wait while the reader of the output has no room.

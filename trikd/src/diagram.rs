@@ -6,6 +6,7 @@
 // A request, a message or a command that is forgotten must not pass in silence.
 #![deny(clippy::wildcard_enum_match_arm)]
 
+mod live;
 mod readings;
 mod robot;
 mod watch;
@@ -83,15 +84,9 @@ impl Diagram {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let failed = |why| Failure::Diagram(name.clone().into_owned(), why);
         let bytes = read_save(path).map_err(failed)?;
-        let told = |problems: &[Problem]| {
-            let errors = problems
-                .iter()
-                .filter(|problem| problem.severity == Severity::Error);
-            let lines = errors.map(|problem| problem.in_locale(self.locale));
-            failed(NoDiagram::Problems(lines.collect()))
-        };
-        let opened = read::read(&bytes).map_err(|problems| told(&problems))?;
-        let lowered = lower(&opened.project, World::Robot).map_err(|problem| told(&[problem]))?;
+        let opened = opened(&bytes, self.locale).map_err(failed)?;
+        let lowered = lower(&opened.project, World::Robot)
+            .map_err(|problem| failed(errors_among(&[problem], self.locale)))?;
         let warnings = opened.problems.iter().chain(&lowered.problems);
         for problem in warnings.take(limits::DIAGRAM_WARNINGS) {
             // Faulty blocks tell their fault when they are reached; until then it is a warning.
@@ -122,6 +117,19 @@ fn read_save(path: &Path) -> Result<Vec<u8>, NoDiagram> {
     Ok(bytes)
 }
 
+/// The project of a save.
+fn opened(bytes: &[u8], locale: Locale) -> Result<read::Opened, NoDiagram> {
+    read::read(bytes).map_err(|problems| errors_among(&problems, locale))
+}
+
+fn errors_among(problems: &[Problem], locale: Locale) -> NoDiagram {
+    let errors = problems
+        .iter()
+        .filter(|problem| problem.severity == Severity::Error);
+    let lines = errors.map(|problem| problem.in_locale(locale));
+    NoDiagram::Problems(lines.collect())
+}
+
 /// Steps until the program has ended or the daemon is gone.
 fn run(
     machine: &mut Machine,
@@ -149,6 +157,16 @@ fn run(
                     Incoming::Mail(_, text) => robot.post(text),
                     Incoming::Web => host.web(&watch::variables(machine))?,
                     Incoming::Watch(is_wanted) => watch.set_wanted(is_wanted),
+                    Incoming::Patch(when_gone, path) => {
+                        let locale = watch.locale();
+                        let answer = live::patch(machine, (when_gone, &path), robot, watch, locale);
+                        host.changed(answer.is_changed, &answer.text)?;
+                    }
+                    Incoming::Set(text) => {
+                        let locale = watch.locale();
+                        let answer = live::set(machine, &text, robot, watch, locale);
+                        host.changed(answer.is_changed, &answer.text)?;
+                    }
                     // The daemon starts another program for them; a client that sends one all the same learns that it is lost.
                     Incoming::Direct(_) => host.error("a diagram takes no direct commands")?,
                     Incoming::Gone => return Ok(()),

@@ -8,13 +8,14 @@ use crate::engine::Start;
 use crate::limits;
 use crate::protocol::frame::{Decoder, encode};
 use crate::protocol::program::mailbox::Question;
-use crate::protocol::program::{FromProgram, ToProgram};
+use crate::protocol::program::{FromProgram, ToProgram, WhenGone};
 use nix::errno::Errno;
 use nix::sys::socket::MsgFlags;
 use std::cell::RefCell;
 use std::io::{self, Read, Write};
 use std::os::fd::{AsFd, AsRawFd, BorrowedFd, OwnedFd};
 use std::os::unix::net::UnixStream;
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// What comes from the daemon while a program runs.
@@ -28,6 +29,10 @@ pub enum Incoming {
     Web,
     /// Whether somebody wants to see where the program is: tell it with [`Host::watch`].
     Watch(bool),
+    /// A new version of the program is in this file: answer with [`Host::changed`].
+    Patch(WhenGone, PathBuf),
+    /// An assignment, `NAME=EXPRESSION`: answer with [`Host::changed`].
+    Set(String),
     /// The daemon is gone; the program should end.
     Gone,
 }
@@ -84,7 +89,9 @@ impl Host {
                 | ToProgram::Mail { .. }
                 | ToProgram::Answer(_)
                 | ToProgram::Web
-                | ToProgram::Watch(_),
+                | ToProgram::Watch(_)
+                | ToProgram::Patch { .. }
+                | ToProgram::Set(_),
             )
             | None => {
                 let word = frame.split(':').next().unwrap_or_default();
@@ -174,6 +181,17 @@ impl Host {
     /// The daemon is gone.
     pub fn watch(&self, line: &str, json: &str) -> io::Result<()> {
         self.send(FromProgram::Watch { line, json })
+    }
+
+    /// Tells what has become of a new version or an assignment.
+    ///
+    /// # Errors
+    /// The daemon is gone.
+    pub fn changed(&self, is_changed: bool, text: &str) -> io::Result<()> {
+        self.send(FromProgram::Changed {
+            is_changed,
+            text: shown(text),
+        })
     }
 
     /// Shows output as it is; the newline is part of it.
@@ -269,6 +287,8 @@ fn incoming(frame: &str) -> Option<Incoming> {
         ToProgram::Mail { hull, text } => Some(Incoming::Mail(hull, text.to_owned())),
         ToProgram::Web => Some(Incoming::Web),
         ToProgram::Watch(is_wanted) => Some(Incoming::Watch(is_wanted)),
+        ToProgram::Patch { when_gone, path } => Some(Incoming::Patch(when_gone, path.into())),
+        ToProgram::Set(text) => Some(Incoming::Set(text.to_owned())),
         // A program starts once, and the answer to what was posted is dropped.
         ToProgram::File(_) | ToProgram::Script(_) | ToProgram::Start | ToProgram::Answer(_) => None,
     }

@@ -20,7 +20,7 @@ pub mod rest;
 use crate::clients::Clients;
 use crate::feedback::{Feedback, Moment};
 use crate::protocol::news::{self, End};
-use crate::protocol::program::{FromProgram, ToProgram};
+use crate::protocol::program::{FromProgram, ToProgram, WhenGone};
 use crate::server::mailbox::Mailbox;
 use crate::settings::Settings;
 use crate::{limits, log};
@@ -32,7 +32,7 @@ use output::Meter;
 pub use queue::{Command, Programs};
 use reaper::{Ended, Reaper};
 use rest::Rest;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
@@ -140,12 +140,7 @@ impl Supervisor {
             Command::Run(path) => {
                 self.end(Cause::Ordered("another program")).await;
                 let language = Language::of(&path);
-                let folder = &self.around.settings.scripts;
-                let name = path
-                    .strip_prefix(folder)
-                    .unwrap_or(&path)
-                    .display()
-                    .to_string();
+                let name = self.name_of(&path);
                 let file = path.display().to_string();
                 self.start(language, name, Some(path), ToProgram::File(&file));
             }
@@ -159,6 +154,13 @@ impl Supervisor {
                 );
             }
             Command::Direct(code) => self.direct(&code).await,
+            Command::Patch(when_gone, path) => self.patch(when_gone, &path),
+            Command::Set(text) => {
+                if !self.runs_diagram() || !self.send(ToProgram::Set(&text)) {
+                    let name = text.split('=').next().unwrap_or_default().trim();
+                    self.broadcast(&news::not_changed(name, news::NO_DIAGRAM));
+                }
+            }
             Command::Stop(who) => {
                 self.end(Cause::Ordered(who)).await;
                 // Also what came while nothing ran: after a stop everything begins anew.
@@ -189,6 +191,43 @@ impl Supervisor {
             }
             Command::Quit(_) => {}
         }
+    }
+
+    /// A file as people name it.
+    fn name_of(&self, path: &Path) -> String {
+        let folder = &self.around.settings.scripts;
+        let name = path.strip_prefix(folder).unwrap_or(path);
+        name.display().to_string()
+    }
+
+    /// Whether what runs is a diagram.
+    fn runs_diagram(&self) -> bool {
+        let runs = self.current.as_ref();
+        self.last == Language::Diagram && runs.is_some_and(|current| current.child.runs())
+    }
+
+    /// A new version for the diagram that runs, which answers by itself.
+    fn patch(&mut self, when_gone: WhenGone, path: &Path) {
+        let name = self.name_of(path);
+        let runs = match &self.current {
+            Some(current) if self.runs_diagram() => Some(current.name.clone()),
+            Some(_) | None => None,
+        };
+        let file = path.display().to_string();
+        let why = match runs {
+            None => news::NO_DIAGRAM.to_owned(),
+            Some(other) if other != name => news::other_runs(&other),
+            Some(_)
+                if self.send(ToProgram::Patch {
+                    when_gone,
+                    path: &file,
+                }) =>
+            {
+                return;
+            }
+            Some(_) => news::TOO_MUCH.to_owned(),
+        };
+        self.broadcast(&news::not_changed(&name, &why));
     }
 
     async fn direct(&mut self, code: &str) {
@@ -336,6 +375,10 @@ impl Supervisor {
                 }
             }
             FromProgram::Watch { line, json } => self.around.clients.send_to_watchers(line, json),
+            FromProgram::Changed { is_changed, text } => {
+                let kind = if is_changed { "info" } else { "error" };
+                self.show(kind, text);
+            }
         }
     }
 
@@ -494,7 +537,8 @@ impl Supervisor {
                 FromProgram::Events
                 | FromProgram::Mailbox(_)
                 | FromProgram::Web(_)
-                | FromProgram::Watch { .. },
+                | FromProgram::Watch { .. }
+                | FromProgram::Changed { .. },
             )
             | None => {}
         }

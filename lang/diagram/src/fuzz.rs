@@ -2,7 +2,7 @@
 //!
 //! Run by tests with mutated saves, and by any fuzzer.
 
-mod lowering;
+pub(crate) mod lowering;
 mod saves;
 
 pub use lowering::{lowering, project};

@@ -10,6 +10,7 @@ pub mod blocks;
 pub mod brick;
 pub mod check;
 pub mod convert;
+pub mod debug;
 pub mod devices;
 pub mod fuzz;
 pub mod generate;

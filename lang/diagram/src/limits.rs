@@ -44,3 +44,11 @@ pub const GENERATED_DEPTH_MAX: usize = 100;
 pub const PICTURE_BLOCKS_MAX: usize = 5000;
 /// Corners of one link in a picture.
 pub const PICTURE_CORNERS_MAX: usize = 64;
+/// Breakpoints of a debugger, and threads that it holds alone.
+pub const BREAKPOINTS_MAX: usize = 1000;
+/// Bytes of a condition or a line of a breakpoint.
+pub const CONDITION_MAX: usize = 4096;
+/// Lines of breakpoints that wait for somebody to take them; the oldest are lost.
+pub const DEBUG_LINES_MAX: usize = 1000;
+/// Bytes of such a line.
+pub const DEBUG_LINE_BYTES_MAX: usize = 1024;

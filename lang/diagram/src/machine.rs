@@ -4,15 +4,19 @@
 //! order of blocks, then sensor variables, then what has been put off. Knows no robot and no clock: the caller gives both.
 //! The same program with the same readings does the same.
 
+mod agenda;
 mod clocks;
 mod flow;
 mod formulas;
+mod guard;
 mod loops;
+pub mod patch;
 mod perform;
 mod sensors;
 mod tasks;
 mod threads;
 pub mod trace;
+pub mod view;
 mod waits;
 
 #[cfg(test)]
@@ -25,14 +29,16 @@ use super::brick::{Brick, Command};
 use super::lower::World;
 use super::program::{Node, Program};
 use super::words;
+use agenda::Work;
 use clocks::Clock;
 use formulas::Formulas;
 pub(crate) use formulas::wanted;
+use guard::Held;
 use lang_expr::{Compat, Value};
 use lang_text::problem::{Place, Problem, Words};
 use loops::Loops;
 use sensors::Sensors;
-use threads::{Handle, State, Threads};
+use threads::{Handle, Threads};
 use trace::Trace;
 
 /// How a program runs.
@@ -84,7 +90,7 @@ pub const STEP_MS: u32 = 10;
 const TURN_MS: u32 = 3 * STEP_MS;
 
 /// A program that runs.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Machine {
     program: Rc<Program>,
     options: Options,
@@ -117,6 +123,16 @@ pub struct Machine {
     /// Errors that are not kept.
     more_errors: u32,
     ended: Option<u32>,
+    /// What the present step has still to do, the next last.
+    agenda: Vec<Work>,
+    /// Threads that run long come after blocks that follow each other.
+    soon: VecDeque<Handle>,
+    /// Whether the trace is asked before each block.
+    is_guarded: bool,
+    /// Why nothing runs for now.
+    held: Option<Held>,
+    /// Who enters its block without the trace being asked: it was.
+    pass: Option<Handle>,
     /// Reused for readings.
     scratch: Vec<i32>,
 }
@@ -128,6 +144,8 @@ enum Deferred {
     Thread(Handle),
     /// A block that is done then.
     Block(Node),
+    /// A thread that was held alone and is let go.
+    Released(Handle),
 }
 
 /// What a step works with.
@@ -161,6 +179,11 @@ impl Machine {
             errors: Vec::new(),
             more_errors: 0,
             ended: None,
+            agenda: Vec::new(),
+            soon: VecDeque::new(),
+            is_guarded: false,
+            held: None,
+            pass: None,
             scratch: Vec::new(),
         }
     }
@@ -172,39 +195,35 @@ impl Machine {
             return self.status();
         }
         let env = &mut Env { brick, trace };
+        if self.held.is_some() {
+            return self.status();
+        }
+        self.plan(Work::WorkOff);
+        self.plan(Work::Beginning);
         match self.began {
             None => self.begin(now, env),
-            Some(began) => {
-                let before = self.now;
-                self.now = now.saturating_sub(began).max(before);
-                self.tick(self.now - before, env);
-            }
+            Some(began) => self.let_pass(now, began),
         }
-        if let Some((_, until)) = self.kept
-            && self.now >= until
-            && let Some((chain, _)) = self.kept.take()
-        {
-            if let Some(problem) = self.unfit.take() {
-                self.report(problem, env);
-                self.end_all(env);
-            }
-            self.active = chain;
-            self.is_beginning = true;
-            self.drive(env);
-            self.is_beginning = false;
-        }
-        self.work_off(env);
+        self.go_on(env);
         self.status()
     }
 
     /// The clocks of a moment at which the program is being stopped: blocks that are due run once more, and whatever they
     /// put off does not.
     pub fn last_tick(&mut self, now: u32, brick: &mut dyn Brick, trace: &mut dyn Trace) {
-        if let (None, Some(began)) = (self.ended, self.began) {
-            let before = self.now;
-            self.now = now.saturating_sub(began).max(before);
-            self.tick(self.now - before, &mut Env { brick, trace });
+        if let (None, None, Some(began)) = (self.ended, &self.held, self.began) {
+            self.let_pass(now, began);
+            self.go_on(&mut Env { brick, trace });
         }
+    }
+
+    /// Time passes until a moment.
+    fn let_pass(&mut self, now: u32, began: u32) {
+        let before = self.now;
+        self.now = now.saturating_sub(began).max(before);
+        self.plan(Work::Tick {
+            elapsed: self.now - before,
+        });
     }
 
     /// What it is doing.
@@ -309,108 +328,6 @@ impl Machine {
         self.kept = Some((vec![main], wait));
     }
 
-    /// What the passing of time brings: timers and waits by the order of blocks, then sensor variables.
-    fn tick(&mut self, elapsed: u32, env: &mut Env<'_>) {
-        if elapsed == 0 {
-            return;
-        }
-        self.hear_announced(env);
-        let mut after = None;
-        while let Some(node) = self.next_clock(after) {
-            after = Some(node);
-            if self.clock_is_due(node, elapsed) {
-                self.ring(node, env);
-            }
-            if self.ended.is_some() {
-                return;
-            }
-        }
-        if self.sensors.are_due(elapsed) {
-            self.sensors.refresh(env.brick);
-            self.answer_waits(env);
-        }
-    }
-
-    /// What was put off: first what is to follow the events of this step, then what had to wait for a turn.
-    ///
-    /// What the first puts off for a turn waits for the next step; but the original's simulator comes through its event
-    /// loop once more after each third step, and there it does not wait.
-    fn work_off(&mut self, env: &mut Env<'_>) {
-        let is_turn = !self.options.in_turns || self.now.is_multiple_of(TURN_MS);
-        let mut due = self.deferred.len();
-        while let Some(node) = self.posted.pop_front() {
-            self.done(node, env);
-        }
-        if is_turn {
-            due = self.deferred.len();
-        }
-        // The original takes posted events before its timers, and a thread that has run long enough waits for a timer:
-        // one that a block has just led on comes in the same pass, one that a timer has led on in the next.
-        let mut soon = VecDeque::new();
-        for _ in 0..due {
-            match self.deferred.pop_front() {
-                None => break,
-                Some(Deferred::Block(node)) => self.follow(node, &mut soon, env),
-                Some(Deferred::Thread(handle)) => self.resume(handle, env),
-            }
-        }
-        for handle in soon {
-            self.resume(handle, env);
-        }
-    }
-
-    /// A block that was put off is done, and so are those of its kind that come right behind it: the original posts them
-    /// to the same pass. Threads that have run long enough meanwhile come `soon`.
-    fn follow(&mut self, node: Node, soon: &mut VecDeque<Handle>, env: &mut Env<'_>) {
-        let mut blocks = VecDeque::from([node]);
-        while let Some(node) = blocks.pop_front() {
-            let before = self.deferred.len();
-            self.done(node, env);
-            let mut threads = Vec::new();
-            for deferred in self.deferred.drain(before.min(self.deferred.len())..) {
-                match deferred {
-                    Deferred::Thread(handle) => threads.push(handle),
-                    Deferred::Block(node) => blocks.push_back(node),
-                }
-            }
-            for handle in threads.into_iter().rev() {
-                soon.push_front(handle);
-            }
-        }
-    }
-
-    /// A thread that has run long enough goes on.
-    fn resume(&mut self, handle: Handle, env: &mut Env<'_>) {
-        if let Some(thread) = self.threads.get_mut(handle)
-            && matches!(thread.state, State::Deferred)
-        {
-            thread.state = State::Resumed;
-            self.active.push(handle);
-            self.drive(env);
-        }
-    }
-
-    /// A block that made threads wait is done: they go on, one after another, in the order in which they came.
-    fn done(&mut self, node: Node, env: &mut Env<'_>) {
-        let Some(next) = self.next_of(node) else {
-            return;
-        };
-        self.lead(node, next, env);
-    }
-
-    /// Leads all threads that wait at a node to another one.
-    fn lead(&mut self, node: Node, next: Node, env: &mut Env<'_>) {
-        for handle in self.threads.waiting_at(node) {
-            if let Some(thread) = self.threads.get_mut(handle)
-                && thread.is_waiting_at(node)
-            {
-                thread.go(next);
-                self.active.push(handle);
-                self.drive(env);
-            }
-        }
-    }
-
     /// Where the flow goes after a block with one link.
     fn next_of(&self, node: Node) -> Option<Node> {
         self.program.next(node)
@@ -460,10 +377,15 @@ impl Machine {
             env.trace.thread_ended(self.now, slot);
         }
         self.active.clear();
+        self.agenda.clear();
+        self.soon.clear();
+        self.held = None;
+        self.pass = None;
         self.posted.clear();
         self.deferred.clear();
         self.clocks.clear();
         self.kept = None;
+        self.is_beginning = false;
         env.brick.command(Command::Rest);
     }
 }

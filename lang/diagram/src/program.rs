@@ -3,6 +3,7 @@
 //! Owns plain data, made by `lower` and run by `machine`, and what each operation is to everybody who only looks at
 //! programs: where it leads, its texts, its variable, what it waits for. Several machines may share one program.
 
+use std::collections::HashMap;
 use std::rc::Rc;
 
 use super::blocks::act::Effect;
@@ -510,6 +511,14 @@ impl Program {
             | Op::Random { .. }
             | Op::Copy { .. } => Wakes::AtOnce,
         }
+    }
+
+    /// The node to which each expression belongs.
+    pub(crate) fn places_of_texts(&self) -> HashMap<Source, Node> {
+        let nodes = 0..self.ops.len() as Node;
+        nodes
+            .flat_map(|node| self.texts(node).into_iter().map(move |text| (text, node)))
+            .collect()
     }
 
     /// The place of a node, for problems.

@@ -368,3 +368,42 @@ pub(super) fn is_cancel(guard: &str) -> bool {
     let guard = guard.to_lowercase();
     guard == "cancel" || guard == "отмена"
 }
+
+pub(super) fn not_read(sensor: &str) -> Words {
+    Words::new(
+        format!("The program does not read {sensor}, so its value is not known here"),
+        format!("Программа не читает {sensor}, поэтому его значение здесь неизвестно"),
+    )
+}
+
+pub(super) fn only_looked(function: &str) -> Words {
+    Words::new(
+        format!(
+            "{function} would change the run; an expression that is only looked at cannot have it"
+        ),
+        format!(
+            "{function} изменила бы ход программы; в просматриваемом выражении её быть не может"
+        ),
+    )
+}
+
+pub(super) fn no_name(text: &str) -> Words {
+    Words::new(
+        format!("{text:?} is no name of a variable"),
+        format!("{text:?} - не имя переменной"),
+    )
+}
+
+pub(super) fn kit_of_patch() -> Words {
+    Words::new(
+        "The new version is for another kit than the program that runs; stop it and start the new one",
+        "Новая версия - для другого конструктора; остановите программу и запустите новую",
+    )
+}
+
+pub(super) fn block_gone(thread: &str) -> Words {
+    Words::new(
+        format!("The new version does not have this block, at which thread {thread} is"),
+        format!("В новой версии нет этого блока, а поток {thread} находится в нём"),
+    )
+}

@@ -3,6 +3,7 @@
 //! Owns the person in front of it: progress, Ctrl-C, standard output and standard error.
 
 use super::link::{Link, Message, ms};
+use super::live::{Gone, Watched};
 use super::output::{Output, harmless, say};
 use super::target::{Target, target, the_one};
 use super::upload::{Upload, start};
@@ -27,6 +28,19 @@ pub(crate) struct RunArgs {
     /// computer, or else 127.0.0.1].
     #[arg(long, value_name = "HOST[:PORT]", value_parser = target)]
     pub robot: Option<Target>,
+    /// Send the diagram again at each save, and change the one that runs without a stop: blocks that are still there keep
+    /// their loops and waits, variables keep their values. A save with mistakes changes nothing.
+    #[arg(long)]
+    pub watch: bool,
+    /// What becomes of threads at blocks that a save no longer has.
+    #[arg(
+        long,
+        value_enum,
+        default_value_t,
+        requires = "watch",
+        value_name = "WHAT"
+    )]
+    pub gone: Gone,
 }
 
 /// The program has failed, or was stopped.
@@ -44,6 +58,10 @@ pub(crate) fn run(args: &RunArgs) -> u8 {
 }
 
 fn follow(args: &RunArgs) -> Result<u8, Error> {
+    let watched = match args.watch {
+        true => Some(Watched::new(&args.file, args.gone)?),
+        false => None,
+    };
     let upload = Upload::read(&args.file)?;
     let target = match &args.robot {
         Some(target) => target.clone(),
@@ -69,6 +87,7 @@ fn follow(args: &RunArgs) -> Result<u8, Error> {
         output: Output::to(io::stdout()),
         signals,
         stopping: None,
+        watched,
     };
     let code = session.run();
     let Session {
@@ -89,6 +108,8 @@ struct Session {
     signals: SignalFd,
     /// It was told to stop, and has that long.
     stopping: Option<Instant>,
+    /// Its file, if saves of it change the program.
+    watched: Option<Watched>,
 }
 
 impl Session {
@@ -127,6 +148,13 @@ impl Session {
                     self.link.name(),
                     self.name
                 )));
+            }
+            if self.stopping.is_none()
+                && let Some(requests) = self.watched.as_mut().and_then(Watched::save)
+            {
+                requests
+                    .iter()
+                    .for_each(|request| self.link.ask(&[request]));
             }
             self.turn()?;
         }

@@ -54,6 +54,13 @@ impl Upload {
         Ok(Self { name, content })
     }
 
+    /// The request that has it kept.
+    pub(super) fn request(&self) -> Vec<u8> {
+        let mut request = format!("file:{}:", self.name).into_bytes();
+        request.extend_from_slice(&self.content);
+        request
+    }
+
     /// Sends it and waits until the robot has kept it. `report` hears how many bytes of how many are on their way.
     ///
     /// # Errors
@@ -63,8 +70,7 @@ impl Upload {
         link: &mut Link,
         mut report: impl FnMut(usize, usize),
     ) -> Result<(), Error> {
-        let head = format!("file:{}:", self.name);
-        link.ask(&[head.as_bytes(), &self.content]);
+        link.ask(&[&self.request()]);
         // Answered in order, so behind the answer the file is kept or refused.
         link.ask(&[b"version"]);
         let all = link.unsent();

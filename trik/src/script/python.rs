@@ -259,7 +259,10 @@ impl Python {
             }
             FromProgram::Mailbox(question) => return Some(Ok(self.mailbox(question, robot))),
             // Nobody talks to a judged program, or looks at its variables and blocks.
-            FromProgram::Events | FromProgram::Web(_) | FromProgram::Watch { .. } => {}
+            FromProgram::Events
+            | FromProgram::Web(_)
+            | FromProgram::Watch { .. }
+            | FromProgram::Changed { .. } => {}
         }
         None
     }

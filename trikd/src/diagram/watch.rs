@@ -42,6 +42,11 @@ impl Watch {
         }
     }
 
+    /// The language of messages.
+    pub(super) fn locale(&self) -> Locale {
+        self.locale
+    }
+
     /// Whether somebody looks from now on.
     pub(super) fn set_wanted(&mut self, is_wanted: bool) {
         self.is_new = is_wanted;

@@ -61,8 +61,8 @@ fn serve(shared: &Shared, outside: &dyn Outside) -> io::Result<()> {
                 Incoming::Direct(text) => shared.deliver(Some(MAIN), &Event::Direct(text)),
                 Incoming::Mail(hull, text) => shared.post(hull, text),
                 Incoming::Web => shared.deliver(Some(MAIN), &Event::Web),
-                // A program in a language of text has no blocks.
-                Incoming::Watch(_) => {}
+                // A program in a language of text has no blocks, and the daemon patches diagrams only.
+                Incoming::Watch(_) | Incoming::Patch(..) | Incoming::Set(_) => {}
                 Incoming::Gone => return Ok(()),
             }
         }

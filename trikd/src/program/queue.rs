@@ -4,6 +4,7 @@
 
 use crate::limits;
 use crate::protocol::news;
+use crate::protocol::program::WhenGone;
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::fmt::Write;
@@ -20,6 +21,10 @@ pub enum Command {
     Script(String),
     /// Evaluate this text after the ones before it.
     Direct(String),
+    /// Put this file in the place of the diagram that runs.
+    Patch(WhenGone, PathBuf),
+    /// Assign a variable of the diagram that runs, `NAME=EXPRESSION`.
+    Set(String),
     /// End what runs and bring everything to rest; says for whom.
     Stop(&'static str),
     /// A message of the mailbox for the program: hull number and text.

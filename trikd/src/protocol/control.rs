@@ -1,5 +1,7 @@
 //! Requests of the control port 8888.
 
+use super::program::WhenGone;
+
 /// What a client asks for. Prefixes are case sensitive, and the first that fits counts.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub enum Request<'a> {
@@ -26,6 +28,15 @@ pub enum Request<'a> {
     Stop,
     /// Tell this client where the running diagram is, or no more.
     Watch(bool),
+    /// Put a program that is there in the place of the diagram that runs.
+    Patch {
+        /// What becomes of threads at blocks that it does not have.
+        when_gone: WhenGone,
+        /// Its name.
+        name: &'a [u8],
+    },
+    /// Assign a variable of the diagram that runs, `NAME=EXPRESSION`.
+    Set(&'a [u8]),
     /// What runs now, and how the last program ended, when everything asked for before is done.
     Status,
     /// Something else.
@@ -62,10 +73,25 @@ impl<'a> Request<'a> {
         if let Some(text) = frame.strip_prefix(b"directScript:") {
             return Self::DirectScript(text);
         }
+        if let Some(rest) = frame.strip_prefix(b"patch:") {
+            return Self::patch(rest).unwrap_or(Self::Unknown);
+        }
+        if let Some(text) = frame.strip_prefix(b"set:") {
+            return Self::Set(text);
+        }
         match frame.strip_prefix(b"direct:") {
             Some(text) => Self::Direct(text),
             None => Self::Unknown,
         }
+    }
+
+    fn patch(rest: &'a [u8]) -> Option<Self> {
+        let colon = rest.iter().position(|byte| *byte == b':')?;
+        let (word, name) = (&rest[..colon], &rest[colon + 1..]);
+        Some(Self::Patch {
+            when_gone: WhenGone::of(std::str::from_utf8(word).ok()?)?,
+            name,
+        })
     }
 }
 
@@ -89,6 +115,14 @@ mod tests {
         assert_eq!(Request::parse(b"direct:x"), Request::Direct(b"x"));
         assert_eq!(Request::parse(b"keepalive now"), Request::Keepalive);
         assert_eq!(Request::parse(b"status"), Request::Status);
+        let patch = Request::Patch {
+            when_gone: WhenGone::Refuse,
+            name: b"a:b.qrs",
+        };
+        assert_eq!(Request::parse(b"patch:refuse:a:b.qrs"), patch);
+        assert_eq!(Request::parse(b"patch:maybe:a.qrs"), Request::Unknown);
+        assert_eq!(Request::parse(b"patch:a.qrs"), Request::Unknown);
+        assert_eq!(Request::parse(b"set:n=5"), Request::Set(b"n=5"));
         for unknown in [
             &b""[..],
             b"Stop",

@@ -16,6 +16,40 @@ pub const UPLOAD_FAILED: &str = "the upload failed: ";
 /// How it ends when a client is told how many messages it has lost.
 pub const SLOW_READER: &str = "this computer reads more slowly than the robot writes";
 
+/// Why nothing is changed while no diagram runs.
+pub const NO_DIAGRAM: &str = "no diagram runs";
+/// Why nothing is changed while the diagram has not read what came before.
+pub const TOO_MUCH: &str = "what came before is not done yet; try again";
+
+/// Why a diagram is not changed by the save of another one.
+pub fn other_runs(name: &str) -> String {
+    format!("{name} runs; a new version has the name of the diagram that runs")
+}
+
+/// What a robot says when a new version of this diagram is in force, or this variable has a new value, after `info: `.
+pub fn changed(name: &str, what: &str) -> String {
+    format!("{name} is changed: {what}")
+}
+
+/// The message when it is not. What ran goes on as it was.
+pub fn not_changed(name: &str, why: &str) -> String {
+    format!("error: {}", unchanged(name, why))
+}
+
+/// What follows `error: ` in [`not_changed`].
+pub fn unchanged(name: &str, why: &str) -> String {
+    format!("{name} is not changed: {why}")
+}
+
+/// Whether a text is [`changed`] or [`unchanged`] about this name, and then which: true for changed.
+pub fn is_changed(text: &str, name: &str) -> Option<bool> {
+    let rest = text.strip_prefix(name)?;
+    if rest.starts_with(" is changed: ") {
+        return Some(true);
+    }
+    rest.starts_with(" is not changed: ").then_some(false)
+}
+
 /// How a program ended.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum End<'a> {

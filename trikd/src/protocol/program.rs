@@ -31,6 +31,41 @@ pub enum ToProgram<'a> {
     Web,
     /// Whether somebody wants to see where the program is.
     Watch(bool),
+    /// A new version of the diagram that runs is in this file.
+    Patch {
+        /// What becomes of threads at blocks that it does not have.
+        when_gone: WhenGone,
+        /// Its absolute path.
+        path: &'a str,
+    },
+    /// An assignment by a person, `NAME=EXPRESSION`.
+    Set(&'a str),
+}
+
+/// What becomes of threads at blocks that a new version of a diagram does not have.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum WhenGone {
+    /// They end with an error.
+    End,
+    /// The new version is refused.
+    Refuse,
+}
+
+impl WhenGone {
+    /// The word in a message.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::End => "end",
+            Self::Refuse => "refuse",
+        }
+    }
+
+    /// What a word says.
+    pub fn of(word: &str) -> Option<Self> {
+        [Self::End, Self::Refuse]
+            .into_iter()
+            .find(|when_gone| when_gone.word() == word)
+    }
 }
 
 /// Something that a program sends to the daemon.
@@ -55,16 +90,23 @@ pub enum FromProgram<'a> {
         /// For programs, a JSON object.
         json: &'a str,
     },
+    /// What has become of a new version or an assignment.
+    Changed {
+        /// Whether it is in force.
+        is_changed: bool,
+        /// What has changed, or why nothing has, for people.
+        text: &'a str,
+    },
 }
 
 /// The words of [`ToProgram`], in the order of the document.
-pub const TO_PROGRAM: [&str; 8] = [
-    "file", "script", "start", "direct", "mail", "answer", "web", "watch",
+pub const TO_PROGRAM: [&str; 10] = [
+    "file", "script", "start", "direct", "mail", "answer", "web", "watch", "patch", "set",
 ];
 
 /// The words of [`FromProgram`], in the order of the document.
-pub const FROM_PROGRAM: [&str; 7] = [
-    "print", "error", "info", "events", "mailbox", "web", "watch",
+pub const FROM_PROGRAM: [&str; 8] = [
+    "print", "error", "info", "events", "mailbox", "web", "watch", "changed",
 ];
 
 impl<'a> ToProgram<'a> {
@@ -79,6 +121,8 @@ impl<'a> ToProgram<'a> {
             Self::Answer(text) => format!("answer:{text}"),
             Self::Web => "web:".to_owned(),
             Self::Watch(is_wanted) => format!("watch:{}", u8::from(is_wanted)),
+            Self::Patch { when_gone, path } => format!("patch:{}:{path}", when_gone.word()),
+            Self::Set(text) => format!("set:{text}"),
         };
         text.into_bytes()
     }
@@ -101,6 +145,14 @@ impl<'a> ToProgram<'a> {
             "answer" => Self::Answer(rest),
             "web" => Self::Web,
             "watch" => Self::Watch(rest == "1"),
+            "patch" => {
+                let (word, path) = rest.split_once(':')?;
+                Self::Patch {
+                    when_gone: WhenGone::of(word)?,
+                    path,
+                }
+            }
+            "set" => Self::Set(rest),
             _ => return None,
         })
     }
@@ -117,6 +169,9 @@ impl<'a> FromProgram<'a> {
             Self::Mailbox(question) => format!("mailbox:{question}"),
             Self::Web(json) => format!("web:{json}"),
             Self::Watch { line, json } => format!("watch:{line}\n{json}"),
+            Self::Changed { is_changed, text } => {
+                format!("changed:{}:{text}", u8::from(is_changed))
+            }
         };
         text.into_bytes()
     }
@@ -134,6 +189,13 @@ impl<'a> FromProgram<'a> {
             "watch" => {
                 let (line, json) = rest.split_once('\n').unwrap_or((rest, "{}"));
                 Self::Watch { line, json }
+            }
+            "changed" => {
+                let (is_changed, text) = rest.split_once(':')?;
+                Self::Changed {
+                    is_changed: is_changed == "1",
+                    text,
+                }
             }
             _ => return None,
         })
@@ -169,6 +231,8 @@ mod tests {
                 ToProgram::Answer(text),
                 ToProgram::Web,
                 ToProgram::Watch(is_wanted),
+                ToProgram::Patch { when_gone: [WhenGone::End, WhenGone::Refuse][usize::from(is_wanted)], path: text },
+                ToProgram::Set(text),
             ] {
                 let payload = String::from_utf8(said.encode()).unwrap();
                 prop_assert_eq!(ToProgram::parse(&payload), Some(said));
@@ -186,6 +250,7 @@ mod tests {
                 FromProgram::Mailbox(text),
                 FromProgram::Web(text),
                 FromProgram::Watch { line: &line, json: text },
+                FromProgram::Changed { is_changed: text.len() % 2 == 0, text },
             ] {
                 let payload = String::from_utf8(said.encode()).unwrap();
                 prop_assert_eq!(FromProgram::parse(&payload), Some(said));
@@ -201,10 +266,13 @@ mod tests {
     #[test]
     fn the_lists_of_words_are_whole() {
         for word in TO_PROGRAM {
-            assert!(ToProgram::parse(&format!("{word}:1:x")).is_some(), "{word}");
+            let second = if word == "patch" { "end" } else { "1" };
+            let payload = format!("{word}:{second}:x");
+            assert!(ToProgram::parse(&payload).is_some(), "{word}");
         }
         for word in FROM_PROGRAM {
-            assert!(FromProgram::parse(&format!("{word}:")).is_some(), "{word}");
+            let payload = format!("{word}:1:x");
+            assert!(FromProgram::parse(&payload).is_some(), "{word}");
         }
     }
 
@@ -220,17 +288,17 @@ mod tests {
     fn the_module_for_python_speaks_these_words_and_no_others() {
         let module = crate::program::python::MODULE;
         let said = words_behind(module, "_channel.send('");
-        // A diagram alone tells where it is.
+        // A diagram alone tells where it is, and is changed while it runs.
         let expected: BTreeSet<_> = FROM_PROGRAM
             .into_iter()
-            .filter(|word| *word != "watch")
+            .filter(|word| !["watch", "changed"].contains(word))
             .collect();
         assert_eq!(said, expected);
         let heard = words_behind(module, "word == '");
-        // All other first messages name a file, and nobody watches a program without blocks.
+        // All other first messages name a file, and nobody watches or changes a program without blocks.
         let expected: BTreeSet<_> = TO_PROGRAM
             .into_iter()
-            .filter(|word| !["file", "script", "watch"].contains(word))
+            .filter(|word| !["file", "script", "watch", "patch", "set"].contains(word))
             .collect();
         assert_eq!(heard, expected);
         let asked = words_behind(module, "_ask('");

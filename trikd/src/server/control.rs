@@ -153,6 +153,19 @@ impl Handler for Session {
                     self.run(name).await;
                 }
             }
+            Request::Patch { when_gone, name } => {
+                if self.may_control() {
+                    match scripts::find(&self.control.scripts, name) {
+                        Ok(path) => self.command(Command::Patch(when_gone, path)).await,
+                        Err(why) => self.error(&why.to_string()),
+                    }
+                }
+            }
+            Request::Set(assignment) => {
+                if self.may_control() {
+                    self.command(Command::Set(text(assignment))).await;
+                }
+            }
             Request::DirectScript(code) => {
                 if self.may_control() {
                     self.command(Command::Script(text(code))).await;

@@ -8,6 +8,10 @@ use std::net::TcpStream;
 
 /// M1 at 40 percent, a variable that counts, a wait, and on.
 fn counting() -> Vec<u8> {
+    counting_by("n = n + 1")
+}
+
+fn counting_by(body: &str) -> Vec<u8> {
     let mut sketch = Sketch::new();
     let start = sketch.block("InitialNode", &[]);
     let clear = sketch.block("Function", &[("Body", "n = 0")]);
@@ -15,7 +19,7 @@ fn counting() -> Vec<u8> {
         "TrikV6EnginesForward",
         &[("Ports", "M1"), ("Power", "20 * 2")],
     );
-    let count = sketch.block("Function", &[("Body", "n = n + 1\nprint(n)")]);
+    let count = sketch.block("Function", &[("Body", &format!("{body}\nprint(n)"))]);
     let wait = sketch.block("Timer", &[("Delay", "30")]);
     sketch.chain(&[start, clear, forward, count, wait, count]);
     sketch.qrs().expect("a save")
@@ -175,4 +179,111 @@ fn the_oddities_of_the_original_are_kept_or_mended_as_the_robot_is_told() {
         client.send("run:odd.qrs");
         assert_eq!(client.until("print: "), format!("print: {shown}\n"));
     }
+}
+
+/// The number of the next line that the program prints.
+fn printed(client: &mut Client) -> i64 {
+    let line = client.until("print: ");
+    let number = line.trim_start_matches("print: ").trim();
+    number.parse().expect("a number")
+}
+
+#[test]
+fn a_new_version_takes_over_what_runs_and_motors_do_not_stop() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    upload(&mut client, "count.qrs", &counting());
+    client.send("run:count.qrs");
+    while printed(&mut client) < 3 {}
+    robot.forget_rest();
+    upload(&mut client, "count.qrs", &counting_by("n = n + 1000"));
+    client.send("patch:refuse:count.qrs");
+    let told = client.until("info: count.qrs is changed: ");
+    assert_eq!(
+        told,
+        "info: count.qrs is changed: 5 blocks kept, 0 new, 0 gone"
+    );
+    let first = printed(&mut client);
+    assert!(
+        (1003..2000).contains(&first),
+        "n began anew, or kept its step: {first}"
+    );
+    assert_eq!(printed(&mut client), first + 1000);
+    assert_eq!(motor(&robot), "40");
+    assert!(!robot.has_rested());
+    client.send("set:n=7");
+    client.until("info: n is changed: n = 7");
+    assert_eq!(printed(&mut client), 1007);
+    client.send("stop");
+    client.until("info: count.qrs was stopped by a client");
+}
+
+#[test]
+fn what_is_wrong_changes_nothing_and_says_where() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    client.send("patch:end:count.qrs");
+    client.until("error: there is no program 'count.qrs'");
+    upload(&mut client, "count.qrs", &counting());
+    client.send("patch:end:count.qrs");
+    client.until("error: count.qrs is not changed: no diagram runs");
+    client.send("set:n=7");
+    client.until("error: n is not changed: no diagram runs");
+    client.send("run:count.qrs");
+    client.expect("info: count.qrs has started");
+    while printed(&mut client) < 2 {}
+    upload(&mut client, "count.qrs", &counting_by("n = n +"));
+    client.send("patch:end:count.qrs");
+    let told = client.until("error: count.qrs is not changed: ");
+    assert!(told.contains("'Expression', "), "{told}");
+    upload(&mut client, "count.qrs", &counting_by("n = 'text'"));
+    client.send("patch:end:count.qrs");
+    client.until("error: count.qrs is not changed: ");
+    upload(&mut client, "count.qrs", b"PK\x03\x04 nonsense");
+    client.send("patch:end:count.qrs");
+    client.until("error: count.qrs is not changed: ");
+    upload(&mut client, "other.qrs", &counting());
+    client.send("patch:end:other.qrs");
+    let told = client.until("error: other.qrs is not changed: ");
+    assert!(told.contains("count.qrs runs"), "{told}");
+    for wrong in [
+        "set:n='text'",
+        "set:n=1 / 0",
+        "set:n=1; x = 2",
+        "set:n; x=1",
+        "set:=",
+        "set:n=",
+    ] {
+        client.send(wrong);
+        client.until("error: ");
+    }
+    for unknown in ["patch:count.qrs", "patch:maybe:count.qrs", "patch:"] {
+        client.send(unknown);
+    }
+    let before = printed(&mut client);
+    assert_eq!(printed(&mut client), before + 1);
+    client.send("stop");
+    client.until("info: count.qrs was stopped by a client");
+}
+
+#[test]
+fn a_thread_without_its_block_ends_with_an_error() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    upload(&mut client, "count.qrs", &counting());
+    client.send("run:count.qrs");
+    while printed(&mut client) < 2 {}
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let end = sketch.block("FinalNode", &[]);
+    sketch.chain(&[start, end]);
+    upload(&mut client, "count.qrs", &sketch.qrs().unwrap());
+    client.send("patch:refuse:count.qrs");
+    let told = client.until("error: count.qrs is not changed: ");
+    assert!(told.contains("thread main is"), "{told}");
+    printed(&mut client);
+    robot.forget_rest();
+    client.send("patch:end:count.qrs");
+    client.until("info: count.qrs has failed");
+    assert!(robot.has_rested());
 }

@@ -32,6 +32,15 @@ pub(super) struct Clock {
     wait: i32,
 }
 
+impl Clock {
+    /// Milliseconds until it rings.
+    pub fn left_ms(&self) -> u32 {
+        u32::try_from(self.wait)
+            .unwrap_or(0)
+            .saturating_sub(self.past)
+    }
+}
+
 impl Machine {
     /// Sets the clock of a block, anew if it runs.
     pub(super) fn set_clock(&mut self, node: Node, purpose: Purpose, wait: i32) {

@@ -29,9 +29,12 @@ pub(super) enum Flow {
 }
 
 impl Machine {
-    /// Lets the thread on top run until none is left, or the beginning is kept for a while.
+    /// Lets the thread on top run until none is left, one is held, or the beginning is kept for a while.
     pub(super) fn drive(&mut self, env: &mut Env<'_>) {
         while let Some(&handle) = self.active.last() {
+            if self.held.is_some() {
+                return;
+            }
             let state = match self.threads.get_mut(handle) {
                 None => {
                     self.active.pop();
@@ -53,9 +56,10 @@ impl Machine {
                         }
                     }
                 },
-                State::Waiting | State::Deferred => {
+                State::Waiting | State::Deferred | State::Held => {
                     self.active.pop();
                 }
+                State::Failed => self.end_thread(handle, env),
             }
         }
     }
@@ -92,8 +96,12 @@ impl Machine {
         };
         let (mut node, mut count) = (thread.node, thread.count);
         let (mut from, mut depth) = (thread.from, thread.stack.len());
+        let is_guarded = self.is_guarded;
         loop {
             if is_entered {
+                if is_guarded && self.holds(handle, (from, node), count, env) {
+                    return;
+                }
                 env.trace.entered(self.now, handle.slot, node);
                 count += 1;
                 if count > BLOCKS_IN_A_TURN {
@@ -144,16 +152,23 @@ impl Machine {
                     from = Some(node);
                     node = next;
                 }
-                Flow::Leave => return,
+                Flow::Leave => {
+                    if is_guarded {
+                        self.tell_wait(handle, env);
+                    }
+                    return;
+                }
                 Flow::Failed => {
-                    self.end_thread(handle, env);
+                    if !is_guarded || !self.holds_failed(handle, (from, node), count, env) {
+                        self.end_thread(handle, env);
+                    }
                     return;
                 }
             }
         }
     }
 
-    fn save(
+    pub(super) fn save(
         &mut self,
         handle: Handle,
         (from, node): (Option<Node>, Node),

@@ -9,7 +9,7 @@ use lang_expr::{Compat, Names, Outside, Slot, Source, Store, Value, Wanted};
 use lang_text::problem::Problem;
 
 /// All expressions with their names and values.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Formulas {
     sources: Vec<Source>,
     names: Names,
@@ -38,6 +38,37 @@ impl Formulas {
             store: Store::default(),
             scratch: Vec::new(),
         }
+    }
+
+    /// The expressions of another version of the program with the names and values of this one.
+    pub fn patched(&self, program: &Program, compat: Compat) -> Self {
+        let Self { sources, .. } = Self::new(program, compat);
+        Self {
+            sources,
+            names: self.names.clone(),
+            store: self.store.clone(),
+            scratch: Vec::new(),
+        }
+    }
+
+    /// What is wrong with these texts once each has taught the names what it knows. The names themselves learn nothing.
+    pub fn mistakes(&self, texts: &[Index]) -> Vec<(Index, Vec<Problem>)> {
+        let mut names = self.names.clone();
+        let mut found = Vec::new();
+        for round in 0..2 {
+            for &index in texts {
+                let Some(source) = self.sources.get(index as usize) else {
+                    continue;
+                };
+                let mut source = Source::new(source.text(), source.wanted());
+                if let Err(problems) = lang_expr::analyse(&mut source, &mut names)
+                    && round > 0
+                {
+                    found.push((index, problems));
+                }
+            }
+        }
+        found
     }
 
     /// Which sensor variables the texts may name.
@@ -93,6 +124,18 @@ impl Formulas {
         lang_expr::analyse(&mut source, &mut self.names)?;
         lang_expr::evaluate(&source, &self.names, &mut self.store, outside)?;
         Ok(())
+    }
+
+    /// The value of a text that belongs to no block.
+    pub fn evaluate_text(
+        &mut self,
+        text: &str,
+        wanted: Wanted,
+        outside: &mut dyn Outside,
+    ) -> Result<Value, Vec<Problem>> {
+        let mut source = Source::new(text, wanted);
+        lang_expr::analyse(&mut source, &mut self.names)?;
+        lang_expr::evaluate(&source, &self.names, &mut self.store, outside)
     }
 
     /// Tells each variable that was written since the last time.

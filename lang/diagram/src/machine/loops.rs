@@ -22,7 +22,7 @@ struct Counter {
 type Key = (u32, u32, usize);
 
 /// All counters.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Loops {
     shared: Vec<Counter>,
     /// With oddities mended.
@@ -105,6 +105,35 @@ impl Loops {
         {
             own.retain(|key, _| key.1 != life || key.2 < depth);
         }
+    }
+
+    /// Another version of the program: counters are where their loops are now.
+    pub fn patch(&mut self, to: &HashMap<u32, u32>, count: u32) {
+        let mut shared = vec![
+            Counter::default();
+            if self.own.is_some() {
+                0
+            } else {
+                count as usize
+            }
+        ];
+        for (before, after) in to {
+            if let (Some(old), Some(new)) = (
+                self.shared.get(*before as usize),
+                shared.get_mut(*after as usize),
+            ) {
+                *new = *old;
+            }
+        }
+        self.shared = shared;
+        if let Some(own) = &mut self.own {
+            *own = own
+                .drain()
+                .filter_map(|(key, counter)| Some(((*to.get(&key.0)?, key.1, key.2), counter)))
+                .collect();
+        }
+        self.insides.clear();
+        self.looks = limits::NODES_MAX;
     }
 
     fn inside(&mut self, counter: u32, node: Node, program: &Program) -> &HashSet<Node> {

@@ -12,7 +12,7 @@ use lang_expr::{Outside, Value};
 const REFRESH_MS: u32 = 20;
 
 /// Values of sensor variables.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Sensors {
     /// By index of the variable; those that somebody names.
     used: Vec<bool>,
@@ -51,6 +51,12 @@ impl Sensors {
                 self.read(index, brick);
             }
         }
+    }
+
+    /// The value of a variable, if the program reads that sensor.
+    pub fn known(&self, index: usize) -> Option<Value> {
+        let is_used = self.used.get(index).copied().unwrap_or(false);
+        is_used.then(|| self.values.get(index).cloned()).flatten()
     }
 
     /// A sensor was read for somebody else, or was given a reading: its variable shows it at once.

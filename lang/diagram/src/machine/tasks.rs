@@ -225,6 +225,7 @@ impl Machine {
         let Some(other) = self.threads.named(&message.thread) else {
             return Flow::Next(next);
         };
+        env.trace.sent(self.now, handle.slot, other.slot, &text);
         let Some(thread) = self.threads.get_mut(other) else {
             return Flow::Next(next);
         };

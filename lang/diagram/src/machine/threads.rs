@@ -27,6 +27,10 @@ pub(crate) enum State {
     Waiting,
     /// Wait for the next turn, having entered its node.
     Deferred,
+    /// Nothing, until it is released; then enter its node.
+    Held,
+    /// End, after an error at its node that was told.
+    Failed,
     /// Begin these threads, the last one first, and then enter its node.
     Starting(Vec<(Rc<str>, Node)>),
 }
@@ -68,7 +72,7 @@ impl Thread {
 }
 
 /// All threads.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Threads {
     slots: Vec<Option<Thread>>,
     lives: u32,
@@ -133,6 +137,10 @@ impl Threads {
         self.slots.iter().flatten()
     }
 
+    pub fn alive_mut(&mut self) -> impl Iterator<Item = &mut Thread> {
+        self.slots.iter_mut().flatten()
+    }
+
     pub fn name(&self, slot: u16) -> Option<&str> {
         let thread = self.slots.get(usize::from(slot))?.as_ref()?;
         Some(&thread.name)
@@ -144,7 +152,7 @@ impl Threads {
             .map(|(handle, _)| handle)
     }
 
-    fn handles(&self) -> impl Iterator<Item = (Handle, &Thread)> {
+    pub fn handles(&self) -> impl Iterator<Item = (Handle, &Thread)> {
         self.slots.iter().enumerate().filter_map(|(slot, thread)| {
             let thread = thread.as_ref()?;
             let handle = Handle {

@@ -97,7 +97,7 @@ impl Machine {
         match clock.purpose {
             Purpose::Timer => {
                 self.drop_clock(node);
-                self.done(node, env);
+                self.done(node);
             }
             Purpose::Watch => self.look_again(node, env),
             Purpose::AnyButton => self.look_at_buttons(node, env),
@@ -109,7 +109,7 @@ impl Machine {
                     let statement = mail(&program, *assignment, &message);
                     self.drop_clock(node);
                     if self.assign_for_waiting(node, &statement, env) {
-                        self.done(node, env);
+                        self.done(node);
                     }
                 }
             }
@@ -293,15 +293,15 @@ impl Machine {
         if !text.is_empty() {
             let statement = format!("{} = {text}", assignment.variable);
             if self.assign_for_waiting(node, &statement, env) {
-                self.lead(node, next, env);
+                self.lead(node, next);
             }
         } else if cancel != NOWHERE {
-            self.lead(node, cancel, env);
+            self.lead(node, cancel);
         } else {
             let mut problem = lang_text::problem::Problem::warning(words::must_answer());
             problem.place = program.place(node);
             env.trace.trap(self.now, &problem);
-            self.lead(node, node, env);
+            self.lead(node, node);
         }
     }
 

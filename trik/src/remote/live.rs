@@ -1,0 +1,200 @@
+//! Changes of a diagram that runs on a robot: its file, watched for saves, and `trik set`.
+//!
+//! Owns when a file counts as changed, and the answer to one assignment. What a robot makes of it is its own matter.
+
+use super::link::{Message, ms};
+use super::output::{harmless, say};
+use super::target::{Target, target, the_one};
+use super::upload::Upload;
+use crate::error::Error;
+use crate::limits;
+use clap::{Args, ValueEnum};
+use std::path::{Path, PathBuf};
+use std::time::{Instant, SystemTime};
+use trikd::protocol::news;
+use trikd::protocol::program::WhenGone;
+
+/// What becomes of threads at blocks that a saved diagram no longer has.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq, ValueEnum)]
+pub(crate) enum Gone {
+    /// They end with an error that names the block.
+    #[default]
+    End,
+    /// The save is refused, and what runs goes on.
+    Refuse,
+}
+
+impl Gone {
+    fn word(self) -> &'static str {
+        match self {
+            Self::End => WhenGone::End.word(),
+            Self::Refuse => WhenGone::Refuse.word(),
+        }
+    }
+}
+
+/// What `trik set` can be told.
+#[derive(Args, Clone, Debug, PartialEq, Eq)]
+pub(crate) struct SetArgs {
+    /// A variable and its new value, an expression as in a block: n=5, "speed=n * 2".
+    #[arg(value_name = "NAME=EXPRESSION", value_parser = assignment)]
+    pub assignment: String,
+    /// Name or address of the robot, and its port if that is not 8888 [default: the virtual robot that runs on this
+    /// computer, or else 127.0.0.1].
+    #[arg(long, value_name = "HOST[:PORT]", value_parser = target)]
+    pub robot: Option<Target>,
+}
+
+fn assignment(text: &str) -> Result<String, String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() && !value.trim().is_empty() => {
+            Ok(text.to_owned())
+        }
+        Some(_) | None => Err("NAME=EXPRESSION is wanted, for example n=5".to_owned()),
+    }
+}
+
+/// Assigns a variable of the diagram that runs on a robot. The exit code: 0 it is assigned, 1 it is refused, 2 the robot
+/// could not be reached or did not answer.
+pub(crate) fn set(args: &SetArgs) -> u8 {
+    match ask(args) {
+        Ok(code) => code,
+        Err(error) => {
+            say(&error.to_string());
+            2
+        }
+    }
+}
+
+fn ask(args: &SetArgs) -> Result<u8, Error> {
+    let name = args.assignment.split('=').next().unwrap_or_default().trim();
+    let target = match &args.robot {
+        Some(target) => target.clone(),
+        None => the_one()?,
+    };
+    let mut link = target.connect()?;
+    link.ask(&[b"set:", args.assignment.as_bytes()]);
+    let deadline = Instant::now() + ms(limits::ANSWER_MS);
+    while Instant::now() < deadline {
+        match link.next() {
+            Some(Message::Info(text) | Message::Error(text)) => {
+                if let Some(is_changed) = news::is_changed(&text, name) {
+                    say(&harmless(&text));
+                    return Ok(u8::from(!is_changed));
+                }
+                if text == news::NOT_PAIRED {
+                    return Err(Error::Robot(text));
+                }
+            }
+            Some(Message::Print(_) | Message::Version | Message::Status(_)) => {}
+            None => link.turn(ms(limits::TURN_MS), None, true)?,
+        }
+    }
+    Err(Error::Robot(format!(
+        "{} has not answered for {} s: perhaps its trikd is older than this program",
+        link.name(),
+        limits::ANSWER_MS / 1000
+    )))
+}
+
+/// What a file looked like: when it was written, and how long it was.
+type Look = Option<(SystemTime, u64)>;
+
+/// A diagram that is sent again at each save.
+#[derive(Debug)]
+pub(super) struct Watched {
+    path: PathBuf,
+    gone: Gone,
+    seen: Look,
+    at: Instant,
+}
+
+impl Watched {
+    /// Watches a file from now on.
+    ///
+    /// # Errors
+    /// It is no diagram: other programs cannot be changed while they run.
+    pub(super) fn new(path: &Path, gone: Gone) -> Result<Self, Error> {
+        let is_diagram = path.extension().is_some_and(|ending| ending == "qrs");
+        if !is_diagram {
+            let why = "--watch is for diagrams (NAME.qrs): other programs cannot be changed while they run";
+            return Err(Error::file(path, why.to_owned()));
+        }
+        Ok(Self {
+            path: path.to_owned(),
+            gone,
+            seen: look(path),
+            at: Instant::now(),
+        })
+    }
+
+    /// The requests that bring a new version to the robot, if the file was saved since the last time.
+    pub(super) fn save(&mut self) -> Option<[Vec<u8>; 2]> {
+        if self.at.elapsed() < ms(limits::SAVE_LOOK_MS) {
+            return None;
+        }
+        self.at = Instant::now();
+        let now = look(&self.path);
+        // Editors may write a new file and then give it the name: in between there is none.
+        if now.is_none() || now == self.seen {
+            return None;
+        }
+        self.seen = now;
+        match Upload::read(&self.path) {
+            Ok(upload) => {
+                let patch = format!("patch:{}:{}", self.gone.word(), upload.name);
+                Some([upload.request(), patch.into_bytes()])
+            }
+            Err(error) => {
+                say(&format!("{error}; what runs goes on as it is"));
+                None
+            }
+        }
+    }
+}
+
+fn look(path: &Path) -> Look {
+    let data = std::fs::metadata(path).ok()?;
+    Some((data.modified().ok()?, data.len()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_assignment_has_a_name_and_a_value() {
+        assert!(assignment("n=5").is_ok());
+        for wrong in ["n", "=5", "n=", " = "] {
+            let why = assignment(wrong).unwrap_err();
+            assert!(why.contains("for example n=5"), "{wrong}");
+        }
+    }
+
+    #[test]
+    fn a_save_is_sent_once_and_only_diagrams_are_watched() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.qrs");
+        std::fs::write(&path, "one").unwrap();
+        let mut watched = Watched::new(&path, Gone::Refuse).unwrap();
+        let long_ago = Instant::now().checked_sub(ms(60_000)).unwrap();
+        watched.at = long_ago;
+        assert_eq!(watched.save(), None);
+        std::fs::write(&path, "another").unwrap();
+        assert_eq!(watched.save(), None, "it has just looked");
+        watched.at = long_ago;
+        let [file, patch] = watched.save().unwrap();
+        assert_eq!(file, b"file:a.qrs:another");
+        assert_eq!(patch, b"patch:refuse:a.qrs");
+        watched.at = long_ago;
+        assert_eq!(watched.save(), None);
+        std::fs::remove_file(&path).unwrap();
+        watched.at = long_ago;
+        assert_eq!(watched.save(), None);
+        let other = Watched::new(Path::new("a.py"), Gone::End).unwrap_err();
+        assert!(
+            other.to_string().contains("--watch is for diagrams"),
+            "{other}"
+        );
+    }
+}

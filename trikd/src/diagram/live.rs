@@ -1,0 +1,119 @@
+//! Changes of a diagram while it runs: a new version of it, and a variable that a person sets.
+//!
+//! Owns what a person is told of that. What a new version keeps is known in `lang_diagram::machine::patch` alone; nothing
+//! here touches a device.
+
+use super::robot::Robot;
+use super::watch::Watch;
+use super::{opened, read_save};
+use crate::engine::NoDiagram;
+use crate::protocol::news;
+use crate::protocol::program::WhenGone;
+use lang_diagram::lower::World;
+use lang_diagram::machine::Machine;
+use lang_diagram::machine::patch::{self, Patched, Refused, Version};
+use lang_text::problem::{Locale, Problem};
+use std::path::Path;
+
+/// What a person is told.
+#[derive(Debug, Eq, PartialEq)]
+pub(super) struct Answer {
+    /// Whether anything has changed.
+    pub(super) is_changed: bool,
+    /// What, or why not.
+    pub(super) text: String,
+}
+
+impl Answer {
+    fn changed(name: &str, what: &str) -> Self {
+        Self {
+            is_changed: true,
+            text: news::changed(name, what),
+        }
+    }
+
+    fn unchanged(name: &str, why: &str) -> Self {
+        Self {
+            is_changed: false,
+            text: news::unchanged(name, why),
+        }
+    }
+}
+
+/// Puts the save in a file in the place of the program that runs, whole or not at all.
+pub(super) fn patch(
+    machine: &mut Machine,
+    (when_gone, path): (WhenGone, &Path),
+    robot: &mut Robot<'_>,
+    watch: &mut Watch,
+    locale: Locale,
+) -> Answer {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let refused = |why: &Refused| Answer::unchanged(&name, &explained(why, locale));
+    let save = match read_save(path).and_then(|bytes| opened(&bytes, locale)) {
+        Ok(save) => save,
+        Err(why @ (NoDiagram::Unread(_) | NoDiagram::TooLong(_) | NoDiagram::Problems(_))) => {
+            return Answer::unchanged(&name, &why.to_string());
+        }
+    };
+    let version = match Version::of(&save.project, World::Robot) {
+        Ok(version) => version,
+        Err(why) => return refused(&why),
+    };
+    let when_gone = match when_gone {
+        WhenGone::End => patch::WhenGone::End,
+        WhenGone::Refuse => patch::WhenGone::Refuse,
+    };
+    match machine.patch(&version, when_gone, robot, watch) {
+        Ok(patched) => Answer::changed(&name, &summary(&patched)),
+        Err(why) => refused(&why),
+    }
+}
+
+fn summary(patched: &Patched) -> String {
+    let Patched {
+        kept,
+        added,
+        gone,
+        ended,
+    } = patched;
+    let mut text = format!("{kept} blocks kept, {added} new, {gone} gone");
+    if !ended.is_empty() {
+        text.push_str(&format!(", {} threads ended", ended.len()));
+    }
+    text
+}
+
+fn explained(why: &Refused, locale: Locale) -> String {
+    let lines = |problems: &[Problem]| {
+        let lines = problems.iter().map(|problem| problem.in_locale(locale));
+        lines.collect::<Vec<_>>().join("\n")
+    };
+    match why {
+        Refused::Ended => news::NO_DIAGRAM.to_owned(),
+        Refused::Mistakes(problems) | Refused::Occupied(problems) => lines(problems),
+    }
+}
+
+/// Assigns a variable: `NAME=EXPRESSION`.
+pub(super) fn set(
+    machine: &mut Machine,
+    text: &str,
+    robot: &mut Robot<'_>,
+    watch: &mut Watch,
+    locale: Locale,
+) -> Answer {
+    let (name, expression) = text.split_once('=').unwrap_or((text, ""));
+    let (name, expression) = (name.trim(), expression.trim());
+    match machine.assign(name, expression, 0, robot, watch) {
+        Ok(()) => {
+            let value = machine.variable(name);
+            let value = value.map_or_else(String::new, |value| value.printed().to_string());
+            Answer::changed(name, &format!("{name} = {value}"))
+        }
+        Err(problems) => {
+            let lines = problems.iter().map(|problem| problem.in_locale(locale));
+            Answer::unchanged(name, &lines.collect::<Vec<_>>().join("\n"))
+        }
+    }
+}
