@@ -20,9 +20,10 @@ mod words;
 
 pub use lint::lint;
 pub use picture::{Caption, page, svg};
-pub use program::{Diagram, Program, Running};
+pub use program::{Diagram, Program, Running, Spot};
 pub use replay::{judge_recorded, strange_in_record};
 pub use run::{Failure, Outcome, Settings, Verdict, judge};
 pub use task::{Task, Texts};
+pub use track::Group;
 pub use trajectory::Trajectory;
 pub use words::too_slow;

@@ -18,10 +18,11 @@ mod row;
 mod run;
 mod script;
 mod verdict;
+mod walk;
 mod words;
 mod worker;
 
-use crate::output::{Output, standard};
+use crate::output::{Output, settled, standard};
 use crate::refusal::{Refusal, UNREADABLE, say};
 use crate::terminal::named;
 pub(crate) use args::CheckArgs;
@@ -31,6 +32,7 @@ use lang_text::problem::Locale;
 use platform::Platform;
 pub(crate) use platform::of_misuse;
 use row::{Row, Widths};
+use std::collections::HashSet;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -56,7 +58,7 @@ fn checked(args: &CheckArgs) -> Result<u8, Refusal> {
         worker::serve(args)?;
         return Ok(0);
     }
-    if !args.grades.out.is_empty() {
+    if !args.grades.out.is_empty() || args.grades.tasks.is_some() {
         return class(args);
     }
     let jobs = jobs::jobs(args)?;
@@ -64,6 +66,7 @@ fn checked(args: &CheckArgs) -> Result<u8, Refusal> {
         path: Some(path),
         force: args.force,
         source: jobs.first().map_or(Path::new(""), |job| job.judged(args)),
+        locale: args.language,
     });
     if let Some(results) = &results {
         results.refuse_present()?;
@@ -98,7 +101,21 @@ fn answer(jobs: &[Job], args: &CheckArgs, platform: Platform) -> Result<u8, Refu
     Ok(answer.code)
 }
 
+/// What is passed by, each with its reason, and how much it is.
+fn tell_passed(lines: &[String], count: usize, locale: Locale) {
+    if count > 0 {
+        let last = words::passed_count(count, lines.len(), locale);
+        let lines = lines.iter().chain([&last]);
+        let lines: Vec<String> = lines.map(|line| format!("trik: {line}")).collect();
+        say(&lines);
+    }
+}
+
 fn tell_left_out(args: &CheckArgs) {
+    let passed = jobs::passed(args);
+    let told = passed.told.iter();
+    let told = told.map(|(path, reason)| words::passed(&named(path), reason, args.language));
+    tell_passed(&told.collect::<Vec<_>>(), passed.count, args.language);
     let left_out = jobs::left_out(args);
     if left_out > 0 {
         say(&[words::left_out(left_out, args.language)]);
@@ -121,12 +138,14 @@ fn class(args: &CheckArgs) -> Result<u8, Refusal> {
             path: Some(path),
             force: args.force,
             source: args.grades.pupils.as_deref().unwrap_or(Path::new("")),
+            locale: args.language,
         })
         .collect();
     let results = args.results.as_deref().map(|path| Output {
         path: Some(path),
         force: args.force,
         source: Path::new(""),
+        locale: args.language,
     });
     for (index, output) in outputs.iter().enumerate() {
         output.refuse_present()?;
@@ -145,11 +164,10 @@ fn class(args: &CheckArgs) -> Result<u8, Refusal> {
     }
     refuse_present(&jobs, &args, false)?;
     say(&plan.notes);
-    if args.grades.tasks.is_none() {
-        tell_left_out(&args);
-    }
+    tell_passed(&plan.left_out, plan.left_out_count, args.language);
     let grades = Grades::new(plan, &args.grades, args.language);
-    many(&jobs, &args, results, Some((grades, &outputs)))
+    let grades = (!outputs.is_empty()).then_some((grades, &outputs[..]));
+    many(&jobs, &args, results, grades)
 }
 
 /// Refuses files that are there before anything runs: afterwards a verdict would be lost with them.
@@ -161,17 +179,40 @@ fn refuse_present(jobs: &[Job], args: &CheckArgs, is_one: bool) -> Result<(), Re
         (&args.html, run::HTML),
         (&args.display, run::DISPLAY),
     ];
+    // Two options may not mean one file: the later would replace the earlier.
+    let mut taken = HashSet::new();
     for (path, ending) in wanted {
         let Some(path) = path else { continue };
+        // Below one directory names differ by their endings, unless two solutions are called so.
+        let folder = settled(path);
         for job in jobs {
+            let own = job.place(&folder, ending, is_one);
             let path = job.place(path, ending, is_one);
             let output = Output {
                 path: Some(&path),
                 force: args.force,
                 source: job.judged(args),
+                locale: args.language,
             };
             output.refuse_present()?;
+            if !taken.insert(own) {
+                output.spare(&[&path])?;
+            }
         }
+    }
+    if let Some(results) = args
+        .results
+        .as_deref()
+        .filter(|path| *path != Path::new("-"))
+        && taken.contains(&settled(results))
+    {
+        let output = Output {
+            path: Some(results),
+            force: args.force,
+            source: Path::new(""),
+            locale: args.language,
+        };
+        output.spare(&[results])?;
     }
     Ok(())
 }

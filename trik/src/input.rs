@@ -11,6 +11,7 @@ use std::io::{self, Read};
 use std::os::fd::AsFd;
 use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 /// Why a file was not read.
 #[derive(Debug)]
@@ -54,21 +55,29 @@ pub(crate) fn read(path: &Path, most: u64) -> Result<Vec<u8>, Unread> {
         .open(path)?;
     let kind = file.metadata()?.file_type();
     match kind.is_fifo() || kind.is_char_device() {
-        true => all_of(Patient(file), most),
+        true => {
+            let until = Instant::now() + Duration::from_millis(limits::INPUT_MS.into());
+            all_of(Patient { file, until }, most)
+        }
         false => all_of(file, most),
     }
 }
 
 /// What waits for a file that may have nothing yet, but not for ever.
-struct Patient(File);
+struct Patient {
+    file: File,
+    /// When even one that says a little now and then is given up.
+    until: Instant,
+}
 
 impl Read for Patient {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        let mut ready = [PollFd::new(self.0.as_fd(), PollFlags::POLLIN)];
+        let mut ready = [PollFd::new(self.file.as_fd(), PollFlags::POLLIN)];
         let wait = PollTimeout::from(limits::INPUT_SILENCE_MS);
         match poll(&mut ready, wait)? {
             0 => Err(io::ErrorKind::TimedOut.into()),
-            _ => self.0.read(into),
+            _ if Instant::now() > self.until => Err(io::ErrorKind::TimedOut.into()),
+            _ => self.file.read(into),
         }
     }
 }

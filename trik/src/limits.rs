@@ -2,6 +2,8 @@
 
 /// How long a FIFO or a device that is read may say nothing.
 pub const INPUT_SILENCE_MS: u16 = 3_000;
+/// How long reading a FIFO or a device may take in all.
+pub const INPUT_MS: u32 = 60_000;
 /// Robots of one user that run side by side.
 pub const ROBOTS_MAX: usize = 32;
 /// Slowest and fastest course of simulated time: far below nothing moves, far above the threads cannot follow.
@@ -68,6 +70,10 @@ pub const SCRIPT_PRINT_BYTES: usize = 1 << 20;
 pub const SCRIPT_FRAME_BYTES: usize = 1 << 20;
 /// Remarks about a judged program that are kept.
 pub const SCRIPT_REMARKS: usize = 20;
+/// Threads of a judged program whose lines are kept.
+pub const SCRIPT_LINES: usize = 64;
+/// Characters of the name of a thread or a file that are kept beside a line.
+pub const SCRIPT_NAME_CHARS: usize = 100;
 /// Events of the keys and the gamepad that wait for one thread of a judged program.
 pub const SCRIPT_EVENTS: usize = 256;
 /// Moment of the calendar at which judged programs begin, in milliseconds of the epoch: 2026-01-01, 00:00 UTC.
@@ -88,6 +94,8 @@ pub const FIELDS_MAX: usize = 1_000;
 pub const CELLS_MAX: usize = 1_000_000;
 /// How deep directories of solutions may nest.
 pub const FOLDERS_DEEP: usize = 8;
+/// Files and folders that are named when a class is judged without them; more are only counted.
+pub const PASSED_MAX: usize = 1000;
 /// Bytes of a world, a program or a file of inputs.
 pub const WORLD_BYTES_MAX: u64 = 32 << 20;
 /// Bytes of a recorded trajectory.

@@ -2,8 +2,11 @@
 //!
 //! Owns the choice between standard output, a new file and one that is replaced. Knows nothing of what is written.
 
+mod words;
+
 use crate::refusal::Refusal;
 use crate::terminal::named;
+use lang_text::problem::{Locale, Words};
 use std::fs::{self, File, Metadata};
 use std::io::{self, Write};
 use std::os::unix::fs::MetadataExt;
@@ -17,9 +20,15 @@ pub(crate) struct Output<'a> {
     pub force: bool,
     /// The file that was read, which is never replaced.
     pub source: &'a Path,
+    /// The language in which a refusal is told.
+    pub locale: Locale,
 }
 
 impl Output<'_> {
+    fn refusal(&self, words: Words) -> Refusal {
+        Refusal::new(words.in_locale(self.locale))
+    }
+
     /// The file, or `None` for standard output.
     fn file(&self) -> Option<&Path> {
         self.path.filter(|path| *path != Path::new("-"))
@@ -40,12 +49,10 @@ impl Output<'_> {
         };
         let name = named(path);
         if is_same(path, self.source) {
-            let why = format!("{name} is the file that is read: name another one");
-            return Err(Refusal::new(why));
+            return Err(self.refusal(words::is_source(&name)));
         }
         if !self.force && path.symlink_metadata().is_ok() {
-            let why = format!("{name} is there already: --force replaces it");
-            return Err(Refusal::new(why));
+            return Err(self.refusal(words::is_there(&name)));
         }
         Ok(())
     }
@@ -58,12 +65,10 @@ impl Output<'_> {
         let Some(path) = self.file() else {
             return Ok(());
         };
-        let is_used = |other: &&&Path| path == **other || is_same(path, other);
+        let own = settled(path);
+        let is_used = |other: &&&Path| own == settled(other) || is_same(path, other);
         match others.iter().find(is_used) {
-            Some(_) => Err(Refusal::new(format!(
-                "{} is needed for something else here: name another file",
-                named(path)
-            ))),
+            Some(_) => Err(self.refusal(words::is_taken(&named(path)))),
             None => Ok(()),
         }
     }
@@ -89,12 +94,12 @@ impl Output<'_> {
         };
         written.map_err(|error| {
             let name = named(path);
-            Refusal::new(if error.kind() == io::ErrorKind::AlreadyExists {
-                format!("{name} is there already: --force replaces it")
+            self.refusal(if error.kind() == io::ErrorKind::AlreadyExists {
+                words::is_there(&name)
             } else if error.kind() == io::ErrorKind::NotFound {
-                format!("{name}: there is no such directory")
+                words::no_folder(&name)
             } else {
-                format!("{name} cannot be written: {error}")
+                words::unwritten(&name, error)
             })
         })
     }
@@ -108,6 +113,20 @@ pub(crate) fn standard(bytes: &[u8]) -> Result<(), Refusal> {
             Err(Refusal::new(format!("standard output: {error}")))
         }
         _ => Ok(()),
+    }
+}
+
+/// One name for a file that may not be there yet, however it was named: `./x` and `x` are the same.
+pub(crate) fn settled(path: &Path) -> PathBuf {
+    if let Ok(there) = path.canonicalize() {
+        return there;
+    }
+    match (path.parent(), path.file_name()) {
+        (Some(folder), Some(name)) if folder.as_os_str().is_empty() => {
+            settled(Path::new(".")).join(name)
+        }
+        (Some(folder), Some(name)) => settled(folder).join(name),
+        (None, _) | (_, None) => path.to_owned(),
     }
 }
 

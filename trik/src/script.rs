@@ -2,16 +2,18 @@
 //!
 //! Model time passes only while a program waits, so the same program in the same world does the same each time. `tree` is
 //! the robot as files, `drawing` its display, `input` its keys and gamepad, `refresh` how old
-//! readings are; `stage` is where JavaScript stands, `javascript`
+//! readings are, `lines` where its threads stand; `stage` is where JavaScript stands, `javascript`
 //! steps its threads; `python` serves a child process.
 
 mod drawing;
 mod input;
 mod javascript;
+mod lines;
 mod python;
 mod refresh;
 mod stage;
 mod tree;
+mod words;
 
 pub use javascript::JavaScript;
 pub use python::Python;

@@ -69,7 +69,7 @@ impl Language {
 /// # Errors
 /// The name is none for a folder, a file of the task is there already, or it cannot be written; nothing is replaced then.
 pub(crate) fn run(args: &NewTaskArgs) -> Result<u8, Refusal> {
-    let name = name(&args.name)?;
+    let name = name(&args.name, args.language)?;
     let ending = args.lang.ending();
     let mut all = Vec::new();
     for (file, text) in files(args.lang, args.language) {
@@ -82,12 +82,22 @@ pub(crate) fn run(args: &NewTaskArgs) -> Result<u8, Refusal> {
         path: Some(path),
         force: args.force,
         source: Path::new(""),
+        locale: args.language,
     };
+    // What is replaced is in this folder, wherever a link leads.
+    for path in all.iter().map(|(path, _)| path).chain([&args.name]) {
+        if path.is_symlink() {
+            let why = words::is_link(&named(path));
+            return Err(Refusal::new(why.in_locale(args.language)));
+        }
+    }
     for (path, _) in &all {
         output(path).refuse_present()?;
     }
-    fs::create_dir_all(&args.name)
-        .map_err(|error| Refusal::new(format!("{name}: this folder cannot be made: {error}")))?;
+    fs::create_dir_all(&args.name).map_err(|error| {
+        let why = words::no_folder(&name, error);
+        Refusal::new(why.in_locale(args.language))
+    })?;
     for (path, text) in &all {
         output(path).write(text.as_bytes())?;
     }
@@ -96,7 +106,7 @@ pub(crate) fn run(args: &NewTaskArgs) -> Result<u8, Refusal> {
 }
 
 /// The name as commands can have it without quotes.
-fn name(path: &Path) -> Result<String, Refusal> {
+fn name(path: &Path, locale: Locale) -> Result<String, Refusal> {
     let text = path.to_str().unwrap_or_default();
     let is_plain = |c: char| c.is_alphanumeric() || "-_./".contains(c);
     // What begins with '-' would be an option of the commands that are printed.
@@ -105,11 +115,8 @@ fn name(path: &Path) -> Result<String, Refusal> {
         || !text.chars().all(is_plain)
         || path.file_name().is_none()
     {
-        let why = "a task has a name of letters, digits, '-', '_' and '.', as drive-home";
-        return Err(Refusal::new(format!(
-            "'{}' is no name for a task: {why}",
-            named(path)
-        )));
+        let why = words::no_name(&named(path));
+        return Err(Refusal::new(why.in_locale(locale)));
     }
     Ok(text.trim_end_matches('/').to_owned())
 }

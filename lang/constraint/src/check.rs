@@ -127,7 +127,7 @@ impl Checker {
             (Verdict::Failed { .. } | Verdict::Open, _) => (self.outcome.failed_by, true),
         };
         let is_alive = |event: EventIndex| self.states[event].is_alive;
-        Some(watch.explain(&self.rules, decider, is_open, &is_alive))
+        Some(watch.explain(&self.rules, decider, is_open, &is_alive, self.locale))
     }
 
     /// The verdict so far.

@@ -11,6 +11,7 @@ use super::scene::{Object, Scene};
 use super::spell;
 use super::value::Value;
 use crate::limits;
+use lang_text::problem::Locale;
 
 /// What a checker knows beyond its verdict.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +30,7 @@ pub struct Explained {
     pub kind: Kind,
     /// Its id; empty for none.
     pub id: String,
-    /// Its place among the tags of `constraints`, with templates put in, from 1.
+    /// Its place among the rules of its kind in `constraints`, with templates put in, from 1.
     pub number: usize,
     /// Whether it decided the run.
     pub decided: bool,
@@ -37,8 +38,8 @@ pub struct Explained {
     pub fired_ms: Option<u64>,
     /// How it stands at the end.
     pub state: Standing,
-    /// Rules that set it up, by id and number.
-    pub set_up_by: Vec<(String, usize)>,
+    /// Rules that set it up, by kind, id and number.
+    pub set_up_by: Vec<(Kind, String, usize)>,
     /// Its conditions, as they were when it was looked at last.
     pub conditions: Vec<Seen>,
     /// Conditions that are left out.
@@ -184,6 +185,7 @@ impl Watch {
         decider: Option<EventIndex>,
         is_open: bool,
         is_alive: &dyn Fn(EventIndex) -> bool,
+        locale: Locale,
     ) -> Explanation {
         let mut wanted: Vec<EventIndex> = decider.into_iter().collect();
         if is_open {
@@ -200,7 +202,8 @@ impl Watch {
             let mut conditions = Vec::new();
             let mut next = 0;
             let shown = shown_condition(&rules.events[event]);
-            describe(shown, 0, false, &watched.leaves, &mut next, &mut conditions);
+            let into = (&mut next, &mut conditions);
+            describe(shown, 0, false, &watched.leaves, into, locale);
             let more = conditions
                 .len()
                 .saturating_sub(limits::EXPLAINED_CONDITIONS_MAX);
@@ -208,7 +211,7 @@ impl Watch {
             let setters = set_up_by(rules, event);
             let name = |&one: &EventIndex| {
                 let event = &rules.events[one];
-                (spell::cut(event.id.to_string()), event.number)
+                (event.kind, spell::cut(event.id.to_string()), event.number)
             };
             Explained {
                 kind: rules.events[event].kind,
@@ -423,8 +426,8 @@ fn describe(
     depth: usize,
     negated: bool,
     leaves: &[Leaf],
-    next: &mut usize,
-    into: &mut Vec<Seen>,
+    (next, into): (&mut usize, &mut Vec<Seen>),
+    locale: Locale,
 ) {
     match condition {
         _ if is_mute(condition) => {}
@@ -447,11 +450,11 @@ fn describe(
             }
             for one in all {
                 let depth = depth + usize::from(needs_head);
-                describe(one, depth, negated, leaves, next, into);
+                describe(one, depth, negated, leaves, (next, into), locale);
             }
         }
-        Condition::Not(one) => describe(one, depth, !negated, leaves, next, into),
-        Condition::Using(_, one) => describe(one, depth, negated, leaves, next, into),
+        Condition::Not(one) => describe(one, depth, !negated, leaves, (next, into), locale),
+        Condition::Using(_, one) => describe(one, depth, negated, leaves, (next, into), locale),
         Condition::Compare(..)
         | Condition::Inside { .. }
         | Condition::SettedUp(_)
@@ -461,10 +464,14 @@ fn describe(
             *next += 1;
             into.push(Seen {
                 depth,
-                text: spell::condition(condition),
+                text: spell::condition(condition, locale),
                 negated,
                 holds: seen.holds,
-                values: seen.values.iter().map(spell::value).collect(),
+                values: seen
+                    .values
+                    .iter()
+                    .map(|value| spell::value(value, locale))
+                    .collect(),
                 nearest: seen.nearest,
             });
         }

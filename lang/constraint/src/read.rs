@@ -124,15 +124,19 @@ impl Reader {
         }
         let mut events: Vec<Option<Event>> = Vec::new();
         events.resize_with(tops.len(), || None);
+        let mut counts: HashMap<String, usize> = HashMap::new();
         for (top, element) in tops.iter().enumerate() {
             let id = element.attribute("id").unwrap_or_default();
+            let number = counts.entry(element.name.to_ascii_lowercase()).or_default();
+            *number += 1;
+            let number = *number;
             self.at = element.start;
             self.path.push(if id.is_empty() {
                 format!("{} ({})", element.name, top + 1)
             } else {
                 format!("{} '{id}'", element.name)
             });
-            events[places[top]] = self.top(element, top + 1);
+            events[places[top]] = self.top(element, number);
             self.path.pop();
         }
         self.at = element.start;

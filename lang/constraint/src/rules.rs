@@ -67,7 +67,7 @@ pub enum Kind {
 #[derive(Debug)]
 pub(super) struct Event {
     pub kind: Kind,
-    /// Its place among the tags, from 1.
+    /// Its place among the tags of its kind, from 1.
     pub number: usize,
     /// Its id, empty for none.
     pub id: Box<str>,

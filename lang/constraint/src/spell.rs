@@ -1,18 +1,24 @@
 //! Conditions and values as a person reads them in an explanation.
 //!
-//! Owns these words, which are the same in all languages: names of the rules and signs.
+//! Owns how they are put together. Names of rules and signs are the same in all languages; other words are in `words`.
+
+mod words;
 
 use super::rules::{Binary, Comparison, Condition, Operand, Unary};
 use super::scene::ObjectPoint;
 use super::value::{Value, shown};
 use crate::limits;
+use lang_text::problem::Locale;
+use words::{Told, told};
 
-/// A condition that has no others in it.
-pub(super) fn condition(condition: &Condition) -> String {
+/// A condition that has no others in it; the head of several is "and" or "or", which is no text for people.
+pub(super) fn condition(condition: &Condition, locale: Locale) -> String {
+    let told = told(locale);
     let text = match condition {
         Condition::Compare(comparison, operands) => {
             let [left, right] = &**operands;
-            format!("{} {} {}", operand(left), sign(*comparison), operand(right))
+            let sign = sign(*comparison);
+            format!("{} {sign} {}", operand(left, told), operand(right, told))
         }
         Condition::Inside {
             object,
@@ -20,16 +26,16 @@ pub(super) fn condition(condition: &Condition) -> String {
             point,
         } => {
             let point = match point {
-                ObjectPoint::Center => "",
-                ObjectPoint::All => " (all)",
-                ObjectPoint::Any => " (any)",
+                ObjectPoint::Center => String::new(),
+                ObjectPoint::All => format!(" ({})", told.all),
+                ObjectPoint::Any => format!(" ({})", told.any),
             };
-            format!("{} inside {}{point}", object.text, region.text)
+            format!("{} {} {}{point}", object.text, told.inside, region.text)
         }
-        Condition::SettedUp(named) => format!("settedUp {}", named.id),
-        Condition::Dropped(named) => format!("dropped {}", named.id),
-        Condition::Timer { ms, .. } => format!("timer {ms} ms"),
-        Condition::True => "true".to_owned(),
+        Condition::SettedUp(named) => format!("{} {}", told.set_up, named.id),
+        Condition::Dropped(named) => format!("{} {}", told.dropped, named.id),
+        Condition::Timer { ms, .. } => format!("{} {ms} {}", told.timer, told.ms),
+        Condition::True => told.yes.to_owned(),
         Condition::All(_) => "and".to_owned(),
         Condition::Any(_) => "or".to_owned(),
         Condition::Not(_) => "not".to_owned(),
@@ -49,35 +55,42 @@ fn sign(comparison: Comparison) -> &'static str {
     }
 }
 
-fn operand(one: &Operand) -> String {
+fn operand(one: &Operand, told: &Told) -> String {
+    let of = |name: &str, one: &Operand| format!("{name}({})", operand(one, told));
     match one {
-        Operand::Constant(constant) => value(constant),
+        Operand::Constant(constant) => spelt(constant, told),
         Operand::Variable(path) | Operand::State(path) => path.text.to_string(),
         Operand::Either(path) => path.text.to_string(),
         Operand::TypeOf(name) => format!("typeOf({})", name.text),
-        Operand::Unary(Unary::Minus, one) => format!("-{}", operand(one)),
-        Operand::Unary(Unary::Abs, one) => format!("abs({})", operand(one)),
-        Operand::Unary(Unary::BoundingRect, one) => format!("boundingRect({})", operand(one)),
+        Operand::Unary(Unary::Minus, one) => format!("-{}", operand(one, told)),
+        Operand::Unary(Unary::Abs, one) => of("abs", one),
+        Operand::Unary(Unary::BoundingRect, one) => of("boundingRect", one),
         Operand::Binary(operation, operands) => {
             let [left, right] = &**operands;
-            let (left, right) = (operand(left), operand(right));
+            let (left, right) = (operand(left, told), operand(right, told));
             match operation {
                 Binary::Sum => format!("({left} + {right})"),
                 Binary::Difference => format!("({left} - {right})"),
                 Binary::Mul => format!("({left} * {right})"),
                 Binary::Min => format!("min({left}, {right})"),
                 Binary::Max => format!("max({left}, {right})"),
-                Binary::Distance => format!("distance({left}, {right})"),
+                Binary::Distance => format!("{}({left}, {right})", told.distance),
             }
         }
     }
 }
 
 /// A value.
-pub(super) fn value(value: &Value) -> String {
+pub(super) fn value(value: &Value, locale: Locale) -> String {
+    spelt(value, told(locale))
+}
+
+fn spelt(value: &Value, told: &Told) -> String {
     let text = match value {
-        Value::Null => "nothing".to_owned(),
-        Value::Bool(_) | Value::Int(_) => value.to_text(),
+        Value::Null => told.nothing.to_owned(),
+        Value::Bool(true) => told.yes.to_owned(),
+        Value::Bool(false) => told.no.to_owned(),
+        Value::Int(_) => value.to_text(),
         Value::Double(number) => shown((number * 1000.0).round() / 1000.0),
         Value::NoText => "\"\"".to_owned(),
         Value::Text(text) => format!("\"{text}\""),
@@ -86,9 +99,9 @@ pub(super) fn value(value: &Value) -> String {
         Value::Rect(rect) => format!("({}, {}, {} x {})", rect.x, rect.y, rect.width, rect.height),
         Value::Colour(colour) => format!("#{colour:08x}"),
         Value::Opaque => "...".to_owned(),
-        Value::List(list) => format!("list of {}", list.len()),
-        Value::Record(_) => "figure".to_owned(),
-        Value::Object(_) => "object".to_owned(),
+        Value::List(list) => format!("{} {}", told.list, list.len()),
+        Value::Record(_) => told.figure.to_owned(),
+        Value::Object(_) => told.object.to_owned(),
     };
     cut(text)
 }

@@ -10,8 +10,10 @@ pub use page::{Caption, page};
 
 use super::json::Value;
 use super::trajectory::{Record, Trajectory};
+use super::words;
 use crate::field::{Field, ROBOT_SIZE};
 use crate::geometry::Point;
+use lang_text::problem::Locale;
 use lang_text::svg::{Svg, View};
 use shapes::{Bounds, colour};
 
@@ -21,12 +23,14 @@ const HALF: f64 = ROBOT_SIZE / 2.0;
 const NEAR: f64 = 0.5;
 /// Colours of the ways of robots.
 const WAYS: [&str; 4] = ["#c2185b", "#1565c0", "#2e7d32", "#6a1b9a"];
+/// The least height of letters, in pixels of the field.
+const LETTERS_MIN: f64 = 4.0;
 /// How many marks of time a way has at most.
 const MARKS_MAX: usize = 40;
 
 /// The picture of a run: robots where they began and where they ended.
-pub fn svg(field: &Field, trajectory: &Trajectory) -> String {
-    let mut svg = ground(field, trajectory);
+pub fn svg(field: &Field, trajectory: &Trajectory, locale: Locale) -> String {
+    let mut svg = ground(field, trajectory, locale);
     for robot in 0..trajectory.robots.len() {
         let poses = || trajectory.poses(robot as u16);
         if let Some(first) = poses().next() {
@@ -40,19 +44,19 @@ pub fn svg(field: &Field, trajectory: &Trajectory) -> String {
 }
 
 /// All that lies below the robots: the field, what was drawn, and the ways.
-fn ground(field: &Field, trajectory: &Trajectory) -> Svg {
+fn ground(field: &Field, trajectory: &Trajectory, locale: Locale) -> Svg {
     let mut svg = Svg::new();
-    head(field, trajectory, &mut svg);
-    shapes::field(field, &mut svg);
+    let letters = head(field, trajectory, &mut svg);
+    shapes::field(field, letters, &mut svg);
     marker(trajectory, &mut svg);
     for robot in 0..trajectory.robots.len() {
-        way(trajectory, robot, &mut svg);
+        way(trajectory, robot, (letters, locale), &mut svg);
     }
     svg
 }
 
 /// The first tag, around everything that there is.
-fn head(field: &Field, trajectory: &Trajectory, svg: &mut Svg) {
+fn head(field: &Field, trajectory: &Trajectory, svg: &mut Svg) -> f64 {
     let mut bounds = Bounds::default();
     shapes::bounds(field, &mut bounds);
     for record in &trajectory.records {
@@ -62,17 +66,26 @@ fn head(field: &Field, trajectory: &Trajectory, svg: &mut Svg) {
         }
     }
     let frame = bounds.frame();
+    let letters = letters(frame);
     let view = View {
         frame,
         digits: 1,
         is_sized: false,
     };
     svg.picture(view)
-        .style(&[("font-family", "sans-serif"), ("font-size", "14")])
+        .style(&[("font-family", "sans-serif")])
+        .numbers(1, [("font-size", letters)])
         .open();
     shapes::rect(frame, svg)
         .with("fill", colour(&field.settings.background, "#ffffff"))
         .close();
+    letters
+}
+
+/// The height of letters that are as easy to read in a picture of a small field as in one of a large field: a part of the
+/// picture, whatever it is of.
+fn letters([_, _, width, height]: [f64; 4]) -> f64 {
+    (width.max(height) / 55.0).max(LETTERS_MIN)
 }
 
 /// What markers of robots have drawn: their devices tell when they were down.
@@ -113,7 +126,8 @@ fn marker(trajectory: &Trajectory, svg: &mut Svg) {
 }
 
 /// The way of a robot's centre, with marks of time.
-fn way(trajectory: &Trajectory, robot: usize, svg: &mut Svg) {
+fn way(trajectory: &Trajectory, robot: usize, (letters, locale): (f64, Locale), svg: &mut Svg) {
+    let mark = letters / 5.0;
     let ink = WAYS[robot % WAYS.len()];
     let points: Vec<(f64, f64)> = trajectory
         .poses(robot as u16)
@@ -126,6 +140,7 @@ fn way(trajectory: &Trajectory, robot: usize, svg: &mut Svg) {
         .into_iter()
         .find(|every| end / every <= MARKS_MAX as f64)
         .unwrap_or(6e5);
+    let second = words::second(locale);
     let mut next = every;
     let mut before: Option<(f64, f64)> = None;
     for [ms, x, y, _] in trajectory.poses(robot as u16) {
@@ -140,13 +155,20 @@ fn way(trajectory: &Trajectory, robot: usize, svg: &mut Svg) {
         }
         before = Some((x, y));
         svg.tag("circle")
-            .numbers(1, [("cx", x), ("cy", y)])
-            .style(&[("r", "3"), ("fill", ink)])
+            .numbers(1, [("cx", x), ("cy", y), ("r", mark)])
+            .with("fill", ink)
             .close();
         svg.tag("text")
-            .numbers(1, [("x", x + 4.0), ("y", y - 4.0)])
-            .style(&[("font-size", "10"), ("fill", ink)])
-            .text(format_args!("{:.0} s", ms / 1000.0));
+            .numbers(
+                1,
+                [
+                    ("x", x + 1.3 * mark),
+                    ("y", y - 1.3 * mark),
+                    ("font-size", 0.75 * letters),
+                ],
+            )
+            .with("fill", ink)
+            .text(format_args!("{:.0} {second}", ms / 1000.0));
     }
 }
 

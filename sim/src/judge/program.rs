@@ -27,8 +27,8 @@ pub trait Program {
     /// Ends it from outside: motors off, nothing runs any more.
     fn stop(&mut self, robot: &mut dyn Brick);
 
-    /// Says what it does at this moment, for people who look on: variables, and the blocks at which its threads are.
-    /// Programs in languages with text say nothing.
+    /// Says what it does at this moment, for people who look on: variables, and the blocks or lines at which its threads
+    /// are.
     fn describe(&self, _locale: Locale, _tell: &mut dyn FnMut(Group, &str, &str)) {}
 
     /// What went wrong in it so far, in order; it only grows.
@@ -39,7 +39,7 @@ pub trait Program {
         None
     }
 
-    /// Which block each of its threads was at last, for an explanation; nothing for programs without blocks.
+    /// Which block or line each of its threads was at last, for an explanation; nothing if it was not watched.
     fn running(&self) -> Vec<Running> {
         Vec::new()
     }
@@ -50,21 +50,40 @@ pub trait Program {
     }
 }
 
-/// A thread of a diagram and its block.
+/// A thread of a program, and where it is.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub struct Running {
     /// The thread.
     pub thread: String,
     /// When it ended, in milliseconds of model time, if it has.
     pub ended_ms: Option<u32>,
-    /// The name of the diagram.
-    pub diagram: String,
-    /// The id of the block.
-    pub id: String,
-    /// Its type, as `Timer`.
-    pub kind: String,
-    /// Its name in the editor, in English and Russian.
-    pub caption: [String; 2],
+    /// Its block or line.
+    pub at: Spot,
+}
+
+/// A place in a program.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum Spot {
+    /// A block of a diagram.
+    Block {
+        /// The name of the diagram.
+        diagram: String,
+        /// The id of the block.
+        id: String,
+        /// Its type, as `Timer`.
+        kind: String,
+        /// Its name in the editor, in English and Russian.
+        caption: [String; 2],
+    },
+    /// The line of a text at which it waited, or asked the robot, last.
+    Line {
+        /// The name of the file.
+        file: String,
+        /// From 1.
+        line: u32,
+        /// When, in milliseconds of model time.
+        at_ms: u32,
+    },
 }
 
 /// A diagram as a program, with the oddities of the original's simulator.
@@ -195,13 +214,15 @@ impl Program for Diagram {
             Some(Running {
                 thread: text(Some(&step.name)),
                 ended_ms: step.ended_ms,
-                diagram: text(program.diagram(node)),
-                id: text(program.id(node)),
-                kind: text(row.map(|row| row.kind)),
-                caption: [
-                    text(row.map(|row| row.shown)),
-                    text(row.map(|row| row.russian)),
-                ],
+                at: Spot::Block {
+                    diagram: text(program.diagram(node)),
+                    id: text(program.id(node)),
+                    kind: text(row.map(|row| row.kind)),
+                    caption: [
+                        text(row.map(|row| row.shown)),
+                        text(row.map(|row| row.russian)),
+                    ],
+                },
             })
         });
         running.take(limits::RUNNING_MAX).collect()

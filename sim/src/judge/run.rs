@@ -110,6 +110,8 @@ pub struct Outcome {
     pub entries: Vec<Entry>,
     /// What the rules have counted.
     pub total_score: Option<f64>,
+    /// The value of `total_score`, if it is there and is no number.
+    pub strange_score: Option<String>,
     /// What the program has printed: the first texts.
     pub printed: Vec<String>,
     /// Where robots were; empty if it was not recorded.
@@ -438,11 +440,10 @@ impl<'a> Run<'a> {
             verdict,
             failure,
             ms: now,
-            total_score: score.and_then(|score| match score {
-                Value::Int(number) => Some(f64::from(*number)),
-                Value::Double(number) => Some(*number),
-                _ => None,
-            }),
+            total_score: score.and_then(number),
+            strange_score: score
+                .filter(|score| number(score).is_none() && !matches!(score, Value::Null))
+                .map(Value::to_text),
             explanation: self.checker.as_ref().and_then(Checker::explain),
             running: Vec::new(),
             entries: self.entries,
@@ -452,4 +453,25 @@ impl<'a> Run<'a> {
             display: self.settings.is_showing.then(display).flatten(),
         }
     }
+}
+
+/// A score: a number, or a text that says one, as rules with strings have it.
+fn number(score: &Value) -> Option<f64> {
+    let number = match score {
+        Value::Int(number) => f64::from(*number),
+        Value::Double(number) => *number,
+        Value::Text(text) => text.trim().parse().ok()?,
+        Value::Null
+        | Value::Bool(_)
+        | Value::NoText
+        | Value::Point(_)
+        | Value::Place(_)
+        | Value::Rect(_)
+        | Value::Colour(_)
+        | Value::Opaque
+        | Value::List(_)
+        | Value::Record(_)
+        | Value::Object(_) => return None,
+    };
+    number.is_finite().then_some(number)
 }

@@ -20,6 +20,14 @@ pub(super) fn play(locale: Locale) -> &'static str {
     }
 }
 
+/// The short name of a second.
+pub(super) fn second(locale: Locale) -> &'static str {
+    match locale {
+        Locale::English => "s",
+        Locale::Russian => "с",
+    }
+}
+
 /// Keys of a page.
 pub(super) fn keys(locale: Locale) -> &'static str {
     match locale {
@@ -31,7 +39,7 @@ pub(super) fn keys(locale: Locale) -> &'static str {
 /// What a page calls a group of values.
 pub(super) fn group(group: Group, locale: Locale) -> &'static str {
     let [english, russian] = match group {
-        Group::Block => ["Blocks", "Блоки"],
+        Group::Block => ["Blocks and lines", "Блоки и строки"],
         Group::Motor => ["Motors", "Моторы"],
         Group::Sensor => ["Sensors, as read last", "Датчики, последние показания"],
         Group::Variable => ["Variables", "Переменные"],

@@ -5,6 +5,7 @@
 
 use super::args::CheckArgs;
 use super::jobs::{self, Job};
+use super::walk::{self, Passed, Reason};
 use super::words;
 use crate::error::Error;
 use crate::limits;
@@ -25,8 +26,12 @@ pub(super) struct Plan {
     pub pupils: Vec<String>,
     /// In the order of the table.
     pub columns: Vec<Column>,
-    /// What a teacher should know before: files that are left out.
+    /// What a teacher should know before.
     pub notes: Vec<String>,
+    /// What is in the folders and is not judged, each with its reason.
+    pub left_out: Vec<String>,
+    /// How much of it there is, told or not.
+    pub left_out_count: usize,
 }
 
 /// A task in one of its worlds.
@@ -75,17 +80,14 @@ pub(super) fn plan(args: &CheckArgs) -> Result<Plan, Error> {
         let why = "--grades is for solutions: recorded runs have no pupils";
         return Err(Error::Refused(why.to_owned()));
     }
-    let mut notes = Vec::new();
+    let mut passed = Passed::default();
     let tasks = match &args.grades.tasks {
-        Some(folder) => Some(tasks(folder, args, &mut notes)?),
+        Some(folder) => Some(tasks(folder, args, &mut passed)?),
         None => None,
     };
-    let found = found(args, tasks.as_deref())?;
+    let found = found(args, tasks.is_some(), &mut passed)?;
     let (tasks, owners) = sorted(tasks, &found, args)?;
-    let mut plan = Plan {
-        notes,
-        ..Plan::default()
-    };
+    let mut plan = Plan::default();
     let empty = empty_folders(args, &found, &tasks)?;
     let owned = owners.iter().flatten().map(|(pupil, _)| pupil);
     plan.set_pupils(args, owned.chain(&empty))?;
@@ -110,8 +112,7 @@ pub(super) fn plan(args: &CheckArgs) -> Result<Plan, Error> {
     let mut names = HashSet::new();
     for (one, owner) in found.iter().zip(owners) {
         let Some((pupil, task)) = owner else {
-            plan.notes
-                .push(words::unmatched(&named(&one.path), args.language));
+            passed.note(one.path.clone(), Reason::NoTask);
             continue;
         };
         let pupil = plan.pupils.iter().position(|name| *name == pupil);
@@ -129,6 +130,10 @@ pub(super) fn plan(args: &CheckArgs) -> Result<Plan, Error> {
         }
         jobs::bound(&plan.jobs)?;
     }
+    let told = passed.told.iter();
+    let told = told.map(|(path, reason)| words::passed(&named(path), reason, args.language));
+    plan.left_out = told.collect();
+    plan.left_out_count = passed.count;
     Ok(plan)
 }
 
@@ -214,8 +219,8 @@ impl Plan {
 }
 
 /// The tasks of a folder: `NAME.xml` and folders of such files are fields, `NAME.qrs` is what was given out.
-fn tasks(folder: &Path, args: &CheckArgs, notes: &mut Vec<String>) -> Result<Vec<Task>, Error> {
-    let failed = |error: std::io::Error| jobs::unread(folder, error, args.language);
+fn tasks(folder: &Path, args: &CheckArgs, passed: &mut Passed) -> Result<Vec<Task>, Error> {
+    let failed = |error: std::io::Error| walk::unread(folder, error, args.language);
     let mut all: BTreeMap<String, Task> = BTreeMap::new();
     let mut saves = Vec::new();
     let mut entries = Vec::new();
@@ -231,17 +236,21 @@ fn tasks(folder: &Path, args: &CheckArgs, notes: &mut Vec<String>) -> Result<Vec
             false => stem(&path),
         };
         let worlds: Vec<Option<PathBuf>> = match ending {
-            _ if name.starts_with('.') => continue,
-            _ if is_folder => {
-                let found = jobs::below(&path, &["xml"], 1, limits::FIELDS_MAX)?;
-                found.into_iter().map(|(field, _)| Some(field)).collect()
+            _ if is_folder && !name.starts_with('.') => {
+                let walk = walk::below(&path, &["xml"], 1, limits::FIELDS_MAX)?;
+                passed.extend(walk.passed);
+                let found = walk.found.into_iter();
+                found.map(|(field, _)| Some(field)).collect()
             }
-            Some("xml") => vec![Some(path)],
-            Some("qrs") => {
+            Some("xml") if path.is_file() && !name.starts_with('.') => vec![Some(path)],
+            Some("qrs") if path.is_file() && !name.starts_with('.') => {
                 saves.push((name, path));
                 continue;
             }
-            Some(_) | None => continue,
+            Some(_) | None => {
+                passed.note(path, Reason::NoTaskFile);
+                continue;
+            }
         };
         let task = all.entry(name.clone()).or_insert_with(|| Task {
             name,
@@ -255,7 +264,7 @@ fn tasks(folder: &Path, args: &CheckArgs, notes: &mut Vec<String>) -> Result<Vec
     }
     for (name, path) in saves {
         if all.contains_key(&name) {
-            notes.push(words::save_left_out(&named(&path), args.language));
+            passed.note(path, Reason::HasFields);
             continue;
         }
         let task = Task {
@@ -274,24 +283,24 @@ fn tasks(folder: &Path, args: &CheckArgs, notes: &mut Vec<String>) -> Result<Vec
     Ok(all.into_values().collect())
 }
 
-/// All solutions. One directory is the class; of several each is a pupil.
-fn found(args: &CheckArgs, tasks: Option<&[Task]>) -> Result<Vec<Found>, Error> {
-    let has_fields = match tasks {
-        Some(tasks) => tasks.iter().any(|task| task.given.is_none()),
-        None => !args.field.is_empty(),
-    };
-    let endings: &[&str] = match has_fields {
+/// All solutions. One directory is the class; of several each is a pupil. Programs with text run in fields, or in the save
+/// that was given out.
+fn found(args: &CheckArgs, has_tasks: bool, passed: &mut Passed) -> Result<Vec<Found>, Error> {
+    let has_worlds = has_tasks || !args.field.is_empty() || args.task.is_some();
+    let endings: &[&str] = match has_worlds {
         true => &["qrs", "js", "py"],
         false => &["qrs"],
     };
     let mut all = Vec::new();
     for path in &args.paths {
         let is_pupil = args.paths.len() > 1 && path.is_dir();
-        let inside = match jobs::below(path, endings, limits::FOLDERS_DEEP, limits::SOLUTIONS_MAX) {
-            // A pupil who has handed in an empty folder is no reason to stop.
-            Err(_) if is_pupil => Vec::new(),
-            inside => inside?,
-        };
+        let walk = walk::walk(path, endings, limits::FOLDERS_DEEP, limits::SOLUTIONS_MAX)?;
+        // A pupil who has handed in an empty folder is no reason to stop.
+        if walk.found.is_empty() && !is_pupil {
+            return Err(walk::none(path, endings));
+        }
+        passed.extend(walk.passed);
+        let inside = walk.found;
         for (solution, name) in inside {
             let name = match (is_pupil, path.file_name()) {
                 (true, Some(pupil)) => Path::new(pupil).join(name),

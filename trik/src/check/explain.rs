@@ -9,7 +9,7 @@ use lang_constraint::{Explained, Kind, Near, Seen, Standing, Unit};
 use lang_diagram::stand_in::PIXELS_IN_CM;
 use lang_text::problem::Locale;
 use serde_json::{Value, json};
-use sim::judge::{Outcome, Running};
+use sim::judge::{Outcome, Running, Spot};
 
 /// What is told of a run: an object, whose `text` has the lines for people.
 pub(super) fn explanation(outcome: &Outcome, locale: Locale) -> Value {
@@ -17,7 +17,12 @@ pub(super) fn explanation(outcome: &Outcome, locale: Locale) -> Value {
     let rules = outcome.explanation.as_ref();
     let told: &[Explained] = rules.map_or(&[], |rules| &rules.rules);
     let decided = told.iter().find(|rule| rule.decided);
-    let mut lines = vec![words::why(verdict, decided.map(named), outcome.ms, locale)];
+    let mut lines = vec![words::why(
+        verdict,
+        decided.map(|rule| named(rule, locale)),
+        outcome.ms,
+        locale,
+    )];
     for rule in told {
         lines.extend(rule_lines(rule, locale));
     }
@@ -44,13 +49,11 @@ pub(super) fn explanation(outcome: &Outcome, locale: Locale) -> Value {
 }
 
 /// A rule as people find it: its tag, and its id or its place.
-fn named(rule: &Explained) -> String {
-    match &*rule.id {
-        "" => format!("{} #{}", kind(rule.kind), rule.number),
-        id => format!("{} '{id}'", kind(rule.kind)),
-    }
+fn named(rule: &Explained, locale: Locale) -> String {
+    words::rule(rule.kind, &rule.id, rule.number, locale)
 }
 
+/// A kind of rules for programs.
 fn kind(kind: Kind) -> &'static str {
     match kind {
         Kind::Event => "event",
@@ -64,10 +67,7 @@ fn rule_lines(rule: &Explained, locale: Locale) -> Vec<String> {
     let by: Vec<String> = rule
         .set_up_by
         .iter()
-        .map(|(id, number)| match &**id {
-            "" => format!("#{number}"),
-            id => format!("'{id}'"),
-        })
+        .map(|(kind, id, number)| words::rule(*kind, id, *number, locale))
         .collect();
     let standing = match (rule.fired_ms, rule.state) {
         (Some(ms), _) => words::fired(rule.kind, ms, locale),
@@ -75,7 +75,7 @@ fn rule_lines(rule: &Explained, locale: Locale) -> Vec<String> {
         (None, Standing::Dropped) => words::dropped(locale),
         (None, Standing::NeverSetUp) => words::never_set_up(&by.join(", "), locale),
     };
-    let mut lines = vec![format!("  {}: {standing}", named(rule))];
+    let mut lines = vec![format!("  {}: {standing}", named(rule, locale))];
     for seen in &rule.conditions {
         let indent = "  ".repeat(seen.depth + 2);
         lines.push(format!("{indent}{}", condition_line(rule, seen, locale)));
@@ -102,7 +102,7 @@ fn condition_line(rule: &Explained, seen: &Seen, locale: Locale) -> String {
     }
     // Of what has fired, and of what is met, it is known how near it came.
     if let (None, Some(false), Some(near)) = (rule.fired_ms, is_met, &seen.nearest) {
-        line.push_str(&words::nearest(&distance(near), near.at_ms, locale));
+        line.push_str(&words::nearest(&distance(near, locale), near.at_ms, locale));
     }
     line
 }
@@ -114,7 +114,7 @@ fn values(seen: &Seen, locale: Locale) -> String {
     };
     let is_timer = matches!(&seen.nearest, Some(near) if near.unit == Unit::Milliseconds);
     match () {
-        () if is_timer => format!(" ({left} ms)"),
+        () if is_timer => format!(" ({left} {})", words::units(locale).ms),
         () if seen.text.ends_with(&format!(" {right}")) => format!(" ({left})"),
         () => format!(" ({})", words::values(left, right, locale)),
     }
@@ -125,14 +125,17 @@ fn is_head(seen: &Seen) -> bool {
 }
 
 /// A gap with its unit, as `12.4 px = 4.3 cm`.
-fn distance(near: &Near) -> String {
+fn distance(near: &Near, locale: Locale) -> String {
+    let units = words::units(locale);
     match near.unit {
         Unit::Value => short(near.gap, 3),
-        Unit::Milliseconds => format!("{} ms", short(near.gap, 0)),
+        Unit::Milliseconds => format!("{} {}", short(near.gap, 0), units.ms),
         Unit::Pixels => format!(
-            "{} px = {} cm",
+            "{} {} = {} {}",
             short(near.gap, 1),
-            short(near.gap / PIXELS_IN_CM, 1)
+            units.px,
+            short(near.gap / PIXELS_IN_CM, 1),
+            units.cm
         ),
     }
 }
@@ -157,7 +160,8 @@ fn rule_json(rule: &Explained) -> Value {
             Standing::Dropped => "dropped",
             Standing::NeverSetUp => "never_set_up",
         },
-        "set_up_by": rule.set_up_by.iter().map(|(id, number)| json!({"id": id, "number": number}))
+        "set_up_by": rule.set_up_by.iter()
+            .map(|(of, id, number)| json!({"kind": kind(*of), "id": id, "number": number}))
             .collect::<Vec<_>>(),
         "conditions": rule.conditions.iter().map(condition_json).collect::<Vec<_>>(),
         "more_conditions": rule.more,
@@ -184,16 +188,32 @@ fn condition_json(seen: &Seen) -> Value {
 }
 
 fn thread_json(one: &Running, locale: Locale) -> Value {
-    let caption = match locale {
-        Locale::English => &one.caption[0],
-        Locale::Russian => &one.caption[1],
-    };
-    json!({
-        "thread": one.thread,
-        "ended_ms": one.ended_ms,
-        "diagram": one.diagram,
-        "block": {"id": one.id, "kind": one.kind, "caption": caption},
-    })
+    match &one.at {
+        Spot::Block {
+            diagram,
+            id,
+            kind,
+            caption: [english, russian],
+        } => {
+            let caption = match locale {
+                Locale::English => english,
+                Locale::Russian => russian,
+            };
+            json!({
+                "thread": one.thread,
+                "ended_ms": one.ended_ms,
+                "diagram": diagram,
+                "block": {"id": id, "kind": kind, "caption": caption},
+            })
+        }
+        Spot::Line { file, line, at_ms } => json!({
+            "thread": one.thread,
+            "ended_ms": one.ended_ms,
+            "file": file,
+            "line": line,
+            "at_ms": at_ms,
+        }),
+    }
 }
 
 /// The lines of such a value.

@@ -15,8 +15,9 @@ pub(crate) struct GradeArgs {
     #[arg(long = "grades", value_name = "OUT.csv|.ods|.html", value_parser = form)]
     pub out: Vec<PathBuf>,
     /// The tasks of the class: fields NAME.xml, folders NAME with several fields, and saves NAME.qrs that pupils were
-    /// given. A solution is for the task that its file or a folder on the way to it is named after.
-    #[arg(long, value_name = "DIR", requires = "out", conflicts_with_all = ["field", "own", "task", "script", "log"])]
+    /// given. A solution is for the task that its file or a folder on the way to it is named after. Without --grades
+    /// the runs are told and no table is written.
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["field", "own", "task", "script", "log", "platform"])]
     pub tasks: Option<PathBuf>,
     /// The names of all pupils, one in a line, as their folders or files are called: whoever has handed in nothing has a
     /// row too.

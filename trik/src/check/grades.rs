@@ -48,6 +48,8 @@ pub(super) struct Grades {
     source: Source,
     pass_mark: Option<f64>,
     runs: Vec<Run>,
+    /// What is not judged, for people, and how much it is.
+    left_out: (Vec<String>, usize),
     /// The run that counts for each pupil and column, row by row.
     cells: Vec<Option<usize>>,
 }
@@ -64,6 +66,7 @@ impl Grades {
             source: args.points,
             pass_mark: args.pass_mark,
             runs: Vec::new(),
+            left_out: (plan.left_out, plan.left_out_count),
         }
     }
 

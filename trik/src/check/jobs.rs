@@ -1,19 +1,14 @@
 //! Which solution is run in which world: files, directories and fields to a list of runs.
 //!
-//! Owns the order (as it was said, directories by name) and the names of files that a run writes. Opens nothing but
-//! directories; links to directories are not followed.
+//! Owns the order (as it was said, directories by name) and the names of files that a run writes. Directories are walked
+//! in `walk`; opens nothing.
 
 use super::args::CheckArgs;
+use super::walk::{Passed, Reason, below, walk};
 use crate::error::Error;
-use crate::input::Unread;
-use crate::input::words::{A_FILE, why};
 use crate::limits;
-use crate::terminal::named;
-use lang_text::problem::Locale;
 use std::collections::HashSet;
 use std::ffi::OsStr;
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 
 /// One run to be done.
@@ -94,7 +89,7 @@ pub(super) fn fields(args: &CheckArgs) -> Result<Vec<Option<PathBuf>>, Error> {
         fields.push(None);
     }
     for path in &args.field {
-        let found = below(path, &["xml"], 1, limits::FIELDS_MAX)?;
+        let found = below(path, &["xml"], 1, limits::FIELDS_MAX)?.found;
         fields.extend(found.into_iter().map(|(field, _)| Some(field)));
         if fields.len() > limits::FIELDS_MAX {
             return Err(too_many_fields());
@@ -120,34 +115,68 @@ pub(super) fn bound(jobs: &[Job]) -> Result<(), Error> {
     }
 }
 
-/// All solutions, with their names from where they were looked for.
-fn solutions(args: &CheckArgs) -> Result<Vec<(PathBuf, PathBuf)>, Error> {
-    let endings: &[&str] = match args.field.is_empty() {
+/// The endings of solutions: programs with text need a world from elsewhere.
+fn endings(args: &CheckArgs) -> &'static [&'static str] {
+    match args.field.is_empty() && args.task.is_none() {
         true => &["qrs"],
         false => &["qrs", "js", "py"],
-    };
+    }
+}
+
+/// All solutions, with their names from where they were looked for.
+fn solutions(args: &CheckArgs) -> Result<Vec<(PathBuf, PathBuf)>, Error> {
     let mut all = Vec::new();
     for path in &args.paths {
-        all.extend(below(
+        let walk = below(
             path,
-            endings,
+            endings(args),
             limits::FOLDERS_DEEP,
             limits::SOLUTIONS_MAX,
-        )?);
+        )?;
+        all.extend(walk.found);
     }
     Ok(all)
 }
 
+/// What directories of solutions have in them beside solutions and other files: what somebody may have meant to be judged.
+pub(super) fn passed(args: &CheckArgs) -> Passed {
+    let mut all = Passed::default();
+    let paths = args.paths.iter().chain(&args.log);
+    for path in paths.filter(|path| path.is_dir()) {
+        let endings = if args.log.is_empty() {
+            endings(args)
+        } else {
+            &["json"]
+        };
+        let walked = walk(path, endings, limits::FOLDERS_DEEP, limits::SOLUTIONS_MAX);
+        let told = walked.map_or_else(|_| Vec::new(), |walk| walk.passed.told);
+        for (path, reason) in told {
+            match reason {
+                Reason::Ending => {}
+                Reason::LinkToFolder
+                | Reason::BrokenLink
+                | Reason::NoFile
+                | Reason::TooDeep
+                | Reason::Unreadable(_)
+                | Reason::NoTask
+                | Reason::NoTaskFile
+                | Reason::HasFields => all.note(path, reason),
+            }
+        }
+    }
+    all
+}
+
 /// Programs in directories that have no world to run in, for a word about them.
 pub(super) fn left_out(args: &CheckArgs) -> usize {
-    if !args.field.is_empty() || !args.log.is_empty() || args.script.is_some() {
+    if endings(args).contains(&"js") || !args.log.is_empty() || args.script.is_some() {
         return 0;
     }
     let folders = args.paths.iter().filter(|path| path.is_dir());
     let programs = folders.map(|path| {
         let max = limits::SOLUTIONS_MAX;
-        let found = below(path, &["js", "py"], limits::FOLDERS_DEEP, max);
-        found.map_or(0, |found| found.len())
+        let walked = walk(path, &["js", "py"], limits::FOLDERS_DEEP, max);
+        walked.map_or(0, |walk| walk.found.len())
     });
     programs.sum()
 }
@@ -175,7 +204,8 @@ fn recorded(args: &CheckArgs, fields: &[Option<PathBuf>]) -> Result<Vec<Job>, Er
     };
     let (mut all, mut names) = (Vec::new(), HashSet::new());
     for path in &args.log {
-        for (log, name) in below(path, &["json"], limits::FOLDERS_DEEP, limits::SOLUTIONS_MAX)? {
+        let walk = below(path, &["json"], limits::FOLDERS_DEEP, limits::SOLUTIONS_MAX)?;
+        for (log, name) in walk.found {
             all.extend(fields.iter().map(|field| Job {
                 solution: save.unwrap_or(&log).clone(),
                 field: field.clone(),
@@ -211,61 +241,4 @@ pub(super) fn free(
         found = other.into();
     }
     found
-}
-
-/// Why a file or a directory cannot be looked at.
-pub(super) fn unread(path: &Path, error: io::Error, locale: Locale) -> Error {
-    let words = why(&Unread::from(error), 0, A_FILE);
-    Error::Refused(format!("{}: {}", named(path), words.in_locale(locale)))
-}
-
-/// A file as it is, or those with an ending below a directory, sorted, with their names from there.
-pub(super) fn below(
-    path: &Path,
-    endings: &[&str],
-    deep: usize,
-    max: usize,
-) -> Result<Vec<(PathBuf, PathBuf)>, Error> {
-    let failed = |error: io::Error| unread(path, error, Locale::English);
-    if !fs::metadata(path).map_err(failed)?.is_dir() {
-        let name = path.file_name().map_or_else(|| path.into(), PathBuf::from);
-        return Ok(vec![(path.to_owned(), name)]);
-    }
-    let mut found = Vec::new();
-    let mut folders = vec![(path.to_owned(), 0)];
-    while let Some((folder, depth)) = folders.pop() {
-        for entry in fs::read_dir(&folder).map_err(failed)? {
-            let entry = entry.map_err(failed)?;
-            let kind = entry.file_type().map_err(failed)?;
-            let inside = entry.path();
-            let is_wanted = || {
-                let ending = inside.extension().and_then(OsStr::to_str);
-                ending.is_some_and(|ending| endings.contains(&ending))
-            };
-            if kind.is_dir() {
-                if depth + 1 < deep {
-                    folders.push((inside, depth + 1));
-                }
-            } else if is_wanted() && (kind.is_file() || inside.is_file()) {
-                let name = inside.strip_prefix(path).unwrap_or(&inside).to_owned();
-                found.push((inside, name));
-                if found.len() > max {
-                    return Err(Error::Refused(format!(
-                        "{}: there are more than {max} files",
-                        named(path)
-                    )));
-                }
-            }
-        }
-    }
-    if found.is_empty() {
-        let endings: Vec<String> = endings.iter().map(|one| format!("*.{one}")).collect();
-        let endings = endings.join(" and ");
-        return Err(Error::Refused(format!(
-            "{}: there is no {endings} here",
-            named(path)
-        )));
-    }
-    found.sort();
-    Ok(found)
 }

@@ -359,6 +359,7 @@ fn patched(args: &Patcher) -> Result<(), Refused> {
         force: true,
         // The save itself is what is replaced.
         source: Path::new(""),
+        locale: Locale::English,
     };
     output.write(&bytes).map_err(|refusal| (refusal.lines, 255))
 }

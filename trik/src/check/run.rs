@@ -60,7 +60,7 @@ pub(super) fn run(job: &Job, args: &CheckArgs, report_phase: &mut dyn FnMut(Phas
         Ok((task, outcome, strange)) => {
             let some = strange.iter().take(limits::ROW_WARNINGS_MAX);
             some.for_each(|line| row.say(words::WARNING, line));
-            fill(&outcome, &mut row);
+            fill(&outcome, args.language, &mut row);
             if args.explain {
                 row.explain = Some(explain::explanation(&outcome, args.language));
             }
@@ -91,11 +91,14 @@ pub(super) fn report(job: &Job, args: &CheckArgs, row: &mut Row, said: &[(String
 }
 
 /// What came out, as a row.
-fn fill(outcome: &Outcome, row: &mut Row) {
+fn fill(outcome: &Outcome, locale: Locale, row: &mut Row) {
     row.verdict = Verdict::of(outcome);
     row.ms = outcome.ms;
     row.total_score = outcome.total_score;
     row.printed.clone_from(&outcome.printed);
+    if let Some(text) = &outcome.strange_score {
+        row.say(words::WARNING, words::no_score(text).in_locale(locale));
+    }
     // What is wrong with rules is wrong in each tick; a person needs it once.
     let mut told = BTreeSet::new();
     for entry in &outcome.entries {
@@ -174,14 +177,16 @@ fn judged(
         // The field has its own pictures.
         solution.project.blobs = None;
     }
-    let project = &solution.project;
-    if project.world.is_none() && solution.script.is_some() {
-        let why = format!(
-            "{}: there is no world in it: --field gives one",
-            shown(&job.solution)
-        );
-        return Err(vec![why].into());
+    let mut given = job.given.as_ref().or(args.task.as_ref());
+    if solution.project.world.is_none() && solution.script.is_some() {
+        let Some(path) = given.take() else {
+            let why = words::no_world(args.language);
+            return Err(vec![format!("{}: {why}", shown(&job.solution))].into());
+        };
+        // A program with text has no world of its own: it runs in the save that was given out, as it was.
+        solution.project = save(path, args)?;
     }
+    let project = &solution.project;
     // A diagram without a world runs in an empty one.
     let world = project.world.as_deref().unwrap_or_default();
     let place = job.field.as_deref().unwrap_or(&job.solution);
@@ -194,7 +199,7 @@ fn judged(
     let refused = |problems: Vec<Problem>| Refused::of(place, &problems, args.language);
     let (mut task, strange) = task.map_err(refused)?;
     let mut strange = lines(place, &strange, args.language);
-    if let Some(given) = job.given.as_ref().or(args.task.as_ref()) {
+    if let Some(given) = given {
         let changed = hold(&mut task, given, args)?;
         strange.extend(
             changed
@@ -222,16 +227,30 @@ fn judged(
     Ok((task, outcome, strange))
 }
 
+/// The save that was given out, which has a world.
+fn save(path: &Path, args: &CheckArgs) -> Result<Project, Lines> {
+    let why = |words: Words| {
+        vec![format!(
+            "{}: {}",
+            shown(path),
+            words.in_locale(args.language)
+        )]
+    };
+    let opened = open(path).map_err(|unreadable| match unreadable {
+        Unreadable::File(words) => why(words),
+        Unreadable::Save(problems) => lines(path, &problems, args.language),
+    })?;
+    match &opened.project.world {
+        Some(_) => Ok(opened.project),
+        None => Err(why(words::given_without_world())),
+    }
+}
+
 /// Puts what a given task locks into the world of a solution.
 fn hold(task: &mut Task, given: &Path, args: &CheckArgs) -> Result<Lines, Lines> {
-    let project = Solution::read(given, args)
-        .map_err(|why| why.lines)?
-        .project;
-    let Some(world) = &project.world else {
-        return Err(vec![format!("{}: there is no world in it", shown(given))]);
-    };
+    let project = save(given, args)?;
     let texts = Texts {
-        world,
+        world: project.world.as_deref().unwrap_or_default(),
         blobs: project.blobs.as_deref(),
         templates: Some(&project.templates),
     };
@@ -341,6 +360,7 @@ impl Solution {
             let given = Given {
                 file: &self.file,
                 seed: args.seed,
+                is_watched: args.explain || args.html.is_some(),
                 wall_seconds: args.wall_limit,
             };
             return script::open(*language, text, given).map_err(|why| line(why).into());
@@ -408,14 +428,14 @@ fn write(job: &Job, args: &CheckArgs, task: &Task, outcome: &Outcome) -> Result<
         outcome.trajectory.write().into()
     });
     write(&args.svg, SVG, &|| {
-        judge::svg(&task.field, &outcome.trajectory).into()
+        judge::svg(&task.field, &outcome.trajectory, args.language).into()
     });
     write(&args.display, DISPLAY, &|| {
         outcome.display.clone().unwrap_or_default()
     });
     write(&args.html, HTML, &|| {
         let mut row = Row::broken(shown(job.judged(args)), None, String::new());
-        fill(outcome, &mut row);
+        fill(outcome, args.language, &mut row);
         let verdict = format!(
             "{}, {}",
             words::verdict(row.verdict, args.language),
@@ -449,6 +469,7 @@ fn put(job: &Job, args: &CheckArgs, path: &Path, ending: &str, bytes: &[u8]) -> 
         path: Some(&path),
         force: args.force,
         source: job.judged(args),
+        locale: args.language,
     };
     output.write(bytes).map_err(|refusal| {
         let lines: Vec<&str> = refusal.lines.iter().map(|line| plain(line)).collect();

@@ -40,6 +40,8 @@ pub(super) struct Given<'a> {
     pub file: &'a Path,
     /// Seed of random numbers.
     pub seed: u32,
+    /// Whether it is to be known at which lines it waits and asks.
+    pub is_watched: bool,
     /// Longest run in seconds of real time.
     pub wall_seconds: f64,
 }
@@ -54,11 +56,20 @@ pub(super) fn open(
     given: Given<'_>,
 ) -> Result<Box<dyn Program>, Error> {
     match language {
-        Language::JavaScript => Ok(Box::new(JavaScript::new(given.file, text)?)),
+        Language::JavaScript => {
+            let program = JavaScript::new(given.file, text)?;
+            Ok(Box::new(match given.is_watched {
+                true => program.watched(),
+                false => program,
+            }))
+        }
         Language::Python => {
             let longest = Duration::from_secs_f64(given.wall_seconds);
             let python = Python::new(given.file, text, given.seed, longest)?;
-            Ok(Box::new(python))
+            Ok(Box::new(match given.is_watched {
+                true => python.watched(),
+                false => python,
+            }))
         }
     }
 }

@@ -1,7 +1,9 @@
 //! What `trik check` says itself, in English and Russian.
 
 use super::verdict::{Counts, Verdict};
+use super::walk::Reason;
 use lang_text::problem::{Locale, Words};
+use std::io;
 
 /// A text in a language.
 pub(super) fn choose(locale: Locale, english: &'static str, russian: &'static str) -> &'static str {
@@ -43,6 +45,14 @@ pub(super) fn verdict(verdict: Verdict, locale: Locale) -> &'static str {
 
 /// The level of what is strange in a world or in its rules.
 pub(super) const WARNING: &str = "warning";
+
+/// What the rules have counted is no number.
+pub(super) fn no_score(text: &str) -> Words {
+    Words::new(
+        format!("total_score is '{text}', which is no number: it counts as none"),
+        format!("total_score равен '{text}', это не число: баллов нет"),
+    )
+}
 
 /// A level of a message.
 pub(super) fn level(name: &str, locale: Locale) -> &'static str {
@@ -132,6 +142,20 @@ pub(super) fn is_world(locale: Locale) -> &'static str {
     )
 }
 
+/// A program with text that has nowhere to run.
+pub(super) fn no_world(locale: Locale) -> &'static str {
+    choose(
+        locale,
+        "a program with text has no world of its own: --field WORLD.xml gives one, or --task TASK.qrs, the save that pupils were given",
+        "у текстовой программы нет своего мира: его даст --field WORLD.xml или --task TASK.qrs, выданное ученикам сохранение",
+    )
+}
+
+/// A save that pupils were given and that has no world.
+pub(super) fn given_without_world() -> Words {
+    Words::new("there is no world in it", "в нём нет мира")
+}
+
 /// How far it is.
 pub(super) fn progress(done: usize, all: usize, locale: Locale) -> String {
     match locale {
@@ -217,15 +241,64 @@ pub(super) fn graded(path: &str, counts: [usize; 3], locale: Locale) -> String {
     }
 }
 
-/// A file of a class of which nothing says which task it is for.
-pub(super) fn unmatched(path: &str, locale: Locale) -> String {
+/// Something in a folder that is not judged, and why.
+pub(super) fn passed(path: &str, reason: &Reason, locale: Locale) -> String {
+    let why = match reason {
+        Reason::Ending => Words::new(
+            "it is no solution: those are NAME.qrs, and NAME.js and NAME.py for tasks with a world",
+            "это не решение: решения - NAME.qrs, а для заданий с миром и NAME.js и NAME.py",
+        ),
+        Reason::LinkToFolder => Words::new(
+            "it is a link to a folder, and those are not followed; put the folder itself here",
+            "это ссылка на папку, по ним не ходят; положите сюда саму папку",
+        ),
+        Reason::BrokenLink => Words::new(
+            "it is a link to nothing",
+            "это ссылка, которая никуда не ведёт",
+        ),
+        Reason::NoFile => Words::new(
+            "it is a FIFO, a socket or a device and no file",
+            "это канал (FIFO), сокет или устройство, а не файл",
+        ),
+        Reason::TooDeep => Words::new(
+            "folders so deep are not looked into; move it up",
+            "так глубоко папки не просматриваются; переместите её выше",
+        ),
+        Reason::Unreadable(error) => Words::new(
+            format!("it cannot be read: {error}"),
+            match error.kind() == io::ErrorKind::PermissionDenied {
+                true => "нет прав на чтение".to_owned(),
+                false => format!("не читается: {error}"),
+            },
+        ),
+        Reason::NoTask => Words::new(
+            "its name and its folders name no task; call the file as the task, in a folder of the pupil",
+            "ни имя, ни папки не называют задание; назовите файл как задание, в папке ученика",
+        ),
+        Reason::NoTaskFile => Words::new(
+            "it is no task: those are NAME.xml, NAME.qrs and folders of fields",
+            "это не задание: задания - NAME.xml, NAME.qrs и папки с полями",
+        ),
+        Reason::HasFields => Words::new(
+            "fields of this task are there, and they are used",
+            "у задания есть поля, берутся они",
+        ),
+    };
+    let why = why.in_locale(locale);
     match locale {
-        Locale::English => format!(
-            "trik: {path} is left out: its name and its folders name no task; call the file as the task, in a folder of the pupil"
-        ),
-        Locale::Russian => format!(
-            "trik: {path} пропущен: ни имя, ни папки не называют задание; назовите файл как задание, в папке ученика"
-        ),
+        Locale::English => format!("{path} is left out: {why}"),
+        Locale::Russian => format!("{path} - пропущено: {why}"),
+    }
+}
+
+/// How much is left out, and how much of it is not told one by one.
+pub(super) fn passed_count(count: usize, told: usize, locale: Locale) -> String {
+    let more = count.saturating_sub(told);
+    match (locale, more) {
+        (Locale::English, 0) => format!("left out: {count}"),
+        (Locale::Russian, 0) => format!("пропущено: {count}"),
+        (Locale::English, more) => format!("left out: {count}, of which {more} are not named here"),
+        (Locale::Russian, more) => format!("пропущено: {count}, из них не названо здесь: {more}"),
     }
 }
 
@@ -237,16 +310,6 @@ pub(super) fn unlisted(name: &str, locale: Locale) -> String {
             format!("trik: '{name}' is not in the list of --pupils; the row is added")
         }
         Locale::Russian => format!("trik: '{name}' нет в списке --pupils; строка добавлена"),
-    }
-}
-
-/// A task has fields and a save; the save is not used.
-pub(super) fn save_left_out(path: &str, locale: Locale) -> String {
-    match locale {
-        Locale::English => {
-            format!("trik: {path} is left out: fields of this task are there, and they are used")
-        }
-        Locale::Russian => format!("trik: {path} пропущен: у задания есть поля, берутся они"),
     }
 }
 

@@ -7,6 +7,7 @@ use crate::output::Output;
 use crate::refusal::Refusal;
 use clap::Args;
 use lang_dcml::generate::{JAVA_INTERFACE, Options, Target, generate};
+use lang_text::problem::Locale;
 use std::path::PathBuf;
 
 /// What `trik dcml gen` can be told.
@@ -51,6 +52,7 @@ pub(super) fn run(args: &GenArgs) -> Result<u8, Refusal> {
         path: args.output.as_deref(),
         force: args.force,
         source: &file,
+        locale: Locale::English,
     };
     if args.interface {
         let (Target::Java | Target::JavaHipparchus) = args.lang else {

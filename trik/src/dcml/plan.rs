@@ -27,6 +27,7 @@ use lang_plan::limits::{PLAN_ITERATIONS_MAX, PLAN_OBSTACLES_TEXT_MAX};
 use lang_plan::obstacles::{Obstacles, text};
 use lang_plan::room::Room;
 use lang_plan::{Counts, Method, Options, Outcome, plan};
+use lang_text::problem::Locale;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -51,6 +52,7 @@ fn prepared(args: &PlanArgs) -> Result<u8, Refusal> {
             path: Some(path),
             force: args.force,
             source: &args.file,
+            locale: Locale::English,
         })
     });
     let read = [&args.world, &args.obstacles];

@@ -20,6 +20,7 @@ use lang_dcml::robot::Robot;
 use lang_dcml::solve::run::Course;
 use lang_dcml::solve::{Failure, Method, Options, Solver, wrapped};
 use lang_dcml::syntax::Kind;
+use lang_text::problem::Locale;
 use std::path::Path;
 use table::{Column, Table};
 
@@ -80,6 +81,7 @@ impl<'a> Outputs<'a> {
             path,
             force: args.force,
             source: &args.file,
+            locale: Locale::English,
         };
         let (named, svg) = (args.output.as_deref(), args.svg.as_deref());
         let (table, picture) = match (args.out, svg) {

@@ -63,6 +63,7 @@ pub(crate) fn run(args: &GenArgs) -> Result<u8, Refusal> {
         path: args.output.as_deref(),
         force: args.force,
         source: &args.file,
+        locale: args.language,
     };
     let opened = must_open(&args.file, args.language)?;
     output.refuse_present()?;

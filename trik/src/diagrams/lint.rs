@@ -186,6 +186,7 @@ fn recover(opened: &mut Opened, file: &Path, out: &Path, args: &LintArgs) -> Res
         path: Some(out),
         force: args.force,
         source: file,
+        locale: args.language,
     };
     output.refuse_present()?;
     let recovered = opened.save.recover_orphans();

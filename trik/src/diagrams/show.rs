@@ -52,6 +52,7 @@ pub(crate) fn run(args: &ShowArgs) -> Result<u8, Refusal> {
             path: Some(svg),
             force: args.force,
             source: &args.file,
+            locale: args.language,
         };
         output.refuse_present()?;
         let picture = picture(&opened.project.diagrams[chosen], args.language);

@@ -4,6 +4,7 @@
 //! did that, then who is due, in the order in which they began to wait.
 
 use super::input::{GAMEPAD, KEYS};
+use super::lines::Lines;
 use super::refresh::Readings;
 use super::stage::{Ear, Heard, Here, Stage, Wish};
 use super::{START_MS, problem};
@@ -11,8 +12,8 @@ use crate::error::Error;
 use generator::{Generator, Gn};
 use lang_diagram::brick::{Brick, Command};
 use lang_diagram::machine::{STEP_MS, Status};
-use lang_text::problem::Problem;
-use sim::judge::Program;
+use lang_text::problem::{Locale, Problem};
+use sim::judge::{Group, Program, Running};
 use std::cell::{Cell, RefCell};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -93,6 +94,13 @@ impl JavaScript {
             errors: Vec::new(),
             ended: None,
         })
+    }
+
+    /// The same, and it is kept at which lines its threads wait and ask.
+    #[must_use]
+    pub fn watched(self) -> Self {
+        *self.stage.lines.borrow_mut() = Some(Lines::default());
+        self
     }
 
     /// What a person may want to know of the run: things that the simulated robot does not have.
@@ -242,6 +250,9 @@ impl JavaScript {
             (thread.order, thread.calls) = (self.turns, self.stage.calls.get());
             match wish {
                 None => {
+                    if let Some(lines) = &mut *self.stage.lines.borrow_mut() {
+                        lines.end(&self.threads[at].slot.name, now + START_MS);
+                    }
                     self.threads.remove(at);
                 }
                 Some(Wish::After) => {
@@ -348,6 +359,19 @@ impl Program for JavaScript {
 
     fn errors(&self) -> &[Problem] {
         &self.errors
+    }
+
+    fn running(&self) -> Vec<Running> {
+        let lines = self.stage.lines.borrow();
+        lines
+            .as_ref()
+            .map_or_else(Vec::new, |lines| lines.running(&self.file))
+    }
+
+    fn describe(&self, locale: Locale, tell: &mut dyn FnMut(Group, &str, &str)) {
+        if let Some(lines) = &*self.stage.lines.borrow() {
+            lines.tell(locale, tell);
+        }
     }
 }
 

@@ -5,6 +5,7 @@
 //! it: no network, few processes, short files. What its user may read and write it may too.
 
 use super::input::{GAMEPAD, Input, KEYS};
+use super::lines::Lines;
 use super::refresh::Readings;
 use super::tree::Tree;
 use super::{START_MS, drawing, problem};
@@ -12,8 +13,8 @@ use crate::error::Error;
 use crate::limits;
 use lang_diagram::brick::{Answer, Brick, Command, Question};
 use lang_diagram::machine::Status;
-use lang_text::problem::Problem;
-use sim::judge::Program;
+use lang_text::problem::{Locale, Problem};
+use sim::judge::{Group, Program, Running};
 use std::io::{self, Read, Write};
 use std::os::fd::OwnedFd;
 use std::os::unix::net::UnixStream;
@@ -31,6 +32,8 @@ const BOOT: &str = include_str!("virtual.py");
 const EAGAIN: i32 = 11;
 const ENOENT: i32 = 2;
 const EIO: i32 = 5;
+/// What its first thread is called.
+const MAIN: &str = "main";
 
 /// A question that is answered in a later step.
 enum Pending {
@@ -63,6 +66,8 @@ pub struct Python {
     errors: Vec<Problem>,
     ended: Option<u32>,
     is_out_of_time: bool,
+    /// At which lines threads are, if somebody looks on.
+    lines: Option<Lines>,
 }
 
 impl Python {
@@ -95,7 +100,15 @@ impl Python {
             errors: Vec::new(),
             ended: None,
             is_out_of_time: false,
+            lines: None,
         })
+    }
+
+    /// The same, and it is kept at which lines its threads wait and ask.
+    #[must_use]
+    pub fn watched(mut self) -> Self {
+        self.lines = Some(Lines::default());
+        self
     }
 
     /// What a person may want to know of the run: standard error, and things that the simulated robot does not have.
@@ -128,7 +141,8 @@ impl Python {
         channel.set_write_timeout(Some(self.longest))?;
         let program = format!("{}\n{}", self.file.display(), self.text);
         let seconds = self.longest.as_secs_f64().to_string();
-        let sent = [MODULE, &program, &self.seed.to_string(), &seconds]
+        let watched = if self.lines.is_some() { "1" } else { "0" };
+        let sent = [MODULE, &program, &self.seed.to_string(), &seconds, watched]
             .iter()
             .try_for_each(|text| channel.write_all(&encode(text.as_bytes())));
         self.child = Some((child, channel));
@@ -315,6 +329,25 @@ impl Python {
         })
     }
 
+    /// Where a thread is: its name, the line, and the file if that is not the program's, each in a line.
+    fn stand(&mut self, text: &str) {
+        let at_ms = self.now + START_MS;
+        let mut parts = text.split('\n');
+        let name = named(parts.next().unwrap_or_default());
+        if let (Some(lines), Some(line), Some(file)) = (&mut self.lines, parts.next(), parts.next())
+            && let Ok(line) = line.parse()
+        {
+            lines.stand(&name, &named(file), line, at_ms);
+        }
+    }
+
+    /// A thread has ended.
+    fn gone(&mut self, name: &str) {
+        if let Some(lines) = &mut self.lines {
+            lines.end(&named(name), self.now + START_MS);
+        }
+    }
+
     fn read_file(&self, file: &str) -> io::Result<String> {
         if let Some(bytes) = self.tree.written(file) {
             return Ok(String::from_utf8_lossy(bytes).into_owned());
@@ -386,7 +419,17 @@ impl Python {
             };
             let (word, text) = frame.split_once(':').unwrap_or((&frame, ""));
             match word {
+                // They wait for no answer and cost nothing: a watched run is the same run.
+                "at" => {
+                    self.stand(text);
+                    continue;
+                }
+                "gone" => {
+                    self.gone(text);
+                    continue;
+                }
                 "end" => {
+                    self.gone(MAIN);
                     if text != "0" {
                         self.fail("the program has ended itself with an error");
                     }
@@ -426,6 +469,11 @@ impl Python {
     }
 }
 
+/// The name of a thread or a file, as far as it is kept.
+fn named(name: &str) -> String {
+    name.chars().take(limits::SCRIPT_NAME_CHARS).collect()
+}
+
 impl Program for Python {
     fn step(&mut self, now_ms: u32, robot: &mut dyn Brick) -> Status {
         if self.ended.is_some() {
@@ -461,6 +509,17 @@ impl Program for Python {
 
     fn errors(&self) -> &[Problem] {
         &self.errors
+    }
+
+    fn running(&self) -> Vec<Running> {
+        let lines = self.lines.as_ref();
+        lines.map_or_else(Vec::new, |lines| lines.running(&self.name))
+    }
+
+    fn describe(&self, locale: Locale, tell: &mut dyn FnMut(Group, &str, &str)) {
+        if let Some(lines) = &self.lines {
+            lines.tell(locale, tell);
+        }
     }
 
     fn is_out_of_time(&self) -> bool {

@@ -4,7 +4,9 @@
 //! deep, and go on in a later step. A program that asks [`limits::SCRIPT_CALLS`] times without waiting, or computes until the
 //! engine has looked up a few times (some 10 000 turns of a loop), is charged one tick.
 
+use super::START_MS;
 use super::input::Input;
+use super::lines::Lines;
 use super::tree::Tree;
 use super::{beside, drawing, mailbox};
 use crate::limits;
@@ -59,6 +61,8 @@ pub struct Stage {
     pub input: RefCell<Input>,
     /// Calls of the running thread in this tick.
     pub calls: Cell<u32>,
+    /// At which lines threads are, if somebody looks on.
+    pub lines: RefCell<Option<Lines>>,
     /// The hull number of this robot.
     hull: Cell<i32>,
 }
@@ -321,6 +325,16 @@ impl Platform for Here {
     fn give_way(&self) {
         self.stage.charge(1);
         self.stage.hand_over(Wish::After);
+    }
+
+    fn is_watched(&self) -> bool {
+        self.stage.lines.borrow().is_some()
+    }
+
+    fn stand(&self, slot: &Slot, file: &str, line: u32) {
+        if let Some(lines) = &mut *self.stage.lines.borrow_mut() {
+            lines.stand(&slot.name, file, line, self.stage.now.get() + START_MS);
+        }
     }
 
     fn has_spoken(&self) {

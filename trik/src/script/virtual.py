@@ -60,6 +60,7 @@ class Link:
     def ask(self, word, text=''):
         """The judge's answer; a failure is an OSError."""
         global now
+        stand()
         self.send(word, text)
         kind, at, answer = self.receive().split(':', 2)
         now = float(at)
@@ -72,10 +73,23 @@ class Link:
 link = Link()
 
 
+def stand():
+    """Who looks on is told at which line of its program the thread is that runs."""
+    if not watched:
+        return
+    frame = sys._getframe(1)
+    while frame and not frame.f_code.co_filename.startswith(folder):
+        frame = frame.f_back
+    if frame:
+        file = frame.f_code.co_filename
+        link.send('at', '%s\n%d\n%s' % (running.name, frame.f_lineno, '' if file == own_file else file[len(folder):]))
+
+
 class Task:
     """A thread: who holds the turn runs, all others stand at their gates."""
 
-    def __init__(self, is_daemon):
+    def __init__(self, is_daemon, name):
+        self.name = name.replace('\n', ' ')
         self.gate = _thread.allocate_lock()
         self.gate.acquire()
         self.due, self.order, self.wanted = FOREVER, next(orders), lambda: True
@@ -86,7 +100,7 @@ class Task:
 
 
 orders = itertools.count()
-running = Task(False)
+running = Task(False, 'main')
 tasks = [running]
 
 
@@ -113,6 +127,7 @@ def hand_over():
 
 def block(wanted, due=FOREVER):
     """Until something is so, or a time."""
+    stand()
     me = running
     me.wanted, me.due, me.order = wanted, due, next(orders)
     hand_over()
@@ -169,7 +184,7 @@ class Thread(threading.Thread):
             raise RuntimeError('threads can only be started once')
         if len(tasks) >= 64:
             raise RuntimeError('a judged program has at most 64 threads at once')
-        self.task = Task(self.daemon)
+        self.task = Task(self.daemon, str(self.name))
         tasks.append(self.task)
         _thread.start_new_thread(self._live, ())
         give_way()
@@ -190,6 +205,8 @@ class Thread(threading.Thread):
         sys.settrace(None)
         threading._active.pop(self._ident, None)
         self.task.is_done = True
+        if watched:
+            link.send('gone', self.task.name)
         tasks.remove(self.task)
         running = following()
         running.gate.release()
@@ -414,13 +431,14 @@ def confine(ctypes, seconds):
 
 def main():
     import builtins
-    global folder
+    global folder, own_file, watched
     trik_text = link.receive()
     path, _, program = link.receive().partition('\n')
     random.seed(int(link.receive()))
     seconds = float(link.receive())
+    is_watched = link.receive() == '1'
     os.urandom = lambda count: random.randbytes(count)
-    folder = os.path.dirname(path) + os.sep
+    folder, own_file = os.path.dirname(path) + os.sep, path
     clocks()
     trik = module(trik_text)
     confine(trik.ctypes, seconds)
@@ -435,6 +453,7 @@ def main():
     code = 0
     try:
         compiled = compile(program, path, 'exec')
+        watched = is_watched
         sys.settrace(trace)
         exec(compiled, space)
         sys.settrace(None)
@@ -452,5 +471,6 @@ def main():
     link.receive()
 
 
-folder = ''
+folder = own_file = ''
+watched = False
 main()

@@ -4,6 +4,7 @@
 
 mod class;
 mod limits;
+mod unsaid;
 
 use crate::diagrams::root;
 use crate::documents::transcripts;

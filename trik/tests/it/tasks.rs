@@ -316,7 +316,7 @@ fn a_page_has_what_robot_and_program_did_and_making_it_changes_no_verdict() {
     );
     let page = read("run.html");
     for part in [
-        "[\"Blocks\",[\"main\",",
+        "[\"Blocks and lines\",[\"main\",",
         "\"Timer\"",
         "[\"Motors\",[\"M3\",",
         "[\"x\",",
@@ -335,4 +335,34 @@ fn a_page_has_what_robot_and_program_did_and_making_it_changes_no_verdict() {
     let words = ["check", "task.qrs", "--html", "ru.html", "--language", "ru"];
     trik(&board, &words);
     assert!(read("ru.html").contains("[\"\u{41c}\u{43e}\u{442}\u{43e}\u{440}\u{44b}\",[\"M3\","));
+}
+
+#[test]
+fn a_new_task_in_russian_has_no_english_comment_and_follows_no_link() {
+    let board = Board::new();
+    trik(&board, &["new-task", "one", "--language", "ru"]).good();
+    for file in ["world.xml", "solution.js", "wrong.js"] {
+        let text = fs::read_to_string(board.path("one").join(file)).expect("a file");
+        let comments = text
+            .lines()
+            .filter(|line| line.contains("<!--") || line.starts_with("//"));
+        for line in comments {
+            let is_russian = line.chars().any(|c| ('\u{410}'..='\u{44f}').contains(&c));
+            assert!(is_russian, "{file}: {line}");
+        }
+        let marks = text.replace("${total_score}", "");
+        assert!(file != "world.xml" || !marks.contains('{'), "{text}");
+    }
+    fs::remove_file(board.path("one/world.xml")).expect("a file");
+    board.file("precious", "kept");
+    std::os::unix::fs::symlink(board.path("precious"), board.path("one/world.xml"))
+        .expect("a link");
+    let told = trik(&board, &["new-task", "one", "--force"]);
+    assert_eq!(told.code(), 1, "{}", told.stdout);
+    assert!(
+        told.stderr.contains("one/world.xml is a link"),
+        "{}",
+        told.stderr
+    );
+    assert_eq!(fs::read(board.path("precious")).expect("a file"), b"kept");
 }

@@ -92,6 +92,22 @@ fn place<'a>(frame: &Frame, program: &'a str) -> Option<wording::Place<'a>> {
     })
 }
 
+/// Where in the program's text a function of the host was called from: the file, empty for the program itself, and the
+/// line. It calls nothing, so that a program runs the same whether somebody asks or not.
+pub fn here(ctx: &Ctx<'_>) -> Option<(String, u32)> {
+    // Only an error has a backtrace, and that of a text that cannot be parsed has it at once.
+    let _ = ctx.json_parse("");
+    let thrown = ctx.catch().into_object();
+    let stack = thrown.and_then(Exception::from_object)?.stack()?;
+    let mut frames = stack.lines().filter_map(frame);
+    let innermost = frames.find(|frame| frame.file != INPUT && !frame.file.starts_with(OWN))?;
+    let file = match innermost.file.as_str() {
+        PROGRAM => String::new(),
+        _ => innermost.file,
+    };
+    Some((file, innermost.line))
+}
+
 impl Failure {
     /// Of what was thrown while this text was evaluated, or functions that it has made.
     pub fn new<'js>(ctx: &Ctx<'js>, thrown: Value<'js>, program: &str) -> Self {

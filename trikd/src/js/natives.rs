@@ -8,7 +8,7 @@ pub mod robot;
 pub mod system;
 
 use super::events::Record;
-use super::failure::Failure;
+use super::failure::{self, Failure};
 use super::machine::run_jobs;
 use super::platform::Platform;
 use super::shared::{Event, Shared, Slot};
@@ -52,6 +52,15 @@ impl Own {
             events: Cell::new(false),
             lost: RefCell::default(),
             text: text.clone(),
+        }
+    }
+
+    /// Tells who looks on at which line the program is, if somebody does.
+    pub fn stand(&self, ctx: &Ctx<'_>) {
+        if self.platform.is_watched()
+            && let Some((file, line)) = failure::here(ctx)
+        {
+            self.platform.stand(&self.slot, &file, line);
         }
     }
 }
@@ -183,6 +192,7 @@ fn next<'js>(ctx: &Ctx<'js>, own: &Own, until_ms: f64) -> rquickjs::Result<Value
         if woken {
             return Ok(Value::new_null(ctx.clone()));
         }
+        own.stand(ctx);
         let waited = own.platform.wait(&own.slot, until_ms);
         waited.map_err(|error| failed(ctx, format!("nothing can be waited for: {error}")))?;
         woken = true;

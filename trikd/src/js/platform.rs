@@ -75,6 +75,14 @@ pub trait Platform {
     /// Something has changed that other threads wait for.
     fn give_way(&self) {}
 
+    /// Whether somebody wants to know at which lines the program waits and asks the robot.
+    fn is_watched(&self) -> bool {
+        false
+    }
+
+    /// It does so at this line of a file that it has included, or of its own text, whose name is empty.
+    fn stand(&self, _slot: &Slot, _file: &str, _line: u32) {}
+
     /// The program has printed something.
     fn has_spoken(&self) {}
 

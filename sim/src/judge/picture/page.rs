@@ -40,7 +40,7 @@ pub fn page(
     entries: &[Entry],
     caption: Caption<'_>,
 ) -> String {
-    let mut svg = ground(field, trajectory);
+    let mut svg = ground(field, trajectory, caption.locale);
     for robot in 0..trajectory.robots.len() {
         svg.tag("g").with("id", format_args!("robot{robot}")).open();
         body(robot, &mut svg);
@@ -54,7 +54,7 @@ pub fn page(
         Locale::Russian => "ru",
     };
     let data = data(trajectory, entries, caption);
-    let parts: [(&str, &str); 12] = [
+    let parts: [(&str, &str); 13] = [
         ("LANG", language),
         ("TITLE", &escaped(caption.title)),
         ("CLASS", if caption.is_good { "good" } else { "bad" }),
@@ -63,6 +63,7 @@ pub fn page(
         ("SPEED", names[1]),
         ("SAID", names[2]),
         ("STATE", names[3]),
+        ("SECOND", words::second(caption.locale)),
         ("PLAY", play),
         ("KEYS", keys),
         ("SVG", svg.trim_end()),

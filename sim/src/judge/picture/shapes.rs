@@ -106,7 +106,7 @@ fn upright(at: Point, size: Point) -> [f64; 4] {
 }
 
 /// Everything of a field, lowest first.
-pub(super) fn field(field: &Field, svg: &mut Svg) {
+pub(super) fn field(field: &Field, letters: f64, svg: &mut Svg) {
     let mut bytes = 0;
     for image in &field.images {
         let Some(blob) = field.blobs.get(&image.image) else {
@@ -137,7 +137,7 @@ pub(super) fn field(field: &Field, svg: &mut Svg) {
         );
     }
     for one in field.regions.iter().filter(|region| region.visible) {
-        region(one, svg);
+        region(one, letters, svg);
     }
     for wall in &field.walls {
         line(
@@ -305,7 +305,7 @@ fn ellipse([x, y, width, height]: [f64; 4], style: &Style, svg: &mut Svg) {
     style.put(tag).close();
 }
 
-fn region(region: &Region, svg: &mut Svg) {
+fn region(region: &Region, letters: f64, svg: &mut Svg) {
     if !is_near(region.at) || !is_near(region.size) {
         return;
     }
@@ -324,9 +324,10 @@ fn region(region: &Region, svg: &mut Svg) {
     }
     if !region.text.is_empty() && is_near(region.text_at) {
         let text: String = region.text.chars().take(200).collect();
+        // Below the upper border, where the file puts the corner of the text; y is the foot of the letters.
         let (x, y) = (
-            region.at.x + region.text_at.x,
-            region.at.y + region.text_at.y,
+            place[0] + region.text_at.x + 0.3 * letters,
+            place[1] + region.text_at.y + 1.1 * letters,
         );
         svg.tag("text")
             .numbers(1, [("x", x), ("y", y)])

@@ -63,7 +63,7 @@ fn drive() -> Trajectory {
 
 #[test]
 fn a_picture_has_all_that_stands_lies_and_drives() {
-    let svg = svg(&field(), &drive());
+    let svg = svg(&field(), &drive(), Locale::English);
     assert!(svg.starts_with("<svg ") && svg.ends_with("</svg>\n"));
     for part in [
         "fill=\"#00ff00ff\"",
@@ -121,7 +121,7 @@ fn a_page_has_all_that_was_said_and_nothing_of_it_is_a_tag() {
 
 #[test]
 fn pictures_of_nothing_and_of_far_away_things_are_still_pictures() {
-    let empty = svg(&Field::default(), &Trajectory::default());
+    let empty = svg(&Field::default(), &Trajectory::default(), Locale::English);
     assert!(
         empty.contains("viewBox=\"-20.0 -20.0 140.0 140.0\""),
         "{empty}"
@@ -131,7 +131,7 @@ fn pictures_of_nothing_and_of_far_away_things_are_still_pictures() {
         "begin=\"1e300:0\" end=\"0:1e9\"",
     );
     if let Ok(opened) = Field::read(&far) {
-        let svg = svg(&opened.field, &drive());
+        let svg = svg(&opened.field, &drive(), Locale::English);
         assert!(
             !svg.contains("inf") && !svg.contains("NaN") && svg.len() < 20_000,
             "{svg}"

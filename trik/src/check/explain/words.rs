@@ -4,7 +4,45 @@ use crate::check::verdict::Verdict;
 use crate::check::words::{choose, seconds};
 use lang_constraint::Kind;
 use lang_text::problem::Locale;
-use sim::judge::Running;
+use sim::judge::{Running, Spot};
+
+/// Short names of units.
+pub(super) struct Units {
+    pub ms: &'static str,
+    pub px: &'static str,
+    pub cm: &'static str,
+}
+
+/// See [`Units`].
+pub(super) fn units(locale: Locale) -> Units {
+    match locale {
+        Locale::English => Units {
+            ms: "ms",
+            px: "px",
+            cm: "cm",
+        },
+        Locale::Russian => Units {
+            ms: "мс",
+            px: "пикс.",
+            cm: "см",
+        },
+    }
+}
+
+/// A rule as people find it: what it is, and its id or its place among its kind.
+pub(super) fn rule(kind: Kind, id: &str, number: usize, locale: Locale) -> String {
+    let kind = match kind {
+        Kind::Event => choose(locale, "event", "событие"),
+        Kind::Constraint => choose(locale, "constraint", "ограничение"),
+        Kind::TimeLimit => choose(locale, "timelimit", "ограничение времени"),
+        Kind::Init => choose(locale, "init", "начальные действия"),
+    };
+    match (id, locale) {
+        ("", Locale::English) => format!("{kind} #{number}"),
+        ("", Locale::Russian) => format!("{kind} №{number}"),
+        (id, _) => format!("{kind} '{id}'"),
+    }
+}
 
 /// The first line: what decided, and when.
 pub(super) fn why(verdict: Verdict, rule: Option<String>, ms: u32, locale: Locale) -> String {
@@ -135,32 +173,50 @@ pub(super) fn more(count: usize, locale: Locale) -> String {
 
 /// Where a thread is.
 pub(super) fn running(one: &Running, locale: Locale) -> String {
-    let Running {
-        thread,
-        ended_ms,
-        diagram,
-        id,
-        kind,
-        caption: [english, russian],
-    } = one;
-    // The rest of it says of which sort it is.
-    let id = id.rsplit('/').next().unwrap_or(id);
-    match (locale, ended_ms) {
-        (Locale::English, None) => {
-            format!("thread {thread}: at '{english}' ({kind} {id}) of '{diagram}'")
+    let thread = &one.thread;
+    let ended = one.ended_ms.map(|ms| seconds(ms, locale));
+    match &one.at {
+        Spot::Block {
+            diagram,
+            id,
+            kind,
+            caption: [english, russian],
+        } => {
+            // The rest of it says of which sort it is.
+            let id = id.rsplit('/').next().unwrap_or(id);
+            match (locale, ended) {
+                (Locale::English, None) => {
+                    format!("thread {thread}: at '{english}' ({kind} {id}) of '{diagram}'")
+                }
+                (Locale::Russian, None) => format!(
+                    "поток {thread}: в блоке '{russian}' ({kind} {id}) диаграммы '{diagram}'"
+                ),
+                (Locale::English, Some(at)) => format!(
+                    "thread {thread}: ended at {at} after '{english}' ({kind} {id}) of '{diagram}'"
+                ),
+                (Locale::Russian, Some(at)) => format!(
+                    "поток {thread}: окончен на {at} после блока '{russian}' ({kind} {id}) диаграммы '{diagram}'"
+                ),
+            }
         }
-        (Locale::Russian, None) => {
-            format!("поток {thread}: в блоке '{russian}' ({kind} {id}) диаграммы '{diagram}'")
-        }
-        (Locale::English, Some(ms)) => {
-            let at = seconds(*ms, locale);
-            format!("thread {thread}: ended at {at} after '{english}' ({kind} {id}) of '{diagram}'")
-        }
-        (Locale::Russian, Some(ms)) => {
-            let at = seconds(*ms, locale);
-            format!(
-                "поток {thread}: окончен на {at} после блока '{russian}' ({kind} {id}) диаграммы '{diagram}'"
-            )
+        Spot::Line { file, line, at_ms } => {
+            let last = seconds(*at_ms, locale);
+            match (locale, ended) {
+                (Locale::English, None) => {
+                    format!(
+                        "thread {thread}: waits or asked last at line {line} of {file}, since {last}"
+                    )
+                }
+                (Locale::Russian, None) => format!(
+                    "поток {thread}: ждёт или спросил последний раз в строке {line} файла {file}, с {last}"
+                ),
+                (Locale::English, Some(at)) => format!(
+                    "thread {thread}: ended at {at}; it waited or asked last at line {line} of {file}, at {last}"
+                ),
+                (Locale::Russian, Some(at)) => format!(
+                    "поток {thread}: окончен на {at}; ждал или спрашивал последний раз в строке {line} файла {file}, на {last}"
+                ),
+            }
         }
     }
 }

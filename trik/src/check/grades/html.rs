@@ -69,6 +69,7 @@ pub(super) fn write(grades: &Grades, path: &Path) -> String {
     }
     out.push_str("</tbody>\n</table>\n");
     runs(&mut out, grades, path);
+    left_out(&mut out, grades);
     out.push_str("</body>\n</html>\n");
     out
 }
@@ -88,6 +89,20 @@ fn cell(out: &mut String, grades: &Grades, run: Option<&Run>, path: &Path) {
         "<small>{}</small></td>",
         linked(grades.result(run), run, path)
     );
+}
+
+/// What was not judged, so that nobody has to look at the terminal for it.
+fn left_out(out: &mut String, grades: &Grades) {
+    let (lines, count) = &grades.left_out;
+    if *count == 0 {
+        return;
+    }
+    let count = words::passed_count(*count, lines.len(), grades.locale);
+    let _ = write!(out, "<details open><summary>{count}</summary>\n<ul>\n");
+    for line in lines {
+        let _ = writeln!(out, "<li>{}</li>", escaped(line));
+    }
+    out.push_str("</ul>\n</details>\n");
 }
 
 /// All runs, one below the other, with their messages.

@@ -41,6 +41,7 @@ impl<T> Handles<T> {
         handle: usize,
         work: impl FnOnce(&T) -> io::Result<R>,
     ) -> rquickjs::Result<R> {
+        own.stand(ctx);
         let all = self.0.borrow();
         let (thing, place) = all.get(handle).ok_or_else(|| failed(ctx, "no such port"))?;
         work(thing).map_err(|error| unreadable(ctx, &own.brick, place, &error))
