@@ -48,6 +48,9 @@ pub const ORIGINAL_BYTES_MAX: usize = 16 << 20;
 pub const IMAGE_BYTES_MAX: usize = 4 << 20;
 /// Bytes of such copies that are kept for later openings.
 pub const IMAGES_BYTES_MAX: usize = 1 << 20;
+/// Nodes with converters in Lua up to which a program is settled: what each reaches is made ready, whether or not it is
+/// wanted.
+pub const SETTLED_NODES_MAX: usize = 512;
 /// Entries that the copy of a table has room for before the first is there.
 pub const ENTRIES_AHEAD_MAX: i32 = 1 << 16;
 /// Bytes of Lua memory that a state without any program stays below.

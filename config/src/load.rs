@@ -131,7 +131,8 @@ impl Loader {
         let is_kept = held_bytes <= ORIGINAL_BYTES_MAX && lua_nodes(&config).next().is_some();
         let original = is_kept.then_some(state);
         let files = std::mem::take(&mut run.files);
-        let program = Arc::new(Program::new(code, files, original));
+        let nodes = lua_nodes(&config).map(|node| node.path.clone()).collect();
+        let program = Arc::new(Program::new(code, files, original, nodes));
         enough_memory(&config, &program, held_bytes)?;
         if let Some(root) = &self.device_root {
             crate::device_root::take_below(&mut config, root);

@@ -6,7 +6,9 @@
 //! the whole program runs again in the file's state, silently and with the same files.
 
 use crate::error::Error;
-use crate::limits::{BUDGET_US, IMAGES_BYTES_MAX, LOAD_MEMORY_BYTES, LOAD_TIME_MS, MEMORY_KB};
+use crate::limits::{
+    BUDGET_US, IMAGES_BYTES_MAX, LOAD_MEMORY_BYTES, LOAD_TIME_MS, MEMORY_KB, SETTLED_NODES_MAX,
+};
 use crate::vm::bytecode::Code;
 use crate::vm::persist::{Image, persist};
 use crate::vm::restore::restore;
@@ -37,6 +39,8 @@ struct Copies {
     images: BTreeMap<String, Option<Arc<Image>>>,
     /// Bytes of all images.
     bytes: usize,
+    /// Nodes and attributes with a converter in Lua, until the program is settled.
+    unsettled: Vec<String>,
 }
 
 impl fmt::Debug for Program {
@@ -49,7 +53,13 @@ impl fmt::Debug for Program {
 }
 
 impl Program {
-    pub(crate) fn new(code: Code, files: BTreeMap<Vec<u8>, Code>, original: Option<State>) -> Self {
+    /// `lua_nodes`: the paths of nodes and attributes with a converter in Lua.
+    pub(crate) fn new(
+        code: Code,
+        files: BTreeMap<Vec<u8>, Code>,
+        original: Option<State>,
+        lua_nodes: Vec<String>,
+    ) -> Self {
         Self {
             code,
             files: Arc::new(files),
@@ -57,6 +67,7 @@ impl Program {
                 original,
                 images: BTreeMap::new(),
                 bytes: 0,
+                unsettled: lua_nodes,
             }),
         }
     }
@@ -126,9 +137,44 @@ impl Program {
         image
     }
 
+    /// Makes the images of all nodes, and gives up the state that they are made from if it takes more memory than they do.
+    /// Takes some milliseconds for each node, during which others can open files. Later calls do nothing.
+    pub fn settle(&self) {
+        let nodes = std::mem::take(&mut self.copies().unsettled);
+        let held = |copies: &Copies| {
+            copies
+                .original
+                .as_ref()
+                .map(|state| state.host().memory.used())
+        };
+        let Some(before) = held(&self.copies()) else {
+            return;
+        };
+        let are_few = nodes.len() <= SETTLED_NODES_MAX;
+        if are_few {
+            for node in &nodes {
+                self.image(node);
+            }
+        }
+        let mut copies = self.copies();
+        let are_made = nodes.iter().all(|node| copies.images.contains_key(node));
+        if are_few && are_made && copies.bytes <= before {
+            copies.original = None;
+        } else if let Some(original) = &copies.original {
+            // What making images has left lies about; if it cannot be freed now, it is when more is needed.
+            let _ = original.collect();
+        }
+    }
+
     /// Whether a state for the node is a copy, and not one in which the program runs anew.
     pub fn is_copied(&self, node: &str) -> bool {
         self.image(node).is_some()
+    }
+
+    /// Whether the state in which the program ran is still there.
+    #[cfg(test)]
+    pub(crate) fn holds_original(&self) -> bool {
+        self.copies().original.is_some()
     }
 
     fn copies(&self) -> MutexGuard<'_, Copies> {
@@ -154,6 +200,12 @@ impl Program {
 /// live. Takes some milliseconds of a heap of megabytes.
 pub fn give_memory_back() {
     crate::vm::memory::give_back();
+}
+
+/// Keeps what the process allocates together, before it has threads: the C library would give each of them a place of its
+/// own, most of it unused.
+pub fn keep_memory_together() {
+    crate::vm::memory::keep_together();
 }
 
 /// A Lua state with the sandbox, in which no program ran yet; it suits any program.

@@ -1,9 +1,10 @@
 //! The clock over work that must not last: late requests, and Lua calls that have spent their budget.
 //!
 //! Owns one thread of the process and one real-time signal. Both are process-wide because signal handlers are:
-//! this is the one singleton of the crate. The thread ticks every millisecond while anybody works and sleeps
-//! otherwise, so marking work costs two atomic stores, and a system call only after a few milliseconds without any.
-//! Knows nothing of requests and nothing of what a Lua call computes.
+//! this is the one singleton of the crate. The thread ticks every millisecond while somebody works who is waited for,
+//! dozes while there is nothing but work in the background, and sleeps otherwise; so marking work costs two atomic
+//! stores, and a system call only after a few milliseconds without any. A doze that finds work still going on makes it
+//! tick. Knows nothing of requests and nothing of what a Lua call computes.
 //!
 //! How a Lua call is ended. LuaJIT documents that `lua_sethook` may be called from a signal handler of the thread that
 //! runs the state. The watchdog sends the signal to that thread; the handler compares the sequence number of the
@@ -14,6 +15,10 @@
 //! give Lua code the real `xpcall`.
 //! Compiled loops look at the hook only if LuaJIT was built with LUAJIT_ENABLE_CHECKHOOK; a test of this file checks it.
 
+mod level;
+
+pub use level::Urgency;
+use level::{ASLEEP, DOZING, Found, TICKING};
 use mlua_sys as lua;
 use nix::time::{ClockId, clock_gettime};
 use std::cell::Cell;
@@ -21,7 +26,9 @@ use std::ffi::c_int;
 use std::marker::PhantomData;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr;
-use std::sync::atomic::{AtomicBool, AtomicI32, AtomicPtr, AtomicU32, Ordering, compiler_fence};
+use std::sync::atomic::{
+    AtomicBool, AtomicI32, AtomicPtr, AtomicU8, AtomicU32, Ordering, compiler_fence,
+};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -30,6 +37,9 @@ const TICK: Duration = Duration::from_millis(1);
 /// Ticks without any work before the thread goes to sleep. Few: being woken costs about as much as two ticks, and what
 /// is done a hundred times per second should not keep it awake.
 const IDLE_TICKS: u32 = 2;
+/// Time between two looks while there is only work in the background: what is sampled all the time must not cost a
+/// wake-up per millisecond. No period that is usual for sampling, or looks would fall into the midst of it again and again.
+const DOZE: Duration = Duration::from_millis(13);
 /// Added to SIGRTMIN: far from the first ones, which libraries like to take.
 const SIGNAL_OFFSET: c_int = 7;
 /// Functions that are asked for a line.
@@ -47,13 +57,17 @@ pub struct Seat {
     of_this_thread: PhantomData<*const ()>,
 }
 
+/// Called for late work.
+type OnLate = Arc<dyn Fn() + Send + Sync>;
+
 impl Seat {
     /// Puts the calling thread under watch. `on_late` is called from the watchdog's thread, once for each piece of
-    /// work that lasts longer than about one millisecond (at most two ticks); it must be short and may start threads.
+    /// work that is late; it must be short and may start threads.
     /// A call that has begun may still run while the seat is dropped.
-    pub fn take(on_late: Arc<dyn Fn() + Send + Sync>) -> Self {
+    pub fn take(urgency: Urgency, on_late: OnLate) -> Self {
         let watched = Arc::new(SeatWork {
             work: Work::default(),
+            urgency,
             on_late,
         });
         Dog::get()
@@ -72,7 +86,7 @@ impl Seat {
         let depth = self.depth.get();
         self.depth.set(depth.saturating_add(1));
         if depth == 0 {
-            self.watched.work.begin();
+            self.watched.work.begin(self.watched.urgency);
         }
     }
 
@@ -99,7 +113,8 @@ impl Drop for Seat {
 }
 
 /// Runs `call`, which runs Lua on this thread in a protected call, and makes the Lua code fail with
-/// `time budget spent (N us)` when it has used `budget_us` of processor time (to within about two milliseconds).
+/// `time budget spent (N us)` when it has used `budget_us` of processor time: to within about two milliseconds on a
+/// thread with an awaited seat, and about fifteen elsewhere.
 ///
 /// Processor time and not the clock on the wall: a converter is not to blame for being preempted.
 /// Calls may be nested on different states; the outer one's time starts again when the inner one returns.
@@ -125,13 +140,13 @@ struct Work(AtomicU32);
 
 impl Work {
     /// From even to odd. Only the owning thread calls this and `end`.
-    fn begin(&self) {
+    fn begin(&self, urgency: Urgency) {
         let number = self.0.load(Ordering::Relaxed);
-        // Sequentially consistent, as is the watchdog's `asleep = true; read work`: one of the two sees the other.
+        // Sequentially consistent, as is the watchdog's `level = less; read work`: one of the two sees the other.
         self.0.store(number.wrapping_add(1), Ordering::SeqCst);
         let dog = Dog::get();
-        if dog.asleep.load(Ordering::SeqCst) {
-            dog.wake();
+        if dog.level.load(Ordering::SeqCst) < urgency.level() {
+            dog.wake(urgency.level());
         }
     }
 
@@ -149,7 +164,8 @@ impl Work {
 /// Work of a thread itself.
 struct SeatWork {
     work: Work,
-    on_late: Arc<dyn Fn() + Send + Sync>,
+    urgency: Urgency,
+    on_late: OnLate,
 }
 
 /// Lua calls of one thread. Written by that thread, read by the watchdog and by the signal handler.
@@ -230,7 +246,7 @@ impl Bracket {
         slot.state.store(state, Ordering::Relaxed);
         slot.budget_us.store(budget_us, Ordering::Relaxed);
         compiler_fence(Ordering::SeqCst);
-        slot.work.begin();
+        slot.work.begin(Urgency::Background);
         Self { slot, outer }
     }
 }
@@ -252,7 +268,7 @@ impl Drop for Bracket {
             slot.budget_us.store(budget_us, Ordering::Relaxed);
             slot.armed.store(armed, Ordering::Relaxed);
             compiler_fence(Ordering::SeqCst);
-            slot.work.begin();
+            slot.work.begin(Urgency::Background);
         }
     }
 }
@@ -397,12 +413,13 @@ struct Rounds {
 }
 
 impl Rounds {
-    /// One look at everything. Collects what is to be called after the lock is released; true if anybody works.
-    fn run(&mut self, now: Instant, late: &mut Vec<Arc<dyn Fn() + Send + Sync>>) -> bool {
-        let mut busy = false;
+    /// One look at everything. Collects what is to be called after the lock is released.
+    fn look(&mut self, now: Instant, late: &mut Vec<OnLate>) -> Found {
+        let mut found = Found::default();
         for seat in &mut self.seats {
             let number = seat.what.work.number();
-            busy |= seat.remember(number, now) || number & 1 == 1;
+            let is_new = seat.remember(number, now);
+            found.add(is_new, number, seat.what.urgency);
             if number & 1 == 1 && !seat.told && now - seat.since >= TICK {
                 seat.told = true;
                 late.push(Arc::clone(&seat.what.on_late));
@@ -411,7 +428,7 @@ impl Rounds {
         for call in &mut self.calls {
             let number = call.what.work.number();
             let new = call.remember(number, now);
-            busy |= new || number & 1 == 1;
+            found.add(new, number, Urgency::Background);
             if number & 1 == 0 {
                 continue;
             }
@@ -428,7 +445,7 @@ impl Rounds {
                 send_signal(thread);
             }
         }
-        busy
+        found
     }
 }
 
@@ -446,8 +463,8 @@ fn send_signal(thread: i32) {
 
 /// The watchdog of the process.
 struct Dog {
-    /// Nobody has worked for a while; the next one to begin has to wake the thread.
-    asleep: AtomicBool,
+    /// How awake the thread is. Only `wake` raises it but for the thread itself, with `rounds` locked.
+    level: AtomicU8,
     rounds: Mutex<Rounds>,
     woken: Condvar,
 }
@@ -458,7 +475,7 @@ impl Dog {
         DOG.get_or_init(|| {
             install_handler();
             Self {
-                asleep: AtomicBool::new(true),
+                level: AtomicU8::new(ASLEEP),
                 rounds: Mutex::default(),
                 woken: Condvar::new(),
             }
@@ -469,47 +486,67 @@ impl Dog {
         self.rounds.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Starts the rounds again. If no thread can be made, the next call tries again: without one nothing is late.
+    /// Makes the thread at least so awake. If no thread can be made, the next call tries again: without one nothing is
+    /// late.
     #[cold]
-    fn wake(&'static self) {
+    fn wake(&'static self, level: u8) {
         let mut rounds = self.lock();
         if !rounds.started {
             let thread = std::thread::Builder::new().name("watchdog".into());
             rounds.started = thread.spawn(move || self.run()).is_ok();
         }
-        if rounds.started {
-            self.asleep.store(false, Ordering::SeqCst);
+        if rounds.started && self.level.load(Ordering::SeqCst) < level {
+            self.level.store(level, Ordering::SeqCst);
             self.woken.notify_one();
         }
     }
 
     fn run(&self) {
         let mut late = Vec::new();
-        let mut idle = 0;
+        let mut calm = 0;
         loop {
             let mut rounds = self.lock();
-            let busy = rounds.run(Instant::now(), &mut late);
-            idle = if busy { 0 } else { idle + 1 };
-            if idle >= IDLE_TICKS {
-                self.asleep.store(true, Ordering::SeqCst);
-                if rounds.run(Instant::now(), &mut late) {
-                    self.asleep.store(false, Ordering::SeqCst);
+            self.look(&mut rounds, &mut calm, &mut late);
+            if self.level.load(Ordering::SeqCst) == TICKING {
+                drop(rounds);
+                for on_late in late.drain(..) {
+                    // A panic of the callee has been reported by the panic hook and must not end the watch.
+                    let _ = catch_unwind(AssertUnwindSafe(|| on_late()));
                 }
-                while self.asleep.load(Ordering::SeqCst) {
-                    rounds = self
-                        .woken
-                        .wait(rounds)
-                        .unwrap_or_else(PoisonError::into_inner);
-                }
-                idle = 0;
+                std::thread::sleep(TICK);
+            } else {
+                self.rest(rounds);
             }
-            drop(rounds);
-            for on_late in late.drain(..) {
-                // A panic of the callee has been reported by the panic hook and must not end the watch.
-                let _ = catch_unwind(AssertUnwindSafe(|| on_late()));
-            }
-            std::thread::sleep(TICK);
         }
+    }
+
+    /// Looks, and is more or less awake from then on. `calm` counts looks in a row that found less than the level is for.
+    fn look(&self, rounds: &mut Rounds, calm: &mut u32, late: &mut Vec<OnLate>) {
+        let level = self.level.load(Ordering::SeqCst);
+        let wanted = rounds.look(Instant::now(), late).level();
+        *calm = if wanted < level { *calm + 1 } else { 0 };
+        let patience = if level == TICKING { IDLE_TICKS } else { 1 };
+        if wanted > level {
+            self.level.store(wanted, Ordering::SeqCst);
+        } else if *calm >= patience {
+            self.level.store(wanted, Ordering::SeqCst);
+            // Who has begun in between has seen the level of before and woken nobody.
+            let again = rounds.look(Instant::now(), late).level();
+            self.level.store(wanted.max(again), Ordering::SeqCst);
+            *calm = 0;
+        }
+    }
+
+    /// Sleeps as deeply as the level says. Nobody is late then, or the level would be another one.
+    fn rest(&self, rounds: MutexGuard<'_, Rounds>) {
+        let is = |level| move |_: &mut Rounds| self.level.load(Ordering::SeqCst) == level;
+        let rounds = self
+            .woken
+            .wait_while(rounds, is(ASLEEP))
+            .unwrap_or_else(PoisonError::into_inner);
+        // Work that has just woken the thread is not looked at before it could be late.
+        let dozed = self.woken.wait_timeout_while(rounds, DOZE, is(DOZING));
+        drop(dozed);
     }
 }
 

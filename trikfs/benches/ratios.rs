@@ -9,6 +9,7 @@ mod ratios {
     pub mod bus;
     pub mod bus_peer;
     pub mod events;
+    pub mod idle;
     pub mod measure;
     pub mod newest;
     pub mod open;
@@ -23,7 +24,7 @@ mod ratios {
 
 use ratios::measure::Plan;
 use ratios::{
-    bulk, bus, events, newest, open, peers, reads, reload, samples, states, together, torn,
+    bulk, bus, events, idle, newest, open, peers, reads, reload, samples, states, together, torn,
 };
 
 /// A section's name and what it runs.
@@ -32,7 +33,7 @@ type Section = (&'static str, fn(&Plan) -> Outcome);
 /// Benchmarks fail with a sentence.
 type Outcome = Result<(), String>;
 
-const SECTIONS: [Section; 10] = [
+const SECTIONS: [Section; 11] = [
     ("reads", reads::run),
     ("newest", newest::run),
     ("events", events::run),
@@ -43,6 +44,7 @@ const SECTIONS: [Section; 10] = [
     ("together", together::run),
     ("bus", bus::run),
     ("samples", samples::run),
+    ("idle", idle::run),
 ];
 
 fn main() {

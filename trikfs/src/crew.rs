@@ -1,7 +1,7 @@
 //! A crew: threads that take turns in one role, so that one piece of work that lasts does not stop the others.
 //!
 //! Exactly one thread plays the role at a time: it waits for work and does it. When its work lasts longer than about
-//! a millisecond the watchdog declares it late, a spare thread takes the role over, and the late one finishes its own
+//! a millisecond (some fifteen where nobody waits for it), the watchdog declares it late, a spare thread takes the role over, and the late one finishes its own
 //! work and becomes a spare. A second thread in the role all the time would be simpler and costs 12 to 21 % of every
 //! request, because the kernel wakes the waiters in turn.
 //!
@@ -16,6 +16,7 @@
 //! between `begin` and `end` alone, and the thread that lost it learns so at `end`, before it could wait for work again.
 
 use config::watchdog;
+pub use config::watchdog::Urgency;
 use std::any::Any;
 use std::cell::{Cell, RefCell};
 use std::io;
@@ -139,6 +140,7 @@ pub struct Crew {
 struct Shared {
     name: String,
     limit: usize,
+    urgency: Urgency,
     late: AtomicU32,
     state: Mutex<State>,
     /// The role is vacant, or the crew has ended.
@@ -160,14 +162,14 @@ struct State {
 
 impl Crew {
     /// Starts a crew of at most `limit` threads (at least one), which carry `name` and play `role` until a cycle
-    /// returns `Break`. Dropping the crew's handle changes nothing.
+    /// returns `Break`. `urgency` says how soon their work is late. Dropping the crew's handle changes nothing.
     ///
     /// A panic during work has been reported by the panic hook and costs that work; one while waiting ends the crew.
     ///
     /// # Errors
     /// If the first thread cannot be made.
-    pub fn run(name: &str, limit: usize, role: Arc<Role>) -> io::Result<Self> {
-        Self::run_each(name, limit, move || {
+    pub fn run(name: &str, limit: usize, urgency: Urgency, role: Arc<Role>) -> io::Result<Self> {
+        Self::run_each(name, limit, urgency, move || {
             let role = Arc::clone(&role);
             Box::new(move |seat| role(seat))
         })
@@ -180,11 +182,13 @@ impl Crew {
     pub fn run_each(
         name: &str,
         limit: usize,
+        urgency: Urgency,
         make: impl Fn() -> OwnRole + Send + Sync + 'static,
     ) -> io::Result<Self> {
         let shared = Arc::new(Shared {
             name: name.into(),
             limit: limit.max(1),
+            urgency,
             late: AtomicU32::new(0),
             state: Mutex::new(State {
                 threads: 1,
@@ -282,7 +286,7 @@ impl Shared {
         };
         let on_late = relieve.clone();
         HAND_OVER.set(Some(Arc::new(move || relieve(0))));
-        watchdog::Seat::take(Arc::new(move || on_late(1)))
+        watchdog::Seat::take(self.urgency, Arc::new(move || on_late(1)))
     }
 
     /// Waits until the role is vacant and takes it. False when the crew has ended.

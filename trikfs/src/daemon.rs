@@ -75,6 +75,7 @@ enum End {
 /// Serves until a signal asks to stop or the mount is gone. An error is a refused configuration or a failure.
 pub fn run(options: Options) -> Result<(), Failure> {
     let signals = block_signals()?;
+    config::program::keep_memory_together();
     raise_file_limit();
     let engine = Engine::start().map_err(|error| Failure::threads(&error))?;
     let (end, ended) = channel();

@@ -31,16 +31,19 @@ mod sysfs;
 use crate::convert::LogSink;
 use crate::engine::Engine;
 use crate::errno::Error;
+use crate::limits;
 use crate::log::Log;
 use crate::programs::Programs;
 use crate::stats::Counter;
+use config::description::{NodeDescription, Pace};
 use linked::LinkedNode;
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::collections::BTreeSet;
 use std::os::fd::BorrowedFd;
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// What opening a source gives.
 pub enum Device {
@@ -58,6 +61,11 @@ pub trait State: Send {
 
     /// Text that ends before the tuple does is filled up with zero bytes (`read_at` at 0 gives all there is).
     fn is_text(&self) -> bool {
+        false
+    }
+
+    /// There is nothing to read yet and nothing on its way, because another node is silent.
+    fn is_silent(&self) -> bool {
         false
     }
 
@@ -96,9 +104,42 @@ pub trait Stream: Send {
         true
     }
 
+    /// Whether a source that has given nothing since it was opened, `open` ago, counts as silent: nothing is on its way, so
+    /// nobody should wait for it who has not chosen to.
+    fn is_silent(&self, open: Duration, patience: Patience) -> bool {
+        self.wake_at().is_none() && open >= patience.by_itself
+    }
+
     /// Whether opening it again after [`Got::End`] can give more (the next writer of a FIFO).
     fn begins_anew(&self) -> bool {
         true
+    }
+}
+
+/// How long a source that has given nothing yet is waited for, from its opening on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Patience {
+    /// One that speaks by itself, such as a serial sensor.
+    pub by_itself: Duration,
+    /// One that speaks when somebody does something: presses a key, writes to a pipe.
+    pub by_somebody: Duration,
+}
+
+impl Patience {
+    /// With whom nothing is on its way: a pipe that nobody has open for writing.
+    pub const WITH_NOBODY: Duration = Duration::from_millis(limits::SILENCE_MS);
+
+    /// For readers of a node. What is read in the background has had its time; what is opened by a read has `timeout_ms`.
+    pub fn of(description: &NodeDescription) -> Self {
+        let timeout = Duration::from_millis(description.timeout_ms.into());
+        let by_somebody = match description.pace {
+            Pace::OnRead => timeout,
+            Pace::Every { .. } | Pace::OnEvent => Self::WITH_NOBODY,
+        };
+        Self {
+            by_itself: timeout,
+            by_somebody,
+        }
     }
 }
 
@@ -221,6 +262,16 @@ pub enum Drives<'a> {
     Other(&'a str),
     /// The node at this path, which a regulator drives so that what is written is held.
     Held(&'a str),
+}
+
+/// Whether a stream has something that nobody has read yet.
+pub(crate) fn is_readable(stream: &dyn Stream) -> bool {
+    stream.fd().is_some_and(|fd| {
+        let mut fds = [PollFd::new(fd, PollFlags::POLLIN)];
+        let asked = poll(&mut fds, PollTimeout::ZERO);
+        let events = fds[0].revents().unwrap_or(PollFlags::empty());
+        asked.is_ok() && events.contains(PollFlags::POLLIN)
+    })
 }
 
 /// Whether a path still leads to the file that is open.

@@ -54,6 +54,8 @@ pub enum Error {
     NoDevice(String),
     /// No sample yet, and the caller does not wait.
     WouldBlock,
+    /// No sample, and none on its way: the source has said nothing since it was opened.
+    Silent,
     /// No sample within the deadline, or the newest one is too old.
     TimedOut(String),
     /// Another program holds the lease of the actuator, or as many texts wait for a program as may.
@@ -224,6 +226,7 @@ impl Error {
             Self::OutOfRange(_) => libc::ERANGE,
             Self::NoDevice(_) => libc::ENODEV,
             Self::WouldBlock => libc::EAGAIN,
+            Self::Silent => libc::ENODATA,
             Self::TimedOut(_) => libc::ETIMEDOUT,
             Self::Busy(_) => libc::EBUSY,
             Self::NotRunning(_) => libc::ENODEV,
@@ -271,6 +274,7 @@ impl Error {
             | Self::Invalid(_)
             | Self::OutOfRange(_)
             | Self::WouldBlock
+            | Self::Silent
             | Self::Busy(_)
             | Self::NotRunning(_)
             | Self::Stale
@@ -336,6 +340,9 @@ impl fmt::Display for Error {
             | Self::Converter(what)
             | Self::Internal(what) => f.write_str(what),
             Self::WouldBlock => f.write_str("no sample yet"),
+            Self::Silent => f.write_str(
+                "nothing has come from the source since it was opened; poll this file, or read device, to wait for it",
+            ),
             Self::Device(errno, what) => with_number(f, what, *errno),
             Self::Quarantined { for_ms } => {
                 let what =

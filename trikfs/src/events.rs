@@ -3,7 +3,7 @@
 //! Owns one epoll instance and one queue of due times, each served by a crew of threads of which one works and
 //! others step in when it is late. Knows nothing of what is woken but its trait.
 
-use crate::crew::{Crew, Seat};
+use crate::crew::{Crew, Seat, Urgency};
 use crate::limits;
 use nix::sys::epoll::{Epoll, EpollCreateFlags, EpollEvent, EpollFlags, EpollTimeout};
 use std::cmp::Reverse;
@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 use std::os::fd::BorrowedFd;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError, Weak};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Something that waits for data. Called from an event thread, perhaps without need, never with a lock held.
 pub trait Ready: Send + Sync {
@@ -65,6 +65,7 @@ impl Poller {
         Crew::run(
             "events",
             limits::MAX_THREADS,
+            Urgency::Background,
             Arc::new(move |seat: &Seat| Self::cycle(&weak, seat)),
         )?;
         Ok(poller)
@@ -132,6 +133,9 @@ impl Poller {
     }
 }
 
+/// How long a thread waits if nothing is due.
+const NEVER: Duration = Duration::from_secs(86_400);
+
 /// Times at which somebody acts.
 pub struct Schedule {
     origin: Instant,
@@ -143,6 +147,8 @@ pub struct Schedule {
 struct Queue {
     entries: BinaryHeap<Reverse<Entry>>,
     next_number: u64,
+    /// A thread waits for the first entry; one that works looks by itself afterwards.
+    is_awaited: bool,
     stopping: bool,
 }
 
@@ -186,6 +192,7 @@ impl Schedule {
         Crew::run(
             name,
             threads,
+            Urgency::Background,
             Arc::new(move |seat: &Seat| cycling.cycle(seat)),
         )?;
         Ok(schedule)
@@ -206,8 +213,9 @@ impl Schedule {
             .peek()
             .is_none_or(|Reverse(first)| at < first.at);
         queue.entries.push(Reverse(Entry { at, number, target }));
+        let must_wake = is_first && queue.is_awaited;
         drop(queue);
-        if is_first {
+        if must_wake {
             self.changed.notify_all();
         }
     }
@@ -227,19 +235,15 @@ impl Schedule {
             let now = Instant::now();
             match queue.entries.peek() {
                 Some(Reverse(first)) if first.at <= now => break queue.entries.pop(),
-                Some(Reverse(first)) => {
-                    let wait = first.at - now;
+                first => {
+                    let wait = first.map_or(NEVER, |Reverse(first)| first.at - now);
+                    queue.is_awaited = true;
                     queue = self
                         .changed
                         .wait_timeout(queue, wait)
                         .unwrap_or_else(PoisonError::into_inner)
                         .0;
-                }
-                None => {
-                    queue = self
-                        .changed
-                        .wait(queue)
-                        .unwrap_or_else(PoisonError::into_inner)
+                    queue.is_awaited = false;
                 }
             }
         };

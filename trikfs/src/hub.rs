@@ -4,7 +4,7 @@
 //! that drops the oldest when its reader is slow. Also owns what happens when the source ends or is lost: one end
 //! of file for everybody, or an error until it is back, and attempts to open it again while anybody listens.
 
-use crate::device::{Got, Stream};
+use crate::device::{Got, Patience, Stream, is_readable};
 use crate::errno::Error;
 use crate::events::{Due, Ready, Watch, lock};
 use crate::limits;
@@ -29,6 +29,9 @@ struct Inner {
     raw_len: usize,
     /// The source is over for good (a recording).
     is_over: bool,
+    opened: Instant,
+    /// Something has come since then.
+    has_spoken: bool,
     /// Somebody has subscribed, so the source is watched.
     listens: bool,
     /// When the source is read again without an event.
@@ -40,7 +43,7 @@ struct Inner {
 /// One reader's queue of raw tuples.
 pub struct Subscription {
     /// Keeps the opening alive.
-    _hub: Arc<Hub>,
+    hub: Arc<Hub>,
     node: Weak<Node>,
     tuple_size: usize,
     queue: Mutex<Queue>,
@@ -67,6 +70,8 @@ impl Hub {
             raw,
             raw_len: 0,
             is_over: false,
+            opened: Instant::now(),
+            has_spoken: false,
             listens: false,
             wakes_at: None,
             presence: None,
@@ -93,7 +98,7 @@ impl Hub {
             ..Queue::default()
         };
         let subscription = Arc::new(Subscription {
-            _hub: self.clone(),
+            hub: self.clone(),
             node: self.node.clone(),
             tuple_size: self.tuple_size,
             queue: Mutex::new(queue),
@@ -181,6 +186,7 @@ impl Hub {
             raw,
             raw_len,
             wakes_at,
+            has_spoken,
             ..
         } = &mut *inner
         else {
@@ -189,6 +195,7 @@ impl Hub {
         match stream.read(&mut raw[*raw_len..]) {
             Ok(Got::Bytes(n)) => {
                 *raw_len += n;
+                *has_spoken = true;
                 let whole = *raw_len / self.tuple_size * self.tuple_size;
                 if whole > 0 {
                     let source = &node.description.source;
@@ -233,6 +240,15 @@ impl Hub {
                 Some(false)
             }
         }
+    }
+
+    /// Whether the source has given nothing since it was opened, and nothing is on its way.
+    fn is_silent(&self, patience: Patience) -> bool {
+        let inner = lock(&self.inner);
+        let Some(stream) = inner.stream.as_deref().filter(|_| !inner.has_spoken) else {
+            return false;
+        };
+        stream.is_silent(inner.opened.elapsed(), patience) && !is_readable(stream)
     }
 
     fn reopen(&self, node: &Arc<Node>, inner: &mut Inner) {
@@ -349,6 +365,11 @@ impl Subscription {
             *to = from;
         }
         Ok(Got::Bytes(n))
+    }
+
+    /// See [`Stream::is_silent`]; asked of the opening that all readers share.
+    pub fn is_silent(&self, patience: Patience) -> bool {
+        self.hub.is_silent(patience)
     }
 
     fn push(&self, tuples: &[u8]) {

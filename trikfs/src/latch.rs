@@ -45,11 +45,18 @@ pub struct Glimpse {
     pub events: u32,
 }
 
+impl Default for Latch {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Latch {
     /// No sample yet.
-    pub fn new(tuple_size: usize) -> Self {
+    pub fn new() -> Self {
         Self(Mutex::new(Content {
-            tuple: vec![0; tuple_size],
+            // A picture that nobody asks for takes no memory.
+            tuple: Vec::new(),
             stamp: None,
             error: None,
             events: 0,
@@ -58,14 +65,15 @@ impl Latch {
         }))
     }
 
-    /// A sample that is complete now. `tuple` has the size of the latch. `era` is that in which taking it began: if it is
+    /// A sample that is complete now. `era` is that in which taking it began: if it is
     /// over, the sample tells what was before and is left out. True if the sample is published.
     pub fn publish(&self, era: Era, tuple: &[u8]) -> bool {
         let mut content = lock(&self.0);
         if content.era != era {
             return false;
         }
-        content.tuple.copy_from_slice(tuple);
+        content.tuple.clear();
+        content.tuple.extend_from_slice(tuple);
         let stamp = Stamp::now();
         content.stamp = Some(stamp);
         content.error = None;
@@ -224,7 +232,7 @@ mod tests {
 
     #[test]
     fn a_sample_that_was_begun_before_everything_was_forgotten_does_not_count() {
-        let latch = Latch::new(1);
+        let latch = Latch::new();
         let before = latch.era();
         assert!(latch.publish(before, &[1]));
         latch.forget();

@@ -51,6 +51,11 @@ pub const LOG_BYTES: usize = 64 << 10;
 pub const RECORDING_BYTES_MAX: usize = 16 << 20;
 /// Milliseconds between two looks whether an open source is still at its path.
 pub const PRESENCE_MS: u64 = 500;
+/// Time from which a background sample lasts: the next one of its node is taken while another thread watches the clock.
+pub const SAMPLE_SOON: Duration = Duration::from_millis(1);
+/// Milliseconds after which a source whose turn it is not, and that has given nothing since it was opened, counts as silent:
+/// its readers are told so within 50 ms.
+pub const SILENCE_MS: u64 = 40;
 /// Milliseconds that a write to a sampled node waits for the next sample.
 pub const RENEWAL_MS: u64 = 100;
 /// Milliseconds between attempts to open a lost device again.

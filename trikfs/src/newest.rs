@@ -13,7 +13,7 @@ mod page;
 
 use crate::clock::Stamp;
 use crate::crew::lock_patiently;
-use crate::device::Got;
+use crate::device::{Got, Patience};
 use crate::errno::Error;
 use crate::events::{Due, Ready, lock};
 use crate::latch::{Era, Glimpse, Latch};
@@ -60,6 +60,9 @@ enum Source {
     Stream(Arc<Reader>),
 }
 
+/// How long a read waits before it is looked whether anything is on its way, and between two such looks.
+const SILENCE: Duration = Duration::from_millis(limits::SILENCE_MS);
+
 struct Waiting {
     id: RequestId,
     file: Weak<dyn Waiter>,
@@ -74,10 +77,10 @@ pub trait Waiter: Send + Sync {
 
 impl Newest {
     /// No sample yet.
-    pub fn new(node: Weak<Node>, tuple_size: usize) -> Self {
+    pub fn new(node: Weak<Node>) -> Self {
         Self {
             node,
-            latch: Latch::new(tuple_size),
+            latch: Latch::new(),
             work: Mutex::default(),
             users: AtomicU32::new(0),
             waiting: Mutex::default(),
@@ -130,9 +133,7 @@ impl Newest {
     }
 
     fn schedule_sampling(&self, node: &Arc<Node>) {
-        let sampler: Arc<dyn Due> = Arc::new(Sampling {
-            node: self.node.clone(),
-        });
+        let sampler: Arc<dyn Due> = Arc::new(Sampling::of(self.node.clone()));
         node.sampling_schedule()
             .at(Instant::now(), Arc::downgrade(&sampler));
         // Entries of earlier jobs die with them.
@@ -276,7 +277,27 @@ impl Newest {
         self.latch.events()
     }
 
-    /// Keeps a read until the first sample, at most `timeout_ms`.
+    /// Whether there is no sample, and none is on its way: the source has never said anything. Nobody waits for such
+    /// a one who has not chosen to, by poll or with `device`.
+    pub fn is_silent(&self) -> bool {
+        let Some(node) = self.node.upgrade() else {
+            return false;
+        };
+        if self.latch.has_news() {
+            return false;
+        }
+        // Whoever has the lock takes a sample.
+        let Ok(work) = self.work.try_lock() else {
+            return false;
+        };
+        match &work.source {
+            Source::Closed => false,
+            Source::State(state) => state.is_silent(),
+            Source::Stream(reader) => reader.is_silent(Patience::of(&node.description)),
+        }
+    }
+
+    /// Keeps a read until the first sample, at most `timeout_ms`, or until the source counts as silent.
     pub fn wait(&self, id: RequestId, file: Weak<dyn Waiter>) {
         let Some(node) = self.node.upgrade() else {
             return;
@@ -284,7 +305,8 @@ impl Newest {
         let deadline = Instant::now() + Duration::from_millis(node.description.timeout_ms.into());
         lock(&self.waiting).push(Waiting { id, file, deadline });
         let due: Arc<dyn Due> = node.clone();
-        node.engine.schedule.at(deadline, Arc::downgrade(&due));
+        let look = deadline.min(Instant::now() + SILENCE);
+        node.engine.schedule.at(look, Arc::downgrade(&due));
         // The sample may have come before the request was in the list; a stream may need to be watched.
         self.arm(&node);
         self.ready();
@@ -307,24 +329,31 @@ impl Newest {
         }
     }
 
-    /// Answers reads whose time is over, and drops a page that is not to be used; says when the next read is due.
+    /// Answers reads whose time is over, or all if the source is silent, and drops a page that is not to be used; says when the next read is due.
     pub fn expire(&self) -> Option<Instant> {
         if let Some(node) = self.node.upgrade() {
             self.page.drop_unwanted(&node.engine);
         }
+        if lock(&self.waiting).is_empty() {
+            return None;
+        }
+        let is_silent = self.is_silent();
         let now = Instant::now();
-        let mut over = Vec::new();
-        let next = {
+        let (over, next) = {
             let mut waiting = lock(&self.waiting);
-            let (late, rest) = std::mem::take(&mut *waiting)
+            let (over, rest): (Vec<_>, Vec<_>) = std::mem::take(&mut *waiting)
                 .into_iter()
-                .partition(|one| one.deadline <= now);
-            over.extend::<Vec<Waiting>>(late);
+                .partition(|one| is_silent || one.deadline <= now);
             *waiting = rest;
-            waiting.iter().map(|one| one.deadline).min()
+            let next = waiting.iter().map(|one| one.deadline).min();
+            (over, next.map(|deadline| deadline.min(now + SILENCE)))
         };
         for one in over {
-            let error = Error::TimedOut("no sample within timeout_ms".to_owned());
+            let error = if one.deadline <= now {
+                Error::TimedOut("no sample within timeout_ms".to_owned())
+            } else {
+                Error::Silent
+            };
             // A reader that was interrupted meanwhile has missed nothing.
             if let Some(node) = self.node.upgrade()
                 && node.engine.is_parked(one.id)

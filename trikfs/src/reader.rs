@@ -5,7 +5,7 @@
 //! it is worth trying again. Knows no request of the kernel.
 
 use crate::convert::Pipeline;
-use crate::device::{Got, Stream};
+use crate::device::{Got, Patience, Stream, is_readable};
 use crate::errno::Error;
 use crate::events::{Due, Ready, Watch, lock};
 use crate::hub::Subscription;
@@ -36,6 +36,9 @@ pub enum Origin {
 
 struct Inner {
     origin: Origin,
+    opened: Instant,
+    /// Something has come since then.
+    has_heard: bool,
     raw: Vec<u8>,
     raw_len: usize,
     rest: Vec<u8>,
@@ -63,6 +66,8 @@ impl Reader {
     ) -> Arc<Self> {
         let inner = Inner {
             origin,
+            opened: Instant::now(),
+            has_heard: false,
             raw: Vec::new(),
             raw_len: 0,
             rest: Vec::new(),
@@ -83,6 +88,19 @@ impl Reader {
     /// True if the source is one opening that all readers share, so that what arrived is queued here.
     pub fn is_shared(&self) -> bool {
         matches!(lock(&self.inner).origin, Origin::Shared(_))
+    }
+
+    /// Whether nothing has come from the source since it was opened, and nothing is on its way.
+    pub fn is_silent(&self, patience: Patience) -> bool {
+        let inner = lock(&self.inner);
+        !inner.has_heard
+            && match &inner.origin {
+                Origin::Own(stream) => {
+                    stream.is_silent(inner.opened.elapsed(), patience) && !is_readable(&**stream)
+                }
+                Origin::Shared(subscription) => subscription.is_silent(patience),
+                Origin::Lost => false,
+            }
     }
 
     /// Converted bytes, as many as there are and fit.
@@ -227,7 +245,10 @@ impl Reader {
                 }
             };
             match got {
-                Ok(Got::Bytes(n)) => inner.raw_len += n,
+                Ok(Got::Bytes(n)) => {
+                    inner.raw_len += n;
+                    inner.has_heard = true;
+                }
                 Ok(Got::End) => {
                     // A torn tuple is never converted.
                     if std::mem::take(&mut inner.raw_len) > 0 {

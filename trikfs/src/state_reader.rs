@@ -68,9 +68,15 @@ impl StateReader {
         Ok(false)
     }
 
+    /// Whether there is no sample because another node that is needed is silent.
+    pub fn is_silent(&self) -> bool {
+        self.device.is_silent()
+    }
+
     /// A failure of the source, reported. One that only has nothing yet is too late for the read at hand.
     fn failed(&self, error: Error) -> Error {
         let error = match error {
+            Error::WouldBlock if self.is_silent() => Error::Silent,
             Error::WouldBlock => Error::TimedOut("not every source has a sample yet".to_owned()),
             other => other,
         };

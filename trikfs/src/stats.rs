@@ -3,8 +3,8 @@
 //! Owns 64-bit counters for a processor that has no 64-bit atomics, and the logarithmic histograms that mean and p99 are computed from.
 
 use std::fmt::Write;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use std::sync::{Arc, OnceLock};
 
 /// A counter that goes on after 2^32. Two readers of it may see the carry late, never a smaller low part for long.
 #[derive(Default)]
@@ -31,22 +31,13 @@ impl Counter {
 const BUCKETS: usize = 160;
 
 /// Durations: newest, mean, and 99th percentile to about a fifth.
+#[derive(Default)]
 pub struct Times {
     last_ns: AtomicU32,
     sum_ns: Counter,
     count: Counter,
-    buckets: Box<[AtomicU32; BUCKETS]>,
-}
-
-impl Default for Times {
-    fn default() -> Self {
-        Self {
-            last_ns: AtomicU32::new(0),
-            sum_ns: Counter::default(),
-            count: Counter::default(),
-            buckets: Box::new([const { AtomicU32::new(0) }; BUCKETS]),
-        }
-    }
+    /// Made with the first duration: most nodes never have one.
+    buckets: OnceLock<Box<[AtomicU32; BUCKETS]>>,
 }
 
 /// Index of the bucket of a duration: the position of its highest bit and the two bits below it.
@@ -70,21 +61,20 @@ impl Times {
         self.last_ns.store(short, Relaxed);
         self.sum_ns.add(short);
         self.count.add(1);
-        self.buckets[bucket(ns)].fetch_add(1, Relaxed);
+        let buckets =
+            (self.buckets).get_or_init(|| Box::new([const { AtomicU32::new(0) }; BUCKETS]));
+        buckets[bucket(ns)].fetch_add(1, Relaxed);
     }
 
     /// Last, mean and p99 in microseconds, as `NAME_last_us 1.5` lines.
     fn render(&self, name: &str, out: &mut String) {
         let count = self.count.get();
         let mean = self.sum_ns.get().checked_div(count).unwrap_or(0);
-        let total: u64 = self
-            .buckets
-            .iter()
-            .map(|b| u64::from(b.load(Relaxed)))
-            .sum();
+        let buckets = self.buckets.get().map_or(&[][..], |buckets| &buckets[..]);
+        let total: u64 = buckets.iter().map(|b| u64::from(b.load(Relaxed))).sum();
         let mut left = (total * 99).div_ceil(100);
         let mut p99 = 0;
-        for (index, counted) in self.buckets.iter().enumerate() {
+        for (index, counted) in buckets.iter().enumerate() {
             let counted = u64::from(counted.load(Relaxed));
             if counted > 0 {
                 p99 = bound(index);

@@ -1,12 +1,12 @@
 -- Gamepad: lines of text that a telephone or a PC sends, which the board passes on in a pipe.
 --
 -- Owns their grammar. Every line shows that the gamepad is there, so every line makes a sample; without lines for
--- TIMEOUT_MS, longer than clients pause, values are too old and reads fail.
+-- MAX_AGE_MS, longer than clients pause, values are too old and reads fail.
 local text = include 'trik/text.lua'
 
 local gamepad = { top = true, ports = { gamepad = {} } }
 
-local TIMEOUT_MS = 6000
+local MAX_AGE_MS = 6000
 local SRC = 'trikfs:gamepad/text'
 
 local function limited(word, least, greatest)
@@ -24,7 +24,7 @@ end
 -- A node whose numbers change with some lines: change(values, words) changes them in place.
 local function node(about, format, values, change)
   return {
-    about = about, src = SRC, format = format, poll_ms = 50, timeout_ms = TIMEOUT_MS,
+    about = about, src = SRC, format = format, on_event = true, max_age_ms = MAX_AGE_MS,
     converter = function(a_s, a, b_s, b)
       change(values, words_of(a))
       for index, value in ipairs(values) do ba.i32(b, 4 * (index - 1), value) end
@@ -62,6 +62,7 @@ function gamepad.make()
       text = {
         about = 'the lines of the gamepad as they come',
         src = lines { path = '/run/gamepad-service.out.fifo' }, format = 'text ' .. text.SIZE,
+        on_event = true, max_age_ms = MAX_AGE_MS,
       },
       pad1 = pad(1),
       pad2 = pad(2),

@@ -10,7 +10,12 @@ fn program(source: &str) -> Program {
     let mut state = State::new(LOAD_MEMORY_BYTES, None, None).unwrap();
     keep_pristine(&state).unwrap();
     let ran = state.run(&code, 5_000_000).and_then(|()| state.keep_tree());
-    Program::new(code, BTreeMap::new(), ran.is_ok().then_some(state))
+    Program::new(
+        code,
+        BTreeMap::new(),
+        ran.is_ok().then_some(state),
+        Vec::new(),
+    )
 }
 
 /// A state with `converter` bound as the one stage of the node `x`.

@@ -35,6 +35,15 @@ pub(crate) fn give_back() {
     }
 }
 
+/// Makes all threads share a few heaps. Two and not one: who opens a file should not wait for the thread that makes states.
+pub(crate) fn keep_together() {
+    // SAFETY: needs nothing; a limit that is refused changes nothing.
+    #[cfg(target_env = "gnu")]
+    unsafe {
+        libc::mallopt(libc::M_ARENA_MAX, 2);
+    }
+}
+
 /// Account and blocks of one state. Its address is the allocator's user data for the life of the state.
 #[derive(Debug)]
 pub(crate) struct Memory {

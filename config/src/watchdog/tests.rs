@@ -135,18 +135,24 @@ fn many_threads_are_ended_each_by_its_own_budget() {
 #[test]
 fn late_work_is_told_once_and_short_work_never() {
     let (tell, told) = mpsc::channel();
-    let seat = Seat::take(Arc::new(move || {
-        let _ = tell.send(());
-    }));
+    let seat = Seat::take(
+        Urgency::Awaited,
+        Arc::new(move || {
+            let _ = tell.send(());
+        }),
+    );
     seat.begin();
     seat.begin();
     seat.end();
     told.recv_timeout(Duration::from_secs(10))
         .expect("the watchdog tells of late work");
     let (tell_other, told_other) = mpsc::channel();
-    let other = Seat::take(Arc::new(move || {
-        let _ = tell_other.send(());
-    }));
+    let other = Seat::take(
+        Urgency::Awaited,
+        Arc::new(move || {
+            let _ = tell_other.send(());
+        }),
+    );
     other.begin();
     told_other
         .recv_timeout(Duration::from_secs(10))
@@ -158,11 +164,35 @@ fn late_work_is_told_once_and_short_work_never() {
 }
 
 #[test]
+fn work_that_nobody_waits_for_is_late_too_if_it_does_not_end() {
+    for _ in 0..3 {
+        let (tell, told) = mpsc::channel();
+        let seat = Seat::take(
+            Urgency::Background,
+            Arc::new(move || {
+                let _ = tell.send(());
+            }),
+        );
+        for _ in 0..100 {
+            seat.begin();
+            seat.end();
+        }
+        seat.begin();
+        told.recv_timeout(Duration::from_secs(10))
+            .expect("the watchdog tells of late work");
+        seat.end();
+    }
+}
+
+#[test]
 fn the_watchdog_wakes_after_it_slept() {
     let (tell, told) = mpsc::channel();
-    let seat = Seat::take(Arc::new(move || {
-        let _ = tell.send(());
-    }));
+    let seat = Seat::take(
+        Urgency::Awaited,
+        Arc::new(move || {
+            let _ = tell.send(());
+        }),
+    );
     for _ in 0..3 {
         seat.begin();
         told.recv_timeout(Duration::from_secs(10))
@@ -179,19 +209,25 @@ fn the_watchdog_wakes_after_it_slept() {
 #[test]
 fn a_panicking_callback_does_not_end_the_watch() {
     let (tell_first, told_first) = mpsc::channel();
-    let seat = Seat::take(Arc::new(move || {
-        let _ = tell_first.send(());
-        panic!("on purpose, in a test");
-    }));
+    let seat = Seat::take(
+        Urgency::Awaited,
+        Arc::new(move || {
+            let _ = tell_first.send(());
+            panic!("on purpose, in a test");
+        }),
+    );
     seat.begin();
     told_first
         .recv_timeout(Duration::from_secs(10))
         .expect("the callback is called");
     seat.end();
     let (tell, told) = mpsc::channel();
-    let seat = Seat::take(Arc::new(move || {
-        let _ = tell.send(());
-    }));
+    let seat = Seat::take(
+        Urgency::Awaited,
+        Arc::new(move || {
+            let _ = tell.send(());
+        }),
+    );
     seat.begin();
     told.recv_timeout(Duration::from_secs(10))
         .expect("the watchdog lives");

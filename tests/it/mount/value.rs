@@ -56,31 +56,84 @@ assert os.read(fd, 1) == b'\\1' and os.read(fd, 1) == b'\\0' and os.read(fd, 1) 
 }
 
 #[test]
-fn the_first_value_is_waited_for_no_longer_than_the_time_limit() {
+fn a_first_value_that_is_on_its_way_is_waited_for_no_longer_than_the_time_limit() {
     let board = Board::new();
     board.fifo("in");
     let Some(m) = mount_on(
         board,
-        "trikfs = { n = { src = '$DIR/in', input_tuple_size = 1, on_event = true, timeout_ms = 100 },
-                    long = { src = '$DIR/in2', input_tuple_size = 1, timeout_ms = 60000 } }",
+        "local never = function() return false end
+         trikfs = { n = { src = '$DIR/in', input_tuple_size = 1, format = 'u8 x', on_event = true, timeout_ms = 300, converter = never } }",
     ) else {
         return;
     };
-    m.board().fifo("in2");
     m.python(
-        "for name in ('value', 'bin_data'):
+        "pipe = feed('in')
+os.write(pipe, b'\\x2a')
+def late():
     start = time.monotonic()
+    failed = error_of(open(M + '/n/value', 'rb').read)
+    return failed == 'ETIMEDOUT' and 0.29 < time.monotonic() - start < 5
+eventually(late, 'the end of the time, once the source has spoken')
+for name in ('value', 'bin_data'):
     expect('ETIMEDOUT', lambda: open(M + '/n/' + name, 'rb').read())
-    assert 0.09 < time.monotonic() - start < 5
     expect('EAGAIN', os.read, open_ro(M + '/n/' + name, os.O_NONBLOCK), 10)
-fd = open_ro(M + '/long/value')
-read_end, write_end = os.pipe()
-child = forked(lambda: os.write(write_end, os.read(fd, 100)))
-eventually(lambda: asleep(child), 'a reader that waits')
+",
+    );
+}
+
+#[test]
+fn a_source_that_has_never_spoken_says_so_at_once_and_can_be_waited_for() {
+    let board = Board::new();
+    for name in ["in", "in2", "in3"] {
+        board.fifo(name);
+    }
+    let Some(m) = mount_on(
+        board,
+        "trikfs = {
+           heard = { src = '$DIR/in', format = 'u8 x', on_event = true, timeout_ms = 60000 },
+           asked = { src = '$DIR/in2', format = 'u8 x', timeout_ms = 60000 },
+           polled = { src = '$DIR/in3', format = 'u8 x', poll_ms = 20, timeout_ms = 60000 },
+           alias = { src = 'trikfs:polled', format = 'u8 x', timeout_ms = 60000 },
+           newest = { src = 'newest:heard', format = 'u8 x', poll_ms = 20, timeout_ms = 60000 },
+           both = { src = { 'trikfs:polled', 'newest:heard' }, format = 'u8 x, u8 y', on_event = true, timeout_ms = 60000 } }",
+    ) else {
+        return;
+    };
+    m.python(
+        "import select
+def soon(name):
+    start = time.monotonic()
+    expect('ENODATA', open(M + '/' + name, 'rb', buffering=0).read)
+    return time.monotonic() - start
+def nonblocking(name):
+    expect('EAGAIN', os.read, open_ro(M + '/' + name, os.O_NONBLOCK), 10)
+nodes = ('heard', 'asked', 'polled', 'alias', 'newest', 'both')
+for node in nodes:
+    for name in ('value', 'bin_data', 'value0'):
+        # The least of some, for a machine that is busy.
+        took = min(soon(node + '/' + name) for _ in range(5))
+        assert took <= 0.05, (node, name, took)
+        nonblocking(node + '/' + name)
+    assert open(M + '/' + node + '/fault').read() == '', node
+log = os.read(open_ro(M + '/log'), 65536)
+assert b'heard: caller: nothing has come from the source since it was opened' in log, log
+assert b'newest: caller: nothing has come' in log, log
+# Who polls has chosen to wait.
+fd = open_ro(M + '/asked/value')
+poll = select.poll()
+poll.register(fd, select.POLLIN)
+assert poll.poll(100) == []
 pipe = feed('in2')
 os.write(pipe, b'\\x2a')
-assert os.read(read_end, 100) == b'42\\n'
-assert ended(child) == 0
+assert poll.poll(20000) != []
+assert os.read(fd, 100) == b'42\\n'
+# What has spoken once is waited for.
+pipe1, pipe3 = feed('in'), feed('in3')
+os.write(pipe1, b'\\x01')
+os.write(pipe3, b'\\x02')
+for node, text in (('heard', b'1\\n'), ('polled', b'2\\n'), ('newest', b'1\\n')):
+    eventually(lambda: error_of(open(M + '/' + node + '/value', 'rb').read) is None, node)
+    assert open(M + '/' + node + '/value', 'rb').read() == text, node
 ",
     );
 }

@@ -16,6 +16,53 @@ fn an_unplugged_sensor_gives_an_error_and_comes_back() {
     eventually("a distance again", || robot.errno(value) == 0);
 }
 
+/// Each value of a robot that was just switched on, whoever is connected or not. The camera takes its first picture.
+#[test]
+fn what_has_never_spoken_on_a_fresh_robot_says_so_at_once() {
+    let Some(robot) = robot(&[]) else { return };
+    let timed = |name: &str| {
+        let start = Instant::now();
+        let errno = robot.errno(name);
+        (errno, start.elapsed())
+    };
+    let silent = [
+        "gamepad/buttons/value",
+        "gamepad/pad1/value",
+        "gamepad/pad2/value",
+        "gamepad/text/value",
+        "gamepad/wheel/value",
+    ];
+    // The least of some, for a machine that is busy.
+    let soon = |name: &str, all: &[(i32, Duration)]| {
+        let least = all.iter().map(|(_, time)| *time).min();
+        let limit = Duration::from_millis(50);
+        assert!(least.is_some_and(|time| time <= limit), "{name}: {all:?}");
+    };
+    for name in silent {
+        let all: Vec<_> = (0..5).map(|_| timed(name)).collect();
+        let is_silent = |(errno, _): &(i32, Duration)| *errno == libc::ENODATA;
+        assert!(all.iter().all(is_silent), "{name}: {all:?}");
+        soon(name, &all);
+        let fault = name.replace("value", "fault");
+        assert_eq!(robot.read(&fault).expect("a text"), "", "{name}");
+    }
+    // The board tells of its keys now and then, so this one may have something to say.
+    let keys = "input/platform-soc_1c00000_gpio-keys-event/value";
+    let all: Vec<_> = (0..5).map(|_| timed(keys)).collect();
+    let is_known = |(errno, _): &(i32, Duration)| matches!(*errno, 0 | libc::ENODATA);
+    assert!(all.iter().all(is_known), "{keys}: {all:?}");
+    soon(keys, &all);
+    let start = Instant::now();
+    let found = robot.sh("grep -s . */value */*/value");
+    assert!(
+        start.elapsed() < Duration::from_secs(6),
+        "{:?}",
+        start.elapsed()
+    );
+    let text = &found.stdout;
+    assert!(text.contains("sensors/A1/value:"), "{text}");
+}
+
 #[test]
 fn a_lidar_that_is_silent_has_no_picture() {
     let Some(robot) = robot(&[]) else { return };

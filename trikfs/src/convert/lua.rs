@@ -10,7 +10,7 @@ use config::program::{Blank, Program, Vm, give_memory_back};
 use std::io;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, Weak};
 use std::time::Duration;
 
 enum Work {
@@ -34,6 +34,8 @@ struct Stock {
     used: AtomicUsize,
     /// Pools that take from here; without any there is no stock.
     pools: AtomicUsize,
+    /// Programs that have not been settled yet.
+    unsettled: Mutex<Vec<Weak<Program>>>,
 }
 
 impl StateMaker {
@@ -46,6 +48,7 @@ impl StateMaker {
             is_filling: AtomicBool::new(false),
             used: AtomicUsize::new(0),
             pools: AtomicUsize::new(0),
+            unsettled: Mutex::default(),
         });
         let own = stock.clone();
         std::thread::Builder::new()
@@ -61,6 +64,7 @@ impl StateMaker {
     /// States for one configuration.
     pub fn pool(&self, program: Arc<Program>) -> Arc<StatePool> {
         self.stock.pools.fetch_add(1, Ordering::Relaxed);
+        lock(&self.stock.unsettled).push(Arc::downgrade(&program));
         let pool = Arc::new(StatePool {
             program,
             maker: self.clone(),
@@ -109,8 +113,13 @@ impl Stock {
         }
     }
 
-    /// After a burst of openings and closings: the stock is small again, and memory goes back to the system.
+    /// After a burst of openings and closings: the stock is small again, programs are settled, and memory goes back to the
+    /// system.
     fn rest(&self) {
+        let unsettled = std::mem::take(&mut *lock(&self.unsettled));
+        for program in unsettled.iter().filter_map(Weak::upgrade) {
+            program.settle();
+        }
         let few = if self.pools.load(Ordering::Relaxed) > 0 {
             limits::LUA_STATES_FIRST
         } else {

@@ -36,7 +36,7 @@ impl Rig {
             seat.end();
             ControlFlow::Continue(())
         };
-        let crew = Crew::run("rig", limit, Arc::new(role)).unwrap();
+        let crew = Crew::run("rig", limit, Urgency::Awaited, Arc::new(role)).unwrap();
         Self {
             crew,
             jobs,
@@ -159,7 +159,13 @@ fn the_end_does_not_wait_for_late_threads() {
 
 #[test]
 fn a_panic_while_waiting_reaches_who_waits_for_the_crew() {
-    let crew = Crew::run("panics", 2, Arc::new(|_| panic!("on purpose, in a test"))).unwrap();
+    let crew = Crew::run(
+        "panics",
+        2,
+        Urgency::Awaited,
+        Arc::new(|_| panic!("on purpose, in a test")),
+    )
+    .unwrap();
     let caught = catch_unwind(AssertUnwindSafe(|| crew.wait()));
     assert_eq!(
         *caught.unwrap_err().downcast::<&str>().unwrap(),
@@ -177,7 +183,9 @@ fn a_panic_during_work_costs_that_work() {
         seat.begin();
         panic!("on purpose, in a test");
     };
-    Crew::run("panics", 2, Arc::new(role)).unwrap().wait();
+    Crew::run("panics", 2, Urgency::Awaited, Arc::new(role))
+        .unwrap()
+        .wait();
 }
 
 /// A crew in which the first gives way and then waits for its end. True if the watchdog took no part.
@@ -203,7 +211,7 @@ fn gives_way_in_time() -> bool {
         seat.end();
         ControlFlow::Continue(())
     };
-    let crew = Crew::run("giver", 4, Arc::new(role)).unwrap();
+    let crew = Crew::run("giver", 4, Urgency::Awaited, Arc::new(role)).unwrap();
     let first = told.recv_timeout(PATIENCE).expect("the first");
     let second = told.recv_timeout(PATIENCE).expect("the second");
     assert_ne!(first, second);

@@ -6,12 +6,12 @@
 
 mod present;
 
-use super::{Device, Got, Kind, Stream, Surroundings, chardev, fifo};
+use super::{Device, Got, Kind, Patience, Stream, Surroundings, chardev, fifo};
 use crate::errno::Error;
 use config::description::{EvdevDescription, EvdevLayout};
 use std::os::fd::BorrowedFd;
 use std::os::unix::fs::FileTypeExt;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 const EV_SYN: u16 = 0;
 const SYN_REPORT: u16 = 0;
@@ -96,6 +96,11 @@ impl Stream for Evdev {
     /// The answer to a question comes without an event.
     fn wake_at(&self) -> Option<Instant> {
         (!self.decoder.ready.is_empty()).then(Instant::now)
+    }
+
+    /// A device that was asked has answered; all else that comes is somebody's doing.
+    fn is_silent(&self, open: Duration, _patience: Patience) -> bool {
+        self.decoder.ready.is_empty() && open >= Patience::WITH_NOBODY
     }
 
     fn is_still_there(&self) -> bool {

@@ -2,13 +2,13 @@
 //!
 //! Owns counting the reads and choosing the failure. The source within it knows nothing of this.
 
-use super::{Device, Got, Kind, Sink, State, Stream, Surroundings, kinds};
+use super::{Device, Got, Kind, Patience, Sink, State, Stream, Surroundings, kinds};
 use crate::errno::Error;
 use config::description::FaultyDescription;
 use std::collections::BTreeSet;
 use std::os::fd::BorrowedFd;
 use std::path::PathBuf;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 impl Kind for FaultyDescription {
     fn open(&self, tuple_size: usize, around: &Surroundings) -> Result<Device, Error> {
@@ -105,6 +105,10 @@ impl State for FaultyState {
     fn is_text(&self) -> bool {
         self.state.is_text()
     }
+
+    fn is_silent(&self) -> bool {
+        self.state.is_silent()
+    }
 }
 
 struct FaultyStream {
@@ -130,6 +134,10 @@ impl Stream for FaultyStream {
 
     fn wake_at(&self) -> Option<Instant> {
         self.stream.wake_at()
+    }
+
+    fn is_silent(&self, open: Duration, patience: Patience) -> bool {
+        self.stream.is_silent(open, patience)
     }
 
     fn is_still_there(&self) -> bool {

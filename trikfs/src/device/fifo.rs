@@ -4,7 +4,7 @@
 //! writer sends after that. Opening does not wait for a writer, and no writer yet is not an end.
 
 use super::chardev::CharSink;
-use super::{Device, Got, Kind, Sink, Stream, Surroundings, device_error, is_same_file};
+use super::{Device, Got, Kind, Patience, Sink, Stream, Surroundings, device_error, is_same_file};
 use crate::errno::Error;
 use config::description::FifoDescription;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
@@ -13,6 +13,7 @@ use std::io::{ErrorKind, Read};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 impl Kind for FifoDescription {
     fn open(&self, _tuple_size: usize, _around: &Surroundings) -> Result<Device, Error> {
@@ -32,6 +33,8 @@ impl Kind for FifoDescription {
 pub struct Fifo {
     file: File,
     path: PathBuf,
+    /// The last read found that somebody has it open for writing.
+    has_writer: bool,
 }
 
 impl Fifo {
@@ -55,6 +58,7 @@ impl Fifo {
         Ok(Self {
             file,
             path: path.to_owned(),
+            has_writer: false,
         })
     }
 
@@ -72,7 +76,9 @@ impl Fifo {
 impl Stream for Fifo {
     fn read(&mut self, buf: &mut [u8]) -> Result<Got, Error> {
         loop {
-            match self.file.read(buf) {
+            let got = self.file.read(buf);
+            self.has_writer = !matches!(got, Ok(0));
+            match got {
                 Ok(0) if self.had_a_writer() => return Ok(Got::End),
                 Ok(0) => return Ok(Got::Nothing),
                 Ok(n) => return Ok(Got::Bytes(n)),
@@ -85,6 +91,15 @@ impl Stream for Fifo {
 
     fn fd(&self) -> Option<BorrowedFd<'_>> {
         Some(self.file.as_fd())
+    }
+
+    fn is_silent(&self, open: Duration, patience: Patience) -> bool {
+        let most = if self.has_writer {
+            patience.by_somebody
+        } else {
+            Patience::WITH_NOBODY
+        };
+        open >= most
     }
 
     fn is_still_there(&self) -> bool {

@@ -49,6 +49,13 @@ impl Latched {
     }
 }
 
+impl Latched {
+    /// The other node has no sample, and none is on its way.
+    pub fn is_silent(&self) -> bool {
+        self.0.is_silent()
+    }
+}
+
 impl Drop for Latched {
     fn drop(&mut self) {
         self.0.leave_newest();
@@ -107,5 +114,9 @@ impl State for LatchedState {
             self.current = tuples.pop().unwrap_or_default();
         }
         Ok(copy_at(&self.current, offset, buf))
+    }
+
+    fn is_silent(&self) -> bool {
+        self.latched.is_silent()
     }
 }

@@ -8,7 +8,7 @@ pub mod answer;
 mod picture;
 
 use super::cutter::{Cut, Cutter, fill};
-use super::{Device, Got, Kind, Sink, Stream, Surroundings, chardev, device_error, fifo};
+use super::{Device, Got, Kind, Patience, Sink, Stream, Surroundings, chardev, device_error, fifo};
 use crate::errno::Error;
 use crate::limits;
 use crate::programs::{Commands, Programs, Progress, Use};
@@ -163,6 +163,14 @@ impl Stream for Lines {
             return Some(Instant::now() + Duration::from_millis(limits::LINES_LOOK_MS));
         }
         self.cutter.wake_at()
+    }
+
+    /// A program that was started for us speaks by itself; without one, somebody has to write first.
+    fn is_silent(&self, open: Duration, patience: Patience) -> bool {
+        match (&self.program, &self.pipe) {
+            (None, Some(pipe)) => self.wake_at().is_none() && pipe.is_silent(open, patience),
+            (None, None) | (Some(_), _) => self.wake_at().is_none() && open >= patience.by_itself,
+        }
     }
 
     fn is_still_there(&self) -> bool {

@@ -68,6 +68,9 @@ pub trait LinkedNode: Send + Sync {
     /// A node that cannot be entered.
     fn refresh_newest(&self) -> Result<(), Error>;
 
+    /// The node has no sample, and none is on its way.
+    fn is_silent(&self) -> bool;
+
     /// The newest sample.
     fn latch(&self) -> &Latch;
 

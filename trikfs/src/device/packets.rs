@@ -6,7 +6,7 @@
 mod framer;
 
 use super::cutter::Cutter;
-use super::{Device, Got, Kind, Stream, Surroundings, chardev, device_error, fifo};
+use super::{Device, Got, Kind, Patience, Stream, Surroundings, chardev, device_error, fifo};
 use crate::errno::Error;
 use crate::limits;
 use crate::stats::Counter;
@@ -19,7 +19,7 @@ use std::os::fd::{AsFd, BorrowedFd};
 use std::os::unix::fs::FileTypeExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 impl Kind for PacketsDescription {
     fn open(&self, tuple_size: usize, around: &Surroundings) -> Result<Device, Error> {
@@ -80,6 +80,10 @@ impl Stream for Packets {
 
     fn wake_at(&self) -> Option<Instant> {
         self.bytes.wake_at().or(self.cutter.wake_at())
+    }
+
+    fn is_silent(&self, open: Duration, patience: Patience) -> bool {
+        self.wake_at().is_none() && self.bytes.is_silent(open, patience)
     }
 
     fn is_still_there(&self) -> bool {

@@ -6,7 +6,7 @@
 //! Only states: each reading samples all of them.
 
 use super::latched::{self, Latched};
-use super::{Device, Got, Kind, State, Stream, Surroundings, kinds};
+use super::{Device, Got, Kind, Patience, State, Stream, Surroundings, kinds};
 use crate::bytes::copy_at;
 use crate::clock::Stamp;
 use crate::errno::Error;
@@ -15,7 +15,7 @@ use nix::sys::epoll::{Epoll, EpollCreateFlags, EpollEvent, EpollFlags, EpollTime
 use std::collections::BTreeSet;
 use std::os::fd::{AsFd, BorrowedFd};
 use std::path::PathBuf;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 impl Kind for SeveralDescription {
     fn open(&self, _tuple_size: usize, around: &Surroundings) -> Result<Device, Error> {
@@ -139,6 +139,16 @@ impl Input {
     }
 }
 
+impl Input {
+    /// Another node whose newest sample is wanted, and which has nothing to say.
+    fn is_silent_node(&self) -> bool {
+        match &self.origin {
+            From::Newest(latched) => latched.is_silent(),
+            From::State(_) | From::Stream(_) => false,
+        }
+    }
+}
+
 /// All parts and what is added to their tuples.
 struct Joint {
     inputs: Vec<Input>,
@@ -224,6 +234,10 @@ impl State for States {
             }
         }
         Ok(copy_at(&self.current, offset, buf))
+    }
+
+    fn is_silent(&self) -> bool {
+        self.joint.inputs.iter().any(Input::is_silent_node)
     }
 }
 
@@ -322,6 +336,15 @@ impl Stream for Streams {
 
     fn fd(&self) -> Option<BorrowedFd<'_>> {
         Some(self.epoll.0.as_fd())
+    }
+
+    /// One part that is silent is enough: nothing is made without it.
+    fn is_silent(&self, open: Duration, patience: Patience) -> bool {
+        self.joint.inputs.iter().any(|input| match &input.origin {
+            From::Stream(stream) => !input.has_delivered && stream.is_silent(open, patience),
+            From::State(_) => false,
+            From::Newest(_) => input.is_silent_node(),
+        })
     }
 
     fn wake_at(&self) -> Option<Instant> {

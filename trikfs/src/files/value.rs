@@ -193,6 +193,10 @@ impl OpenFile for ValueFile {
         if request.nonblocking {
             return Err(Error::WouldBlock);
         }
+        if self.node.sampling.newest.is_silent() {
+            self.node.report(&Error::Silent);
+            return Err(Error::Silent);
+        }
         shown.sizes.retain(|&(id, _)| self.engine.is_parked(id));
         shown.sizes.push((request.id, out.len()));
         drop(shown);

@@ -3,10 +3,12 @@
 //! Owns the due times. What a sample is, and what hears of it, is `newest`'s business.
 
 use super::Source;
+use crate::crew;
 use crate::events::{Due, lock};
 use crate::limits;
 use crate::node::Node;
 use config::description::Pace;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::sync::{Arc, Weak};
 use std::time::{Duration, Instant};
@@ -26,7 +28,18 @@ pub fn too_old(node: &Node) -> Option<Duration> {
 
 /// Background sampling by the clock.
 pub(super) struct Sampling {
-    pub(super) node: Weak<Node>,
+    node: Weak<Node>,
+    /// The sample before took so long that others should not wait for the next one.
+    lasts: AtomicBool,
+}
+
+impl Sampling {
+    pub(super) fn of(node: Weak<Node>) -> Self {
+        Self {
+            node,
+            lasts: AtomicBool::new(false),
+        }
+    }
 }
 
 /// The first time after `now` that is a whole number of periods from `origin`. Periods that were missed are not made up
@@ -45,10 +58,17 @@ impl Due for Sampling {
         if node.is_retired() {
             return None;
         }
+        if self.lasts.load(Ordering::Relaxed) {
+            crew::give_way();
+        }
+        let begun = Instant::now();
         node.sampling.newest.sample(&node);
+        let now = Instant::now();
+        let lasted = now - begun > limits::SAMPLE_SOON;
+        self.lasts.store(lasted, Ordering::Relaxed);
         let period = Duration::from_millis(node.sampling.period_ms().into());
         let origin = node.engine.schedule.origin();
-        Some(next_on_grid(origin, period, Instant::now()))
+        Some(next_on_grid(origin, period, now))
     }
 }
 

@@ -5,7 +5,7 @@
 
 use super::{Feed, Node};
 use crate::device::linked::LinkedNode;
-use crate::device::{Device, Got, Sink, Stream, kinds};
+use crate::device::{Device, Got, Patience, Sink, Stream, kinds};
 use crate::errno::Error;
 use crate::events::Ready;
 use crate::latch::Latch;
@@ -62,6 +62,10 @@ impl LinkedNode for Node {
         self.sampling.newest.refresh()
     }
 
+    fn is_silent(&self) -> bool {
+        self.sampling.newest.is_silent()
+    }
+
     fn latch(&self) -> &Latch {
         self.sampling.newest.latch()
     }
@@ -104,5 +108,10 @@ impl Stream for LinkedStream {
 
     fn fd(&self) -> Option<BorrowedFd<'_>> {
         Some(self.bell.0.as_fd())
+    }
+
+    /// The other node's source is asked: it may have spoken although the node has given nothing yet.
+    fn is_silent(&self, _open: Duration, patience: Patience) -> bool {
+        self.reader.is_silent(patience)
     }
 }

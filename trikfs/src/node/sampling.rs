@@ -37,7 +37,7 @@ impl Sampling {
             Pace::OnRead | Pace::OnEvent => 0,
         };
         Self {
-            newest: Newest::new(node, description.output_tuple_size),
+            newest: Newest::new(node),
             pace: description.pace,
             period_ms: AtomicU32::new(period_ms),
             rate: Mutex::new(Rate {

@@ -32,7 +32,7 @@ pub mod received;
 pub use encode::invalidate_message;
 pub(crate) use negotiate::Features;
 
-use crate::crew::{Crew, Seat};
+use crate::crew::{Crew, Seat, Urgency};
 use crate::errno::Error;
 use crate::limits::{MAX_THREADS, TRANSFER_BYTES_MAX};
 use crate::transport::null::NullFs;
@@ -155,7 +155,7 @@ impl Session {
     /// If the device cannot be read, or the kernel is too old (before 4.14).
     pub fn serve(&self) -> io::Result<()> {
         let shared = Arc::clone(&self.shared);
-        let crew = Crew::run_each("fuse", MAX_THREADS, move || {
+        let crew = Crew::run_each("fuse", MAX_THREADS, Urgency::Awaited, move || {
             let mut worker = Worker::new(Arc::clone(&shared));
             Box::new(move |seat| worker.cycle(seat))
         })?;

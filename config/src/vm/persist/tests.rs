@@ -10,6 +10,8 @@ use converter::Direction;
 use proptest::prelude::*;
 use std::sync::Arc;
 
+mod random;
+
 /// The program `before`, and after it a tree whose node `x` has this converter.
 fn source(before: &str, converter: &str) -> String {
     format!(
@@ -47,6 +49,9 @@ fn copied(before: &str, converter: &str) -> Vec<Result<[u8; 4], String>> {
     let copy = made(program.open("x").unwrap());
     assert_eq!(copy, made(program.run_anew().unwrap()), "{source}");
     // A second copy begins where the first began.
+    assert_eq!(copy, made(program.open("x").unwrap()), "{source}");
+    // And so does one when the state that they were copied from is no more.
+    program.settle();
     assert_eq!(copy, made(program.open("x").unwrap()), "{source}");
     copy
 }
@@ -332,6 +337,37 @@ fn what_is_too_much_to_copy_runs_the_program_anew() {
         let anew = made(program.open("x").unwrap());
         assert!(anew.iter().all(Result::is_ok), "{held} {anew:?}");
     }
+}
+
+#[test]
+fn a_settled_program_has_given_up_the_state_that_it_ran_in_if_that_is_larger() {
+    let program = loaded(&source("local k = 1", "function() k = k + 1 end"));
+    assert!(program.holds_original());
+    program.settle();
+    assert!(!program.holds_original());
+    assert!(program.is_copied("x") && program.is_copied("other"));
+    program.settle();
+    // The text would be held once for each node.
+    let large = source(
+        "local text = ('x'):rep(600000)",
+        "function() return text end",
+    );
+    let large = large.replace(
+        "converter = function() end",
+        "converter = function() return text end",
+    );
+    let program = loaded(&large);
+    program.settle();
+    assert!(program.holds_original());
+    assert!(program.is_copied("other"));
+    // What cannot be copied runs anew, as before.
+    let program = loaded(&source(
+        "local c = coroutine.create(print)",
+        "function() return c == nil end",
+    ));
+    program.settle();
+    assert!(!program.is_copied("x") && program.is_copied("other"));
+    made(program.open("x").unwrap());
 }
 
 #[test]
