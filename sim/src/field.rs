@@ -91,4 +91,6 @@ impl Field {
 }
 
 #[cfg(test)]
+mod facts;
+#[cfg(test)]
 mod tests;

@@ -2,6 +2,8 @@
 
 mod checking;
 mod explain;
+mod facts;
+mod library;
 mod naive;
 mod reading;
 mod templates;

@@ -302,18 +302,18 @@ impl Floor {
             match thing {
                 Thing::Area(outline, tint, _) => {
                     let (coverage, canvas) = (&mut self.coverage, &mut self.canvas);
-                    fill(outline, |_, _| *tint, coverage, canvas, corner, size, ratio);
+                    fill(outline, *tint, coverage, canvas, corner, size, ratio);
                 }
                 Thing::Shade(outline, gradient) => {
                     let (coverage, canvas) = (&mut self.coverage, &mut self.canvas);
                     let tint = |x, y| gradient.tint(x, y);
-                    fill(outline, tint, coverage, canvas, corner, size, ratio);
+                    shade(outline, tint, coverage, canvas, corner, size, ratio);
                 }
                 Thing::Mark(stroke) => {
                     if let Some(outline) = mark(stroke) {
                         let (coverage, canvas) = (&mut self.coverage, &mut self.canvas);
                         let tint = Tint::solid(stroke.rgb);
-                        fill(&outline, |_, _| tint, coverage, canvas, corner, size, ratio);
+                        fill(&outline, tint, coverage, canvas, corner, size, ratio);
                     }
                 }
                 Thing::Pixels(pixels, back, _) => {
@@ -342,8 +342,31 @@ fn mark(stroke: &Stroke) -> Option<Outline> {
     Outline::drawn(&outline::line(stroke.begin, stroke.end)?, nib)
 }
 
-/// Paints an area onto a square of `size` pixels; `tint` says the colour of a place of the scene.
+/// Paints an area of one colour onto a square of `size` pixels.
 fn fill(
+    outline: &Outline,
+    tint: Tint,
+    coverage: &mut Coverage,
+    canvas: &mut [[u8; 3]],
+    corner: Point,
+    size: usize,
+    ratio: f64,
+) {
+    coverage.begin(outline.grid(), size, size);
+    outline.cover(coverage, corner.x, corner.y, ratio);
+    coverage.spans(outline.rule(), |y, columns, level| {
+        let pixels = &mut canvas[y * size + columns.start..y * size + columns.end];
+        if level == u8::MAX && tint.opacity == u8::MAX {
+            return pixels.fill(tint.rgb);
+        }
+        for pixel in pixels {
+            colour::lay(pixel, tint, level);
+        }
+    });
+}
+
+/// The same with a colour that changes: `tint` says that of a place of the scene.
+fn shade(
     outline: &Outline,
     tint: impl Fn(f64, f64) -> Tint,
     coverage: &mut Coverage,
@@ -352,12 +375,14 @@ fn fill(
     size: usize,
     ratio: f64,
 ) {
-    coverage.begin(size, size);
+    coverage.begin(outline.grid(), size, size);
     outline.cover(coverage, corner.x, corner.y, ratio);
-    coverage.pixels(outline.rule(), |x, y, level| {
-        let along = |index: usize| (index as f64 + 0.5) / ratio;
-        let tint = tint(corner.x + along(x), corner.y + along(y));
-        colour::lay(&mut canvas[y * size + x], tint, level);
+    let along = |index: usize| (index as f64 + 0.5) / ratio;
+    coverage.spans(outline.rule(), |y, columns, level| {
+        for x in columns {
+            let tint = tint(corner.x + along(x), corner.y + along(y));
+            colour::lay(&mut canvas[y * size + x], tint, level);
+        }
     });
 }
 

@@ -430,6 +430,8 @@ fn of_part(robot: &Robot, part: Part, name: &str) -> Option<Value> {
             Some(Value::Int(calls.unwrap_or(i32::MAX)))
         }
         (Part::Random, "lastValue") => Some(Value::Int(robot.dice.last)),
+        // All that these have, and it was never set.
+        (Part::Speaker | Part::Network, "objectName") => Some(Value::NoText),
         _ => None,
     }
 }
@@ -512,5 +514,7 @@ fn count(length: usize) -> Value {
     Value::Int(i32::try_from(length).unwrap_or(i32::MAX))
 }
 
+#[cfg(test)]
+mod facts;
 #[cfg(test)]
 mod tests;

@@ -108,12 +108,11 @@ impl Layer {
     fn drawn(&mut self, drawn: &Drawn) {
         match &drawn.shape {
             Shape::Line(begin, end) => {
-                let path = outline::line(whole(*begin), whole(*end));
-                self.pen(path.as_ref(), drawn, &drawn.pen, Cap::Square);
+                self.straight(whole(*begin), whole(*end), drawn);
             }
             Shape::Rectangle(one, other) => {
                 let path = outline::rectangle(*one, *other);
-                self.brush(path.as_ref(), drawn);
+                self.inside(*one, *other, drawn);
                 self.pen(path.as_ref(), drawn, &drawn.pen, Cap::Square);
             }
             Shape::Ellipse(one, other) => {
@@ -141,6 +140,42 @@ impl Layer {
                     }
                 }
             }
+        }
+    }
+
+    /// A straight line. Upright and level ones are bars, one for each dash; of oblique ones and of dots the recorded readings
+    /// are nearer to what a pen leaves along a path.
+    fn straight(&mut self, begin: Point, end: Point, drawn: &Drawn) {
+        let is_bar = (begin.x == end.x) != (begin.y == end.y);
+        if !is_bar {
+            let path = outline::line(begin, end);
+            return self.pen(path.as_ref(), drawn, &drawn.pen, Cap::Square);
+        }
+        let width = outline::pen_width(drawn.pen.width);
+        let dashes = outline::dashes(begin, end, width, &drawn.pen.style);
+        if dashes.is_empty() {
+            return;
+        }
+        let tint = self.tint(&drawn.pen.colour, &drawn.id);
+        for (begin, end) in dashes {
+            if let Some(bar) = Outline::bar(begin, end, width, Cap::Square) {
+                self.floor.add_area(bar, tint);
+            }
+        }
+    }
+
+    /// The inside of a rectangle, which is a bar too.
+    fn inside(&mut self, one: Point, other: Point, drawn: &Drawn) {
+        if drawn.pen.fill_style != "solid" {
+            return;
+        }
+        let tint = self.tint(&drawn.pen.fill, &drawn.id);
+        let middle = f64::midpoint(one.y, other.y);
+        let (left, right) = (one.x.min(other.x), one.x.max(other.x));
+        let height = (other.y - one.y).abs();
+        let bar = Outline::bar(point(left, middle), point(right, middle), height, Cap::Flat);
+        if let Some(bar) = bar {
+            self.floor.add_area(bar, tint);
         }
     }
 

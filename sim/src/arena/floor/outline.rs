@@ -5,11 +5,13 @@
 
 use usvg::tiny_skia_path as skia;
 
-use super::raster::{Coverage, Rule};
+use super::raster::{Coverage, Grid, Rule};
 use super::stroke::{self, Spot, Step};
-use crate::geometry::Point;
+use crate::geometry::{Point, point};
 use crate::limits;
 
+/// Control points of a quarter of an ellipse are so far from its ends, in its half axes.
+const QUARTER: f32 = 0.552_284_8;
 /// How finely dashes are measured, in parts of a pixel.
 const FINE: f32 = 8.0;
 
@@ -40,6 +42,7 @@ pub struct Nib<'a> {
 pub struct Outline {
     steps: Vec<Step>,
     rule: Rule,
+    grid: Grid,
     bounds: Bounds,
 }
 
@@ -148,8 +151,32 @@ impl Outline {
         is_finite.then_some(Self {
             steps,
             rule,
+            grid: Grid::Path,
             bounds,
         })
+    }
+
+    /// A straight bar around a line, as the original's painter makes it of lines and of insides of rectangles; nothing if it
+    /// has no length, no width or is far away. With a square cap it is longer by half its width at each end.
+    pub fn bar(begin: Point, end: Point, width: f64, cap: Cap) -> Option<Self> {
+        let (x, y) = (end.x - begin.x, end.y - begin.y);
+        let length = x.hypot(y);
+        short(length)?;
+        if length <= 0.0 || width <= 0.0 || width.is_nan() {
+            return None;
+        }
+        let (along, across) = (width / 2.0 * x / length, width / 2.0 * y / length);
+        let more = if cap == Cap::Square { 1.0 } else { 0.0 };
+        let (ahead, up) = (along * more, across * more);
+        let steps = vec![
+            Step::Move((begin.x - ahead + across, begin.y - up - along)),
+            Step::Line((end.x + ahead + across, end.y + up - along)),
+            Step::Line((end.x + ahead - across, end.y + up + along)),
+            Step::Line((begin.x - ahead - across, begin.y - up + along)),
+        ];
+        let mut bar = Self::of(steps, &Affine::SAME, Rule::NonZero)?;
+        bar.grid = Grid::Bar;
+        Some(bar)
     }
 
     /// What a pen leaves that goes along a path; nothing if it leaves nothing. `dashes` are lengths of dashes and gaps in
@@ -177,18 +204,8 @@ impl Outline {
         if nib.style == "none" {
             return None;
         }
-        let width = if nib.width > 0.0 {
-            nib.width as f32
-        } else {
-            1.0
-        };
-        let dashes: &[f32] = match nib.style {
-            "dot" => &[1.0, 2.0],
-            "dash" => &[4.0, 2.0],
-            "dashdot" => &[4.0, 2.0, 1.0, 2.0],
-            "dashdotdot" => &[4.0, 2.0, 1.0, 2.0, 1.0, 2.0],
-            _ => &[],
-        };
+        let width = pen_width(nib.width) as f32;
+        let dashes = pattern(nib.style);
         let lengths: Vec<f32> = dashes.iter().map(|length| length * width).collect();
         let stroke = skia::Stroke {
             width,
@@ -224,15 +241,21 @@ impl Outline {
         self.rule
     }
 
+    /// Which of both rasterisers of the original draws it.
+    pub fn grid(&self) -> Grid {
+        self.grid
+    }
+
     /// Its edges into a window whose corner is at (`left`, `top`), `ratio` times as large as the scene.
     pub fn cover(&self, coverage: &mut Coverage, left: f64, top: f64, ratio: f64) {
+        let grid = self.grid;
         let put = |spot: Spot| {
             (
-                Coverage::on_grid((spot.0 - left) * ratio),
-                Coverage::on_grid((spot.1 - top) * ratio),
+                grid.place((spot.0 - left) * ratio),
+                grid.place((spot.1 - top) * ratio),
             )
         };
-        let (mut begin, mut here) = ((0.0, 0.0), (0.0, 0.0));
+        let (mut begin, mut here) = ((0, 0), (0, 0));
         for step in &self.steps {
             match *step {
                 Step::Move(to) => {
@@ -253,6 +276,50 @@ impl Outline {
         }
         coverage.edge(here, begin);
     }
+}
+
+/// How wide a pen is.
+pub fn pen_width(width: f64) -> f64 {
+    if width > 0.0 { width } else { 1.0 }
+}
+
+/// Dashes and gaps of a style in turn, in widths of the pen; none for a whole line.
+fn pattern(style: &str) -> &'static [f32] {
+    match style {
+        "dot" => &[1.0, 2.0],
+        "dash" => &[4.0, 2.0],
+        "dashdot" => &[4.0, 2.0, 1.0, 2.0],
+        "dashdotdot" => &[4.0, 2.0, 1.0, 2.0, 1.0, 2.0],
+        _ => &[],
+    }
+}
+
+/// The pieces that a pen of some width and style draws of a straight line; a line of very many is as good as a whole one.
+pub fn dashes(begin: Point, end: Point, width: f64, style: &str) -> Vec<(Point, Point)> {
+    if style == "none" {
+        return Vec::new();
+    }
+    let width = pen_width(width);
+    let pattern = pattern(style);
+    let (x, y) = (end.x - begin.x, end.y - begin.y);
+    let length = x.hypot(y);
+    let every: f64 = pattern.iter().map(|&part| f64::from(part) * width).sum();
+    if every <= 0.0 || length.is_nan() || length >= limits::DASHES * every {
+        return vec![(begin, end)];
+    }
+    let at = |far: f64| point(begin.x + x * far / length, begin.y + y * far / length);
+    let (mut pieces, mut far) = (Vec::new(), 0.0);
+    for (index, &part) in pattern.iter().enumerate().cycle() {
+        if far >= length {
+            break;
+        }
+        let to = (far + f64::from(part) * width).min(length);
+        if index % 2 == 0 {
+            pieces.push((at(far), at(to)));
+        }
+        far = to;
+    }
+    pieces
 }
 
 /// A number as paths hold it; nothing if it is none or far beyond every field.
@@ -308,7 +375,21 @@ pub fn rectangle(one: Point, other: Point) -> Option<skia::Path> {
     Some(skia::PathBuilder::from_rect(upright(one, other)?))
 }
 
-/// The ellipse in such a rectangle.
+/// The ellipse in such a rectangle, of four curves as the original's painter has it.
 pub fn ellipse(one: Point, other: Point) -> Option<skia::Path> {
-    skia::PathBuilder::from_oval(upright(one, other)?)
+    let round = upright(one, other)?;
+    let (x, y) = (
+        f32::midpoint(round.left(), round.right()),
+        f32::midpoint(round.top(), round.bottom()),
+    );
+    let (a, b) = (round.width() / 2.0, round.height() / 2.0);
+    let (near_a, near_b) = (a * QUARTER, b * QUARTER);
+    let mut path = skia::PathBuilder::new();
+    path.move_to(x + a, y);
+    path.cubic_to(x + a, y + near_b, x + near_a, y + b, x, y + b);
+    path.cubic_to(x - near_a, y + b, x - a, y + near_b, x - a, y);
+    path.cubic_to(x - a, y - near_b, x - near_a, y - b, x, y - b);
+    path.cubic_to(x + near_a, y - b, x + a, y - near_b, x + a, y);
+    path.close();
+    path.finish()
 }

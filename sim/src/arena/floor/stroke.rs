@@ -24,9 +24,11 @@ pub enum Step {
 const QUARTER: f64 = 0.552_284_749_8;
 /// How often a curve is halved until what is beside it is near enough.
 const SPLITS: u32 = 6;
-/// How near: in the units of the path, for squares of distances in those times the distance. Found by trying which value
-/// makes most readings of recorded runs the same.
+/// How near at most: distances may be off by this part of half the pen, and squares of distances by this part of its
+/// square. For wide pens it is one part in their width.
 const NEAR: f64 = 0.25;
+/// The same for pens of any width.
+const LEAST_NEAR: f64 = 0.00025;
 
 /// The steps of a path, quadratic curves as cubic ones. Parts that were not closed are not closed here either.
 pub fn steps(path: &skia::Path) -> Vec<Step> {
@@ -163,13 +165,15 @@ fn at(points: &[Spot; 4], t: f64) -> (Spot, Spot) {
 
 /// Whether a curve beside another one is as far from it as it should be, by the measure of the original.
 fn is_good(curve: &[Spot; 4], beside: &[Spot; 4], far: f64) -> bool {
+    let near = (0.5 / far.abs()).clamp(LEAST_NEAR, NEAR);
     [0.25, 0.5, 0.75].into_iter().all(|t| {
         let (from, across) = at(curve, t);
         let (to, _) = at(beside, t);
         let (x, y) = (from.0 - to.0, from.1 - to.1);
         let length = across.0.abs() + across.1.abs();
-        let is_far = (x * x + y * y - far * far).abs() > NEAR * far.abs();
-        let is_aside = length > 0.0 && (across.0 * y - across.1 * x).abs() / length > NEAR;
+        let is_far = (x * x + y * y - far * far).abs() > near * far * far;
+        let is_aside =
+            length > 0.0 && (across.0 * y - across.1 * x).abs() / length > near * far.abs();
         !is_far && !is_aside
     })
 }

@@ -31,6 +31,7 @@ pub(super) const PROPERTIES: &[&str] = &[
     "lastPhrase",
     "color",
     "isDown",
+    "objectName",
     "fixedValue",
     "callsCount",
     "lastValue",
