@@ -1,5 +1,4 @@
-/* What the shell of the emulated board cannot do: poll, hold files open, count, press a key. Each command prints one
- * line and exits with 0, or says on standard error what went wrong and exits with 1. */
+/* What the shell of the emulated board cannot do: poll, hold files open, count, press a key, keep a pace. Each command prints one line and exits with 0, or says on standard error what went wrong and exits with 1. */
 #define _GNU_SOURCE
 #include <errno.h>
 #include <fcntl.h>
@@ -101,24 +100,86 @@ static int emit(int file, int type, int code, int value)
 	return write(file, &event, sizeof event) == sizeof event ? 0 : fail("uinput");
 }
 
-/* keyboard: makes an input device with ENTER, presses and releases the key at each line of standard input. */
-static int keyboard(void)
+/* An input device with ENTER. */
+static int make_keyboard(void)
 {
 	struct uinput_setup setup = { .id = { .bustype = BUS_VIRTUAL }, .name = "board keys" };
 	int file = open("/dev/uinput", O_WRONLY);
 
-	if (file < 0)
-		return fail("/dev/uinput");
+	if (file < 0) {
+		perror("/dev/uinput");
+		return -1;
+	}
 	if (ioctl(file, UI_SET_EVBIT, EV_KEY) || ioctl(file, UI_SET_KEYBIT, KEY_ENTER) ||
-	    ioctl(file, UI_DEV_SETUP, &setup) || ioctl(file, UI_DEV_CREATE))
-		return fail("uinput");
+	    ioctl(file, UI_DEV_SETUP, &setup) || ioctl(file, UI_DEV_CREATE)) {
+		perror("uinput");
+		return -1;
+	}
 	printf("made\n");
 	fflush(stdout);
+	return file;
+}
+
+/* keyboard: presses and releases its key at each line of standard input. */
+static int keyboard(void)
+{
+	int file = make_keyboard();
+
+	if (file < 0)
+		return 1;
 	for (int c; (c = getchar()) != EOF;)
 		if (c == '\n')
 			for (int value = 1; value >= 0; value--)
 				if (emit(file, EV_KEY, KEY_ENTER, value) || emit(file, EV_SYN, SYN_REPORT, 0))
 					return 1;
+	return 0;
+}
+
+static void pause_ns(long ns)
+{
+	struct timespec time = { .tv_nsec = ns };
+
+	nanosleep(&time, NULL);
+}
+
+/* pace HZ SECONDS FILE...: reads each file so often, and writes those that are given as FILE=TEXT; how many turns there
+ * were, how many of them were late by more than a period, and how many calls failed. */
+static int pace(int hz, int seconds, int count, char **paths)
+{
+	int files[16];
+	char bytes[256];
+	long period_ns = 1000000000L / hz, late = 0, failed = 0;
+	struct timespec next;
+
+	for (int at = 0; at < count && at < 16; at++) {
+		char *text = strchr(paths[at], '=');
+
+		if (text)
+			*text = 0;
+		files[at] = open(paths[at], text ? O_WRONLY : O_RDONLY);
+		if (files[at] < 0)
+			return fail(paths[at]);
+		if (text)
+			*text = '=';
+	}
+	clock_gettime(CLOCK_MONOTONIC, &next);
+	for (long turn = 0; turn < (long)hz * seconds; turn++) {
+		for (int at = 0; at < count; at++) {
+			char *text = strchr(paths[at], '=');
+			ssize_t done = text ? pwrite(files[at], text + 1, strlen(text + 1), 0) :
+					      pread(files[at], bytes, sizeof bytes, 0);
+
+			failed += done < 0;
+		}
+		next.tv_nsec += period_ns;
+		if (next.tv_nsec >= 1000000000L) {
+			next.tv_nsec -= 1000000000L;
+			next.tv_sec++;
+		}
+		late += now_ns() > next.tv_sec * 1e9 + next.tv_nsec + period_ns;
+		clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &next, NULL);
+	}
+	printf("turns %ld late %ld failed %ld\n", (long)hz * seconds, late, failed);
 	return 0;
 }
 
@@ -150,6 +211,11 @@ int main(int argc, char **argv)
 		return keyboard();
 	if (!strcmp(command, "entropy") && argc == 2)
 		return entropy();
-	fprintf(stderr, "probe: poll FILE MS | reads FILE COUNT SIZE | hold FILE COUNT | keyboard | entropy\n");
+	if (!strcmp(command, "wait") && argc == 3)
+		return pause_ns(atol(argv[2]) * 1000000), 0;
+	if (!strcmp(command, "pace") && argc > 4 && argc <= 20)
+		return pace(atoi(argv[2]), atoi(argv[3]), argc - 4, argv + 4);
+	fprintf(stderr, "probe: poll FILE MS | reads FILE COUNT SIZE | hold FILE COUNT | keyboard | entropy | wait MS |\n"
+			"  pace HZ SECONDS FILE[=TEXT]...\n");
 	return 2;
 }

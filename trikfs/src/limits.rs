@@ -17,6 +17,8 @@ pub const BUS_STUCK_MS: u64 = 50;
 pub const BUS_SLOW_US: u64 = 500;
 /// Fast transfers after a slow one until a bus counts as fast again.
 pub const BUS_SLOW_TRANSFERS: u32 = 64;
+/// How often it is looked whether a bus in use is still there, at most.
+pub const BUS_LOOK_MS: u64 = 250;
 /// Bytes of data that a bus of 100 kHz moves within [`BUS_SLOW_US`], about.
 pub const BUS_SHORT_BYTES: usize = 8;
 /// Buses whose nodes are sampled by a thread of their own.

@@ -12,11 +12,10 @@ mod virtual_bus;
 use super::{Device, Kind, Sink, State, Surroundings};
 use crate::bytes::copy_at;
 use crate::errno::Error;
-use bus::{Bus, Buses, Key};
+use bus::{Buses, InUse, Key};
 use config::description::{I2cDescription, I2cTransfer};
 use std::collections::BTreeSet;
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::time::Duration;
 
 impl Kind for I2cDescription {
@@ -61,7 +60,7 @@ pub(super) struct Transfer<'a> {
 
 /// A register, open for reading or writing.
 pub struct Register {
-    bus: Arc<Bus>,
+    bus: InUse,
     description: I2cDescription,
     tuple_size: usize,
     timeout: Duration,
@@ -77,7 +76,7 @@ impl Register {
         timeout_ms: u32,
         buses: &Buses,
     ) -> Result<Self, Error> {
-        let bus = buses.get(&description.path);
+        let bus = InUse::new(buses.get(&description.path));
         bus.check()?;
         Ok(Self {
             bus,

@@ -46,8 +46,12 @@ impl Pwm {
         };
         let period = sysfs::read(&pwm.file("period"))?;
         if period != pwm.period_ns.to_string() {
-            pwm.put("enable", 0)?;
-            pwm.put("duty_cycle", 0)?;
+            // The kernel refuses every setting of a channel without a period, even those that it has.
+            for name in ["enable", "duty_cycle"] {
+                if sysfs::read_number::<u64>(&pwm.file(name))? != 0 {
+                    pwm.put(name, 0)?;
+                }
+            }
             pwm.put("period", pwm.period_ns)?;
         }
         Ok(pwm)
@@ -156,6 +160,17 @@ mod tests {
         fs::write(&enable, "0\n").unwrap();
         Pwm::open(&description).unwrap();
         assert_eq!(text(&description, "period"), "20000000\n");
+    }
+
+    #[test]
+    fn a_channel_that_never_had_a_period_is_given_nothing_before_it() {
+        let scratch = Scratch::new();
+        let description = chip(&scratch);
+        Pwm::open(&description).unwrap();
+        assert_eq!(text(&description, "period"), "20000000\n");
+        for name in ["enable", "duty_cycle"] {
+            assert_eq!(text(&description, name), "0", "{name} was written");
+        }
     }
 
     #[test]

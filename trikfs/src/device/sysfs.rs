@@ -71,10 +71,14 @@ fn open(options: &mut OpenOptions, path: &Path) -> Result<File, std::io::Error> 
         .open(path)
 }
 
-/// Writes a number to an `export` file. EBUSY means that somebody has exported it already.
+/// Writes a number to an `export` file. EBUSY means that somebody has exported it already, EINVAL that no chip has it.
 pub(super) fn export(path: &Path, number: u32) -> Result<(), Error> {
     match try_write(path, &number.to_string()) {
-        Err(error) if error.kind() == std::io::ErrorKind::ResourceBusy => Ok(()),
+        Err(error) if error.kind() == ErrorKind::ResourceBusy => Ok(()),
+        Err(error) if error.kind() == ErrorKind::InvalidInput => Err(Error::NoDevice(format!(
+            "{}: no chip has {number}",
+            path.display()
+        ))),
         Err(error) => Err(device_error(path, &error)),
         Ok(()) => Ok(()),
     }
@@ -94,6 +98,14 @@ mod tests {
         write(&path, "0").unwrap();
         assert_eq!(std::fs::read(&path).unwrap(), b"0\n");
         assert_eq!(read_number::<u32>(&path), Ok(0));
+    }
+
+    #[test]
+    fn a_line_that_no_chip_has_is_a_missing_device() {
+        // A file of the kernel that refuses this number as `export` does.
+        let path = Path::new("/proc/self/oom_score_adj");
+        let what = format!("{}: no chip has 5000", path.display());
+        assert_eq!(export(path, 5000), Err(Error::NoDevice(what)));
     }
 
     #[test]

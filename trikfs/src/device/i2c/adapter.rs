@@ -2,17 +2,19 @@
 //!
 //! Owns the layout of those structures (linux/i2c-dev.h, linux/i2c.h). The only file of the devices with foreign calls.
 
+use super::super::is_same_file;
 use super::bus::Failure;
 use super::{Data, Transfer};
+use crate::limits::BUS_LOOK_MS;
 use config::description::I2cTransfer;
 use config::limits::{I2C_BLOCK_BYTES_MAX, I2C_RAW_BYTES_MAX};
 use nix::errno::Errno;
 use std::fs::{File, OpenOptions};
 use std::io;
 use std::os::fd::AsRawFd;
-use std::os::unix::fs::OpenOptionsExt;
+use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 const I2C_TIMEOUT: u32 = 0x0702;
 const I2C_SLAVE: u32 = 0x0703;
@@ -60,6 +62,8 @@ pub(super) struct Adapter {
     file: File,
     /// Address that the file was told last.
     address: Option<u16>,
+    /// When it was last seen that the file still stands at its path.
+    seen: Instant,
 }
 
 fn outcome(result: libc::c_int) -> Result<(), Failure> {
@@ -98,7 +102,24 @@ impl Adapter {
         Ok(Self {
             file,
             address: None,
+            seen: Instant::now(),
         })
+    }
+
+    /// Whether the kernel has taken the bus away: its node is gone, but transfers may go on, and the kernel waits for the
+    /// end of this opening, with it whoever unplugged the bus. Looks four times a second at most.
+    pub(super) fn is_withdrawn(&mut self, path: &Path) -> bool {
+        if self.seen.elapsed() < Duration::from_millis(BUS_LOOK_MS) {
+            return false;
+        }
+        self.seen = Instant::now();
+        !is_same_file(&self.file, path)
+    }
+
+    /// What tells this bus from another one at the same path.
+    pub(super) fn identity(&self) -> Option<(u64, u64)> {
+        let meta = self.file.metadata().ok()?;
+        Some((meta.dev(), meta.ino()))
     }
 
     pub(super) fn transfer(&mut self, transfer: &mut Transfer<'_>) -> Result<(), Failure> {

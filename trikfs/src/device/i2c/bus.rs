@@ -17,9 +17,10 @@ use crate::limits;
 use nix::errno::Errno;
 use std::collections::{HashMap, VecDeque};
 use std::io;
+use std::ops::Deref;
 use std::os::unix::fs::FileTypeExt;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicU32, AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -92,6 +93,22 @@ impl Connection {
             Self::Virtual(bus) => bus.transfer(transfer, time),
         }
     }
+
+    /// Whether it is the opening of a bus that is being taken away.
+    fn is_withdrawn(&mut self, path: &Path) -> bool {
+        match self {
+            Self::Real(adapter) => adapter.is_withdrawn(path),
+            // Its end is an end of the connection.
+            Self::Virtual(_) => false,
+        }
+    }
+
+    fn identity(&self) -> Option<(u64, u64)> {
+        match self {
+            Self::Real(adapter) => adapter.identity(),
+            Self::Virtual(_) => None,
+        }
+    }
 }
 
 /// One bus.
@@ -103,12 +120,51 @@ pub struct Bus {
     /// How many transfers from now on are expected to be slow.
     slow: AtomicU32,
     memory: Mutex<Memory>,
+    /// How many [`InUse`] there are.
+    users: AtomicUsize,
 }
 
 #[derive(Default)]
 struct Memory {
     written: HashMap<Key, Vec<u8>>,
     remembered: HashMap<Key, Vec<u8>>,
+    /// The bus that `remembered` is of, while nobody has it open.
+    left: Option<(u64, u64)>,
+}
+
+impl Memory {
+    /// The bus was opened: what is remembered holds only if it was closed because nobody used it, and is the same.
+    fn enter(&mut self, identity: Option<(u64, u64)>) {
+        if self.left.take().is_none_or(|left| Some(left) != identity) {
+            self.remembered.clear();
+        }
+    }
+}
+
+/// A bus that a register uses; with the last one the bus is closed.
+pub(super) struct InUse(Arc<Bus>);
+
+impl InUse {
+    pub(super) fn new(bus: Arc<Bus>) -> Self {
+        bus.users.fetch_add(1, Ordering::Relaxed);
+        Self(bus)
+    }
+}
+
+impl Deref for InUse {
+    type Target = Bus;
+
+    fn deref(&self) -> &Bus {
+        &self.0
+    }
+}
+
+impl Drop for InUse {
+    fn drop(&mut self) {
+        if self.0.users.fetch_sub(1, Ordering::Relaxed) == 1 {
+            self.0.leave();
+        }
+    }
 }
 
 impl Bus {
@@ -119,6 +175,21 @@ impl Bus {
             connection: Mutex::default(),
             slow: AtomicU32::new(0),
             memory: Mutex::default(),
+            users: AtomicUsize::new(0),
+        }
+    }
+
+    /// Closes a real bus that nobody uses: the kernel can only take away a bus and its driver that nobody has open. A
+    /// virtual one stays, since nobody waits for its end.
+    fn leave(&self) {
+        // Somebody who has come since then has it.
+        let Ok(mut connection) = self.connection.try_lock() else {
+            return;
+        };
+        let identity = connection.as_ref().and_then(Connection::identity);
+        if identity.is_some() {
+            lock(&self.memory).left = identity;
+            *connection = None;
         }
     }
 
@@ -181,13 +252,19 @@ impl Bus {
         transfer: &mut Transfer<'_>,
         time: Time,
     ) -> Result<(), Failure> {
+        if connection
+            .as_mut()
+            .is_some_and(|open| open.is_withdrawn(&self.path))
+        {
+            *connection = None;
+        }
         let open = match connection.as_mut() {
             Some(open) => open,
             None => {
                 // Opening may wait, too.
                 give_way();
                 let fresh = Connection::open(&self.path, time.limit)?;
-                lock(&self.memory).remembered.clear();
+                lock(&self.memory).enter(fresh.identity());
                 connection.insert(fresh)
             }
         };
@@ -429,6 +506,29 @@ mod tests {
         while lock(&turn.line).waiting.len() != count {
             assert!(Instant::now() < deadline, "never {count} waiting");
             std::thread::yield_now();
+        }
+    }
+
+    #[test]
+    fn what_is_remembered_holds_while_nobody_uses_the_same_bus_and_for_no_other() {
+        let mut memory = Memory::default();
+        let fill = |memory: &mut Memory, left| {
+            keep(&mut memory.remembered, (0x50, 4), &[7]);
+            memory.left = left;
+        };
+        fill(&mut memory, Some((5, 9)));
+        memory.enter(Some((5, 9)));
+        assert_eq!(memory.remembered.len(), 1, "it is the same");
+        memory.enter(Some((5, 9)));
+        assert!(memory.remembered.is_empty(), "it was lost in use");
+        for (left, found) in [
+            (Some((5, 9)), Some((5, 10))),
+            (Some((5, 9)), None),
+            (None, None),
+        ] {
+            fill(&mut memory, left);
+            memory.enter(found);
+            assert!(memory.remembered.is_empty(), "{left:?} {found:?}");
         }
     }
 

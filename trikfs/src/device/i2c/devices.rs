@@ -5,12 +5,11 @@
 //! wire. Knows no open file and no program.
 
 use super::super::{Device, Kind, Positions, Sink, Surroundings};
-use super::bus::Bus;
+use super::bus::InUse;
 use super::{Data, Transfer};
 use crate::errno::Error;
 use config::description::{I2cBusDescription, I2cTransfer};
 use config::limits::I2C_RAW_BYTES_MAX;
-use std::sync::Arc;
 use std::time::Duration;
 
 /// In a position: the number of the register has two bytes on the wire, the high one first.
@@ -31,7 +30,7 @@ impl Kind for I2cBusDescription {
 
     /// The bus must be there.
     fn open_positions(&self, around: &Surroundings) -> Result<Option<Box<dyn Positions>>, Error> {
-        let bus = around.buses.get(&self.path);
+        let bus = InUse::new(around.buses.get(&self.path));
         bus.check()?;
         Ok(Some(Box::new(Devices {
             bus,
@@ -51,7 +50,7 @@ fn only_device() -> Error {
 
 /// The devices of one bus.
 struct Devices {
-    bus: Arc<Bus>,
+    bus: InUse,
     reserved: Vec<u16>,
     timeout: Duration,
 }
