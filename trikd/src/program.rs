@@ -11,6 +11,7 @@ pub mod boot;
 pub mod child;
 pub mod kill;
 pub mod launch;
+mod live;
 pub mod output;
 pub mod python;
 pub mod queue;
@@ -20,7 +21,7 @@ pub mod rest;
 use crate::clients::Clients;
 use crate::feedback::{Feedback, Moment};
 use crate::protocol::news::{self, End};
-use crate::protocol::program::{FromProgram, ToProgram, WhenGone};
+use crate::protocol::program::{FromProgram, ToProgram};
 use crate::server::mailbox::Mailbox;
 use crate::settings::Settings;
 use crate::{limits, log};
@@ -155,12 +156,7 @@ impl Supervisor {
             }
             Command::Direct(code) => self.direct(&code).await,
             Command::Patch(when_gone, path) => self.patch(when_gone, &path),
-            Command::Set(text) => {
-                if !self.runs_diagram() || !self.send(ToProgram::Set(&text)) {
-                    let name = text.split('=').next().unwrap_or_default().trim();
-                    self.broadcast(&news::not_changed(name, news::NO_DIAGRAM));
-                }
-            }
+            Command::Set(text) => self.set(&text),
             Command::Stop(who) => {
                 self.end(Cause::Ordered(who)).await;
                 // Also what came while nothing ran: after a stop everything begins anew.
@@ -198,36 +194,6 @@ impl Supervisor {
         let folder = &self.around.settings.scripts;
         let name = path.strip_prefix(folder).unwrap_or(path);
         name.display().to_string()
-    }
-
-    /// Whether what runs is a diagram.
-    fn runs_diagram(&self) -> bool {
-        let runs = self.current.as_ref();
-        self.last == Language::Diagram && runs.is_some_and(|current| current.child.runs())
-    }
-
-    /// A new version for the diagram that runs, which answers by itself.
-    fn patch(&mut self, when_gone: WhenGone, path: &Path) {
-        let name = self.name_of(path);
-        let runs = match &self.current {
-            Some(current) if self.runs_diagram() => Some(current.name.clone()),
-            Some(_) | None => None,
-        };
-        let file = path.display().to_string();
-        let why = match runs {
-            None => news::NO_DIAGRAM.to_owned(),
-            Some(other) if other != name => news::other_runs(&other),
-            Some(_)
-                if self.send(ToProgram::Patch {
-                    when_gone,
-                    path: &file,
-                }) =>
-            {
-                return;
-            }
-            Some(_) => news::TOO_MUCH.to_owned(),
-        };
-        self.broadcast(&news::not_changed(&name, &why));
     }
 
     async fn direct(&mut self, code: &str) {
