@@ -62,6 +62,7 @@ pub enum Step {
 
 /// Why a program has stopped.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "stops are rare")]
 pub enum Reason {
     /// Somebody asked for it.
     Pause,

@@ -198,7 +198,7 @@ impl Machine {
         if self.held.is_some() {
             return self.status();
         }
-        self.plan(Work::WorkOff);
+        self.plan(Work::Events);
         self.plan(Work::Beginning);
         match self.began {
             None => self.begin(now, env),

@@ -15,6 +15,7 @@ use lang_text::problem::Problem;
 
 /// What a program in a debugger is doing.
 #[derive(Clone, Debug, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "stops are rare")]
 pub enum Phase {
     /// It runs.
     Runs,

@@ -26,7 +26,7 @@ pub(super) enum Work {
     /// The threads of the beginning have run.
     Begun,
     /// What is to follow the events of this step, and then what had to wait for a turn.
-    WorkOff,
+    Events,
     /// Blocks that are done with waiting.
     Posted,
     /// What had to wait for a turn begins; so many of them were there before the posted ones.
@@ -94,7 +94,7 @@ impl Machine {
             }
             Work::Beginning => self.beginning(env),
             Work::Begun => self.is_beginning = false,
-            Work::WorkOff => {
+            Work::Events => {
                 self.plan(Work::Due {
                     count: self.deferred.len(),
                 });

@@ -89,6 +89,7 @@ impl Machine {
     /// Runs blocks of a thread until it leaves.
     // What is not here goes on to `special` and `device`, which name all operations.
     #[expect(clippy::wildcard_enum_match_arm)]
+    #[expect(clippy::too_many_lines, reason = "one loop, the hottest")]
     fn execute(&mut self, handle: Handle, mut is_entered: bool, env: &mut Env<'_>) {
         let program = self.program.clone();
         let Some(thread) = self.threads.get(handle) else {

@@ -128,7 +128,7 @@ impl Moves {
     fn keep_order(&self) -> bool {
         let mut kept = self.to.iter().flatten();
         let mut before = kept.next();
-        kept.all(|node| std::mem::replace(&mut before, Some(node)) < Some(node))
+        kept.all(|node| before.replace(node) < Some(node))
     }
 
     /// The last block up to this one that there still is.
@@ -318,7 +318,7 @@ impl Machine {
             | Work::Sensors { .. }
             | Work::Beginning
             | Work::Begun
-            | Work::WorkOff
+            | Work::Events
             | Work::Posted
             | Work::Due { .. }
             | Work::Turn { .. }
