@@ -530,7 +530,7 @@ impl Dog {
             self.level.store(wanted, Ordering::SeqCst);
         } else if *calm >= patience {
             self.level.store(wanted, Ordering::SeqCst);
-            // Who has begun in between has seen the level of before and woken nobody.
+            // Work that has begun in between has seen the level before, and has woken nobody.
             let again = rounds.look(Instant::now(), late).level();
             self.level.store(wanted.max(again), Ordering::SeqCst);
             *calm = 0;

@@ -1,7 +1,8 @@
 //! Robots that are reached over the network, real or virtual: `trik run`, `set`, `stop`, `status`, `send`.
 //!
 //! Owns nothing but its parts: `target` is which robot is meant, `link` one connection, `upload` how a program gets there,
-//! `run` follows one program, `live` changes it, `fleet` does something with several robots at once, `output` is where a program's text goes.
+//! `run` follows one program, `live` changes it, `fleet` does something with several robots at once, `output` is where a
+//! program's text goes.
 
 pub(crate) mod fleet;
 mod link;

@@ -1,8 +1,8 @@
 //! A crew: threads that take turns in one role, so that one piece of work that lasts does not stop the others.
 //!
 //! Exactly one thread plays the role at a time: it waits for work and does it. When its work lasts longer than about
-//! a millisecond (some fifteen where nobody waits for it), the watchdog declares it late, a spare thread takes the role over, and the late one finishes its own
-//! work and becomes a spare. A second thread in the role all the time would be simpler and costs 12 to 21 % of every
+//! a millisecond (some fifteen where nobody waits for it), the watchdog declares it late, a spare thread takes the role
+//! over, and the late one finishes its own work and becomes a spare. A second thread in the role all the time would be simpler and costs 12 to 21 % of every
 //! request, because the kernel wakes the waiters in turn.
 //!
 //! A crew of one has nobody to step in: it is not watched, and so costs nothing when it wakes.

@@ -329,7 +329,8 @@ impl Newest {
         }
     }
 
-    /// Answers reads whose time is over, or all if the source is silent, and drops a page that is not to be used; says when the next read is due.
+    /// Answers reads whose time is over, or all if the source is silent, and drops a page that is not to be used; says when
+    /// the next read is due.
     pub fn expire(&self) -> Option<Instant> {
         if let Some(node) = self.node.upgrade() {
             self.page.drop_unwanted(&node.engine);

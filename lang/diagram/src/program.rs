@@ -190,6 +190,18 @@ pub(crate) enum Given {
     Answer,
 }
 
+/// What a node remembers between two visits; the number is its place in the machine's table of that.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(crate) enum Memory {
+    Nothing,
+    /// How many rounds of a loop are left.
+    Rounds(u32),
+    /// How many threads have come to a join.
+    Arrivals(u32),
+    /// Names of threads and where they begin, of a fork.
+    Names(u32),
+}
+
 /// No node.
 pub(crate) const NOWHERE: Node = Node::MAX;
 
@@ -510,6 +522,33 @@ impl Program {
             | Op::Call { .. }
             | Op::Random { .. }
             | Op::Copy { .. } => Wakes::AtOnce,
+        }
+    }
+
+    /// What a node remembers.
+    pub(crate) fn remembers(&self, node: Node) -> Memory {
+        match self.ops[node as usize] {
+            Op::Loop { counter, .. } => Memory::Rounds(counter),
+            Op::Join { join, .. } => Memory::Arrivals(join),
+            Op::Fork { fork } => Memory::Names(fork),
+            Op::Pass { .. }
+            | Op::End
+            | Op::Fault { .. }
+            | Op::Run { .. }
+            | Op::If { .. }
+            | Op::Switch { .. }
+            | Op::Kill { .. }
+            | Op::Send { .. }
+            | Op::Receive { .. }
+            | Op::Call { .. }
+            | Op::Timer { .. }
+            | Op::Random { .. }
+            | Op::Ask { .. }
+            | Op::AnyButton { .. }
+            | Op::Mail { .. }
+            | Op::Copy { .. }
+            | Op::Act { .. }
+            | Op::Watch { .. } => Memory::Nothing,
         }
     }
 

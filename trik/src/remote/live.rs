@@ -8,29 +8,23 @@ use super::target::{Target, target, the_one};
 use super::upload::Upload;
 use crate::error::Error;
 use crate::limits;
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
 use trikd::protocol::news;
 use trikd::protocol::program::WhenGone;
 
-/// What becomes of threads at blocks that a saved diagram no longer has.
-#[derive(Clone, Copy, Debug, Default, Eq, PartialEq, ValueEnum)]
-pub(crate) enum Gone {
-    /// They end with an error that names the block.
-    #[default]
-    End,
-    /// The save is refused, and what runs goes on.
-    Refuse,
-}
-
-impl Gone {
-    fn word(self) -> &'static str {
-        match self {
-            Self::End => WhenGone::End.word(),
-            Self::Refuse => WhenGone::Refuse.word(),
-        }
-    }
+/// The words of `--gone`.
+pub(super) fn gone() -> impl TypedValueParser<Value = WhenGone> {
+    let words = WhenGone::ALL.map(|one| {
+        PossibleValue::new(one.word()).help(match one {
+            WhenGone::End => "They end with an error that names the block",
+            WhenGone::Refuse => "The save is refused, and what runs goes on",
+        })
+    });
+    // Only those words come here.
+    PossibleValuesParser::new(words).map(|word| WhenGone::of(&word).unwrap_or_default())
 }
 
 /// What `trik set` can be told.
@@ -104,7 +98,7 @@ type Look = Option<(SystemTime, u64)>;
 #[derive(Debug)]
 pub(super) struct Watched {
     path: PathBuf,
-    gone: Gone,
+    gone: WhenGone,
     seen: Look,
     at: Instant,
 }
@@ -114,7 +108,7 @@ impl Watched {
     ///
     /// # Errors
     /// It is no diagram: other programs cannot be changed while they run.
-    pub(super) fn new(path: &Path, gone: Gone) -> Result<Self, Error> {
+    pub(super) fn new(path: &Path, gone: WhenGone) -> Result<Self, Error> {
         let is_diagram = path.extension().is_some_and(|ending| ending == "qrs");
         if !is_diagram {
             let why = "--watch is for diagrams (NAME.qrs): other programs cannot be changed while they run";
@@ -176,7 +170,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.qrs");
         std::fs::write(&path, "one").unwrap();
-        let mut watched = Watched::new(&path, Gone::Refuse).unwrap();
+        let mut watched = Watched::new(&path, WhenGone::Refuse).unwrap();
         let long_ago = Instant::now().checked_sub(ms(60_000)).unwrap();
         watched.at = long_ago;
         assert_eq!(watched.save(), None);
@@ -191,7 +185,7 @@ mod tests {
         std::fs::remove_file(&path).unwrap();
         watched.at = long_ago;
         assert_eq!(watched.save(), None);
-        let other = Watched::new(Path::new("a.py"), Gone::End).unwrap_err();
+        let other = Watched::new(Path::new("a.py"), WhenGone::End).unwrap_err();
         assert!(
             other.to_string().contains("--watch is for diagrams"),
             "{other}"

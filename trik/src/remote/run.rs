@@ -3,7 +3,7 @@
 //! Owns the person in front of it: progress, Ctrl-C, standard output and standard error.
 
 use super::link::{Link, Message, ms};
-use super::live::{Gone, Watched};
+use super::live::{Watched, gone};
 use super::output::{Output, harmless, say};
 use super::target::{Target, target, the_one};
 use super::upload::{Upload, start};
@@ -17,6 +17,7 @@ use std::os::fd::AsFd;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 use trikd::protocol::news::{self, End};
+use trikd::protocol::program::WhenGone;
 
 /// What `trik run` can be told.
 #[derive(Args, Clone, Debug, PartialEq, Eq)]
@@ -35,12 +36,12 @@ pub(crate) struct RunArgs {
     /// What becomes of threads at blocks that a save no longer has.
     #[arg(
         long,
-        value_enum,
-        default_value_t,
+        value_parser = gone(),
+        default_value = WhenGone::End.word(),
         requires = "watch",
         value_name = "WHAT"
     )]
-    pub gone: Gone,
+    pub gone: WhenGone,
 }
 
 /// The program has failed, or was stopped.

@@ -8,10 +8,9 @@ use super::watch::Watch;
 use super::{opened, read_save};
 use crate::engine::NoDiagram;
 use crate::protocol::news;
-use crate::protocol::program::WhenGone;
 use lang_diagram::lower::World;
 use lang_diagram::machine::Machine;
-use lang_diagram::machine::patch::{self, Patched, Refused, Version};
+use lang_diagram::machine::patch::{Patched, Refused, Version, WhenGone};
 use lang_text::problem::{Locale, Problem};
 use std::path::Path;
 
@@ -59,10 +58,6 @@ pub(super) fn patch(
     let version = match Version::of(&save.project, World::Robot) {
         Ok(version) => version,
         Err(why) => return refused(&why),
-    };
-    let when_gone = match when_gone {
-        WhenGone::End => patch::WhenGone::End,
-        WhenGone::Refuse => patch::WhenGone::Refuse,
     };
     match machine.patch(&version, when_gone, robot, watch) {
         Ok(patched) => Answer::changed(&name, &summary(&patched)),

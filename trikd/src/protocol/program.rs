@@ -7,6 +7,8 @@
 
 pub mod mailbox;
 
+pub use lang_diagram::machine::patch::WhenGone;
+
 /// Something that the daemon sends to a program.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum ToProgram<'a> {
@@ -40,32 +42,6 @@ pub enum ToProgram<'a> {
     },
     /// An assignment by a person, `NAME=EXPRESSION`.
     Set(&'a str),
-}
-
-/// What becomes of threads at blocks that a new version of a diagram does not have.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum WhenGone {
-    /// They end with an error.
-    End,
-    /// The new version is refused.
-    Refuse,
-}
-
-impl WhenGone {
-    /// The word in a message.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::End => "end",
-            Self::Refuse => "refuse",
-        }
-    }
-
-    /// What a word says.
-    pub fn of(word: &str) -> Option<Self> {
-        [Self::End, Self::Refuse]
-            .into_iter()
-            .find(|when_gone| when_gone.word() == word)
-    }
 }
 
 /// Something that a program sends to the daemon.
@@ -231,7 +207,7 @@ mod tests {
                 ToProgram::Answer(text),
                 ToProgram::Web,
                 ToProgram::Watch(is_wanted),
-                ToProgram::Patch { when_gone: [WhenGone::End, WhenGone::Refuse][usize::from(is_wanted)], path: text },
+                ToProgram::Patch { when_gone: WhenGone::ALL[usize::from(is_wanted)], path: text },
                 ToProgram::Set(text),
             ] {
                 let payload = String::from_utf8(said.encode()).unwrap();

@@ -89,7 +89,6 @@ impl Machine {
     /// Runs blocks of a thread until it leaves.
     // What is not here goes on to `special` and `device`, which name all operations.
     #[expect(clippy::wildcard_enum_match_arm)]
-    #[expect(clippy::too_many_lines, reason = "one loop, the hottest")]
     fn execute(&mut self, handle: Handle, mut is_entered: bool, env: &mut Env<'_>) {
         let program = self.program.clone();
         let Some(thread) = self.threads.get(handle) else {
@@ -153,18 +152,8 @@ impl Machine {
                     from = Some(node);
                     node = next;
                 }
-                Flow::Leave => {
-                    if is_guarded {
-                        self.tell_wait(handle, env);
-                    }
-                    return;
-                }
-                Flow::Failed => {
-                    if !is_guarded || !self.holds_failed(handle, (from, node), count, env) {
-                        self.end_thread(handle, env);
-                    }
-                    return;
-                }
+                Flow::Leave => return self.report_wait(handle, env),
+                Flow::Failed => return self.fail(handle, (from, node), count, env),
             }
         }
     }

@@ -86,9 +86,21 @@ impl Machine {
         true
     }
 
-    /// Asks whether a thread that has failed is kept for somebody to look at.
+    /// A thread has failed and ends, unless it is kept for somebody to look at.
+    pub(super) fn fail(
+        &mut self,
+        handle: Handle,
+        at: (Option<Node>, Node),
+        count: u32,
+        env: &mut Env<'_>,
+    ) {
+        if !self.is_guarded || !self.holds_failed(handle, at, count, env) {
+            self.end_thread(handle, env);
+        }
+    }
+
     #[cold]
-    pub(super) fn holds_failed(
+    fn holds_failed(
         &mut self,
         handle: Handle,
         (from, node): (Option<Node>, Node),
@@ -120,10 +132,10 @@ impl Machine {
         is_held
     }
 
-    /// Tells that a thread waits, if it does.
-    #[cold]
-    pub(super) fn tell_wait(&self, handle: Handle, env: &mut Env<'_>) {
-        if let Some(thread) = self.threads.get(handle)
+    /// Reports that a thread waits, if it does and somebody may hear it.
+    pub(super) fn report_wait(&self, handle: Handle, env: &mut Env<'_>) {
+        if self.is_guarded
+            && let Some(thread) = self.threads.get(handle)
             && thread.state == State::Waiting
         {
             let waits = self.waits(thread.node);

@@ -16,7 +16,7 @@ use super::{Deferred, Env, Machine, words};
 use crate::brick::Brick;
 use crate::check::check;
 use crate::lower::{Lowered, World, lower};
-use crate::program::{Node, Op, Program};
+use crate::program::{Memory, Node, Program};
 use crate::project::Project;
 use lang_text::problem::{Problem, Severity};
 
@@ -28,6 +28,24 @@ pub enum WhenGone {
     End,
     /// The new version is refused.
     Refuse,
+}
+
+impl WhenGone {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::End, Self::Refuse];
+
+    /// Its word on command lines and in messages.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::End => "end",
+            Self::Refuse => "refuse",
+        }
+    }
+
+    /// The one with this word.
+    pub fn of(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|one| one.word() == word)
+    }
 }
 
 /// Why a new version is refused. Nothing has changed then.
@@ -227,28 +245,33 @@ impl Machine {
     }
 
     fn move_to(&mut self, old: &Program, new: Rc<Program>, moves: &Moves) {
-        let both = |pick: fn(&Op) -> Option<u32>| {
-            let pairs = moves.to.iter().zip(old.ops.iter());
-            let pairs = pairs.filter_map(|(there, before)| {
-                let after = new.ops.get((*there)? as usize)?;
-                Some((pick(before)?, pick(after)?))
-            });
-            pairs.collect::<HashMap<u32, u32>>()
-        };
-        self.loops.patch(&both(counter_of), new.loops);
+        let mut counters = HashMap::new();
         let mut tokens = vec![0; new.joins.len()];
-        for (before, after) in both(join_of) {
-            tokens[after as usize] = self.tokens[before as usize];
-        }
-        self.tokens = tokens;
         let mut forks = vec![BTreeMap::new(); new.forks.len()];
-        for (before, after) in both(fork_of) {
-            let remembered = std::mem::take(&mut self.forks[before as usize]);
-            forks[after as usize] = remembered
-                .into_iter()
-                .filter_map(|(name, node)| Some((name, moves.get(node)?)))
-                .collect();
+        for (node, there) in (0..).zip(&moves.to) {
+            let Some(there) = *there else { continue };
+            match (old.remembers(node), new.remembers(there)) {
+                (Memory::Rounds(before), Memory::Rounds(after)) => {
+                    counters.insert(before, after);
+                }
+                (Memory::Arrivals(before), Memory::Arrivals(after)) => {
+                    tokens[after as usize] = self.tokens[before as usize];
+                }
+                (Memory::Names(before), Memory::Names(after)) => {
+                    forks[after as usize] = std::mem::take(&mut self.forks[before as usize])
+                        .into_iter()
+                        .filter_map(|(name, node)| Some((name, moves.get(node)?)))
+                        .collect();
+                }
+                // Kept blocks have the same operation in both versions.
+                (
+                    Memory::Nothing | Memory::Rounds(_) | Memory::Arrivals(_) | Memory::Names(_),
+                    _,
+                ) => {}
+            }
         }
+        self.loops.patch(&counters, new.loops);
+        self.tokens = tokens;
         self.forks = forks;
         let agenda = std::mem::take(&mut self.agenda);
         self.agenda = agenda
@@ -366,37 +389,4 @@ fn conflicts(formulas: &Formulas, old: &Program, new: &Program) -> Vec<Problem> 
     }
     found.truncate(lang_text::limits::PROBLEMS);
     found
-}
-
-#[expect(
-    clippy::wildcard_enum_match_arm,
-    reason = "one kind of operation has a counter"
-)]
-fn counter_of(op: &Op) -> Option<u32> {
-    match *op {
-        Op::Loop { counter, .. } => Some(counter),
-        _ => None,
-    }
-}
-
-#[expect(
-    clippy::wildcard_enum_match_arm,
-    reason = "one kind of operation has a join"
-)]
-fn join_of(op: &Op) -> Option<u32> {
-    match *op {
-        Op::Join { join, .. } => Some(join),
-        _ => None,
-    }
-}
-
-#[expect(
-    clippy::wildcard_enum_match_arm,
-    reason = "one kind of operation has a fork"
-)]
-fn fork_of(op: &Op) -> Option<u32> {
-    match *op {
-        Op::Fork { fork } => Some(fork),
-        _ => None,
-    }
 }

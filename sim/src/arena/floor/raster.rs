@@ -1,7 +1,7 @@
 //! Outlines to coverage: how much of each pixel of a small window lies inside of a polygon.
 //!
-//! Owns the arithmetic, which is that of the original's painter to the last bit: whole numbers, signed areas of edges summed
-//! from left to right, as in smooth rasterisers of fonts. Where an edge crosses from one row or column to the next is a
+//! Owns the arithmetic, in whole numbers: signed areas of edges summed from left to right, as in smooth rasterisers of
+//! fonts. docs/maintainer/recorded.md says how near it comes to the original's painter, and where not. Where an edge crosses from one row or column to the next is a
 //! whole part of a pixel, the one before. Knows no colours and no scene.
 
 use super::stroke::Spot;
