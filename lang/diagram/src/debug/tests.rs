@@ -501,6 +501,9 @@ fn looking_changes_nothing_and_assigning_does() {
             "{name} = {text}"
         );
     }
+    let refused = session.assign("step", "1; n = 5", robot, &mut Deaf);
+    let at = refused.unwrap_err()[0].place.position.unwrap();
+    assert_eq!((at.line, at.column), (1, 2));
     assert_eq!(
         (desk.variable("step").as_str(), desk.variable("n").as_str()),
         ("10", "1")

@@ -165,13 +165,16 @@ impl Machine {
         }
         // Its errors have columns of this text. In brackets it is one expression and no statement after it.
         self.evaluate_aside(text)?;
-        let statement = format!("{variable} = ({text})");
+        let opening = format!("{variable} = (");
+        let statement = format!("{opening}{text})");
         let mut formulas = self.formulas.clone();
         let mut robot = Onlooker {
             machine: self,
             lacking: None,
         };
-        formulas.run_text(&statement, &mut robot)?;
+        formulas
+            .run_text(&statement, &mut robot)
+            .map_err(|problems| without(&opening, problems))?;
         let env = &mut Env { brick, trace };
         let now = self.now;
         self.formulas = formulas;
@@ -179,6 +182,17 @@ impl Machine {
             .changed(|name, value| env.trace.changed(now, thread, name, value));
         Ok(())
     }
+}
+
+/// Problems of a statement with columns of what follows its opening.
+fn without(opening: &str, mut problems: Vec<Problem>) -> Vec<Problem> {
+    let before = opening.chars().count() as u32;
+    for problem in &mut problems {
+        if let Some(position) = problem.place.position.as_mut().filter(|at| at.line == 1) {
+            position.column = position.column.saturating_sub(before).max(1);
+        }
+    }
+    problems
 }
 
 /// Whether a text can be the name of a variable.
