@@ -43,8 +43,8 @@ impl Machine {
                 Some(thread) => &mut thread.state,
             };
             match state {
-                State::Ready => self.execute(handle, true, env),
-                State::Resumed => self.execute(handle, false, env),
+                State::Ready => self.run_blocks(handle, true, env),
+                State::Resumed => self.run_blocks(handle, false, env),
                 State::Starting(threads) => match threads.pop() {
                     None => *state = State::Ready,
                     Some((name, node)) => {
@@ -86,20 +86,32 @@ impl Machine {
         self.report(lang_text::problem::Problem::error(words), env);
     }
 
-    /// Runs blocks of a thread until it leaves.
+    /// Runs blocks of a thread until it leaves. The loop exists twice, so that a machine without a guard pays nothing.
+    fn run_blocks(&mut self, handle: Handle, is_entered: bool, env: &mut Env<'_>) {
+        match self.is_guarded {
+            true => self.execute::<true>(handle, is_entered, env),
+            false => self.execute::<false>(handle, is_entered, env),
+        }
+    }
+
+    /// See [`Machine::run_blocks`].
     // What is not here goes on to `special` and `device`, which name all operations.
     #[expect(clippy::wildcard_enum_match_arm)]
-    fn execute(&mut self, handle: Handle, mut is_entered: bool, env: &mut Env<'_>) {
+    fn execute<const GUARDED: bool>(
+        &mut self,
+        handle: Handle,
+        mut is_entered: bool,
+        env: &mut Env<'_>,
+    ) {
         let program = self.program.clone();
         let Some(thread) = self.threads.get(handle) else {
             return;
         };
         let (mut node, mut count) = (thread.node, thread.count);
         let (mut from, mut depth) = (thread.from, thread.stack.len());
-        let is_guarded = self.is_guarded;
         loop {
             if is_entered {
-                if is_guarded && self.holds(handle, (from, node), count, env) {
+                if GUARDED && self.holds(handle, (from, node), count, env) {
                     return;
                 }
                 env.trace.entered(self.now, handle.slot, node);
@@ -152,7 +164,12 @@ impl Machine {
                     from = Some(node);
                     node = next;
                 }
-                Flow::Leave => return self.report_wait(handle, env),
+                Flow::Leave => {
+                    if GUARDED {
+                        self.report_wait(handle, env);
+                    }
+                    return;
+                }
                 Flow::Failed => return self.fail(handle, (from, node), count, env),
             }
         }

@@ -87,6 +87,7 @@ impl Machine {
     }
 
     /// A thread has failed and ends, unless it is kept for somebody to look at.
+    #[cold]
     pub(super) fn fail(
         &mut self,
         handle: Handle,
@@ -132,10 +133,10 @@ impl Machine {
         is_held
     }
 
-    /// Reports that a thread waits, if it does and somebody may hear it.
+    /// Reports that a thread waits, if it does.
+    #[cold]
     pub(super) fn report_wait(&self, handle: Handle, env: &mut Env<'_>) {
-        if self.is_guarded
-            && let Some(thread) = self.threads.get(handle)
+        if let Some(thread) = self.threads.get(handle)
             && thread.state == State::Waiting
         {
             let waits = self.waits(thread.node);
