@@ -5,6 +5,7 @@
 //! program that is debugged does what it does alone. Knows no clock, no files and no protocol.
 
 use std::collections::{BTreeSet, VecDeque};
+use std::fmt;
 use std::rc::Rc;
 
 use crate::limits;
@@ -15,11 +16,19 @@ use crate::program::{Node, Program};
 use lang_expr::Value;
 use lang_text::problem::{Problem, Severity};
 
+mod answers;
+pub mod desk;
+mod history;
+pub mod order;
+mod past;
+pub mod report;
 mod session;
 #[cfg(test)]
 mod tests;
 
-pub use session::{Phase, Session};
+use history::Position;
+pub use past::{Back, NoBack};
+pub use session::{NotNow, Phase, Session};
 
 /// A breakpoint at a block.
 #[derive(Clone, Debug, Default, Eq, PartialEq)]
@@ -49,6 +58,25 @@ pub enum NoBreakpoint {
     TooLong,
 }
 
+impl fmt::Display for NoBreakpoint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoSuchBlock => f.write_str("the program has no such block"),
+            Self::TooMany => {
+                let most = limits::BREAKPOINTS_MAX;
+                write!(
+                    f,
+                    "there are {most} breakpoints already, which is all that can be"
+                )
+            }
+            Self::TooLong => {
+                let most = limits::CONDITION_MAX;
+                write!(f, "a condition or a line has at most {most} bytes")
+            }
+        }
+    }
+}
+
 /// How far a thread goes.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Step {
@@ -76,6 +104,10 @@ pub enum Reason {
     Condition(u32, Vec<Problem>),
     /// An error in a block. The thread ends when the program goes on.
     Error(Problem),
+    /// This is the first moment of the past that is kept.
+    Oldest,
+    /// A moment of the past that somebody asked for.
+    Past,
 }
 
 /// A stop.
@@ -87,6 +119,23 @@ pub struct Stop {
     pub thread: Option<u16>,
     /// The block that it enters next, or in which it has failed.
     pub node: Option<Node>,
+}
+
+impl Stop {
+    /// Whether the thread is about to enter a block, and not in one that failed, nor between threads.
+    fn is_before_block(&self) -> bool {
+        let is_failure = match self.reason {
+            Reason::Error(_) => true,
+            Reason::Pause
+            | Reason::Step
+            | Reason::ThreadEnded
+            | Reason::Breakpoint(_)
+            | Reason::Condition(..)
+            | Reason::Oldest
+            | Reason::Past => false,
+        };
+        self.node.is_some() && !is_failure
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -121,6 +170,10 @@ pub struct Debugger {
     stop: Option<Stop>,
     lines: VecDeque<String>,
     lines_lost: u32,
+    /// Blocks that threads were about to enter so far.
+    entered: Position,
+    /// Of those the ones before which a thread was held alone, since somebody took them.
+    held_at: Vec<Position>,
 }
 
 impl Debugger {
@@ -158,6 +211,27 @@ impl Debugger {
         self.points.len() < before
     }
 
+    /// Takes one breakpoint away, or all; false if there is none with this number.
+    pub fn clear(&mut self, number: Option<u32>) -> bool {
+        match number {
+            Some(number) => self.remove(number),
+            None => {
+                self.points.clear();
+                self.mark();
+                true
+            }
+        }
+    }
+
+    /// Lets a breakpoint do something or nothing; false if there is none with this number.
+    pub fn enable(&mut self, number: u32, is_enabled: bool) -> bool {
+        let mut points = self.points.iter_mut();
+        let found = points.find(|kept| kept.number == number);
+        found
+            .map(|kept| kept.point.is_disabled = !is_enabled)
+            .is_some()
+    }
+
     /// The breakpoints with their numbers and how often each was hit.
     pub fn breakpoints(&self) -> impl Iterator<Item = (u32, &Breakpoint, u32)> {
         let kept = self.points.iter();
@@ -192,15 +266,34 @@ impl Debugger {
     /// A thread is held when it enters its next block, and the others go on.
     ///
     /// Told by its name, so that it also counts for threads that are to come; at most [`limits::BREAKPOINTS_MAX`] names.
-    pub fn hold_thread(&mut self, name: &str) {
-        if self.held_alone.len() < limits::BREAKPOINTS_MAX {
-            self.held_alone.insert(name.into());
+    ///
+    /// # Errors
+    /// [`NoBreakpoint::TooMany`].
+    pub fn hold_thread(&mut self, name: &str) -> Result<(), NoBreakpoint> {
+        if self.held_alone.len() >= limits::BREAKPOINTS_MAX {
+            return Err(NoBreakpoint::TooMany);
         }
+        self.held_alone.insert(name.into());
+        Ok(())
     }
 
     /// A thread is no longer to be held; whoever calls it also calls [`Machine::release`].
     pub fn let_thread(&mut self, name: &str) {
         self.held_alone.remove(name);
+    }
+
+    /// The threads that are to be held alone.
+    fn held_names(&self) -> Vec<Rc<str>> {
+        self.held_alone.iter().cloned().collect()
+    }
+
+    /// Forgets everything that was asked for, but not where the program is stopped.
+    fn forget(&mut self) {
+        *self = Self {
+            stop: self.stop.take(),
+            numbers: self.numbers,
+            ..Self::default()
+        };
     }
 
     /// A thread makes a step, and the program stops after it.
@@ -248,14 +341,39 @@ impl Debugger {
         Guard::Hold
     }
 
+    /// The breakpoint that would stop at a block in the past: hits are not counted there, and nothing is logged.
+    fn stops_at(&self, machine: &Machine, node: Node) -> Option<u32> {
+        let here = self.points.iter().find(|kept| {
+            let point = &kept.point;
+            let is_here = kept.node == Some(node) && !point.is_disabled && point.log.is_empty();
+            let holds = |text: &str| {
+                machine
+                    .evaluate_aside(text)
+                    .is_ok_and(|value| value.to_bool())
+            };
+            is_here && (point.condition.is_empty() || holds(&point.condition))
+        });
+        here.map(|kept| kept.number)
+    }
+
     fn enters(&mut self, machine: &Machine, thread: u16, node: Node) -> Guard {
-        let is_marked = self.marked.get(node as usize).copied().unwrap_or(false);
-        if is_marked && let Some(reason) = self.hit(machine, node) {
+        let guard = self.decides(machine, thread, node);
+        if guard == Guard::HoldThread {
+            self.held_at.push(self.entered);
+        }
+        self.entered += 1;
+        guard
+    }
+
+    fn decides(&mut self, machine: &Machine, thread: u16, node: Node) -> Guard {
+        if self.is_marked(node)
+            && let Some(reason) = self.hit(machine, node)
+        {
             return self.halt(reason, Some(thread), Some(node));
         }
         if let Some(walk) = self.walk
             && walk.thread == thread
-            && walk.ends_at(machine.depth(thread))
+            && walk.step.ends_at(machine.depth(thread), walk.depth)
         {
             return self.halt(Reason::Step, Some(thread), Some(node));
         }
@@ -267,6 +385,10 @@ impl Debugger {
             true => Guard::HoldThread,
             false => Guard::Go,
         }
+    }
+
+    fn is_marked(&self, node: Node) -> bool {
+        self.marked.get(node as usize).copied().unwrap_or(false)
     }
 
     /// What the breakpoints at a block do.
@@ -318,12 +440,13 @@ impl Debugger {
     }
 }
 
-impl Walk {
-    fn ends_at(self, depth: usize) -> bool {
-        match self.step {
-            Step::Into => true,
-            Step::Over => depth <= self.depth,
-            Step::Out => depth < self.depth || self.depth == 0,
+impl Step {
+    /// Whether it ends where so many calls are open, when so many were when it began.
+    fn ends_at(self, depth: usize, began: usize) -> bool {
+        match self {
+            Self::Into => true,
+            Self::Over => depth <= began,
+            Self::Out => depth < began || began == 0,
         }
     }
 }

@@ -52,3 +52,17 @@ pub const CONDITION_MAX: usize = 4096;
 pub const DEBUG_LINES_MAX: usize = 1000;
 /// Bytes of such a line.
 pub const DEBUG_LINE_BYTES_MAX: usize = 1024;
+/// Steps after which the past of a program has a copy of it: a second.
+pub const HISTORY_STEPS: usize = 100;
+/// Blocks after which it has one.
+pub const HISTORY_BLOCKS: u64 = 2000;
+/// Bytes that the past of a program takes on a PC.
+pub const HISTORY_BYTES: usize = 64 << 20;
+/// Bytes of an order to a debugger.
+pub const ORDER_BYTES_MAX: usize = 16_384;
+/// Bytes of what a refusal repeats of it.
+pub const ORDER_WORD_BYTES_MAX: usize = 64;
+/// Characters of a name or a value that a debugger tells.
+pub const TOLD_CHARACTERS_MAX: usize = 1000;
+/// Variables, and threads, and calls of a thread, that it tells at once.
+pub const TOLD_ITEMS_MAX: usize = 1000;

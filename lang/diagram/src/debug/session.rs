@@ -1,17 +1,20 @@
 //! A program with its debugger: model time that stands still while the program is stopped.
 //!
-//! Owns the machine, the debugger and the time that was spent in stops. Whoever calls it gives the clock, as to a
-//! machine, and decides what motors do at a stop.
+//! Owns the machine, the debugger, its past, and the time that was spent in stops. Whoever calls it gives the clock, as to
+//! a machine, and decides what motors do at a stop.
 
 use std::rc::Rc;
 
-use super::{Breakpoint, Debugger, NoBreakpoint, Step, Stop};
+use super::answers::Noting;
+use super::history::{Begin, History, Position};
+use super::past::{self, Back, From, NoBack, Past};
+use super::{Breakpoint, Debugger, NoBreakpoint, Step, Stop, report};
 use crate::brick::Brick;
 use crate::machine::patch::{Patched, Refused, Version, WhenGone};
 use crate::machine::trace::Trace;
 use crate::machine::{Machine, Options, Status};
 use crate::program::Program;
-use lang_text::problem::Problem;
+use lang_text::problem::{Locale, Problem};
 
 /// What a program in a debugger is doing.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,11 +33,33 @@ pub enum Phase {
     },
 }
 
+/// Why a program is not changed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NotNow {
+    /// Somebody looks at its past, which is as it was.
+    Past,
+    /// What is asked for is wrong.
+    Problems(Vec<Problem>),
+}
+
+impl NotNow {
+    /// For a person, a line for each problem.
+    pub fn in_locale(&self, locale: Locale) -> String {
+        match self {
+            Self::Past => "this is the past: go to the present first".to_owned(),
+            Self::Problems(problems) => report::problems(problems, locale),
+        }
+    }
+}
+
 /// A program with its debugger.
 #[derive(Clone, Debug)]
 pub struct Session {
     machine: Machine,
     debugger: Debugger,
+    history: Option<History>,
+    /// Where somebody stands who looks at the past.
+    past: Option<Past>,
     /// Milliseconds of the caller's clock that passed while it was stopped.
     stopped_ms: u32,
     /// When the present stop began, by the caller's clock.
@@ -42,26 +67,80 @@ pub struct Session {
 }
 
 impl Session {
-    /// A program before its first step.
+    /// A program before its first step, with a debugger attached.
     pub fn new(program: Rc<Program>, options: Options) -> Self {
-        let mut machine = Machine::new(program, options);
-        machine.set_guarded(true);
+        let mut session = Self::alone(Machine::new(program, options));
+        session.attach();
+        session
+    }
+
+    /// A program that runs as if there were no debugger, until one is attached.
+    pub fn alone(machine: Machine) -> Self {
         Self {
             machine,
             debugger: Debugger::default(),
+            history: None,
+            past: None,
             stopped_ms: 0,
             since: 0,
         }
     }
 
-    /// The machine, to be looked at.
+    /// Whether a debugger is attached.
+    pub fn is_attached(&self) -> bool {
+        self.machine.is_guarded()
+    }
+
+    /// Attaches a debugger that has been asked for nothing.
+    pub fn attach(&mut self) {
+        self.machine.set_guarded(true);
+    }
+
+    /// Takes the debugger away with all that it was asked for, and forgets the past. A program that was stopped goes on
+    /// from the next [`Session::step`] on, which comes at a moment of the caller's clock.
+    pub fn detach(&mut self, now: u32, brick: &mut dyn Brick, trace: &mut dyn Trace) {
+        for name in self.debugger.held_names() {
+            self.release(&name);
+        }
+        self.debugger.forget();
+        self.history = None;
+        self.past = None;
+        self.machine.set_guarded(false);
+        self.go_on(now, brick, trace);
+    }
+
+    /// Keeps the past from now on, in about so many bytes.
+    pub fn keep(&mut self, bytes_max: usize) {
+        self.history = Some(History::new(bytes_max));
+    }
+
+    /// When the past begins that is kept, in milliseconds of the program, and how many bytes it takes.
+    pub fn kept(&self) -> Option<(u32, usize)> {
+        let history = self.history.as_ref()?;
+        Some((history.first_ms()?, history.bytes()))
+    }
+
+    /// The machine, to be looked at; in the past the one that was.
     pub fn machine(&self) -> &Machine {
-        &self.machine
+        self.past
+            .as_ref()
+            .map_or(&self.machine, |past| &past.machine)
+    }
+
+    /// Whether somebody looks at the past.
+    pub fn is_past(&self) -> bool {
+        self.past.is_some()
     }
 
     /// The debugger, to be told what to do.
     pub fn debugger(&mut self) -> &mut Debugger {
         &mut self.debugger
+    }
+
+    /// Where the program is stopped, in the past if somebody looks at that.
+    pub fn stop(&self) -> Option<&Stop> {
+        let past = self.past.as_ref().map(|past| &past.stop);
+        past.or(self.debugger.stop())
     }
 
     /// Adds a breakpoint; its number.
@@ -72,7 +151,7 @@ impl Session {
         self.debugger.add(self.machine.program(), point)
     }
 
-    /// What it is doing.
+    /// What it is doing, whether or not somebody looks at the past.
     pub fn phase(&self) -> Phase {
         match (self.machine.status(), self.debugger.stop()) {
             (Status::Ended { at, with_errors }, _) => Phase::Ended { at, with_errors },
@@ -85,22 +164,22 @@ impl Session {
     pub fn step(&mut self, now: u32, brick: &mut dyn Brick, trace: &mut dyn Trace) -> Phase {
         if self.debugger.stop().is_none() {
             let now_there = now.saturating_sub(self.stopped_ms);
-            let trace = &mut self.debugger.trace(trace);
-            self.machine.step(now_there, brick, trace);
+            self.advance(Begin::Step(now_there), brick, trace);
             self.note(now);
         }
         self.phase()
     }
 
     /// Goes on after a stop, at a moment of the caller's clock: finishes the step in which it was stopped, or stops again.
+    /// Whoever looks at the past is in the present with that.
     pub fn go_on(&mut self, now: u32, brick: &mut dyn Brick, trace: &mut dyn Trace) -> Phase {
+        self.past = None;
         if self.debugger.stop().is_some() {
             self.stopped_ms = self
                 .stopped_ms
                 .saturating_add(now.saturating_sub(self.since));
             self.debugger.go_on();
-            let trace = &mut self.debugger.trace(trace);
-            self.machine.go_on_held(brick, trace);
+            self.advance(Begin::Rest, brick, trace);
             self.note(now);
         }
         self.phase()
@@ -118,9 +197,101 @@ impl Session {
         self.go_on(now, brick, trace)
     }
 
+    /// Runs a step of the machine or the rest of one; what the robot answers is noted if the past is kept.
+    fn advance(&mut self, begin: Begin, brick: &mut dyn Brick, trace: &mut dyn Trace) {
+        let run = |machine: &mut Machine, brick: &mut dyn Brick, trace: &mut dyn Trace| match begin
+        {
+            Begin::Step(now) => machine.step(now, brick, trace),
+            Begin::Rest => machine.go_on_held(brick, trace),
+        };
+        if !self.machine.is_guarded() {
+            run(&mut self.machine, brick, trace);
+            return;
+        }
+        let next = self.debugger.entered;
+        let Some(history) = &mut self.history else {
+            run(&mut self.machine, brick, &mut self.debugger.trace(trace));
+            self.debugger.held_at.clear();
+            return;
+        };
+        let notes = history.begin(&self.machine, begin, next);
+        let mut noting = Noting {
+            robot: brick,
+            notes,
+        };
+        run(
+            &mut self.machine,
+            &mut noting,
+            &mut self.debugger.trace(trace),
+        );
+        history.end(!self.machine.is_held(), self.debugger.held_at.drain(..));
+    }
+
+    /// Goes back. The program itself stays where it is stopped.
+    ///
+    /// # Errors
+    /// [`NoBack`]; then nothing has changed.
+    pub fn back(&mut self, how: Back) -> Result<&Stop, NoBack> {
+        let history = self.history.as_ref().ok_or(NoBack::NotKept)?;
+        if self.phase() == Phase::Runs {
+            return Err(NoBack::Runs);
+        }
+        let past = past::back(history, &self.debugger, self.here(), how)?;
+        Ok(&self.past.insert(past).stop)
+    }
+
+    /// Goes forth in the past, by a step or to the next breakpoint; false: this is the present now.
+    pub fn forth(&mut self, step: Option<Step>) -> bool {
+        let (Some(history), Some(_)) = (&self.history, &self.past) else {
+            return false;
+        };
+        let present = self.present();
+        self.past = past::forth(history, &self.debugger, self.here(), present, step);
+        self.past.is_some()
+    }
+
+    /// Leaves the past.
+    pub fn to_present(&mut self) {
+        self.past = None;
+    }
+
+    fn here(&self) -> From<'_> {
+        match &self.past {
+            Some(past) => From {
+                machine: &past.machine,
+                at: past.at,
+                thread: past.stop.thread,
+            },
+            None => From {
+                machine: &self.machine,
+                at: self.present(),
+                thread: self.debugger.stop().and_then(|stop| stop.thread),
+            },
+        }
+    }
+
+    /// The moment at which the program is.
+    fn present(&self) -> Position {
+        let entered = self.debugger.entered;
+        match self.debugger.stop() {
+            // It was counted when the thread was about to enter it.
+            Some(stop) if stop.is_before_block() => entered.saturating_sub(1),
+            Some(_) | None => entered,
+        }
+    }
+
+    /// Holds a thread when it enters its next block, and lets the others go on.
+    ///
+    /// # Errors
+    /// There are too many that are held.
+    pub fn hold(&mut self, name: &str) -> Result<(), NoBreakpoint> {
+        self.debugger.hold_thread(name)
+    }
+
     /// Lets a thread go on that was held alone, with the next step; false if it was not held.
     pub fn release(&mut self, name: &str) -> bool {
         self.debugger.let_thread(name);
+        self.changes();
         let number = self.machine.views().find(|view| view.name == name);
         let number = number.map(|view| view.number);
         number.is_some_and(|number| self.machine.release(number))
@@ -129,19 +300,26 @@ impl Session {
     /// Assigns a variable the value of an expression.
     ///
     /// # Errors
-    /// What is wrong with the expression, or with this value for this variable. Nothing has changed then.
+    /// What is wrong with the expression, or with this value for this variable, or somebody looks at the past. Nothing has
+    /// changed then.
     pub fn assign(
         &mut self,
         variable: &str,
         text: &str,
         brick: &mut dyn Brick,
         trace: &mut dyn Trace,
-    ) -> Result<(), Vec<Problem>> {
+    ) -> Result<(), NotNow> {
+        if self.is_past() {
+            return Err(NotNow::Past);
+        }
         let thread = self.machine.held_thread().unwrap_or(0);
-        self.machine.assign(variable, text, thread, brick, trace)
+        let assigned = self.machine.assign(variable, text, thread, brick, trace);
+        assigned.map_err(NotNow::Problems)?;
+        self.changes();
+        Ok(())
     }
 
-    /// Puts a new version in the place of the program.
+    /// Puts a new version in the place of the program. Whoever looks at the past is in the present with that.
     ///
     /// # Errors
     /// [`Refused`]; nothing has changed then.
@@ -154,7 +332,20 @@ impl Session {
     ) -> Result<Patched, Refused> {
         let patched = self.machine.patch(version, when_gone, brick, trace)?;
         self.debugger.bind(self.machine.program());
+        self.past = None;
+        self.changes();
         Ok(patched)
+    }
+
+    /// Ends the program from outside: motors off, nothing runs any more.
+    pub fn end(&mut self, brick: &mut dyn Brick, trace: &mut dyn Trace) {
+        self.machine.stop(brick, trace);
+    }
+
+    fn changes(&mut self) {
+        if let Some(history) = &mut self.history {
+            history.changed();
+        }
     }
 
     fn note(&mut self, now: u32) {

@@ -1,10 +1,12 @@
 //! Debugged programs against the same ones alone, and stops where they were asked for.
 
+mod desk;
+mod past;
 mod random;
 
 use std::rc::Rc;
 
-use super::{Breakpoint, NoBreakpoint, Phase, Reason, Session, Step};
+use super::{Breakpoint, NoBreakpoint, NotNow, Phase, Reason, Session, Step};
 use crate::limits;
 use crate::lower::{World, lower};
 use crate::machine::patch::{Refused, Version, WhenGone};
@@ -431,7 +433,7 @@ fn one_thread_is_held_and_the_others_go_on() {
     sketch.chain(&[one, wait_one, one]);
     sketch.chain(&[two, wait_two, two]);
     let mut desk = Desk::of(&sketch.project());
-    desk.session.debugger().hold_thread("other");
+    desk.session.debugger().hold_thread("other").unwrap();
     assert_eq!(desk.run(50), Phase::Runs);
     assert_eq!(desk.variable("b"), "0");
     let counted: i32 = desk.variable("a").parse().unwrap();
@@ -502,7 +504,10 @@ fn looking_changes_nothing_and_assigning_does() {
         );
     }
     let refused = session.assign("step", "1; n = 5", robot, &mut Deaf);
-    let at = refused.unwrap_err()[0].place.position.unwrap();
+    let Err(NotNow::Problems(problems)) = refused else {
+        panic!("{refused:?}");
+    };
+    let at = problems[0].place.position.unwrap();
     assert_eq!((at.line, at.column), (1, 2));
     assert_eq!(
         (desk.variable("step").as_str(), desk.variable("n").as_str()),

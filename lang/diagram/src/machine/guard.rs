@@ -21,6 +21,11 @@ impl Machine {
         self.is_guarded = is_guarded;
     }
 
+    /// Whether the trace is asked before each block.
+    pub fn is_guarded(&self) -> bool {
+        self.is_guarded
+    }
+
     /// Whether it is held in the middle of a step: steps do nothing then.
     pub fn is_held(&self) -> bool {
         self.held.is_some()

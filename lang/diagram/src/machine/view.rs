@@ -103,6 +103,30 @@ impl Machine {
         found.next().map_or(0, |(_, thread)| thread.stack.len())
     }
 
+    /// How much memory a copy of it takes, about.
+    pub fn weight(&self) -> usize {
+        const FIXED: usize = 4096;
+        const THREAD: usize = 256;
+        const COUNTER: usize = 64;
+        /// An expression is compiled to some code for each of its letters.
+        const LETTER: usize = 16;
+        let sources = self.program.sources.iter();
+        let texts = sources.map(|source| THREAD + source.text.len() * LETTER);
+        let values = self.variables().map(|(name, value)| {
+            let text = match value {
+                Value::Text(text) => text.len(),
+                Value::Nil | Value::Bool(_) | Value::Int(_) | Value::Float(_) | Value::List(_) => 0,
+            };
+            COUNTER + name.len() + text + value.cells() as usize * size_of::<Value>()
+        });
+        let counters = self.tokens.len() + self.forks.len() + self.program.loops as usize;
+        FIXED
+            + texts.sum::<usize>()
+            + values.sum::<usize>()
+            + counters * COUNTER
+            + self.threads.alive().count() * THREAD
+    }
+
     /// What threads at a block wait for.
     pub(super) fn waits(&self, node: Node) -> Waits {
         let is_put_off =

@@ -1,0 +1,200 @@
+//! What a robot has answered in a step, kept so that the step can be run again without the robot.
+//!
+//! Owns the two stand-ins for a robot: one that notes what the real one answers, and one that answers from notes and is
+//! told nothing. Knows no machine and no time.
+
+use crate::brick::{Answer, Brick, Command, Question};
+use crate::ports::Port;
+
+/// One answer of a robot.
+#[derive(Clone, Debug, Eq, PartialEq)]
+enum Answered {
+    Scalar(Option<i32>),
+    Vector(Option<Box<[i32]>>),
+    Locked(Option<i32>),
+    Announced(Option<(Port, i32)>),
+    Random(i32),
+    Mail(Option<Box<str>>),
+    Person(Box<Answer>),
+}
+
+/// The answers of a step in their order.
+#[derive(Clone, Debug, Default, Eq, PartialEq)]
+pub(super) struct Answers(Vec<Answered>);
+
+impl Answers {
+    /// How much memory they take, about.
+    pub(super) fn bytes(&self) -> usize {
+        let apart = self.0.iter().map(|answered| match answered {
+            Answered::Vector(Some(numbers)) => numbers.len() * size_of::<i32>(),
+            Answered::Mail(Some(text)) => text.len(),
+            Answered::Person(answer) => match &**answer {
+                Answer::Text(text) => size_of::<Answer>() + text.len(),
+                Answer::Waiting | Answer::Cancelled => size_of::<Answer>(),
+            },
+            Answered::Scalar(_)
+            | Answered::Vector(None)
+            | Answered::Locked(_)
+            | Answered::Announced(_)
+            | Answered::Random(_)
+            | Answered::Mail(None) => 0,
+        });
+        self.0.len() * size_of::<Answered>() + apart.sum::<usize>()
+    }
+}
+
+/// A robot whose answers are noted.
+pub(super) struct Noting<'a> {
+    pub(super) robot: &'a mut dyn Brick,
+    pub(super) notes: &'a mut Answers,
+}
+
+impl Noting<'_> {
+    fn note(&mut self, answered: Answered) {
+        self.notes.0.push(answered);
+    }
+}
+
+impl Brick for Noting<'_> {
+    fn command(&mut self, command: Command<'_>) {
+        self.robot.command(command);
+    }
+
+    fn scalar(&mut self, port: Port) -> Option<i32> {
+        let value = self.robot.scalar(port);
+        self.note(Answered::Scalar(value));
+        value
+    }
+
+    fn vector(&mut self, port: Port, into: &mut Vec<i32>) -> bool {
+        let before = into.len();
+        let is_there = self.robot.vector(port, into);
+        let numbers = is_there.then(|| into.get(before..).unwrap_or_default().into());
+        self.note(Answered::Vector(numbers));
+        is_there
+    }
+
+    fn locked(&mut self, port: Port) -> Option<i32> {
+        let value = self.robot.locked(port);
+        self.note(Answered::Locked(value));
+        value
+    }
+
+    fn announced(&mut self) -> Option<(Port, i32)> {
+        let reading = self.robot.announced();
+        self.note(Answered::Announced(reading));
+        reading
+    }
+
+    fn random_of_function(&mut self, low: i32, high: i32) -> i32 {
+        let number = self.robot.random_of_function(low, high);
+        self.note(Answered::Random(number));
+        number
+    }
+
+    fn random(&mut self, low: i32, high: i32) -> i32 {
+        let number = self.robot.random(low, high);
+        self.note(Answered::Random(number));
+        number
+    }
+
+    fn mail(&mut self) -> Option<String> {
+        let text = self.robot.mail();
+        self.note(Answered::Mail(text.as_deref().map(Into::into)));
+        text
+    }
+
+    fn ask(&mut self, question: Question<'_>) -> Answer {
+        let answer = self.robot.ask(question);
+        self.note(Answered::Person(Box::new(answer.clone())));
+        answer
+    }
+}
+
+/// A robot that answers from notes. It moves nothing.
+pub(super) struct Remembering<'a> {
+    notes: std::slice::Iter<'a, Answered>,
+    /// Whether it was asked something else than what was noted: then this is not what has happened.
+    pub(super) is_astray: bool,
+}
+
+impl<'a> Remembering<'a> {
+    pub(super) fn new(notes: &'a Answers) -> Self {
+        Self {
+            notes: notes.0.iter(),
+            is_astray: false,
+        }
+    }
+
+    fn next<T>(&mut self, expected: impl Fn(&'a Answered) -> Option<T>) -> Option<T> {
+        let found = self.notes.next().and_then(expected);
+        self.is_astray |= found.is_none();
+        found
+    }
+}
+
+impl Brick for Remembering<'_> {
+    fn command(&mut self, _command: Command<'_>) {}
+
+    fn scalar(&mut self, _port: Port) -> Option<i32> {
+        self.next(|answered| match answered {
+            Answered::Scalar(value) => Some(*value),
+            _ => None,
+        })
+        .flatten()
+    }
+
+    fn vector(&mut self, _port: Port, into: &mut Vec<i32>) -> bool {
+        let numbers = self.next(|answered| match answered {
+            Answered::Vector(numbers) => Some(numbers.as_deref()),
+            _ => None,
+        });
+        let numbers = numbers.flatten();
+        into.extend_from_slice(numbers.unwrap_or_default());
+        numbers.is_some()
+    }
+
+    fn locked(&mut self, _port: Port) -> Option<i32> {
+        self.next(|answered| match answered {
+            Answered::Locked(value) => Some(*value),
+            _ => None,
+        })
+        .flatten()
+    }
+
+    fn announced(&mut self) -> Option<(Port, i32)> {
+        self.next(|answered| match answered {
+            Answered::Announced(reading) => Some(*reading),
+            _ => None,
+        })
+        .flatten()
+    }
+
+    fn random_of_function(&mut self, low: i32, high: i32) -> i32 {
+        self.random(low, high)
+    }
+
+    fn random(&mut self, low: i32, _high: i32) -> i32 {
+        let number = self.next(|answered| match answered {
+            Answered::Random(number) => Some(*number),
+            _ => None,
+        });
+        number.unwrap_or(low)
+    }
+
+    fn mail(&mut self) -> Option<String> {
+        let text = self.next(|answered| match answered {
+            Answered::Mail(text) => Some(text.as_deref()),
+            _ => None,
+        });
+        text.flatten().map(str::to_owned)
+    }
+
+    fn ask(&mut self, _question: Question<'_>) -> Answer {
+        let answer = self.next(|answered| match answered {
+            Answered::Person(answer) => Some((**answer).clone()),
+            _ => None,
+        });
+        answer.unwrap_or(Answer::Waiting)
+    }
+}

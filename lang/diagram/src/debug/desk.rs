@@ -1,0 +1,301 @@
+//! A debugger's desk: orders come in as texts, what they do goes out as JSON.
+//!
+//! Owns what each order does, and what is told when. Whoever has the desk gives it the robot and the clock, carries the
+//! texts, and decides what motors do at a stop. Knows no transport, no clients and no files.
+
+use super::order::{NoOrder, Order};
+use super::{Breakpoint, NoBack, NoBreakpoint, NotNow, Phase, Session, report};
+use crate::brick::Brick;
+use crate::limits;
+use crate::machine::trace::Trace;
+use lang_text::json::{Object, quoted};
+use lang_text::problem::{Locale, Problem};
+
+/// A program with its debugger, for people elsewhere.
+#[derive(Clone, Debug)]
+pub struct Desk {
+    session: Session,
+    locale: Locale,
+    /// How much memory the past may take.
+    history_bytes: usize,
+    /// Whether motors rest while the program is stopped.
+    pub motors_rest: bool,
+    /// What was told last: whether it runs, and how often it was stopped.
+    told: Told,
+}
+
+/// What is told by itself when it changes.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Told {
+    /// Nothing is to be told.
+    Detached,
+    Runs,
+    Stopped,
+    Ended,
+}
+
+/// Why an order is not carried out.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Refused {
+    /// The text is none.
+    Order(NoOrder),
+    /// No debugger is attached.
+    NotAttached,
+    /// The program runs, or has ended.
+    NotStopped,
+    /// The program has ended.
+    Ended,
+    /// The breakpoint cannot be.
+    Breakpoint(NoBreakpoint),
+    /// There is no breakpoint with this number, or none at all.
+    NoBreakpoint(Option<u32>),
+    /// There is no thread with this name, or none at all.
+    NoThread(Option<Box<str>>),
+    /// This thread is not held.
+    NotHeld(Box<str>),
+    /// There is no way back.
+    Back(NoBack),
+    /// Nothing can be changed.
+    NotNow(NotNow),
+    /// The expression is wrong.
+    Expression(Vec<Problem>),
+}
+
+impl Refused {
+    /// For a person.
+    pub fn in_locale(&self, locale: Locale) -> String {
+        match self {
+            Self::Order(why) => why.to_string(),
+            Self::NotAttached => "attach the debugger first".to_owned(),
+            Self::NotStopped => "the program is not stopped".to_owned(),
+            Self::Ended => "the program has ended".to_owned(),
+            Self::Breakpoint(why) => why.to_string(),
+            Self::NoBreakpoint(Some(number)) => format!("there is no breakpoint {number}"),
+            Self::NoBreakpoint(None) => "there is no breakpoint".to_owned(),
+            Self::NoThread(Some(name)) => format!("there is no thread '{name}'"),
+            Self::NoThread(None) => "no thread lives".to_owned(),
+            Self::NotHeld(name) => format!("the thread '{name}' is not held"),
+            Self::Back(why) => why.to_string(),
+            Self::NotNow(why) => why.in_locale(locale),
+            Self::Expression(problems) => report::problems(problems, locale),
+        }
+    }
+}
+
+impl Desk {
+    /// For a program to which no debugger is attached yet.
+    pub fn new(session: Session, locale: Locale, history_bytes: usize) -> Self {
+        Self {
+            session,
+            locale,
+            history_bytes,
+            motors_rest: true,
+            told: Told::Detached,
+        }
+    }
+
+    /// The program.
+    pub fn session(&mut self) -> &mut Session {
+        &mut self.session
+    }
+
+    /// Whether it is stopped at this moment of the present.
+    pub fn is_stopped(&self) -> bool {
+        matches!(self.session.phase(), Phase::Stopped(_))
+    }
+
+    /// Runs what is due at a moment of the caller's clock, in milliseconds.
+    pub fn step(&mut self, now: u32, brick: &mut dyn Brick, trace: &mut dyn Trace) -> Phase {
+        self.session.step(now, brick, trace)
+    }
+
+    /// Carries out an order; the answer is a JSON object that begins with the tag of the order.
+    pub fn order(
+        &mut self,
+        (tag, text): (u32, &str),
+        now: u32,
+        brick: &mut dyn Brick,
+        trace: &mut dyn Trace,
+    ) -> String {
+        let parsed = Order::parse(text).map_err(Refused::Order);
+        let done = parsed.and_then(|order| self.carry_out(&order, now, brick, trace));
+        let (is_done, told) = match done {
+            Ok(more) => (true, more),
+            Err(why) => (false, object().text("why", &why.in_locale(self.locale))),
+        };
+        told.plain("to", tag).plain("done", is_done).done()
+    }
+
+    /// What has happened since the last time, for everybody who looks on, each as a JSON object.
+    pub fn news(&mut self) -> Vec<String> {
+        let mut news = Vec::new();
+        let (lines, lost) = self.session.debugger().take_lines();
+        if !lines.is_empty() || lost > 0 {
+            let lines = lines.iter();
+            let lines = lines.map(|line| quoted(line, limits::TOLD_CHARACTERS_MAX));
+            news.push(object().list("log", lines).plain("lost", lost).done());
+        }
+        let now = match self.session.phase() {
+            _ if !self.session.is_attached() => Told::Detached,
+            Phase::Runs => Told::Runs,
+            Phase::Stopped(_) => Told::Stopped,
+            Phase::Ended { .. } => Told::Ended,
+        };
+        if now != self.told {
+            self.told = now;
+            news.push(report::state(&self.session, self.locale));
+        }
+        news
+    }
+
+    fn carry_out(
+        &mut self,
+        order: &Order,
+        now: u32,
+        brick: &mut dyn Brick,
+        trace: &mut dyn Trace,
+    ) -> Result<Object, Refused> {
+        let session = &mut self.session;
+        let is_free = matches!(
+            order,
+            Order::Attach | Order::Look | Order::Breakpoints | Order::Evaluate(_) | Order::Set(..)
+        );
+        if !is_free && !session.is_attached() {
+            return Err(Refused::NotAttached);
+        }
+        match order {
+            Order::Attach => {
+                if !session.is_attached() {
+                    session.attach();
+                    session.keep(self.history_bytes);
+                }
+            }
+            Order::Detach => {
+                self.motors_rest = true;
+                session.detach(now, brick, trace);
+            }
+            Order::Look => {}
+            Order::Pause => session.debugger().pause(),
+            Order::Continue => self.go_on(now, brick, trace)?,
+            Order::Step(step, thread) => {
+                let number = self.thread(thread.as_deref())?;
+                if self.session.is_past() {
+                    self.session.forth(Some(*step));
+                } else {
+                    self.session.walk((number, *step), now, brick, trace);
+                    self.told = Told::Runs;
+                }
+            }
+            Order::Until(block) => {
+                if session.is_past() {
+                    return Err(Refused::NotNow(NotNow::Past));
+                }
+                let point = Breakpoint {
+                    block: block.clone(),
+                    is_once: true,
+                    ..Breakpoint::default()
+                };
+                session.add(point).map_err(Refused::Breakpoint)?;
+                if self.is_stopped() {
+                    self.go_on(now, brick, trace)?;
+                }
+            }
+            Order::Back(how) => {
+                session.back(*how).map_err(Refused::Back)?;
+            }
+            Order::Present => session.to_present(),
+            Order::Hold(name) => {
+                session.hold(name).map_err(Refused::Breakpoint)?;
+            }
+            Order::Release(name) => {
+                if !session.release(name) {
+                    return Err(Refused::NotHeld(name.clone()));
+                }
+            }
+            Order::Break(point) => {
+                let number = session.add(point.clone()).map_err(Refused::Breakpoint)?;
+                return Ok(object().plain("number", number));
+            }
+            Order::Clear(number) => {
+                if !session.debugger().clear(*number) {
+                    return Err(Refused::NoBreakpoint(*number));
+                }
+                return Ok(object());
+            }
+            Order::Enable(number, is_enabled) => {
+                if !session.debugger().enable(*number, *is_enabled) {
+                    return Err(Refused::NoBreakpoint(Some(*number)));
+                }
+                return Ok(object());
+            }
+            Order::Breakpoints => {
+                let points = report::breakpoints(session);
+                return Ok(object().list("breakpoints", points));
+            }
+            Order::Errors(stop) => {
+                session.debugger().stops_at_errors = *stop;
+                return Ok(object());
+            }
+            Order::Motors(rest) => {
+                self.motors_rest = *rest;
+                return Ok(object());
+            }
+            Order::Set(name, text) => {
+                let assigned = session.assign(name, text, brick, trace);
+                assigned.map_err(Refused::NotNow)?;
+                let value = session.machine().variable(name).unwrap_or_default();
+                return Ok(report::value(&value));
+            }
+            Order::Evaluate(text) => {
+                let found = session.machine().evaluate_aside(text);
+                let found = found.map_err(Refused::Expression)?;
+                return Ok(report::value(&found));
+            }
+        }
+        Ok(self.state())
+    }
+
+    fn go_on(
+        &mut self,
+        now: u32,
+        brick: &mut dyn Brick,
+        trace: &mut dyn Trace,
+    ) -> Result<(), Refused> {
+        if self.session.is_past() {
+            self.session.forth(None);
+            return Ok(());
+        }
+        match self.session.phase() {
+            Phase::Stopped(_) => {
+                self.session.go_on(now, brick, trace);
+                // A stop at the next block is another stop, which is told again.
+                self.told = Told::Runs;
+                Ok(())
+            }
+            Phase::Runs => Err(Refused::NotStopped),
+            Phase::Ended { .. } => Err(Refused::Ended),
+        }
+    }
+
+    /// The thread that makes a step: the one with this name, or the one at which the program is stopped.
+    fn thread(&self, name: Option<&str>) -> Result<u16, Refused> {
+        let stop = self.session.stop().ok_or(Refused::NotStopped)?;
+        let machine = self.session.machine();
+        let found = match name {
+            Some(name) => machine.views().find(|view| view.name == name),
+            None => machine
+                .views()
+                .find(|view| stop.thread.is_none_or(|thread| thread == view.number)),
+        };
+        let number = found.map(|view| view.number);
+        number.ok_or_else(|| Refused::NoThread(name.map(Into::into)))
+    }
+
+    fn state(&self) -> Object {
+        object().plain("program", report::state(&self.session, self.locale))
+    }
+}
+
+fn object() -> Object {
+    Object::new(limits::TOLD_CHARACTERS_MAX)
+}

@@ -1,0 +1,324 @@
+//! The past of a program: copies of it now and then, and what the robot answered since each, from which every moment
+//! between is computed again.
+//!
+//! Owns what is kept, how much memory that takes, and the search for a moment. A program is deterministic given what its
+//! robot answers, so a moment that is computed again is the one that was. Knows no breakpoints: whoever searches says
+//! which moments it means.
+
+use std::collections::{BTreeSet, VecDeque};
+use std::rc::Rc;
+
+use super::answers::{Answers, Remembering};
+use crate::limits;
+use crate::machine::Machine;
+use crate::machine::trace::{Guard, Moment, Trace};
+use crate::program::Node;
+
+/// A moment: how many blocks were entered before it. At each, a thread is about to enter a block.
+pub(super) type Position = u64;
+
+/// What a step began with.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum Begin {
+    /// A step at this time.
+    Step(u32),
+    /// The rest of a step, in which the program was held and changed by a person.
+    Rest,
+}
+
+#[derive(Clone, Debug)]
+struct Kept {
+    begin: Begin,
+    /// Steps in which the robot answered the same share them.
+    answers: Rc<Answers>,
+}
+
+/// A copy of a program, and what has happened since.
+#[derive(Clone, Debug)]
+struct Segment {
+    start: Machine,
+    /// Of the first block that is entered in it.
+    first: Position,
+    steps: Vec<Kept>,
+    /// Blocks before which a thread was held alone.
+    held: BTreeSet<Position>,
+    bytes: usize,
+    weight: usize,
+}
+
+/// The past of a program.
+#[derive(Clone, Debug)]
+pub(super) struct History {
+    bytes_max: usize,
+    bytes: usize,
+    segments: VecDeque<Segment>,
+    /// Of the step that has begun and is not done.
+    open: Option<Answers>,
+    /// Somebody has changed the program: what comes cannot be computed from what was.
+    is_changed: bool,
+}
+
+/// What a search finds at a moment.
+pub(super) type Test<'a> = &'a mut dyn FnMut(&Machine, u16, Node) -> bool;
+
+impl History {
+    /// Nothing yet, and never more than about so many bytes.
+    pub(super) fn new(bytes_max: usize) -> Self {
+        Self {
+            bytes_max,
+            bytes: 0,
+            segments: VecDeque::new(),
+            open: None,
+            is_changed: true,
+        }
+    }
+
+    /// A step begins, or goes on after a stop; before the machine does anything. What is noted goes into the answers.
+    pub(super) fn begin(
+        &mut self,
+        machine: &Machine,
+        begin: Begin,
+        next: Position,
+    ) -> &mut Answers {
+        if self.open.is_none() || self.is_changed {
+            self.close();
+            if self.is_changed || self.segments.back().is_none_or(|last| last.is_full(next)) {
+                self.copy(machine, next);
+            }
+            if let Some(last) = self.segments.back_mut() {
+                let answers = Rc::default();
+                last.steps.push(Kept { begin, answers });
+                last.grow(size_of::<Kept>(), &mut self.bytes);
+            }
+        }
+        self.open.get_or_insert_default()
+    }
+
+    /// What was begun has come to an end, or to a stop.
+    pub(super) fn end(&mut self, is_done: bool, held: impl IntoIterator<Item = Position>) {
+        if let Some(last) = self.segments.back_mut() {
+            last.held.extend(held);
+        }
+        if is_done {
+            self.close();
+        }
+    }
+
+    /// A person has changed the program, between steps or at a stop.
+    pub(super) fn changed(&mut self) {
+        self.is_changed = true;
+    }
+
+    /// The first moment that is kept.
+    pub(super) fn first(&self) -> Position {
+        self.segments.front().map_or(0, |segment| segment.first)
+    }
+
+    /// When the first moment is that is kept, in milliseconds of the program; none if nothing is.
+    pub(super) fn first_ms(&self) -> Option<u32> {
+        self.segments.front().map(|segment| segment.start.now())
+    }
+
+    /// How much memory it takes, about.
+    pub(super) fn bytes(&self) -> usize {
+        self.bytes + self.open.as_ref().map_or(0, Answers::bytes)
+    }
+
+    fn close(&mut self) {
+        let (Some(answers), Some(last)) = (self.open.take(), self.segments.back_mut()) else {
+            return;
+        };
+        let count = last.steps.len();
+        let before = count.checked_sub(2).and_then(|index| last.steps.get(index));
+        let same = before.filter(|kept| *kept.answers == answers);
+        let (answers, bytes) = match same {
+            Some(kept) => (kept.answers.clone(), 0),
+            None => {
+                let bytes = answers.bytes();
+                (Rc::new(answers), bytes)
+            }
+        };
+        if let Some(kept) = last.steps.last_mut() {
+            kept.answers = answers;
+        }
+        last.grow(bytes, &mut self.bytes);
+        self.thin();
+    }
+
+    fn copy(&mut self, machine: &Machine, first: Position) {
+        self.is_changed = false;
+        let weight = machine.weight();
+        self.segments.push_back(Segment {
+            start: machine.clone(),
+            first,
+            steps: Vec::new(),
+            held: BTreeSet::new(),
+            bytes: weight,
+            weight,
+        });
+        self.bytes += weight;
+        self.thin();
+    }
+
+    fn thin(&mut self) {
+        while self.bytes > self.bytes_max && self.segments.len() > 1 {
+            if let Some(gone) = self.segments.pop_front() {
+                self.bytes -= gone.bytes;
+            }
+        }
+    }
+
+    /// The last moment before `before` that passes a test.
+    pub(super) fn last_before(&self, before: Position, test: Test<'_>) -> Option<Position> {
+        for at in (0..self.segments.len()).rev() {
+            let segment = &self.segments[at];
+            if segment.first >= before {
+                continue;
+            }
+            let mut found = None;
+            let until = self.until(at).min(before);
+            self.replay(segment, until, &mut |position, machine, thread, node| {
+                if test(machine, thread, node) {
+                    found = Some(position);
+                }
+                false
+            });
+            if found.is_some() {
+                return found;
+            }
+        }
+        None
+    }
+
+    /// The first moment after `after` and before `before` that passes a test.
+    pub(super) fn first_between(
+        &self,
+        (after, before): (Position, Position),
+        test: Test<'_>,
+    ) -> Option<Position> {
+        for at in 0..self.segments.len() {
+            let until = self.until(at).min(before);
+            if until <= after.saturating_add(1) {
+                continue;
+            }
+            let mut found = None;
+            let segment = &self.segments[at];
+            self.replay(segment, until, &mut |position, machine, thread, node| {
+                let is_it = position > after && test(machine, thread, node);
+                if is_it {
+                    found = Some(position);
+                }
+                is_it
+            });
+            if found.is_some() {
+                return found;
+            }
+        }
+        None
+    }
+
+    /// The program at a moment, held before the block that a thread enters there; none if it is not kept.
+    pub(super) fn at(&self, wanted: Position) -> Option<Machine> {
+        let at = self
+            .segments
+            .partition_point(|segment| segment.first <= wanted);
+        let at = at.checked_sub(1)?;
+        let until = self.until(at);
+        let segment = self.segments.get(at)?;
+        let (found, machine) =
+            self.replay(segment, until, &mut |position, _, _, _| position == wanted)?;
+        (found == wanted).then_some(machine)
+    }
+
+    /// Where what a segment has ends.
+    fn until(&self, segment: usize) -> Position {
+        let next = self.segments.get(segment + 1);
+        next.map_or(Position::MAX, |next| next.first)
+    }
+
+    /// Runs a segment again until a moment for which `stops` is true, or the one before `until`. What is held, and where.
+    fn replay(
+        &self,
+        segment: &Segment,
+        until: Position,
+        stops: &mut dyn FnMut(Position, &Machine, u16, Node) -> bool,
+    ) -> Option<(Position, Machine)> {
+        let mut machine = segment.start.clone();
+        machine.set_guarded(true);
+        let mut seeker = Seeker {
+            next: segment.first,
+            until,
+            held: &segment.held,
+            stops,
+        };
+        let count = segment.steps.len();
+        for (index, kept) in segment.steps.iter().enumerate() {
+            let is_open = index + 1 == count && std::ptr::eq(segment, self.segments.back()?);
+            let answers = match &self.open {
+                Some(open) if is_open => open,
+                Some(_) | None => &kept.answers,
+            };
+            let mut robot = Remembering::new(answers);
+            match kept.begin {
+                Begin::Step(now) => machine.step(now, &mut robot, &mut seeker),
+                Begin::Rest => machine.go_on_held(&mut robot, &mut seeker),
+            };
+            if machine.is_held() {
+                return Some((seeker.next - 1, machine));
+            }
+            if robot.is_astray {
+                return None;
+            }
+        }
+        None
+    }
+}
+
+impl Segment {
+    /// Copies cost memory, and segments time: a copy comes when running again would take as long as a person sees, and not
+    /// before the answers are worth it.
+    fn is_full(&self, next: Position) -> bool {
+        let blocks = next - self.first;
+        let steps = self.steps.len();
+        let is_long = steps >= limits::HISTORY_STEPS || blocks >= limits::HISTORY_BLOCKS;
+        let is_worth = self.bytes - self.weight >= self.weight / 4;
+        let is_too_long =
+            steps >= 10 * limits::HISTORY_STEPS || blocks >= 10 * limits::HISTORY_BLOCKS;
+        is_long && is_worth || is_too_long
+    }
+
+    fn grow(&mut self, bytes: usize, all: &mut usize) {
+        self.bytes += bytes;
+        *all += bytes;
+    }
+}
+
+/// Finds a moment while a program runs again.
+struct Seeker<'a> {
+    /// The next moment.
+    next: Position,
+    until: Position,
+    held: &'a BTreeSet<Position>,
+    stops: &'a mut dyn FnMut(Position, &Machine, u16, Node) -> bool,
+}
+
+impl Trace for Seeker<'_> {
+    fn guard(&mut self, machine: &Machine, at: Moment) -> Guard {
+        let Moment::Enters { thread, node } = at else {
+            return Guard::Go;
+        };
+        let position = self.next;
+        self.next += 1;
+        if position >= self.until {
+            return Guard::Hold;
+        }
+        let is_it = (self.stops)(position, machine, thread, node);
+        if is_it || self.next == self.until {
+            return Guard::Hold;
+        }
+        match self.held.contains(&position) {
+            true => Guard::HoldThread,
+            false => Guard::Go,
+        }
+    }
+}

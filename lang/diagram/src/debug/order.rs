@@ -1,0 +1,397 @@
+//! What a person asks of a debugger, as a text: for the network, a terminal, an editor.
+//!
+//! Owns the words of orders in both directions. An order is a line; a breakpoint may have two more lines. Knows no program:
+//! whether there is such a block or thread is found out when the order is carried out.
+
+use std::fmt;
+
+use super::{Back, Breakpoint, Step};
+use crate::limits;
+
+/// Something that is asked of a debugger.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum Order {
+    /// Attach the debugger; the past is kept from now on.
+    Attach,
+    /// Take it away; a program that is stopped goes on.
+    Detach,
+    /// Say where the program is.
+    Look,
+    /// Stop the program as soon as it can be.
+    Pause,
+    /// Go on; in the past to the next breakpoint there, or to the present.
+    Continue,
+    /// Go on for a step; of the thread with this name, or of the one at which it is stopped.
+    Step(Step, Option<Box<str>>),
+    /// Go on to this block.
+    Until(Box<str>),
+    /// Go back.
+    Back(Back),
+    /// Leave the past.
+    Present,
+    /// Hold the thread with this name, and let the others go on.
+    Hold(Box<str>),
+    /// Let it go on.
+    Release(Box<str>),
+    /// A breakpoint.
+    Break(Breakpoint),
+    /// A breakpoint away, by its number; none: all.
+    Clear(Option<u32>),
+    /// Keep a breakpoint, and let it do nothing, or something again.
+    Enable(u32, bool),
+    /// Say which breakpoints there are.
+    Breakpoints,
+    /// Whether errors stop the program.
+    Errors(bool),
+    /// Whether motors rest while the program is stopped.
+    Motors(bool),
+    /// Assign a variable the value of an expression.
+    Set(Box<str>, Box<str>),
+    /// Compute an expression.
+    Evaluate(Box<str>),
+}
+
+/// Why a text is no order.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum NoOrder {
+    /// No order begins with this word.
+    Unknown(Box<str>),
+    /// The order lacks something, which is described.
+    Lacks(&'static str),
+    /// This word cannot be there.
+    Strange(Box<str>),
+    /// It is longer than an order may be.
+    TooLong,
+}
+
+impl fmt::Display for NoOrder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown(word) => write!(f, "'{word}' is no order; orders are {WORDS}"),
+            Self::Lacks(what) => write!(f, "this order needs {what}"),
+            Self::Strange(word) => write!(f, "'{word}' cannot be in this order"),
+            Self::TooLong => write!(f, "an order has at most {} bytes", limits::ORDER_BYTES_MAX),
+        }
+    }
+}
+
+/// All words with which orders begin.
+pub const WORDS: &str = "attach, detach, look, pause, continue, step, until, back, present, hold, release, break, clear, \
+    enable, disable, breakpoints, errors, motors, set, evaluate";
+
+const A_BLOCK: &str = "the id of a block";
+const A_THREAD: &str = "the name of a thread";
+const A_NUMBER: &str = "the number of a breakpoint";
+
+impl Order {
+    /// What a text asks for.
+    ///
+    /// # Errors
+    /// [`NoOrder`].
+    pub fn parse(text: &str) -> Result<Self, NoOrder> {
+        if text.len() > limits::ORDER_BYTES_MAX {
+            return Err(NoOrder::TooLong);
+        }
+        let (line, more) = text.split_once('\n').unwrap_or((text, ""));
+        let (word, rest) = line.trim().split_once(' ').unwrap_or((line.trim(), ""));
+        let rest = rest.trim();
+        if !more.is_empty() && word != "break" {
+            return Err(NoOrder::Strange(more.into()));
+        }
+        let order = match word {
+            "attach" => Self::Attach,
+            "detach" => Self::Detach,
+            "look" => Self::Look,
+            "pause" => Self::Pause,
+            "continue" => Self::Continue,
+            "present" => Self::Present,
+            "breakpoints" => Self::Breakpoints,
+            "step" => return step(rest),
+            "until" => return Ok(Self::Until(some(rest, A_BLOCK)?)),
+            "back" => return back(rest).map(Self::Back),
+            "hold" => return Ok(Self::Hold(some(rest, A_THREAD)?)),
+            "release" => return Ok(Self::Release(some(rest, A_THREAD)?)),
+            "break" => return breakpoint(rest, more).map(Self::Break),
+            "clear" if rest == "all" => return Ok(Self::Clear(None)),
+            "clear" => return number(rest).map(|number| Self::Clear(Some(number))),
+            "enable" => return number(rest).map(|number| Self::Enable(number, true)),
+            "disable" => return number(rest).map(|number| Self::Enable(number, false)),
+            "errors" => return either(rest, ["stop", "go"]).map(Self::Errors),
+            "motors" => return either(rest, ["rest", "keep"]).map(Self::Motors),
+            "set" => {
+                let lacks = NoOrder::Lacks("NAME=EXPRESSION");
+                let (name, text) = rest.split_once('=').ok_or(lacks)?;
+                return Ok(Self::Set(name.trim().into(), text.trim().into()));
+            }
+            "evaluate" => return Ok(Self::Evaluate(some(rest, "an expression")?)),
+            _ => return Err(NoOrder::Unknown(shortened(word))),
+        };
+        match rest {
+            "" => Ok(order),
+            more => Err(NoOrder::Strange(shortened(more))),
+        }
+    }
+
+    /// Whether it changes what the program does, so that only whoever is in control may give it.
+    pub fn is_for_control(&self) -> bool {
+        match self {
+            Self::Look | Self::Breakpoints | Self::Evaluate(_) => false,
+            Self::Attach
+            | Self::Detach
+            | Self::Pause
+            | Self::Continue
+            | Self::Step(..)
+            | Self::Until(_)
+            | Self::Back(_)
+            | Self::Present
+            | Self::Hold(_)
+            | Self::Release(_)
+            | Self::Break(_)
+            | Self::Clear(_)
+            | Self::Enable(..)
+            | Self::Errors(_)
+            | Self::Motors(_)
+            | Self::Set(..) => true,
+        }
+    }
+}
+
+impl fmt::Display for Order {
+    /// The text that [`Order::parse`] understands.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Attach => f.write_str("attach"),
+            Self::Detach => f.write_str("detach"),
+            Self::Look => f.write_str("look"),
+            Self::Pause => f.write_str("pause"),
+            Self::Continue => f.write_str("continue"),
+            Self::Step(step, None) => write!(f, "step {}", step.word()),
+            Self::Step(step, Some(thread)) => write!(f, "step {} {thread}", step.word()),
+            Self::Until(block) => write!(f, "until {block}"),
+            Self::Back(Back::Step(step)) => write!(f, "back {}", step.word()),
+            Self::Back(Back::Continue) => f.write_str("back continue"),
+            Self::Back(Back::To(ms)) => write!(f, "back to {ms}"),
+            Self::Back(Back::Oldest) => f.write_str("back start"),
+            Self::Present => f.write_str("present"),
+            Self::Hold(thread) => write!(f, "hold {thread}"),
+            Self::Release(thread) => write!(f, "release {thread}"),
+            Self::Break(point) => {
+                write!(f, "break {}", point.block)?;
+                if point.from_hit > 0 {
+                    write!(f, " from {}", point.from_hit)?;
+                }
+                if point.is_once {
+                    f.write_str(" once")?;
+                }
+                if point.is_disabled {
+                    f.write_str(" disabled")?;
+                }
+                if !point.condition.is_empty() {
+                    write!(f, "\nif {}", point.condition)?;
+                }
+                if !point.log.is_empty() {
+                    write!(f, "\nlog {}", point.log)?;
+                }
+                Ok(())
+            }
+            Self::Clear(None) => f.write_str("clear all"),
+            Self::Clear(Some(number)) => write!(f, "clear {number}"),
+            Self::Enable(number, true) => write!(f, "enable {number}"),
+            Self::Enable(number, false) => write!(f, "disable {number}"),
+            Self::Breakpoints => f.write_str("breakpoints"),
+            Self::Errors(stop) => f.write_str(if *stop { "errors stop" } else { "errors go" }),
+            Self::Motors(rest) => f.write_str(if *rest { "motors rest" } else { "motors keep" }),
+            Self::Set(name, text) => write!(f, "set {name}={text}"),
+            Self::Evaluate(text) => write!(f, "evaluate {text}"),
+        }
+    }
+}
+
+impl Step {
+    const ALL: [Self; 3] = [Self::Into, Self::Over, Self::Out];
+
+    /// Its word in orders.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Into => "into",
+            Self::Over => "over",
+            Self::Out => "out",
+        }
+    }
+
+    fn of(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|step| step.word() == word)
+    }
+}
+
+fn shortened(text: &str) -> Box<str> {
+    text[..text.floor_char_boundary(limits::ORDER_WORD_BYTES_MAX)].into()
+}
+
+fn some(text: &str, what: &'static str) -> Result<Box<str>, NoOrder> {
+    match text {
+        "" => Err(NoOrder::Lacks(what)),
+        text => Ok(text.into()),
+    }
+}
+
+fn number(text: &str) -> Result<u32, NoOrder> {
+    text.parse().map_err(|_| NoOrder::Lacks(A_NUMBER))
+}
+
+fn either(text: &str, words: [&'static str; 2]) -> Result<bool, NoOrder> {
+    match words.iter().position(|word| *word == text) {
+        Some(index) => Ok(index == 0),
+        None => Err(NoOrder::Strange(shortened(text))),
+    }
+}
+
+fn step(rest: &str) -> Result<Order, NoOrder> {
+    let (word, thread) = rest.split_once(' ').unwrap_or((rest, ""));
+    let step = match word {
+        "" => Step::Over,
+        word => Step::of(word).ok_or_else(|| NoOrder::Strange(shortened(word)))?,
+    };
+    let thread = thread.trim();
+    Ok(Order::Step(
+        step,
+        (!thread.is_empty()).then(|| thread.into()),
+    ))
+}
+
+fn back(rest: &str) -> Result<Back, NoOrder> {
+    if let Some(ms) = rest.strip_prefix("to ") {
+        let ms = ms.trim().parse();
+        return ms
+            .map(Back::To)
+            .map_err(|_| NoOrder::Lacks("a time in milliseconds"));
+    }
+    match rest {
+        "" => Ok(Back::Step(Step::Over)),
+        "continue" => Ok(Back::Continue),
+        "start" => Ok(Back::Oldest),
+        word => {
+            let step = Step::of(word).map(Back::Step);
+            step.ok_or_else(|| NoOrder::Strange(shortened(word)))
+        }
+    }
+}
+
+fn breakpoint(rest: &str, more: &str) -> Result<Breakpoint, NoOrder> {
+    let mut words = rest.split_whitespace();
+    let mut point = Breakpoint {
+        block: some(words.next().unwrap_or_default(), A_BLOCK)?,
+        ..Breakpoint::default()
+    };
+    while let Some(word) = words.next() {
+        match word {
+            "from" => {
+                let hits = words.next().and_then(|word| word.parse().ok());
+                point.from_hit = hits.ok_or(NoOrder::Lacks("a number of hits after `from`"))?;
+            }
+            "once" => point.is_once = true,
+            "disabled" => point.is_disabled = true,
+            word => return Err(NoOrder::Strange(shortened(word))),
+        }
+    }
+    for line in more.lines() {
+        match line.split_once(' ') {
+            Some(("if", condition)) => point.condition = condition.trim().into(),
+            Some(("log", text)) => point.log = text.trim().into(),
+            Some(_) | None => return Err(NoOrder::Strange(shortened(line))),
+        }
+    }
+    Ok(point)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn orders_are_what_they_are_written_as() {
+        let point = Breakpoint {
+            block: "{b}".into(),
+            condition: "n > 3".into(),
+            from_hit: 2,
+            log: "n is {n}".into(),
+            is_once: true,
+            is_disabled: true,
+        };
+        for order in [
+            Order::Attach,
+            Order::Detach,
+            Order::Look,
+            Order::Pause,
+            Order::Continue,
+            Order::Step(Step::Into, None),
+            Order::Step(Step::Out, Some("a thread".into())),
+            Order::Until("{b}".into()),
+            Order::Back(Back::Step(Step::Over)),
+            Order::Back(Back::Continue),
+            Order::Back(Back::To(1500)),
+            Order::Back(Back::Oldest),
+            Order::Present,
+            Order::Hold("main".into()),
+            Order::Release("main".into()),
+            Order::Break(point),
+            Order::Clear(Some(3)),
+            Order::Clear(None),
+            Order::Enable(3, true),
+            Order::Enable(3, false),
+            Order::Breakpoints,
+            Order::Errors(true),
+            Order::Errors(false),
+            Order::Motors(true),
+            Order::Motors(false),
+            Order::Set("n".into(), "m = 3".into()),
+            Order::Evaluate("n + 1".into()),
+        ] {
+            let text = order.to_string();
+            assert_eq!(Order::parse(&text), Ok(order), "{text}");
+            let word = text.split_whitespace().next().unwrap();
+            assert!(WORDS.split(", ").any(|known| known == word), "{word}");
+        }
+        assert_eq!(Order::parse("step"), Ok(Order::Step(Step::Over, None)));
+        assert_eq!(
+            Order::parse("back"),
+            Ok(Order::Back(Back::Step(Step::Over)))
+        );
+    }
+
+    #[test]
+    fn what_is_no_order_says_why() {
+        for (text, why) in [
+            ("", "'' is no order"),
+            ("fly away", "'fly' is no order"),
+            ("step sideways", "'sideways' cannot be in this order"),
+            ("until", "this order needs the id of a block"),
+            ("break", "this order needs the id of a block"),
+            ("break b from x", "this order needs a number of hits"),
+            ("break b often", "'often' cannot be in this order"),
+            ("break b\nwhile 1", "'while 1' cannot be in this order"),
+            ("continue\nif 1", "'if 1' cannot be in this order"),
+            ("clear", "this order needs the number of a breakpoint"),
+            ("back to noon", "this order needs a time"),
+            ("set n", "this order needs NAME=EXPRESSION"),
+            ("errors maybe", "'maybe' cannot be in this order"),
+            ("look around", "'around' cannot be in this order"),
+        ] {
+            let refused = Order::parse(text).unwrap_err().to_string();
+            assert!(refused.starts_with(why), "{text}: {refused}");
+        }
+        let long = format!("evaluate {}", "1+".repeat(limits::ORDER_BYTES_MAX));
+        assert_eq!(Order::parse(&long), Err(NoOrder::TooLong));
+    }
+
+    proptest! {
+        #[test]
+        fn nothing_that_comes_makes_it_fall(text in "\\PC{0,40}|(break|step|back|set) [a-z{}=0-9\\n ]{0,30}") {
+            if let Ok(order) = Order::parse(&text) {
+                let again = Order::parse(&order.to_string());
+                prop_assert_eq!(again, Ok(order));
+            }
+        }
+    }
+}

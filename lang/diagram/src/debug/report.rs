@@ -1,0 +1,165 @@
+//! What a debugger tells, as JSON: where a program is, what its threads do, what its variables hold.
+//!
+//! Owns the form, which `docs/protocol.md` describes. Knows no transport.
+
+use super::{Phase, Reason, Session, Stop};
+use crate::limits;
+use crate::machine::Machine;
+use crate::machine::view::{Doing, ThreadView, Waits};
+use crate::program::Node;
+use lang_expr::Value;
+use lang_text::json::Object;
+use lang_text::problem::{Locale, Problem};
+
+fn object() -> Object {
+    Object::new(limits::TOLD_CHARACTERS_MAX)
+}
+
+/// Where a program is: its state, why it is stopped, threads, variables, and from when on the past is kept.
+pub fn state(session: &Session, locale: Locale) -> String {
+    let machine = session.machine();
+    let phase = session.phase();
+    let word = match (&phase, session.is_past()) {
+        (_, true) => "past",
+        (Phase::Runs, false) => "running",
+        (Phase::Stopped(_), false) => "stopped",
+        (Phase::Ended { .. }, false) => "ended",
+    };
+    let mut told = object().text("state", word).plain("ms", machine.now());
+    told = told.plain("attached", session.is_attached());
+    if let Phase::Ended { with_errors, .. } = phase {
+        told = told.plain("with_errors", with_errors);
+    }
+    if let Some(stop) = session.stop() {
+        told = told.plain("stop", stopped(machine, stop, locale));
+    }
+    let threads = machine.views().take(limits::TOLD_ITEMS_MAX);
+    told = told.list("threads", threads.map(|view| thread(machine, &view)));
+    told = told.list("variables", variables(machine));
+    if let Some((from_ms, bytes)) = session.kept() {
+        let kept = object().plain("from_ms", from_ms).plain("bytes", bytes);
+        told = told.plain("kept", kept.done());
+    }
+    told.done()
+}
+
+/// The value of an expression, with the word of its type.
+pub fn value(value: &Value) -> Object {
+    object()
+        .text("type", kind(value))
+        .text("value", &value.printed())
+}
+
+/// Breakpoints with their numbers, and how often each was hit.
+pub fn breakpoints(session: &mut Session) -> Vec<String> {
+    let points = session.debugger().breakpoints();
+    let told = points.map(|(number, point, hits)| {
+        object()
+            .plain("number", number)
+            .text("block", &point.block)
+            .text("if", &point.condition)
+            .plain("from", point.from_hit)
+            .text("log", &point.log)
+            .plain("once", point.is_once)
+            .plain("disabled", point.is_disabled)
+            .plain("hits", hits)
+            .done()
+    });
+    told.collect()
+}
+
+/// Problems as a text, a line for each.
+pub fn problems(problems: &[Problem], locale: Locale) -> String {
+    let lines = problems.iter().map(|problem| problem.in_locale(locale));
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+fn stopped(machine: &Machine, stop: &Stop, locale: Locale) -> String {
+    let mut told = object();
+    told = match &stop.reason {
+        Reason::Pause => told.text("reason", "pause"),
+        Reason::Step => told.text("reason", "step"),
+        Reason::ThreadEnded => told.text("reason", "thread ended"),
+        Reason::Breakpoint(number) => told.text("reason", "breakpoint").plain("number", number),
+        Reason::Condition(number, found) => told
+            .text("reason", "condition")
+            .plain("number", number)
+            .text("text", &problems(found, locale)),
+        Reason::Error(problem) => told
+            .text("reason", "error")
+            .text("text", &problem.in_locale(locale)),
+        Reason::Oldest => told.text("reason", "oldest"),
+        Reason::Past => told.text("reason", "past"),
+    };
+    if let Some(thread) = stop.thread {
+        told = told.plain("thread", thread);
+        told = told.text("name", machine.thread_name(thread).unwrap_or_default());
+    }
+    if let Some(node) = stop.node {
+        told = told.plain("at", place(machine, node));
+    }
+    told.done()
+}
+
+fn thread(machine: &Machine, view: &ThreadView<'_>) -> String {
+    let told = object()
+        .plain("number", view.number)
+        .text("name", view.name)
+        .plain("at", place(machine, view.node));
+    let told = match view.doing {
+        Doing::Enters => told.text("does", "enters"),
+        Doing::GivesWay => told.text("does", "gives way"),
+        Doing::Held => told.text("does", "held"),
+        Doing::Failed => told.text("does", "failed"),
+        Doing::Waits(waits) => waiting(told.text("does", "waits"), waits),
+    };
+    let calls = view.calls.iter().take(limits::TOLD_ITEMS_MAX);
+    told.list("calls", calls.map(|node| place(machine, *node)))
+        .plain("messages", view.messages)
+        .done()
+}
+
+fn waiting(told: Object, waits: Waits) -> Object {
+    match waits {
+        Waits::Time { left_ms } => told.text("for", "time").plain("left_ms", left_ms),
+        Waits::Device(port) => told.text("for", "device").text("port", port.name()),
+        Waits::AnyButton => told.text("for", "button"),
+        Waits::Mail => told.text("for", "mail"),
+        Waits::Answer => told.text("for", "answer"),
+        Waits::Message => told.text("for", "message"),
+        Waits::Threads => told.text("for", "threads"),
+        Waits::Step => told.text("for", "step"),
+        Waits::Nothing => told.text("for", "nothing"),
+    }
+}
+
+/// A block: its diagram, its id in the save, and its type there.
+fn place(machine: &Machine, node: Node) -> String {
+    let program = machine.program();
+    object()
+        .text("diagram", program.diagram(node).unwrap_or_default())
+        .text("id", program.id(node).unwrap_or_default())
+        .text("block", program.row(node).map_or("", |row| row.kind))
+        .done()
+}
+
+fn variables(machine: &Machine) -> Vec<String> {
+    let variables = machine.variables().take(limits::TOLD_ITEMS_MAX);
+    let told = variables.map(|(name, held)| {
+        let told = object().text("name", name).text("type", kind(held));
+        told.text("value", &held.brief()).done()
+    });
+    told.collect()
+}
+
+/// The word of a value's type.
+fn kind(value: &Value) -> &'static str {
+    match value {
+        Value::Nil => "nothing",
+        Value::Bool(_) => "bool",
+        Value::Int(_) => "int",
+        Value::Float(_) => "float",
+        Value::Text(_) => "text",
+        Value::List(_) => "list",
+    }
+}

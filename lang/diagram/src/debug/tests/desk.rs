@@ -1,0 +1,163 @@
+//! Orders as texts, and what is told.
+
+use std::rc::Rc;
+
+use super::{counting, robot};
+use crate::debug::Session;
+use crate::debug::desk::Desk;
+use crate::limits;
+use crate::lower::{World, lower};
+use crate::machine::trace::Deaf;
+use crate::machine::{Machine, Options, STEP_MS};
+use crate::stand_in::StandIn;
+use lang_text::problem::Locale;
+
+struct Stage {
+    desk: Desk,
+    robot: StandIn,
+    now: u32,
+    tag: u32,
+}
+
+impl Stage {
+    fn order(&mut self, text: &str) -> String {
+        self.tag += 1;
+        let Self {
+            desk,
+            robot,
+            now,
+            tag,
+        } = self;
+        desk.order((*tag, text), *now, robot, &mut Deaf)
+    }
+
+    fn run(&mut self, steps: u32) -> Vec<String> {
+        for _ in 0..steps {
+            self.now += STEP_MS;
+            self.robot.tick();
+            self.desk.step(self.now, &mut self.robot, &mut Deaf);
+        }
+        self.desk.news()
+    }
+}
+
+fn stage() -> (Stage, Vec<String>) {
+    let (project, ids) = counting("n = n + 1", "100");
+    let program = Rc::new(lower(&project, World::default()).unwrap().program);
+    let machine = Machine::new(program, Options::default());
+    let stage = Stage {
+        desk: Desk::new(
+            Session::alone(machine),
+            Locale::English,
+            limits::HISTORY_BYTES,
+        ),
+        robot: robot(),
+        now: 0,
+        tag: 0,
+    };
+    (stage, ids)
+}
+
+#[test]
+fn nothing_is_told_and_nothing_kept_before_a_debugger_is_attached() {
+    let (mut stage, _) = stage();
+    assert!(stage.run(20).is_empty());
+    assert_eq!(
+        stage.order("pause"),
+        "{\"why\":\"attach the debugger first\",\"to\":1,\"done\":false}"
+    );
+    assert_eq!(
+        stage.order("evaluate n * 2"),
+        "{\"type\":\"float\",\"value\":\"4\",\"to\":2,\"done\":true}"
+    );
+    let state = stage.order("attach");
+    assert!(state.contains("\"state\":\"running\""), "{state}");
+    assert!(
+        state.contains("\"name\":\"n\",\"type\":\"float\",\"value\":\"2\""),
+        "{state}"
+    );
+}
+
+#[test]
+fn a_program_is_stopped_stepped_taken_back_and_let_go() {
+    let (mut stage, ids) = stage();
+    stage.order("attach");
+    stage.run(1);
+    let number = stage.order(&format!("break {}\nif n == 3", ids[2]));
+    assert_eq!(number, "{\"number\":1,\"to\":2,\"done\":true}");
+    let log = format!("break {}\nlog n is {{n}}", ids[3]);
+    stage.order(&log);
+    let news = stage.run(100);
+    let [lines, state] = &news[..] else {
+        panic!("{news:?}");
+    };
+    assert_eq!(lines, "{\"log\":[\"n is 2\",\"n is 3\"],\"lost\":0}");
+    assert!(state.starts_with("{\"state\":\"stopped\",\"ms\":300,\"attached\":true,\"stop\":{\"reason\":\"breakpoint\",\"number\":1,\"thread\":0,\"name\":\"main\",\"at\":{"), "{state}");
+    assert!(state.contains(&format!("\"id\":\"{}\",\"block\":\"Function\"", ids[2])));
+    let back = stage.order("back");
+    assert!(
+        back.starts_with("{\"program\":{\"state\":\"past\",\"ms\":200"),
+        "{back}"
+    );
+    let refused = stage.order("set n=5");
+    assert!(refused.contains("this is the past"), "{refused}");
+    stage.order("present");
+    let set = stage.order("set n=5");
+    assert!(set.contains("\"value\":\"5\""), "{set}");
+    let stepped = stage.order("step");
+    assert!(stepped.contains("\"reason\":\"step\""), "{stepped}");
+    assert!(stepped.contains("\"value\":\"6\""), "{stepped}");
+    assert!(stage.order("breakpoints").contains("\"hits\":1"));
+    assert!(stage.order("clear all").contains("true"));
+    assert!(stage.order("detach").contains("\"done\":true"));
+    let news = stage.run(100);
+    assert!(
+        news.len() == 1 && news[0].contains("\"attached\":false"),
+        "{news:?}"
+    );
+    assert!(stage.run(100).is_empty());
+    assert!(
+        stage
+            .order("evaluate n > 10")
+            .contains("\"value\":\"true\"")
+    );
+}
+
+#[test]
+fn orders_that_cannot_be_change_nothing_and_say_why() {
+    let (mut stage, ids) = stage();
+    stage.order("attach");
+    stage.run(1);
+    for (order, why) in [
+        ("jump", "'jump' is no order"),
+        ("break nowhere", "the program has no such block"),
+        ("until nowhere", "the program has no such block"),
+        ("step", "the program is not stopped"),
+        ("continue", "the program is not stopped"),
+        ("back", "the program runs: pause it first"),
+        ("clear 7", "there is no breakpoint 7"),
+        ("enable 7", "there is no breakpoint 7"),
+        ("release x", "the thread 'x' is not held"),
+        ("set n=", "Variable n"),
+        ("set n=\"a\"", ""),
+        ("evaluate 1 +", ""),
+    ] {
+        let answer = stage.order(order);
+        assert!(answer.ends_with("\"done\":false}"), "{order}: {answer}");
+        assert!(
+            answer.contains(why) || order.starts_with("set"),
+            "{order}: {answer}"
+        );
+    }
+    let long = "x".repeat(limits::CONDITION_MAX + 1);
+    let answer = stage.order(&format!("break {}\nif {long}", ids[2]));
+    assert!(answer.contains("at most 4096 bytes"), "{answer}");
+    stage.run(50);
+    stage.order("pause");
+    stage.run(1);
+    assert!(
+        stage
+            .order("step over nobody")
+            .contains("there is no thread 'nobody'")
+    );
+}
