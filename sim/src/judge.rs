@@ -3,6 +3,7 @@
 //! Owns the order of one tick, the limits of a run and what is told of it. Knows neither files nor processes: texts in,
 //! an outcome out. What a world does is in [`crate::arena`]; what a task demands is in `lang`.
 
+pub mod debugged;
 pub mod hands;
 pub mod json;
 mod lint;
@@ -16,14 +17,16 @@ mod scene;
 pub mod task;
 pub mod track;
 pub mod trajectory;
+pub mod trial;
 mod words;
 
 pub use lint::lint;
 pub use picture::{Caption, page, svg};
 pub use program::{Diagram, Program, Running, Spot};
 pub use replay::{judge_recorded, strange_in_record};
-pub use run::{Failure, Outcome, Settings, Verdict, judge};
+pub use run::{Failure, Outcome, Settings, Verdict};
 pub use task::{Task, Texts};
 pub use track::Group;
 pub use trajectory::Trajectory;
+pub use trial::{Progress, Trial, judge};
 pub use words::too_slow;

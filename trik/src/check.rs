@@ -22,6 +22,7 @@ mod walk;
 mod words;
 mod worker;
 
+use crate::debug;
 use crate::output::{Output, settled, standard};
 use crate::refusal::{Refusal, UNREADABLE, say};
 use crate::terminal::named;
@@ -32,6 +33,7 @@ use lang_text::problem::Locale;
 use platform::Platform;
 pub(crate) use platform::of_misuse;
 use row::{Row, Widths};
+pub(crate) use run::{Staged, Start, staged};
 use std::collections::HashSet;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -57,6 +59,10 @@ fn checked(args: &CheckArgs) -> Result<u8, Refusal> {
     if args.worker {
         worker::serve(args)?;
         return Ok(0);
+    }
+    if args.is_debugging {
+        let staged = staged(args).map_err(debug::refusal)?;
+        return debug::talk(&staged, None, Start::Running);
     }
     if !args.grades.out.is_empty() || args.grades.tasks.is_some() {
         return class(args);

@@ -7,7 +7,7 @@ use crate::check::{self, of_misuse, original};
 use crate::dcml::{self, Dcml};
 use crate::output::standard;
 use crate::refusal::{Refusal, end};
-use crate::{diagrams, fault, remote, task, up};
+use crate::{debug, diagrams, fault, remote, task, up};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -36,6 +36,7 @@ Examples:
   trik new-task maze                 a world with rules, and solutions, to change
   trik check maze.qrs                does it solve its task?
   trik check class/ --field hard.xml --results all.jsonl   a class, in another world
+  trik debug maze.qrs                stop its diagram, step, and go back
   trik fault D1 unplug               pull the plug of the distance sensor D1
   trik fault D1 --clear              and put it back
   trik fault --robot /tmp/robot D1 unplug   the same, if several robots run
@@ -129,6 +130,14 @@ enum Command {
     /// or an error of the program; 2 a solution is broken or could not be run or judged, a file could not be written, or
     /// the command line was not understood. With --for the exit status is that of the platform.
     Check(Box<check::CheckArgs>),
+    /// Debug a diagram in a simulated world: stop, step, look, and go back.
+    ///
+    /// The program is stopped before its first block. The words are those of gdb; help shows them. Model time stands still
+    /// while it is stopped, and the past is kept, so that each moment of it can be looked at again: reverse-next,
+    /// reverse-continue, back. Lines may also come from a file or a pipe.
+    ///
+    /// Exit status: 0 the person had enough; 2 the diagram cannot run, or the command line was not understood.
+    Debug(debug::DebugArgs),
     /// Robots as equations: models in the Differential Constraints Modeling Language.
     Dcml {
         /// What to do.
@@ -227,6 +236,7 @@ fn run(command: Command) -> Result<u8, Refusal> {
         Command::Lint(args) => diagrams::lint::run(&args),
         Command::NewTask(args) => task::run(&args),
         Command::Check(args) => check::run(&args),
+        Command::Debug(args) => debug::run(&args),
         Command::Dcml { command } => dcml::run(&command),
         Command::Model { arguments } => Ok(original::model(arguments.into_iter())),
         Command::Patcher { arguments } => Ok(original::patcher(arguments.into_iter())),

@@ -3,7 +3,7 @@
 //! `cli` lists the commands. `up` starts the virtual board and the tree over it, `fault` breaks devices of a running board,
 //! `place` knows where the robots of a user are, `remote` brings programs to robots, `diagrams` shows, checks and translates
 //! diagrams without a robot, `dcml` does the same with models of robots, `check` runs and judges solutions of tasks,
-//! `script` runs programs with text for it. All of them stand on `error`, `refusal`, `input`, `output`,
+//! `script` runs programs with text for it, `debug` stops diagrams and goes back in them. All of them stand on `error`, `refusal`, `input`, `output`,
 //! `terminal` and `language`, which know no command. Nothing of this runs on the controller.
 
 #![deny(clippy::wildcard_enum_match_arm)]
@@ -11,6 +11,7 @@
 mod check;
 pub mod cli;
 mod dcml;
+mod debug;
 mod diagrams;
 pub mod error;
 mod fault;

@@ -161,3 +161,9 @@ pub(crate) const DRIVE_GAIN: f64 = 0.5;
 pub(crate) const DRIVE_SERVO_DEG: f64 = 90.0;
 /// The weight of a task in the sum of a class, to either side of 0.
 pub(crate) const WEIGHT_MAX: f64 = 1e6;
+/// Moments of which `trik debug` keeps where the robot was: an hour.
+pub const DEBUG_POSES_MAX: usize = 360_000;
+/// Calls of a thread that `trik debug` shows.
+pub const DEBUG_CALLS_SHOWN: usize = 100;
+/// Bytes of a line that is typed at `trik debug`.
+pub const DEBUG_LINE_BYTES: usize = 16_384;

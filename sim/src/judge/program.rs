@@ -21,6 +21,11 @@ pub trait Program {
     /// or after a bounded piece of work.
     fn step(&mut self, now_ms: u32, robot: &mut dyn Brick) -> Status;
 
+    /// Whether it is held in the middle of a step: the next call of [`Program::step`], at the same moment, goes on there.
+    fn is_held(&self) -> bool {
+        false
+    }
+
     /// What of it still runs in the tick in which the rules have decided.
     fn last_tick(&mut self, _now_ms: u32, _robot: &mut dyn Brick) {}
 
@@ -174,18 +179,7 @@ impl Program for Diagram {
     }
 
     fn describe(&self, locale: Locale, tell: &mut dyn FnMut(Group, &str, &str)) {
-        let program = self.machine.program();
-        for (thread, node) in self.machine.threads() {
-            let block = program.row(node).map_or("", |row| row.shown_in(locale));
-            tell(Group::Block, thread, block);
-        }
-        let is_of_port = |name: &str| Port::all().any(|port| port.variable() == Some(name));
-        for (name, value) in self.machine.variables() {
-            // Readings have their own place.
-            if !is_of_port(name) {
-                tell(Group::Variable, name, &value.brief());
-            }
-        }
+        describe(&self.machine, locale, tell);
     }
 
     fn errors(&self) -> &[Problem] {
@@ -226,5 +220,21 @@ impl Program for Diagram {
             })
         });
         running.take(limits::RUNNING_MAX).collect()
+    }
+}
+
+/// Says what a diagram does at this moment: its variables, and the blocks at which its threads are.
+pub(super) fn describe(machine: &Machine, locale: Locale, tell: &mut dyn FnMut(Group, &str, &str)) {
+    let program = machine.program();
+    for (thread, node) in machine.threads() {
+        let block = program.row(node).map_or("", |row| row.shown_in(locale));
+        tell(Group::Block, thread, block);
+    }
+    let is_of_port = |name: &str| Port::all().any(|port| port.variable() == Some(name));
+    for (name, value) in machine.variables() {
+        // Readings have their own place.
+        if !is_of_port(name) {
+            tell(Group::Variable, name, &value.brief());
+        }
     }
 }

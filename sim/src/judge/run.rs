@@ -1,26 +1,25 @@
-//! One run, tick by tick: the world, the rules, the program, and what ends it.
+//! What is kept while a run is judged, and what comes out of it.
 //!
-//! Owns the order of one tick (the world moves, the rules look, the program steps) and the limits of a run. The same task,
-//! program and settings give the same outcome; only the limit of real time can make a difference, and then there is no
-//! verdict.
+//! Owns verdicts, messages, trajectory and track; `trial` has the order of one tick. The same task, program and settings give
+//! the same outcome; only the limit of real time can make a difference, and then there is no verdict.
 
-use super::hands::{self, Deed};
+use super::hands::Deed;
 use super::program::{Program, Running};
 use super::recorder::Recorder;
 use super::report;
 use super::task::Task;
 use super::track::{Group, Track};
 use super::trajectory::{Record, Trajectory};
-use super::words;
-use crate::arena::{Arena, Gamepad, Setup};
+use crate::arena::Arena;
 use crate::limits;
 use lang_constraint::{
     self as rules, Checker, Entry, Explanation, Level, Value, Verdict as Decision,
 };
-use lang_diagram::machine::{STEP_MS, Status};
+use lang_diagram::brick::Brick;
+use lang_diagram::machine::Status;
 use lang_diagram::ports::{Port, Sort};
 use lang_text::problem::{Locale, Problem};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -126,77 +125,6 @@ pub struct Outcome {
     pub running: Vec<Running>,
 }
 
-/// How often the clock is looked at, in ticks.
-const CLOCK_TICKS: u32 = 64;
-
-/// Runs a program in the world of a task, to its verdict.
-pub fn judge(task: &Task, program: &mut dyn Program, settings: &Settings) -> Outcome {
-    let setup = Setup {
-        seed: settings.seed,
-        sensors: task.sensors.clone(),
-        answers: settings.answers.iter().cloned().collect(),
-        is_unmarked: !settings.is_marking,
-        ..Setup::default()
-    };
-    let mut arena = Arena::new(&task.field, setup);
-    let mut run = Run::new(task, settings, &arena);
-    let mut deeds = settings.deeds.as_deref().unwrap_or_default();
-    if let (Some(_), Some(robot)) = (&settings.deeds, arena.robot_mut(0)) {
-        robot.set_gamepad(Some(Gamepad::default()));
-    }
-    let began = Instant::now();
-    let mut now = 0;
-    if let Some(why) = program.refusal() {
-        // It does not begin, and so the rules have nothing to say.
-        run.hear(0, std::slice::from_ref(why));
-        run.verdict = Some(Verdict::Failed);
-        run.failure = Some(Failure::Structure);
-        return run.outcome(0, &arena);
-    }
-    loop {
-        if now > 0 {
-            arena.tick();
-            run.record(now, &arena);
-            if run.check(now, &mut arena) {
-                run.last_tick(now, program, &mut arena);
-                break;
-            }
-        }
-        if let Some(robot) = arena.robot_mut(0) {
-            hands::act(&mut deeds, now, robot);
-        }
-        let status = run.step(now, program, &mut arena);
-        run.hear(now, program.errors());
-        run.track(now, program, &arena);
-        arena.renew();
-        if let Status::Ended { with_errors, .. } = status {
-            match program.is_out_of_time() {
-                true => run.verdict = Some(Verdict::Unknown),
-                false => run.ended(now, with_errors, &mut arena),
-            }
-            break;
-        }
-        if now >= settings.longest_ms {
-            run.fail(now, words::too_long(f64::from(now) / 1000.0));
-            run.failure = Some(Failure::ModelTime);
-            break;
-        }
-        if (now / STEP_MS).is_multiple_of(CLOCK_TICKS) && began.elapsed() > settings.longest {
-            run.fail(now, words::too_slow(settings.longest.as_secs_f64()));
-            run.verdict = Some(Verdict::Unknown);
-            break;
-        }
-        now += STEP_MS;
-    }
-    let mut outcome = run.outcome(now, &arena);
-    outcome.running = program.running();
-    program.stop(&mut arena.robot(0));
-    outcome
-        .printed
-        .clone_from(&arena.robots()[0].shown().printed);
-    outcome
-}
-
 /// What changes while a run is judged.
 pub(super) struct Run<'a> {
     settings: &'a Settings,
@@ -207,7 +135,7 @@ pub(super) struct Run<'a> {
     heard: usize,
     /// Once it is known.
     pub verdict: Option<Verdict>,
-    failure: Option<Failure>,
+    pub failure: Option<Failure>,
 }
 
 impl<'a> Run<'a> {
@@ -272,7 +200,7 @@ impl<'a> Run<'a> {
 
     /// Keeps what can be seen of the first robot and its program. Only what was read anyway is shown as a reading: one more
     /// would draw from the noise of sensors, and change the run.
-    fn track(&mut self, now: u32, program: &dyn Program, arena: &Arena) {
+    pub fn track(&mut self, now: u32, program: &dyn Program, arena: &Arena) {
         let (true, Some(robot)) = (self.settings.is_tracking, arena.robots().first()) else {
             return;
         };
@@ -311,21 +239,32 @@ impl<'a> Run<'a> {
     }
 
     /// A step of the program; what it tells its robot is kept.
-    fn step(&mut self, now: u32, program: &mut dyn Program, arena: &mut Arena) -> Status {
+    pub fn step(&mut self, now: u32, program: &mut dyn Program, arena: &mut Arena) -> Status {
+        let mut status = Status::Running;
+        self.with_robot(now, arena, &mut |robot| status = program.step(now, robot));
+        status
+    }
+
+    /// Gives the first robot to somebody; what it is told is kept.
+    pub fn with_robot(&mut self, now: u32, arena: &mut Arena, act: &mut dyn FnMut(&mut dyn Brick)) {
         if !self.settings.is_recording {
-            return program.step(now, &mut arena.robot(0));
+            return act(&mut arena.robot(0));
         }
-        let mut robot = Recorder {
+        act(&mut Recorder {
             arena,
             robot: 0,
             ms: now,
             trajectory: &mut self.trajectory,
-        };
-        program.step(now, &mut robot)
+        });
+    }
+
+    /// What was said so far.
+    pub fn entries(&self) -> &[Entry] {
+        &self.entries
     }
 
     /// What the program still does in the tick in which the rules have decided.
-    fn last_tick(&mut self, now: u32, program: &mut dyn Program, arena: &mut Arena) {
+    pub fn last_tick(&mut self, now: u32, program: &mut dyn Program, arena: &mut Arena) {
         let mut robot = Recorder {
             arena,
             robot: 0,
@@ -393,7 +332,7 @@ impl<'a> Run<'a> {
     }
 
     /// Tells what is new among the errors of a program.
-    fn hear(&mut self, now: u32, errors: &[Problem]) {
+    pub fn hear(&mut self, now: u32, errors: &[Problem]) {
         for problem in errors.iter().skip(self.heard) {
             self.entries.push(Entry {
                 level: Level::Error,

@@ -34,6 +34,9 @@ pub(crate) struct CheckArgs {
     /// others came, and the block that each thread was at.
     #[arg(long)]
     pub explain: bool,
+    /// Run one diagram in the debugger: when the first rule has failed, what was can be looked at, and gone back to.
+    #[arg(long = "debug", conflicts_with_all = ["script", "log", "report", "trajectory", "svg", "html", "display", "results", "platform", "out"])]
+    pub is_debugging: bool,
     /// Lines that the program is given when it asks: answers for Input blocks, and what textual programs read.
     #[arg(long, value_name = "FILE")]
     pub inputs: Option<PathBuf>,

@@ -260,6 +260,7 @@ fn wanted(args: Model, is_script: bool) -> CheckArgs {
         language: language::of_system(),
         worker: false,
         is_one: true,
+        is_debugging: false,
         is_embedded: is_script,
     }
 }

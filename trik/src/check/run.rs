@@ -5,7 +5,7 @@
 
 use super::args::CheckArgs;
 use super::explain;
-use super::jobs::{Job, shown};
+use super::jobs::{Job, jobs, shown};
 use super::row::Row;
 use super::script::{self, Given, Language};
 use super::verdict::Verdict;
@@ -18,6 +18,7 @@ use crate::limits;
 use crate::output::Output;
 use lang_constraint::Level;
 use lang_diagram::lower::{World, lower};
+use lang_diagram::program::Program as Lowered;
 use lang_diagram::project::Project;
 use lang_text::problem::{Locale, Problem, Severity, Words};
 use sim::field::Locks;
@@ -109,7 +110,7 @@ fn fill(outcome: &Outcome, locale: Locale, row: &mut Row) {
     }
 }
 
-type Lines = Vec<String>;
+pub(crate) type Lines = Vec<String>;
 
 /// Why a run cannot be: for people, with places, and for the report, which has none.
 struct Refused {
@@ -168,45 +169,7 @@ fn judged(
         Some(log) if *log == job.solution => Solution::default(),
         _ => Solution::read(&job.solution, args)?,
     };
-    let field = match &job.field {
-        None => None,
-        Some(path) => Some(text(path, limits::WORLD_BYTES_MAX, args.language).map_err(line)?),
-    };
-    if let Some(world) = field {
-        solution.project.world = Some(world);
-        // The field has its own pictures.
-        solution.project.blobs = None;
-    }
-    let mut given = job.given.as_ref().or(args.task.as_ref());
-    if solution.project.world.is_none() && solution.script.is_some() {
-        let Some(path) = given.take() else {
-            let why = words::no_world(args.language);
-            return Err(vec![format!("{}: {why}", shown(&job.solution))].into());
-        };
-        // A program with text has no world of its own: it runs in the save that was given out, as it was.
-        solution.project = save(path, args)?;
-    }
-    let project = &solution.project;
-    // A diagram without a world runs in an empty one.
-    let world = project.world.as_deref().unwrap_or_default();
-    let place = job.field.as_deref().unwrap_or(&job.solution);
-    let texts = Texts {
-        world,
-        blobs: project.blobs.as_deref(),
-        templates: Some(&project.templates),
-    };
-    let task = Task::read(texts);
-    let refused = |problems: Vec<Problem>| Refused::of(place, &problems, args.language);
-    let (mut task, strange) = task.map_err(refused)?;
-    let mut strange = lines(place, &strange, args.language);
-    if let Some(given) = given {
-        let changed = hold(&mut task, given, args)?;
-        strange.extend(
-            changed
-                .into_iter()
-                .map(|why| format!("{}: {why}", shown(place))),
-        );
-    }
+    let (mut task, mut strange) = solution.task(job, args)?;
     if let Some(log) = &job.log {
         let text = text(log, limits::LOG_BYTES_MAX, args.language).map_err(line)?;
         let trajectory = Trajectory::read(&text);
@@ -354,6 +317,63 @@ impl Solution {
         })
     }
 
+    /// The task that is judged by: of the field, of a given save, or of its own world. A field replaces the whole world.
+    fn task(&mut self, job: &Job, args: &CheckArgs) -> Result<(Task, Lines), Refused> {
+        let field = match &job.field {
+            None => None,
+            Some(path) => Some(text(path, limits::WORLD_BYTES_MAX, args.language).map_err(line)?),
+        };
+        if let Some(world) = field {
+            self.project.world = Some(world);
+            // The field has its own pictures.
+            self.project.blobs = None;
+        }
+        let mut given = job.given.as_ref().or(args.task.as_ref());
+        if self.project.world.is_none() && self.script.is_some() {
+            let Some(path) = given.take() else {
+                let why = words::no_world(args.language);
+                return Err(vec![format!("{}: {why}", shown(&job.solution))].into());
+            };
+            // A program with text has no world of its own: it runs in the save that was given out, as it was.
+            self.project = save(path, args)?;
+        }
+        let project = &self.project;
+        // A diagram without a world runs in an empty one.
+        let world = project.world.as_deref().unwrap_or_default();
+        let place = job.field.as_deref().unwrap_or(&job.solution);
+        let texts = Texts {
+            world,
+            blobs: project.blobs.as_deref(),
+            templates: Some(&project.templates),
+        };
+        let task = Task::read(texts);
+        let refused = |problems: Vec<Problem>| Refused::of(place, &problems, args.language);
+        let (mut task, strange) = task.map_err(refused)?;
+        let mut strange = lines(place, &strange, args.language);
+        if let Some(given) = given {
+            let changed = hold(&mut task, given, args)?;
+            strange.extend(
+                changed
+                    .into_iter()
+                    .map(|why| format!("{}: {why}", shown(place))),
+            );
+        }
+        Ok((task, strange))
+    }
+
+    /// The diagram, lowered; the task gets the sensors that it needs.
+    fn diagram(&self, task: &mut Task, args: &CheckArgs) -> Result<Rc<Lowered>, Refused> {
+        let world = World::Simulated {
+            mailbox: false,
+            gamepad: args.gamepad.is_some(),
+        };
+        let lowered = lower(&self.project, world);
+        let lowered =
+            lowered.map_err(|problem| Refused::broken(vec![problem.in_locale(args.language)]))?;
+        task.plug_in(&self.project, &lowered.program);
+        Ok(Rc::new(lowered.program))
+    }
+
     /// The program, ready for its first step; the task gets the sensors that it needs.
     fn program(self, task: &mut Task, args: &CheckArgs) -> Result<Box<dyn Program>, Refused> {
         if let Some((language, text)) = &self.script {
@@ -365,20 +385,64 @@ impl Solution {
             };
             return script::open(*language, text, given).map_err(|why| line(why).into());
         }
-        let world = World::Simulated {
-            mailbox: false,
-            gamepad: args.gamepad.is_some(),
-        };
-        let lowered = lower(&self.project, world);
-        let lowered =
-            lowered.map_err(|problem| Refused::broken(vec![problem.in_locale(args.language)]))?;
-        task.plug_in(&self.project, &lowered.program);
-        let diagram = Diagram::new(Rc::new(lowered.program));
+        let diagram = Diagram::new(self.diagram(task, args)?);
         Ok(Box::new(match args.explain {
             true => diagram.remembering(),
             false => diagram,
         }))
     }
+}
+
+/// How a program that is debugged begins.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(crate) enum Start {
+    /// It is stopped before its first block.
+    Stopped,
+    /// It runs until something stops it.
+    Running,
+}
+
+/// A diagram that is ready to run in its world, for whoever runs it tick by tick.
+pub(crate) struct Staged {
+    pub project: Project,
+    pub program: Rc<Lowered>,
+    pub task: Task,
+    pub settings: Settings,
+    /// What is strange in the world.
+    pub strange: Lines,
+}
+
+/// The only diagram of the arguments, ready to run.
+///
+/// # Errors
+/// Lines that say why it cannot run: it is no diagram, or it, its world or its rules are broken.
+pub(crate) fn staged(args: &CheckArgs) -> Result<Staged, Lines> {
+    let jobs = jobs(args).map_err(line)?;
+    let [job] = &jobs[..] else {
+        return Err(vec![words::one_to_debug(jobs.len(), args.language)]);
+    };
+    let all = || {
+        let settings = Settings {
+            // A person thinks.
+            longest: Duration::MAX,
+            ..settings(args).map_err(line)?
+        };
+        let mut solution = Solution::read(&job.solution, args)?;
+        if solution.script.is_some() {
+            let why = "only diagrams have blocks to stop at; a program in Python is debugged by its own tools";
+            return Err(vec![format!("{}: {why}", shown(&job.solution))].into());
+        }
+        let (mut task, strange) = solution.task(job, args)?;
+        let program = solution.diagram(&mut task, args)?;
+        Ok(Staged {
+            project: solution.project,
+            program,
+            task,
+            settings,
+            strange,
+        })
+    };
+    all().map_err(|refused: Refused| refused.lines)
 }
 
 /// The program that a save holds beside its diagram.

@@ -356,3 +356,17 @@ mod tests {
         }
     }
 }
+
+/// Why several runs are not debugged.
+pub(super) fn one_to_debug(count: usize, locale: Locale) -> String {
+    let (before, after) = match locale {
+        Locale::English => (
+            "one diagram in one world is debugged at a time, not",
+            "runs",
+        ),
+        Locale::Russian => ("отлаживается одна диаграмма в одном мире, а запусков", "-"),
+    };
+    format!("{before} {count} {after}")
+        .trim_end_matches(" -")
+        .to_owned()
+}

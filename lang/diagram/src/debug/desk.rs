@@ -7,6 +7,7 @@ use super::order::{NoOrder, Order};
 use super::{Breakpoint, NoBack, NoBreakpoint, NotNow, Phase, Session, report};
 use crate::brick::Brick;
 use crate::limits;
+use crate::machine::Machine;
 use crate::machine::trace::Trace;
 use lang_text::json::{Object, quoted};
 use lang_text::problem::{Locale, Problem};
@@ -97,6 +98,11 @@ impl Desk {
     /// The program.
     pub fn session(&mut self) -> &mut Session {
         &mut self.session
+    }
+
+    /// The program as it is, whoever looks at its past.
+    pub fn live(&self) -> &Machine {
+        self.session.live()
     }
 
     /// Whether it is stopped at this moment of the present.

@@ -127,6 +127,16 @@ impl Session {
             .map_or(&self.machine, |past| &past.machine)
     }
 
+    /// The machine as it is, whoever looks at its past.
+    pub fn live(&self) -> &Machine {
+        &self.machine
+    }
+
+    /// The clocks of a moment at which the program is being stopped, as [`Machine::last_tick`] has it.
+    pub fn last_tick(&mut self, now: u32, brick: &mut dyn Brick, trace: &mut dyn Trace) {
+        self.machine.last_tick(now, brick, trace);
+    }
+
     /// Whether somebody looks at the past.
     pub fn is_past(&self) -> bool {
         self.past.is_some()

@@ -1,9 +1,9 @@
 //! A program as indented sentences, from its structured form.
 //!
-//! Owns the sentences around blocks; what blocks do is told by their names and properties.
+//! Owns the sentences around blocks, and which blocks a line tells of; what blocks do is told by their names and
+//! properties.
 
 use std::collections::HashMap;
-use std::fmt::Write as _;
 
 use super::words::Word;
 use super::{details, name};
@@ -16,11 +16,29 @@ use crate::structure::{Jumps, structure};
 use crate::tree::{Condition, Tree};
 use lang_text::problem::{Locale, Problem};
 
-/// The program of a project in sentences.
+/// A line of sentences.
+#[derive(Clone, Debug, Default, Eq, PartialEq)]
+pub struct Line {
+    /// The sentence with its indentation.
+    pub text: String,
+    /// Ids of the blocks that it tells of. A block that several ways lead to may be told more than once.
+    pub blocks: Vec<Box<str>>,
+}
+
+/// The program of a project in sentences, as one text.
+///
+/// # Errors
+/// Those of [`lines`].
+pub fn outline(project: &Project, locale: Locale) -> Result<String, Vec<Problem>> {
+    let lines = lines(project, locale)?;
+    Ok(lines.iter().flat_map(|line| [&line.text, "\n"]).collect())
+}
+
+/// The program of a project in sentences, line by line.
 ///
 /// # Errors
 /// What makes it unclear what the program does: links that are missing or too many, unclear threads.
-pub fn outline(project: &Project, locale: Locale) -> Result<String, Vec<Problem>> {
+pub fn lines(project: &Project, locale: Locale) -> Result<Vec<Line>, Vec<Problem>> {
     let lowered = lower(project, World::Robot).map_err(|problem| vec![problem])?;
     let program = &lowered.program;
     let plan = plan(program)?;
@@ -31,7 +49,7 @@ pub fn outline(project: &Project, locale: Locale) -> Result<String, Vec<Problem>
         blocks: blocks.map(|block| (block.id.as_str(), block)).collect(),
         locale,
         function: None,
-        out: String::new(),
+        out: Vec::new(),
     };
     for function in &plan.functions {
         writer.function(function);
@@ -46,7 +64,7 @@ struct Writer<'a> {
     blocks: HashMap<&'a str, &'a Block>,
     locale: Locale,
     function: Option<&'a Function>,
-    out: String,
+    out: Vec<Line>,
 }
 
 impl<'a> Writer<'a> {
@@ -54,8 +72,13 @@ impl<'a> Writer<'a> {
         word.text(self.locale)
     }
 
-    fn line(&mut self, depth: usize, text: &str) {
-        let _ = writeln!(self.out, "{:width$}{text}", "", width = depth * 2);
+    /// A line that tells of these blocks.
+    fn line(&mut self, depth: usize, text: &str, blocks: &[usize]) {
+        let nodes = blocks.iter().filter_map(|&block| self.node(block));
+        let ids = nodes.filter_map(|node| self.program.id(node));
+        let blocks = ids.map(Into::into).collect();
+        let text = format!("{:width$}{text}", "", width = depth * 2);
+        self.out.push(Line { text, blocks });
     }
 
     fn subprogram(&self, name: &str) -> String {
@@ -80,9 +103,11 @@ impl<'a> Writer<'a> {
             }
         };
         if !self.out.is_empty() {
-            self.out.push('\n');
+            self.out.push(Line::default());
         }
-        self.line(0, &format!("{title}:"));
+        let starts = (0..function.nodes.len()).filter(|&block| self.is_mark(block));
+        let starts: Vec<usize> = starts.collect();
+        self.line(0, &format!("{title}:"), &starts);
         let structured = structure(&function.graph, Jumps::Plain);
         self.list(&structured.body, 1);
     }
@@ -102,9 +127,14 @@ impl<'a> Writer<'a> {
         }
     }
 
-    fn body(&mut self, head: &str, list: &[Tree], depth: usize) {
-        self.line(depth, &format!("{head}:"));
+    fn body(&mut self, (head, blocks): (&str, &[usize]), list: &[Tree], depth: usize) {
+        self.line(depth, &format!("{head}:"), blocks);
         self.list(list, depth + 1);
+    }
+
+    fn is_mark(&self, block: usize) -> bool {
+        let row = self.node(block).and_then(|node| self.program.row(node));
+        row.is_some_and(Row::is_mark)
     }
 
     fn tree(&mut self, tree: &Tree, depth: usize) {
@@ -112,13 +142,13 @@ impl<'a> Writer<'a> {
             Tree::Step(block) => self.step(*block, depth),
             Tree::If { when, yes, no } => {
                 let head = format!("{} {}", self.word(Word::If), self.condition(when));
-                self.body(&head, yes, depth);
+                self.body((&head, &tests(when)), yes, depth);
                 if !no.is_empty() {
-                    self.body(self.word(Word::Otherwise), no, depth);
+                    self.body((self.word(Word::Otherwise), &[]), no, depth);
                 }
             }
             Tree::Switch { on, branches } => self.switch(*on, branches, depth),
-            Tree::Loop { body, .. } => self.body(self.word(Word::Forever), body, depth),
+            Tree::Loop { body, .. } => self.body((self.word(Word::Forever), &[]), body, depth),
             Tree::While { when, body, .. } => {
                 let head = match when {
                     Condition::Test(block) if self.is_counted(*block) => {
@@ -131,28 +161,25 @@ impl<'a> Writer<'a> {
                         format!("{} {}", self.word(Word::While), self.condition(when))
                     }
                 };
-                self.body(&head, body, depth);
+                self.body((&head, &tests(when)), body, depth);
             }
             Tree::DoWhile { when, body, .. } => {
-                self.body(self.word(Word::Repeat), body, depth);
+                self.body((self.word(Word::Repeat), &[]), body, depth);
                 let foot = format!("{} {}", self.word(Word::Until), self.condition(when));
-                self.line(depth, &foot);
+                self.line(depth, &foot, &tests(when));
             }
-            Tree::Break(_) => self.line(depth, self.word(Word::Leave)),
-            Tree::Continue(_) => self.line(depth, self.word(Word::Again)),
-            Tree::End(_) => self.line(depth, self.word(Word::End)),
+            Tree::Break(_) => self.line(depth, self.word(Word::Leave), &[]),
+            Tree::Continue(_) => self.line(depth, self.word(Word::Again), &[]),
+            Tree::End(_) => self.line(depth, self.word(Word::End), &[]),
             Tree::Set { variable, value } => {
                 let text = format!("{} {} = {value}", self.word(Word::Place), variable + 1);
-                self.line(depth, &text);
+                self.line(depth, &text, &[]);
             }
             Tree::Choice { variable, arms } => {
                 for (value, body) in arms {
                     let (word, place) = (self.word(Word::If), self.word(Word::Place));
-                    self.body(
-                        &format!("{word} {place} {} = {value}", variable + 1),
-                        body,
-                        depth,
-                    );
+                    let head = format!("{word} {place} {} = {value}", variable + 1);
+                    self.body((&head, &[]), body, depth);
                 }
             }
             Tree::Goto(_) | Tree::Label(_) => {}
@@ -161,7 +188,7 @@ impl<'a> Writer<'a> {
 
     fn switch(&mut self, on: usize, branches: &[(Vec<usize>, Vec<Tree>)], depth: usize) {
         let head = format!("{} {}", self.word(Word::Depending), self.test(on));
-        self.line(depth, &format!("{head}:"));
+        self.line(depth, &format!("{head}:"), &[on]);
         let program = self.program;
         let guards = match self.node(on).map(|node| program.ops[node as usize]) {
             Some(Op::Switch { switch }) => &program.switches[switch as usize].branches[..],
@@ -175,7 +202,7 @@ impl<'a> Writer<'a> {
             } else {
                 format!("{} {}", self.word(Word::Case), named.join(", "))
             };
-            self.body(&head, body, depth + 1);
+            self.body((&head, &[]), body, depth + 1);
         }
     }
 
@@ -183,20 +210,20 @@ impl<'a> Writer<'a> {
         let Some(node) = self.node(block) else {
             return;
         };
-        if self.program.row(node).is_some_and(Row::is_mark) {
+        if self.is_mark(block) {
             return;
         }
         if let Some(begun) = self.function.and_then(|function| function.begun.get(&node)) {
             for (name, _) in begun {
                 let text = format!("{} {}", self.word(Word::Begin), super::shortened(name));
-                self.line(depth, &text);
+                self.line(depth, &text, &[block]);
             }
             return;
         }
-        let Some(block) = self.block(block) else {
+        let Some(shown) = self.block(block) else {
             return;
         };
-        let mut said = name(block, self.locale);
+        let mut said = name(shown, self.locale);
         if let Op::Call { call, .. } = self.program.ops[node as usize] {
             let diagram = self.program.calls[call as usize].diagram;
             let sheet = diagram.and_then(|diagram| self.program.diagrams.get(diagram as usize));
@@ -205,9 +232,9 @@ impl<'a> Writer<'a> {
                 super::shortened(sheet.map_or("", |sheet| &sheet.name))
             );
         }
-        let details = details(block);
+        let details = details(shown);
         let colon = if details.is_empty() { "" } else { ": " };
-        self.line(depth, &format!("{said}{colon}{details}"));
+        self.line(depth, &format!("{said}{colon}{details}"), &[block]);
     }
 
     fn is_counted(&self, block: usize) -> bool {
@@ -234,5 +261,18 @@ impl<'a> Writer<'a> {
     fn both(&self, left: &Condition, word: Word, right: &Condition) -> String {
         let (left, right) = (self.condition(left), self.condition(right));
         format!("({left}) {} ({right})", self.word(word))
+    }
+}
+
+/// The blocks that a condition asks.
+fn tests(when: &Condition) -> Vec<usize> {
+    match when {
+        Condition::Test(block) => vec![*block],
+        Condition::Not(inner) => tests(inner),
+        Condition::And(left, right) | Condition::Or(left, right) => {
+            let mut all = tests(left);
+            all.extend(tests(right));
+            all
+        }
     }
 }

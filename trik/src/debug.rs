@@ -1,0 +1,129 @@
+//! `trik debug`: a debugger for diagrams, forwards and backwards, in a terminal.
+//!
+//! Owns the options, and which target a front end gets. `stage` is a simulated robot in this process; `terminal` talks to a
+//! person, `listing` is the diagram as text, `words` what can be typed, `told` what comes back. The debugger itself is in
+//! `lang_diagram::debug`.
+
+pub(crate) mod listing;
+pub(crate) mod stage;
+pub(crate) mod target;
+mod terminal;
+pub(crate) mod told;
+mod words;
+
+use crate::check::{CheckArgs, Staged, Start, staged};
+use crate::language;
+use crate::refusal::{Refusal, UNREADABLE, say};
+use clap::{Args, FromArgMatches};
+use lang_text::problem::Locale;
+use listing::Listing;
+use stage::Stage;
+use std::ffi::OsString;
+use std::path::PathBuf;
+use terminal::Terminal;
+
+/// What `trik debug` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct DebugArgs {
+    /// The diagram, a file NAME.qrs.
+    pub file: PathBuf,
+    #[command(flatten)]
+    pub world: WorldArgs,
+}
+
+/// In which world a diagram is debugged.
+#[derive(Args, Clone, Debug, Default)]
+pub(crate) struct WorldArgs {
+    /// A world with its rules instead of the diagram's own.
+    #[arg(long, value_name = "WORLD.xml")]
+    pub field: Option<PathBuf>,
+    /// The save that pupils were given: what it locks is taken from it, with its rules.
+    #[arg(long, value_name = "TASK.qrs", conflicts_with = "field")]
+    pub task: Option<PathBuf>,
+    /// Lines with answers for Input blocks.
+    #[arg(long, value_name = "FILE")]
+    pub inputs: Option<PathBuf>,
+    /// What a person does with the gamepad: lines such as "1.5 pad 1 30 -50", with the time in seconds.
+    #[arg(long, value_name = "FILE")]
+    pub gamepad: Option<PathBuf>,
+    /// Seed of everything random. The same seed gives the same run.
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    pub seed: u32,
+    /// How many times faster than real time the program runs [default: as fast as can be].
+    #[arg(long, value_name = "TIMES", value_parser = speed)]
+    pub speed: Option<f64>,
+    /// Language of messages and of the text of the diagram: en or ru.
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
+    pub language: Locale,
+}
+
+fn speed(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(times) if (0.01..=1000.0).contains(&times) => Ok(times),
+        Ok(_) | Err(_) => Err("a number from 0.01 to 1000 is wanted".to_owned()),
+    }
+}
+
+impl WorldArgs {
+    /// The same as options of a run that is judged, whose limits are there for graders and not for people.
+    pub(crate) fn check_args(&self, file: PathBuf) -> Result<CheckArgs, clap::Error> {
+        let mut words: Vec<OsString> = vec!["check".into()];
+        let files = [
+            ("--field", &self.field),
+            ("--task", &self.task),
+            ("--inputs", &self.inputs),
+            ("--gamepad", &self.gamepad),
+        ];
+        for (name, path) in files {
+            if let Some(path) = path {
+                words.extend([name.into(), path.clone().into_os_string()]);
+            }
+        }
+        words.push(format!("--seed={}", self.seed).into());
+        words.extend(["--".into(), file.into_os_string()]);
+        let command = CheckArgs::augment_args(clap::Command::new("check"));
+        let matches = command.try_get_matches_from(words)?;
+        let mut args = CheckArgs::from_arg_matches(&matches)?;
+        args.language = self.language;
+        Ok(args)
+    }
+
+    /// The diagram in its world, ready to run.
+    ///
+    /// # Errors
+    /// Lines that say why it cannot run.
+    pub(crate) fn stage(&self, file: PathBuf) -> Result<Staged, Vec<String>> {
+        let args = self.check_args(file);
+        let args = args.map_err(|why| vec![why.to_string()])?;
+        staged(&args)
+    }
+}
+
+/// Debugs a diagram in a simulated world.
+///
+/// # Errors
+/// It cannot run, or the terminal is gone.
+pub(crate) fn run(args: &DebugArgs) -> Result<u8, Refusal> {
+    let staged = args.world.stage(args.file.clone()).map_err(refusal)?;
+    talk(&staged, args.world.speed, Start::Stopped)
+}
+
+/// A person debugs what was prepared.
+///
+/// # Errors
+/// The terminal is gone.
+pub(crate) fn talk(staged: &Staged, speed: Option<f64>, start: Start) -> Result<u8, Refusal> {
+    say(&staged.strange);
+    let listing = Listing::of(&staged.project, staged.settings.locale);
+    let mut stage = Stage::of(staged, start).at_speed(speed);
+    Terminal::new(&mut stage, listing).run()?;
+    Ok(0)
+}
+
+/// Lines that say why a diagram cannot run.
+pub(crate) fn refusal(lines: Vec<String>) -> Refusal {
+    Refusal {
+        lines: lines.iter().map(|line| format!("trik: {line}")).collect(),
+        code: UNREADABLE,
+    }
+}

@@ -1,0 +1,110 @@
+//! The text of a diagram that a person debugs, and where each block stands in it.
+//!
+//! Owns the lines: those of `trik show` where it is clear what the diagram does, else a line for each block. Every block has
+//! a line, so that a program that is stopped can always be shown.
+
+use crate::terminal::harmless;
+use lang_diagram::blocks;
+use lang_diagram::project::Project;
+use lang_diagram::show::outline::{self, Line};
+use lang_text::problem::Locale;
+use std::collections::HashMap;
+
+/// A diagram as lines.
+#[derive(Debug)]
+pub(crate) struct Listing {
+    lines: Vec<Line>,
+    /// By block: its first line.
+    places: HashMap<Box<str>, usize>,
+}
+
+impl Listing {
+    pub(crate) fn of(project: &Project, locale: Locale) -> Self {
+        let lines = outline::lines(project, locale);
+        let mut listing = Self {
+            lines: lines.unwrap_or_default(),
+            places: HashMap::new(),
+        };
+        listing.find_places();
+        listing.add_others(project, locale);
+        listing.find_places();
+        listing
+    }
+
+    fn find_places(&mut self) {
+        for (index, line) in self.lines.iter().enumerate() {
+            for block in &line.blocks {
+                self.places.entry(block.clone()).or_insert(index);
+            }
+        }
+    }
+
+    /// Blocks that the sentences do not tell of.
+    fn add_others(&mut self, project: &Project, locale: Locale) {
+        for diagram in &project.diagrams {
+            let mut is_first = true;
+            for block in &diagram.blocks {
+                let row = blocks::find(&block.kind);
+                let is_told = self.places.contains_key(block.id.as_str());
+                if is_told || block.kind.contains("Comment") {
+                    continue;
+                }
+                if is_first {
+                    is_first = false;
+                    if !self.lines.is_empty() {
+                        self.lines.push(Line::default());
+                    }
+                    self.lines.push(Line {
+                        text: format!("{}, other blocks:", diagram.name),
+                        blocks: Vec::new(),
+                    });
+                }
+                let name = row.map_or(block.kind.as_str(), |row| row.shown_in(locale));
+                self.lines.push(Line {
+                    text: format!("  {name}"),
+                    blocks: vec![block.id.as_str().into()],
+                });
+            }
+        }
+    }
+
+    /// How many lines there are.
+    pub(crate) fn len(&self) -> usize {
+        self.lines.len()
+    }
+
+    /// The line of a block, from 1; 1 if there is none.
+    pub(crate) fn line_of(&self, block: &str) -> usize {
+        self.places.get(block).map_or(1, |index| index + 1)
+    }
+
+    /// Whether there is a block with this id.
+    pub(crate) fn has(&self, block: &str) -> bool {
+        self.places.contains_key(block)
+    }
+
+    /// The blocks of a line, from 1.
+    pub(crate) fn blocks(&self, line: usize) -> &[Box<str>] {
+        let line = line.checked_sub(1).and_then(|index| self.lines.get(index));
+        line.map_or(&[], |line| &line.blocks)
+    }
+
+    /// The first line at or after this one that has a block, from 1.
+    pub(crate) fn line_with_block(&self, from: usize) -> Option<usize> {
+        (from.max(1)..=self.lines.len()).find(|line| !self.blocks(*line).is_empty())
+    }
+
+    /// A line, from 1, for a terminal.
+    pub(crate) fn text(&self, line: usize) -> String {
+        let line = line.checked_sub(1).and_then(|index| self.lines.get(index));
+        line.map_or_else(String::new, |line| harmless(&line.text))
+    }
+
+    /// All lines as one text.
+    pub(crate) fn whole(&self) -> String {
+        let lines = self.lines.iter();
+        lines
+            .flat_map(|line| [harmless(&line.text), "\n".to_owned()])
+            .collect()
+    }
+}

@@ -1,0 +1,224 @@
+//! A diagram that somebody debugs in a simulated world: in this process, with model time that stands still at a stop.
+//!
+//! Owns the run, where its robot was at each moment, and what was said of it so far. Rules, program and debugger are those
+//! of `sim` and `lang-diagram`.
+
+use super::target::{Channel, Event, Target};
+use crate::check::{Staged, Start};
+use crate::error::Error;
+use crate::limits;
+use lang_constraint::Level;
+use lang_diagram::debug::order::Order;
+use serde_json::Value;
+use sim::judge::debugged::{self, Debugged};
+use sim::judge::{Outcome, Progress, Settings, Task, Trial, Verdict};
+use std::collections::VecDeque;
+use std::time::{Duration, Instant};
+
+/// Ticks between two looks at the clock.
+const TICKS: usize = 16;
+
+/// A run that waits for orders.
+pub(crate) struct Stage<'a> {
+    trial: Option<Trial<'a>>,
+    program: Debugged,
+    outcome: Option<Outcome>,
+    tag: u32,
+    /// Where the robot was: milliseconds, x, y, degrees.
+    poses: VecDeque<(u32, [f64; 3])>,
+    /// How much of what was said and printed was passed on.
+    entries: usize,
+    printed: usize,
+    settings: &'a Settings,
+    /// The program is faster than time by this; none: as fast as can be.
+    speed: Option<f64>,
+    /// When the model's time was what, while it runs at a speed.
+    pace: Option<(Instant, u32)>,
+}
+
+impl<'a> Stage<'a> {
+    /// Stopped before the first block.
+    pub(crate) fn new(task: &Task, program: Debugged, settings: &'a Settings) -> Self {
+        Self {
+            trial: Some(Trial::new(task, &program, settings)),
+            program,
+            outcome: None,
+            tag: 0,
+            poses: VecDeque::new(),
+            entries: 0,
+            printed: 0,
+            settings,
+            speed: None,
+            pace: None,
+        }
+    }
+
+    /// A run of what was prepared.
+    pub(crate) fn of(staged: &'a Staged, start: Start) -> Self {
+        let mut program = Debugged::new(staged.program.clone(), staged.settings.locale);
+        match start {
+            Start::Stopped => program.desk.session().debugger().pause(),
+            Start::Running => {}
+        }
+        Self::new(&staged.task, program, &staged.settings)
+    }
+
+    /// Model time goes so many times faster than real time.
+    pub(crate) fn at_speed(mut self, speed: Option<f64>) -> Self {
+        self.speed = speed;
+        self
+    }
+
+    /// How the run has ended, if it has.
+    pub(crate) fn outcome(&self) -> Option<&Outcome> {
+        self.outcome.as_ref()
+    }
+
+    fn progress(&self) -> Progress {
+        self.trial.as_ref().map_or(Progress::Over, Trial::progress)
+    }
+
+    fn note_pose(&mut self) {
+        let Some(trial) = &self.trial else { return };
+        let Some(robot) = trial.arena().robots().first() else {
+            return;
+        };
+        let pose = robot.pose();
+        if self.poses.len() >= limits::DEBUG_POSES_MAX {
+            self.poses.pop_front();
+        }
+        self.poses
+            .push_back((trial.now(), [pose.x, pose.y, pose.degrees]));
+    }
+
+    /// Ends the run if it is over.
+    fn end_if_over(&mut self) {
+        if self.outcome.is_none()
+            && self.progress() == Progress::Over
+            && let Some(trial) = self.trial.take()
+        {
+            self.outcome = Some(trial.outcome(&mut self.program));
+        }
+    }
+
+    /// What is new of what was said.
+    fn said(&mut self, events: &mut Vec<Event>) {
+        let (entries, printed) = match (&self.trial, &self.outcome) {
+            (Some(trial), _) => {
+                let shown = trial.arena().robots().first().map(|robot| robot.shown());
+                let printed = shown.map_or(&[][..], |shown| &shown.printed);
+                (trial.entries(), printed)
+            }
+            (None, Some(outcome)) => (&outcome.entries[..], &outcome.printed[..]),
+            (None, None) => (&[][..], &[][..]),
+        };
+        let lines = printed.iter().skip(self.printed);
+        events.extend(lines.map(|line| Event::Said(Channel::Output, line.clone())));
+        self.printed = self.printed.max(printed.len());
+        let told = entries
+            .iter()
+            .skip(self.entries)
+            .filter(|entry| entry.level != Level::Variables);
+        events.extend(told.map(|entry| Event::Said(Channel::Message, entry.line())));
+        self.entries = self.entries.max(entries.len());
+    }
+
+    fn news(&mut self) -> Vec<Event> {
+        let news = self.program.desk.news();
+        let mut events: Vec<Event> = news
+            .iter()
+            .filter_map(|text| Some(Event::Told(serde_json::from_str(text).ok()?)))
+            .collect();
+        self.said(&mut events);
+        events
+    }
+
+    /// How long to wait until the next tick is due.
+    fn due(&mut self, now: u32) -> Duration {
+        let Some(speed) = self.speed else {
+            return Duration::ZERO;
+        };
+        let (began, from) = *self.pace.get_or_insert((Instant::now(), now));
+        let passed = f64::from(now.saturating_sub(from)) / 1000.0 / speed;
+        Duration::from_secs_f64(passed).saturating_sub(began.elapsed())
+    }
+}
+
+/// How a run has ended, for a person.
+fn ending(outcome: &Outcome) -> String {
+    let seconds = f64::from(outcome.ms) / 1000.0;
+    let what = match outcome.verdict {
+        Verdict::Accomplished => "the task is accomplished",
+        Verdict::Ended => "the program has ended",
+        Verdict::Failed => "the task is not accomplished",
+        Verdict::Unknown => "the run was given up",
+    };
+    format!("{what} at {seconds:.2} s of model time")
+}
+
+impl Target for Stage<'_> {
+    fn order(&mut self, order: &Order) -> Result<Value, Error> {
+        self.tag += 1;
+        self.pace = None;
+        let text = order.to_string();
+        let answer = match &mut self.trial {
+            Some(trial) => debugged::order(trial, &mut self.program, self.tag, &text),
+            None => debugged::order_after(&mut self.program, self.tag, &text),
+        };
+        self.end_if_over();
+        serde_json::from_str(&answer).map_err(|why| Error::Robot(why.to_string()))
+    }
+
+    fn turn(&mut self, wait: Duration) -> Result<Vec<Event>, Error> {
+        let until = Instant::now() + wait;
+        let was_over = self.outcome.is_some();
+        'turn: while self.progress() == Progress::Runs {
+            for _ in 0..TICKS {
+                let Some(trial) = &mut self.trial else {
+                    break 'turn;
+                };
+                let now = trial.now();
+                let progress = trial.tick(&mut self.program);
+                self.note_pose();
+                if progress != Progress::Runs {
+                    break 'turn;
+                }
+                let due = self
+                    .due(now)
+                    .min(until.saturating_duration_since(Instant::now()));
+                if !due.is_zero() {
+                    std::thread::sleep(due);
+                }
+                if self.speed.is_some() && Instant::now() >= until {
+                    break 'turn;
+                }
+            }
+            if Instant::now() >= until {
+                break;
+            }
+        }
+        self.end_if_over();
+        let mut events = self.news();
+        if let (false, Some(outcome)) = (was_over, &self.outcome) {
+            events.push(Event::Over(ending(outcome)));
+        }
+        if events.is_empty() && self.progress() != Progress::Runs {
+            std::thread::sleep(until.saturating_duration_since(Instant::now()));
+        }
+        Ok(events)
+    }
+
+    fn scene(&self, ms: u64) -> Option<String> {
+        let before = self.poses.partition_point(|(at, _)| u64::from(*at) <= ms);
+        let (at, [x, y, degrees]) = self.poses.get(before.checked_sub(1)?)?;
+        let task = if self.settings.is_marking {
+            ", markers draw"
+        } else {
+            ""
+        };
+        Some(format!(
+            "at {:.2} s the robot is at x {x:.1}, y {y:.1} px and looks to {degrees:.1} degrees{task}",
+            f64::from(*at) / 1000.0
+        ))
+    }
+}

@@ -1,0 +1,57 @@
+//! Where a diagram runs that somebody debugs: a simulated robot in this process, or a robot elsewhere.
+//!
+//! Owns the border. Front ends (the terminal, an editor) know no more of a robot than this.
+
+use crate::error::Error;
+use lang_diagram::debug::order::Order;
+use serde_json::Value;
+use std::time::Duration;
+
+/// A diagram with its debugger.
+pub(crate) trait Target {
+    /// Gives an order and waits for its answer, a JSON object.
+    ///
+    /// # Errors
+    /// The robot does not answer. A refusal is an answer.
+    fn order(&mut self, order: &Order) -> Result<Value, Error>;
+
+    /// Lets the program run for about so long, or waits for something to happen; what has happened.
+    ///
+    /// # Errors
+    /// The robot is gone.
+    fn turn(&mut self, wait: Duration) -> Result<Vec<Event>, Error>;
+
+    /// What the world looks like at a time of the program, in a line; none if nobody knows.
+    fn scene(&self, ms: u64) -> Option<String>;
+}
+
+/// Something that has happened.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Event {
+    /// The debugger has told something, a JSON object.
+    Told(Value),
+    /// The program, or somebody about it, has said something.
+    Said(Channel, String),
+    /// The run is over, and why.
+    Over(String),
+}
+
+/// By which way something was said.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(crate) enum Channel {
+    /// The program has printed it.
+    Output,
+    /// It is an error or a message of rules.
+    Message,
+}
+
+/// Whether an answer says that the order was carried out; else why not.
+pub(crate) fn done(answer: &Value) -> Result<(), String> {
+    match answer.get("done").and_then(Value::as_bool) {
+        Some(true) => Ok(()),
+        Some(false) | None => {
+            let why = answer.get("why").and_then(Value::as_str);
+            Err(why.unwrap_or("the robot has not understood it").to_owned())
+        }
+    }
+}

@@ -1,0 +1,411 @@
+//! A debugger in a terminal: lines in, sentences out.
+//!
+//! Owns what a person sees. The program runs while nothing is asked for; Ctrl-C stops it. Lines that come from a file or a
+//! pipe are read one after the other, each when the program has stopped.
+
+use super::listing::Listing;
+use super::target::{Channel, Event, Target, done};
+use super::told::{State, Told};
+use super::words::{ROWS, Typed, understand};
+use crate::error::Error;
+use crate::limits;
+use crate::terminal::harmless;
+use lang_diagram::debug::order::Order;
+use nix::sys::signal::{SigSet, Signal};
+use nix::sys::signalfd::{SfdFlags, SignalFd};
+use serde_json::Value;
+use std::io::{self, BufRead, IsTerminal, Read, Write};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::time::Duration;
+
+/// Lines of the diagram that are shown before and after one.
+const AROUND: usize = 5;
+/// How long one look at the program and the keyboard takes.
+const TURN: Duration = Duration::from_millis(50);
+
+/// A debugger with its person.
+pub(crate) struct Terminal<'a> {
+    target: &'a mut dyn Target,
+    listing: Listing,
+    told: Told,
+    /// Whether somebody reads prompts.
+    is_interactive: bool,
+    last: String,
+}
+
+impl<'a> Terminal<'a> {
+    pub(crate) fn new(target: &'a mut dyn Target, listing: Listing) -> Self {
+        Self {
+            target,
+            listing,
+            told: Told::default(),
+            is_interactive: io::stdin().is_terminal() && io::stdout().is_terminal(),
+            last: String::new(),
+        }
+    }
+
+    /// Talks until the person has enough.
+    ///
+    /// # Errors
+    /// The robot is gone, or nobody can hear.
+    pub(crate) fn run(&mut self) -> Result<(), Error> {
+        let keys = interrupts().map_err(|error| Error::system("signals", error))?;
+        let lines = lines();
+        self.say("This is trik debug; help shows what can be typed.")?;
+        self.wait(&keys)?;
+        loop {
+            self.prompt()?;
+            let Some(line) = self.line(&lines, &keys)? else {
+                return Ok(());
+            };
+            if !self.is_interactive {
+                self.say(&format!("(trik) {}", harmless(&line)))?;
+            }
+            // An empty line is the line before.
+            if !line.trim().is_empty() {
+                self.last = line;
+            }
+            if self.last.trim().is_empty() {
+                continue;
+            }
+            match understand(&self.last, &self.listing) {
+                Err(why) => self.say(&why.to_string())?,
+                Ok(Typed::Quit) => return Ok(()),
+                Ok(typed) => self.carry_out(&typed, &keys)?,
+            }
+        }
+    }
+
+    fn say(&self, line: &str) -> Result<(), Error> {
+        let mut out = io::stdout().lock();
+        let said = writeln!(out, "{line}").and_then(|()| out.flush());
+        said.map_err(|error| Error::system("standard output", error))
+    }
+
+    fn prompt(&self) -> Result<(), Error> {
+        if !self.is_interactive {
+            return Ok(());
+        }
+        let mut out = io::stdout().lock();
+        let said = out.write_all(b"(trik) ").and_then(|()| out.flush());
+        said.map_err(|error| Error::system("standard output", error))
+    }
+
+    /// The next line; none at the end.
+    fn line(&mut self, lines: &Receiver<String>, keys: &SignalFd) -> Result<Option<String>, Error> {
+        loop {
+            match lines.recv_timeout(TURN) {
+                Ok(line) => return Ok(Some(line)),
+                Err(RecvTimeoutError::Disconnected) => return Ok(None),
+                Err(RecvTimeoutError::Timeout) => {
+                    if pressed(keys) && self.is_interactive {
+                        self.say("\ntype quit to end")?;
+                        self.prompt()?;
+                    }
+                    // A robot goes on living while a person thinks.
+                    let events = self.target.turn(Duration::ZERO)?;
+                    self.hear(&events)?;
+                }
+            }
+        }
+    }
+
+    fn carry_out(&mut self, typed: &Typed, keys: &SignalFd) -> Result<(), Error> {
+        match typed {
+            Typed::Order(order) => self.order(order, keys),
+            Typed::List(line) => self.list(*line),
+            Typed::Threads => {
+                self.look()?;
+                self.threads()
+            }
+            Typed::Calls => {
+                self.look()?;
+                self.calls()
+            }
+            Typed::Variables => {
+                self.look()?;
+                self.variables()
+            }
+            Typed::Scene => match self.target.scene(self.told.ms) {
+                Some(scene) => self.say(&scene),
+                None => self.say("nobody knows where the robot is"),
+            },
+            Typed::Help => self.help(),
+            // The caller ends at this one.
+            Typed::Quit => Ok(()),
+        }
+    }
+
+    /// Where the program is now: a person may have set a variable since it stopped.
+    fn look(&mut self) -> Result<(), Error> {
+        let answer = self.target.order(&Order::Look)?;
+        if let Some(told) = answer.get("program").and_then(Told::read) {
+            self.told = told;
+        }
+        Ok(())
+    }
+
+    fn order(&mut self, order: &Order, keys: &SignalFd) -> Result<(), Error> {
+        let answer = self.target.order(order)?;
+        if let Err(why) = done(&answer) {
+            return self.say(&harmless(&why));
+        }
+        if let Some(value) = answer.get("value").and_then(Value::as_str) {
+            return self.say(&harmless(value));
+        }
+        if let Some(number) = answer.get("number") {
+            return self.say(&format!("breakpoint {number}"));
+        }
+        if let Some(points) = answer.get("breakpoints").and_then(Value::as_array) {
+            return self.breakpoints(points);
+        }
+        let Some(told) = answer.get("program").and_then(Told::read) else {
+            return Ok(());
+        };
+        self.told = told;
+        match self.told.state {
+            State::Running => self.wait(keys),
+            State::Past | State::Stopped => {
+                // What was told of it meanwhile says the same again.
+                let events = self.target.turn(Duration::ZERO)?;
+                self.hear_but_states(&events)?;
+                self.show_stop()
+            }
+            State::Ended => {
+                let events = self.target.turn(Duration::ZERO)?;
+                self.hear(&events)
+            }
+        }
+    }
+
+    /// Lets the program run until it stops.
+    fn wait(&mut self, keys: &SignalFd) -> Result<(), Error> {
+        loop {
+            let events = self.target.turn(TURN)?;
+            let has_ended = events.iter().any(|event| matches!(event, Event::Over(_)));
+            self.hear(&events)?;
+            if has_ended || self.told.state != State::Running {
+                return Ok(());
+            }
+            if pressed(keys) {
+                self.target.order(&Order::Pause)?;
+            }
+        }
+    }
+
+    fn hear(&mut self, events: &[Event]) -> Result<(), Error> {
+        self.hear_but_states(events)?;
+        let states = events.iter().filter_map(|event| match event {
+            Event::Told(value) => Told::read(value),
+            Event::Said(..) | Event::Over(_) => None,
+        });
+        let Some(told) = states.last() else {
+            return Ok(());
+        };
+        self.told = told;
+        match self.told.state {
+            State::Stopped | State::Past => self.show_stop(),
+            State::Ended => self.say(&format!("the program has ended at {}", self.time())),
+            State::Running => Ok(()),
+        }
+    }
+
+    fn hear_but_states(&mut self, events: &[Event]) -> Result<(), Error> {
+        for event in events {
+            match event {
+                Event::Told(value) => {
+                    for line in value
+                        .get("log")
+                        .and_then(Value::as_array)
+                        .into_iter()
+                        .flatten()
+                    {
+                        self.say(&harmless(line.as_str().unwrap_or_default()))?;
+                    }
+                }
+                Event::Said(Channel::Output, text) => self.say(&harmless(text))?,
+                Event::Said(Channel::Message, text) => {
+                    self.say(&format!("! {}", harmless(text)))?
+                }
+                Event::Over(why) => {
+                    self.say(&harmless(why))?;
+                    self.say("what was can still be looked at: reverse-next, back, print, where")?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn time(&self) -> String {
+        format!("{:.2} s", self.told.ms as f64 / 1000.0)
+    }
+
+    fn show_stop(&mut self) -> Result<(), Error> {
+        let Some(stop) = &self.told.stop else {
+            return Ok(());
+        };
+        let why = match (stop.reason.as_str(), stop.number) {
+            ("breakpoint", Some(number)) => format!("breakpoint {number}"),
+            ("condition", Some(number)) => {
+                format!(
+                    "the condition of breakpoint {number}: {}",
+                    harmless(&stop.text)
+                )
+            }
+            ("error", _) => format!("an error: {}", harmless(&stop.text)),
+            ("oldest", _) => "nothing before this is kept".to_owned(),
+            (reason, _) => harmless(reason),
+        };
+        let past = if self.told.state == State::Past {
+            "past, "
+        } else {
+            ""
+        };
+        let thread = match stop.name.as_str() {
+            "" => String::new(),
+            name => format!(", thread {}", harmless(name)),
+        };
+        self.say(&format!("{past}{}{thread}: {why}", self.time()))?;
+        if let Some(at) = self.told.at() {
+            let line = self.listing.line_of(&at.id);
+            self.say(&format!("> {line:3} {}", self.listing.text(line)))?;
+        }
+        Ok(())
+    }
+
+    fn here(&self) -> Option<usize> {
+        let at = self.told.at()?;
+        Some(self.listing.line_of(&at.id))
+    }
+
+    fn list(&self, line: Option<usize>) -> Result<(), Error> {
+        let here = self.here();
+        let (from, to) = match line.or(here) {
+            Some(line) => (
+                line.saturating_sub(AROUND).max(1),
+                line.saturating_add(AROUND),
+            ),
+            None => (1, 2 * AROUND),
+        };
+        if from > self.listing.len() {
+            return self.say(&format!("there are {} lines", self.listing.len()));
+        }
+        for line in from..=to.min(self.listing.len()) {
+            let mark = if Some(line) == here { '>' } else { ' ' };
+            self.say(&format!("{mark} {line:3} {}", self.listing.text(line)))?;
+        }
+        Ok(())
+    }
+
+    fn threads(&self) -> Result<(), Error> {
+        for thread in &self.told.threads {
+            let line = self.listing.line_of(&thread.at.id);
+            let (name, does) = (harmless(&thread.name), harmless(&thread.does));
+            let text = self.listing.text(line);
+            self.say(&format!("{name:12} {does:20} {line:3} {}", text.trim()))?;
+        }
+        if self.told.threads.is_empty() {
+            self.say("no thread lives")?;
+        }
+        Ok(())
+    }
+
+    fn calls(&self) -> Result<(), Error> {
+        let Some(thread) = self.told.thread() else {
+            return self.say("no thread lives");
+        };
+        let places = std::iter::once(&thread.at).chain(thread.calls.iter().rev());
+        for (index, at) in places.take(limits::DEBUG_CALLS_SHOWN).enumerate() {
+            let line = self.listing.line_of(&at.id);
+            let (diagram, text) = (harmless(&at.diagram), self.listing.text(line));
+            self.say(&format!("#{index} {diagram}, {line}: {}", text.trim()))?;
+        }
+        Ok(())
+    }
+
+    fn variables(&self) -> Result<(), Error> {
+        for variable in &self.told.variables {
+            let (name, value) = (harmless(&variable.name), harmless(&variable.value));
+            self.say(&format!("{name} = {value}"))?;
+        }
+        if self.told.variables.is_empty() {
+            self.say("no variable has a value yet")?;
+        }
+        Ok(())
+    }
+
+    fn breakpoints(&self, points: &[Value]) -> Result<(), Error> {
+        if points.is_empty() {
+            return self.say("there are no breakpoints");
+        }
+        for point in points {
+            let text = |name: &str| {
+                let text = point.get(name).and_then(Value::as_str);
+                harmless(text.unwrap_or_default())
+            };
+            let line = self.listing.line_of(&text("block"));
+            let mut told = format!(
+                "{:3} line {line}: {}, hit {} times",
+                point["number"],
+                self.listing.text(line).trim(),
+                point["hits"]
+            );
+            for (word, name) in [("if", "if"), ("writes", "log")] {
+                if !text(name).is_empty() {
+                    told.push_str(&format!(", {word} {}", text(name)));
+                }
+            }
+            if point["disabled"] == Value::Bool(true) {
+                told.push_str(", disabled");
+            }
+            self.say(&told)?;
+        }
+        Ok(())
+    }
+
+    fn help(&self) -> Result<(), Error> {
+        for (words, more, what) in ROWS {
+            let words = words.replace(' ', ", ");
+            let head = format!("{words} {more}");
+            self.say(&format!("{head:42} {what}"))?;
+        }
+        self.say("an empty line is the line before; Ctrl-C stops a program that runs")
+    }
+}
+
+/// Ctrl-C as something to read.
+fn interrupts() -> nix::Result<SignalFd> {
+    let mut signals = SigSet::empty();
+    signals.add(Signal::SIGINT);
+    signals.thread_block()?;
+    SignalFd::with_flags(&signals, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC)
+}
+
+fn pressed(keys: &SignalFd) -> bool {
+    matches!(keys.read_signal(), Ok(Some(_)))
+}
+
+/// Lines from standard input, read when there is room for them.
+fn lines() -> Receiver<String> {
+    let (sender, receiver) = sync_channel(1);
+    std::thread::spawn(move || {
+        let mut input = io::stdin().lock();
+        loop {
+            let mut line = Vec::new();
+            let limit = limits::DEBUG_LINE_BYTES as u64;
+            let read = (&mut input).take(limit).read_until(b'\n', &mut line);
+            match read {
+                Ok(0) | Err(_) => return,
+                Ok(_) => {}
+            }
+            let line = String::from_utf8_lossy(&line);
+            if sender
+                .send(line.trim_end_matches(['\n', '\r']).to_owned())
+                .is_err()
+            {
+                return;
+            }
+        }
+    });
+    receiver
+}

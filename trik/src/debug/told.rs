@@ -1,0 +1,169 @@
+//! What a debugger has told, read from its JSON.
+//!
+//! Owns the way from the form that `docs/protocol.md` describes to values. What is missing is empty: an older robot may
+//! tell less.
+
+use serde_json::Value;
+
+/// Where a program is.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Told {
+    pub state: State,
+    /// Milliseconds since the beginning.
+    pub ms: u64,
+    pub is_attached: bool,
+    pub with_errors: bool,
+    pub stop: Option<Stop>,
+    pub threads: Vec<Thread>,
+    pub variables: Vec<Variable>,
+    /// From when on the past is kept, and how many bytes it takes.
+    pub kept: Option<(u64, u64)>,
+}
+
+/// What a program does.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
+pub(crate) enum State {
+    #[default]
+    Running,
+    Stopped,
+    /// Somebody looks at its past.
+    Past,
+    Ended,
+}
+
+/// Why it is stopped, and where.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Stop {
+    pub reason: String,
+    pub number: Option<u64>,
+    pub text: String,
+    pub thread: Option<u64>,
+    pub name: String,
+    pub at: Option<At>,
+}
+
+/// A block.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct At {
+    pub diagram: String,
+    pub id: String,
+    pub block: String,
+}
+
+/// A thread.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Thread {
+    pub number: u64,
+    pub name: String,
+    pub at: At,
+    /// What it does, in words.
+    pub does: String,
+    /// The blocks that call, the outermost first.
+    pub calls: Vec<At>,
+}
+
+/// A variable.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Variable {
+    pub name: String,
+    pub kind: String,
+    pub value: String,
+}
+
+fn text(value: &Value, name: &str) -> String {
+    let found = value.get(name).and_then(Value::as_str);
+    found.unwrap_or_default().to_owned()
+}
+
+fn number(value: &Value, name: &str) -> Option<u64> {
+    value.get(name)?.as_u64()
+}
+
+fn truth(value: &Value, name: &str) -> bool {
+    value.get(name).and_then(Value::as_bool).unwrap_or_default()
+}
+
+fn list<T>(value: &Value, name: &str, read: impl Fn(&Value) -> T) -> Vec<T> {
+    let items = value.get(name).and_then(Value::as_array);
+    items.into_iter().flatten().map(read).collect()
+}
+
+impl Told {
+    /// What a state says; none if it is something else.
+    pub(crate) fn read(value: &Value) -> Option<Self> {
+        let state = match value.get("state")?.as_str()? {
+            "stopped" => State::Stopped,
+            "past" => State::Past,
+            "ended" => State::Ended,
+            _ => State::Running,
+        };
+        let kept = value.get("kept");
+        Some(Self {
+            state,
+            ms: number(value, "ms").unwrap_or_default(),
+            is_attached: truth(value, "attached"),
+            with_errors: truth(value, "with_errors"),
+            stop: value.get("stop").map(stop),
+            threads: list(value, "threads", thread),
+            variables: list(value, "variables", |variable| Variable {
+                name: text(variable, "name"),
+                kind: text(variable, "type"),
+                value: text(variable, "value"),
+            }),
+            kept: kept.and_then(|kept| Some((number(kept, "from_ms")?, number(kept, "bytes")?))),
+        })
+    }
+
+    /// The thread at which it is stopped, or else the first.
+    pub(crate) fn thread(&self) -> Option<&Thread> {
+        let number = self.stop.as_ref().and_then(|stop| stop.thread);
+        let mut threads = self.threads.iter();
+        threads
+            .find(|thread| Some(thread.number) == number)
+            .or(self.threads.first())
+    }
+
+    /// The block that is entered next, or in which it has failed.
+    pub(crate) fn at(&self) -> Option<&At> {
+        let at = self.stop.as_ref().and_then(|stop| stop.at.as_ref());
+        at.or_else(|| Some(&self.thread()?.at))
+    }
+}
+
+fn at(value: &Value) -> At {
+    At {
+        diagram: text(value, "diagram"),
+        id: text(value, "id"),
+        block: text(value, "block"),
+    }
+}
+
+fn stop(value: &Value) -> Stop {
+    Stop {
+        reason: text(value, "reason"),
+        number: number(value, "number"),
+        text: text(value, "text"),
+        thread: number(value, "thread"),
+        name: text(value, "name"),
+        at: value.get("at").map(at),
+    }
+}
+
+fn thread(value: &Value) -> Thread {
+    let does = match (text(value, "does").as_str(), text(value, "for").as_str()) {
+        ("waits", "time") => {
+            let left = number(value, "left_ms").unwrap_or_default();
+            format!("waits {left} ms more")
+        }
+        ("waits", "device") => format!("waits for {}", text(value, "port")),
+        ("waits", what) => format!("waits for {what}"),
+        (does, _) => does.to_owned(),
+    };
+    Thread {
+        number: number(value, "number").unwrap_or_default(),
+        name: text(value, "name"),
+        at: value.get("at").map(at).unwrap_or_default(),
+        does,
+        calls: list(value, "calls", at),
+    }
+}

@@ -1,0 +1,275 @@
+//! What a person types at `trik debug`: the words that people know from gdb, and what is meant by them.
+//!
+//! Owns the words, their short forms and their help. What an order does is known in `lang_diagram::debug`.
+
+use super::listing::Listing;
+use lang_diagram::debug::order::Order;
+use lang_diagram::debug::{Back, Breakpoint, Step};
+use std::fmt;
+
+/// Something that is typed.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Typed {
+    /// An order for the debugger.
+    Order(Order),
+    /// Lines of the diagram around this one; none: around where it is stopped.
+    List(Option<usize>),
+    /// Where each thread is, and what calls it is in.
+    Threads,
+    /// The calls of the thread at which it is stopped.
+    Calls,
+    /// All variables.
+    Variables,
+    /// Where the robot is.
+    Scene,
+    /// What can be typed.
+    Help,
+    /// The end.
+    Quit,
+}
+
+/// Why something typed is not understood.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub(super) enum NotUnderstood {
+    /// There is no such command.
+    Unknown(String),
+    /// The command lacks something.
+    Lacks(&'static str),
+    /// The diagram has no such line, or no block there and after it.
+    NoLine(String),
+}
+
+impl fmt::Display for NotUnderstood {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unknown(word) => write!(f, "there is no command '{word}'; try help"),
+            Self::Lacks(what) => write!(f, "{what} is needed"),
+            Self::NoLine(text) => write!(
+                f,
+                "'{text}' is neither a line that has a block nor the id of a block; list shows the lines"
+            ),
+        }
+    }
+}
+
+/// A command: its words, what follows them, and what it does.
+type Row = (&'static str, &'static str, &'static str);
+
+/// All commands, for help. The first word is the long one.
+pub(super) const ROWS: [Row; 25] = [
+    (
+        "continue c",
+        "",
+        "go on to the next breakpoint; in the past to the next one there, or to the present",
+    ),
+    (
+        "next n",
+        "[THREAD]",
+        "go on to the next block of this diagram",
+    ),
+    (
+        "step s",
+        "[THREAD]",
+        "go on to the next block, into subprograms too",
+    ),
+    (
+        "finish fin",
+        "[THREAD]",
+        "go on to the block after the call of this subprogram",
+    ),
+    ("until u", "LINE", "go on to a line"),
+    (
+        "reverse-next rn",
+        "",
+        "back to the block before, in this diagram",
+    ),
+    (
+        "reverse-step rs",
+        "",
+        "back to the block before, into subprograms too",
+    ),
+    (
+        "reverse-finish rf",
+        "",
+        "back to where this subprogram was called",
+    ),
+    ("reverse-continue rc", "", "back to the last breakpoint"),
+    (
+        "back",
+        "MS",
+        "back to a time of the program, in milliseconds",
+    ),
+    ("start", "", "back to the first moment that is kept"),
+    ("present", "", "leave the past"),
+    (
+        "break b",
+        "LINE [if EXPRESSION]",
+        "stop before a line; LINE may be the id of a block",
+    ),
+    ("tbreak tb", "LINE [if EXPRESSION]", "the same, once"),
+    (
+        "dprintf",
+        "LINE TEXT",
+        "write a line there; {EXPRESSION} in it is a value",
+    ),
+    ("delete d", "[NUMBER]", "take a breakpoint away, or all"),
+    (
+        "disable",
+        "NUMBER",
+        "let a breakpoint do nothing; enable NUMBER undoes it",
+    ),
+    (
+        "errors",
+        "stop|go",
+        "whether an error in a block stops the program",
+    ),
+    (
+        "print p",
+        "EXPRESSION",
+        "compute an expression, which changes nothing",
+    ),
+    ("set", "NAME=EXPRESSION", "assign a variable"),
+    ("list l", "[LINE]", "show the diagram as text"),
+    (
+        "info i",
+        "threads|variables|breakpoints",
+        "show all of them; backtrace (bt): the calls of this thread",
+    ),
+    (
+        "hold",
+        "THREAD",
+        "hold a thread and let the others go on; release THREAD undoes it",
+    ),
+    ("where w", "", "where the robot is at this moment"),
+    ("quit q", "", "end; the program is ended too"),
+];
+
+/// What a line means, which is not empty.
+pub(super) fn understand(line: &str, listing: &Listing) -> Result<Typed, NotUnderstood> {
+    let line = line.trim();
+    let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+    let rest = rest.trim();
+    let thread = || (!rest.is_empty()).then(|| rest.into());
+    let order = match word {
+        "continue" | "c" | "run" | "r" => Order::Continue,
+        "next" | "n" => Order::Step(Step::Over, thread()),
+        "step" | "s" => Order::Step(Step::Into, thread()),
+        "finish" | "fin" => Order::Step(Step::Out, thread()),
+        "until" | "u" | "advance" => Order::Until(block(rest, listing)?),
+        "reverse-next" | "rn" => Order::Back(Back::Step(Step::Over)),
+        "reverse-step" | "rs" => Order::Back(Back::Step(Step::Into)),
+        "reverse-finish" | "rf" => Order::Back(Back::Step(Step::Out)),
+        "reverse-continue" | "rc" => Order::Back(Back::Continue),
+        "back" => {
+            let ms = rest.parse();
+            Order::Back(Back::To(
+                ms.map_err(|_| NotUnderstood::Lacks("a time in milliseconds"))?,
+            ))
+        }
+        "start" => Order::Back(Back::Oldest),
+        "present" => Order::Present,
+        "break" | "b" => Order::Break(breakpoint(rest, listing)?),
+        "tbreak" | "tb" => Order::Break(Breakpoint {
+            is_once: true,
+            ..breakpoint(rest, listing)?
+        }),
+        "dprintf" => {
+            let (line, text) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
+            let text = text.trim().trim_matches('"');
+            if text.is_empty() {
+                return Err(NotUnderstood::Lacks("a text after the line"));
+            }
+            Order::Break(Breakpoint {
+                log: text.into(),
+                ..breakpoint(line, listing)?
+            })
+        }
+        "delete" | "d" | "clear" if rest.is_empty() => Order::Clear(None),
+        "delete" | "d" | "clear" => Order::Clear(Some(number(rest)?)),
+        "disable" => Order::Enable(number(rest)?, false),
+        "enable" => Order::Enable(number(rest)?, true),
+        "errors" => match rest {
+            "stop" => Order::Errors(true),
+            "go" => Order::Errors(false),
+            _ => return Err(NotUnderstood::Lacks("stop or go")),
+        },
+        "motors" => match rest {
+            "rest" => Order::Motors(true),
+            "keep" => Order::Motors(false),
+            _ => return Err(NotUnderstood::Lacks("rest or keep")),
+        },
+        "print" | "p" | "inspect" => Order::Evaluate(some(rest, "an expression")?),
+        "set" => {
+            let rest = rest.strip_prefix("var ").unwrap_or(rest);
+            let lacks = NotUnderstood::Lacks("NAME=EXPRESSION");
+            let (name, text) = rest.split_once('=').ok_or(lacks)?;
+            Order::Set(name.trim().into(), text.trim().into())
+        }
+        "hold" => Order::Hold(some(rest, "the name of a thread")?),
+        "release" => Order::Release(some(rest, "the name of a thread")?),
+        "list" | "l" if rest.is_empty() => return Ok(Typed::List(None)),
+        "list" | "l" => {
+            let line = rest.parse();
+            let line = line.map_err(|_| NotUnderstood::NoLine(rest.to_owned()))?;
+            return Ok(Typed::List(Some(line)));
+        }
+        "info" | "i" => match rest {
+            "threads" | "t" => return Ok(Typed::Threads),
+            "variables" | "locals" | "v" => return Ok(Typed::Variables),
+            "breakpoints" | "break" | "b" => Order::Breakpoints,
+            _ => return Err(NotUnderstood::Lacks("threads, variables or breakpoints")),
+        },
+        "threads" => return Ok(Typed::Threads),
+        "variables" => return Ok(Typed::Variables),
+        "breakpoints" => Order::Breakpoints,
+        "backtrace" | "bt" => return Ok(Typed::Calls),
+        "where" | "w" => return Ok(Typed::Scene),
+        "help" | "h" | "?" => return Ok(Typed::Help),
+        "quit" | "q" | "exit" => return Ok(Typed::Quit),
+        word => return Err(NotUnderstood::Unknown(word.chars().take(40).collect())),
+    };
+    Ok(Typed::Order(order))
+}
+
+fn some(text: &str, what: &'static str) -> Result<Box<str>, NotUnderstood> {
+    match text {
+        "" => Err(NotUnderstood::Lacks(what)),
+        text => Ok(text.into()),
+    }
+}
+
+fn number(text: &str) -> Result<u32, NotUnderstood> {
+    let lacks = NotUnderstood::Lacks("the number of a breakpoint");
+    text.parse().map_err(|_| lacks)
+}
+
+/// The block that a line or an id means. A line without a block means the next one that has one.
+fn block(text: &str, listing: &Listing) -> Result<Box<str>, NotUnderstood> {
+    if text.is_empty() {
+        return Err(NotUnderstood::Lacks("a line"));
+    }
+    let none = || NotUnderstood::NoLine(text.chars().take(80).collect());
+    match text.parse::<usize>() {
+        Ok(line) => {
+            let line = listing.line_with_block(line).ok_or_else(none)?;
+            listing.blocks(line).first().cloned().ok_or_else(none)
+        }
+        Err(_) if listing.has(text) => Ok(text.into()),
+        Err(_) => Err(none()),
+    }
+}
+
+fn breakpoint(text: &str, listing: &Listing) -> Result<Breakpoint, NotUnderstood> {
+    let (place, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
+    let condition = match rest.trim() {
+        "" => "",
+        rest => rest
+            .strip_prefix("if ")
+            .ok_or(NotUnderstood::Lacks("`if` before the condition"))?,
+    };
+    Ok(Breakpoint {
+        block: block(place, listing)?,
+        condition: condition.trim().into(),
+        ..Breakpoint::default()
+    })
+}
