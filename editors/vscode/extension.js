@@ -1,15 +1,20 @@
-// Starts `trik dcml lsp` for DCML documents and lets the client library of VS Code speak with it.
+// Starts `trik dcml lsp` for DCML documents and lets the client library of VS Code speak with it, and `trik dap` for
+// diagrams that are debugged.
 //
-// Owns which program is started. What is known of the language is in that program; the colours are in the grammar.
+// Owns which program is started. What is known of models and diagrams is in that program; the colours are in the grammar.
 "use strict";
 
-const { commands, window, workspace } = require("vscode");
+const { commands, debug, DebugAdapterExecutable, window, workspace } = require("vscode");
 const { LanguageClient, TransportKind } = require("vscode-languageclient/node");
 
 let client;
 
+function trik() {
+  return workspace.getConfiguration("dcml").get("trikPath") || "trik";
+}
+
 async function start() {
-  const program = workspace.getConfiguration("dcml").get("trikPath") || "trik";
+  const program = trik();
   const server = { command: program, args: ["dcml", "lsp"], transport: TransportKind.stdio };
   client = new LanguageClient("dcml", "DCML", server, {
     documentSelector: [
@@ -44,8 +49,17 @@ function restart() {
   return turn;
 }
 
+// A folder that is not trusted may not say which program is started.
+function adapter() {
+  if (!workspace.isTrusted) {
+    throw new Error("this folder is not trusted, so no program is started for it");
+  }
+  return new DebugAdapterExecutable(trik(), ["dap"]);
+}
+
 exports.activate = async (context) => {
   context.subscriptions.push(
+    debug.registerDebugAdapterDescriptorFactory("trik", { createDebugAdapterDescriptor: adapter }),
     commands.registerCommand("dcml.restart", restart),
     workspace.onDidChangeConfiguration((change) => {
       if (change.affectsConfiguration("dcml.trikPath")) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The extension for VS Code from a clean copy: its grammar, its start, a talk of its client library with the server, and
-# both packages.
+# The extension for VS Code from a clean copy: its grammar, its start, talks of client libraries with the language server
+# and the debugger, and both packages.
 #
 # usage: editors/vscode/test.sh [TRIK]
 #
@@ -21,8 +21,9 @@ npm ci --ignore-scripts --no-audit --no-fund --loglevel=error
 npm test --silent
 if [ -n "$trik" ]; then
     node test/server.js "$trik"
+    node test/debug.js "$trik"
 else
-    echo "skipped: the talk with the server: no TRIK is named"
+    echo "skipped: the talks with the server and the debugger: no TRIK is named"
 fi
 npm pack --silent >/dev/null
 npm run --silent package >/dev/null

@@ -7,7 +7,7 @@ use crate::check::{self, of_misuse, original};
 use crate::dcml::{self, Dcml};
 use crate::output::standard;
 use crate::refusal::{Refusal, end};
-use crate::{debug, diagrams, fault, remote, task, up};
+use crate::{dap, debug, diagrams, fault, remote, task, up};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -138,6 +138,14 @@ enum Command {
     ///
     /// Exit status: 0 the person had enough; 2 the diagram cannot run, or the command line was not understood.
     Debug(debug::DebugArgs),
+    /// Debug diagrams from an editor, by the Debug Adapter Protocol.
+    ///
+    /// Serves one client on standard input and output, or clients on a TCP port. A launch request has program, a diagram
+    /// NAME.qrs, and may have field, task, inputs, gamepad, seed, speed, language, stopOnEntry, stopAtEnd and noDebug. Lines
+    /// are those of the diagram as text, which the adapter gives.
+    ///
+    /// Exit status: 0 the client has ended; 2 the port cannot be had, or the command line was not understood.
+    Dap(dap::DapArgs),
     /// Robots as equations: models in the Differential Constraints Modeling Language.
     Dcml {
         /// What to do.
@@ -237,6 +245,7 @@ fn run(command: Command) -> Result<u8, Refusal> {
         Command::NewTask(args) => task::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Debug(args) => debug::run(&args),
+        Command::Dap(args) => dap::run(&args),
         Command::Dcml { command } => dcml::run(&command),
         Command::Model { arguments } => Ok(original::model(arguments.into_iter())),
         Command::Patcher { arguments } => Ok(original::patcher(arguments.into_iter())),

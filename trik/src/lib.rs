@@ -3,13 +3,14 @@
 //! `cli` lists the commands. `up` starts the virtual board and the tree over it, `fault` breaks devices of a running board,
 //! `place` knows where the robots of a user are, `remote` brings programs to robots, `diagrams` shows, checks and translates
 //! diagrams without a robot, `dcml` does the same with models of robots, `check` runs and judges solutions of tasks,
-//! `script` runs programs with text for it, `debug` stops diagrams and goes back in them. All of them stand on `error`, `refusal`, `input`, `output`,
+//! `script` runs programs with text for it, `debug` stops diagrams and goes back in them, `dap` does so for editors. All of them stand on `error`, `refusal`, `input`, `output`,
 //! `terminal` and `language`, which know no command. Nothing of this runs on the controller.
 
 #![deny(clippy::wildcard_enum_match_arm)]
 
 mod check;
 pub mod cli;
+mod dap;
 mod dcml;
 mod debug;
 mod diagrams;
@@ -27,3 +28,4 @@ pub mod script;
 mod task;
 mod terminal;
 mod up;
+pub mod wire;

@@ -167,3 +167,5 @@ pub const DEBUG_POSES_MAX: usize = 360_000;
 pub const DEBUG_CALLS_SHOWN: usize = 100;
 /// Bytes of a line that is typed at `trik debug`.
 pub const DEBUG_LINE_BYTES: usize = 16_384;
+/// Requests of an editor that debugs which wait for their turn.
+pub const DAP_WAITING: usize = 1000;

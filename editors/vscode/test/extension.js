@@ -5,7 +5,7 @@ const assert = require("assert");
 const Module = require("module");
 const manifest = require("../package.json");
 
-const seen = { clients: [], errors: [], commands: {}, configured: [], trusted: [] };
+const seen = { adapters: {}, clients: [], errors: [], commands: {}, configured: [], trusted: [] };
 const settings = { trikPath: "/opt/trik" };
 
 class LanguageClient {
@@ -24,7 +24,20 @@ class LanguageClient {
   }
 }
 
+class DebugAdapterExecutable {
+  constructor(command, args) {
+    Object.assign(this, { command, args });
+  }
+}
+
 const vscode = {
+  DebugAdapterExecutable,
+  debug: {
+    registerDebugAdapterDescriptorFactory: (type, factory) => {
+      seen.adapters[type] = factory;
+      return { dispose() {} };
+    },
+  },
   commands: {
     registerCommand: (name, does) => {
       seen.commands[name] = does;
@@ -55,6 +68,12 @@ async function main() {
   vscode.workspace.isTrusted = false;
   await extension.activate({ subscriptions: [] });
   assert.strictEqual(seen.clients.length, 0, "nothing is started in a folder that is not trusted");
+  const debuggers = manifest.contributes.debuggers.map((one) => one.type);
+  assert.deepStrictEqual(Object.keys(seen.adapters), debuggers);
+  const adapter = () => seen.adapters.trik.createDebugAdapterDescriptor();
+  assert.throws(adapter, /not trusted/);
+  vscode.workspace.isTrusted = true;
+  assert.deepStrictEqual([adapter().command, adapter().args], ["/opt/trik", ["dap"]]);
   await seen.trusted[0]();
   const first = seen.clients[0];
   assert.deepStrictEqual([first.server.command, first.server.args], ["/opt/trik", ["dcml", "lsp"]]);

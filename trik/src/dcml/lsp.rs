@@ -9,9 +9,9 @@ pub mod inbox;
 pub mod message;
 pub mod params;
 pub mod session;
-pub mod wire;
 
 use crate::limits;
+use crate::wire::{self, Frame, Frames};
 use inbox::{Inbox, Taken};
 use message::{INVALID_REQUEST, Message, Refusal};
 use serde_json::Value;
@@ -19,7 +19,6 @@ use session::Session;
 use std::io::{self, BufRead, BufReader, Write};
 use std::sync::Arc;
 use std::time::Duration;
-use wire::{Frame, Frames};
 
 /// Serves until the editor says `exit` or is gone.
 pub(super) fn serve() -> u8 {

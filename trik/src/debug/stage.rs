@@ -69,11 +69,6 @@ impl<'a> Stage<'a> {
         self
     }
 
-    /// How the run has ended, if it has.
-    pub(crate) fn outcome(&self) -> Option<&Outcome> {
-        self.outcome.as_ref()
-    }
-
     fn progress(&self) -> Progress {
         self.trial.as_ref().map_or(Progress::Over, Trial::progress)
     }

@@ -45,13 +45,13 @@ pub(crate) enum Channel {
     Message,
 }
 
-/// Whether an answer says that the order was carried out; else why not.
-pub(crate) fn done(answer: &Value) -> Result<(), String> {
+/// Why an answer says that the order was not carried out; none: it was.
+pub(crate) fn why_not(answer: &Value) -> Option<String> {
     match answer.get("done").and_then(Value::as_bool) {
-        Some(true) => Ok(()),
+        Some(true) => None,
         Some(false) | None => {
             let why = answer.get("why").and_then(Value::as_str);
-            Err(why.unwrap_or("the robot has not understood it").to_owned())
+            Some(why.unwrap_or("the robot has not understood it").to_owned())
         }
     }
 }

@@ -4,7 +4,7 @@
 //! pipe are read one after the other, each when the program has stopped.
 
 use super::listing::Listing;
-use super::target::{Channel, Event, Target, done};
+use super::target::{Channel, Event, Target, why_not};
 use super::told::{State, Told};
 use super::words::{ROWS, Typed, understand};
 use crate::error::Error;
@@ -147,7 +147,7 @@ impl<'a> Terminal<'a> {
 
     fn order(&mut self, order: &Order, keys: &SignalFd) -> Result<(), Error> {
         let answer = self.target.order(order)?;
-        if let Err(why) = done(&answer) {
+        if let Some(why) = why_not(&answer) {
             return self.say(&harmless(&why));
         }
         if let Some(value) = answer.get("value").and_then(Value::as_str) {
@@ -195,6 +195,7 @@ impl<'a> Terminal<'a> {
 
     fn hear(&mut self, events: &[Event]) -> Result<(), Error> {
         self.hear_but_states(events)?;
+        let is_over = events.iter().any(|event| matches!(event, Event::Over(_)));
         let states = events.iter().filter_map(|event| match event {
             Event::Told(value) => Told::read(value),
             Event::Said(..) | Event::Over(_) => None,
@@ -205,6 +206,8 @@ impl<'a> Terminal<'a> {
         self.told = told;
         match self.told.state {
             State::Stopped | State::Past => self.show_stop(),
+            // The end of a run is said with its verdict.
+            State::Ended if is_over => Ok(()),
             State::Ended => self.say(&format!("the program has ended at {}", self.time())),
             State::Running => Ok(()),
         }

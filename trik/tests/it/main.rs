@@ -12,6 +12,8 @@ mod dcml_gen;
 mod dcml_plan;
 /// `trik dcml sim`: models under actions.
 mod dcml_sim;
+/// Diagrams in the debugger.
+mod debug;
 /// Diagrams shown, checked and translated, and run in three languages.
 mod diagrams;
 /// What documents show of a robot.

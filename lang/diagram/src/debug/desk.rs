@@ -285,7 +285,12 @@ impl Desk {
 
     /// The thread that makes a step: the one with this name, or the one at which the program is stopped.
     fn thread(&self, name: Option<&str>) -> Result<u16, Refused> {
-        let stop = self.session.stop().ok_or(Refused::NotStopped)?;
+        let Some(stop) = self.session.stop() else {
+            return Err(match self.session.phase() {
+                Phase::Ended { .. } => Refused::Ended,
+                Phase::Runs | Phase::Stopped(_) => Refused::NotStopped,
+            });
+        };
         let machine = self.session.machine();
         let found = match name {
             Some(name) => machine.views().find(|view| view.name == name),

@@ -1,4 +1,4 @@
-//! Frames of the language server protocol: `Content-Length`, an empty line, so many bytes.
+//! Frames of the language server and debug adapter protocols: `Content-Length`, an empty line, so many bytes.
 //!
 //! Owns where a frame begins and ends, also after one that lied. Knows nothing of what is in it.
 

@@ -1,0 +1,102 @@
+// A debugged diagram by the client that debug adapters are tested with, over standard streams and over TCP.
+//
+// usage: node test/debug.js TRIK
+"use strict";
+
+const assert = require("assert");
+const { spawn } = require("child_process");
+const path = require("path");
+const { DebugClient } = require("@vscode/debugadapter-testsupport");
+
+const program = path.join(__dirname, "texts", "count.qrs");
+
+async function talk(client) {
+  const caps = await client.initializeRequest();
+  assert.ok(caps.body.supportsStepBack && caps.body.supportsLogPoints && caps.body.supportsRestartRequest);
+  const initialized = client.waitForEvent("initialized");
+  await client.launch({ program, stopOnEntry: true });
+  await initialized;
+  const set = await client.setBreakpointsRequest({
+    source: { path: program },
+    breakpoints: [{ line: 4, condition: "n == 2" }, { line: 7 }],
+  });
+  assert.deepStrictEqual(set.body.breakpoints.map((one) => one.verified), [true, false]);
+  const named = await client.setFunctionBreakpointsRequest({ breakpoints: [{ name: "nothing" }] });
+  assert.strictEqual(named.body.breakpoints[0].verified, false);
+  await client.setExceptionBreakpointsRequest({ filters: ["errors"] });
+  let stopped = client.waitForEvent("stopped");
+  await client.configurationDoneRequest();
+  assert.strictEqual((await stopped).body.reason, "entry");
+
+  // Each request that moves the program, and the line where it stops.
+  const threadId = 1;
+  const moves = async (request, line) => {
+    stopped = client.waitForEvent("stopped");
+    await request({ threadId });
+    await stopped;
+    const stack = await client.stackTraceRequest({ threadId });
+    assert.strictEqual(stack.body.stackFrames[0].line, line, JSON.stringify(stack.body));
+    return stack.body;
+  };
+  await moves((args) => client.continueRequest(args), 4);
+  await moves((args) => client.nextRequest(args), 5);
+  const inside = await moves((args) => client.stepInRequest(args), 9);
+  assert.strictEqual(inside.totalFrames, 2);
+  await moves((args) => client.stepOutRequest(args), 6);
+  await moves((args) => client.stepBackRequest(args), 5);
+  await moves((args) => client.customRequest("reverseContinue", args), 4);
+
+  const threads = await client.threadsRequest();
+  assert.deepStrictEqual(threads.body.threads, [{ id: 1, name: "main" }]);
+  const top = (await client.stackTraceRequest({ threadId })).body.stackFrames[0];
+  const scopes = await client.scopesRequest({ frameId: top.id });
+  assert.deepStrictEqual(scopes.body.scopes.map((scope) => scope.name), ["Variables", "Sensors"]);
+  const variables = await client.variablesRequest({ variablesReference: scopes.body.scopes[0].variablesReference });
+  assert.strictEqual(variables.body.variables.find((one) => one.name === "n").value, "2");
+  const value = await client.evaluateRequest({ expression: "n * 10", context: "hover" });
+  assert.strictEqual(value.body.result, "20");
+  const source = await client.sourceRequest({ sourceReference: top.source.sourceReference });
+  assert.ok(source.body.content.includes("print(n)"));
+
+  // The present: there variables can be set.
+  await client.customRequest("continue", { threadId });
+  const changed = await client.setVariableRequest({ variablesReference: 1, name: "n", value: "7" });
+  assert.strictEqual(changed.body.value, "7");
+  await assert.rejects(client.customRequest("fly"), /does not know 'fly'/);
+  await moves(() => client.restartRequest({}), 1);
+  const ended = client.waitForEvent("terminated");
+  await client.setBreakpointsRequest({ source: { path: program }, breakpoints: [] });
+  await client.continueRequest({ threadId });
+  await ended;
+  await client.disconnectRequest();
+}
+
+async function main() {
+  const trik = process.argv[2];
+  const streams = new DebugClient(trik, "dap", "trik");
+  await streams.start();
+  await talk(streams);
+
+  const server = spawn(trik, ["dap", "--listen", "0"], { stdio: ["ignore", "ignore", "pipe"] });
+  const port = await new Promise((done) => {
+    let said = "";
+    server.stderr.on("data", (text) => {
+      said += text;
+      const found = said.match(/waiting on .*:(\d+)\n/);
+      if (found) done(Number(found[1]));
+    });
+  });
+  const wire = new DebugClient(trik, "dap", "trik");
+  await wire.start(port);
+  await talk(wire);
+  server.kill();
+  console.log("the debugger: every request over standard streams and TCP");
+}
+
+main().then(
+  () => process.exit(0),
+  (error) => {
+    console.error(error);
+    process.exit(1);
+  },
+);

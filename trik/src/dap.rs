@@ -1,0 +1,61 @@
+//! `trik dap`: diagrams in the debugger of an editor, by the Debug Adapter Protocol.
+//!
+//! Owns how a client comes: over standard input and output, or over TCP, one after the other. `session` is a talk, `client`
+//! its frames, `points` its breakpoints, `view` what it sees of a program that is stopped. What is debugged is a target of
+//! `debug`.
+
+mod client;
+mod points;
+mod session;
+mod view;
+
+use crate::refusal::{Refusal, UNREADABLE};
+use clap::Args;
+use client::Client;
+use std::io::{self, Write};
+use std::net::{SocketAddr, TcpListener};
+
+/// What `trik dap` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct DapArgs {
+    /// Serve clients on this TCP port, one after the other, instead of standard input and output; 0 is any free port. An
+    /// address before it, as in 0.0.0.0:4711, lets other computers in, and with them everybody who can run programs as you.
+    #[arg(long, value_name = "[ADDRESS:]PORT", value_parser = address)]
+    pub listen: Option<SocketAddr>,
+}
+
+fn address(text: &str) -> Result<SocketAddr, String> {
+    if let Ok(port) = text.parse::<u16>() {
+        return Ok(SocketAddr::from(([127, 0, 0, 1], port)));
+    }
+    text.parse()
+        .map_err(|_| "a port such as 4711 is wanted, or ADDRESS:PORT".to_owned())
+}
+
+/// Serves until the client has ended; over TCP until the process is ended.
+///
+/// # Errors
+/// The port cannot be had.
+pub(crate) fn run(args: &DapArgs) -> Result<u8, Refusal> {
+    let Some(address) = args.listen else {
+        // Standard output belongs to the protocol.
+        session::serve(Client::new(io::stdin(), Box::new(io::stdout())));
+        return Ok(0);
+    };
+    let failed = |why: io::Error| Refusal {
+        code: UNREADABLE,
+        ..Refusal::new(format!("{address}: {why}"))
+    };
+    let listener = TcpListener::bind(address).map_err(failed)?;
+    let bound = listener.local_addr().map_err(failed)?;
+    let _ = writeln!(io::stderr(), "trik dap: waiting on {bound}");
+    loop {
+        let (stream, _) = listener.accept().map_err(failed)?;
+        let Ok(input) = stream.try_clone() else {
+            continue;
+        };
+        // Small frames go at once.
+        let _ = stream.set_nodelay(true);
+        session::serve(Client::new(input, Box::new(stream)));
+    }
+}

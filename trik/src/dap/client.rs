@@ -1,0 +1,168 @@
+//! The other end of a talk: requests in, answers and events out.
+//!
+//! Owns numbers of messages and the thread that reads. Knows no request.
+
+use crate::limits;
+use crate::wire::{self, Frame, Frames};
+use serde_json::{Map, Value, json};
+use std::io::{BufReader, Read, Write};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::time::Duration;
+
+/// A request.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Request {
+    seq: u64,
+    pub command: String,
+    pub arguments: Value,
+}
+
+impl Request {
+    /// An argument that is a text.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        self.arguments.get(name)?.as_str()
+    }
+
+    /// An argument that is a whole number.
+    pub fn number(&self, name: &str) -> Option<u64> {
+        self.arguments.get(name)?.as_u64()
+    }
+
+    /// An argument that is a truth; false if it is not there.
+    pub fn truth(&self, name: &str) -> bool {
+        self.arguments.get(name).and_then(Value::as_bool) == Some(true)
+    }
+
+    /// The items of an argument that is a list.
+    pub fn items(&self, name: &str) -> &[Value] {
+        let items = self.arguments.get(name).and_then(Value::as_array);
+        items.map_or(&[], Vec::as_slice)
+    }
+}
+
+/// Why a request is not carried out, for a person.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub(super) struct Refused(pub String);
+
+impl Refused {
+    /// In these words.
+    pub fn new(why: impl Into<String>) -> Self {
+        Self(why.into())
+    }
+}
+
+/// What comes next.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Come {
+    /// A request.
+    Request(Request),
+    /// Nothing in this time.
+    Nothing,
+    /// The client is gone.
+    End,
+}
+
+/// What comes from the thread that reads.
+enum Heard {
+    Request(Request),
+    Bad(String),
+}
+
+/// A client.
+pub(super) struct Client {
+    from: Receiver<Heard>,
+    to: Box<dyn Write>,
+    seq: u64,
+    is_gone: bool,
+}
+
+impl Client {
+    /// Over any stream; a thread reads it and ends with it.
+    pub fn new(from: impl Read + Send + 'static, to: Box<dyn Write>) -> Self {
+        let (sender, receiver) = sync_channel(limits::DAP_WAITING);
+        std::thread::spawn(move || {
+            let mut frames = Frames::of(BufReader::new(from));
+            while let Ok(Some(frame)) = frames.next() {
+                let read = match frame {
+                    Frame::Body(body) => request(&body),
+                    Frame::Bad(why) => Heard::Bad(why),
+                };
+                if sender.send(read).is_err() {
+                    return;
+                }
+            }
+        });
+        Self {
+            from: receiver,
+            to,
+            seq: 0,
+            is_gone: false,
+        }
+    }
+
+    /// The next request, waiting at most so long.
+    pub fn next(&mut self, wait: Duration) -> Come {
+        loop {
+            if self.is_gone {
+                return Come::End;
+            }
+            match self.from.recv_timeout(wait) {
+                Ok(Heard::Request(request)) => return Come::Request(request),
+                Ok(Heard::Bad(why)) => self.event(
+                    "output",
+                    json!({"category": "important", "output": format!("trik dap: {why}\n")}),
+                ),
+                Err(RecvTimeoutError::Timeout) => return Come::Nothing,
+                Err(RecvTimeoutError::Disconnected) => return Come::End,
+            }
+        }
+    }
+
+    /// Tells that something has happened.
+    pub fn event(&mut self, event: &str, body: Value) {
+        self.send(json!({"type": "event", "event": event, "body": body}));
+    }
+
+    /// Answers a request.
+    pub fn answer(&mut self, request: &Request, answer: Result<Value, Refused>) {
+        let mut message = json!({
+            "type": "response",
+            "request_seq": request.seq,
+            "command": request.command,
+            "success": answer.is_ok(),
+        });
+        match answer {
+            Ok(Value::Null) => {}
+            Ok(body) => message["body"] = body,
+            Err(Refused(why)) => {
+                message["body"] = json!({"error": {"id": 1, "format": why, "showUser": true}});
+                message["message"] = Value::String(why);
+            }
+        }
+        self.send(message);
+    }
+
+    fn send(&mut self, mut message: Value) {
+        self.seq += 1;
+        message["seq"] = json!(self.seq);
+        // Who does not listen any more is gone.
+        self.is_gone |= wire::write(&mut self.to, &message).is_err();
+    }
+}
+
+fn request(body: &[u8]) -> Heard {
+    let read: Result<Map<String, Value>, _> = serde_json::from_slice(body);
+    let mut all = match read {
+        Ok(all) => all,
+        Err(why) => return Heard::Bad(format!("this is no message: {why}")),
+    };
+    let seq = all.get("seq").and_then(Value::as_u64);
+    match (seq, all.remove("command")) {
+        (Some(seq), Some(Value::String(command))) => Heard::Request(Request {
+            seq,
+            command,
+            arguments: all.remove("arguments").unwrap_or(Value::Null),
+        }),
+        (None | Some(_), _) => Heard::Bad("a request has a seq and a command".to_owned()),
+    }
+}

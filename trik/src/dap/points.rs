@@ -1,0 +1,172 @@
+//! Breakpoints as a client sets them: by lines, by names of subprograms and blocks, by ids.
+//!
+//! Owns which of them are set. A client always says all of one kind; what it does not say any more is taken away.
+
+use crate::debug::listing::Listing;
+use crate::debug::target::{Target, why_not};
+use crate::error::Error;
+use lang_diagram::debug::Breakpoint;
+use lang_diagram::debug::order::Order;
+use lang_diagram::project::Project;
+use serde_json::{Value, json};
+
+/// How a client says where a breakpoint is.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum Kind {
+    /// A line of the text.
+    Line,
+    /// A subprogram, or all blocks of a type.
+    Name,
+    /// The id of a block.
+    Id,
+}
+
+/// A breakpoint that is set.
+#[derive(Clone, Debug)]
+struct Set {
+    kind: Kind,
+    number: u64,
+    point: Breakpoint,
+}
+
+/// All that are set.
+#[derive(Debug, Default)]
+pub(super) struct Points(Vec<Set>);
+
+fn text(value: &Value, name: &str) -> Box<str> {
+    let text = value.get(name).and_then(Value::as_str);
+    // A breakpoint is an order of lines.
+    text.unwrap_or_default()
+        .replace(['\n', '\r'], " ")
+        .trim()
+        .into()
+}
+
+/// From which hit on a breakpoint stops: `5`, `>= 5`, `> 5`.
+fn hits(text: &str) -> Result<u32, String> {
+    let (digits, more) = match text.trim().strip_prefix(">=") {
+        Some(rest) => (rest, 0),
+        None => match text.trim().strip_prefix('>') {
+            Some(rest) => (rest, 1),
+            None => (text, 0),
+        },
+    };
+    match digits.trim() {
+        "" => Ok(0),
+        digits => {
+            let hits: Result<u32, _> = digits.parse();
+            let why = "a number of hits is wanted, such as 5, >= 5 or > 5";
+            hits.map(|hits| hits.saturating_add(more))
+                .map_err(|_| why.to_owned())
+        }
+    }
+}
+
+impl Points {
+    /// Sets all of a kind as a client says; for each what has become of it.
+    pub fn set(
+        &mut self,
+        kind: Kind,
+        wanted: &[Value],
+        (listing, project): (&Listing, &Project),
+        target: &mut dyn Target,
+    ) -> Result<Value, Error> {
+        let (gone, kept) = std::mem::take(&mut self.0)
+            .into_iter()
+            .partition(|set| set.kind == kind);
+        self.0 = kept;
+        let gone: Vec<Set> = gone;
+        for set in gone {
+            if let Ok(number) = u32::try_from(set.number) {
+                target.order(&Order::Clear(Some(number)))?;
+            }
+        }
+        let mut told = Vec::new();
+        for one in wanted {
+            told.push(self.add(kind, one, (listing, project), target)?);
+        }
+        Ok(json!({ "breakpoints": told }))
+    }
+
+    fn add(
+        &mut self,
+        kind: Kind,
+        one: &Value,
+        (listing, project): (&Listing, &Project),
+        target: &mut dyn Target,
+    ) -> Result<Value, Error> {
+        let line = one.get("line").and_then(Value::as_u64);
+        let line = line
+            .and_then(|line| usize::try_from(line).ok())
+            .unwrap_or(0);
+        let refused = |why: String| json!({"verified": false, "message": why, "line": line.max(1)});
+        let from_hit = match hits(&text(one, "hitCondition")) {
+            Ok(hits) => hits,
+            Err(why) => return Ok(refused(why)),
+        };
+        let blocks: Vec<Box<str>> = match kind {
+            Kind::Line => listing.blocks(line).first().cloned().into_iter().collect(),
+            Kind::Name => named(project, &text(one, "name")),
+            Kind::Id => {
+                let id = text(one, "instructionReference");
+                listing.has(&id).then_some(id).into_iter().collect()
+            }
+        };
+        let mut first = None;
+        for block in blocks {
+            let point = Breakpoint {
+                block: block.clone(),
+                condition: text(one, "condition"),
+                from_hit,
+                log: text(one, "logMessage"),
+                ..Breakpoint::default()
+            };
+            let answer = target.order(&Order::Break(point.clone()))?;
+            if let Some(why) = why_not(&answer) {
+                return Ok(refused(why));
+            }
+            let number = answer.get("number").and_then(Value::as_u64).unwrap_or(0);
+            self.0.push(Set {
+                kind,
+                number,
+                point,
+            });
+            first.get_or_insert((number, listing.line_of(&block)));
+        }
+        Ok(match first {
+            Some((number, line)) => json!({"id": number, "verified": true, "line": line}),
+            None => refused(
+                match kind {
+                    Kind::Line => "this line has no block",
+                    Kind::Name => "there is no subprogram and no block of this name",
+                    Kind::Id => "there is no block with this id",
+                }
+                .to_owned(),
+            ),
+        })
+    }
+
+    /// Sets all again, for a program that has begun anew. Blocks that are gone are passed over.
+    pub fn set_again(&mut self, target: &mut dyn Target) -> Result<(), Error> {
+        for set in &mut self.0 {
+            let answer = target.order(&Order::Break(set.point.clone()))?;
+            set.number = answer.get("number").and_then(Value::as_u64).unwrap_or(0);
+        }
+        Ok(())
+    }
+}
+
+/// The blocks that a name means: where a subprogram begins, or all of a type.
+fn named(project: &Project, name: &str) -> Vec<Box<str>> {
+    let sheets = project.diagrams.iter();
+    let subprograms = sheets.clone().filter(|sheet| sheet.name == name);
+    let begins = subprograms.flat_map(|sheet| &sheet.blocks);
+    let begins = begins.filter(|block| block.kind == "InitialNode");
+    let of_type = sheets
+        .flat_map(|sheet| &sheet.blocks)
+        .filter(|block| block.kind == name);
+    begins
+        .chain(of_type)
+        .map(|block| block.id.as_str().into())
+        .collect()
+}

@@ -1,0 +1,558 @@
+//! A talk with an editor: from `initialize` to the end of the program, or of the editor's patience.
+//!
+//! Owns the order of the protocol and what each request does. The program begins stopped; it goes on when the editor has
+//! said all its breakpoints. Between requests it runs in small pieces, so that no request waits for long.
+
+use super::client::{Client, Come, Refused, Request};
+use super::points::{Kind, Points};
+use super::view;
+use crate::check::Start;
+use crate::debug::WorldArgs;
+use crate::debug::listing::Listing;
+use crate::debug::stage::Stage;
+use crate::debug::target::{Channel, Event, Target, why_not};
+use crate::debug::told::{State, Told};
+use crate::error::Error;
+use crate::language;
+use lang_diagram::debug::order::Order;
+use lang_diagram::debug::{Back, Step};
+use lang_diagram::project::Project;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// How long the program runs between two looks for requests.
+const PIECE: Duration = Duration::from_millis(5);
+/// How long a program that is stopped waits for one.
+const PATIENCE: Duration = Duration::from_millis(100);
+
+/// What becomes of a program.
+enum After {
+    /// The talk is over.
+    End,
+    /// It begins anew; this request is answered then.
+    Again(Request),
+}
+
+/// Serves one client.
+pub(super) fn serve(mut client: Client) {
+    loop {
+        let request = match client.next(PATIENCE) {
+            Come::Request(request) => request,
+            Come::Nothing => continue,
+            Come::End => return,
+        };
+        match request.command.as_str() {
+            "initialize" => client.answer(&request, Ok(capabilities())),
+            "launch" => {
+                if let Some(launch) = Launch::read(&request, &mut client)
+                    && launch.serve(request, &mut client)
+                {
+                    return;
+                }
+            }
+            "attach" => {
+                let why = "attach joins a program on a robot, which this version cannot do yet: use launch";
+                client.answer(&request, Err(Refused::new(why)));
+            }
+            "disconnect" | "terminate" => {
+                client.answer(&request, Ok(Value::Null));
+                if request.command == "disconnect" {
+                    return;
+                }
+            }
+            _ => client.answer(&request, Err(Refused::new("launch a program first"))),
+        }
+    }
+}
+
+/// What the protocol lets an adapter do, and this one does.
+fn capabilities() -> Value {
+    let mut all = json!({
+        "exceptionBreakpointFilters": [{"filter": "errors", "label": "Errors in blocks", "default": true}],
+        "completionTriggerCharacters": [],
+    });
+    for name in [
+        "supportsConfigurationDoneRequest",
+        "supportsFunctionBreakpoints",
+        "supportsConditionalBreakpoints",
+        "supportsHitConditionalBreakpoints",
+        "supportsLogPoints",
+        "supportsInstructionBreakpoints",
+        "supportsStepBack",
+        "supportsSetVariable",
+        "supportsSetExpression",
+        "supportsEvaluateForHovers",
+        "supportsCompletionsRequest",
+        "supportsRestartRequest",
+        "supportsTerminateRequest",
+        "supportsBreakpointLocationsRequest",
+        "supportsExceptionInfoRequest",
+        "supportsLoadedSourcesRequest",
+        "supportsCancelRequest",
+    ] {
+        all[name] = Value::Bool(true);
+    }
+    all
+}
+
+/// What is to be debugged, and how.
+struct Launch {
+    program: PathBuf,
+    world: WorldArgs,
+    stops_on_entry: bool,
+    stops_at_end: bool,
+    is_debugged: bool,
+}
+
+impl Launch {
+    /// As the client says; a refusal is told.
+    fn read(request: &Request, client: &mut Client) -> Option<Self> {
+        let Some(program) = request.text("program") else {
+            let why = "\"program\" is needed: the path of a diagram NAME.qrs";
+            client.answer(request, Err(Refused::new(why)));
+            return None;
+        };
+        let path = |name| request.text(name).map(PathBuf::from);
+        let seed = request
+            .number("seed")
+            .and_then(|seed| u32::try_from(seed).ok());
+        let speed = request.arguments.get("speed").and_then(Value::as_f64);
+        let locale = request.text("language").map(language::locale);
+        Some(Self {
+            program: program.into(),
+            world: WorldArgs {
+                field: path("field"),
+                task: path("task"),
+                inputs: path("inputs"),
+                gamepad: path("gamepad"),
+                seed: seed.unwrap_or(1),
+                speed: speed.filter(|speed| (0.01..=1000.0).contains(speed)),
+                language: locale.and_then(Result::ok).unwrap_or_default(),
+            },
+            stops_on_entry: request.truth("stopOnEntry"),
+            stops_at_end: request.truth("stopAtEnd"),
+            is_debugged: !request.truth("noDebug"),
+        })
+    }
+
+    /// Debugs until the talk is over, or false: it could not begin.
+    fn serve(&self, mut request: Request, client: &mut Client) -> bool {
+        let mut points = Points::default();
+        let mut is_first = true;
+        loop {
+            let staged = match self.world.stage(self.program.clone()) {
+                Ok(staged) => staged,
+                Err(lines) => {
+                    client.answer(&request, Err(Refused::new(lines.join("\n"))));
+                    if !is_first {
+                        client.event("terminated", json!({}));
+                    }
+                    return false;
+                }
+            };
+            client.answer(&request, Ok(Value::Null));
+            for line in &staged.strange {
+                client.event(
+                    "output",
+                    json!({"category": "important", "output": format!("{line}\n")}),
+                );
+            }
+            let listing = Listing::of(&staged.project, staged.settings.locale);
+            let mut stage = Stage::of(&staged, Start::Stopped).at_speed(self.world.speed);
+            let mut session = Session {
+                client,
+                target: &mut stage,
+                listing: &listing,
+                project: &staged.project,
+                name: name(&self.program),
+                points: &mut points,
+                told: Told::default(),
+                is_configured: !is_first,
+                is_over: false,
+                launch: self,
+            };
+            match session.run(is_first) {
+                Ok(After::End) => return true,
+                Ok(After::Again(again)) => request = again,
+                Err(error) => {
+                    let text = format!("trik dap: {error}\n");
+                    client.event("output", json!({"category": "important", "output": text}));
+                    client.event("terminated", json!({}));
+                    return true;
+                }
+            }
+            is_first = false;
+        }
+    }
+}
+
+/// What the text of a diagram is called.
+fn name(program: &Path) -> String {
+    let name = program.file_name().unwrap_or_default().to_string_lossy();
+    format!("{name}.txt")
+}
+
+/// A program that is debugged.
+struct Session<'a> {
+    client: &'a mut Client,
+    target: &'a mut dyn Target,
+    listing: &'a Listing,
+    project: &'a Project,
+    name: String,
+    points: &'a mut Points,
+    told: Told,
+    /// The client has said all its breakpoints.
+    is_configured: bool,
+    /// The run is over, and only its past is left.
+    is_over: bool,
+    launch: &'a Launch,
+}
+
+impl Session<'_> {
+    fn run(&mut self, is_first: bool) -> Result<After, Error> {
+        // To the stop before the first block.
+        let mut events = Vec::new();
+        while self.told.state == State::Running && !self.is_over {
+            let came = self.target.turn(PIECE)?;
+            self.note(&came);
+            events.extend(came);
+        }
+        self.hear(&events, false);
+        if is_first {
+            self.client.event("initialized", json!({}));
+        } else {
+            self.points.set_again(self.target)?;
+            self.begin()?;
+        }
+        loop {
+            let is_running =
+                self.is_configured && self.told.state == State::Running && !self.is_over;
+            let wait = if is_running { Duration::ZERO } else { PATIENCE };
+            match self.client.next(wait) {
+                Come::Request(request) => {
+                    if let Some(after) = self.receive(request)? {
+                        return Ok(after);
+                    }
+                }
+                Come::End => return Ok(After::End),
+                Come::Nothing if is_running => {
+                    let events = self.target.turn(PIECE)?;
+                    self.note(&events);
+                    self.hear(&events, true);
+                }
+                Come::Nothing => {}
+            }
+        }
+    }
+
+    /// Lets the program go on after its beginning.
+    fn begin(&mut self) -> Result<(), Error> {
+        self.is_configured = true;
+        if self.is_over {
+            self.ended(0);
+        } else if self.launch.stops_on_entry && self.launch.is_debugged {
+            self.stopped("entry", None);
+        } else {
+            if let Err(Refused(why)) = self.order(&Order::Continue)? {
+                self.output("important", &why);
+            }
+            self.settle();
+        }
+        Ok(())
+    }
+
+    fn note(&mut self, events: &[Event]) {
+        for event in events {
+            match event {
+                Event::Told(value) => {
+                    if let Some(told) = Told::read(value) {
+                        self.told = told;
+                    }
+                }
+                Event::Over(_) => self.is_over = true,
+                Event::Said(..) => {}
+            }
+        }
+    }
+
+    /// Passes on what has happened.
+    fn hear(&mut self, events: &[Event], tells_stops: bool) {
+        let mut is_stopped = false;
+        let mut over = None;
+        for event in events {
+            match event {
+                Event::Told(value) => {
+                    for line in value
+                        .get("log")
+                        .and_then(Value::as_array)
+                        .into_iter()
+                        .flatten()
+                    {
+                        self.output("console", line.as_str().unwrap_or_default());
+                    }
+                    is_stopped |=
+                        Told::read(value).is_some_and(|told| told.state == State::Stopped);
+                }
+                Event::Said(Channel::Output, text) => self.output("stdout", text),
+                Event::Said(Channel::Message, text) => self.output("stderr", text),
+                Event::Over(why) => over = Some(why.clone()),
+            }
+        }
+        if let Some(why) = over {
+            self.output("console", &why);
+            let is_good = !self.told.with_errors;
+            if self.launch.stops_at_end && self.launch.is_debugged {
+                self.stopped("pause", Some(why));
+            } else if self.is_configured {
+                self.ended(u8::from(!is_good));
+            }
+        } else if is_stopped && tells_stops {
+            self.tell_stop();
+        }
+    }
+
+    fn output(&mut self, category: &str, text: &str) {
+        let text = format!("{}\n", text.trim_end_matches('\n'));
+        let body = json!({"category": category, "output": text});
+        self.client.event("output", body);
+    }
+
+    fn ended(&mut self, code: u8) {
+        self.client.event("exited", json!({ "exitCode": code }));
+        self.client.event("terminated", json!({}));
+    }
+
+    /// Tells where it is stopped, as the debugger has it.
+    fn tell_stop(&mut self) {
+        let stop = self.told.stop.clone().unwrap_or_default();
+        let reason = match stop.reason.as_str() {
+            "breakpoint" | "condition" => "breakpoint",
+            "error" => "exception",
+            "step" | "thread ended" => "step",
+            _ => "pause",
+        };
+        self.stopped(reason, (!stop.text.is_empty()).then_some(stop.text));
+    }
+
+    fn stopped(&mut self, reason: &str, text: Option<String>) {
+        let stop = self.told.stop.clone().unwrap_or_default();
+        let mut body = json!({"reason": reason, "allThreadsStopped": true});
+        if let Some(thread) = stop
+            .thread
+            .or(self.told.thread().map(|thread| thread.number))
+        {
+            body["threadId"] = json!(view::thread_id(thread));
+        }
+        if let Some(number) = stop.number {
+            body["hitBreakpointIds"] = json!([number]);
+        }
+        if let Some(text) = text {
+            body["description"] = json!(text);
+            body["text"] = json!(text);
+        }
+        self.client.event("stopped", body);
+    }
+
+    /// Gives an order; what it says of the program is kept.
+    fn order(&mut self, order: &Order) -> Result<Result<Value, Refused>, Error> {
+        let answer = self.target.order(order)?;
+        if let Some(told) = answer.get("program").and_then(Told::read) {
+            self.told = told;
+        }
+        Ok(match why_not(&answer) {
+            None => Ok(answer),
+            Some(why) => Err(Refused(why)),
+        })
+    }
+
+    /// After an order that moves the program: what came of it at once.
+    fn settle(&mut self) {
+        match self.told.state {
+            State::Stopped | State::Past => {
+                // Lines of breakpoints come by news; the stop is told here.
+                if let Ok(events) = self.target.turn(Duration::ZERO) {
+                    self.note(&events);
+                    self.hear(&events, false);
+                }
+                self.tell_stop();
+            }
+            State::Running | State::Ended => {}
+        }
+    }
+
+    /// One request; what becomes of the program if this was its last one.
+    fn receive(&mut self, request: Request) -> Result<Option<After>, Error> {
+        match request.command.as_str() {
+            "disconnect" => {
+                self.client.answer(&request, Ok(Value::Null));
+                return Ok(Some(After::End));
+            }
+            "restart" => return Ok(Some(After::Again(request))),
+            "configurationDone" => {
+                self.client.answer(&request, Ok(Value::Null));
+                self.begin()?;
+                return Ok(None);
+            }
+            "terminate" => {
+                self.client.answer(&request, Ok(Value::Null));
+                self.is_over = true;
+                self.ended(0);
+                return Ok(None);
+            }
+            _ => {}
+        }
+        if let Some(order) = self.moving(&request)? {
+            return self.go(&request, &order).map(|()| None);
+        }
+        let answer = self.answer(&request)?;
+        self.client.answer(&request, answer);
+        Ok(None)
+    }
+
+    /// The order of a request that moves the program.
+    fn moving(&self, request: &Request) -> Result<Option<Order>, Error> {
+        let thread = request.number("threadId").map(view::thread_of);
+        let mut threads = self.told.threads.iter();
+        let thread = threads.find(|found| Some(found.number) == thread);
+        let name = thread.map(|thread| thread.name.as_str().into());
+        Ok(Some(match request.command.as_str() {
+            "continue" => Order::Continue,
+            "next" => Order::Step(Step::Over, name),
+            "stepIn" => Order::Step(Step::Into, name),
+            "stepOut" => Order::Step(Step::Out, name),
+            "stepBack" => Order::Back(Back::Step(Step::Over)),
+            "reverseContinue" => Order::Back(Back::Continue),
+            _ => return Ok(None),
+        }))
+    }
+
+    fn go(&mut self, request: &Request, order: &Order) -> Result<(), Error> {
+        if self.is_over && self.told.state != State::Past && !matches!(order, Order::Back(_)) {
+            self.client
+                .answer(request, Ok(json!({"allThreadsContinued": true})));
+            self.ended(0);
+            return Ok(());
+        }
+        match self.order(order)? {
+            Err(why) => self.client.answer(request, Err(why)),
+            Ok(_) => {
+                let body = match request.command.as_str() {
+                    "continue" => json!({"allThreadsContinued": true}),
+                    _ => Value::Null,
+                };
+                self.client.answer(request, Ok(body));
+                self.settle();
+            }
+        }
+        Ok(())
+    }
+
+    fn answer(&mut self, request: &Request) -> Result<Result<Value, Refused>, Error> {
+        let sheets = (self.listing, self.project);
+        let set = |session: &mut Self, kind, items| {
+            session.points.set(kind, items, sheets, session.target)
+        };
+        Ok(Ok(match request.command.as_str() {
+            "setBreakpoints" => {
+                let old = request.items("breakpoints");
+                set(self, Kind::Line, old)?
+            }
+            "setFunctionBreakpoints" => set(self, Kind::Name, request.items("breakpoints"))?,
+            "setInstructionBreakpoints" => set(self, Kind::Id, request.items("breakpoints"))?,
+            "setExceptionBreakpoints" => {
+                let filters = request.items("filters");
+                let is_wanted = filters.iter().any(|filter| filter == "errors");
+                return Ok(self.order(&Order::Errors(is_wanted))?.map(|_| Value::Null));
+            }
+            "threads" => view::threads(&self.told),
+            "stackTrace" => {
+                let window = (
+                    request.number("startFrame").unwrap_or(0),
+                    request.number("levels").unwrap_or(0),
+                );
+                let id = request.number("threadId").unwrap_or(0);
+                view::stack(&self.told, id, window, self.listing, &self.name)
+            }
+            "scopes" => view::scopes(),
+            "variables" => {
+                let _ = self.order(&Order::Look)?;
+                let reference = request.number("variablesReference").unwrap_or(0);
+                view::variables(&self.told, reference, self.target)?
+            }
+            "setVariable" | "setExpression" => {
+                let name = request.text("name").or(request.text("expression"));
+                let value = request.text("value").unwrap_or_default();
+                return self.assign(name.unwrap_or_default(), value);
+            }
+            "evaluate" => return self.evaluate(request),
+            "completions" => view::completions(
+                &self.told,
+                request.text("text").unwrap_or_default(),
+                request.number("column").unwrap_or(1),
+            ),
+            "pause" => return Ok(self.order(&Order::Pause)?.map(|_| Value::Null)),
+            "source" => json!({"content": self.listing.whole(), "mimeType": "text/plain"}),
+            "loadedSources" => json!({"sources": [view::source(&self.name)]}),
+            "breakpointLocations" => self.locations(request),
+            "exceptionInfo" => {
+                let stop = self.told.stop.clone().unwrap_or_default();
+                json!({"exceptionId": "error", "description": stop.text, "breakMode": "always"})
+            }
+            "cancel" => Value::Null,
+            other => {
+                return Ok(Err(Refused(format!(
+                    "this adapter does not know '{other}'"
+                ))));
+            }
+        }))
+    }
+
+    fn assign(&mut self, name: &str, value: &str) -> Result<Result<Value, Refused>, Error> {
+        let assigned = self.order(&Order::Set(name.into(), value.into()))?;
+        Ok(assigned.map(|answer| {
+            json!({
+                "value": view::word(&answer, "value"),
+                "type": view::word(&answer, "type"),
+                "variablesReference": 0,
+            })
+        }))
+    }
+
+    fn evaluate(&mut self, request: &Request) -> Result<Result<Value, Refused>, Error> {
+        let text = request
+            .text("expression")
+            .unwrap_or_default()
+            .trim()
+            .to_owned();
+        let is_assignment = text.split_once('=').is_some_and(|(name, value)| {
+            let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == ' ';
+            !name.is_empty() && name.chars().all(is_name) && !value.starts_with('=')
+        });
+        let answer = match (request.text("context"), text.split_once('=')) {
+            (Some("repl"), Some((name, value))) if is_assignment => {
+                self.order(&Order::Set(name.trim().into(), value.trim().into()))?
+            }
+            _ => self.order(&Order::Evaluate(text.as_str().into()))?,
+        };
+        Ok(answer.map(|answer| {
+            json!({
+                "result": view::word(&answer, "value"),
+                "type": view::word(&answer, "type"),
+                "variablesReference": 0,
+            })
+        }))
+    }
+
+    fn locations(&self, request: &Request) -> Value {
+        let line = |name| {
+            let line = request.number(name);
+            line.and_then(|line| usize::try_from(line).ok())
+        };
+        let from = line("line").unwrap_or(1).max(1);
+        let to = line("endLine").unwrap_or(from).min(self.listing.len());
+        let lines = (from..=to).filter(|line| !self.listing.blocks(*line).is_empty());
+        let lines: Vec<Value> = lines.map(|line| json!({ "line": line })).collect();
+        json!({ "breakpoints": lines })
+    }
+}

@@ -1,0 +1,137 @@
+//! What a client sees of a program that is stopped: threads, calls, variables, sensors.
+//!
+//! Owns the numbers by which it asks for them. They are good until the program goes on.
+
+use crate::debug::listing::Listing;
+use crate::debug::target::{Target, why_not};
+use crate::debug::told::{At, Told};
+use crate::error::Error;
+use lang_diagram::debug::order::Order;
+use lang_diagram::ports::Port;
+use serde_json::{Value, json};
+
+/// The text of the diagram, as a source.
+pub(super) const SOURCE: u64 = 1;
+/// The variables of the program.
+const VARIABLES: u64 = 1;
+/// The readings that it knows.
+const SENSORS: u64 = 2;
+/// Frames of one thread.
+const FRAMES: u64 = 10_000;
+
+/// The number of a thread for a client: 0 would be none.
+pub(super) fn thread_id(number: u64) -> u64 {
+    number + 1
+}
+
+/// The number that it has for the debugger.
+pub(super) fn thread_of(id: u64) -> u64 {
+    id.saturating_sub(1)
+}
+
+pub(super) fn threads(told: &Told) -> Value {
+    let threads = told.threads.iter();
+    let threads: Vec<Value> = threads
+        .map(|thread| json!({"id": thread_id(thread.number), "name": thread.name}))
+        .collect();
+    json!({ "threads": threads })
+}
+
+pub(super) fn stack(
+    told: &Told,
+    id: u64,
+    window: (u64, u64),
+    listing: &Listing,
+    name: &str,
+) -> Value {
+    let thread = told
+        .threads
+        .iter()
+        .find(|thread| thread.number == thread_of(id));
+    let places: Vec<&At> = thread
+        .into_iter()
+        .flat_map(|thread| std::iter::once(&thread.at).chain(thread.calls.iter().rev()))
+        .collect();
+    let (start, levels) = window;
+    let levels = if levels == 0 { FRAMES } else { levels };
+    let frames = (0u64..).zip(&places);
+    let frames = frames.skip_while(|(index, _)| *index < start);
+    let frames = frames.take_while(|(index, _)| *index < start.saturating_add(levels));
+    let frames: Vec<Value> = frames
+        .map(|(index, at)| {
+            json!({
+                "id": id * FRAMES + index,
+                "name": format!("{} - {}", at.diagram, at.block),
+                "line": listing.line_of(&at.id),
+                "column": 1,
+                "source": source(name),
+                "instructionPointerReference": at.id,
+            })
+        })
+        .collect();
+    json!({"stackFrames": frames, "totalFrames": places.len()})
+}
+
+/// The text of the diagram.
+pub(super) fn source(name: &str) -> Value {
+    json!({"name": name, "sourceReference": SOURCE, "origin": "trik show"})
+}
+
+pub(super) fn scopes() -> Value {
+    json!({"scopes": [
+        {"name": "Variables", "variablesReference": VARIABLES, "expensive": false},
+        {"name": "Sensors", "variablesReference": SENSORS, "expensive": true},
+    ]})
+}
+
+pub(super) fn variables(
+    told: &Told,
+    reference: u64,
+    target: &mut dyn Target,
+) -> Result<Value, Error> {
+    let sensors: Vec<&str> = Port::all().filter_map(Port::variable).collect();
+    let mut found = Vec::new();
+    if reference == VARIABLES {
+        let own = told.variables.iter();
+        let own = own.filter(|variable| !sensors.contains(&variable.name.as_str()));
+        found.extend(own.map(|variable| one(&variable.name, &variable.value, &variable.kind)));
+    }
+    if reference == SENSORS {
+        for name in sensors {
+            let answer = target.order(&Order::Evaluate(name.into()))?;
+            // Those that the program does not read are unknown.
+            if why_not(&answer).is_none() {
+                found.push(one(name, &word(&answer, "value"), &word(&answer, "type")));
+            }
+        }
+    }
+    Ok(json!({ "variables": found }))
+}
+
+fn one(name: &str, value: &str, kind: &str) -> Value {
+    json!({"name": name, "value": value, "type": kind, "variablesReference": 0, "evaluateName": name})
+}
+
+/// A text in an answer.
+pub(super) fn word(answer: &Value, name: &str) -> String {
+    let text = answer.get(name).and_then(Value::as_str);
+    text.unwrap_or_default().to_owned()
+}
+
+/// Names that begin as what is typed ends.
+pub(super) fn completions(told: &Told, text: &str, column: u64) -> Value {
+    let column = usize::try_from(column.saturating_sub(1)).unwrap_or(usize::MAX);
+    let typed: String = text.chars().take(column).collect();
+    let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let begun = typed.rsplit(|c| !is_part(c)).next().unwrap_or_default();
+    let own = told.variables.iter().map(|variable| variable.name.clone());
+    let sensors = Port::all().filter_map(Port::variable);
+    let mut names: Vec<String> = own.chain(sensors.map(str::to_owned)).collect();
+    names.sort_unstable();
+    names.dedup();
+    let fitting = names.iter().filter(|name| name.starts_with(begun));
+    let targets: Vec<Value> = fitting
+        .map(|name| json!({"label": name, "type": "variable", "length": begun.chars().count()}))
+        .collect();
+    json!({ "targets": targets })
+}

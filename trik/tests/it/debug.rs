@@ -1,0 +1,97 @@
+//! `trik debug` and `trik dap` as people and editors use them.
+
+/// Frames that an editor sends, and some that none does.
+mod dap;
+
+use crate::rig::TRIK;
+use harness::{Board, Output, tools};
+use lang_diagram::sketch::Sketch;
+use std::process::Command;
+
+/// Counts to 5 with a call in each round: lines 1 to 6 are the program, from 8 on the subprogram.
+pub(super) fn counting() -> Vec<u8> {
+    let mut sketch = Sketch::new();
+    let twice = sketch.subprogram("twice", &[]);
+    sketch.draw_on(twice);
+    let begin = sketch.block("InitialNode", &[]);
+    let double = sketch.block("Function", &[("Body", "m = n * 2")]);
+    let back = sketch.block("FinalNode", &[]);
+    sketch.chain(&[begin, double, back]);
+    let main = sketch.main();
+    sketch.draw_on(main);
+    let start = sketch.block("InitialNode", &[]);
+    let clear = sketch.block("Function", &[("Body", "n = 0")]);
+    let head = sketch.block("Loop", &[("Iterations", "5")]);
+    let count = sketch.block("Function", &[("Body", "n = n + 1\nprint(n)")]);
+    let call = sketch.call(twice, &[]);
+    let wait = sketch.block("Timer", &[("Delay", "100")]);
+    let end = sketch.block("FinalNode", &[]);
+    sketch.chain(&[start, clear, head]);
+    sketch.guarded(head, count, "iteration");
+    sketch.chain(&[count, call, wait, head]);
+    sketch.link(head, end);
+    sketch.qrs().expect("a save")
+}
+
+fn debug(board: &Board, words: &[&str], typed: &str) -> Output {
+    let mut command = Command::new(TRIK);
+    command.args(words).current_dir(board.dir());
+    tools::run(&mut command, typed.as_bytes())
+}
+
+#[test]
+fn a_diagram_is_stopped_stepped_and_taken_back() {
+    let board = Board::new();
+    board.file("count.qrs", counting());
+    let typed = "list 1\nbreak 4 if n == 3\nc\np n * 10\nn\ns\nbt\nrn\nrc\nstart\nprint n\npresent\n\
+        set n=7\np n\ninfo variables\nd\nc\nrn\nwhere\nq\n";
+    let told = debug(&board, &["debug", "count.qrs"], typed).good();
+    insta::assert_snapshot!(told);
+}
+
+#[test]
+fn what_cannot_be_done_is_told_and_changes_nothing() {
+    let board = Board::new();
+    board.file("count.qrs", counting());
+    let typed = "fly\nbreak 99\nbreak 4 when n\nback noon\nprint 1 +\nset n\ndelete 7\nrn\nhold nobody\nrelease nobody\n\
+        errors maybe\ninfo weather\nlist x\nuntil\n\nc\n";
+    let told = debug(&board, &["debug", "count.qrs"], typed).good();
+    insta::assert_snapshot!(told);
+}
+
+#[test]
+fn what_cannot_be_debugged_says_why() {
+    let board = Board::new();
+    board.file("broken.qrs", "rubbish");
+    board.file("text.js", "print(1)");
+    for (words, why) in [
+        (&["debug", "broken.qrs"][..], "broken.qrs: "),
+        (&["debug", "nowhere.qrs"], "nowhere.qrs: "),
+        (&["debug", "text.js"], "only diagrams have blocks"),
+        (
+            &["debug", "broken.qrs", "--speed", "0"],
+            "a number from 0.01",
+        ),
+        (
+            &["check", "--debug", "broken.qrs", "broken.qrs"],
+            "one diagram in one world",
+        ),
+    ] {
+        let told = debug(&board, words, "");
+        assert_eq!(told.code(), 2, "{words:?}: {}", told.stderr);
+        assert!(told.stderr.contains(why), "{words:?}: {}", told.stderr);
+    }
+}
+
+#[test]
+fn a_failed_run_is_looked_at_where_it_failed() {
+    let board = Board::new();
+    debug(&board, &["new-task", "one"], "").good();
+    board.file("count.qrs", counting());
+    let words = ["check", "--debug", "count.qrs", "--field", "one/world.xml"];
+    let told = debug(&board, &words, "rn\nprint n\nwhere\nq\n").good();
+    assert!(told.contains("the task is not accomplished"), "{}", told);
+    assert!(told.contains("past, "), "{}", told);
+    assert!(told.contains("\n(trik) print n\n5\n"), "{}", told);
+    assert!(told.contains("the robot is at x "), "{}", told);
+}

@@ -1,0 +1,389 @@
+//! The Debug Adapter Protocol by hand: real frames on the standard streams of the real program, and over TCP.
+
+use super::counting;
+use crate::rig::TRIK;
+use harness::Board;
+use harness::wait::LIFE;
+use serde_json::{Value, json};
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+
+/// A client of an adapter.
+struct Editor {
+    process: Child,
+    to: Box<dyn Write>,
+    from: Receiver<Value>,
+    /// Came and was not asked for yet.
+    kept: Vec<Value>,
+    seq: u64,
+}
+
+fn frame(from: &mut impl BufRead) -> Option<Value> {
+    let mut length = 0;
+    loop {
+        let mut line = String::new();
+        if from.read_line(&mut line).ok()? == 0 {
+            return None;
+        }
+        match line.trim() {
+            "" => break,
+            line => length = line.strip_prefix("Content-Length: ")?.parse().ok()?,
+        }
+    }
+    let mut body = vec![0; length];
+    from.read_exact(&mut body).ok()?;
+    serde_json::from_slice(&body).ok()
+}
+
+impl Editor {
+    fn over(process: Child, to: Box<dyn Write>, from: impl Read + Send + 'static) -> Self {
+        let (put, messages) = channel();
+        std::thread::spawn(move || {
+            let mut from = BufReader::new(from);
+            while let Some(message) = frame(&mut from) {
+                if put.send(message).is_err() {
+                    break;
+                }
+            }
+        });
+        Self {
+            process,
+            to,
+            from: messages,
+            kept: Vec::new(),
+            seq: 0,
+        }
+    }
+
+    fn start() -> Self {
+        let mut process = Command::new(TRIK)
+            .arg("dap")
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("the adapter");
+        let to = process.stdin.take().expect("its input");
+        let from = process.stdout.take().expect("its output");
+        Self::over(process, Box::new(to), from)
+    }
+
+    fn raw(&mut self, bytes: &[u8]) {
+        self.to.write_all(bytes).expect("room");
+        self.to.flush().expect("room");
+    }
+
+    /// The next message that is one of these; others are kept.
+    fn wait(&mut self, wanted: impl Fn(&Value) -> bool) -> Value {
+        if let Some(at) = self.kept.iter().position(&wanted) {
+            return self.kept.remove(at);
+        }
+        loop {
+            let message = self.from.recv_timeout(LIFE).expect("a message");
+            if wanted(&message) {
+                return message;
+            }
+            self.kept.push(message);
+        }
+    }
+
+    fn event(&mut self, name: &str) -> Value {
+        self.wait(|message| message["event"] == name)["body"].take()
+    }
+
+    fn ask(&mut self, command: &str, arguments: Value) -> Value {
+        self.seq += 1;
+        let seq = self.seq;
+        let body =
+            json!({"seq": seq, "type": "request", "command": command, "arguments": arguments});
+        let body = body.to_string();
+        self.raw(format!("Content-Length: {}\r\n\r\n{body}", body.len()).as_bytes());
+        self.wait(|message| message["request_seq"] == seq)
+    }
+
+    fn good(&mut self, command: &str, arguments: Value) -> Value {
+        let mut answer = self.ask(command, arguments);
+        assert_eq!(answer["success"], true, "{command}: {answer}");
+        answer["body"].take()
+    }
+
+    fn bad(&mut self, command: &str, arguments: Value) -> String {
+        let answer = self.ask(command, arguments);
+        assert_eq!(answer["success"], false, "{command}: {answer}");
+        answer["message"].as_str().expect("why").to_owned()
+    }
+
+    fn launch(&mut self, board: &Board, more: Value) {
+        self.good("initialize", json!({"adapterID": "trik"}));
+        let mut arguments = json!({"program": board.path("count.qrs")});
+        for (name, value) in more.as_object().expect("members") {
+            arguments[name] = value.clone();
+        }
+        self.good("launch", arguments);
+        self.event("initialized");
+    }
+
+    /// The line at which it is stopped.
+    fn line(&mut self, stopped: &Value) -> u64 {
+        let thread = stopped["threadId"].as_u64().expect("a thread");
+        let stack = self.good("stackTrace", json!({ "threadId": thread }));
+        stack["stackFrames"][0]["line"].as_u64().expect("a line")
+    }
+
+    fn value(&mut self, text: &str) -> String {
+        let arguments = json!({"expression": text, "context": "watch"});
+        let answer = self.good("evaluate", arguments);
+        answer["result"].as_str().expect("a value").to_owned()
+    }
+
+    fn end(mut self) {
+        self.good("disconnect", json!({}));
+        drop(self.to);
+        assert!(self.process.wait().expect("an end").success());
+    }
+}
+
+fn board() -> Board {
+    let board = Board::new();
+    board.file("count.qrs", counting());
+    board
+}
+
+#[test]
+fn an_editor_stops_looks_changes_steps_both_ways_and_ends() {
+    let board = board();
+    let mut editor = Editor::start();
+    editor.launch(&board, json!({}));
+    let points = json!({"source": {"sourceReference": 1}, "breakpoints": [
+        {"line": 4, "condition": "n == 1"}, {"line": 7}, {"line": 4, "logMessage": "n is {n}"},
+        {"line": 4, "hitCondition": "often"},
+    ]});
+    let set = editor.good("setBreakpoints", points);
+    let verified: Vec<_> = set["breakpoints"].as_array().expect("all").iter().collect();
+    let verified: Vec<bool> = verified.iter().map(|one| one["verified"] == true).collect();
+    assert_eq!(verified, [true, false, true, false], "{set}");
+    assert!(
+        set["breakpoints"][1]["message"]
+            .as_str()
+            .expect("why")
+            .contains("no block")
+    );
+    editor.good("setExceptionBreakpoints", json!({"filters": ["errors"]}));
+    editor.good("configurationDone", json!({}));
+    let stopped = editor.event("stopped");
+    assert_eq!(stopped["reason"], "breakpoint");
+    assert_eq!(stopped["hitBreakpointIds"], json!([1]));
+    assert_eq!(editor.line(&stopped), 4);
+    assert_eq!(editor.value("n * 10"), "10");
+    let told = editor.wait(|message| message["body"]["output"] == "n is 0\n");
+    assert_eq!(told["body"]["category"], "console");
+
+    let thread = json!({"threadId": stopped["threadId"]});
+    editor.good("next", thread.clone());
+    let stopped = editor.event("stopped");
+    assert_eq!(editor.line(&stopped), 5);
+    editor.good("stepIn", thread.clone());
+    let stopped = editor.event("stopped");
+    let stack = editor.good("stackTrace", thread.clone());
+    assert_eq!(stack["totalFrames"], 2, "{stack}");
+    assert_eq!(editor.line(&stopped), 9);
+    editor.good("stepOut", thread.clone());
+    let stopped = editor.event("stopped");
+    assert_eq!(editor.line(&stopped), 6);
+    assert_eq!(editor.value("m"), "4");
+    editor.good("stepBack", thread.clone());
+    let stopped = editor.event("stopped");
+    assert_eq!(editor.line(&stopped), 5);
+    assert!(
+        editor
+            .bad(
+                "setVariable",
+                json!({"variablesReference": 1, "name": "n", "value": "7"})
+            )
+            .contains("the past")
+    );
+    editor.good("continue", thread.clone());
+    editor.event("stopped");
+    let set = json!({"variablesReference": 1, "name": "n", "value": "n + 1"});
+    assert_eq!(editor.good("setVariable", set)["value"], "3");
+    let variables = editor.good("variables", json!({"variablesReference": 1}));
+    let names: Vec<_> = variables["variables"]
+        .as_array()
+        .expect("all")
+        .iter()
+        .collect();
+    assert_eq!(
+        names.iter().filter(|one| one["name"] == "n").count(),
+        1,
+        "{variables}"
+    );
+    let found = editor.good("completions", json!({"text": "2 * n", "column": 6}));
+    assert!(
+        found["targets"]
+            .as_array()
+            .expect("all")
+            .iter()
+            .any(|one| one["label"] == "n")
+    );
+    let text = editor.good("source", json!({"sourceReference": 1}));
+    assert!(
+        text["content"]
+            .as_str()
+            .expect("a text")
+            .contains("n = n + 1"),
+        "{text}"
+    );
+    let locations = editor.good("breakpointLocations", json!({"line": 1, "endLine": 100}));
+    assert!(
+        locations["breakpoints"].as_array().expect("all").len() >= 5,
+        "{locations}"
+    );
+    editor.good("setBreakpoints", json!({"breakpoints": []}));
+    editor.good("continue", thread);
+    assert_eq!(editor.event("exited")["exitCode"], 0);
+    editor.event("terminated");
+    editor.end();
+}
+
+#[test]
+fn a_run_begins_stopped_if_wanted_and_anew_with_its_breakpoints() {
+    let board = board();
+    let mut editor = Editor::start();
+    editor.launch(&board, json!({"stopOnEntry": true, "stopAtEnd": true}));
+    let named = json!({"breakpoints": [{"name": "twice"}, {"name": "nothing"}]});
+    let set = editor.good("setFunctionBreakpoints", named);
+    assert_eq!(set["breakpoints"][0]["verified"], true);
+    assert_eq!(set["breakpoints"][1]["verified"], false);
+    editor.good("configurationDone", json!({}));
+    assert_eq!(editor.event("stopped")["reason"], "entry");
+    for round in ["1", "2"] {
+        editor.good("continue", json!({"threadId": 1}));
+        assert_eq!(editor.event("stopped")["reason"], "breakpoint");
+        assert_eq!(editor.value("n"), round);
+    }
+    editor.good("restart", json!({}));
+    assert_eq!(editor.event("stopped")["reason"], "entry");
+    editor.good("continue", json!({"threadId": 1}));
+    editor.event("stopped");
+    assert_eq!(editor.value("n"), "1");
+    let stack = editor.good(
+        "stackTrace",
+        json!({"threadId": 1, "startFrame": 1, "levels": 1}),
+    );
+    let id = stack["stackFrames"][0]["instructionPointerReference"].clone();
+    let ids = json!({"breakpoints": [{"instructionReference": id}, {"instructionReference": "x"}]});
+    let set = editor.good("setInstructionBreakpoints", ids);
+    assert_eq!(set["breakpoints"][0]["verified"], true, "{set}");
+    assert_eq!(set["breakpoints"][1]["verified"], false);
+    editor.good("setFunctionBreakpoints", json!({"breakpoints": []}));
+    editor.good("setInstructionBreakpoints", json!({"breakpoints": []}));
+    editor.good("continue", json!({"threadId": 1}));
+    // The run is over, and its past is there.
+    let stopped = editor.event("stopped");
+    assert!(
+        stopped["text"].as_str().expect("why").contains("has ended"),
+        "{stopped}"
+    );
+    editor.good("reverseContinue", json!({"threadId": 1}));
+    editor.event("stopped");
+    editor.good("terminate", json!({}));
+    editor.event("terminated");
+    editor.end();
+}
+
+#[test]
+fn a_program_without_end_is_paused_while_it_runs() {
+    let board = board();
+    let mut editor = Editor::start();
+    editor.launch(&board, json!({"speed": 0.5}));
+    editor.good("configurationDone", json!({}));
+    editor.good("pause", json!({"threadId": 1}));
+    assert_eq!(editor.event("stopped")["reason"], "pause");
+    editor.end();
+}
+
+#[test]
+fn rubbish_is_told_and_the_talk_goes_on() {
+    let board = board();
+    let mut editor = Editor::start();
+    editor.raw(b"GET / HTTP/1.1\r\n\r\n");
+    editor.raw(b"Content-Length: 99999999999\r\n\r\n");
+    editor.raw(b"Content-Length: 3\r\n\r\n[1]");
+    editor.raw(b"Content-Length: 2\r\n\r\n{}");
+    for _ in 0..4 {
+        assert_eq!(editor.event("output")["category"], "important");
+    }
+    assert!(
+        editor
+            .bad("threads", json!({}))
+            .contains("launch a program first")
+    );
+    assert!(
+        editor
+            .bad("launch", json!({}))
+            .contains("\"program\" is needed")
+    );
+    assert!(
+        editor
+            .bad("launch", json!({"program": "/nowhere.qrs"}))
+            .contains("/nowhere.qrs")
+    );
+    editor.launch(
+        &board,
+        json!({"stopOnEntry": true, "seed": -1, "speed": "x"}),
+    );
+    editor.good("configurationDone", json!({}));
+    editor.event("stopped");
+    for (command, arguments) in [
+        ("fly", json!({})),
+        ("evaluate", json!({"expression": "1 +"})),
+        ("evaluate", json!({"expression": "print(1)"})),
+        ("setVariable", json!({})),
+        ("setExpression", json!({"expression": "n", "value": "1; 2"})),
+    ] {
+        editor.bad(command, arguments);
+    }
+    let stack = editor.good("stackTrace", json!({"threadId": 99, "levels": u64::MAX}));
+    assert_eq!(stack["totalFrames"], 0);
+    let many: Vec<Value> = (0..1100).map(|_| json!({"line": 4})).collect();
+    let set = editor.good("setBreakpoints", json!({"breakpoints": many}));
+    assert_eq!(set["breakpoints"][0]["verified"], true);
+    assert_eq!(
+        set["breakpoints"][1099]["verified"], false,
+        "more than can be"
+    );
+    editor.end();
+}
+
+#[test]
+fn clients_come_over_tcp_one_after_the_other() {
+    let board = board();
+    let mut process = Command::new(TRIK)
+        .args(["dap", "--listen", "0"])
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the adapter");
+    let mut line = String::new();
+    let mut told = BufReader::new(process.stderr.take().expect("its words"));
+    told.read_line(&mut line).expect("a line");
+    let port: u16 = line
+        .trim()
+        .rsplit(':')
+        .next()
+        .expect("a port")
+        .parse()
+        .expect("a port");
+    for _ in 0..2 {
+        let stream = TcpStream::connect(("127.0.0.1", port)).expect("a connection");
+        let input = stream.try_clone().expect("the other way");
+        let nobody = Command::new("true").spawn().expect("a process");
+        let mut editor = Editor::over(nobody, Box::new(stream), input);
+        editor.launch(&board, json!({"stopOnEntry": true}));
+        editor.good("configurationDone", json!({}));
+        editor.event("stopped");
+        editor.end();
+    }
+    process.kill().expect("its end");
+    process.wait().expect("its end");
+}
