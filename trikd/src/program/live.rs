@@ -1,4 +1,4 @@
-//! Changes of the diagram that runs, on their way to it.
+//! Changes of the diagram that runs, and looks at it, on their way to it.
 //!
 //! Owns which diagram is meant, and what clients hear if none runs. The diagram answers by itself.
 
@@ -44,6 +44,17 @@ impl Supervisor {
         if !self.runs_diagram() || !self.send(ToProgram::Set(text)) {
             let name = text.split('=').next().unwrap_or_default().trim();
             self.broadcast(&news::not_changed(name, news::NO_DIAGRAM));
+        }
+    }
+
+    /// Tells a program when somebody begins or ceases to look at it.
+    pub(super) fn send_watch(&mut self) {
+        let watched = self.around.clients.are_watching();
+        if let Some(current) = &mut self.current
+            && current.is_watched != watched
+        {
+            current.is_watched = watched;
+            self.send(ToProgram::Watch(watched));
         }
     }
 }
