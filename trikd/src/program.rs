@@ -21,6 +21,7 @@ pub mod rest;
 mod says;
 
 use crate::clients::Clients;
+use crate::clients::debugging::Asked;
 use crate::feedback::{Feedback, Moment};
 use crate::protocol::news::{self, End};
 use crate::protocol::program::{FromProgram, ToProgram};
@@ -32,9 +33,10 @@ use kill::{freeze, group, sweep};
 use nix::sys::signal::Signal;
 use nix::unistd::Pid;
 use output::Meter;
-pub use queue::{Command, Programs};
+pub use queue::{Command, Programs, Wish};
 use reaper::{Ended, Reaper};
 use rest::Rest;
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::rc::Rc;
@@ -55,6 +57,8 @@ struct Current {
     is_watched: bool,
     meter: Meter,
     web: Vec<oneshot::Sender<String>>,
+    /// Orders to its debugger that it has not answered yet.
+    orders: VecDeque<Asked>,
     ended: Option<(Ended, Instant)>,
 }
 
@@ -159,6 +163,8 @@ impl Supervisor {
             Command::Direct(code) => self.direct(&code).await,
             Command::Patch(when_gone, path) => self.patch(when_gone, &path),
             Command::Set(text) => self.set(&text),
+            Command::Debug(asked, wish) => self.debug(asked, wish).await,
+            Command::DebugLeft => self.debugger_left(),
             Command::Stop(who) => {
                 self.end(Cause::Ordered(who)).await;
                 // Also what came while nothing ran: after a stop everything begins anew.
@@ -285,6 +291,7 @@ impl Supervisor {
             is_watched: false,
             meter: Meter::default(),
             web: Vec::new(),
+            orders: VecDeque::new(),
             ended: None,
         });
     }
@@ -347,6 +354,8 @@ impl Supervisor {
                 let kind = if is_changed { "info" } else { "error" };
                 self.show(kind, text);
             }
+            FromProgram::Debug { client, json } => self.hear_debugger(client, json),
+            FromProgram::DebugLog(json) => self.around.clients.tell_log(json),
         }
     }
 
@@ -397,6 +406,7 @@ impl Supervisor {
         self.report_rest(last, rest_us);
         self.around.feedback.show(Moment::Ended);
         self.report_end(&mut current, &cause);
+        self.end_debugger(&mut current);
         self.around.programs.shown.borrow_mut().text = None;
         self.around.mailbox.forget_kept();
     }

@@ -60,7 +60,9 @@ impl Supervisor {
                 | FromProgram::Mailbox(_)
                 | FromProgram::Web(_)
                 | FromProgram::Watch { .. }
-                | FromProgram::Changed { .. },
+                | FromProgram::Changed { .. }
+                | FromProgram::Debug { .. }
+                | FromProgram::DebugLog(_),
             )
             | None => {}
         }

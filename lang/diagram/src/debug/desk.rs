@@ -99,6 +99,11 @@ impl Desk {
         &mut self.session
     }
 
+    /// Whether motors have to rest now.
+    pub fn is_at_rest(&self) -> bool {
+        self.motors_rest && self.is_stopped()
+    }
+
     /// Whether it is stopped at this moment of the present.
     pub fn is_stopped(&self) -> bool {
         matches!(self.session.phase(), Phase::Stopped(_))
@@ -126,15 +131,23 @@ impl Desk {
         told.plain("to", tag).plain("done", is_done).done()
     }
 
+    /// The lines that breakpoints have written since the last time, as a JSON object.
+    pub fn log(&mut self) -> Option<String> {
+        let (lines, lost) = self.session.debugger().take_lines();
+        if lines.is_empty() && lost == 0 {
+            return None;
+        }
+        let all = lines.len();
+        let lines = lines.iter();
+        let lines = lines.map(|line| quoted(line, limits::TOLD_CHARACTERS_MAX));
+        let told = report::bounded(lines, limits::TOLD_LINES_BYTES);
+        let lost = lost as usize + all - told.len();
+        Some(object().list("log", told).plain("lost", lost).done())
+    }
+
     /// What has happened since the last time, for everybody who looks on, each as a JSON object.
     pub fn news(&mut self) -> Vec<String> {
-        let mut news = Vec::new();
-        let (lines, lost) = self.session.debugger().take_lines();
-        if !lines.is_empty() || lost > 0 {
-            let lines = lines.iter();
-            let lines = lines.map(|line| quoted(line, limits::TOLD_CHARACTERS_MAX));
-            news.push(object().list("log", lines).plain("lost", lost).done());
-        }
+        let mut news: Vec<_> = self.log().into_iter().collect();
         let now = match self.session.phase() {
             _ if !self.session.is_attached() => Told::Detached,
             Phase::Runs => Told::Runs,
@@ -229,8 +242,7 @@ impl Desk {
                 return Ok(object());
             }
             Order::Breakpoints => {
-                let points = report::breakpoints(session);
-                return Ok(object().list("breakpoints", points));
+                return Ok(report::breakpoints(session, object()));
             }
             Order::Errors(stop) => {
                 session.debugger().stops_at_errors = *stop;

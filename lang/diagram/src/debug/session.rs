@@ -127,6 +127,11 @@ impl Session {
             .map_or(&self.machine, |past| &past.machine)
     }
 
+    /// The machine that runs, whatever moment somebody looks at.
+    pub fn present_machine(&self) -> &Machine {
+        &self.machine
+    }
+
     /// Whether somebody looks at the past.
     pub fn is_past(&self) -> bool {
         self.past.is_some()
