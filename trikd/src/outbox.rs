@@ -112,21 +112,24 @@ impl Outbox {
     /// The next frame; waits for one. None: the connection shall end.
     pub async fn next(&self) -> Option<Rc<[u8]>> {
         loop {
-            if let Some(frame) = self.queue.borrow_mut().pop_front() {
-                self.bytes.set(self.bytes.get() - frame.len());
-                self.drained.notify_one();
+            if let Some(frame) = self.take() {
                 return Some(frame);
             }
-            let mut latest = self.latest.borrow_mut();
-            if !latest.is_empty() {
-                return Some(latest.remove(0).1);
-            }
-            drop(latest);
             if self.closes.get() {
                 return None;
             }
             self.filled.notified().await;
         }
+    }
+
+    fn take(&self) -> Option<Rc<[u8]>> {
+        if let Some(frame) = self.queue.borrow_mut().pop_front() {
+            self.bytes.set(self.bytes.get() - frame.len());
+            self.drained.notify_one();
+            return Some(frame);
+        }
+        let mut latest = self.latest.borrow_mut();
+        (!latest.is_empty()).then(|| latest.remove(0).1)
     }
 
     /// Waits until at least half of the room is free.

@@ -405,8 +405,8 @@ impl Supervisor {
         let last = self.around.rest.now(limits::REST_LAST_MS).await;
         self.report_rest(last, rest_us);
         self.around.feedback.show(Moment::Ended);
-        self.report_end(&mut current, &cause);
         self.end_debugger(&mut current);
+        self.report_end(&mut current, &cause);
         self.around.programs.shown.borrow_mut().text = None;
         self.around.mailbox.forget_kept();
     }

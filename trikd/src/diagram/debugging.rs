@@ -89,7 +89,7 @@ impl Debugging {
 
     /// The machine that runs.
     pub(super) fn machine(&mut self) -> &Machine {
-        self.desk.session().present_machine()
+        self.desk.session().live()
     }
 
     /// Tells all who debug what is new, if it is time; after an order it always is.

@@ -124,13 +124,13 @@ fn a_diagram_begins_stopped_and_its_motors_rest_at_each_stop_and_come_back() {
         &mut client,
         4,
         &order,
-        "{\"number\":1,\"to\":4,\"done\":true}",
+        "{\"number\":2,\"to\":4,\"done\":true}",
     );
     expect(&mut client, 5, "continue", "\"state\":\"running\"");
     assert_eq!(motor(&robot), "40");
     let state = until_state(&mut client, "stopped");
     assert!(
-        state.contains("\"reason\":\"breakpoint\",\"number\":1"),
+        state.contains("\"reason\":\"breakpoint\",\"number\":2"),
         "{state}"
     );
     assert_eq!(motor(&robot), "0");
@@ -152,8 +152,8 @@ fn a_diagram_begins_stopped_and_its_motors_rest_at_each_stop_and_come_back() {
     expect(&mut client, 15, "attach", "\"state\":\"running\"");
     robot.forget_rest();
     client.send("stop");
-    client.until("info: count.qrs was stopped by a client");
     until_state(&mut client, "gone");
+    client.until("info: count.qrs was stopped by a client");
     assert!(robot.has_rested());
 }
 
@@ -237,7 +237,7 @@ fn a_program_whose_controller_is_lost_stays_stopped_or_runs_on_without_its_break
 
 #[test]
 fn a_client_that_never_reads_slows_nobody_and_gets_the_last_state() {
-    let (robot, mut client, save) = counts("n = n + 1");
+    let (robot, mut client, save) = counts(COUNTING);
     let mut slow = robot.client("control");
     setsockopt(&slow.stream, RcvBuf, &4096).expect("an option");
     slow.keep_alive();
@@ -387,8 +387,8 @@ fn an_error_stops_where_it_is_before_its_thread_ends() {
     answer(&mut client, 5);
     let state = until_state(&mut client, "ended");
     assert!(state.contains("\"with_errors\":true"), "{state}");
-    client.until("info: wrong.qrs has failed");
     until_state(&mut client, "gone");
+    client.until("info: wrong.qrs has failed");
     expect(&mut client, 6, "look", "no diagram runs");
 }
 
@@ -420,7 +420,7 @@ fn motors_rest_when_anybody_is_killed_while_a_program_is_stopped() {
     let stopped = |client: &mut Client| {
         expect(client, 1, "attach", "true");
         expect(client, 2, "pause", "true");
-        expect(client, 3, "look", "\"state\":\"stopped\"");
+        until_state(client, "stopped");
         assert_eq!(motor(&robot), "0");
         robot.forget_rest();
     };
@@ -429,8 +429,8 @@ fn motors_rest_when_anybody_is_killed_while_a_program_is_stopped() {
     client.send("debug:4 evaluate n");
     processes::signal(program[0], Signal::SIGKILL);
     answer(&mut client, 4);
-    client.until("error: count.qrs was killed by SIGKILL");
     until_state(&mut client, "gone");
+    client.until("error: count.qrs was killed by SIGKILL");
     assert!(robot.has_rested());
     client.send("run:count.qrs");
     client.until("print: 2\n");

@@ -4,7 +4,7 @@
 //! texts, and decides what motors do at a stop. Knows no transport, no clients and no files.
 
 use super::order::{NoOrder, Order};
-use super::{Breakpoint, NoBack, NoBreakpoint, NotNow, Phase, Session, report};
+use super::{Breakpoint, NoBack, NoBreakpoint, NotNow, Phase, Session, Step, report};
 use crate::brick::Brick;
 use crate::limits;
 use crate::machine::trace::Trace;
@@ -177,12 +177,7 @@ impl Desk {
             return Err(Refused::NotAttached);
         }
         match order {
-            Order::Attach => {
-                if !session.is_attached() {
-                    session.attach();
-                    session.keep(self.history_bytes);
-                }
-            }
+            Order::Attach => self.attach(),
             Order::Detach => {
                 self.motors_rest = true;
                 session.detach(now, brick, trace);
@@ -191,28 +186,9 @@ impl Desk {
             Order::Pause => session.debugger().pause(),
             Order::Continue => self.go_on(now, brick, trace)?,
             Order::Step(step, thread) => {
-                let number = self.thread(thread.as_deref())?;
-                if self.session.is_past() {
-                    self.session.forth(Some(*step));
-                } else {
-                    self.session.walk((number, *step), now, brick, trace);
-                    self.told = Told::Runs;
-                }
+                self.walk((thread.as_deref(), *step), now, brick, trace)?;
             }
-            Order::Until(block) => {
-                if session.is_past() {
-                    return Err(Refused::NotNow(NotNow::Past));
-                }
-                let point = Breakpoint {
-                    block: block.clone(),
-                    is_once: true,
-                    ..Breakpoint::default()
-                };
-                session.add(point).map_err(Refused::Breakpoint)?;
-                if self.is_stopped() {
-                    self.go_on(now, brick, trace)?;
-                }
-            }
+            Order::Until(block) => self.until(block, now, brick, trace)?,
             Order::Back(how) => {
                 session.back(*how).map_err(Refused::Back)?;
             }
@@ -230,16 +206,11 @@ impl Desk {
                 return Ok(object().plain("number", number));
             }
             Order::Clear(number) => {
-                if !session.debugger().clear(*number) {
-                    return Err(Refused::NoBreakpoint(*number));
-                }
-                return Ok(object());
+                return found(session.debugger().clear(*number), *number);
             }
             Order::Enable(number, is_enabled) => {
-                if !session.debugger().enable(*number, *is_enabled) {
-                    return Err(Refused::NoBreakpoint(Some(*number)));
-                }
-                return Ok(object());
+                let is_found = session.debugger().enable(*number, *is_enabled);
+                return found(is_found, Some(*number));
             }
             Order::Breakpoints => {
                 return Ok(report::breakpoints(session, object()));
@@ -265,6 +236,52 @@ impl Desk {
             }
         }
         Ok(self.state())
+    }
+
+    fn attach(&mut self) {
+        if !self.session.is_attached() {
+            self.session.attach();
+            self.session.keep(self.history_bytes);
+        }
+    }
+
+    fn walk(
+        &mut self,
+        (thread, step): (Option<&str>, Step),
+        now: u32,
+        brick: &mut dyn Brick,
+        trace: &mut dyn Trace,
+    ) -> Result<(), Refused> {
+        let number = self.thread(thread)?;
+        if self.session.is_past() {
+            self.session.forth(Some(step));
+        } else {
+            self.session.walk((number, step), now, brick, trace);
+            self.told = Told::Runs;
+        }
+        Ok(())
+    }
+
+    fn until(
+        &mut self,
+        block: &str,
+        now: u32,
+        brick: &mut dyn Brick,
+        trace: &mut dyn Trace,
+    ) -> Result<(), Refused> {
+        if self.session.is_past() {
+            return Err(Refused::NotNow(NotNow::Past));
+        }
+        let point = Breakpoint {
+            block: block.into(),
+            is_once: true,
+            ..Breakpoint::default()
+        };
+        self.session.add(point).map_err(Refused::Breakpoint)?;
+        if self.is_stopped() {
+            self.go_on(now, brick, trace)?;
+        }
+        Ok(())
     }
 
     fn go_on(
@@ -305,6 +322,14 @@ impl Desk {
 
     fn state(&self) -> Object {
         object().plain("program", report::state(&self.session, self.locale))
+    }
+}
+
+/// What is told of a breakpoint that was looked for.
+fn found(is_found: bool, number: Option<u32>) -> Result<Object, Refused> {
+    match is_found {
+        true => Ok(object()),
+        false => Err(Refused::NoBreakpoint(number)),
     }
 }
 

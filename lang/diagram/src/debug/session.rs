@@ -127,8 +127,8 @@ impl Session {
             .map_or(&self.machine, |past| &past.machine)
     }
 
-    /// The machine that runs, whatever moment somebody looks at.
-    pub fn present_machine(&self) -> &Machine {
+    /// The machine as it is, whoever looks at its past.
+    pub fn live(&self) -> &Machine {
         &self.machine
     }
 

@@ -42,7 +42,11 @@ impl Stage {
 }
 
 fn stage() -> (Stage, Vec<String>) {
-    let (project, ids) = counting("n = n + 1", "100");
+    stage_of("n = n + 1")
+}
+
+fn stage_of(body: &str) -> (Stage, Vec<String>) {
+    let (project, ids) = counting(body, "100");
     let program = Rc::new(lower(&project, World::default()).unwrap().program);
     let machine = Machine::new(program, Options::default());
     let stage = Stage {
@@ -159,5 +163,31 @@ fn orders_that_cannot_be_change_nothing_and_say_why() {
         stage
             .order("step over nobody")
             .contains("there is no thread 'nobody'")
+    );
+}
+
+#[test]
+fn what_would_be_too_long_to_tell_is_cut_and_says_by_how_much() {
+    let assigned = (0..2000).map(|number| format!("a_variable_with_a_name_{number} = 'x'"));
+    let (mut stage, ids) = stage_of(&assigned.collect::<Vec<_>>().join("; "));
+    stage.order("attach");
+    stage.run(1);
+    let state = stage.order("look");
+    assert!(state.len() < 256 << 10, "{}", state.len());
+    let told = state.matches("{\"name\":\"a_variable").count();
+    let left_out = format!("\"variables_left_out\":{}", 2001 - told);
+    assert!(state.contains(&left_out), "{told}: {left_out}");
+    let line = format!("break {}\nlog {}", ids[2], "x".repeat(900));
+    for _ in 0..100 {
+        stage.order(&line);
+    }
+    let news = stage.run(20);
+    assert!(news[0].len() < 128 << 10, "{}", news[0].len());
+    let told = news[0].matches("xxx\"").count();
+    let lost = news[0].rsplit(':').next().unwrap();
+    let lost: usize = lost.trim_end_matches('}').parse().unwrap();
+    assert!(
+        lost > 0 && (told + lost).is_multiple_of(100),
+        "{told} and {lost}"
     );
 }
