@@ -183,7 +183,7 @@ impl Desk {
                 session.detach(now, brick, trace);
             }
             Order::Look => {}
-            Order::Pause => session.debugger().pause(),
+            Order::Pause => self.pause(),
             Order::Continue => self.go_on(now, brick, trace)?,
             Order::Step(step, thread) => {
                 self.walk((thread.as_deref(), *step), now, brick, trace)?;
@@ -242,6 +242,13 @@ impl Desk {
         if !self.session.is_attached() {
             self.session.attach();
             self.session.keep(self.history_bytes);
+        }
+    }
+
+    fn pause(&mut self) {
+        // One that is stopped would stop again as soon as it goes on.
+        if !self.is_stopped() {
+            self.session.debugger().pause();
         }
     }
 

@@ -191,3 +191,15 @@ fn what_would_be_too_long_to_tell_is_cut_and_says_by_how_much() {
         "{told} and {lost}"
     );
 }
+
+#[test]
+fn a_pause_of_a_program_that_is_stopped_asks_for_nothing() {
+    let (mut stage, _) = stage();
+    stage.order("attach");
+    stage.order("pause");
+    stage.run(1);
+    assert!(stage.order("pause").contains("\"state\":\"stopped\""));
+    assert!(stage.order("continue").contains("\"state\":\"running\""));
+    stage.run(2);
+    assert!(stage.order("look").contains("\"state\":\"running\""));
+}
