@@ -1,10 +1,11 @@
 //! `trik dap`: diagrams in the debugger of an editor, by the Debug Adapter Protocol.
 //!
 //! Owns how a client comes: over standard input and output, or over TCP, one after the other. `session` is a talk, `client`
-//! its frames, `points` its breakpoints, `view` what it sees of a program that is stopped. What is debugged is a target of
+//! its frames, `launch` what it is about, `points` its breakpoints, `view` what it sees of a program that is stopped. What is debugged is a target of
 //! `debug`.
 
 mod client;
+mod launch;
 mod points;
 mod session;
 mod view;

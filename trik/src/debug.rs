@@ -1,6 +1,7 @@
 //! `trik debug`: a debugger for diagrams, forwards and backwards, in a terminal.
 //!
-//! Owns the options, and which target a front end gets. `stage` is a simulated robot in this process; `terminal` talks to a
+//! Owns the options, and which target a front end gets. `stage` is a simulated robot in this process, one in the network is
+//! in `remote::debugged`; `terminal` talks to a
 //! person, `listing` is the diagram as text, `words` what can be typed, `told` what comes back. The debugger itself is in
 //! `lang_diagram::debug`.
 
@@ -12,14 +13,18 @@ pub(crate) mod told;
 mod words;
 
 use crate::check::{CheckArgs, Staged, Start, staged};
+use crate::diagrams::save::must_open;
+use crate::error::Error;
 use crate::language;
 use crate::refusal::{Refusal, UNREADABLE, say};
+use crate::remote::{self, debugged::Debugged};
 use clap::{Args, FromArgMatches};
 use lang_text::problem::Locale;
 use listing::Listing;
 use stage::Stage;
 use std::ffi::OsString;
 use std::path::PathBuf;
+use target::Target as _;
 use terminal::Terminal;
 
 /// What `trik debug` can be told.
@@ -29,6 +34,14 @@ pub(crate) struct DebugArgs {
     pub file: PathBuf,
     #[command(flatten)]
     pub world: WorldArgs,
+    /// Debug it on this robot instead: its name or address, and its port if that is not 8888. It is sent there and stopped
+    /// before its first block; at the end it is stopped.
+    #[arg(long, value_name = "HOST[:PORT]", value_parser = remote::target::target, conflicts_with_all = ["field", "task", "inputs", "gamepad", "speed"])]
+    pub robot: Option<remote::target::Target>,
+    /// Join the diagram that runs on the robot already, instead of starting it; FILE is what runs there. At the end it goes
+    /// on.
+    #[arg(long, requires = "robot")]
+    pub attach: bool,
 }
 
 /// In which world a diagram is debugged.
@@ -104,8 +117,30 @@ impl WorldArgs {
 /// # Errors
 /// It cannot run, or the terminal is gone.
 pub(crate) fn run(args: &DebugArgs) -> Result<u8, Refusal> {
+    if let Some(robot) = &args.robot {
+        return run_on(robot, args);
+    }
     let staged = args.world.stage(args.file.clone()).map_err(refusal)?;
     talk(&staged, args.world.speed, Start::Stopped)
+}
+
+/// A person debugs a diagram on a robot.
+fn run_on(robot: &remote::target::Target, args: &DebugArgs) -> Result<u8, Refusal> {
+    let opened = must_open(&args.file, args.world.language)?;
+    let listing = Listing::of(&opened.project, args.world.language);
+    let unreachable = |error: Error| Refusal {
+        code: UNREADABLE,
+        ..Refusal::new(error.to_string())
+    };
+    let begun = match args.attach {
+        false => Debugged::launch(&args.file, robot),
+        true => Debugged::attach(robot),
+    };
+    let mut target = begun.map_err(unreachable)?;
+    let talked = Terminal::new(&mut target, listing).run();
+    target.close();
+    talked.map_err(unreachable)?;
+    Ok(0)
 }
 
 /// A person debugs what was prepared.

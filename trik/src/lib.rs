@@ -28,4 +28,4 @@ pub mod script;
 mod task;
 mod terminal;
 mod up;
-pub mod wire;
+mod wire;

@@ -169,3 +169,5 @@ pub const DEBUG_CALLS_SHOWN: usize = 100;
 pub const DEBUG_LINE_BYTES: usize = 16_384;
 /// Requests of an editor that debugs which wait for their turn.
 pub const DAP_WAITING: usize = 1000;
+/// Events of a robot that wait for whoever debugs; the oldest are lost.
+pub const DEBUG_EVENTS_MAX: usize = 10_000;

@@ -1,13 +1,14 @@
-//! Robots that are reached over the network, real or virtual: `trik run`, `set`, `stop`, `status`, `send`.
+//! Robots that are reached over the network, real or virtual: `trik run`, `set`, `debug`, `stop`, `status`, `send`.
 //!
 //! Owns nothing but its parts: `target` is which robot is meant, `link` one connection, `upload` how a program gets there,
-//! `run` follows one program, `live` changes it, `fleet` does something with several robots at once, `output` is where a
+//! `run` follows one program, `live` changes it, `debugged` stops it, `fleet` does something with several robots at once, `output` is where a
 //! program's text goes.
 
+pub(crate) mod debugged;
 pub(crate) mod fleet;
 mod link;
 pub(crate) mod live;
 mod output;
 pub(crate) mod run;
-mod target;
+pub(crate) mod target;
 mod upload;

@@ -1,8 +1,10 @@
 //! The register of connected clients, through which messages to all go and which the status shows.
 //!
-//! Knows no sockets and no frames.
+//! `debugging` has those who debug a diagram. Knows no sockets and no frames.
 
-use crate::outbox::Outbox;
+pub mod debugging;
+
+use crate::outbox::{Latest, Outbox};
 use crate::protocol::frame::encode;
 use std::cell::{Cell, RefCell};
 use std::fmt::Write;
@@ -13,6 +15,7 @@ use std::time::Instant;
 /// One connection.
 #[derive(Debug)]
 pub struct Client {
+    id: u32,
     /// Which port it came to.
     pub port: &'static str,
     /// Its other end.
@@ -22,6 +25,10 @@ pub struct Client {
     since: Instant,
     requests: Cell<u32>,
     watches: Cell<Watching>,
+    /// It has missed something of what it watches.
+    is_behind: Cell<bool>,
+    /// It hears of the debugger.
+    debugs: Cell<bool>,
 }
 
 /// What a client wants to know of the running diagram.
@@ -37,9 +44,21 @@ pub enum Watching {
 }
 
 impl Client {
+    /// Its number, from 1; no other client has it.
+    pub fn id(&self) -> u32 {
+        self.id
+    }
+
     /// Wants to know where the running diagram is, or no more.
     pub fn watch(&self, watching: Watching) {
         self.watches.set(watching);
+    }
+
+    /// Shows where the diagram is, now or when it reads again: then the newest counts.
+    fn show(&self, frame: Rc<[u8]>) {
+        if !self.outbox.push_latest(Latest::Place, frame) {
+            self.is_behind.set(true);
+        }
     }
 
     /// Counts a request.
@@ -54,18 +73,26 @@ pub struct Clients {
     all: RefCell<Vec<Weak<Client>>>,
     /// Who started the program or stopped it last.
     in_control: Cell<Option<SocketAddr>>,
+    /// How many there were.
+    count: Cell<u32>,
+    /// Who is in control of the debugger.
+    debugger: Cell<Option<debugging::Holder>>,
 }
 
 impl Clients {
     /// Registers a connection as long as the result lives.
     pub fn add(&self, port: &'static str, peer: SocketAddr, outbox: Rc<Outbox>) -> Rc<Client> {
+        self.count.set(self.count.get().wrapping_add(1).max(1));
         let client = Rc::new(Client {
+            id: self.count.get(),
             port,
             peer,
             outbox,
             since: Instant::now(),
             requests: Cell::new(0),
             watches: Cell::default(),
+            is_behind: Cell::default(),
+            debugs: Cell::default(),
         });
         let mut all = self.all.borrow_mut();
         all.retain(|other| other.strong_count() > 0);
@@ -99,6 +126,15 @@ impl Clients {
             .any(|client| client.watches.get() != Watching::No)
     }
 
+    /// Whether somebody who watches has missed something and reads again; that is forgotten with this call.
+    pub fn take_behind(&self) -> bool {
+        let living = self.living();
+        let back = living
+            .iter()
+            .filter(|client| client.is_behind.get() && client.outbox.is_empty());
+        back.map(|client| client.is_behind.set(false)).count() > 0
+    }
+
     /// Tells those who want to know where the running diagram is.
     pub fn send_to_watchers(&self, line: &str, json: &str) {
         let frame: Rc<[u8]> = encode(format!("info: {line}").as_bytes()).into();
@@ -106,8 +142,8 @@ impl Clients {
         for client in self.living() {
             match client.watches.get() {
                 Watching::No => {}
-                Watching::Lines => client.outbox.push(frame.clone()),
-                Watching::Objects => client.outbox.push(object.clone()),
+                Watching::Lines => client.show(frame.clone()),
+                Watching::Objects => client.show(object.clone()),
             }
         }
     }

@@ -1,12 +1,15 @@
 //! Diagrams of TRIK Studio: the machine of crate `lang` with the tree as its robot.
 //!
 //! Owns the time of a running diagram and its way outside. `robot` is the tree as the machine sees it, `readings` its
-//! sensors, `watch` what is told of the run. What blocks mean is known in `lang` alone.
+//! sensors, `motors` its motors at a stop, `watch` what is told of the run, `debugging` its debugger, `live` its changes.
+//! What blocks mean is known in `lang` alone.
 
 // A request, a message or a command that is forgotten must not pass in silence.
 #![deny(clippy::wildcard_enum_match_arm)]
 
+mod debugging;
 mod live;
+mod motors;
 mod readings;
 mod robot;
 mod watch;
@@ -15,8 +18,9 @@ use crate::brick::Brick;
 use crate::engine::{Engine, Failure, NoDiagram, Outcome, Start};
 use crate::host::{Host, Incoming};
 use crate::{limits, settings};
+use debugging::Debugging;
 use lang_diagram::lower::{World, lower};
-use lang_diagram::machine::{Machine, Options, STEP_MS, Status};
+use lang_diagram::machine::{Machine, Options, STEP_MS};
 use lang_diagram::read;
 use lang_expr::Compat;
 use lang_text::problem::{Locale, Problem, Severity};
@@ -60,16 +64,21 @@ pub fn locale(name: &str) -> Locale {
 
 impl Engine for Diagram {
     fn run(&mut self, start: Start, brick: &Brick, host: &Host) -> Outcome {
-        let Start::File(path) = start else {
-            return Err(Failure::NoFile);
+        let (path, is_debugged) = match start {
+            Start::File(path) => (path, false),
+            Start::Debugged(path) => (path, true),
+            Start::Script(_) | Start::Direct => return Err(Failure::NoFile),
         };
-        let mut machine = self.load(&path, host)?;
+        let mut diagram = Debugging::new(self.load(&path, host)?, self.locale);
         let mut robot = Robot::new(brick, host);
         let mut watch = Watch::new(self.locale);
-        let ran = run(&mut machine, &mut robot, &mut watch, host);
-        machine.stop(&mut robot, &mut watch);
+        if is_debugged {
+            diagram.stop_first(&mut robot, &mut watch);
+        }
+        let ran = run(&mut diagram, &mut robot, &mut watch, host);
+        diagram.end(&mut robot, &mut watch);
         ran.map_err(|error| Failure::Deaf(error.into()))?;
-        if machine.errors().is_empty() {
+        if diagram.machine().errors().is_empty() {
             Ok(())
         } else {
             // They were told when they happened.
@@ -132,7 +141,7 @@ fn errors_among(problems: &[Problem], locale: Locale) -> NoDiagram {
 
 /// Steps until the program has ended or the daemon is gone.
 fn run(
-    machine: &mut Machine,
+    diagram: &mut Debugging,
     robot: &mut Robot<'_>,
     watch: &mut Watch,
     host: &Host,
@@ -141,11 +150,12 @@ fn run(
     let step = Duration::from_millis(STEP_MS.into());
     let mut due = start;
     loop {
-        let now = u32::try_from(start.elapsed().as_millis()).unwrap_or(u32::MAX);
-        let status = machine.step(now, robot, watch);
-        watch.report(machine, now, host)?;
-        if matches!(status, Status::Ended { .. }) {
-            return Ok(());
+        let now = since(start);
+        let goes_on = diagram.step(now, robot, watch);
+        diagram.tell(now, !goes_on, host)?;
+        watch.report(diagram.machine(), now, host)?;
+        if !goes_on {
+            return watch.last(diagram.machine(), now, host);
         }
         robot.go_on();
         // Steps that are missed are not made up: waits look at the time, not at steps.
@@ -153,30 +163,59 @@ fn run(
         // What came together with the beginning lies in the channel's buffer, where poll(2) does not see it.
         loop {
             while let Some(message) = host.waiting()? {
-                match message {
-                    Incoming::Mail(_, text) => robot.post(text),
-                    Incoming::Web => host.web(&watch::variables(machine))?,
-                    Incoming::Watch(is_wanted) => watch.set_wanted(is_wanted),
-                    Incoming::Patch(when_gone, path) => {
-                        let locale = watch.locale();
-                        let answer = live::patch(machine, (when_gone, &path), robot, watch, locale);
-                        host.changed(answer.is_changed, &answer.text)?;
-                    }
-                    Incoming::Set(text) => {
-                        let locale = watch.locale();
-                        let answer = live::set(machine, &text, robot, watch, locale);
-                        host.changed(answer.is_changed, &answer.text)?;
-                    }
-                    // The daemon starts another program for them; a client that sends one all the same learns that it is lost.
-                    Incoming::Direct(_) => host.error("a diagram takes no direct commands")?,
-                    Incoming::Gone => return Ok(()),
+                if matches!(message, Incoming::Gone) {
+                    return Ok(());
                 }
+                hear(message, since(start), (diagram, robot, watch), host)?;
             }
             if !wait(host, due)? {
                 break;
             }
         }
     }
+}
+
+/// Milliseconds since a moment.
+fn since(start: Instant) -> u32 {
+    u32::try_from(start.elapsed().as_millis()).unwrap_or(u32::MAX)
+}
+
+/// Does what the daemon asks for between two steps.
+fn hear(
+    message: Incoming,
+    now: u32,
+    (diagram, robot, watch): (&mut Debugging, &mut Robot<'_>, &mut Watch),
+    host: &Host,
+) -> io::Result<()> {
+    match message {
+        Incoming::Mail(_, text) => robot.post(text),
+        Incoming::Web => host.web(&watch::variables(diagram.machine()))?,
+        Incoming::Watch(is_wanted) => watch.set_wanted(is_wanted),
+        Incoming::Patch(when_gone, path) => {
+            let (session, mut driven) = diagram.parts(robot);
+            let answer = live::patch(session, (when_gone, &path), &mut driven, watch);
+            host.changed(answer.is_changed, &answer.text)?;
+        }
+        Incoming::Set(text) => {
+            let (session, mut driven) = diagram.parts(robot);
+            let answer = live::set(session, &text, &mut driven, watch);
+            host.changed(answer.is_changed, &answer.text)?;
+        }
+        Incoming::Debug { client, tag, order } => {
+            let answer = diagram.order((tag, &order), now, robot, watch);
+            host.debug(client, &answer)?;
+            diagram.tell(now, true, host)?;
+        }
+        Incoming::DebugLeft => {
+            diagram.left(now, robot, watch);
+            diagram.tell(now, true, host)?;
+        }
+        // The daemon starts another program for them; a client that sends one all the same learns that it is lost.
+        Incoming::Direct(_) => host.error("a diagram takes no direct commands")?,
+        // Whoever called this knows.
+        Incoming::Gone => {}
+    }
+    Ok(())
 }
 
 /// Waits until a moment; true if something came from the daemon before.

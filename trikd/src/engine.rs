@@ -17,6 +17,8 @@ use std::path::PathBuf;
 pub enum Start {
     /// A program in a file, by its absolute path.
     File(PathBuf),
+    /// A program in a file, as above, with a debugger attached and stopped before its first block, if the engine has one.
+    Debugged(PathBuf),
     /// The text of a program that has no file.
     Script(String),
     /// No program: texts come one after the other ([`crate::host::Incoming::Direct`]), and share their variables.

@@ -33,6 +33,17 @@ pub enum Incoming {
     Patch(WhenGone, PathBuf),
     /// An assignment, `NAME=EXPRESSION`: answer with [`Host::changed`].
     Set(String),
+    /// An order to the debugger: answer with [`Host::debug`].
+    Debug {
+        /// Whose order it is.
+        client: u32,
+        /// What the client calls it.
+        tag: u32,
+        /// The order.
+        order: String,
+    },
+    /// Whoever was in control of the debugger is gone.
+    DebugLeft,
     /// The daemon is gone; the program should end.
     Gone,
 }
@@ -84,6 +95,7 @@ impl Host {
             Some(ToProgram::File(path)) => Ok(Start::File(path.into())),
             Some(ToProgram::Script(text)) => Ok(Start::Script(text.to_owned())),
             Some(ToProgram::Start) => Ok(Start::Direct),
+            Some(ToProgram::Debugged(path)) => Ok(Start::Debugged(path.into())),
             Some(
                 ToProgram::Direct(_)
                 | ToProgram::Mail { .. }
@@ -91,7 +103,9 @@ impl Host {
                 | ToProgram::Web
                 | ToProgram::Watch(_)
                 | ToProgram::Patch { .. }
-                | ToProgram::Set(_),
+                | ToProgram::Set(_)
+                | ToProgram::Debug { .. }
+                | ToProgram::DebugLeft,
             )
             | None => {
                 let word = frame.split(':').next().unwrap_or_default();
@@ -194,6 +208,22 @@ impl Host {
         })
     }
 
+    /// Answers an order of a client, or tells all who debug of a state ([`ALL`](crate::protocol::program::ALL)).
+    ///
+    /// # Errors
+    /// The daemon is gone.
+    pub fn debug(&self, client: u32, json: &str) -> io::Result<()> {
+        self.send(FromProgram::Debug { client, json })
+    }
+
+    /// Tells all who debug what breakpoints have written.
+    ///
+    /// # Errors
+    /// The daemon is gone.
+    pub fn debug_log(&self, json: &str) -> io::Result<()> {
+        self.send(FromProgram::DebugLog(json))
+    }
+
     /// Shows output as it is; the newline is part of it.
     ///
     /// # Errors
@@ -289,8 +319,18 @@ fn incoming(frame: &str) -> Option<Incoming> {
         ToProgram::Watch(is_wanted) => Some(Incoming::Watch(is_wanted)),
         ToProgram::Patch { when_gone, path } => Some(Incoming::Patch(when_gone, path.into())),
         ToProgram::Set(text) => Some(Incoming::Set(text.to_owned())),
+        ToProgram::Debug { client, tag, order } => Some(Incoming::Debug {
+            client,
+            tag,
+            order: order.to_owned(),
+        }),
+        ToProgram::DebugLeft => Some(Incoming::DebugLeft),
         // A program starts once, and the answer to what was posted is dropped.
-        ToProgram::File(_) | ToProgram::Script(_) | ToProgram::Start | ToProgram::Answer(_) => None,
+        ToProgram::File(_)
+        | ToProgram::Script(_)
+        | ToProgram::Start
+        | ToProgram::Debugged(_)
+        | ToProgram::Answer(_) => None,
     }
 }
 

@@ -203,6 +203,10 @@ pub const WATCH_LINE_BYTES: usize = 1024;
 pub const WATCH_JSON_BYTES: usize = 32 << 10;
 /// Characters of a text that is told.
 pub const WATCH_TEXT_CHARACTERS: usize = 1024;
+/// Bytes that the past of a diagram takes while it is debugged on the robot.
+pub const DEBUG_HISTORY_BYTES: usize = 2 << 20;
+/// Orders to a debugger that the diagram has not answered yet.
+pub const DEBUG_ORDERS: usize = 256;
 /// Warnings about a diagram that are told.
 pub const DIAGRAM_WARNINGS: usize = 20;
 /// Milliseconds within which a sensor of the camera must hear a diagram after its start.

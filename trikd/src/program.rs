@@ -2,7 +2,8 @@
 //!
 //! Owns what the running program may do next, and its end. `queue` is what is asked for, `child` is one process with its
 //! pipes, `launch` gives it its limits, `kill` ends all that it started, `rest` brings the motors to rest, `reaper`
-//! hears of ends, `output` measures what it says, `boot` runs a program at the start.
+//! hears of ends, `output` measures what it says, `says` shows it, `live` changes a diagram that runs and watches it, `boot`
+//! runs a program at the start.
 
 // A request, a message or a command that is forgotten must not pass in silence.
 #![deny(clippy::wildcard_enum_match_arm)]
@@ -17,8 +18,10 @@ pub mod python;
 pub mod queue;
 pub mod reaper;
 pub mod rest;
+mod says;
 
 use crate::clients::Clients;
+use crate::clients::debugging::Asked;
 use crate::feedback::{Feedback, Moment};
 use crate::protocol::news::{self, End};
 use crate::protocol::program::{FromProgram, ToProgram};
@@ -30,9 +33,10 @@ use kill::{freeze, group, sweep};
 use nix::sys::signal::Signal;
 use nix::unistd::Pid;
 use output::Meter;
-pub use queue::{Command, Programs};
+pub use queue::{Command, Programs, Wish};
 use reaper::{Ended, Reaper};
 use rest::Rest;
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use std::rc::Rc;
@@ -53,6 +57,8 @@ struct Current {
     is_watched: bool,
     meter: Meter,
     web: Vec<oneshot::Sender<String>>,
+    /// Orders to its debugger that it has not answered yet.
+    orders: VecDeque<Asked>,
     ended: Option<(Ended, Instant)>,
 }
 
@@ -157,6 +163,8 @@ impl Supervisor {
             Command::Direct(code) => self.direct(&code).await,
             Command::Patch(when_gone, path) => self.patch(when_gone, &path),
             Command::Set(text) => self.set(&text),
+            Command::Debug(asked, wish) => self.debug(asked, wish).await,
+            Command::DebugLeft => self.debugger_left(),
             Command::Stop(who) => {
                 self.end(Cause::Ordered(who)).await;
                 // Also what came while nothing ran: after a stop everything begins anew.
@@ -283,6 +291,7 @@ impl Supervisor {
             is_watched: false,
             meter: Meter::default(),
             web: Vec::new(),
+            orders: VecDeque::new(),
             ended: None,
         });
     }
@@ -345,55 +354,8 @@ impl Supervisor {
                 let kind = if is_changed { "info" } else { "error" };
                 self.show(kind, text);
             }
-        }
-    }
-
-    /// Tells a program when somebody begins or ceases to look at it.
-    fn send_watch(&mut self) {
-        let watched = self.around.clients.are_watching();
-        if let Some(current) = &mut self.current
-            && current.is_watched != watched
-        {
-            current.is_watched = watched;
-            self.send(ToProgram::Watch(watched));
-        }
-    }
-
-    /// Shows something that the program said, unless it says too much.
-    fn show(&mut self, kind: &str, text: &str) {
-        let Some(current) = &mut self.current else {
-            return;
-        };
-        let now = Instant::now();
-        let mut end = text.len().min(limits::MESSAGE_BYTES);
-        while !text.is_char_boundary(end) {
-            end -= 1;
-        }
-        let message = format!("{kind}: {}", &text[..end]);
-        let shown = current.meter.offer(message, now);
-        self.show_held();
-        if let Some(message) = shown {
-            self.broadcast(&message);
-        }
-    }
-
-    /// Shows what was held back and may be shown by now.
-    fn show_held(&mut self) {
-        let Some(current) = &mut self.current else {
-            return;
-        };
-        let now = Instant::now();
-        let dropped = current.meter.take_dropped(now, false);
-        let held: Vec<_> = std::iter::from_fn(|| current.meter.release(now, false)).collect();
-        self.report_dropped(dropped);
-        for message in held {
-            self.broadcast(&message);
-        }
-    }
-
-    fn report_dropped(&self, dropped: Option<u32>) {
-        if let Some(count) = dropped {
-            self.broadcast(&format!("info: {count} messages of the program were left out: it says more than {} a second", limits::OUTPUT_MESSAGES_PER_SECOND));
+            FromProgram::Debug { client, json } => self.hear_debugger(client, json),
+            FromProgram::DebugLog(json) => self.around.clients.tell_log(json),
         }
     }
 
@@ -443,6 +405,7 @@ impl Supervisor {
         let last = self.around.rest.now(limits::REST_LAST_MS).await;
         self.report_rest(last, rest_us);
         self.around.feedback.show(Moment::Ended);
+        self.end_debugger(&mut current);
         self.report_end(&mut current, &cause);
         self.around.programs.shown.borrow_mut().text = None;
         self.around.mailbox.forget_kept();
@@ -488,37 +451,6 @@ impl Supervisor {
             }
         })
         .await;
-    }
-
-    /// Of a program that is dead only what it wanted to show counts.
-    fn hear_last(&self, current: &mut Current, frame: &str) {
-        match FromProgram::parse(frame) {
-            Some(FromProgram::Print(text)) => self.show_last(current, "print", text),
-            Some(FromProgram::Info(text)) => self.show_last(current, "info", text),
-            Some(FromProgram::Error(text)) => {
-                current.has_reported_error = true;
-                self.show_last(current, "error", text);
-            }
-            Some(
-                FromProgram::Events
-                | FromProgram::Mailbox(_)
-                | FromProgram::Web(_)
-                | FromProgram::Watch { .. }
-                | FromProgram::Changed { .. },
-            )
-            | None => {}
-        }
-    }
-
-    fn show_last(&self, current: &mut Current, kind: &str, text: &str) {
-        if text.len() <= limits::MESSAGE_BYTES {
-            let shown = current
-                .meter
-                .offer(format!("{kind}: {text}"), Instant::now());
-            if let Some(message) = shown {
-                self.broadcast(&message);
-            }
-        }
     }
 
     /// Starts the process that kills all others of the user of programs.

@@ -64,5 +64,11 @@ pub const ORDER_BYTES_MAX: usize = 16_384;
 pub const ORDER_WORD_BYTES_MAX: usize = 64;
 /// Characters of a name or a value that a debugger tells.
 pub const TOLD_CHARACTERS_MAX: usize = 1000;
-/// Variables, and threads, and calls of a thread, that it tells at once.
-pub const TOLD_ITEMS_MAX: usize = 1000;
+/// Bytes after which it tells of no more threads; a whole state is shorter than 256 KiB.
+pub const TOLD_THREADS_BYTES: usize = 48 << 10;
+/// Bytes after which it tells of no more calls of a thread.
+pub const TOLD_CALLS_BYTES: usize = 16 << 10;
+/// Bytes after which it tells of no more variables, or breakpoints.
+pub const TOLD_VARIABLES_BYTES: usize = 96 << 10;
+/// Bytes after which it tells of no more lines of breakpoints at once.
+pub const TOLD_LINES_BYTES: usize = 64 << 10;

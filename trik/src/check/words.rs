@@ -330,6 +330,20 @@ pub(super) fn nobody(locale: Locale) -> &'static str {
     )
 }
 
+/// Why several runs are not debugged.
+pub(super) fn one_to_debug(count: usize, locale: Locale) -> String {
+    let (before, after) = match locale {
+        Locale::English => (
+            "one diagram in one world is debugged at a time, not",
+            "runs",
+        ),
+        Locale::Russian => ("отлаживается одна диаграмма в одном мире, а запусков", "-"),
+    };
+    format!("{before} {count} {after}")
+        .trim_end_matches(" -")
+        .to_owned()
+}
+
 #[cfg(test)]
 mod tests {
     use crate::check::points::told;
@@ -355,18 +369,4 @@ mod tests {
             assert_eq!(told(message), points, "{message}");
         }
     }
-}
-
-/// Why several runs are not debugged.
-pub(super) fn one_to_debug(count: usize, locale: Locale) -> String {
-    let (before, after) = match locale {
-        Locale::English => (
-            "one diagram in one world is debugged at a time, not",
-            "runs",
-        ),
-        Locale::Russian => ("отлаживается одна диаграмма в одном мире, а запусков", "-"),
-    };
-    format!("{before} {count} {after}")
-        .trim_end_matches(" -")
-        .to_owned()
 }

@@ -31,7 +31,11 @@ struct Set {
 
 /// All that are set.
 #[derive(Debug, Default)]
-pub(super) struct Points(Vec<Set>);
+pub(super) struct Points {
+    set: Vec<Set>,
+    /// Whether errors in blocks stop the program.
+    pub stops_at_errors: bool,
+}
 
 fn text(value: &Value, name: &str) -> Box<str> {
     let text = value.get(name).and_then(Value::as_str);
@@ -71,10 +75,10 @@ impl Points {
         (listing, project): (&Listing, &Project),
         target: &mut dyn Target,
     ) -> Result<Value, Error> {
-        let (gone, kept) = std::mem::take(&mut self.0)
+        let (gone, kept) = std::mem::take(&mut self.set)
             .into_iter()
             .partition(|set| set.kind == kind);
-        self.0 = kept;
+        self.set = kept;
         let gone: Vec<Set> = gone;
         for set in gone {
             if let Ok(number) = u32::try_from(set.number) {
@@ -126,7 +130,7 @@ impl Points {
                 return Ok(refused(why));
             }
             let number = answer.get("number").and_then(Value::as_u64).unwrap_or(0);
-            self.0.push(Set {
+            self.set.push(Set {
                 kind,
                 number,
                 point,
@@ -148,7 +152,7 @@ impl Points {
 
     /// Sets all again, for a program that has begun anew. Blocks that are gone are passed over.
     pub fn set_again(&mut self, target: &mut dyn Target) -> Result<(), Error> {
-        for set in &mut self.0 {
+        for set in &mut self.set {
             let answer = target.order(&Order::Break(set.point.clone()))?;
             set.number = answer.get("number").and_then(Value::as_u64).unwrap_or(0);
         }

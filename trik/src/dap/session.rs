@@ -4,21 +4,17 @@
 //! said all its breakpoints. Between requests it runs in small pieces, so that no request waits for long.
 
 use super::client::{Client, Come, Refused, Request};
+use super::launch::Launch;
 use super::points::{Kind, Points};
 use super::view;
-use crate::check::Start;
-use crate::debug::WorldArgs;
 use crate::debug::listing::Listing;
-use crate::debug::stage::Stage;
 use crate::debug::target::{Channel, Event, Target, why_not};
 use crate::debug::told::{State, Told};
 use crate::error::Error;
-use crate::language;
 use lang_diagram::debug::order::Order;
 use lang_diagram::debug::{Back, Step};
 use lang_diagram::project::Project;
 use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// How long the program runs between two looks for requests.
@@ -27,7 +23,7 @@ const PIECE: Duration = Duration::from_millis(5);
 const PATIENCE: Duration = Duration::from_millis(100);
 
 /// What becomes of a program.
-enum After {
+pub(super) enum After {
     /// The talk is over.
     End,
     /// It begins anew; this request is answered then.
@@ -44,16 +40,12 @@ pub(super) fn serve(mut client: Client) {
         };
         match request.command.as_str() {
             "initialize" => client.answer(&request, Ok(capabilities())),
-            "launch" => {
+            "launch" | "attach" => {
                 if let Some(launch) = Launch::read(&request, &mut client)
                     && launch.serve(request, &mut client)
                 {
                     return;
                 }
-            }
-            "attach" => {
-                let why = "attach joins a program on a robot, which this version cannot do yet: use launch";
-                client.answer(&request, Err(Refused::new(why)));
             }
             "disconnect" | "terminate" => {
                 client.answer(&request, Ok(Value::Null));
@@ -96,105 +88,8 @@ fn capabilities() -> Value {
     all
 }
 
-/// What is to be debugged, and how.
-struct Launch {
-    program: PathBuf,
-    world: WorldArgs,
-    stops_on_entry: bool,
-    stops_at_end: bool,
-    is_debugged: bool,
-}
-
-impl Launch {
-    /// As the client says; a refusal is told.
-    fn read(request: &Request, client: &mut Client) -> Option<Self> {
-        let Some(program) = request.text("program") else {
-            let why = "\"program\" is needed: the path of a diagram NAME.qrs";
-            client.answer(request, Err(Refused::new(why)));
-            return None;
-        };
-        let path = |name| request.text(name).map(PathBuf::from);
-        let seed = request
-            .number("seed")
-            .and_then(|seed| u32::try_from(seed).ok());
-        let speed = request.arguments.get("speed").and_then(Value::as_f64);
-        let locale = request.text("language").map(language::locale);
-        Some(Self {
-            program: program.into(),
-            world: WorldArgs {
-                field: path("field"),
-                task: path("task"),
-                inputs: path("inputs"),
-                gamepad: path("gamepad"),
-                seed: seed.unwrap_or(1),
-                speed: speed.filter(|speed| (0.01..=1000.0).contains(speed)),
-                language: locale.and_then(Result::ok).unwrap_or_default(),
-            },
-            stops_on_entry: request.truth("stopOnEntry"),
-            stops_at_end: request.truth("stopAtEnd"),
-            is_debugged: !request.truth("noDebug"),
-        })
-    }
-
-    /// Debugs until the talk is over, or false: it could not begin.
-    fn serve(&self, mut request: Request, client: &mut Client) -> bool {
-        let mut points = Points::default();
-        let mut is_first = true;
-        loop {
-            let staged = match self.world.stage(self.program.clone()) {
-                Ok(staged) => staged,
-                Err(lines) => {
-                    client.answer(&request, Err(Refused::new(lines.join("\n"))));
-                    if !is_first {
-                        client.event("terminated", json!({}));
-                    }
-                    return false;
-                }
-            };
-            client.answer(&request, Ok(Value::Null));
-            for line in &staged.strange {
-                client.event(
-                    "output",
-                    json!({"category": "important", "output": format!("{line}\n")}),
-                );
-            }
-            let listing = Listing::of(&staged.project, staged.settings.locale);
-            let mut stage = Stage::of(&staged, Start::Stopped).at_speed(self.world.speed);
-            let mut session = Session {
-                client,
-                target: &mut stage,
-                listing: &listing,
-                project: &staged.project,
-                name: name(&self.program),
-                points: &mut points,
-                told: Told::default(),
-                is_configured: !is_first,
-                is_over: false,
-                launch: self,
-            };
-            match session.run(is_first) {
-                Ok(After::End) => return true,
-                Ok(After::Again(again)) => request = again,
-                Err(error) => {
-                    let text = format!("trik dap: {error}\n");
-                    client.event("output", json!({"category": "important", "output": text}));
-                    client.event("terminated", json!({}));
-                    return true;
-                }
-            }
-            is_first = false;
-        }
-    }
-}
-
-/// What the text of a diagram is called.
-fn name(program: &Path) -> String {
-    let name = program.file_name().unwrap_or_default().to_string_lossy();
-    format!("{name}.txt")
-}
-
 /// A program that is debugged.
-struct Session<'a> {
+pub(super) struct Session<'a> {
     client: &'a mut Client,
     target: &'a mut dyn Target,
     listing: &'a Listing,
@@ -209,20 +104,45 @@ struct Session<'a> {
     launch: &'a Launch,
 }
 
-impl Session<'_> {
-    fn run(&mut self, is_first: bool) -> Result<After, Error> {
+impl<'a> Session<'a> {
+    pub fn new(
+        client: &'a mut Client,
+        target: &'a mut dyn Target,
+        (listing, project, name): (&'a Listing, &'a Project, String),
+        points: &'a mut Points,
+        launch: &'a Launch,
+    ) -> Self {
+        Self {
+            client,
+            target,
+            listing,
+            project,
+            name,
+            points,
+            told: Told::default(),
+            is_configured: false,
+            is_over: false,
+            launch,
+        }
+    }
+
+    /// Until the talk is over, or the program is to begin anew. A first session waits for breakpoints.
+    ///
+    /// # Errors
+    /// The robot is gone.
+    pub fn run(&mut self, is_first: bool) -> Result<After, Error> {
         // To the stop before the first block.
         let mut events = Vec::new();
-        while self.told.state == State::Running && !self.is_over {
-            let came = self.target.turn(PIECE)?;
-            self.note(&came);
-            events.extend(came);
+        while !self.launch.is_joining && self.told.state == State::Running && !self.is_over {
+            events.extend(self.turn(PIECE)?);
         }
         self.hear(&events, false);
         if is_first {
             self.client.event("initialized", json!({}));
         } else {
             self.points.set_again(self.target)?;
+            self.order(&Order::Errors(self.points.stops_at_errors))?
+                .ok();
             self.begin()?;
         }
         loop {
@@ -237,11 +157,14 @@ impl Session<'_> {
                 }
                 Come::End => return Ok(After::End),
                 Come::Nothing if is_running => {
-                    let events = self.target.turn(PIECE)?;
-                    self.note(&events);
+                    let events = self.turn(PIECE)?;
                     self.hear(&events, true);
                 }
-                Come::Nothing => {}
+                Come::Nothing => {
+                    // A robot goes on living while a person thinks.
+                    let events = self.turn(Duration::ZERO)?;
+                    self.hear(&events, true);
+                }
             }
         }
     }
@@ -251,6 +174,8 @@ impl Session<'_> {
         self.is_configured = true;
         if self.is_over {
             self.ended(0);
+        } else if self.launch.is_joining && self.told.state == State::Running {
+            // It runs, and goes on running.
         } else if self.launch.stops_on_entry && self.launch.is_debugged {
             self.stopped("entry", None);
         } else {
@@ -262,18 +187,25 @@ impl Session<'_> {
         Ok(())
     }
 
-    fn note(&mut self, events: &[Event]) {
-        for event in events {
-            match event {
-                Event::Told(value) => {
-                    if let Some(told) = Told::read(value) {
-                        self.told = told;
-                    }
+    /// Lets the program run, or waits. What an answer has said already is not among what has happened.
+    fn turn(&mut self, wait: Duration) -> Result<Vec<Event>, Error> {
+        let mut events = self.target.turn(wait)?;
+        events.retain(|event| match event {
+            Event::Told(value) => match Told::read(value) {
+                Some(told) => {
+                    let is_new = told != self.told;
+                    self.told = told;
+                    is_new
                 }
-                Event::Over(_) => self.is_over = true,
-                Event::Said(..) => {}
+                None => true,
+            },
+            Event::Over(_) => {
+                self.is_over = true;
+                true
             }
-        }
+            Event::Said(..) => true,
+        });
+        Ok(events)
     }
 
     /// Passes on what has happened.
@@ -371,8 +303,7 @@ impl Session<'_> {
         match self.told.state {
             State::Stopped | State::Past => {
                 // Lines of breakpoints come by news; the stop is told here.
-                if let Ok(events) = self.target.turn(Duration::ZERO) {
-                    self.note(&events);
+                if let Ok(events) = self.turn(Duration::ZERO) {
                     self.hear(&events, false);
                 }
                 self.tell_stop();
@@ -463,6 +394,7 @@ impl Session<'_> {
             "setExceptionBreakpoints" => {
                 let filters = request.items("filters");
                 let is_wanted = filters.iter().any(|filter| filter == "errors");
+                self.points.stops_at_errors = is_wanted;
                 return Ok(self.order(&Order::Errors(is_wanted))?.map(|_| Value::Null));
             }
             "threads" => view::threads(&self.told),

@@ -203,6 +203,9 @@ impl Target for Stage<'_> {
         Ok(events)
     }
 
+    /// The world ends with the process.
+    fn close(&mut self) {}
+
     fn scene(&self, ms: u64) -> Option<String> {
         let before = self.poses.partition_point(|(at, _)| u64::from(*at) <= ms);
         let (at, [x, y, degrees]) = self.poses.get(before.checked_sub(1)?)?;

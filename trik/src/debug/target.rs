@@ -21,6 +21,9 @@ pub(crate) trait Target {
     /// The robot is gone.
     fn turn(&mut self, wait: Duration) -> Result<Vec<Event>, Error>;
 
+    /// The talk is over: a program that was started for it is ended.
+    fn close(&mut self);
+
     /// What the world looks like at a time of the program, in a line; none if nobody knows.
     fn scene(&self, ms: u64) -> Option<String>;
 }

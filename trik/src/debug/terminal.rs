@@ -196,13 +196,17 @@ impl<'a> Terminal<'a> {
     fn hear(&mut self, events: &[Event]) -> Result<(), Error> {
         self.hear_but_states(events)?;
         let is_over = events.iter().any(|event| matches!(event, Event::Over(_)));
-        let states = events.iter().filter_map(|event| match event {
+        let mut states = events.iter().filter_map(|event| match event {
             Event::Told(value) => Told::read(value),
             Event::Said(..) | Event::Over(_) => None,
         });
-        let Some(told) = states.last() else {
+        let Some(told) = states.next_back() else {
             return Ok(());
         };
+        // An answer said the same already.
+        if told == self.told {
+            return Ok(());
+        }
         self.told = told;
         match self.told.state {
             State::Stopped | State::Past => self.show_stop(),

@@ -149,9 +149,42 @@ pub(super) fn understand(line: &str, listing: &Listing) -> Result<Typed, NotUnde
     let line = line.trim();
     let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
     let rest = rest.trim();
+    if let Some(order) = moving(word, rest, listing)? {
+        return Ok(Typed::Order(order));
+    }
+    if let Some(order) = order(word, rest, listing)? {
+        return Ok(Typed::Order(order));
+    }
+    Ok(match word {
+        "list" | "l" if rest.is_empty() => Typed::List(None),
+        "list" | "l" => {
+            let line = rest.parse();
+            Typed::List(Some(
+                line.map_err(|_| NotUnderstood::NoLine(rest.to_owned()))?,
+            ))
+        }
+        "info" | "i" => match rest {
+            "threads" | "t" => Typed::Threads,
+            "variables" | "locals" | "v" => Typed::Variables,
+            "breakpoints" | "break" | "b" => Typed::Order(Order::Breakpoints),
+            _ => return Err(NotUnderstood::Lacks("threads, variables or breakpoints")),
+        },
+        "threads" => Typed::Threads,
+        "variables" => Typed::Variables,
+        "backtrace" | "bt" => Typed::Calls,
+        "where" | "w" => Typed::Scene,
+        "help" | "h" | "?" => Typed::Help,
+        "quit" | "q" | "exit" => Typed::Quit,
+        word => return Err(NotUnderstood::Unknown(word.chars().take(40).collect())),
+    })
+}
+
+/// An order that moves the program, or through its past.
+fn moving(word: &str, rest: &str, listing: &Listing) -> Result<Option<Order>, NotUnderstood> {
     let thread = || (!rest.is_empty()).then(|| rest.into());
-    let order = match word {
+    Ok(Some(match word {
         "continue" | "c" | "run" | "r" => Order::Continue,
+        "pause" => Order::Pause,
         "next" | "n" => Order::Step(Step::Over, thread()),
         "step" | "s" => Order::Step(Step::Into, thread()),
         "finish" | "fin" => Order::Step(Step::Out, thread()),
@@ -161,13 +194,20 @@ pub(super) fn understand(line: &str, listing: &Listing) -> Result<Typed, NotUnde
         "reverse-finish" | "rf" => Order::Back(Back::Step(Step::Out)),
         "reverse-continue" | "rc" => Order::Back(Back::Continue),
         "back" => {
-            let ms = rest.parse();
-            Order::Back(Back::To(
-                ms.map_err(|_| NotUnderstood::Lacks("a time in milliseconds"))?,
-            ))
+            let lacks = NotUnderstood::Lacks("a time in milliseconds");
+            Order::Back(Back::To(rest.parse().map_err(|_| lacks)?))
         }
         "start" => Order::Back(Back::Oldest),
         "present" => Order::Present,
+        "hold" => Order::Hold(some(rest, "the name of a thread")?),
+        "release" => Order::Release(some(rest, "the name of a thread")?),
+        _ => return Ok(None),
+    }))
+}
+
+/// An order about breakpoints and values.
+fn order(word: &str, rest: &str, listing: &Listing) -> Result<Option<Order>, NotUnderstood> {
+    Ok(Some(match word {
         "break" | "b" => Order::Break(breakpoint(rest, listing)?),
         "tbreak" | "tb" => Order::Break(Breakpoint {
             is_once: true,
@@ -176,11 +216,8 @@ pub(super) fn understand(line: &str, listing: &Listing) -> Result<Typed, NotUnde
         "dprintf" => {
             let (line, text) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
             let text = text.trim().trim_matches('"');
-            if text.is_empty() {
-                return Err(NotUnderstood::Lacks("a text after the line"));
-            }
             Order::Break(Breakpoint {
-                log: text.into(),
+                log: some(text, "a text after the line")?,
                 ..breakpoint(line, listing)?
             })
         }
@@ -188,16 +225,9 @@ pub(super) fn understand(line: &str, listing: &Listing) -> Result<Typed, NotUnde
         "delete" | "d" | "clear" => Order::Clear(Some(number(rest)?)),
         "disable" => Order::Enable(number(rest)?, false),
         "enable" => Order::Enable(number(rest)?, true),
-        "errors" => match rest {
-            "stop" => Order::Errors(true),
-            "go" => Order::Errors(false),
-            _ => return Err(NotUnderstood::Lacks("stop or go")),
-        },
-        "motors" => match rest {
-            "rest" => Order::Motors(true),
-            "keep" => Order::Motors(false),
-            _ => return Err(NotUnderstood::Lacks("rest or keep")),
-        },
+        "breakpoints" => Order::Breakpoints,
+        "errors" => Order::Errors(either(rest, ["stop", "go"], "stop or go")?),
+        "motors" => Order::Motors(either(rest, ["rest", "keep"], "rest or keep")?),
         "print" | "p" | "inspect" => Order::Evaluate(some(rest, "an expression")?),
         "set" => {
             let rest = rest.strip_prefix("var ").unwrap_or(rest);
@@ -205,30 +235,15 @@ pub(super) fn understand(line: &str, listing: &Listing) -> Result<Typed, NotUnde
             let (name, text) = rest.split_once('=').ok_or(lacks)?;
             Order::Set(name.trim().into(), text.trim().into())
         }
-        "hold" => Order::Hold(some(rest, "the name of a thread")?),
-        "release" => Order::Release(some(rest, "the name of a thread")?),
-        "list" | "l" if rest.is_empty() => return Ok(Typed::List(None)),
-        "list" | "l" => {
-            let line = rest.parse();
-            let line = line.map_err(|_| NotUnderstood::NoLine(rest.to_owned()))?;
-            return Ok(Typed::List(Some(line)));
-        }
-        "info" | "i" => match rest {
-            "threads" | "t" => return Ok(Typed::Threads),
-            "variables" | "locals" | "v" => return Ok(Typed::Variables),
-            "breakpoints" | "break" | "b" => Order::Breakpoints,
-            _ => return Err(NotUnderstood::Lacks("threads, variables or breakpoints")),
-        },
-        "threads" => return Ok(Typed::Threads),
-        "variables" => return Ok(Typed::Variables),
-        "breakpoints" => Order::Breakpoints,
-        "backtrace" | "bt" => return Ok(Typed::Calls),
-        "where" | "w" => return Ok(Typed::Scene),
-        "help" | "h" | "?" => return Ok(Typed::Help),
-        "quit" | "q" | "exit" => return Ok(Typed::Quit),
-        word => return Err(NotUnderstood::Unknown(word.chars().take(40).collect())),
-    };
-    Ok(Typed::Order(order))
+        _ => return Ok(None),
+    }))
+}
+
+fn either(text: &str, words: [&str; 2], what: &'static str) -> Result<bool, NotUnderstood> {
+    let found = words.iter().position(|word| *word == text);
+    found
+        .map(|index| index == 0)
+        .ok_or(NotUnderstood::Lacks(what))
 }
 
 fn some(text: &str, what: &'static str) -> Result<Box<str>, NotUnderstood> {

@@ -29,6 +29,8 @@ pub(super) enum Message {
     Version,
     /// The answer to `status`.
     Status(String),
+    /// Something that a debugger says, a JSON object.
+    Debug(String),
 }
 
 /// What a frame says; None: nothing that anybody here asked for.
@@ -43,6 +45,7 @@ fn message(frame: &[u8]) -> Option<Message> {
         b"info" => Some(Message::Info(text())),
         b"version" => Some(Message::Version),
         b"status" => Some(Message::Status(text())),
+        b"debug" => Some(Message::Debug(text())),
         _ => None,
     }
 }

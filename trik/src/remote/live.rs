@@ -80,7 +80,8 @@ fn ask(args: &SetArgs) -> Result<u8, Error> {
                     return Err(Error::Robot(text));
                 }
             }
-            Some(Message::Print(_) | Message::Version | Message::Status(_)) => {}
+            Some(Message::Print(_) | Message::Version | Message::Status(_) | Message::Debug(_)) => {
+            }
             None => link.turn(ms(limits::TURN_MS), None, true)?,
         }
     }

@@ -201,7 +201,7 @@ impl Session {
                 }
             }
             Message::Status(text) => return self.compare(&text),
-            Message::Version => {}
+            Message::Version | Message::Debug(_) => {}
         }
         None
     }

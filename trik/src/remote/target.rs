@@ -69,7 +69,7 @@ pub(crate) fn target(text: &str) -> Result<Target, Error> {
 }
 
 /// The robot if none is named: the virtual one that runs here, or what listens on this machine.
-pub(super) fn the_one() -> Result<Target, Error> {
+pub(crate) fn the_one() -> Result<Target, Error> {
     let base = place::base()?;
     let all = place::running(&base).map_err(|error| Error::file(&base, error));
     // Looking makes the directory; nobody needs it if no robot does.

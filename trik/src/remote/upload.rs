@@ -86,7 +86,10 @@ impl Upload {
                         return Err(Error::Robot(why));
                     }
                     Message::Error(text) => link.remember(&text),
-                    Message::Print(_) | Message::Info(_) | Message::Status(_) => {}
+                    Message::Print(_)
+                    | Message::Info(_)
+                    | Message::Status(_)
+                    | Message::Debug(_) => {}
                 }
             }
             if moved.0 != link.unsent() {
@@ -139,7 +142,7 @@ pub(super) fn start(
                     let why = format!("{} does not run {name}: {why}", link.name());
                     return Err(Error::Robot(why));
                 }
-                Message::Print(_) | Message::Info(_) | Message::Version => {}
+                Message::Print(_) | Message::Info(_) | Message::Version | Message::Debug(_) => {}
             }
             errors.drain(..errors.len().saturating_sub(1));
         }

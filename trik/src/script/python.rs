@@ -272,11 +272,13 @@ impl Python {
                 }
             }
             FromProgram::Mailbox(question) => return Some(Ok(self.mailbox(question, robot))),
-            // Nobody talks to a judged program, or looks at its variables and blocks.
+            // Nobody talks to a judged program, looks at its variables and blocks, or debugs it so.
             FromProgram::Events
             | FromProgram::Web(_)
             | FromProgram::Watch { .. }
-            | FromProgram::Changed { .. } => {}
+            | FromProgram::Changed { .. }
+            | FromProgram::Debug { .. }
+            | FromProgram::DebugLog(_) => {}
         }
         None
     }

@@ -3,13 +3,13 @@
 //! Owns what a person is told of that. What a new version keeps is known in `lang_diagram::machine::patch` alone; nothing
 //! here touches a device.
 
-use super::robot::Robot;
 use super::watch::Watch;
 use super::{opened, read_save};
 use crate::engine::NoDiagram;
 use crate::protocol::news;
+use lang_diagram::brick::Brick;
+use lang_diagram::debug::Session;
 use lang_diagram::lower::World;
-use lang_diagram::machine::Machine;
 use lang_diagram::machine::patch::{Patched, Refused, Version, WhenGone};
 use lang_text::problem::{Locale, Problem};
 use std::path::Path;
@@ -41,12 +41,12 @@ impl Answer {
 
 /// Puts the save in a file in the place of the program that runs, whole or not at all.
 pub(super) fn patch(
-    machine: &mut Machine,
+    session: &mut Session,
     (when_gone, path): (WhenGone, &Path),
-    robot: &mut Robot<'_>,
+    robot: &mut dyn Brick,
     watch: &mut Watch,
-    locale: Locale,
 ) -> Answer {
+    let locale = watch.locale();
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let refused = |why: &Refused| Answer::unchanged(&name, &explained(why, locale));
     let save = match read_save(path).and_then(|bytes| opened(&bytes, locale)) {
@@ -59,7 +59,7 @@ pub(super) fn patch(
         Ok(version) => version,
         Err(why) => return refused(&why),
     };
-    match machine.patch(&version, when_gone, robot, watch) {
+    match session.patch(&version, when_gone, robot, watch) {
         Ok(patched) => Answer::changed(&name, &summary(&patched)),
         Err(why) => refused(&why),
     }
@@ -92,23 +92,19 @@ fn explained(why: &Refused, locale: Locale) -> String {
 
 /// Assigns a variable: `NAME=EXPRESSION`.
 pub(super) fn set(
-    machine: &mut Machine,
+    session: &mut Session,
     text: &str,
-    robot: &mut Robot<'_>,
+    robot: &mut dyn Brick,
     watch: &mut Watch,
-    locale: Locale,
 ) -> Answer {
     let (name, expression) = text.split_once('=').unwrap_or((text, ""));
     let (name, expression) = (name.trim(), expression.trim());
-    match machine.assign(name, expression, 0, robot, watch) {
+    match session.assign(name, expression, robot, watch) {
         Ok(()) => {
-            let value = machine.variable(name);
+            let value = session.machine().variable(name);
             let value = value.map_or_else(String::new, |value| value.printed().to_string());
             Answer::changed(name, &format!("{name} = {value}"))
         }
-        Err(problems) => {
-            let lines = problems.iter().map(|problem| problem.in_locale(locale));
-            Answer::unchanged(name, &lines.collect::<Vec<_>>().join("\n"))
-        }
+        Err(why) => Answer::unchanged(name, &why.in_locale(watch.locale())),
     }
 }

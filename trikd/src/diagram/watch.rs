@@ -9,6 +9,7 @@ use lang_diagram::machine::Machine;
 use lang_diagram::machine::trace::Trace;
 use lang_diagram::program::Node;
 use lang_expr::Value;
+use lang_text::json;
 use lang_text::problem::{Locale, Problem};
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -54,6 +55,13 @@ impl Watch {
         self.changed.clear();
     }
 
+    /// At the end: everything once more, whenever it was told last.
+    pub(super) fn last(&mut self, machine: &Machine, now: u32, host: &Host) -> io::Result<()> {
+        self.is_new = self.is_wanted;
+        self.reported_at = None;
+        self.report(machine, now, host)
+    }
+
     /// Tells what is new, if it is time.
     pub(super) fn report(&mut self, machine: &Machine, now: u32, host: &Host) -> io::Result<()> {
         let errors = std::mem::take(&mut self.errors);
@@ -73,7 +81,7 @@ impl Watch {
             .collect();
         host.watch(
             &line(machine, &variables),
-            &json(machine, now, &variables, &errors),
+            &object_of(machine, &variables, &errors),
         )?;
         self.reported_at = Some(now);
         self.is_new = false;
@@ -135,8 +143,8 @@ fn line(machine: &Machine, variables: &[(&str, &Value)]) -> String {
 }
 
 /// One object for programs.
-fn json(machine: &Machine, now: u32, variables: &[(&str, &Value)], errors: &[String]) -> String {
-    let mut json = format!("{{\"ms\":{now},\"threads\":[");
+fn object_of(machine: &Machine, variables: &[(&str, &Value)], errors: &[String]) -> String {
+    let mut json = format!("{{\"ms\":{},\"threads\":[", machine.now());
     for (index, (name, node)) in machine.threads().enumerate() {
         let comma = if index > 0 { "," } else { "" };
         let program = machine.program();
@@ -209,22 +217,9 @@ fn put(json: &mut String, value: &Value) {
     };
 }
 
-/// A JSON string (RFC 8259), cut if it is very long.
+/// A text as JSON, cut if it is very long.
 fn quoted(text: &str) -> String {
-    let mut quoted = "\"".to_owned();
-    for letter in text.chars().take(limits::WATCH_TEXT_CHARACTERS) {
-        match letter {
-            '"' => quoted.push_str("\\\""),
-            '\\' => quoted.push_str("\\\\"),
-            '\n' => quoted.push_str("\\n"),
-            letter if u32::from(letter) < 0x20 => {
-                let _ = write!(quoted, "\\u{:04x}", u32::from(letter));
-            }
-            letter => quoted.push(letter),
-        }
-    }
-    quoted.push('"');
-    quoted
+    json::quoted(text, limits::WATCH_TEXT_CHARACTERS)
 }
 
 #[cfg(test)]

@@ -24,7 +24,8 @@ use std::time::{Duration, Instant};
 pub fn run(start: Start, root: &Path, outside: &dyn Outside, output: Box<dyn Output>) -> Outcome {
     let here = || std::env::current_dir().unwrap_or_else(|_| PathBuf::from("/"));
     let (folder, text, kind) = match start {
-        Start::File(path) => {
+        // No debugger is here; the daemon asks for one only with diagrams.
+        Start::File(path) | Start::Debugged(path) => {
             let folder = path.parent().map_or_else(here, Path::to_owned);
             (
                 folder,
@@ -61,8 +62,12 @@ fn serve(shared: &Shared, outside: &dyn Outside) -> io::Result<()> {
                 Incoming::Direct(text) => shared.deliver(Some(MAIN), &Event::Direct(text)),
                 Incoming::Mail(hull, text) => shared.post(hull, text),
                 Incoming::Web => shared.deliver(Some(MAIN), &Event::Web),
-                // A program in a language of text has no blocks, and the daemon patches diagrams only.
-                Incoming::Watch(_) | Incoming::Patch(..) | Incoming::Set(_) => {}
+                // A program in a language of text has no blocks, and the daemon patches and debugs diagrams only.
+                Incoming::Watch(_)
+                | Incoming::Patch(..)
+                | Incoming::Set(_)
+                | Incoming::Debug { .. }
+                | Incoming::DebugLeft => {}
                 Incoming::Gone => return Ok(()),
             }
         }

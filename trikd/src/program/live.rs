@@ -1,11 +1,14 @@
-//! Changes of the diagram that runs, on their way to it.
+//! Changes of the diagram that runs, looks at it, and orders to its debugger, on their way to it.
 //!
 //! Owns which diagram is meant, and what clients hear if none runs. The diagram answers by itself.
 
-use super::Supervisor;
 use super::child::Language;
+use super::queue::Wish;
+use super::{Cause, Current, Supervisor};
+use crate::clients::debugging::Asked;
+use crate::limits;
 use crate::protocol::news;
-use crate::protocol::program::{ToProgram, WhenGone};
+use crate::protocol::program::{ALL, ToProgram, WhenGone};
 use std::path::Path;
 
 impl Supervisor {
@@ -44,6 +47,98 @@ impl Supervisor {
         if !self.runs_diagram() || !self.send(ToProgram::Set(text)) {
             let name = text.split('=').next().unwrap_or_default().trim();
             self.broadcast(&news::not_changed(name, news::NO_DIAGRAM));
+        }
+    }
+
+    /// What somebody wants who debugs; each has one answer.
+    pub(super) async fn debug(&mut self, asked: Asked, wish: Wish) {
+        match wish {
+            Wish::Run(path) => self.run_debugged(asked, &path).await,
+            Wish::Order(order) => self.order(asked, &order),
+            Wish::Overtaken => self.refuse(asked, news::OVERTAKEN),
+        }
+    }
+
+    fn refuse(&self, asked: Asked, why: &str) {
+        self.around.clients.debug_refused(asked, why);
+    }
+
+    /// Runs a diagram, stopped before its first block.
+    async fn run_debugged(&mut self, asked: Asked, path: &Path) {
+        self.end(Cause::Ordered("another program")).await;
+        let name = self.name_of(path);
+        let file = path.display().to_string();
+        let first = ToProgram::Debugged(&file);
+        self.start(Language::Diagram, name, Some(path.to_owned()), first);
+        match self.current {
+            Some(_) => self.around.clients.debug_done(asked),
+            None => self.refuse(asked, news::NOT_STARTED),
+        }
+    }
+
+    /// An order for the debugger of the diagram that runs, which answers by itself.
+    fn order(&mut self, asked: Asked, order: &str) {
+        if !self.runs_diagram() {
+            return self.refuse(asked, news::NO_DIAGRAM);
+        }
+        let Some(current) = &mut self.current else {
+            return;
+        };
+        let Asked { client, tag } = asked;
+        let message = ToProgram::Debug { client, tag, order };
+        if current.orders.len() < limits::DEBUG_ORDERS && current.child.send(message) {
+            current.orders.push_back(asked);
+        } else {
+            self.refuse(asked, news::TOO_MUCH);
+        }
+    }
+
+    /// The client in control of the debugger is gone.
+    pub(super) fn debugger_left(&mut self) {
+        if self.runs_diagram() {
+            self.send(ToProgram::DebugLeft);
+        }
+    }
+
+    /// The answer to the oldest order, or a state for all who debug.
+    pub(super) fn hear_debugger(&mut self, client: u32, json: &str) {
+        let clients = &self.around.clients;
+        if client == ALL {
+            return clients.tell_state(json);
+        }
+        if let Some(current) = &mut self.current {
+            // A program answers in order, and no client that has not asked.
+            let is_oldest = |asked: &Asked| asked.client == client;
+            if current
+                .orders
+                .pop_front_if(|asked| is_oldest(asked))
+                .is_some()
+            {
+                clients.tell_answer(client, json);
+            }
+        }
+    }
+
+    /// Nobody answers any more.
+    pub(super) fn end_debugger(&self, current: &mut Current) {
+        for asked in current.orders.drain(..) {
+            self.refuse(asked, news::HAS_ENDED);
+        }
+        if self.last == Language::Diagram {
+            self.around.clients.tell_state(news::GONE);
+        }
+    }
+
+    /// Tells a program when somebody begins or ceases to look at it, and to tell everything again to who has missed some.
+    pub(super) fn send_watch(&mut self) {
+        let clients = &self.around.clients;
+        let is_again = clients.take_behind();
+        let watched = clients.are_watching();
+        if let Some(current) = &mut self.current
+            && (current.is_watched != watched || watched && is_again)
+        {
+            current.is_watched = watched;
+            self.send(ToProgram::Watch(watched));
         }
     }
 }

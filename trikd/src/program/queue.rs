@@ -2,6 +2,7 @@
 //!
 //! Owns the queue and its limit. Knows no processes.
 
+use crate::clients::debugging::Asked;
 use crate::limits;
 use crate::protocol::news;
 use crate::protocol::program::WhenGone;
@@ -25,6 +26,10 @@ pub enum Command {
     Patch(WhenGone, PathBuf),
     /// Assign a variable of the diagram that runs, `NAME=EXPRESSION`.
     Set(String),
+    /// Something that a client wants who debugs; each has an answer.
+    Debug(Asked, Wish),
+    /// The client in control of the debugger is gone.
+    DebugLeft,
     /// End what runs and bring everything to rest; says for whom.
     Stop(&'static str),
     /// A message of the mailbox for the program: hull number and text.
@@ -35,6 +40,17 @@ pub enum Command {
     Ask(oneshot::Sender<String>),
     /// End what runs, then tell.
     Quit(oneshot::Sender<()>),
+}
+
+/// What somebody wants who debugs.
+#[derive(Debug)]
+pub enum Wish {
+    /// End what runs and run this diagram, stopped before its first block.
+    Run(PathBuf),
+    /// Do this with the debugger of the diagram that runs.
+    Order(String),
+    /// It was to run a diagram, and somebody has stopped everything meanwhile.
+    Overtaken,
 }
 
 /// What the status shows of the program.
@@ -79,9 +95,7 @@ impl Programs {
     /// Asks for something; waits while too much is asked for already. A stop makes everything before it pointless.
     pub async fn send(&self, command: Command) {
         if matches!(command, Command::Stop(_) | Command::Quit(_)) {
-            self.queue
-                .borrow_mut()
-                .retain(|other| matches!(other, Command::Quit(_) | Command::Ask(_)));
+            self.queue.borrow_mut().retain_mut(outlives_stop);
         } else {
             while self.queue.borrow().len() >= limits::COMMANDS {
                 self.drained.notified().await;
@@ -138,6 +152,28 @@ impl Programs {
     }
 }
 
+/// Whether what was asked for before a stop is still to be done: what has an answer.
+fn outlives_stop(command: &mut Command) -> bool {
+    match command {
+        Command::Debug(_, wish) => {
+            if matches!(wish, Wish::Run(_)) {
+                *wish = Wish::Overtaken;
+            }
+            true
+        }
+        Command::Quit(_) | Command::Ask(_) => true,
+        Command::Run(_)
+        | Command::Script(_)
+        | Command::Direct(_)
+        | Command::Patch(..)
+        | Command::Set(_)
+        | Command::DebugLeft
+        | Command::Stop(_)
+        | Command::Mail(..)
+        | Command::Web(_) => false,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -160,10 +196,20 @@ mod tests {
         runtime.block_on(async {
             programs.send(Command::Run("a".into())).await;
             programs.send(Command::Direct("b".to_owned())).await;
+            let asked = Asked { client: 1, tag: 2 };
+            let debug = Command::Debug(asked, Wish::Run("d".into()));
+            programs.send(debug).await;
             programs.send(Command::Stop("somebody")).await;
             programs.send(Command::Script("c".to_owned())).await;
         });
-        assert_eq!(waiting(&programs), ["Stop(\"somebody\")", "Script(\"c\")"]);
+        assert_eq!(
+            waiting(&programs),
+            [
+                "Debug(Asked { client: 1, tag: 2 }, Overtaken)",
+                "Stop(\"somebody\")",
+                "Script(\"c\")"
+            ]
+        );
     }
 
     #[test]

@@ -37,6 +37,13 @@ pub enum Request<'a> {
     },
     /// Assign a variable of the diagram that runs, `NAME=EXPRESSION`.
     Set(&'a [u8]),
+    /// Something that is asked of the debugger of the diagram that runs.
+    Debug {
+        /// What the client calls it; none: it is no number.
+        tag: Option<u32>,
+        /// The order.
+        order: &'a [u8],
+    },
     /// What runs now, and how the last program ended, when everything asked for before is done.
     Status,
     /// Something else.
@@ -79,9 +86,23 @@ impl<'a> Request<'a> {
         if let Some(text) = frame.strip_prefix(b"set:") {
             return Self::Set(text);
         }
+        if let Some(rest) = frame.strip_prefix(b"debug:") {
+            return Self::debug(rest);
+        }
         match frame.strip_prefix(b"direct:") {
             Some(text) => Self::Direct(text),
             None => Self::Unknown,
+        }
+    }
+
+    fn debug(rest: &'a [u8]) -> Self {
+        let blank = rest.iter().position(|byte| *byte == b' ');
+        let (number, order) = rest.split_at(blank.unwrap_or(rest.len()));
+        let is_number = !number.is_empty() && number.iter().all(u8::is_ascii_digit);
+        let number = std::str::from_utf8(number).ok().filter(|_| is_number);
+        Self::Debug {
+            tag: number.and_then(|number| number.parse().ok()),
+            order: order.get(1..).unwrap_or_default(),
         }
     }
 
@@ -123,6 +144,22 @@ mod tests {
         assert_eq!(Request::parse(b"patch:maybe:a.qrs"), Request::Unknown);
         assert_eq!(Request::parse(b"patch:a.qrs"), Request::Unknown);
         assert_eq!(Request::parse(b"set:n=5"), Request::Set(b"n=5"));
+        for (frame, tag, order) in [
+            (
+                &b"debug:7 break {b}\nif n > 3"[..],
+                Some(7),
+                &b"break {b}\nif n > 3"[..],
+            ),
+            (b"debug:0 look", Some(0), b"look"),
+            (b"debug:7", Some(7), b""),
+            (b"debug:7  look", Some(7), b" look"),
+            (b"debug:look", None, b""),
+            (b"debug:+7 look", None, b"look"),
+            (b"debug:4294967296 look", None, b"look"),
+            (b"debug:", None, b""),
+        ] {
+            assert_eq!(Request::parse(frame), Request::Debug { tag, order });
+        }
         for unknown in [
             &b""[..],
             b"Stop",

@@ -21,6 +21,24 @@ pub const NO_DIAGRAM: &str = "no diagram runs";
 /// Why nothing is changed while the diagram has not read what came before.
 pub const TOO_MUCH: &str = "what came before is not done yet; try again";
 
+/// Why an order to a debugger is not carried out that the program has not answered before its end.
+pub const HAS_ENDED: &str = "the program has ended";
+/// Why a diagram is not debugged from its beginning.
+pub const OVERTAKEN: &str = "it was stopped before it began";
+/// Why a diagram is not debugged from its beginning that could not be started; an error says more.
+pub const NOT_STARTED: &str = "the program cannot be started";
+/// Why a program in a language of text is not debugged.
+pub const ONLY_DIAGRAMS: &str = "only diagrams are debugged";
+/// Why a request to debug is none.
+pub const NO_TAG: &str = "a request to debug is a number, a blank and an order";
+/// What all who debug hear when the diagram has ended, however that came.
+pub const GONE: &str = "{\"state\":\"gone\"}";
+
+/// Why a client does not get control of the debugger.
+pub fn has_control(who: std::net::SocketAddr) -> String {
+    format!("{who} is in control")
+}
+
 /// Why a diagram is not changed by the save of another one.
 pub fn other_runs(name: &str) -> String {
     format!("{name} runs; a new version has the name of the diagram that runs")

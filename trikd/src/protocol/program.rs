@@ -42,6 +42,19 @@ pub enum ToProgram<'a> {
     },
     /// An assignment by a person, `NAME=EXPRESSION`.
     Set(&'a str),
+    /// Begin with the diagram in this file, with a debugger attached and stopped before its first block; its absolute path.
+    Debugged(&'a str),
+    /// An order to the debugger; the program answers each, in their order.
+    Debug {
+        /// Whose order it is.
+        client: u32,
+        /// What the client calls it.
+        tag: u32,
+        /// The order.
+        order: &'a str,
+    },
+    /// Whoever was in control of the debugger is gone.
+    DebugLeft,
 }
 
 /// Something that a program sends to the daemon.
@@ -73,16 +86,49 @@ pub enum FromProgram<'a> {
         /// What has changed, or why nothing has, for people.
         text: &'a str,
     },
+    /// The answer to an order, or a state of the program for all who debug.
+    Debug {
+        /// Who is meant; [`ALL`].
+        client: u32,
+        /// A JSON object.
+        json: &'a str,
+    },
+    /// Lines that breakpoints have written, a JSON object for all who debug.
+    DebugLog(&'a str),
 }
 
+/// In the place of a client in [`FromProgram::Debug`]: all who debug.
+pub const ALL: u32 = 0;
+
 /// The words of [`ToProgram`], in the order of the document.
-pub const TO_PROGRAM: [&str; 10] = [
-    "file", "script", "start", "direct", "mail", "answer", "web", "watch", "patch", "set",
+pub const TO_PROGRAM: [&str; 13] = [
+    "file",
+    "script",
+    "start",
+    "direct",
+    "mail",
+    "answer",
+    "web",
+    "watch",
+    "patch",
+    "set",
+    "debug-file",
+    "debug",
+    "debug-left",
 ];
 
 /// The words of [`FromProgram`], in the order of the document.
-pub const FROM_PROGRAM: [&str; 8] = [
-    "print", "error", "info", "events", "mailbox", "web", "watch", "changed",
+pub const FROM_PROGRAM: [&str; 10] = [
+    "print",
+    "error",
+    "info",
+    "events",
+    "mailbox",
+    "web",
+    "watch",
+    "changed",
+    "debug",
+    "debug-log",
 ];
 
 impl<'a> ToProgram<'a> {
@@ -99,6 +145,9 @@ impl<'a> ToProgram<'a> {
             Self::Watch(is_wanted) => format!("watch:{}", u8::from(is_wanted)),
             Self::Patch { when_gone, path } => format!("patch:{}:{path}", when_gone.word()),
             Self::Set(text) => format!("set:{text}"),
+            Self::Debugged(path) => format!("debug-file:{path}"),
+            Self::Debug { client, tag, order } => format!("debug:{client} {tag} {order}"),
+            Self::DebugLeft => "debug-left:".to_owned(),
         };
         text.into_bytes()
     }
@@ -129,6 +178,17 @@ impl<'a> ToProgram<'a> {
                 }
             }
             "set" => Self::Set(rest),
+            "debug-file" => Self::Debugged(rest),
+            "debug" => {
+                let (client, rest) = rest.split_once(' ')?;
+                let (tag, order) = rest.split_once(' ')?;
+                Self::Debug {
+                    client: client.parse().ok()?,
+                    tag: tag.parse().ok()?,
+                    order,
+                }
+            }
+            "debug-left" => Self::DebugLeft,
             _ => return None,
         })
     }
@@ -148,6 +208,8 @@ impl<'a> FromProgram<'a> {
             Self::Changed { is_changed, text } => {
                 format!("changed:{}:{text}", u8::from(is_changed))
             }
+            Self::Debug { client, json } => format!("debug:{client} {json}"),
+            Self::DebugLog(json) => format!("debug-log:{json}"),
         };
         text.into_bytes()
     }
@@ -173,6 +235,14 @@ impl<'a> FromProgram<'a> {
                     text,
                 }
             }
+            "debug" => {
+                let (client, json) = rest.split_once(' ')?;
+                Self::Debug {
+                    client: client.parse().ok()?,
+                    json,
+                }
+            }
+            "debug-log" => Self::DebugLog(rest),
             _ => return None,
         })
     }
@@ -196,6 +266,7 @@ mod tests {
             text in "(?s).{0,40}",
             hull: i32,
             is_wanted: bool,
+            client: u32,
         ) {
             let text = text.as_str();
             for said in [
@@ -209,6 +280,9 @@ mod tests {
                 ToProgram::Watch(is_wanted),
                 ToProgram::Patch { when_gone: WhenGone::ALL[usize::from(is_wanted)], path: text },
                 ToProgram::Set(text),
+                ToProgram::Debugged(text),
+                ToProgram::Debug { client, tag: client.wrapping_add(1), order: text },
+                ToProgram::DebugLeft,
             ] {
                 let payload = String::from_utf8(said.encode()).unwrap();
                 prop_assert_eq!(ToProgram::parse(&payload), Some(said));
@@ -227,6 +301,8 @@ mod tests {
                 FromProgram::Web(text),
                 FromProgram::Watch { line: &line, json: text },
                 FromProgram::Changed { is_changed: text.len() % 2 == 0, text },
+                FromProgram::Debug { client: u32::try_from(text.len()).unwrap(), json: text },
+                FromProgram::DebugLog(text),
             ] {
                 let payload = String::from_utf8(said.encode()).unwrap();
                 prop_assert_eq!(FromProgram::parse(&payload), Some(said));
@@ -242,12 +318,17 @@ mod tests {
     #[test]
     fn the_lists_of_words_are_whole() {
         for word in TO_PROGRAM {
-            let second = if word == "patch" { "end" } else { "1" };
-            let payload = format!("{word}:{second}:x");
+            let second = match word {
+                "patch" => "end:x",
+                "debug" => "1 2 x",
+                _ => "1:x",
+            };
+            let payload = format!("{word}:{second}");
             assert!(ToProgram::parse(&payload).is_some(), "{word}");
         }
         for word in FROM_PROGRAM {
-            let payload = format!("{word}:1:x");
+            let second = if word == "debug" { "1 x" } else { "1:x" };
+            let payload = format!("{word}:{second}");
             assert!(FromProgram::parse(&payload).is_some(), "{word}");
         }
     }
@@ -264,17 +345,19 @@ mod tests {
     fn the_module_for_python_speaks_these_words_and_no_others() {
         let module = crate::program::python::MODULE;
         let said = words_behind(module, "_channel.send('");
-        // A diagram alone tells where it is, and is changed while it runs.
+        // A diagram alone tells where it is, is changed while it runs, and has a debugger.
+        let only_diagrams = ["watch", "changed", "debug", "debug-log"];
         let expected: BTreeSet<_> = FROM_PROGRAM
             .into_iter()
-            .filter(|word| !["watch", "changed"].contains(word))
+            .filter(|word| !only_diagrams.contains(word))
             .collect();
         assert_eq!(said, expected);
         let heard = words_behind(module, "word == '");
-        // All other first messages name a file, and nobody watches or changes a program without blocks.
+        // All other first messages name a file, and nobody watches, changes or debugs a program without blocks.
+        let only_others = ["file", "script", "watch", "patch", "set"];
         let expected: BTreeSet<_> = TO_PROGRAM
             .into_iter()
-            .filter(|word| !["file", "script", "watch", "patch", "set"].contains(word))
+            .filter(|word| !only_others.contains(word) && !word.starts_with("debug"))
             .collect();
         assert_eq!(heard, expected);
         let asked = words_behind(module, "_ask('");

@@ -1,4 +1,7 @@
-//! Port 8888: programs come, are started and stopped; what they say goes to all clients here.
+//! Port 8888: programs come, are started and stopped; what they say goes to all clients here. `debug` is the way to the
+//! debugger of a diagram.
+
+mod debug;
 
 use super::Guest;
 use crate::access::Access;
@@ -46,11 +49,19 @@ impl Session {
         self.client.outbox.send(format!("error: {text}").as_bytes());
     }
 
-    /// Whether this computer may do more than look; says so if not.
-    fn may_control(&self) -> bool {
+    /// Whether this computer may do more than look.
+    fn is_paired(&self) -> bool {
         let may = self.control.access.may_control(self.client.peer.ip());
         if !may {
             tracing::warn!(target: log::CLIENTS, "control: {} is not paired", self.client.peer);
+        }
+        may
+    }
+
+    /// Whether this computer may do more than look; says so if not.
+    fn may_control(&self) -> bool {
+        let may = self.is_paired();
+        if !may {
             self.error(news::NOT_PAIRED);
         }
         may
@@ -166,6 +177,7 @@ impl Handler for Session {
                     self.command(Command::Set(text(assignment))).await;
                 }
             }
+            Request::Debug { tag, order } => self.debug(tag, &text(order)).await,
             Request::DirectScript(code) => {
                 if self.may_control() {
                     self.command(Command::Script(text(code))).await;
@@ -201,6 +213,7 @@ pub async fn serve(control: Rc<Control>, guest: Guest) {
         &mut handler,
     )
     .await;
+    handler.leave_debugger().await;
     tracing::info!(target: log::CLIENTS, "control: {} has left: {why}", guest.peer);
     drop(guest.seat);
 }

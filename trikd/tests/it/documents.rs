@@ -89,3 +89,21 @@ fn every_transcript_happens_as_it_is_written() {
     }
     assert!(count >= 8, "only {count} transcripts");
 }
+
+#[test]
+fn every_order_to_a_debugger_has_its_row() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/protocol.md");
+    let text = std::fs::read_to_string(path).expect("docs/protocol.md");
+    let section = text.split("## Debugging").nth(1).expect("a section");
+    let rows = section.lines().filter_map(|line| line.strip_prefix("| "));
+    let heads: Vec<&str> = rows.filter_map(|row| row.split(" | ").next()).collect();
+    for word in lang_diagram::debug::order::WORDS.split(", ") {
+        let is_there = heads.iter().any(|head| {
+            let orders = head.split(['`', ',']).map(str::trim);
+            orders
+                .into_iter()
+                .any(|order| order.split(' ').next() == Some(word))
+        });
+        assert!(is_there, "docs/protocol.md has no row of '{word}'");
+    }
+}

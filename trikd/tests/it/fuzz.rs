@@ -39,6 +39,9 @@ fn a_program_that_says_anything_does_no_harm() {
         b"join 127.0.0.1 8889 2",
         b"connect 127.0.0.1",
         b"hull 7",
+        b"debug:7 8 break {b}\nif n > 3",
+        b"debug:0 {}",
+        b"debug-left:",
     ];
     run("channel", trikd::fuzz::fuzz_channel, samples);
 }

@@ -9,6 +9,8 @@ mod access;
 mod board;
 /// What the serving process leaves when it is killed.
 mod crash;
+/// The debugger of diagrams, with several clients.
+mod debugging;
 /// Diagrams of TRIK Studio.
 mod diagrams;
 /// What documents say, byte for byte.

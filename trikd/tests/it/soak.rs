@@ -36,7 +36,7 @@ fn open_files(pid: u32) -> usize {
 /// How often a run tells of its memory.
 const PARTS: u32 = 10;
 
-const CONTROL: [&str; 14] = [
+const CONTROL: [&str; 17] = [
     "version",
     "configVersion",
     "stop",
@@ -51,6 +51,9 @@ const CONTROL: [&str; 14] = [
     "run:d/e/f.py",
     "run:none",
     "direct:x = 1",
+    "debug:1 look",
+    "debug:2 attach",
+    "debug:3 leave",
 ];
 const OTHERS: [(&str, &str); 12] = [
     ("telemetry", "4:data"),

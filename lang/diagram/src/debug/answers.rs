@@ -137,17 +137,23 @@ impl Brick for Remembering<'_> {
     fn command(&mut self, _command: Command<'_>) {}
 
     fn scalar(&mut self, _port: Port) -> Option<i32> {
-        self.next(|answered| match answered {
-            Answered::Scalar(value) => Some(*value),
-            _ => None,
+        self.next(|answered| {
+            if let Answered::Scalar(value) = answered {
+                Some(*value)
+            } else {
+                None
+            }
         })
         .flatten()
     }
 
     fn vector(&mut self, _port: Port, into: &mut Vec<i32>) -> bool {
-        let numbers = self.next(|answered| match answered {
-            Answered::Vector(numbers) => Some(numbers.as_deref()),
-            _ => None,
+        let numbers = self.next(|answered| {
+            if let Answered::Vector(numbers) = answered {
+                Some(numbers.as_deref())
+            } else {
+                None
+            }
         });
         let numbers = numbers.flatten();
         into.extend_from_slice(numbers.unwrap_or_default());
@@ -155,17 +161,23 @@ impl Brick for Remembering<'_> {
     }
 
     fn locked(&mut self, _port: Port) -> Option<i32> {
-        self.next(|answered| match answered {
-            Answered::Locked(value) => Some(*value),
-            _ => None,
+        self.next(|answered| {
+            if let Answered::Locked(value) = answered {
+                Some(*value)
+            } else {
+                None
+            }
         })
         .flatten()
     }
 
     fn announced(&mut self) -> Option<(Port, i32)> {
-        self.next(|answered| match answered {
-            Answered::Announced(reading) => Some(*reading),
-            _ => None,
+        self.next(|answered| {
+            if let Answered::Announced(reading) = answered {
+                Some(*reading)
+            } else {
+                None
+            }
         })
         .flatten()
     }
@@ -175,25 +187,34 @@ impl Brick for Remembering<'_> {
     }
 
     fn random(&mut self, low: i32, _high: i32) -> i32 {
-        let number = self.next(|answered| match answered {
-            Answered::Random(number) => Some(*number),
-            _ => None,
+        let number = self.next(|answered| {
+            if let Answered::Random(number) = answered {
+                Some(*number)
+            } else {
+                None
+            }
         });
         number.unwrap_or(low)
     }
 
     fn mail(&mut self) -> Option<String> {
-        let text = self.next(|answered| match answered {
-            Answered::Mail(text) => Some(text.as_deref()),
-            _ => None,
+        let text = self.next(|answered| {
+            if let Answered::Mail(text) = answered {
+                Some(text.as_deref())
+            } else {
+                None
+            }
         });
         text.flatten().map(str::to_owned)
     }
 
     fn ask(&mut self, _question: Question<'_>) -> Answer {
-        let answer = self.next(|answered| match answered {
-            Answered::Person(answer) => Some((**answer).clone()),
-            _ => None,
+        let answer = self.next(|answered| {
+            if let Answered::Person(answer) = answered {
+                Some((**answer).clone())
+            } else {
+                None
+            }
         });
         answer.unwrap_or(Answer::Waiting)
     }

@@ -4,7 +4,7 @@
 //! texts, and decides what motors do at a stop. Knows no transport, no clients and no files.
 
 use super::order::{NoOrder, Order};
-use super::{Breakpoint, NoBack, NoBreakpoint, NotNow, Phase, Session, report};
+use super::{Breakpoint, NoBack, NoBreakpoint, NotNow, Phase, Session, Step, report};
 use crate::brick::Brick;
 use crate::limits;
 use crate::machine::Machine;
@@ -105,6 +105,11 @@ impl Desk {
         self.session.live()
     }
 
+    /// Whether motors have to rest now.
+    pub fn is_at_rest(&self) -> bool {
+        self.motors_rest && self.is_stopped()
+    }
+
     /// Whether it is stopped at this moment of the present.
     pub fn is_stopped(&self) -> bool {
         matches!(self.session.phase(), Phase::Stopped(_))
@@ -132,15 +137,23 @@ impl Desk {
         told.plain("to", tag).plain("done", is_done).done()
     }
 
+    /// The lines that breakpoints have written since the last time, as a JSON object.
+    pub fn log(&mut self) -> Option<String> {
+        let (lines, lost) = self.session.debugger().take_lines();
+        if lines.is_empty() && lost == 0 {
+            return None;
+        }
+        let all = lines.len();
+        let lines = lines.iter();
+        let lines = lines.map(|line| quoted(line, limits::TOLD_CHARACTERS_MAX));
+        let told = report::bounded(lines, limits::TOLD_LINES_BYTES);
+        let lost = lost as usize + all - told.len();
+        Some(object().list("log", told).plain("lost", lost).done())
+    }
+
     /// What has happened since the last time, for everybody who looks on, each as a JSON object.
     pub fn news(&mut self) -> Vec<String> {
-        let mut news = Vec::new();
-        let (lines, lost) = self.session.debugger().take_lines();
-        if !lines.is_empty() || lost > 0 {
-            let lines = lines.iter();
-            let lines = lines.map(|line| quoted(line, limits::TOLD_CHARACTERS_MAX));
-            news.push(object().list("log", lines).plain("lost", lost).done());
-        }
+        let mut news: Vec<_> = self.log().into_iter().collect();
         let now = match self.session.phase() {
             _ if !self.session.is_attached() => Told::Detached,
             Phase::Runs => Told::Runs,
@@ -170,42 +183,18 @@ impl Desk {
             return Err(Refused::NotAttached);
         }
         match order {
-            Order::Attach => {
-                if !session.is_attached() {
-                    session.attach();
-                    session.keep(self.history_bytes);
-                }
-            }
+            Order::Attach => self.attach(),
             Order::Detach => {
                 self.motors_rest = true;
                 session.detach(now, brick, trace);
             }
             Order::Look => {}
-            Order::Pause => session.debugger().pause(),
+            Order::Pause => self.pause(),
             Order::Continue => self.go_on(now, brick, trace)?,
             Order::Step(step, thread) => {
-                let number = self.thread(thread.as_deref())?;
-                if self.session.is_past() {
-                    self.session.forth(Some(*step));
-                } else {
-                    self.session.walk((number, *step), now, brick, trace);
-                    self.told = Told::Runs;
-                }
+                self.walk((thread.as_deref(), *step), now, brick, trace)?;
             }
-            Order::Until(block) => {
-                if session.is_past() {
-                    return Err(Refused::NotNow(NotNow::Past));
-                }
-                let point = Breakpoint {
-                    block: block.clone(),
-                    is_once: true,
-                    ..Breakpoint::default()
-                };
-                session.add(point).map_err(Refused::Breakpoint)?;
-                if self.is_stopped() {
-                    self.go_on(now, brick, trace)?;
-                }
-            }
+            Order::Until(block) => self.until(block, now, brick, trace)?,
             Order::Back(how) => {
                 session.back(*how).map_err(Refused::Back)?;
             }
@@ -223,20 +212,14 @@ impl Desk {
                 return Ok(object().plain("number", number));
             }
             Order::Clear(number) => {
-                if !session.debugger().clear(*number) {
-                    return Err(Refused::NoBreakpoint(*number));
-                }
-                return Ok(object());
+                return found(session.debugger().clear(*number), *number);
             }
             Order::Enable(number, is_enabled) => {
-                if !session.debugger().enable(*number, *is_enabled) {
-                    return Err(Refused::NoBreakpoint(Some(*number)));
-                }
-                return Ok(object());
+                let is_found = session.debugger().enable(*number, *is_enabled);
+                return found(is_found, Some(*number));
             }
             Order::Breakpoints => {
-                let points = report::breakpoints(session);
-                return Ok(object().list("breakpoints", points));
+                return Ok(report::breakpoints(session, object()));
             }
             Order::Errors(stop) => {
                 session.debugger().stops_at_errors = *stop;
@@ -259,6 +242,59 @@ impl Desk {
             }
         }
         Ok(self.state())
+    }
+
+    fn attach(&mut self) {
+        if !self.session.is_attached() {
+            self.session.attach();
+            self.session.keep(self.history_bytes);
+        }
+    }
+
+    fn pause(&mut self) {
+        // One that is stopped would stop again as soon as it goes on.
+        if !self.is_stopped() {
+            self.session.debugger().pause();
+        }
+    }
+
+    fn walk(
+        &mut self,
+        (thread, step): (Option<&str>, Step),
+        now: u32,
+        brick: &mut dyn Brick,
+        trace: &mut dyn Trace,
+    ) -> Result<(), Refused> {
+        let number = self.thread(thread)?;
+        if self.session.is_past() {
+            self.session.forth(Some(step));
+        } else {
+            self.session.walk((number, step), now, brick, trace);
+            self.told = Told::Runs;
+        }
+        Ok(())
+    }
+
+    fn until(
+        &mut self,
+        block: &str,
+        now: u32,
+        brick: &mut dyn Brick,
+        trace: &mut dyn Trace,
+    ) -> Result<(), Refused> {
+        if self.session.is_past() {
+            return Err(Refused::NotNow(NotNow::Past));
+        }
+        let point = Breakpoint {
+            block: block.into(),
+            is_once: true,
+            ..Breakpoint::default()
+        };
+        self.session.add(point).map_err(Refused::Breakpoint)?;
+        if self.is_stopped() {
+            self.go_on(now, brick, trace)?;
+        }
+        Ok(())
     }
 
     fn go_on(
@@ -304,6 +340,14 @@ impl Desk {
 
     fn state(&self) -> Object {
         object().plain("program", report::state(&self.session, self.locale))
+    }
+}
+
+/// What is told of a breakpoint that was looked for.
+fn found(is_found: bool, number: Option<u32>) -> Result<Object, Refused> {
+    match is_found {
+        true => Ok(object()),
+        false => Err(Refused::NoBreakpoint(number)),
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Owns the form, which `docs/protocol.md` describes. Knows no transport.
 
-use super::{Phase, Reason, Session, Stop};
+use super::{Breakpoint, Phase, Reason, Session, Stop};
 use crate::limits;
 use crate::machine::Machine;
 use crate::machine::view::{Doing, ThreadView, Waits};
@@ -10,6 +10,30 @@ use crate::program::Node;
 use lang_expr::Value;
 use lang_text::json::Object;
 use lang_text::problem::{Locale, Problem};
+
+/// The first of these that take no more than about so many bytes.
+pub(super) fn bounded(items: impl Iterator<Item = String>, bytes_max: usize) -> Vec<String> {
+    let mut bytes = 0;
+    let mut told = Vec::new();
+    for item in items {
+        bytes += item.len();
+        told.push(item);
+        if bytes > bytes_max {
+            break;
+        }
+    }
+    told
+}
+
+/// An object with a list, and how much of it is left out, if anything is.
+fn listed(told: Object, name: &str, (items, all): (Vec<String>, usize)) -> Object {
+    let left_out = all - items.len();
+    let told = told.list(name, items);
+    match left_out {
+        0 => told,
+        some => told.plain(&format!("{name}_left_out"), some),
+    }
+}
 
 fn object() -> Object {
     Object::new(limits::TOLD_CHARACTERS_MAX)
@@ -33,9 +57,11 @@ pub fn state(session: &Session, locale: Locale) -> String {
     if let Some(stop) = session.stop() {
         told = told.plain("stop", stopped(machine, stop, locale));
     }
-    let threads = machine.views().take(limits::TOLD_ITEMS_MAX);
-    told = told.list("threads", threads.map(|view| thread(machine, &view)));
-    told = told.list("variables", variables(machine));
+    let threads = machine.views().map(|view| thread(machine, &view));
+    let threads = bounded(threads, limits::TOLD_THREADS_BYTES);
+    told = listed(told, "threads", (threads, machine.views().count()));
+    let all = machine.variables().count();
+    told = listed(told, "variables", (variables(machine), all));
     if let Some((from_ms, bytes)) = session.kept() {
         let kept = object().plain("from_ms", from_ms).plain("bytes", bytes);
         told = told.plain("kept", kept.done());
@@ -50,22 +76,26 @@ pub fn value(value: &Value) -> Object {
         .text("value", &value.printed())
 }
 
-/// Breakpoints with their numbers, and how often each was hit.
-pub fn breakpoints(session: &mut Session) -> Vec<String> {
+/// Breakpoints with their numbers, and how often each was hit, as a member of an object.
+pub fn breakpoints(session: &mut Session, told: Object) -> Object {
+    let all = session.debugger().breakpoints().count();
     let points = session.debugger().breakpoints();
-    let told = points.map(|(number, point, hits)| {
-        object()
-            .plain("number", number)
-            .text("block", &point.block)
-            .text("if", &point.condition)
-            .plain("from", point.from_hit)
-            .text("log", &point.log)
-            .plain("once", point.is_once)
-            .plain("disabled", point.is_disabled)
-            .plain("hits", hits)
-            .done()
-    });
-    told.collect()
+    let points = points.map(breakpoint);
+    let points = bounded(points, limits::TOLD_VARIABLES_BYTES);
+    listed(told, "breakpoints", (points, all))
+}
+
+fn breakpoint((number, point, hits): (u32, &Breakpoint, u32)) -> String {
+    object()
+        .plain("number", number)
+        .text("block", &point.block)
+        .text("if", &point.condition)
+        .plain("from", point.from_hit)
+        .text("log", &point.log)
+        .plain("once", point.is_once)
+        .plain("disabled", point.is_disabled)
+        .plain("hits", hits)
+        .done()
 }
 
 /// Problems as a text, a line for each.
@@ -113,8 +143,9 @@ fn thread(machine: &Machine, view: &ThreadView<'_>) -> String {
         Doing::Failed => told.text("does", "failed"),
         Doing::Waits(waits) => waiting(told.text("does", "waits"), waits),
     };
-    let calls = view.calls.iter().take(limits::TOLD_ITEMS_MAX);
-    told.list("calls", calls.map(|node| place(machine, *node)))
+    let calls = view.calls.iter().map(|node| place(machine, *node));
+    let calls = bounded(calls, limits::TOLD_CALLS_BYTES);
+    listed(told, "calls", (calls, view.calls.len()))
         .plain("messages", view.messages)
         .done()
 }
@@ -144,12 +175,11 @@ fn place(machine: &Machine, node: Node) -> String {
 }
 
 fn variables(machine: &Machine) -> Vec<String> {
-    let variables = machine.variables().take(limits::TOLD_ITEMS_MAX);
-    let told = variables.map(|(name, held)| {
+    let told = machine.variables().map(|(name, held)| {
         let told = object().text("name", name).text("type", kind(held));
         told.text("value", &held.brief()).done()
     });
-    told.collect()
+    bounded(told, limits::TOLD_VARIABLES_BYTES)
 }
 
 /// The word of a value's type.

@@ -42,7 +42,11 @@ impl Stage {
 }
 
 fn stage() -> (Stage, Vec<String>) {
-    let (project, ids) = counting("n = n + 1", "100");
+    stage_of("n = n + 1")
+}
+
+fn stage_of(body: &str) -> (Stage, Vec<String>) {
+    let (project, ids) = counting(body, "100");
     let program = Rc::new(lower(&project, World::default()).unwrap().program);
     let machine = Machine::new(program, Options::default());
     let stage = Stage {
@@ -160,4 +164,42 @@ fn orders_that_cannot_be_change_nothing_and_say_why() {
             .order("step over nobody")
             .contains("there is no thread 'nobody'")
     );
+}
+
+#[test]
+fn what_would_be_too_long_to_tell_is_cut_and_says_by_how_much() {
+    let assigned = (0..3000).map(|number| format!("v{number} = 1"));
+    let (mut stage, ids) = stage_of(&assigned.collect::<Vec<_>>().join("; "));
+    stage.order("attach");
+    stage.run(1);
+    let state = stage.order("look");
+    assert!(state.len() < 256 << 10, "{}", state.len());
+    let told = state.matches("{\"name\":\"").count();
+    let left_out = format!("\"variables_left_out\":{}", 3001 - told);
+    assert!(state.contains(&left_out), "{told}: {left_out}");
+    let line = format!("break {}\nlog {}", ids[2], "x".repeat(900));
+    for _ in 0..100 {
+        stage.order(&line);
+    }
+    let news = stage.run(20);
+    assert!(news[0].len() < 128 << 10, "{}", news[0].len());
+    let told = news[0].matches("xxx\"").count();
+    let lost = news[0].rsplit(':').next().unwrap();
+    let lost: usize = lost.trim_end_matches('}').parse().unwrap();
+    assert!(
+        lost > 0 && (told + lost).is_multiple_of(100),
+        "{told} and {lost}"
+    );
+}
+
+#[test]
+fn a_pause_of_a_program_that_is_stopped_asks_for_nothing() {
+    let (mut stage, _) = stage();
+    stage.order("attach");
+    stage.order("pause");
+    stage.run(1);
+    assert!(stage.order("pause").contains("\"state\":\"stopped\""));
+    assert!(stage.order("continue").contains("\"state\":\"running\""));
+    stage.run(2);
+    assert!(stage.order("look").contains("\"state\":\"running\""));
 }

@@ -1,0 +1,194 @@
+//! A diagram that somebody debugs on a robot, over its control port.
+//!
+//! Owns tags of orders and what comes between them. What orders mean is known in `lang_diagram::debug`; what front ends do
+//! with it, in `debug`.
+
+use super::link::{Link, Message, ms};
+use super::upload::Upload;
+use crate::debug::target::{Channel, Event, Target, why_not};
+use crate::error::Error;
+use crate::limits;
+use lang_diagram::debug::order::Order;
+use serde_json::Value;
+use std::collections::VecDeque;
+use std::path::Path;
+use std::time::{Duration, Instant};
+use trikd::protocol::news;
+
+/// How a talk about a program begins, and with that how it ends.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Begun {
+    /// It was started for this talk, and is ended with it.
+    Here,
+    /// It ran already, and goes on after it.
+    Elsewhere,
+}
+
+/// A diagram on a robot.
+pub(crate) struct Debugged {
+    link: Link,
+    tag: u64,
+    begun: Begun,
+    /// What has come and was not asked for yet.
+    events: VecDeque<Event>,
+    is_gone: bool,
+}
+
+impl Debugged {
+    /// Sends a diagram to a robot, where it is stopped before its first block.
+    ///
+    /// # Errors
+    /// A sentence: the robot cannot be reached, or refuses.
+    pub(crate) fn launch(path: &Path, at: &super::target::Target) -> Result<Self, Error> {
+        let upload = Upload::read(path)?;
+        let mut link = at.connect()?;
+        upload.send(&mut link, |_, _| {})?;
+        let mut debugged = Self::over(link, Begun::Here);
+        debugged.must(&format!("run {}", upload.name))?;
+        Ok(debugged)
+    }
+
+    /// Joins the diagram that runs on a robot.
+    ///
+    /// # Errors
+    /// A sentence: the robot cannot be reached, no diagram runs there, or somebody else is in control.
+    pub(crate) fn attach(at: &super::target::Target) -> Result<Self, Error> {
+        let mut debugged = Self::over(at.connect()?, Begun::Elsewhere);
+        let answer = debugged.must(&Order::Attach.to_string())?;
+        if let Some(program) = answer.get("program") {
+            debugged.events.push_back(Event::Told(program.clone()));
+        }
+        Ok(debugged)
+    }
+
+    fn over(link: Link, begun: Begun) -> Self {
+        Self {
+            link,
+            tag: 0,
+            begun,
+            events: VecDeque::new(),
+            is_gone: false,
+        }
+    }
+
+    fn must(&mut self, text: &str) -> Result<Value, Error> {
+        let answer = self.ask(text)?;
+        match why_not(&answer) {
+            None => Ok(answer),
+            Some(why) => Err(Error::Robot(format!("{}: {why}", self.link.name()))),
+        }
+    }
+
+    fn ask(&mut self, text: &str) -> Result<Value, Error> {
+        self.tag += 1;
+        let request = format!("debug:{} {text}", self.tag);
+        self.link.ask(&[request.as_bytes()]);
+        let deadline = Instant::now() + ms(limits::ANSWER_MS);
+        while Instant::now() < deadline {
+            if let Some(answer) = self.take()? {
+                return Ok(answer);
+            }
+            self.link.turn(ms(limits::TURN_MS), None, true)?;
+        }
+        Err(Error::Robot(format!(
+            "{} has not answered for {} s: perhaps its trikd is older than this program",
+            self.link.name(),
+            limits::ANSWER_MS / 1000
+        )))
+    }
+
+    /// Takes what has come; the answer to the last order, if it is among it.
+    fn take(&mut self) -> Result<Option<Value>, Error> {
+        while let Some(message) = self.link.next() {
+            match message {
+                Message::Debug(text) => {
+                    let told: Value = serde_json::from_str(&text).map_err(|why| {
+                        Error::Robot(format!("{}: {why} in its answer", self.link.name()))
+                    })?;
+                    if told.get("to").and_then(Value::as_u64) == Some(self.tag) {
+                        return Ok(Some(told));
+                    }
+                    self.hear(told);
+                }
+                Message::Error(text) if text == news::NOT_PAIRED => return Err(Error::Robot(text)),
+                Message::Error(text) => {
+                    self.link.remember(&text);
+                    self.put(Event::Said(Channel::Message, text));
+                }
+                Message::Print(text) => {
+                    let text = String::from_utf8_lossy(&text).into_owned();
+                    self.put(Event::Said(Channel::Output, text));
+                }
+                Message::Info(_) | Message::Version | Message::Status(_) => {}
+            }
+        }
+        Ok(None)
+    }
+
+    fn hear(&mut self, told: Value) {
+        if told.get("to").is_some() {
+            // Of an order that was given up.
+            return;
+        }
+        if told.get("state").and_then(Value::as_str) == Some("gone") {
+            self.is_gone = true;
+            self.put(Event::Over("the program has ended".to_owned()));
+            return;
+        }
+        if let Some(control) = told.get("control").and_then(Value::as_str) {
+            self.put(Event::Said(
+                Channel::Message,
+                format!("{control} is in control"),
+            ));
+            return;
+        }
+        self.put(Event::Told(told));
+    }
+
+    fn put(&mut self, event: Event) {
+        if self.events.len() >= limits::DEBUG_EVENTS_MAX {
+            self.events.pop_front();
+        }
+        self.events.push_back(event);
+    }
+}
+
+impl Target for Debugged {
+    fn order(&mut self, order: &Order) -> Result<Value, Error> {
+        self.ask(&order.to_string())
+    }
+
+    fn turn(&mut self, wait: Duration) -> Result<Vec<Event>, Error> {
+        let until = Instant::now() + wait;
+        loop {
+            // An answer that comes now is one that was given up.
+            self.take()?;
+            let left = until.saturating_duration_since(Instant::now());
+            if !self.events.is_empty() || left.is_zero() {
+                self.link.turn(Duration::ZERO, None, true)?;
+                return Ok(self.events.drain(..).collect());
+            }
+            self.link.turn(left, None, true)?;
+        }
+    }
+
+    fn scene(&self, _ms: u64) -> Option<String> {
+        None
+    }
+
+    fn close(&mut self) {
+        if self.is_gone {
+            return;
+        }
+        match self.begun {
+            Begun::Here => {
+                self.link.ask(&[b"stop"]);
+                // The motors are at rest when this is answered.
+                let _ = self.ask("leave");
+            }
+            Begun::Elsewhere => {
+                let _ = self.ask(&Order::Detach.to_string());
+            }
+        }
+    }
+}
