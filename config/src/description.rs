@@ -125,6 +125,8 @@ pub enum Pace {
     Every {
         /// Sampling period.
         period_ms: u32,
+        /// Whether anybody needs the samples or not.
+        always: bool,
     },
     /// In the background, whenever the source has data.
     OnEvent,

@@ -46,6 +46,7 @@ table() {
         function scaled(number) { return number * 250 / 300 }
         /^busy_/ { printf "%-28s %6.2f %% of the processor (trikfs %.2f, trikd %.2f), %s waits per second\n",
             substr($1, 6), scaled($2), scaled($5), scaled($8), $11; next }
+        /^thread_/ { printf "%-28s %6.2f %% of the processor, %s waits per second\n", substr($1, 8), scaled($2), $5; next }
         /^memory_/ { printf "%-28s %6d KiB resident, %d KiB with what is shared divided, %d KiB its own\n",
             substr($1, 8), $2, $4, $6; next }
         /^read_/ { printf "%-28s %6d instructions\n", $1, $2 / 4; next }

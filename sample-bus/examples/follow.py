@@ -26,6 +26,14 @@ class Samples:
         if os.lstat(folder).st_uid != os.stat(mountpoint).st_uid:
             raise PermissionError(errno.EACCES, 'not of the owner of the tree', os.fsdecode(folder))
         self.path = os.fsdecode(folder + b'/' + name(node))
+        # A node is sampled while somebody has its value open; an attribute is a file itself. First, so that what the ring
+        # has is new.
+        for value in os.path.join(mountpoint, node, 'value'), os.path.join(mountpoint, node):
+            try:
+                self.value = open(value, 'rb', buffering=0)
+                break
+            except OSError:
+                self.value = None
         with open(self.path, 'rb') as file:
             found = os.fstat(file.fileno())
             self.file = (found.st_dev, found.st_ino)

@@ -70,6 +70,7 @@ struct trikfs_samples {
     size_t bytes;
     uint32_t slots, slot_bytes, tuple_bytes;
     uint32_t last; /* the last event that trikfs_samples_next gave */
+    int value;     /* the node's value, open so that the node is sampled; -1: not open */
     dev_t device;
     ino_t file;
     char path[PATH_MAX];
@@ -100,14 +101,17 @@ static inline int trikfs_samples_append(char *to, size_t room, const char *path)
 }
 
 static inline int trikfs_samples_close(struct trikfs_samples *samples) {
+    if (samples->value >= 0) close(samples->value);
+    samples->value = -1;
     return munmap((void *)(uintptr_t)samples->ring, samples->bytes);
 }
 
-/* Opens a ring by the path of its file. */
+/* Opens a ring by the path of its file. Nothing tells the daemon that somebody needs the samples. */
 static inline int trikfs_samples_open_file(struct trikfs_samples *samples, const char *path) {
     struct trikfs_ring ring;
     struct stat found;
     memset(samples, 0, sizeof *samples);
+    samples->value = -1;
     if (strlen(path) >= sizeof samples->path) return trikfs_samples_fail(ENAMETOOLONG);
     strcpy(samples->path, path);
     int file = open(path, O_RDONLY | O_CLOEXEC);
@@ -138,6 +142,17 @@ static inline int trikfs_samples_open_file(struct trikfs_samples *samples, const
     return 0;
 }
 
+/* Opens the file of a node that says that its samples are needed; an attribute is a file itself. -1: the tree does not
+ * answer, so it samples nothing. */
+static inline int trikfs_samples_value(const char *mountpoint, const char *node) {
+    char path[2 * PATH_MAX + 8];
+    snprintf(path, sizeof path, "%s/%s/value", mountpoint, node);
+    int value = open(path, O_RDONLY | O_CLOEXEC);
+    if (value >= 0) return value;
+    snprintf(path, sizeof path, "%s/%s", mountpoint, node);
+    return open(path, O_RDONLY | O_CLOEXEC);
+}
+
 /* Opens the ring of a node of a mounted tree. ENOENT: the node is not sampled in the background, or the tree has no
  * sample bus. EACCES: the tree is another user's, or somebody else has put something into its place. */
 static inline int trikfs_samples_open(struct trikfs_samples *samples, const char *mountpoint, const char *node) {
@@ -148,7 +163,15 @@ static inline int trikfs_samples_open(struct trikfs_samples *samples, const char
     if (!S_ISDIR(directory.st_mode) || directory.st_uid != tree.st_uid) return trikfs_samples_fail(EACCES);
     strcat(path, "/");
     if (trikfs_samples_append(path, sizeof path, node) != 0) return -1;
-    return trikfs_samples_open_file(samples, path);
+    /* First, so that what the ring has is new. */
+    int value = trikfs_samples_value(real, node);
+    if (trikfs_samples_open_file(samples, path) != 0) {
+        int why = errno;
+        if (value >= 0) close(value);
+        return trikfs_samples_fail(why);
+    }
+    samples->value = value;
+    return 0;
 }
 
 static inline const struct trikfs_slot *trikfs_samples_slot(const struct trikfs_samples *samples, uint32_t sequence) {

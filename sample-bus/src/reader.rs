@@ -37,6 +37,16 @@ pub struct Reader {
     layout: Layout,
     /// The last event that [`Reader::next_event`] gave.
     last: u32,
+    /// The node's `value`, open so that the node is sampled; it is never read.
+    _value: Option<File>,
+}
+
+/// Opens the file of a node that says that its samples are needed. A tree that does not answer samples nothing.
+fn value_of(mountpoint: &Path, node: &str) -> Option<File> {
+    let node = mountpoint.join(node);
+    // An attribute is a file itself.
+    let files = [node.join("value"), node];
+    files.iter().find_map(|file| File::open(file).ok())
 }
 
 impl Reader {
@@ -59,10 +69,17 @@ impl Reader {
                 ),
             ));
         }
-        Self::open_file(&directory.join(place::file_name(node)?))
+        let file = directory.join(place::file_name(node)?);
+        // First, so that what the ring has is new.
+        let value = value_of(&mountpoint, node);
+        Ok(Self {
+            _value: value,
+            ..Self::open_file(&file)?
+        })
     }
 
-    /// Opens a ring by the path of its file. The file's owner must be trusted not to shorten it.
+    /// Opens a ring by the path of its file. The file's owner must be trusted not to shorten it. Nothing tells the daemon that
+    /// somebody needs the samples.
     ///
     /// # Errors
     /// The file cannot be opened, or is no ring.
@@ -78,6 +95,7 @@ impl Reader {
             map: Map::new(&file, layout.bytes(), false)?,
             layout,
             last: 0,
+            _value: None,
         })
     }
 

@@ -52,6 +52,8 @@ mod devices {
     mod setup;
     /// A slow bus delays nobody who does not use it.
     mod slow_bus;
+    /// A bus whose nodes nobody reads.
+    mod unread_bus;
 }
 /// One module for each operation or file of a mounted tree.
 mod mount {

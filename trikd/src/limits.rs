@@ -106,6 +106,8 @@ pub const OUTBOX_BYTES: usize = 256 << 10;
 pub const SNAPSHOT_MS: u64 = 15;
 /// Milliseconds that an answer waits for the tree.
 pub const SNAPSHOT_WAIT_MS: u64 = 250;
+/// Milliseconds without a question after which the files of the sensors are closed: the tree samples what is open.
+pub const SENSORS_LINGER_MS: u64 = 5_000;
 /// Milliseconds between two looks at raw readings, which cost transfers on the bus.
 pub const RAW_MS: u64 = 100;
 /// Milliseconds that a program may live on while the motors are brought to rest.

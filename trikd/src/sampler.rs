@@ -13,7 +13,7 @@ use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::time::{Duration, Instant};
 use tokio::sync::watch;
 
@@ -116,11 +116,25 @@ fn name_ports(files: &Files, publish: &watch::Sender<Newest>) {
     }
 }
 
+/// Waits for the next question. Without one for `linger`, `close` lets go of the files meanwhile: the tree samples
+/// what is open. False: nobody can ask any more.
+fn is_asked(asked: &Receiver<()>, linger: Duration, close: impl FnOnce()) -> bool {
+    match asked.recv_timeout(linger) {
+        Ok(()) => true,
+        Err(RecvTimeoutError::Disconnected) => false,
+        Err(RecvTimeoutError::Timeout) => {
+            close();
+            asked.recv().is_ok()
+        }
+    }
+}
+
 fn sample(root: &Path, asked: &Receiver<()>, publish: &watch::Sender<Newest>) {
     let brick = Brick::new(root);
     let mut files = Files::find(&brick);
     let mut raw_at: Option<Instant> = None;
-    while asked.recv().is_ok() {
+    let linger = Duration::from_millis(limits::SENSORS_LINGER_MS);
+    while is_asked(asked, linger, || brick.tree().close()) {
         if files.ports.is_empty() {
             files = Files::find(&brick);
         }
@@ -289,6 +303,7 @@ impl Files {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tree::Tree;
     use harness::put;
     use tempfile::tempdir;
 
@@ -320,6 +335,33 @@ mod tests {
             text.ends_with(";Left:0;Up:1;Down:0;Enter:1;Right:0;Power:0;Esc:0"),
             "{text}"
         );
+    }
+
+    /// What is open is sampled: nobody reads it any more.
+    #[test]
+    fn files_are_closed_when_nobody_has_asked_for_a_while_and_opened_for_the_next_who_does() {
+        let scratch = tempdir().unwrap();
+        let file = put(scratch.path(), "battery/value", "1");
+        let tree = Tree::new(scratch.path());
+        let node = tree.node("battery/value", Access::ReadNow);
+        let read = || {
+            let mut bytes = [0; 8];
+            let size = node.bytes(&mut bytes).unwrap();
+            bytes[..size].to_vec()
+        };
+        assert_eq!(read(), b"1");
+        // An open file is still the one that was there.
+        std::fs::remove_file(&file).unwrap();
+        put(scratch.path(), "battery/value", "2");
+        assert_eq!(read(), b"1");
+        let (ask, asked) = sync_channel(1);
+        let mut ask = Some(ask);
+        let is_asked = is_asked(&asked, Duration::ZERO, || {
+            tree.close();
+            ask = None;
+        });
+        assert!(!is_asked, "nobody is left who could ask");
+        assert_eq!(read(), b"2");
     }
 
     /// A device may take longer than a client waits.

@@ -130,6 +130,13 @@ impl Tree {
         made.clone()
     }
 
+    /// Closes all files. The next use of each opens it again.
+    pub fn close(&self) {
+        for node in self.nodes.borrow().values() {
+            *node.file.borrow_mut() = None;
+        }
+    }
+
     /// Whether the tree has this directory, and something is plugged in there.
     pub fn has(&self, directory: &str) -> bool {
         if let Some(answers) = &self.answers {

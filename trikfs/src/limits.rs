@@ -60,6 +60,9 @@ pub const SAMPLE_SOON: Duration = Duration::from_millis(1);
 pub const SILENCE_MS: u64 = 40;
 /// Milliseconds that a write to a sampled node waits for the next sample.
 pub const RENEWAL_MS: u64 = 100;
+/// Milliseconds that the clock goes on sampling after the last one who needed it: a program that opens, reads and closes
+/// again and again finds the node at work.
+pub const SAMPLING_LINGER_MS: u64 = 1_000;
 /// Milliseconds between attempts to open a lost device again.
 pub const REOPEN_MS: u64 = 250;
 /// Milliseconds without an opening or closing after which the stock of Lua states is small again.

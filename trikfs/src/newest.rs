@@ -2,12 +2,15 @@
 //!
 //! Owns the way of a sample into the latch, when samples are taken (on read, by the clock, on event), which reads wait for
 //! the first one, and when a sample is too old to be shown. `pace` takes samples in the background, `page` is the copy in
-//! the kernel's page cache. A failure replaces the sample: what cannot be read is an error with a reason, never the
+//! the kernel's page cache, `joining` is who comes and goes, `need` whether anybody needs
+//! the clock's samples. A failure replaces the sample: what cannot be read is an error with a reason, never the
 //! value of before.
 
 // A pace or a kind of source that is forgotten must not leave a value that grows old in silence.
 #![deny(clippy::wildcard_enum_match_arm)]
 
+mod joining;
+mod need;
 mod pace;
 mod page;
 
@@ -24,10 +27,12 @@ use crate::state_reader::StateReader;
 use crate::transport::RequestId;
 use config::description::Pace;
 use config::format::FieldKind;
+use need::Need;
 use pace::{Ageing, Listening, Sampling};
 pub use pace::{renew, too_old};
 use page::Page;
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::mpsc::SyncSender;
 use std::sync::{Arc, Mutex, Weak};
 use std::time::{Duration, Instant};
 
@@ -38,6 +43,10 @@ pub struct Newest {
     work: Mutex<Work>,
     /// Open files that keep the source of an unsampled node open.
     users: AtomicU32,
+    /// Who needs the samples of a node that is sampled by the clock.
+    need: Need,
+    /// The source had its time and said nothing, and was left: nobody waits for it as long once more.
+    was_silent: AtomicBool,
     waiting: Mutex<Vec<Waiting>>,
     watchers: Mutex<Vec<Weak<dyn Ready>>>,
     jobs: Mutex<Vec<Arc<dyn Due>>>,
@@ -58,6 +67,15 @@ enum Source {
     Closed,
     State(StateReader),
     Stream(Arc<Reader>),
+}
+
+/// On which thread a sample is taken.
+#[derive(Clone, Copy)]
+enum Thread {
+    /// One that may wait for the page cache.
+    Clock,
+    /// Perhaps one that is inside an operation and may not.
+    Any,
 }
 
 /// How long a read waits before it is looked whether anything is on its way, and between two such looks.
@@ -83,6 +101,8 @@ impl Newest {
             latch: Latch::new(),
             work: Mutex::default(),
             users: AtomicU32::new(0),
+            need: Need::new(),
+            was_silent: AtomicBool::new(false),
             waiting: Mutex::default(),
             watchers: Mutex::default(),
             jobs: Mutex::default(),
@@ -101,7 +121,10 @@ impl Newest {
         }
         match node.description.pace {
             Pace::OnRead => {}
-            Pace::Every { .. } => self.schedule_sampling(&node),
+            Pace::Every { .. } => {
+                self.need.begin();
+                self.schedule_sampling(&node, Instant::now(), None);
+            }
             Pace::OnEvent => {
                 let me: Arc<dyn Due> = Arc::new(Listening {
                     node: self.node.clone(),
@@ -132,10 +155,10 @@ impl Newest {
         self.latch.set_ring(None);
     }
 
-    fn schedule_sampling(&self, node: &Arc<Node>) {
-        let sampler: Arc<dyn Due> = Arc::new(Sampling::of(self.node.clone()));
-        node.sampling_schedule()
-            .at(Instant::now(), Arc::downgrade(&sampler));
+    /// Starts the clock at a time; `first` hears of the first attempt.
+    fn schedule_sampling(&self, node: &Arc<Node>, at: Instant, first: Option<SyncSender<()>>) {
+        let sampler: Arc<dyn Due> = Arc::new(Sampling::of(self.node.clone(), first));
+        node.sampling_schedule().at(at, Arc::downgrade(&sampler));
         // Entries of earlier jobs die with them.
         *lock(&self.jobs) = vec![sampler];
         self.schedule_ageing(node);
@@ -157,7 +180,9 @@ impl Newest {
     pub fn period_changed(&self) {
         if let Some(node) = self.node.upgrade() {
             self.tell_bus_of_period(&node);
-            self.schedule_sampling(&node);
+            if self.need.is_awake() {
+                self.schedule_sampling(&node, Instant::now(), None);
+            }
         }
     }
 
@@ -178,44 +203,6 @@ impl Newest {
         }
     }
 
-    /// Somebody opened a newest-value file for reading: without background sampling, listening starts here.
-    /// True if a reader always finds a value, because reading makes one.
-    pub fn join(&self) -> Result<bool, Error> {
-        let Some(node) = self.node.upgrade() else {
-            return Err(Error::Stale);
-        };
-        if node.description.pace != Pace::OnRead {
-            return match self.latch.error() {
-                Some(error @ Error::NoDevice(_)) => Err(error),
-                _ => Ok(false),
-            };
-        }
-        let _inside = node.quarantine.enter()?;
-        let mut work = lock_patiently(&self.work);
-        let was_closed = matches!(work.source, Source::Closed);
-        work.open(&node)?;
-        if was_closed && matches!(work.source, Source::Stream(_)) {
-            // What a stream gave while it was open for others may be long ago.
-            self.latch.forget();
-        }
-        self.users.fetch_add(1, Ordering::Relaxed);
-        Ok(!matches!(&work.source, Source::Stream(reader) if reader.is_shared()))
-    }
-
-    /// The opposite of [`join`](Self::join).
-    pub fn leave(&self) {
-        let Some(node) = self.node.upgrade() else {
-            return;
-        };
-        if node.description.pace == Pace::OnRead
-            && self.users.fetch_sub(1, Ordering::Relaxed) == 1
-            // A sampler that is stuck in the device keeps it; the next reader's end tries again.
-            && let Ok(mut work) = self.work.try_lock()
-        {
-            work.source = Source::Closed;
-        }
-    }
-
     /// Brings the latch up to date for a reader: samples now unless the background does.
     pub fn refresh(&self) -> Result<(), Error> {
         let Some(node) = self.node.upgrade() else {
@@ -226,7 +213,7 @@ impl Newest {
         }
         if node.description.pace == Pace::OnRead {
             let _inside = node.quarantine.enter()?;
-            self.sample(&node);
+            self.sample(&node, Thread::Any);
         }
         Ok(())
     }
@@ -242,6 +229,15 @@ impl Newest {
         self.page.unwant();
         let due: Arc<dyn Due> = node.clone();
         (node.engine.schedule).at(Instant::now(), Arc::downgrade(&due));
+    }
+
+    /// What the page may hold, if anything, goes, but not from here: this may be inside an operation.
+    fn drop_page_soon(&self, node: &Arc<Node>) {
+        if self.page.may_hold_something() {
+            self.page.unwant();
+            let due: Arc<dyn Due> = node.clone();
+            (node.engine.schedule).at(Instant::now(), Arc::downgrade(&due));
+        }
     }
 
     /// The newest sample. None: there is none yet.
@@ -265,6 +261,13 @@ impl Newest {
     pub fn is_in_background(&self) -> bool {
         let node = self.node.upgrade();
         node.is_some_and(|node| node.description.pace != Pace::OnRead)
+    }
+
+    /// The clock takes samples of this node, but none at the moment, because nobody needs them.
+    pub fn is_at_rest(&self) -> bool {
+        let node = self.node.upgrade();
+        let by_clock = |node: Arc<Node>| matches!(node.description.pace, Pace::Every { .. });
+        node.is_some_and(by_clock) && !self.need.is_awake()
     }
 
     /// When the newest sample was taken, however old it is.
@@ -293,7 +296,13 @@ impl Newest {
         match &work.source {
             Source::Closed => false,
             Source::State(state) => state.is_silent(),
-            Source::Stream(reader) => reader.is_silent(Patience::of(&node.description)),
+            Source::Stream(reader) => {
+                let mut patience = Patience::of(&node.description);
+                if self.was_silent.load(Ordering::Relaxed) {
+                    patience.by_itself = Patience::WITH_NOBODY;
+                }
+                reader.is_silent(patience)
+            }
         }
     }
 
@@ -394,22 +403,28 @@ impl Newest {
         }
     }
 
-    /// Takes one sample (a state, an own stream) or everything that has come (a shared stream).
-    fn sample(&self, node: &Arc<Node>) {
+    /// Takes one sample (a state, an own stream) or everything that has come (a shared stream). False: there is no source.
+    fn sample(&self, node: &Arc<Node>, thread: Thread) -> bool {
         let mut work = lock_patiently(&self.work);
         let era = self.latch.era();
         if let Err(error) = work.open(node) {
             drop(work);
-            return self.fail(error);
+            self.fail(error, thread);
+            return false;
         }
-        let outcome = work.take(node, |tuple| self.publish(node, era, tuple));
-        if matches!(&outcome, Err(error) if error.is_gone()) || node.is_retired() {
+        let outcome = work.take(node, |tuple| self.publish(node, era, tuple, thread));
+        let is_gone = matches!(&outcome, Err(error) if error.is_gone());
+        if is_gone || node.is_retired() {
             work.source = Source::Closed;
+        }
+        if matches!(node.description.pace, Pace::Every { .. }) {
+            self.close_if_at_rest(&mut work);
         }
         drop(work);
         if let Err(error) = outcome {
-            self.fail(error);
+            self.fail(error, thread);
         }
+        !is_gone
     }
 
     /// A stream may have more: called by its reader.
@@ -423,14 +438,14 @@ impl Newest {
             Pace::Every { .. } => false,
         };
         if listens {
-            self.sample(&node);
+            self.sample(&node, Thread::Clock);
             if node.description.pace == Pace::OnEvent {
                 self.arm(&node);
             }
         }
     }
 
-    fn publish(&self, node: &Node, era: Era, tuple: &[u8]) {
+    fn publish(&self, node: &Arc<Node>, era: Era, tuple: &[u8], thread: Thread) {
         if node
             .format
             .fields()
@@ -440,22 +455,28 @@ impl Newest {
         {
             let error = Error::Converter(why.to_string());
             node.report(&error);
-            return self.fail(error);
+            return self.fail(error, thread);
         }
         if !self.latch.publish(era, tuple) {
             return;
         }
         node.stats.samples.add(1);
-        self.page.fill(&node.engine, tuple);
+        self.was_silent.store(false, Ordering::Relaxed);
+        match thread {
+            Thread::Clock => self.page.fill(&node.engine, tuple),
+            Thread::Any => self.drop_page_soon(node),
+        }
         self.notify();
         node.driving.measured(node, tuple);
     }
 
-    fn fail(&self, error: Error) {
+    fn fail(&self, error: Error, thread: Thread) {
         let is_new = self.latch.fail(&error);
         if let Some(node) = self.node.upgrade() {
-            if is_new {
-                self.page.drop(&node.engine);
+            match thread {
+                Thread::Clock if is_new => self.page.drop(&node.engine),
+                Thread::Any => self.drop_page_soon(&node),
+                Thread::Clock => {}
             }
             node.driving.not_measured(&node, &error);
         }
@@ -500,6 +521,19 @@ impl Newest {
             node.engine
                 .schedule
                 .at(Instant::now(), Arc::downgrade(&due));
+        }
+    }
+}
+
+/// A need for the samples of a node that is sampled by the clock, until it is dropped.
+pub struct Needed(Weak<Node>);
+
+impl Drop for Needed {
+    fn drop(&mut self) {
+        if let Some(node) = self.0.upgrade()
+            && matches!(node.description.pace, Pace::Every { .. })
+        {
+            node.sampling.newest.need.goes();
         }
     }
 }

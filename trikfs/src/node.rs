@@ -155,6 +155,7 @@ impl Node {
             return Some(tuple);
         }
         let mut tuple = Vec::new();
+        let _needed = self.sampling.newest.needed();
         let newest = self.sampling.newest.get(&mut tuple).ok().flatten();
         newest
             .filter(|_| self.description.output_tuple_size == self.description.written_tuple_size())

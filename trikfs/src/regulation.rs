@@ -9,7 +9,7 @@ use crate::clock::Stamp;
 use crate::convert::Pipeline;
 use crate::errno::{Blame, Error};
 use crate::events::lock;
-use crate::newest;
+use crate::newest::{self, Needed};
 use crate::node::Node;
 use crate::writer::Writer;
 use converter::Direction;
@@ -28,6 +28,8 @@ struct Owed {
     why: Error,
     /// How often the driven node had been written: a program that drives it since then owes nothing.
     writes: u32,
+    /// Each sample is an attempt.
+    _needed: Needed,
 }
 
 struct Order {
@@ -42,6 +44,8 @@ struct Order {
     generation: u32,
     input: Vec<u8>,
     output: Vec<u8>,
+    /// Each sample is a step.
+    _needed: Needed,
 }
 
 impl Regulation {
@@ -61,6 +65,8 @@ impl Regulation {
     /// What the law refuses as the caller's mistake; then what was held before is held on. Any other failure of the
     /// feedback, the law or the driven node; then nothing is held, and what was held before came to rest.
     pub fn order(&self, node: &Arc<Node>, target: &[u8]) -> Result<(), Error> {
+        // The first step is made with a sample of now, also if nobody needed any before.
+        let _needed = node.sampling.newest.needed();
         let mut slot = lock(&self.order);
         let measured = node.sampling.newest.latch().sample(newest::too_old(node));
         let turn = self.actuator.take_turn();
@@ -118,6 +124,7 @@ impl Regulation {
             generation: node.driving.lease_generation(),
             input: Vec::with_capacity(input),
             output: vec![0; output],
+            _needed: node.sampling.newest.needed(),
         })
     }
 
@@ -176,6 +183,7 @@ impl Regulation {
         *lock(&self.owed) = Some(Owed {
             why: error.clone(),
             writes: self.writes(),
+            _needed: node.sampling.newest.needed(),
         });
         self.settle();
     }
@@ -183,9 +191,10 @@ impl Regulation {
     /// Brings the driven node to rest if that is owed. What did not go, as on a bus that does not answer, is tried again
     /// with each sample, until it goes or somebody drives the node.
     fn settle(&self) {
-        let Some(Owed { why, writes }) = lock(&self.owed).take() else {
+        let Some(debt) = lock(&self.owed).take() else {
             return;
         };
+        let (writes, why) = (debt.writes, debt.why.clone());
         if writes != self.writes() {
             return;
         }
@@ -193,10 +202,7 @@ impl Regulation {
             self.actuator.report(&error);
             let mut owed = lock(&self.owed);
             if owed.is_none() && writes == self.writes() {
-                *owed = Some(Owed {
-                    why: why.clone(),
-                    writes,
-                });
+                *owed = Some(debt);
             }
         }
         self.actuator.driving.lose(&why);

@@ -15,7 +15,8 @@ use std::sync::{Arc, Mutex};
 pub struct StateReader {
     node: Arc<Node>,
     device: Box<dyn State>,
-    pipeline: Arc<Mutex<Pipeline>>,
+    /// None: it is opened for the first sample.
+    pipeline: Option<Arc<Mutex<Pipeline>>>,
     raw: Vec<u8>,
     /// What is left of the converted tuple that the last read ended in.
     rest: Vec<u8>,
@@ -26,7 +27,11 @@ pub struct StateReader {
 
 impl StateReader {
     /// A reader of an open state.
-    pub fn new(node: Arc<Node>, device: Box<dyn State>, pipeline: Arc<Mutex<Pipeline>>) -> Self {
+    pub fn new(
+        node: Arc<Node>,
+        device: Box<dyn State>,
+        pipeline: Option<Arc<Mutex<Pipeline>>>,
+    ) -> Self {
         Self {
             node,
             device,
@@ -53,7 +58,8 @@ impl StateReader {
                 }
                 sampled => sampled.map_err(|error| self.failed(error))?,
             }
-            let mut pipeline = lock(&self.pipeline);
+            let pipeline = self.pipeline()?;
+            let mut pipeline = lock(&pipeline);
             let batch = self
                 .node
                 .convert(&mut pipeline, Direction::Read, &self.raw, tuple);
@@ -66,6 +72,15 @@ impl StateReader {
             }
         }
         Ok(false)
+    }
+
+    fn pipeline(&mut self) -> Result<Arc<Mutex<Pipeline>>, Error> {
+        if let Some(pipeline) = &self.pipeline {
+            return Ok(pipeline.clone());
+        }
+        let pipeline = self.node.open_pipeline()?;
+        self.pipeline = Some(pipeline.clone());
+        Ok(pipeline)
     }
 
     /// Whether there is no sample because another node that is needed is silent.
@@ -131,8 +146,9 @@ impl StateReader {
             } else {
                 &mut out[..whole * output_size]
             };
+            let pipeline = self.pipeline()?;
             let input = &self.raw[..tuples * input_size];
-            let mut pipeline = lock(&self.pipeline);
+            let mut pipeline = lock(&pipeline);
             let batch = self
                 .node
                 .convert(&mut pipeline, Direction::Read, input, target);

@@ -302,6 +302,8 @@ function imu.hold(tree, entry, ports)
   for _, port in ipairs(ports) do src[#src + 1] = 'newest:encoders/' .. port end
   local node = tree.heading
   node.src, node.interval = src, true
+  -- Drift is measured while the robot stands, whether somebody reads the heading or not.
+  node.always = true
   node.converter = held_heading(#ports, calibration_ms(entry) * 1000)
 end
 

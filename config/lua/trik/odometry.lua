@@ -64,7 +64,7 @@ function odometry.make(_, entry, listed)
   local diameter_mm = entry:number_of('wheel_diameter_mm', nil, 1, 1000)
   return {
     odometry = {
-      about = about, src = { 'newest:encoders/' .. left, 'newest:encoders/' .. right }, poll_ms = PERIOD_MS,
+      about = about, src = { 'newest:encoders/' .. left, 'newest:encoders/' .. right }, poll_ms = PERIOD_MS, always = true,
       format = 'f32 x, f32 y, f32 heading', mode = 0444,
       converter = integrator(diameter_mm, entry:number_of('track_mm', nil, 1, 10000)),
     },

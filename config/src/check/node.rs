@@ -16,9 +16,10 @@ use crate::vm::fingerprint::hash;
 use nix::unistd::{Group, User};
 
 /// All fields of a description.
-pub(super) const FIELDS: [&str; 26] = [
+pub(super) const FIELDS: [&str; 27] = [
     "about",
     "ages",
+    "always",
     "attributes",
     "budget_us",
     "converter",
@@ -222,11 +223,20 @@ impl NodeFields<'_, '_> {
     fn pace(&self) -> Result<Pace, Problem> {
         let period = self.whole("poll_ms", 1, PERIOD_MS_MAX)?;
         let on_event = self.boolean("on_event")?.unwrap_or(false);
+        let always = self.boolean("always")?;
+        if always.is_some() && period.is_none() {
+            let reason =
+                "always goes with poll_ms: it says whether the clock samples while nobody needs it";
+            return Err(self.problem("always", reason));
+        }
         match (period, on_event) {
             (Some(_), true) => {
                 Err(self.problem("on_event", "poll_ms and on_event exclude each other"))
             }
-            (Some(period_ms), false) => Ok(Pace::Every { period_ms }),
+            (Some(period_ms), false) => Ok(Pace::Every {
+                period_ms,
+                always: always.unwrap_or(false),
+            }),
             (None, true) => Ok(Pace::OnEvent),
             (None, false) => Ok(Pace::OnRead),
         }

@@ -549,6 +549,10 @@ fn pace_and_limits_are_checked() {
         "robot.lua:3: x: poll_ms must be a whole number from 1 to 3600000, not 0"
     );
     assert_eq!(
+        field("on_event = true, always = true"),
+        "robot.lua:3: x: always goes with poll_ms: it says whether the clock samples while nobody needs it"
+    );
+    assert_eq!(
         field("poll_ms = 5, on_event = true"),
         "robot.lua:3: x: poll_ms and on_event exclude each other"
     );
@@ -595,7 +599,14 @@ fn pace_and_limits_are_checked() {
     let node = node("src = '/d', input_tuple_size = 1, poll_ms = 5, units = 'mm/s', share = false");
     assert_eq!(
         (node.pace, node.units.as_str(), node.share),
-        (Pace::Every { period_ms: 5 }, "mm/s", Some(false))
+        (
+            Pace::Every {
+                period_ms: 5,
+                always: false
+            },
+            "mm/s",
+            Some(false)
+        )
     );
 }
 

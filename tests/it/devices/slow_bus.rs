@@ -14,12 +14,12 @@ const CONFIG: &str = "
     end
     trikfs = {
       good = { src = i2c{ '$DIR/good', address = 0x48, register = 1, transfer = 'word' }, format = 'u16 raw' },
-      steady = { src = i2c{ '$DIR/good', address = 0x48, register = 3, transfer = 'word' }, format = 'u16 raw', poll_ms = 20 },
+      steady = { src = i2c{ '$DIR/good', address = 0x48, register = 3, transfer = 'word' }, format = 'u16 raw', poll_ms = 20, always = true },
       plain = { src = '/dev/zero', input_tuple_size = 1 },
       slow = {}, late = {},
     }
     for n = 1, 12 do
-      trikfs.slow['n' .. n] = slow(2 * n, { poll_ms = 20, timeout_ms = 10000 })
+      trikfs.slow['n' .. n] = slow(2 * n, { poll_ms = 20, timeout_ms = 10000, always = true })
       trikfs.late['n' .. n] = slow(2 * n)
     end";
 

@@ -78,7 +78,11 @@ fn everything_that_moves_has_a_rest_and_inputs_are_sampled_fifty_times_a_second(
         let moves = node.path.starts_with("motors/") || node.path.starts_with("servos/");
         assert_eq!(node.rest.is_some(), moves, "{}", node.path);
         let sampled = node.path.starts_with("encoders/") || node.path.starts_with("sensors/A");
-        let at_50_hz = node.pace == Pace::Every { period_ms: 20 };
+        let at_50_hz = node.pace
+            == Pace::Every {
+                period_ms: 20,
+                always: false,
+            };
         assert_eq!(at_50_hz, sampled, "{}", node.path);
     }
 }

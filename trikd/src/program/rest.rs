@@ -35,7 +35,8 @@ impl Failure {
         let root = root.to_owned();
         match error.raw_os_error() {
             Some(libc::ENOENT) => Self::NoTree(root),
-            Some(libc::ENOTCONN | libc::ECONNABORTED | libc::ENODEV) => Self::Gone(root),
+            // ENODEV is no word of FUSE for its end: an actuator of the robot is not there.
+            Some(libc::ENOTCONN | libc::ECONNABORTED) => Self::Gone(root),
             Some(_) | None => Self::Tree(root, error.into()),
         }
     }
@@ -143,6 +144,12 @@ mod tests {
             let text = Failure::of(Path::new("/t"), error).to_string();
             assert!(is_explained(&text), "{text}");
         }
+        let absent = Failure::of(Path::new("/t"), io::Error::from_raw_os_error(libc::ENODEV));
+        let text = absent.to_string();
+        assert!(
+            text.starts_with("not everything is at rest: /t/stop: "),
+            "a tree that misses an actuator is not gone: {text}"
+        );
         assert!(!is_explained("x.js was stopped by a client after 0.1 s"));
     }
 

@@ -48,7 +48,7 @@ const SAMPLED: usize = 40;
 /// reading is a system call without any waiting.
 fn sampling(duration: Duration) -> Result<(), String> {
     let mut bus = BusPeer::start("sampling", 0)?;
-    let words = |number| word(&bus, number, "poll_ms = 10");
+    let words = |number| word(&bus, number, "poll_ms = 10, always = true");
     let mount = Mount::start("bus-sampling", &sampled_nodes(words))?;
     std::thread::sleep(Duration::from_millis(300));
     let begin = Instant::now();
@@ -73,7 +73,9 @@ fn sampling(duration: Duration) -> Result<(), String> {
     }
     let attribute = |number: usize| {
         let path = paths[number].display();
-        format!("{{ src = attribute{{ '{path}' }}, input_tuple_size = 16, poll_ms = 10 }}")
+        format!(
+            "{{ src = attribute{{ '{path}' }}, input_tuple_size = 16, poll_ms = 10, always = true }}"
+        )
     };
     let mount = Mount::start("attribute-sampling", &sampled_nodes(attribute))?;
     std::thread::sleep(Duration::from_millis(300));
@@ -131,12 +133,12 @@ fn wire(duration: Duration) -> Result<(), String> {
     for register in 0x20..=0x26 {
         text.push_str(&format!(
             "w{register} = {},\n",
-            word(&bus, register, "poll_ms = 20")
+            word(&bus, register, "poll_ms = 20, always = true")
         ));
     }
     for register in 0x30..=0x33 {
         text.push_str(&format!(
-            "e{register} = {{ src = i2c{{ '{path}', address = 0x48, register = {register}, transfer = 'block' }}, format = 'i32 ticks', poll_ms = 20 }},\n"
+            "e{register} = {{ src = i2c{{ '{path}', address = 0x48, register = {register}, transfer = 'block' }}, format = 'i32 ticks', poll_ms = 20, always = true }},\n"
         ));
     }
     let _mount = Mount::start("bus-wire", &(text + "}\n"))?;
@@ -173,7 +175,7 @@ fn beside_a_slow_bus(plan: &Plan) -> Result<(), String> {
         for number in 0..others {
             text.push_str(&format!(
                 "n{number} = {},\n",
-                word(&other, 2 * number, "poll_ms = 20")
+                word(&other, 2 * number, "poll_ms = 20, always = true")
             ));
             text.push_str(&format!("r{number} = {},\n", word(&other, 2 * number, "")));
         }

@@ -104,6 +104,7 @@ pub fn status_lines(nodes: &[Arc<Node>]) -> String {
         let state = match (&fault, node.description.pace) {
             (Some(_), _) => "fault",
             (None, config::description::Pace::OnRead) => "ready",
+            (None, _) if node.sampling.newest.is_at_rest() => "ready",
             (None, _) if node.sampling.newest.stamp().is_some() => "sampled",
             (None, _) => "waiting",
         };

@@ -58,7 +58,7 @@ impl DeviceFile {
         let mut access = Access::Stream;
         if read {
             let me: Arc<dyn Ready> = file.clone();
-            let source = match node.open_feed_with(pipeline.clone(), Arc::downgrade(&me))? {
+            let source = match node.open_feed_with(Some(pipeline.clone()), Arc::downgrade(&me))? {
                 Feed::State(state) => {
                     access = Access::Direct;
                     Source::State(Box::new(Mutex::new(state)))

@@ -2,7 +2,7 @@
 //!
 //! Owns the due times. What a sample is, and what hears of it, is `newest`'s business.
 
-use super::Source;
+use super::{Source, Thread};
 use crate::crew;
 use crate::events::{Due, lock};
 use crate::limits;
@@ -10,7 +10,7 @@ use crate::node::Node;
 use config::description::Pace;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{SyncSender, sync_channel};
-use std::sync::{Arc, Weak};
+use std::sync::{Arc, Mutex, Weak};
 use std::time::{Duration, Instant};
 
 /// The age from which a sample taken in the background is no longer shown. None: it is never too old.
@@ -31,15 +31,24 @@ pub(super) struct Sampling {
     node: Weak<Node>,
     /// The sample before took so long that others should not wait for the next one.
     lasts: AtomicBool,
+    /// Hears of the first attempt.
+    first: Mutex<Option<SyncSender<()>>>,
 }
 
 impl Sampling {
-    pub(super) fn of(node: Weak<Node>) -> Self {
+    pub(super) fn of(node: Weak<Node>, first: Option<SyncSender<()>>) -> Self {
         Self {
             node,
             lasts: AtomicBool::new(false),
+            first: Mutex::new(first),
         }
     }
+}
+
+/// When the clock takes the next sample of a node.
+pub(super) fn next(node: &Node) -> Instant {
+    let period = Duration::from_millis(node.sampling.period_ms().into());
+    next_on_grid(node.engine.schedule.origin(), period, Instant::now())
 }
 
 /// The first time after `now` that is a whole number of periods from `origin`. Periods that were missed are not made up
@@ -61,14 +70,31 @@ impl Due for Sampling {
         if self.lasts.load(Ordering::Relaxed) {
             crew::give_way();
         }
+        let always = match node.description.pace {
+            Pace::Every { always, .. } => always,
+            Pace::OnEvent | Pace::OnRead => false,
+        };
+        if !always && node.sampling.newest.rests(&node) {
+            return None;
+        }
         let begun = Instant::now();
-        node.sampling.newest.sample(&node);
+        let has_source = node.sampling.newest.sample(&node, Thread::Clock);
         let now = Instant::now();
         let lasted = now - begun > limits::SAMPLE_SOON;
         self.lasts.store(lasted, Ordering::Relaxed);
-        let period = Duration::from_millis(node.sampling.period_ms().into());
+        if let Some(first) = lock(&self.first).take() {
+            // Who came first may no longer wait.
+            let _ = first.try_send(());
+        }
+        // What is not there is not looked for at the pace of what is.
+        let period_ms = u64::from(node.sampling.period_ms());
+        let period_ms = if has_source {
+            period_ms
+        } else {
+            period_ms.max(limits::REOPEN_MS)
+        };
         let origin = node.engine.schedule.origin();
-        Some(next_on_grid(origin, period, now))
+        Some(next_on_grid(origin, Duration::from_millis(period_ms), now))
     }
 }
 
@@ -81,8 +107,8 @@ struct Renewal {
 impl Due for Renewal {
     fn due(&self) -> Option<Instant> {
         let node = self.node.upgrade()?;
-        if !node.is_retired() {
-            node.sampling.newest.sample(&node);
+        if !node.is_retired() && !node.sampling.newest.is_at_rest() {
+            node.sampling.newest.sample(&node, Thread::Clock);
         }
         // The writer may no longer wait.
         let _ = self.done.try_send(());
@@ -95,7 +121,9 @@ impl Due for Renewal {
 /// hangs. Then the sample from before the write is forgotten, so that nobody takes it for an answer to the write.
 pub fn renew(node: &Arc<Node>) {
     let by_clock = matches!(node.description.pace, Pace::Every { .. });
-    if !by_clock || node.driving.takes_orders() || node.is_retired() {
+    // What rests is sampled when somebody comes.
+    let clock_samples = by_clock && !node.sampling.newest.is_at_rest();
+    if !clock_samples || node.driving.takes_orders() || node.is_retired() {
         return;
     }
     let (done, sampled) = sync_channel(1);
@@ -118,6 +146,9 @@ pub(super) struct Ageing {
 impl Due for Ageing {
     fn due(&self) -> Option<Instant> {
         let node = self.node.upgrade()?;
+        if node.sampling.newest.is_at_rest() {
+            return None;
+        }
         let limit = too_old(&node)?;
         let age = node
             .sampling
@@ -161,17 +192,20 @@ impl Due for Listening {
                 }
                 Ok(false) => true,
                 Err(error) => {
-                    node.sampling.newest.fail(error);
+                    node.sampling.newest.fail(error, Thread::Clock);
                     false
                 }
             }
         };
-        let wait = if is_open {
+        let wait_ms = if is_open {
             4 * limits::REOPEN_MS
         } else {
             limits::REOPEN_MS
         };
-        Some(Instant::now() + Duration::from_millis(wait))
+        // Together with all others.
+        let origin = node.engine.schedule.origin();
+        let wait = Duration::from_millis(wait_ms);
+        Some(next_on_grid(origin, wait, Instant::now()))
     }
 }
 

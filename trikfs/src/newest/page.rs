@@ -78,6 +78,11 @@ impl Page {
         }
     }
 
+    /// Whether there may be anything in it.
+    pub(super) fn may_hold_something(&self) -> bool {
+        self.is_filled.load(Ordering::SeqCst)
+    }
+
     /// Drops the page if it may hold something. True if it may have.
     pub(super) fn drop_filled(&self, engine: &Engine) -> bool {
         let was_filled = self.is_filled.swap(false, Ordering::SeqCst);

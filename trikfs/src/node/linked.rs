@@ -47,11 +47,7 @@ impl LinkedNode for Node {
         if self.is_retired() {
             return Err(Error::Stale);
         }
-        match self.sampling.newest.join() {
-            Ok(_) => Ok(()),
-            Err(Error::NoDevice(_)) if self.sampling.newest.is_in_background() => Ok(()),
-            Err(error) => Err(error),
-        }
+        self.sampling.newest.join_as_link()
     }
 
     fn leave_newest(&self) {

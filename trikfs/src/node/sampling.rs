@@ -33,7 +33,7 @@ struct Rate {
 impl Sampling {
     pub(super) fn new(node: Weak<Node>, description: &NodeDescription) -> Self {
         let period_ms = match description.pace {
-            Pace::Every { period_ms } => period_ms,
+            Pace::Every { period_ms, .. } => period_ms,
             Pace::OnRead | Pace::OnEvent => 0,
         };
         Self {

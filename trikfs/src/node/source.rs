@@ -15,7 +15,7 @@ use crate::reader::{Origin, Reader};
 use crate::state_reader::StateReader;
 use crate::stats::Stats;
 use crate::writer::Writer;
-use config::description::NodeDescription;
+use config::description::{NodeDescription, Pace};
 use std::sync::{Arc, Mutex, Weak};
 
 /// The way to one node's device.
@@ -81,23 +81,29 @@ fn log_sink(engine: &Engine, path: &str) -> LogSink {
 impl Node {
     /// Opens the node for reading with a pipeline of its own.
     pub fn open_feed(self: &Arc<Self>, on_ready: &Arc<dyn Ready>) -> Result<Feed, Error> {
-        let pipeline = self.open_pipeline()?;
-        self.open_feed_with(pipeline, Arc::downgrade(on_ready))
+        self.open_feed_with(None, Arc::downgrade(on_ready))
     }
 
-    /// Opens the node for reading. `on_ready` is called when a stream may have more.
+    /// Opens the node for reading, with a pipeline that is open or one of its own. `on_ready` is called when a stream may have
+    /// more. A source that is missing is tried again and again in the background, and a state for Lua costs more than
+    /// such an attempt: none is made before there is something to convert.
     pub fn open_feed_with(
         self: &Arc<Self>,
-        pipeline: Arc<Mutex<Pipeline>>,
+        pipeline: Option<Arc<Mutex<Pipeline>>>,
         on_ready: Weak<dyn Ready>,
     ) -> Result<Feed, Error> {
         let opened = self.open_origin(&on_ready);
         let origin = match opened.inspect_err(|error| self.report(error))? {
             Opened::State(state) => {
+                let pipeline = match (pipeline, self.description.pace) {
+                    (None, Pace::OnRead) => Some(self.open_pipeline()?),
+                    (pipeline, _) => pipeline,
+                };
                 return Ok(Feed::State(StateReader::new(self.clone(), state, pipeline)));
             }
             Opened::Stream(origin) => origin,
         };
+        let pipeline = pipeline.map_or_else(|| self.open_pipeline(), Ok)?;
         Ok(Feed::Stream(Reader::new(
             self.clone(),
             origin,

@@ -247,7 +247,7 @@ local function describe(given)
   if #inputs == 0 then fail('the model has no actions: nothing says how it moves') end
   return {
     about = 'place by the model ' .. model.name .. ': x, y, theta and all else of its state in its units, from where it began', mode = 0444,
-    src = src, interval = true, input_format = format, poll_ms = given.poll_ms or PERIOD_MS,
+    src = src, interval = true, input_format = format, poll_ms = given.poll_ms or PERIOD_MS, always = true,
     format = table.concat(shows, ', '), params = next(params) and params or nil,
     converter = follower(model, inputs, defaults, start, place),
   }
