@@ -205,7 +205,9 @@ fn robots_and_their_parts_say_what_they_do() {
     let port = Port::named("M3").unwrap();
     let mut robot = arena.robot(0);
     robot.command(Command::Power { port, percent: -40 });
-    robot.command(Command::Say { text: "hello" });
+    robot.command(Command::Say {
+        text: Some("hello"),
+    });
     robot.command(Command::Console { text: "printed" });
     robot.command(Command::Led { color: "green" });
     robot.command(Command::MarkerDown { color: "red" });
