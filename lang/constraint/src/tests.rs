@@ -5,6 +5,7 @@ mod explain;
 mod facts;
 mod library;
 mod naive;
+mod own;
 mod reading;
 mod templates;
 mod values;

@@ -50,8 +50,8 @@ pub enum Command<'a> {
     },
     /// Speech.
     Say {
-        /// The words.
-        text: &'a str,
+        /// The words; none of a text that nobody has set.
+        text: Option<&'a str>,
     },
     /// The light on the board.
     Led {
@@ -267,7 +267,7 @@ impl fmt::Display for Command<'_> {
             Self::ResetEncoder { port } => write!(f, "reset {}", port.name()),
             Self::Sound { file } => write!(f, "sound {file:?}"),
             Self::Tone { hertz, ms } => write!(f, "tone {hertz} {ms}"),
-            Self::Say { text } => write!(f, "say {text:?}"),
+            Self::Say { text } => write!(f, "say {:?}", text.unwrap_or_default()),
             Self::Led { color } => write!(f, "led {color}"),
             Self::System { command, code } => write!(f, "system {command:?} code={code}"),
             Self::Append { file, text } => write!(f, "append {file:?} {text:?}"),

@@ -431,6 +431,21 @@ impl Program {
         }
     }
 
+    /// What decides between the two ways out of a node, if it has two.
+    pub(crate) fn test(&self, node: Node) -> Option<Test> {
+        match self.leads(node)? {
+            Leads::Test(test, ..) => Some(test),
+            Leads::End
+            | Leads::Fault(_)
+            | Leads::To(_)
+            | Leads::Switch(_)
+            | Leads::Fork(_)
+            | Leads::Join(..)
+            | Leads::Call(..)
+            | Leads::Ask(..) => None,
+        }
+    }
+
     /// Texts of a node, in the order in which it evaluates them.
     pub(crate) fn texts(&self, node: Node) -> Vec<Source> {
         let Some(op) = self.ops.get(node as usize) else {

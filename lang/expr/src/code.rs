@@ -115,7 +115,7 @@ impl Compiler<'_> {
             Value::Bool(truth) => Op::Bool(truth),
             Value::Int(number) => Op::Int(number),
             Value::Float(number) => Op::Float(number),
-            value @ (Value::Text(_) | Value::List(_)) => {
+            value @ (Value::Text(_) | Value::Unset | Value::List(_)) => {
                 self.code.constants.push(value);
                 Op::Constant(index(self.code.constants.len() - 1))
             }

@@ -200,7 +200,7 @@ pub fn evaluate(
             Wanted::Bool => Value::Bool(run.truth(root)),
             Wanted::Int => Value::Int(run.whole(root)),
             Wanted::Float => Value::Float(run.number(root)),
-            Wanted::Text => Value::Text(run.value(root).to_text()),
+            Wanted::Text => run.value(root).into_text(),
             Wanted::List => {
                 let texts = run.value(root).to_texts();
                 let items = texts.into_iter().map(Value::Text).collect();

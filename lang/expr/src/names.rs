@@ -248,7 +248,7 @@ impl Names {
             Value::Bool(_) => Type::Bool,
             Value::Int(_) => Type::Int,
             Value::Float(_) => Type::Float,
-            Value::Text(_) => Type::Text,
+            Value::Text(_) | Value::Unset => Type::Text,
             Value::List(list) => {
                 let element = match list.items().first() {
                     Some(first) if depth < limits::LIST_DEPTH_MAX => {

@@ -354,7 +354,9 @@ impl<'a> Run<'a> {
         }
         let (left, right) = (self.value(left), self.value(right));
         match (&left, &right) {
-            (Value::Text(one), Value::Text(two)) => texts(one.cmp(two)),
+            (Value::Text(_) | Value::Unset, Value::Text(_) | Value::Unset) => {
+                texts(left.to_text().cmp(&right.to_text()))
+            }
             _ => numbers(left.to_float(), right.to_float()),
         }
     }

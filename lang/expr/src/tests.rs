@@ -20,6 +20,9 @@ impl Outside for Robot {
         if SENSORS[usize::from(sensor)].name == "gyroscope" {
             return Value::ints(&[0, 1, 2, 3, 4, 5, -160_000]);
         }
+        if SENSORS[usize::from(sensor)].name == "objectSensorSize" {
+            return Value::Unset;
+        }
         Value::Int(i32::from(sensor))
     }
 
@@ -220,6 +223,31 @@ fn values_are_equal_as_variants_are() {
             (&["-0.1 == 0 - 0.1"], "false"),
         ],
     );
+}
+
+#[test]
+fn a_text_that_nobody_has_set_is_empty_where_it_is_read_and_unset_where_it_is_handed_on() {
+    let mut bench = Bench::new(Compat::Studio);
+    for text in ["objectSensorSize", "x = objectSensorSize", "x"] {
+        let mut source = Source::new(text, Wanted::Text);
+        if text.contains('=') {
+            source = Source::new(text, Wanted::Statements);
+        }
+        analyse(&mut source, &mut bench.names).unwrap();
+        let value = evaluate(&source, &bench.names, &mut bench.store, &mut bench.robot).unwrap();
+        assert!(
+            text.contains('=') || matches!(value, Value::Unset),
+            "{text}: {value:?}"
+        );
+    }
+    assert_eq!(bench.shown("x .. 'a'"), "a");
+    assert_eq!(bench.shown("objectSensorSize .. ''"), "");
+    for other in [Value::text(""), Value::Unset, Value::text("a")] {
+        let is_equal = other.to_text().is_empty();
+        assert_eq!(Value::Unset.equals(&other), is_equal, "{other:?}");
+        assert_eq!(other.equals(&Value::Unset), is_equal, "{other:?}");
+    }
+    assert!(!Value::Unset.to_bool() && Value::Unset.to_int() == 0);
 }
 
 #[test]

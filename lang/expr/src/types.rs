@@ -3,6 +3,8 @@
 //! An integer may stand where a float is wanted, and a table of integers where one of floats is; nothing else may stand
 //! for something else. Knows no names and no tree.
 
+use crate::limits;
+
 /// A type. Tables are known by the index of their element's type.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub enum Type {
@@ -166,20 +168,27 @@ impl Types {
         }
     }
 
-    /// Whether a value of the first type may stand where the second is wanted.
+    /// Whether a value of the first type may stand where the second is wanted. A table may be an element of itself: what
+    /// is not unlike down to the depth that values can have, is alike.
     pub fn stands_for(&self, specific: Type, general: Type) -> bool {
-        match (specific, general) {
-            (Type::Int, Type::Float) | (Type::Any | Type::Open, Type::Any | Type::Open) => true,
-            (Type::Table(one), Type::Table(two)) if one == two && self.resolves => true,
-            (Type::Table(_), Type::Table(_)) => {
-                match (self.plain_element(specific), self.plain_element(general)) {
-                    (Some(one), Some(two)) => self.stands_for(one, two),
-                    // TRIK Studio takes an element that came from an assignment for unlike every other.
-                    _ => false,
+        let (mut specific, mut general) = (specific, general);
+        for _ in 0..=limits::LIST_DEPTH_MAX {
+            (specific, general) = match (specific, general) {
+                (Type::Int, Type::Float) | (Type::Any | Type::Open, Type::Any | Type::Open) => {
+                    return true;
                 }
-            }
-            _ => specific == general,
+                (Type::Table(one), Type::Table(two)) if one == two && self.resolves => return true,
+                (Type::Table(_), Type::Table(_)) => {
+                    match (self.plain_element(specific), self.plain_element(general)) {
+                        (Some(one), Some(two)) => (one, two),
+                        // TRIK Studio takes an element that came from an assignment for unlike every other.
+                        _ => return false,
+                    }
+                }
+                _ => return specific == general,
+            };
         }
+        true
     }
 
     fn plain_element(&self, table: Type) -> Option<Type> {

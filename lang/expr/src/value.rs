@@ -30,6 +30,8 @@ pub enum Value {
     Float(f64),
     /// A text.
     Text(Rc<str>),
+    /// A text that nobody has set: an empty one to all that reads it, and still unset to what only hands it on.
+    Unset,
     /// A table: dense, from 0.
     List(Rc<List>),
 }
@@ -162,7 +164,12 @@ impl Value {
     pub(crate) fn list(&self) -> Option<&Rc<List>> {
         match self {
             Self::List(list) => Some(list),
-            Self::Nil | Self::Bool(_) | Self::Int(_) | Self::Float(_) | Self::Text(_) => None,
+            Self::Nil
+            | Self::Bool(_)
+            | Self::Int(_)
+            | Self::Float(_)
+            | Self::Text(_)
+            | Self::Unset => None,
         }
     }
 
@@ -170,7 +177,12 @@ impl Value {
     pub(crate) fn into_list(self) -> Option<Rc<List>> {
         match self {
             Self::List(list) => Some(list),
-            Self::Nil | Self::Bool(_) | Self::Int(_) | Self::Float(_) | Self::Text(_) => None,
+            Self::Nil
+            | Self::Bool(_)
+            | Self::Int(_)
+            | Self::Float(_)
+            | Self::Text(_)
+            | Self::Unset => None,
         }
     }
 
@@ -179,7 +191,7 @@ impl Value {
         match self {
             Self::Text(text) => 1 + u32::try_from(text.len() / 16).unwrap_or(u32::MAX - 1),
             Self::List(list) => list.cells.saturating_add(1),
-            Self::Nil | Self::Bool(_) | Self::Int(_) | Self::Float(_) => 1,
+            Self::Nil | Self::Bool(_) | Self::Int(_) | Self::Float(_) | Self::Unset => 1,
         }
     }
 
@@ -194,7 +206,7 @@ impl Value {
             Self::Int(number) => f64::from(*number),
             Self::Bool(truth) => f64::from(u8::from(*truth)),
             Self::Text(text) => number_of(text).unwrap_or(0.0),
-            Self::Nil | Self::List(_) => 0.0,
+            Self::Nil | Self::Unset | Self::List(_) => 0.0,
         }
     }
 
@@ -205,7 +217,7 @@ impl Value {
             Self::Float(number) => round(*number),
             Self::Bool(truth) => i32::from(*truth),
             Self::Text(text) => whole_of(text).unwrap_or(0),
-            Self::Nil | Self::List(_) => 0,
+            Self::Nil | Self::Unset | Self::List(_) => 0,
         }
     }
 
@@ -219,7 +231,7 @@ impl Value {
             Self::Text(text) => {
                 !(text.is_empty() || &**text == "0" || text.eq_ignore_ascii_case("false"))
             }
-            Self::Nil | Self::List(_) => false,
+            Self::Nil | Self::Unset | Self::List(_) => false,
         }
     }
 
@@ -231,7 +243,17 @@ impl Value {
             Self::Bool(false) => "false".into(),
             Self::Int(number) => number.to_string().into(),
             Self::Float(number) => float_text(*number).into(),
-            Self::Nil | Self::List(_) => "".into(),
+            Self::Nil | Self::Unset | Self::List(_) => "".into(),
+        }
+    }
+
+    /// As a text; one that nobody has set stays so.
+    pub(crate) fn into_text(self) -> Self {
+        match self {
+            Self::Text(_) | Self::Unset => self,
+            Self::Nil | Self::Bool(_) | Self::Int(_) | Self::Float(_) | Self::List(_) => {
+                Self::Text(self.to_text())
+            }
         }
     }
 
@@ -244,9 +266,12 @@ impl Value {
         let mut texts: Vec<String> = some
             .map(|item| match item {
                 Self::List(_) => "[...]".to_owned(),
-                Self::Nil | Self::Bool(_) | Self::Int(_) | Self::Float(_) | Self::Text(_) => {
-                    item.to_text().to_string()
-                }
+                Self::Nil
+                | Self::Bool(_)
+                | Self::Int(_)
+                | Self::Float(_)
+                | Self::Text(_)
+                | Self::Unset => item.to_text().to_string(),
             })
             .collect();
         if list.items.len() > texts.len() {
@@ -260,6 +285,7 @@ impl Value {
         match self {
             Self::List(list) => list.items.iter().map(Self::to_text).collect(),
             Self::Text(text) => vec![text.clone()],
+            Self::Unset => vec!["".into()],
             Self::Nil | Self::Bool(_) | Self::Int(_) | Self::Float(_) => Vec::new(),
         }
     }
@@ -275,8 +301,10 @@ impl Value {
 
     /// Whether the language calls them equal: numbers by value, otherwise the right one is made like the left one.
     pub fn equals(&self, other: &Self) -> bool {
-        use Value::{Bool, Float, Int, List, Nil, Text};
+        use Value::{Bool, Float, Int, List, Nil, Text, Unset};
         match (self, other) {
+            (Unset, other) => Self::text("").equals(other),
+            (one, Unset) => one.equals(&Self::text("")),
             (Int(one), Int(two)) => one == two,
             (Bool(_) | Int(_) | Float(_), Bool(_) | Int(_) | Float(_)) => {
                 self.to_float() == other.to_float()

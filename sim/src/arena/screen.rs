@@ -309,7 +309,7 @@ impl Shown {
     /// Does what a command says, if it is one for display, light, loudspeaker or speech.
     pub fn command(&mut self, command: &Command<'_>) {
         match *command {
-            Command::Say { text } => self.last_phrase = Some(cut(text)),
+            Command::Say { text } => self.last_phrase = text.map(cut),
             Command::Console { text } => {
                 if self.printed.len() < limits::PRINTED_LINES {
                     self.printed.push(cut(text));
@@ -422,7 +422,7 @@ mod tests {
         assert_eq!(shown.beep_ms, 15);
         shown.tick(20);
         assert_eq!(shown.beep_ms, 0);
-        shown.command(&Command::Say { text: "hi" });
+        shown.command(&Command::Say { text: Some("hi") });
         shown.command(&Command::Led { color: "green" });
         assert_eq!(
             (shown.last_phrase.as_deref(), hex(shown.led)),

@@ -226,7 +226,7 @@ fn object(object: &Object) -> Value {
 /// Changes a device again as it was changed.
 pub(super) fn replay(brick: &mut dyn Brick, change: &DeviceChange) {
     match (&*change.device, &*change.property, &change.value) {
-        (_, "lastPhrase", Value::String(text)) => brick.command(Command::Say { text }),
+        (_, "lastPhrase", Value::String(text)) => brick.command(Command::Say { text: Some(text) }),
         ("led", "color", Value::String(color)) => brick.command(Command::Led { color }),
         ("marker", "color", Value::String(color)) => brick.command(Command::MarkerDown { color }),
         (_, "isDown", Value::Bool(true)) => brick.command(Command::MarkerDown { color: "black" }),

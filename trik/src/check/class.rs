@@ -10,6 +10,7 @@ use super::words;
 use crate::error::Error;
 use crate::limits;
 use crate::terminal::named;
+use lang_text::near::nearest;
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::ffi::{OsStr, OsString};
 use std::fmt::Write;
@@ -112,7 +113,10 @@ pub(super) fn plan(args: &CheckArgs) -> Result<Plan, Error> {
     let mut names = HashSet::new();
     for (one, owner) in found.iter().zip(owners) {
         let Some((pupil, task)) = owner else {
-            passed.note(one.path.clone(), Reason::NoTask);
+            let known = tasks.iter().map(|task| task.name.as_str());
+            let meant = passed.has_room().then(|| nearest(&stem(&one.path), known));
+            let meant = meant.flatten().map(str::to_owned);
+            passed.note(one.path.clone(), Reason::NoTask(meant));
             continue;
         };
         let pupil = plan.pupils.iter().position(|name| *name == pupil);
@@ -181,7 +185,8 @@ impl Plan {
         let more: Vec<String> = more.into_iter().cloned().collect();
         if args.grades.pupils.is_some() {
             let told = more.iter().take(limits::ROW_WARNINGS_MAX);
-            let told = told.map(|name| words::unlisted(name, args.language));
+            let listed = || self.pupils.iter().map(String::as_str);
+            let told = told.map(|name| words::unlisted(name, listed(), args.language));
             self.notes.extend(told);
         }
         self.pupils.extend(more);

@@ -158,7 +158,7 @@ pub(super) fn passed(args: &CheckArgs) -> Passed {
                 | Reason::NoFile
                 | Reason::TooDeep
                 | Reason::Unreadable(_)
-                | Reason::NoTask
+                | Reason::NoTask(_)
                 | Reason::NoTaskFile
                 | Reason::HasFields => all.note(path, reason),
             }

@@ -29,8 +29,8 @@ pub(super) enum Reason {
     TooDeep,
     /// A directory, or what is in it, that the system does not show.
     Unreadable(io::Error),
-    /// A solution whose names say no task.
-    NoTask,
+    /// A solution whose names say no task, and the task that may have been meant.
+    NoTask(Option<String>),
     /// What is no task among tasks.
     NoTaskFile,
     /// A save of a task that has fields.
@@ -47,9 +47,14 @@ pub(super) struct Passed {
 }
 
 impl Passed {
+    /// Whether a reason that is noted now will be told.
+    pub fn has_room(&self) -> bool {
+        self.told.len() < limits::PASSED_MAX
+    }
+
     pub fn note(&mut self, path: PathBuf, reason: Reason) {
         self.count += 1;
-        if self.told.len() < limits::PASSED_MAX {
+        if self.has_room() {
             self.told.push((path, reason));
         }
     }

@@ -2,6 +2,7 @@
 
 use super::verdict::{Counts, Verdict};
 use super::walk::Reason;
+use lang_text::near::did_you_mean;
 use lang_text::problem::{Locale, Words};
 use std::io;
 
@@ -271,10 +272,17 @@ pub(super) fn passed(path: &str, reason: &Reason, locale: Locale) -> String {
                 false => format!("не читается: {error}"),
             },
         ),
-        Reason::NoTask => Words::new(
+        Reason::NoTask(None) => Words::new(
             "its name and its folders name no task; call the file as the task, in a folder of the pupil",
             "ни имя, ни папки не называют задание; назовите файл как задание, в папке ученика",
         ),
+        Reason::NoTask(Some(task)) => {
+            let task = crate::terminal::harmless(task);
+            Words::new(
+                format!("its name and its folders name no task; did you mean '{task}'?"),
+                format!("ни имя, ни папки не называют задание; может быть, '{task}'?"),
+            )
+        }
         Reason::NoTaskFile => Words::new(
             "it is no task: those are NAME.xml, NAME.qrs and folders of fields",
             "это не задание: задания - NAME.xml, NAME.qrs и папки с полями",
@@ -303,13 +311,19 @@ pub(super) fn passed_count(count: usize, told: usize, locale: Locale) -> String 
 }
 
 /// Somebody has a solution and is not in the list.
-pub(super) fn unlisted(name: &str, locale: Locale) -> String {
+pub(super) fn unlisted<'a>(
+    name: &str,
+    listed: impl Iterator<Item = &'a str>,
+    locale: Locale,
+) -> String {
+    let meant = did_you_mean(name, listed);
+    let meant = crate::terminal::harmless(meant.in_locale(locale));
     let name = crate::terminal::harmless(name);
     match locale {
         Locale::English => {
-            format!("trik: '{name}' is not in the list of --pupils; the row is added")
+            format!("trik: '{name}' is not in the list of --pupils; the row is added{meant}")
         }
-        Locale::Russian => format!("trik: '{name}' нет в списке --pupils; строка добавлена"),
+        Locale::Russian => format!("trik: '{name}' нет в списке --pupils; строка добавлена{meant}"),
     }
 }
 

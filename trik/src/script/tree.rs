@@ -219,7 +219,7 @@ impl Tree {
                 let file = text.rsplit('/').next().unwrap_or(text);
                 brick.command(Command::Sound { file });
             }
-            ["sound", "say", "value"] => brick.command(Command::Say { text }),
+            ["sound", "say", "value"] => brick.command(Command::Say { text: Some(text) }),
             ["sound", "tone", "value"] => {
                 let (hertz, ms) = text.trim().split_once(' ').ok_or_else(absent)?;
                 let (hertz, ms) = (whole(hertz)?, whole(ms)?);

@@ -3,6 +3,7 @@
 //! Saves and worlds are made here.
 
 mod class;
+mod jobs;
 mod limits;
 mod unsaid;
 

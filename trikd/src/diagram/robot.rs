@@ -203,7 +203,9 @@ impl brick::Brick for Robot<'_> {
             }
             Command::Sound { file } => self.note("sound", self.brick.sound().play(file)),
             Command::Tone { hertz, ms } => self.note("sound", self.brick.sound().tone(hertz, ms)),
-            Command::Say { text } => self.note("sound", self.brick.sound().say(text)),
+            Command::Say { text } => {
+                self.note("sound", self.brick.sound().say(text.unwrap_or_default()))
+            }
             Command::Led { color } => self.light(color),
             Command::System { command, code } => self.start(command, code),
             Command::Append { file, text } => self.append(file, text),

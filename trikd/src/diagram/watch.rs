@@ -196,6 +196,7 @@ fn object<'a>(variables: impl Iterator<Item = (&'a str, &'a Value)>) -> String {
 fn put(json: &mut String, value: &Value) {
     let _ = match value {
         Value::Nil => write!(json, "null"),
+        Value::Unset => write!(json, "\"\""),
         Value::Bool(truth) => write!(json, "{truth}"),
         Value::Int(number) => write!(json, "{number}"),
         Value::Float(number) if number.is_finite() => write!(json, "{number}"),

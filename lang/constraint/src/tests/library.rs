@@ -12,11 +12,11 @@ use lang_text::xml::{self, Element, Node};
 
 /// A template: its required parameters, all others with their defaults, and what becomes of it when all are given as
 /// `GIVEN` has them.
-struct Template {
-    name: &'static str,
-    required: &'static [&'static str],
-    defaults: &'static [(&'static str, &'static str)],
-    becomes: &'static str,
+pub(super) struct Template {
+    pub(super) name: &'static str,
+    pub(super) required: &'static [&'static str],
+    pub(super) defaults: &'static [(&'static str, &'static str)],
+    pub(super) becomes: &'static str,
 }
 
 /// What parameters are given; contents of tags, or texts.
@@ -44,7 +44,7 @@ const GIVEN: &[(&str, &str)] = &[
     ("type", "TYPE"),
 ];
 
-const TEMPLATES: &[Template] = &[
+pub(super) const TEMPLATES: &[Template] = &[
     Template {
         name: "condition-event",
         required: &[],
@@ -240,7 +240,7 @@ const TEMPLATES: &[Template] = &[
 ];
 
 /// XML in one form: tags without the texts between them.
-fn bare(element: &Element<'_>) -> String {
+pub(super) fn bare(element: &Element<'_>) -> String {
     fn strip(element: &Element<'_>) -> Element<'static> {
         let mut copy = element.clone().into_owned();
         copy.nodes = element
@@ -252,7 +252,7 @@ fn bare(element: &Element<'_>) -> String {
     xml::write(&strip(element), 0)
 }
 
-fn parsed(inside: &str) -> String {
+pub(super) fn parsed(inside: &str) -> String {
     let text = format!("<constraints>{inside}</constraints>");
     bare(&xml::parse(&text).expect("the test writes XML"))
 }
@@ -268,7 +268,7 @@ fn expanded(inside: &str) -> String {
 }
 
 /// A use of a template with some parameters.
-fn used(template: &Template, given: impl Fn(&str) -> Option<&'static str>) -> String {
+pub(super) fn used(template: &Template, given: impl Fn(&str) -> Option<&'static str>) -> String {
     let names = template.required.iter().copied();
     let names = names.chain(template.defaults.iter().map(|(name, _)| *name));
     let with: String = names
@@ -278,7 +278,7 @@ fn used(template: &Template, given: impl Fn(&str) -> Option<&'static str>) -> St
     format!("<ts:{0}>{with}</ts:{0}>", template.name)
 }
 
-fn value_of(name: &str) -> Option<&'static str> {
+pub(super) fn value_of(name: &str) -> Option<&'static str> {
     let found = GIVEN.iter().find(|(known, _)| *known == name);
     Some(
         found

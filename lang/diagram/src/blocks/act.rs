@@ -49,6 +49,8 @@ pub struct Operands<'a> {
     pub written: &'a str,
     /// The computed text, or the one that stands as it is.
     pub text: &'a str,
+    /// Whether the computed text is one that nobody has set.
+    pub is_unset: bool,
     /// Plain numbers.
     pub numbers: &'a [i32],
     /// Flags, without `Evaluate` and `Redraw`.

@@ -119,7 +119,7 @@ pub(super) const ROWS: &[Row] = &[
             "TrikSay",
             ["Say", "Сказать"],
             &Act::command(
-                |with| Command::Say { text: with.text },
+                |with| Command::Say { text: (!with.is_unset).then_some(with.text) },
                 &[script(&[Operand::Text], "brick.say($1)")
                     .tree("say($1)")
                     .dotnet("run(\"espeak -v russian_test -s 100 \" + $1)")],

@@ -327,27 +327,16 @@ impl Lowerer<'_> {
         let Some(node) = self.node(block) else {
             return Code::Bool(false);
         };
-        match self.program.leads(node) {
-            Some(Leads::Test(Test::Truth(source), ..)) => truth(self.value(node, source)),
-            Some(Leads::Test(Test::Count(source), ..)) => {
+        match self.program.test(node) {
+            Some(Test::Truth(source)) => truth(self.value(node, source)),
+            Some(Test::Count(source)) => {
                 let times = whole(self.value(node, source));
                 let new = self.counters.len();
                 let counter = *self.counters.entry(node).or_insert(new);
                 let counter = Code::Int(i64::try_from(counter).unwrap_or(0));
                 Code::does(Truth::Again, [counter, times])
             }
-            // No others have two ways out.
-            None
-            | Some(
-                Leads::End
-                | Leads::Fault(_)
-                | Leads::To(_)
-                | Leads::Switch(_)
-                | Leads::Fork(_)
-                | Leads::Join(..)
-                | Leads::Call(..)
-                | Leads::Ask(..),
-            ) => Code::Bool(false),
+            None => Code::Bool(false),
         }
     }
 
@@ -392,8 +381,9 @@ impl Lowerer<'_> {
             return None;
         };
         let node = self.node(*block)?;
-        let Some(Leads::Test(Test::Count(source), ..)) = self.program.leads(node) else {
-            return None;
+        let source = match self.program.test(node)? {
+            Test::Count(source) => source,
+            Test::Truth(_) => return None,
         };
         let function = &self.plan.functions[self.function];
         let (is_main, is_safe) = match &function.owner {

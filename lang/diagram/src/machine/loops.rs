@@ -7,7 +7,7 @@ use std::collections::{HashMap, HashSet};
 
 use crate::check::successors;
 use crate::limits;
-use crate::program::{Node, Op, Program};
+use crate::program::{Leads, Node, Program};
 use lang_expr::Compat;
 
 /// The counter of a loop.
@@ -140,8 +140,8 @@ impl Loops {
         let looks = &mut self.looks;
         self.insides
             .entry(counter)
-            .or_insert_with(|| match program.ops.get(node as usize) {
-                Some(&Op::Loop { body, next, .. }) => {
+            .or_insert_with(|| match program.leads(node) {
+                Some(Leads::Test(_, body, next)) => {
                     let outside = reach(next, node, program, looks);
                     let mut inside = reach(body, node, program, looks);
                     inside.retain(|inner| !outside.contains(inner));
@@ -161,8 +161,8 @@ fn reach(from: Node, head: Node, program: &Program, looks: &mut usize) -> HashSe
             continue;
         }
         *looks -= 1;
-        match program.ops.get(node as usize) {
-            Some(Op::Call { next, .. }) => open.push(*next),
+        match program.leads(node) {
+            Some(Leads::Call(_, next)) => open.push(next),
             _ => successors(program, node, &mut |next| open.push(next)),
         }
     }

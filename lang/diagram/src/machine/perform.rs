@@ -186,7 +186,7 @@ impl Machine {
     ) -> Option<()> {
         let mut wholes = [0; WHOLES_MAX];
         let mut count = 0;
-        let mut computed = None;
+        let (mut computed, mut is_unset) = (None, false);
         for &source in &action.sources {
             if self.wanted(source) != Type::Whole {
                 computed = Some(source);
@@ -199,6 +199,7 @@ impl Machine {
             None => None,
             Some(source) => {
                 let value = self.evaluate(node, source, Type::Text, env)?;
+                is_unset = matches!(value, Value::Unset);
                 Some(if action.act.is_label {
                     value.printed()
                 } else {
@@ -212,6 +213,7 @@ impl Machine {
             count,
             written,
             text: computed.as_deref().unwrap_or(written),
+            is_unset,
             numbers: &action.numbers,
             flags: &action.flags,
         }));

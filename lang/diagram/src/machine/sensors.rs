@@ -93,11 +93,11 @@ impl Sensors {
     }
 }
 
-/// What a variable is without a device, as in the original: 0, of several numbers the first one alone, and an empty text
+/// What a variable is without a device, as in the original: 0, of several numbers the first one alone, and an unset text
 /// where the camera looks for an object.
 fn nothing(index: usize) -> Value {
     match SENSORS[index].shape {
-        Shape::Number if SENSORS[index].name.starts_with("objectSensor") => Value::text(""),
+        Shape::Number if SENSORS[index].name.starts_with("objectSensor") => Value::Unset,
         Shape::Number => Value::Int(0),
         Shape::Numbers(_) => Value::ints(&[0]),
     }

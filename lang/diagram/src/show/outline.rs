@@ -10,7 +10,7 @@ use super::{details, name};
 use crate::blocks::Row;
 use crate::generate::plan::{Function, Owner, plan};
 use crate::lower::{World, lower};
-use crate::program::{Node, Op, Program};
+use crate::program::{Leads, Node, Op, Program, Test};
 use crate::project::{Block, Diagram, DiagramKind, Project};
 use crate::structure::{Jumps, structure};
 use crate::tree::{Condition, Tree};
@@ -151,13 +151,8 @@ impl<'a> Writer<'a> {
             Tree::Loop { body, .. } => self.body((self.word(Word::Forever), &[]), body, depth),
             Tree::While { when, body, .. } => {
                 let head = match when {
-                    Condition::Test(block) if self.is_counted(*block) => {
-                        format!("{} {}", self.word(Word::Times), self.test(*block))
-                    }
-                    Condition::Test(_)
-                    | Condition::Not(_)
-                    | Condition::And(..)
-                    | Condition::Or(..) => {
+                    Condition::Test(block) => self.head(*block),
+                    Condition::Not(_) | Condition::And(..) | Condition::Or(..) => {
                         format!("{} {}", self.word(Word::While), self.condition(when))
                     }
                 };
@@ -190,8 +185,8 @@ impl<'a> Writer<'a> {
         let head = format!("{} {}", self.word(Word::Depending), self.test(on));
         self.line(depth, &format!("{head}:"), &[on]);
         let program = self.program;
-        let guards = match self.node(on).map(|node| program.ops[node as usize]) {
-            Some(Op::Switch { switch }) => &program.switches[switch as usize].branches[..],
+        let guards = match self.node(on).and_then(|node| program.leads(node)) {
+            Some(Leads::Switch(switch)) => &switch.branches[..],
             _ => &[],
         };
         for (ways, body) in branches {
@@ -237,9 +232,13 @@ impl<'a> Writer<'a> {
         self.line(depth, &format!("{said}{colon}{details}"), &[block]);
     }
 
-    fn is_counted(&self, block: usize) -> bool {
-        let op = self.node(block).map(|node| self.program.ops[node as usize]);
-        matches!(op, Some(Op::Loop { .. }))
+    /// The head of a loop that one block decides about.
+    fn head(&self, block: usize) -> String {
+        let word = match self.node(block).and_then(|node| self.program.test(node)) {
+            Some(Test::Count(_)) => Word::Times,
+            Some(Test::Truth(_)) | None => Word::While,
+        };
+        format!("{} {}", self.word(word), self.test(block))
     }
 
     /// What a block decides by.

@@ -96,13 +96,13 @@ pub fn moments(robot: &StandIn) -> Vec<(u32, String)> {
 
 /// What the diagram tells; whether it ended.
 fn diagram(project: &Project) -> (Vec<String>, bool) {
-    let (robot, has_ended, _) = run(project);
+    let (robot, has_ended, _) = run(project, WORLD);
     (commands(&robot), has_ended)
 }
 
 /// The robot after the diagram has run, whether it has ended, and whether there was an error.
-pub fn run(project: &Project) -> (StandIn, bool, bool) {
-    let program = Rc::new(lower(project, WORLD).unwrap().program);
+pub fn run(project: &Project, world: World) -> (StandIn, bool, bool) {
+    let program = Rc::new(lower(project, world).unwrap().program);
     let mut machine = Machine::new(program, machine::Options::default());
     let mut robot = robot(project);
     let mut now = 0;

@@ -406,7 +406,7 @@ impl Host<'_> {
                 hertz: number(text),
                 ms: number(second),
             },
-            "say" => Command::Say { text },
+            "say" => Command::Say { text: Some(text) },
             "led" => Command::Led { color: text },
             "system" => Command::System {
                 command: text,

@@ -3,6 +3,7 @@
 use crate::limits;
 use crate::reserved::SensorIndex;
 use crate::tree::{Binary, Id, Node, Tree, Unary};
+use crate::types::{Element, Possible, Type, Types};
 use crate::{Compat, Kit, Names, Outside, Source, Store, Value, Wanted, analyse, evaluate, parser};
 use crate::{escape, unescape};
 use proptest::prelude::*;
@@ -234,6 +235,21 @@ fn open_types_cannot_grow_without_end() {
 }
 
 /// Text of a random expression that the grammar has.
+#[test]
+fn two_tables_that_are_elements_of_themselves_are_compared_in_bounded_time() {
+    let mut types = Types::new(true);
+    let [one, two] = [0, 1].map(|_| {
+        let element = types.variable(Possible::one(Type::Open));
+        let table = types.table(Element::Variable(element));
+        types.set(element, Possible::one(table));
+        table
+    });
+    assert_ne!(one, two);
+    assert!(types.stands_for(one, two) && types.stands_for(two, one));
+    let plain = types.table(Element::Settled(Type::Text));
+    assert!(!types.stands_for(one, plain));
+}
+
 fn expression() -> impl Strategy<Value = String> {
     let leaf = prop_oneof![
         Just("nil".to_owned()),

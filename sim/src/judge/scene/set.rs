@@ -198,7 +198,8 @@ fn part(arena: &mut Arena, (index, part): (usize, Part), name: &str, value: &Val
         }
         (Part::Shell, "lastPhrase") => {
             let text = value.to_text();
-            arena.robot(index).command(Command::Say { text: &text });
+            let text = Some(&*text);
+            arena.robot(index).command(Command::Say { text });
             Some(Change::Phrase)
         }
         (Part::Marker, "isDown") => truth(value).map(|is_down| {

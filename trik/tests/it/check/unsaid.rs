@@ -79,6 +79,32 @@ fn whatever_a_class_has_beside_solutions_is_named_with_its_reason_and_counted() 
 }
 
 #[test]
+fn a_misspelt_task_and_a_misspelt_pupil_are_told_with_what_was_meant() {
+    let board = folder();
+    board.file("school/pupils/boris/rsuh.qrs", drive("500", None));
+    board.file("school/short.txt", "Anna\nboris\n");
+    let words = ["check", "school/pupils", "--tasks", "school/tasks"];
+    let list = ["--pupils", "school/short.txt", "--grades", "g.csv"];
+    let told = trik(&board, &[&words[..], &list].concat());
+    let said: Vec<&str> = told.stderr.lines().collect();
+    assert_eq!(
+        said[..2],
+        [
+            "trik: 'anna' is not in the list of --pupils; the row is added; did you mean 'Anna'?",
+            "trik: school/pupils/boris/rsuh.qrs is left out: its name and its folders name no task; did you mean 'rush'?",
+        ],
+        "{}",
+        told.stderr
+    );
+    let table = fs::read_to_string(board.path("g.csv")).expect("a table");
+    let rows: Vec<&str> = table.lines().skip(1).collect();
+    assert!(
+        rows[0].starts_with("Anna,,missing") && rows[2].starts_with("anna,0,"),
+        "{table}"
+    );
+}
+
+#[test]
 fn a_program_with_text_runs_in_the_save_that_was_given_out() {
     let board = folder();
     for folder in ["handed/line", "given"] {
