@@ -185,7 +185,7 @@ fn variables(machine: &Machine) -> Vec<String> {
 /// The word of a value's type.
 fn kind(value: &Value) -> &'static str {
     match value {
-        Value::Nil => "nothing",
+        Value::Nil | Value::Unset => "nothing",
         Value::Bool(_) => "bool",
         Value::Int(_) => "int",
         Value::Float(_) => "float",

@@ -115,7 +115,12 @@ impl Machine {
         let values = self.variables().map(|(name, value)| {
             let text = match value {
                 Value::Text(text) => text.len(),
-                Value::Nil | Value::Bool(_) | Value::Int(_) | Value::Float(_) | Value::List(_) => 0,
+                Value::Nil
+                | Value::Unset
+                | Value::Bool(_)
+                | Value::Int(_)
+                | Value::Float(_)
+                | Value::List(_) => 0,
             };
             COUNTER + name.len() + text + value.cells() as usize * size_of::<Value>()
         });

@@ -151,7 +151,7 @@ fn board() -> Board {
 }
 
 #[test]
-fn an_editor_stops_looks_changes_steps_both_ways_and_ends() {
+fn an_editor_stops_at_lines_and_steps_both_ways() {
     let board = board();
     let mut editor = Editor::start();
     editor.launch(&board, json!({}));
@@ -203,7 +203,17 @@ fn an_editor_stops_looks_changes_steps_both_ways_and_ends() {
             )
             .contains("the past")
     );
-    editor.good("continue", thread.clone());
+    editor.end();
+}
+
+#[test]
+fn what_an_editor_shows_is_read_set_and_completed() {
+    let board = board();
+    let mut editor = Editor::start();
+    editor.launch(&board, json!({}));
+    let points = json!({"breakpoints": [{"line": 6, "condition": "n == 2"}]});
+    editor.good("setBreakpoints", points);
+    editor.good("configurationDone", json!({}));
     editor.event("stopped");
     let set = json!({"variablesReference": 1, "name": "n", "value": "n + 1"});
     assert_eq!(editor.good("setVariable", set)["value"], "3");
@@ -240,7 +250,7 @@ fn an_editor_stops_looks_changes_steps_both_ways_and_ends() {
         "{locations}"
     );
     editor.good("setBreakpoints", json!({"breakpoints": []}));
-    editor.good("continue", thread);
+    editor.good("continue", json!({"threadId": 1}));
     assert_eq!(editor.event("exited")["exitCode"], 0);
     editor.event("terminated");
     editor.end();
