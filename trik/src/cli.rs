@@ -130,18 +130,20 @@ enum Command {
     /// or an error of the program; 2 a solution is broken or could not be run or judged, a file could not be written, or
     /// the command line was not understood. With --for the exit status is that of the platform.
     Check(Box<check::CheckArgs>),
-    /// Debug a diagram in a simulated world: stop, step, look, and go back.
+    /// Debug a diagram: stop, step, look, and go back.
     ///
-    /// The program is stopped before its first block. The words are those of gdb; help shows them. Model time stands still
+    /// The program runs in a simulated world and is stopped before its first block. The words are those of gdb; help shows them. Model time stands still
     /// while it is stopped, and the past is kept, so that each moment of it can be looked at again: reverse-next,
-    /// reverse-continue, back. Lines may also come from a file or a pipe.
+    /// reverse-continue, back. Lines may also come from a file or a pipe. With --robot it runs on a robot, whose motors rest
+    /// while it is stopped.
     ///
     /// Exit status: 0 the person had enough; 2 the diagram cannot run, or the command line was not understood.
     Debug(debug::DebugArgs),
     /// Debug diagrams from an editor, by the Debug Adapter Protocol.
     ///
     /// Serves one client on standard input and output, or clients on a TCP port. A launch request has program, a diagram
-    /// NAME.qrs, and may have field, task, inputs, gamepad, seed, speed, language, stopOnEntry, stopAtEnd and noDebug. Lines
+    /// NAME.qrs, and may have robot, field, task, inputs, gamepad, seed, speed, language, stopOnEntry, stopAtEnd and noDebug;
+    /// attach joins the diagram that runs on a robot. Lines
     /// are those of the diagram as text, which the adapter gives.
     ///
     /// Exit status: 0 the client has ended; 2 the port cannot be had, or the command line was not understood.

@@ -19,6 +19,7 @@ use crate::language;
 use crate::refusal::{Refusal, UNREADABLE, say};
 use crate::remote::{self, debugged::Debugged};
 use clap::{Args, FromArgMatches};
+use lang_diagram::debug::order::Order;
 use lang_text::problem::Locale;
 use listing::Listing;
 use stage::Stage;
@@ -38,8 +39,8 @@ pub(crate) struct DebugArgs {
     /// before its first block; at the end it is stopped.
     #[arg(long, value_name = "HOST[:PORT]", value_parser = remote::target::target, conflicts_with_all = ["field", "task", "inputs", "gamepad", "speed"])]
     pub robot: Option<remote::target::Target>,
-    /// Join the diagram that runs on the robot already, instead of starting it; FILE is what runs there. At the end it goes
-    /// on.
+    /// Join the diagram that runs on the robot already, instead of starting it; FILE is what runs there. It is stopped, with
+    /// its motors at rest, and goes on at the end.
     #[arg(long, requires = "robot")]
     pub attach: bool,
 }
@@ -137,6 +138,10 @@ fn run_on(robot: &remote::target::Target, args: &DebugArgs) -> Result<u8, Refusa
         true => Debugged::attach(robot),
     };
     let mut target = begun.map_err(unreachable)?;
+    if args.attach {
+        // A person types at a program that is stopped.
+        target.order(&Order::Pause).map_err(unreachable)?;
+    }
     let talked = Terminal::new(&mut target, listing).run();
     target.close();
     talked.map_err(unreachable)?;

@@ -193,7 +193,7 @@ impl<'a> Session<'a> {
         events.retain(|event| match event {
             Event::Told(value) => match Told::read(value) {
                 Some(told) => {
-                    let is_new = told != self.told;
+                    let is_new = !told.is_same(&self.told);
                     self.told = told;
                     is_new
                 }

@@ -204,7 +204,7 @@ impl<'a> Terminal<'a> {
             return Ok(());
         };
         // An answer said the same already.
-        if told == self.told {
+        if told.is_same(&self.told) {
             return Ok(());
         }
         self.told = told;

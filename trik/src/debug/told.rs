@@ -114,6 +114,15 @@ impl Told {
         })
     }
 
+    /// Whether it tells of the same moment: how much of the past is kept says nothing of that.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        let bare = |told: &Self| Self {
+            kept: None,
+            ..told.clone()
+        };
+        bare(self) == bare(other)
+    }
+
     /// The thread at which it is stopped, or else the first.
     pub(crate) fn thread(&self) -> Option<&Thread> {
         let number = self.stop.as_ref().and_then(|stop| stop.thread);

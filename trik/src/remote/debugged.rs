@@ -135,11 +135,12 @@ impl Debugged {
             self.put(Event::Over("the program has ended".to_owned()));
             return;
         }
-        if let Some(control) = told.get("control").and_then(Value::as_str) {
-            self.put(Event::Said(
-                Channel::Message,
-                format!("{control} is in control"),
-            ));
+        if let Some(control) = told.get("control") {
+            let control = control.as_str().unwrap_or("nobody");
+            if control != self.link.own_address() {
+                let text = format!("{control} is in control");
+                self.put(Event::Said(Channel::Message, text));
+            }
             return;
         }
         self.put(Event::Told(told));

@@ -92,6 +92,12 @@ impl Link {
         &self.name
     }
 
+    /// Our own address, as the robot sees it unless something between changes it.
+    pub(super) fn own_address(&self) -> String {
+        let address = self.stream.local_addr();
+        address.map_or_else(|_| String::new(), |address| address.to_string())
+    }
+
     /// Bytes that are not on their way yet.
     pub(super) fn unsent(&self) -> usize {
         self.unsent.len() - self.gone

@@ -3,8 +3,9 @@
 /// Frames that an editor sends, and some that none does.
 mod dap;
 
+use crate::programs::Reachable;
 use crate::rig::TRIK;
-use harness::{Board, Output, tools};
+use harness::{Board, Output, eventually, tools};
 use lang_diagram::sketch::Sketch;
 use std::process::Command;
 
@@ -94,4 +95,63 @@ fn a_failed_run_is_looked_at_where_it_failed() {
     assert!(told.contains("past, "), "{}", told);
     assert!(told.contains("\n(trik) print n\n5\n"), "{}", told);
     assert!(told.contains("the robot is at x "), "{}", told);
+}
+
+/// Drives, and counts forever.
+fn driving() -> Vec<u8> {
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let clear = sketch.block("Function", &[("Body", "n = 0")]);
+    let power = [("Ports", "M3"), ("Power", "40")];
+    let drive = sketch.block("TrikV6EnginesForward", &power);
+    let count = sketch.block("Function", &[("Body", "n = n + 1")]);
+    let wait = sketch.block("Timer", &[("Delay", "50")]);
+    sketch.chain(&[start, clear, drive, count, wait, count]);
+    sketch.qrs().expect("a save")
+}
+
+#[test]
+fn a_robot_is_debugged_over_the_network_and_its_motors_rest_at_stops() {
+    let Some(robot) = Reachable::new() else {
+        return;
+    };
+    let home = &robot.robot.home;
+    let file = home.0.file("drive.qrs", driving());
+    let file = file.to_str().expect("UTF-8").to_owned();
+    let words = ["debug", &file, "--robot", robot.ip()];
+    let told = |words: &[&str], typed: &str| {
+        let mut command = home.command(words);
+        tools::run(&mut command, typed.as_bytes())
+    };
+    let typed =
+        "break 5 if n == 3\nc\nprint n\nrn\nset n=7\npresent\nset n=10\nn\ninfo variables\nq\n";
+    let said = told(&words, typed).good();
+    for line in [
+        "0.00 s: pause\n>   1 Program:",
+        "thread main: breakpoint 1\n>   5     Function: n = n + 1",
+        "(trik) print n\n3\n",
+        "this is the past: go to the present first",
+        "(trik) info variables\nn = 11\n",
+    ] {
+        assert!(said.contains(line), "{line}: {said}");
+    }
+    // It was started for the talk, and is ended with it.
+    assert_eq!(robot.robot.duty(3).expect("a motor"), 0);
+
+    let running = robot.spawn_file(&file);
+    eventually("a robot that drives", || {
+        robot.robot.duty(3).is_ok_and(|duty| duty != 0)
+    });
+    let words = [&words[..], &["--attach"]].concat();
+    let said = told(&words, "print n > 0\nq\n").good();
+    assert!(said.contains("(trik) print n > 0\ntrue\n"), "{said}");
+    // It ran before the talk, and goes on after it.
+    eventually("a robot that drives again", || {
+        robot.robot.duty(3).is_ok_and(|duty| duty != 0)
+    });
+    drop(running);
+    let refused = told(&["debug", &file, "--robot", "127.0.0.9:9"], "");
+    assert_eq!(refused.code(), 2, "{}", refused.stderr);
+    let why = "nothing takes programs at 127.0.0.9";
+    assert!(refused.stderr.contains(why), "{}", refused.stderr);
 }

@@ -45,11 +45,20 @@ impl Reachable {
         self.robot.home.run(&["run", file, "--robot", &self.ip])
     }
 
+    /// Its address.
+    pub fn ip(&self) -> &str {
+        &self.ip
+    }
+
+    /// Starts a program that is there.
+    pub fn spawn_file(&self, file: &str) -> Running {
+        Running::new(&mut self.robot.home.command(&["run", file, "--robot", &self.ip]))
+    }
+
     /// Writes a program and starts it.
     pub fn spawn(&self, name: &str, text: impl AsRef<[u8]>) -> Running {
         let file = self.robot.home.0.file(name, text);
-        let file = file.to_str().expect("UTF-8");
-        Running::new(&mut self.robot.home.command(&["run", file, "--robot", &self.ip]))
+        self.spawn_file(file.to_str().expect("UTF-8"))
     }
 
     /// Starts a program that drives, and waits until it does.
