@@ -71,6 +71,14 @@ enum Command {
     /// Exit status: 0 it is assigned; 1 it is refused, or no diagram runs; 2 the robot could not be reached, or does not
     /// answer.
     Set(remote::live::SetArgs),
+    /// Show where the diagram that runs on a robot is, and what its variables hold.
+    ///
+    /// In a terminal a picture, with the last values of each number; elsewhere a line for each change. It only looks, and
+    /// anybody may, beside whoever is in control.
+    ///
+    /// Exit status: 0 the program has ended, or the time is over; 1 no diagram runs; 2 the robot could not be reached, or
+    /// does not answer.
+    Watch(remote::watch::WatchArgs),
     /// End the program of a robot, and bring everything to rest.
     ///
     /// Several robots are stopped at once. Exit status: 0 all are at rest; 1 a robot does not say so; 2 one could not be
@@ -246,6 +254,7 @@ fn run(command: Command) -> Result<u8, Refusal> {
         Command::Lint(args) => diagrams::lint::run(&args),
         Command::NewTask(args) => task::run(&args),
         Command::Check(args) => check::run(&args),
+        Command::Watch(args) => remote::watch::run(&args),
         Command::Debug(args) => debug::run(&args),
         Command::Dap(args) => dap::run(&args),
         Command::Dcml { command } => dcml::run(&command),

@@ -171,3 +171,5 @@ pub const DEBUG_LINE_BYTES: usize = 16_384;
 pub const DAP_WAITING: usize = 1000;
 /// Events of a robot that wait for whoever debugs; the oldest are lost.
 pub const DEBUG_EVENTS_MAX: usize = 10_000;
+/// Threads, and variables, that `trik watch` shows.
+pub const WATCH_LINES_MAX: usize = 40;

@@ -1,8 +1,8 @@
-//! Robots that are reached over the network, real or virtual: `trik run`, `set`, `debug`, `stop`, `status`, `send`.
+//! Robots that are reached over the network, real or virtual: `trik run`, `set`, `watch`, `debug`, `stop`, `status`, `send`.
 //!
 //! Owns nothing but its parts: `target` is which robot is meant, `link` one connection, `upload` how a program gets there,
-//! `run` follows one program, `live` changes it, `debugged` stops it, `fleet` does something with several robots at once, `output` is where a
-//! program's text goes.
+//! `run` follows one program, `live` changes it, `watch` shows it, `debugged` stops it, `fleet` does something with several
+//! robots at once, `output` is where a program's text goes.
 
 pub(crate) mod debugged;
 pub(crate) mod fleet;
@@ -12,3 +12,4 @@ mod output;
 pub(crate) mod run;
 pub(crate) mod target;
 mod upload;
+pub(crate) mod watch;

@@ -139,7 +139,7 @@ pub struct Settings {
     /// The key that ends the program.
     #[arg(long, value_name = "KEY", value_enum, default_value = "power")]
     pub stop_key: StopKey,
-    /// Do not run autorun.py or autorun.js at the start.
+    /// Do not run autorun.js, autorun.py, autorun.qrs or autorun at the start.
     #[arg(long)]
     pub no_autorun: bool,
     /// What to log on standard error: off, error, warn, info, debug or trace, and other levels for some areas, such

@@ -13,7 +13,7 @@ use std::time::Duration;
 use tokio::time::sleep;
 
 /// Names of such a program, the first that is there counts.
-const NAMES: [&str; 3] = ["autorun.js", "autorun.py", "autorun"];
+const NAMES: [&str; 4] = ["autorun.js", "autorun.py", "autorun.qrs", "autorun"];
 /// A file of this name in the folder of programs keeps them from running.
 const SKIP: &str = "no-autorun";
 

@@ -1,0 +1,256 @@
+//! `trik watch`: where the diagram that runs on a robot is, and what its variables hold, while it runs.
+//!
+//! Owns what a person sees: a picture that is drawn anew in a terminal, or a line for each change elsewhere. It only looks:
+//! it takes no control and changes nothing.
+
+use super::link::{Link, Message, ms};
+use super::output::{harmless, say};
+use super::target::{Target, target, the_one};
+use crate::debug::listing::Listing;
+use crate::debug::target::why_not;
+use crate::debug::told::Told;
+use crate::diagrams::save::must_open;
+use crate::error::Error;
+use crate::language;
+use crate::limits;
+use crate::refusal::{Refusal, UNREADABLE};
+use clap::Args;
+use lang_text::problem::Locale;
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::io::{self, IsTerminal, Write};
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+use trikd::protocol::news;
+
+/// How often a robot is asked.
+const PAUSE: Duration = Duration::from_millis(100);
+/// Values that are drawn beside a variable.
+const DRAWN: usize = 40;
+
+/// What `trik watch` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct WatchArgs {
+    /// The diagram that runs, a file NAME.qrs: with it the sentence of each block is shown.
+    pub file: Option<PathBuf>,
+    /// Name or address of the robot, and its port if that is not 8888 [default: the virtual robot that runs on this
+    /// computer, or else 127.0.0.1].
+    #[arg(long, value_name = "HOST[:PORT]", value_parser = target)]
+    pub robot: Option<Target>,
+    /// End after this many seconds [default: with the program].
+    #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u32).range(1..=86_400))]
+    pub seconds: Option<u32>,
+    /// Language of sentences: en or ru.
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
+    pub language: Locale,
+}
+
+/// Watches until the program has ended. The exit code: 0 it has ended, or the time is over, 1 no diagram runs, 2 the robot
+/// could not be reached.
+///
+/// # Errors
+/// The diagram cannot be read.
+pub(crate) fn run(args: &WatchArgs) -> Result<u8, Refusal> {
+    let listing = match &args.file {
+        None => None,
+        Some(file) => {
+            let opened = must_open(file, args.language)?;
+            Some(Listing::of(&opened.project, args.language))
+        }
+    };
+    Ok(match watch(args, listing.as_ref()) {
+        Ok(code) => code,
+        Err(error) => {
+            say(&error.to_string());
+            UNREADABLE
+        }
+    })
+}
+
+fn watch(args: &WatchArgs, listing: Option<&Listing>) -> Result<u8, Error> {
+    let target = match &args.robot {
+        Some(target) => target.clone(),
+        None => the_one()?,
+    };
+    let mut link = target.connect()?;
+    let until = args
+        .seconds
+        .map(|seconds| Instant::now() + Duration::from_secs(seconds.into()));
+    let mut picture = Picture::new(listing, io::stdout().is_terminal());
+    let mut has_seen = false;
+    for tag in 1u64.. {
+        if until.is_some_and(|until| Instant::now() >= until) {
+            break;
+        }
+        let answer = look(&mut link, tag)?;
+        if let Some(why) = why_not(&answer) {
+            let is_end = has_seen && why == news::NO_DIAGRAM;
+            say(&if is_end {
+                "the program has ended".to_owned()
+            } else {
+                why
+            });
+            return Ok(u8::from(!is_end));
+        }
+        if let Some(told) = answer.get("program").and_then(Told::read) {
+            has_seen = true;
+            picture
+                .show(&told)
+                .map_err(|error| Error::system("standard output", error))?;
+        }
+        let next = Instant::now() + PAUSE;
+        while Instant::now() < next {
+            while link.next().is_some() {}
+            link.turn(next.saturating_duration_since(Instant::now()), None, true)?;
+        }
+    }
+    Ok(0)
+}
+
+/// Asks where the program is.
+fn look(link: &mut Link, tag: u64) -> Result<Value, Error> {
+    link.ask(&[format!("debug:{tag} look").as_bytes()]);
+    let deadline = Instant::now() + ms(limits::ANSWER_MS);
+    while Instant::now() < deadline {
+        while let Some(message) = link.next() {
+            let Message::Debug(text) = message else {
+                continue;
+            };
+            let told: Value = serde_json::from_str(&text).unwrap_or_default();
+            if told.get("to").and_then(Value::as_u64) == Some(tag) {
+                return Ok(told);
+            }
+        }
+        link.turn(ms(limits::TURN_MS), None, true)?;
+    }
+    Err(Error::Robot(format!(
+        "{} has not answered for {} s: perhaps its trikd is older than this program",
+        link.name(),
+        limits::ANSWER_MS / 1000
+    )))
+}
+
+/// What is shown.
+struct Picture<'a> {
+    listing: Option<&'a Listing>,
+    is_drawn: bool,
+    /// The last values of each variable that is a number.
+    values: BTreeMap<String, VecDeque<f64>>,
+    last: Vec<String>,
+}
+
+impl<'a> Picture<'a> {
+    fn new(listing: Option<&'a Listing>, is_drawn: bool) -> Self {
+        Self {
+            listing,
+            is_drawn,
+            values: BTreeMap::new(),
+            last: Vec::new(),
+        }
+    }
+
+    fn show(&mut self, told: &Told) -> io::Result<()> {
+        let lines = self.lines(told);
+        let mut out = io::stdout().lock();
+        if self.is_drawn {
+            // To the top, each line to its end, and nothing below.
+            let mut text = String::from("\x1b[H");
+            let seconds = told.ms as f64 / 1000.0;
+            text.push_str(&format!("{seconds:.1} s, Ctrl-C ends\x1b[K\n\x1b[K\n"));
+            for line in &lines {
+                text.push_str(line);
+                text.push_str("\x1b[K\n");
+            }
+            text.push_str("\x1b[J");
+            if self.last.is_empty() {
+                out.write_all(b"\x1b[2J")?;
+            }
+            out.write_all(text.as_bytes())?;
+            self.last = lines;
+            return out.flush();
+        }
+        if lines != self.last {
+            let seconds = told.ms as f64 / 1000.0;
+            writeln!(out, "{seconds:.2} s  {}", lines.join("; "))?;
+            self.last = lines;
+            out.flush()?;
+        }
+        Ok(())
+    }
+
+    /// Threads, then variables.
+    fn lines(&mut self, told: &Told) -> Vec<String> {
+        let mut lines = Vec::new();
+        for thread in told.threads.iter().take(limits::WATCH_LINES_MAX) {
+            let place = match self.listing {
+                Some(listing) if listing.has(&thread.at.id) => {
+                    let line = listing.line_of(&thread.at.id);
+                    format!("{line}: {}", listing.text(line).trim())
+                }
+                Some(_) | None => harmless(&thread.at.block),
+            };
+            let name = harmless(&thread.name);
+            lines.push(match self.is_drawn {
+                true => format!("{name:12} {:22} {place}", harmless(&thread.does)),
+                false => format!("{name}: {place}"),
+            });
+        }
+        if self.is_drawn && !told.variables.is_empty() {
+            lines.push(String::new());
+        }
+        let names = told.variables.iter().map(|variable| &variable.name);
+        let names: BTreeSet<&String> = names.take(limits::WATCH_LINES_MAX).collect();
+        self.values.retain(|name, _| names.contains(name));
+        for variable in told.variables.iter().take(limits::WATCH_LINES_MAX) {
+            let (name, value) = (harmless(&variable.name), harmless(&variable.value));
+            if !self.is_drawn {
+                lines.push(format!("{name} = {value}"));
+                continue;
+            }
+            let spark = match variable.value.parse::<f64>() {
+                Ok(number) if number.is_finite() => self.spark(&variable.name, number),
+                Ok(_) | Err(_) => String::new(),
+            };
+            lines.push(format!("{name:12} {value:>14.14}  {spark}"));
+        }
+        lines
+    }
+
+    /// The last values of a variable, from its least to its greatest.
+    fn spark(&mut self, name: &str, number: f64) -> String {
+        let values = self.values.entry(name.to_owned()).or_default();
+        if values.len() == DRAWN {
+            values.pop_front();
+        }
+        values.push_back(number);
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let bar = |value: &f64| {
+            let part = match most > least {
+                true => (value - least) / (most - least),
+                false => 0.0,
+            };
+            // From a block of one eighth to a full one.
+            char::from_u32(0x2581 + (part * 7.0).round() as u32).unwrap_or('?')
+        };
+        values.iter().map(bar).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_values_of_a_variable_are_drawn() {
+        let mut picture = Picture::new(None, true);
+        for value in [0.0, 7.0, 3.5] {
+            picture.spark("n", value);
+        }
+        assert_eq!(picture.spark("n", 7.0), "\u{2581}\u{2588}\u{2585}\u{2588}");
+        for _ in 0..100 {
+            picture.spark("n", 1.0);
+        }
+        assert_eq!(picture.spark("n", 1.0), "\u{2581}".repeat(DRAWN));
+    }
+}
