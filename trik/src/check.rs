@@ -26,7 +26,7 @@ use crate::debug;
 use crate::output::{Output, settled, standard};
 use crate::refusal::{Refusal, UNREADABLE, say};
 use crate::terminal::named;
-pub(crate) use args::CheckArgs;
+pub(crate) use args::{CheckArgs, model_seconds};
 use grades::Grades;
 use jobs::Job;
 use lang_text::problem::Locale;

@@ -12,7 +12,7 @@ mod terminal;
 pub(crate) mod told;
 mod words;
 
-use crate::check::{CheckArgs, Staged, Start, staged};
+use crate::check::{CheckArgs, Staged, Start, model_seconds, staged};
 use crate::diagrams::save::must_open;
 use crate::error::Error;
 use crate::language;
@@ -46,7 +46,7 @@ pub(crate) struct DebugArgs {
 }
 
 /// In which world a diagram is debugged.
-#[derive(Args, Clone, Debug, Default)]
+#[derive(Args, Clone, Debug)]
 pub(crate) struct WorldArgs {
     /// A world with its rules instead of the diagram's own.
     #[arg(long, value_name = "WORLD.xml")]
@@ -60,6 +60,9 @@ pub(crate) struct WorldArgs {
     /// What a person does with the gamepad: lines such as "1.5 pad 1 30 -50", with the time in seconds.
     #[arg(long, value_name = "FILE")]
     pub gamepad: Option<PathBuf>,
+    /// Longest run in seconds of simulated time, whatever the rules say.
+    #[arg(long, value_name = "SECONDS", default_value_t = 600.0, value_parser = model_seconds)]
+    pub time_limit: f64,
     /// Seed of everything random. The same seed gives the same run.
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     pub seed: u32,
@@ -94,6 +97,7 @@ impl WorldArgs {
             }
         }
         words.push(format!("--seed={}", self.seed).into());
+        words.push(format!("--time-limit={}", self.time_limit).into());
         words.extend(["--".into(), file.into_os_string()]);
         let command = CheckArgs::augment_args(clap::Command::new("check"));
         let matches = command.try_get_matches_from(words)?;

@@ -2,13 +2,15 @@
 //!
 //! Owns nothing but its parts: `target` is which robot is meant, `link` one connection, `upload` how a program gets there,
 //! `run` follows one program, `live` changes it, `watch` shows it, `debugged` stops it, `fleet` does something with several
-//! robots at once, `output` is where a program's text goes.
+//! robots at once, `output` is where a program's text goes, `person` who
+//! answers its questions.
 
 pub(crate) mod debugged;
 pub(crate) mod fleet;
 mod link;
 pub(crate) mod live;
 mod output;
+mod person;
 pub(crate) mod run;
 pub(crate) mod target;
 mod upload;

@@ -29,6 +29,8 @@ pub struct Client {
     is_behind: Cell<bool>,
     /// It hears of the debugger.
     debugs: Cell<bool>,
+    /// A person is there who answers.
+    answers: Cell<bool>,
 }
 
 /// What a client wants to know of the running diagram.
@@ -59,6 +61,11 @@ impl Client {
         if !self.outbox.push_latest(Latest::Place, frame) {
             self.is_behind.set(true);
         }
+    }
+
+    /// A person is there who answers questions, or no more.
+    pub fn answers(&self, is_there: bool) {
+        self.answers.set(is_there);
     }
 
     /// Counts a request.
@@ -93,6 +100,7 @@ impl Clients {
             watches: Cell::default(),
             is_behind: Cell::default(),
             debugs: Cell::default(),
+            answers: Cell::default(),
         });
         let mut all = self.all.borrow_mut();
         all.retain(|other| other.strong_count() > 0);
@@ -117,6 +125,17 @@ impl Clients {
                 client.outbox.push(frame.clone());
             }
         }
+    }
+
+    /// Passes a question on to those who answer; false: nobody does.
+    pub fn ask(&self, json: &str) -> bool {
+        let frame: Rc<[u8]> = encode(format!("question: {json}").as_bytes()).into();
+        let living = self.living();
+        let asked = living.iter().filter(|client| client.answers.get());
+        asked
+            .map(|client| client.outbox.push(frame.clone()))
+            .count()
+            > 0
     }
 
     /// Whether anybody wants to know where the running diagram is.

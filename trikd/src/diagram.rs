@@ -7,6 +7,7 @@
 // A request, a message or a command that is forgotten must not pass in silence.
 #![deny(clippy::wildcard_enum_match_arm)]
 
+mod asking;
 mod debugging;
 mod live;
 mod motors;
@@ -189,17 +190,22 @@ fn hear(
 ) -> io::Result<()> {
     match message {
         Incoming::Mail(_, text) => robot.post(text),
+        Incoming::Reply(number, text) => robot.answer(number, text),
         Incoming::Web => host.web(&watch::variables(diagram.machine()))?,
         Incoming::Watch(is_wanted) => watch.set_wanted(is_wanted),
         Incoming::Patch(when_gone, path) => {
             let (session, mut driven) = diagram.parts(robot);
             let answer = live::patch(session, (when_gone, &path), &mut driven, watch);
             host.changed(answer.is_changed, &answer.text)?;
+            diagram.changed();
+            diagram.tell(now, true, host)?;
         }
         Incoming::Set(text) => {
             let (session, mut driven) = diagram.parts(robot);
             let answer = live::set(session, &text, &mut driven, watch);
             host.changed(answer.is_changed, &answer.text)?;
+            diagram.changed();
+            diagram.tell(now, true, host)?;
         }
         Incoming::Debug { client, tag, order } => {
             let answer = diagram.order((tag, &order), now, robot, watch);

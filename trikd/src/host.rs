@@ -44,6 +44,8 @@ pub enum Incoming {
     },
     /// Whoever was in control of the debugger is gone.
     DebugLeft,
+    /// What a person says to a question, by its number; none: nobody answers.
+    Reply(u32, Option<String>),
     /// The daemon is gone; the program should end.
     Gone,
 }
@@ -105,7 +107,8 @@ impl Host {
                 | ToProgram::Patch { .. }
                 | ToProgram::Set(_)
                 | ToProgram::Debug { .. }
-                | ToProgram::DebugLeft,
+                | ToProgram::DebugLeft
+                | ToProgram::Reply { .. },
             )
             | None => {
                 let word = frame.split(':').next().unwrap_or_default();
@@ -224,6 +227,14 @@ impl Host {
         self.send(FromProgram::DebugLog(json))
     }
 
+    /// Asks a person; the answer comes as [`Incoming::Reply`].
+    ///
+    /// # Errors
+    /// The daemon is gone.
+    pub fn question(&self, number: u32, json: &str) -> io::Result<()> {
+        self.send(FromProgram::Question { number, json })
+    }
+
     /// Shows output as it is; the newline is part of it.
     ///
     /// # Errors
@@ -319,6 +330,7 @@ fn incoming(frame: &str) -> Option<Incoming> {
         ToProgram::Watch(is_wanted) => Some(Incoming::Watch(is_wanted)),
         ToProgram::Patch { when_gone, path } => Some(Incoming::Patch(when_gone, path.into())),
         ToProgram::Set(text) => Some(Incoming::Set(text.to_owned())),
+        ToProgram::Reply { number, text } => Some(Incoming::Reply(number, text.map(str::to_owned))),
         ToProgram::Debug { client, tag, order } => Some(Incoming::Debug {
             client,
             tag,

@@ -217,3 +217,9 @@ pub const DETECT_MS: u64 = 20_000;
 pub const DIAGRAM_COMMANDS: usize = 16;
 /// Messages of other robots that a diagram has not fetched.
 pub const DIAGRAM_MAIL: usize = 256;
+/// Milliseconds that a diagram waits for the answer of a person.
+pub const QUESTION_MS: u64 = 120_000;
+/// Characters of a question, its variable and its default.
+pub const QUESTION_CHARACTERS: usize = 1000;
+/// Milliseconds between a question without an answer and the next one.
+pub const QUESTION_REST_MS: u64 = 10_000;

@@ -53,6 +53,8 @@ struct Current {
     /// Nobody wants to hear that it began and ended.
     is_quiet: bool,
     has_reported_error: bool,
+    /// It has asked a person while nobody was there, which was told.
+    has_asked_nobody: bool,
     /// It knows that somebody wants to see where it is.
     is_watched: bool,
     meter: Meter,
@@ -163,6 +165,7 @@ impl Supervisor {
             Command::Direct(code) => self.direct(&code).await,
             Command::Patch(when_gone, path) => self.patch(when_gone, &path),
             Command::Set(text) => self.set(&text),
+            Command::Reply(number, text) => self.reply(number, text.as_deref()),
             Command::Debug(asked, wish) => self.debug(asked, wish).await,
             Command::DebugLeft => self.debugger_left(),
             Command::Stop(who) => {
@@ -288,6 +291,7 @@ impl Supervisor {
             takes_direct: false,
             is_quiet,
             has_reported_error: false,
+            has_asked_nobody: false,
             is_watched: false,
             meter: Meter::default(),
             web: Vec::new(),
@@ -356,6 +360,7 @@ impl Supervisor {
             }
             FromProgram::Debug { client, json } => self.hear_debugger(client, json),
             FromProgram::DebugLog(json) => self.around.clients.tell_log(json),
+            FromProgram::Question { number, json } => self.question(number, json),
         }
     }
 

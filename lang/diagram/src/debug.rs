@@ -446,7 +446,8 @@ impl Step {
         match self {
             Self::Into => true,
             Self::Over => depth <= began,
-            Self::Out => depth < began || began == 0,
+            // Nothing has called the main diagram: there it is a step over.
+            Self::Out => depth < began || began == 0 && depth == 0,
         }
     }
 }

@@ -160,7 +160,7 @@ impl CheckArgs {
     }
 }
 
-fn model_seconds(text: &str) -> Result<f64, String> {
+pub(crate) fn model_seconds(text: &str) -> Result<f64, String> {
     seconds(text, limits::MODEL_SECONDS_MAX)
 }
 

@@ -67,6 +67,7 @@ impl Launch {
         let seed = request
             .number("seed")
             .and_then(|seed| u32::try_from(seed).ok());
+        let time_limit = request.arguments.get("timeLimit").and_then(Value::as_f64);
         let speed = request.arguments.get("speed").and_then(Value::as_f64);
         let locale = request.text("language").map(language::locale);
         Ok(Self {
@@ -76,6 +77,9 @@ impl Launch {
                 task: path("task"),
                 inputs: path("inputs"),
                 gamepad: path("gamepad"),
+                time_limit: time_limit
+                    .filter(|seconds| (0.01..=3600.0).contains(seconds))
+                    .unwrap_or(600.0),
                 seed: seed.unwrap_or(1),
                 speed: speed.filter(|speed| (0.01..=1000.0).contains(speed)),
                 language: locale.and_then(Result::ok).unwrap_or_default(),

@@ -322,10 +322,13 @@ impl<'a> Session<'a> {
             "restart" => return Ok(Some(After::Again(request))),
             "configurationDone" => {
                 self.client.answer(&request, Ok(Value::Null));
-                self.begin()?;
+                if !self.is_configured {
+                    self.begin()?;
+                }
                 return Ok(None);
             }
             "terminate" => {
+                self.target.end();
                 self.client.answer(&request, Ok(Value::Null));
                 self.is_over = true;
                 self.ended(0);

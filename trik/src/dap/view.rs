@@ -61,7 +61,7 @@ pub(super) fn stack(
         .map(|(index, at)| {
             json!({
                 "id": id * FRAMES + index,
-                "name": format!("{} - {}", at.diagram, at.block),
+                "name": frame_name(at, listing),
                 "line": listing.line_of(&at.id),
                 "column": 1,
                 "source": source(name),
@@ -70,6 +70,17 @@ pub(super) fn stack(
         })
         .collect();
     json!({"stackFrames": frames, "totalFrames": places.len()})
+}
+
+/// A call as people see it: the diagram, and the sentence or the type of the block.
+fn frame_name(at: &At, listing: &Listing) -> String {
+    match listing.has(&at.id) {
+        true => {
+            let text = listing.text(listing.line_of(&at.id));
+            format!("{}: {}", at.diagram, text.trim())
+        }
+        false => format!("{}: {}", at.diagram, at.block),
+    }
 }
 
 /// The text of the diagram.

@@ -83,6 +83,18 @@ impl Listing {
         self.places.contains_key(block)
     }
 
+    /// The id of a block that is meant by it, or by its last part in braces.
+    pub(crate) fn id_of(&self, text: &str) -> Option<&str> {
+        if let Some((id, _)) = self.places.get_key_value(text) {
+            return Some(id);
+        }
+        let mut ids = self.places.keys().map(|id| &**id);
+        ids.find(|id| {
+            let before = id.strip_suffix(text);
+            text.starts_with('{') && before.is_some_and(|before| before.ends_with('/'))
+        })
+    }
+
     /// The blocks of a line, from 1.
     pub(crate) fn blocks(&self, line: usize) -> &[Box<str>] {
         let line = line.checked_sub(1).and_then(|index| self.lines.get(index));

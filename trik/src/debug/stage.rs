@@ -11,7 +11,7 @@ use lang_constraint::Level;
 use lang_diagram::debug::order::Order;
 use serde_json::Value;
 use sim::judge::debugged::{self, Debugged};
-use sim::judge::{Outcome, Progress, Settings, Task, Trial, Verdict};
+use sim::judge::{Failure, Outcome, Progress, Settings, Task, Trial, Verdict};
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
@@ -23,6 +23,8 @@ pub(crate) struct Stage<'a> {
     trial: Option<Trial<'a>>,
     program: Debugged,
     outcome: Option<Outcome>,
+    /// Its end was told.
+    has_told_end: bool,
     tag: u32,
     /// Where the robot was: milliseconds, x, y, degrees.
     poses: VecDeque<(u32, [f64; 3])>,
@@ -43,6 +45,7 @@ impl<'a> Stage<'a> {
             trial: Some(Trial::new(task, &program, settings)),
             program,
             outcome: None,
+            has_told_end: false,
             tag: 0,
             poses: VecDeque::new(),
             entries: 0,
@@ -145,7 +148,12 @@ fn ending(outcome: &Outcome) -> String {
     let what = match outcome.verdict {
         Verdict::Accomplished => "the task is accomplished",
         Verdict::Ended => "the program has ended",
-        Verdict::Failed => "the task is not accomplished",
+        Verdict::Failed => match outcome.failure {
+            Some(Failure::ModelTime) => "the run was stopped, its model time is over",
+            Some(Failure::Program) => "the program has failed",
+            Some(Failure::Structure) => "the program cannot begin",
+            Some(Failure::Wrong) | None => "the task is not accomplished",
+        },
         Verdict::Unknown => "the run was given up",
     };
     format!("{what} at {seconds:.2} s of model time")
@@ -166,7 +174,6 @@ impl Target for Stage<'_> {
 
     fn turn(&mut self, wait: Duration) -> Result<Vec<Event>, Error> {
         let until = Instant::now() + wait;
-        let was_over = self.outcome.is_some();
         'turn: while self.progress() == Progress::Runs {
             for _ in 0..TICKS {
                 let Some(trial) = &mut self.trial else {
@@ -194,7 +201,8 @@ impl Target for Stage<'_> {
         }
         self.end_if_over();
         let mut events = self.news();
-        if let (false, Some(outcome)) = (was_over, &self.outcome) {
+        if let (false, Some(outcome)) = (self.has_told_end, &self.outcome) {
+            self.has_told_end = true;
             events.push(Event::Over(ending(outcome)));
         }
         if events.is_empty() && self.progress() != Progress::Runs {
@@ -203,8 +211,15 @@ impl Target for Stage<'_> {
         Ok(events)
     }
 
+    /// Nothing moves any more: its time stands still.
+    fn end(&mut self) {}
+
     /// The world ends with the process.
     fn close(&mut self) {}
+
+    fn keeps_past(&self) -> bool {
+        true
+    }
 
     fn scene(&self, ms: u64) -> Option<String> {
         let before = self.poses.partition_point(|(at, _)| u64::from(*at) <= ms);
@@ -215,8 +230,9 @@ impl Target for Stage<'_> {
             ""
         };
         Some(format!(
-            "at {:.2} s the robot is at x {x:.1}, y {y:.1} px and looks to {degrees:.1} degrees{task}",
-            f64::from(*at) / 1000.0
+            "at {:.2} s the robot is at x {x:.1}, y {y:.1} px and looks to {:.1} degrees{task}",
+            f64::from(*at) / 1000.0,
+            degrees - 360.0 * (degrees / 360.0).round()
         ))
     }
 }

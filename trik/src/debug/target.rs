@@ -21,8 +21,14 @@ pub(crate) trait Target {
     /// The robot is gone.
     fn turn(&mut self, wait: Duration) -> Result<Vec<Event>, Error>;
 
+    /// Ends the program: motors rest.
+    fn end(&mut self);
+
     /// The talk is over: a program that was started for it is ended.
     fn close(&mut self);
+
+    /// Whether a program that has ended can still be looked at.
+    fn keeps_past(&self) -> bool;
 
     /// What the world looks like at a time of the program, in a line; none if nobody knows.
     fn scene(&self, ms: u64) -> Option<String>;

@@ -20,6 +20,8 @@ use std::time::Duration;
 
 /// Lines of the diagram that are shown before and after one.
 const AROUND: usize = 5;
+/// After the end of a run.
+const PAST_REMAINS: &str = "what was can still be looked at: reverse-next, back, print, where";
 /// How long one look at the program and the keyboard takes.
 const TURN: Duration = Duration::from_millis(50);
 
@@ -31,6 +33,8 @@ pub(crate) struct Terminal<'a> {
     /// Whether somebody reads prompts.
     is_interactive: bool,
     last: String,
+    /// Somebody wants this process to end.
+    is_leaving: bool,
 }
 
 impl<'a> Terminal<'a> {
@@ -41,6 +45,7 @@ impl<'a> Terminal<'a> {
             told: Told::default(),
             is_interactive: io::stdin().is_terminal() && io::stdout().is_terminal(),
             last: String::new(),
+            is_leaving: false,
         }
     }
 
@@ -53,7 +58,7 @@ impl<'a> Terminal<'a> {
         let lines = lines();
         self.say("This is trik debug; help shows what can be typed.")?;
         self.wait(&keys)?;
-        loop {
+        while !self.is_leaving {
             self.prompt()?;
             let Some(line) = self.line(&lines, &keys)? else {
                 return Ok(());
@@ -69,11 +74,12 @@ impl<'a> Terminal<'a> {
                 continue;
             }
             match understand(&self.last, &self.listing) {
-                Err(why) => self.say(&why.to_string())?,
+                Err(why) => self.say(&harmless(&why.to_string()))?,
                 Ok(Typed::Quit) => return Ok(()),
                 Ok(typed) => self.carry_out(&typed, &keys)?,
             }
         }
+        Ok(())
     }
 
     fn say(&self, line: &str) -> Result<(), Error> {
@@ -98,9 +104,15 @@ impl<'a> Terminal<'a> {
                 Ok(line) => return Ok(Some(line)),
                 Err(RecvTimeoutError::Disconnected) => return Ok(None),
                 Err(RecvTimeoutError::Timeout) => {
-                    if pressed(keys) && self.is_interactive {
-                        self.say("\ntype quit to end")?;
-                        self.prompt()?;
+                    match pressed(keys) {
+                        Some(Pressed::Leave) => return Ok(None),
+                        Some(Pressed::Interrupt) if self.is_interactive => {
+                            self.say("\ntype quit to end")?;
+                            self.prompt()?;
+                        }
+                        // Nobody types who could be told.
+                        Some(Pressed::Interrupt) => return Ok(None),
+                        None => {}
                     }
                     // A robot goes on living while a person thinks.
                     let events = self.target.turn(Duration::ZERO)?;
@@ -128,7 +140,7 @@ impl<'a> Terminal<'a> {
             }
             Typed::Scene => match self.target.scene(self.told.ms) {
                 Some(scene) => self.say(&scene),
-                None => self.say("nobody knows where the robot is"),
+                None => self.say("where a robot is can be seen, and is not known here"),
             },
             Typed::Help => self.help(),
             // The caller ends at this one.
@@ -154,7 +166,7 @@ impl<'a> Terminal<'a> {
             return self.say(&harmless(value));
         }
         if let Some(number) = answer.get("number") {
-            return self.say(&format!("breakpoint {number}"));
+            return self.say(&self.set_at(number, order));
         }
         if let Some(points) = answer.get("breakpoints").and_then(Value::as_array) {
             return self.breakpoints(points);
@@ -173,7 +185,11 @@ impl<'a> Terminal<'a> {
             }
             State::Ended => {
                 let events = self.target.turn(Duration::ZERO)?;
-                self.hear(&events)
+                self.hear_but_states(&events)?;
+                match events.iter().any(|event| matches!(event, Event::Over(_))) {
+                    true => Ok(()),
+                    false => self.say(&format!("the program has ended at {}", self.time())),
+                }
             }
         }
     }
@@ -187,8 +203,15 @@ impl<'a> Terminal<'a> {
             if has_ended || self.told.state != State::Running {
                 return Ok(());
             }
-            if pressed(keys) {
-                self.target.order(&Order::Pause)?;
+            match pressed(keys) {
+                Some(Pressed::Interrupt) => {
+                    self.target.order(&Order::Pause)?;
+                }
+                Some(Pressed::Leave) => {
+                    self.is_leaving = true;
+                    return Ok(());
+                }
+                None => {}
             }
         }
     }
@@ -231,16 +254,30 @@ impl<'a> Terminal<'a> {
                     }
                 }
                 Event::Said(Channel::Output, text) => self.say(&harmless(text))?,
+                Event::Said(Channel::Message, text) if text.trim().is_empty() => {}
                 Event::Said(Channel::Message, text) => {
                     self.say(&format!("! {}", harmless(text)))?
                 }
                 Event::Over(why) => {
                     self.say(&harmless(why))?;
-                    self.say("what was can still be looked at: reverse-next, back, print, where")?;
+                    if self.target.keeps_past() {
+                        self.say(PAST_REMAINS)?;
+                    }
                 }
             }
         }
         Ok(())
+    }
+
+    /// A breakpoint that was set, and where.
+    fn set_at(&self, number: &Value, order: &Order) -> String {
+        // Only that order has a number for an answer.
+        let Order::Break(point) = order else {
+            return format!("breakpoint {number}");
+        };
+        let line = self.listing.line_of(&point.block);
+        let text = self.listing.text(line);
+        format!("breakpoint {number} at line {line}: {}", text.trim())
     }
 
     fn time(&self) -> String {
@@ -261,6 +298,7 @@ impl<'a> Terminal<'a> {
             }
             ("error", _) => format!("an error: {}", harmless(&stop.text)),
             ("oldest", _) => "nothing before this is kept".to_owned(),
+            ("pause", _) if self.told.ms == 0 => "before the first block".to_owned(),
             (reason, _) => harmless(reason),
         };
         let past = if self.told.state == State::Past {
@@ -274,8 +312,13 @@ impl<'a> Terminal<'a> {
         };
         self.say(&format!("{past}{}{thread}: {why}", self.time()))?;
         if let Some(at) = self.told.at() {
-            let line = self.listing.line_of(&at.id);
-            self.say(&format!("> {line:3} {}", self.listing.text(line)))?;
+            if self.listing.has(&at.id) {
+                let line = self.listing.line_of(&at.id);
+                return self.say(&format!("> {line:3} {}", self.listing.text(line)));
+            }
+            let (diagram, block) = (harmless(&at.diagram), harmless(&at.block));
+            let what = "this block is not in the file: another diagram runs";
+            self.say(&format!(">     {diagram}, {block}: {what}"))?;
         }
         Ok(())
     }
@@ -352,7 +395,7 @@ impl<'a> Terminal<'a> {
             };
             let line = self.listing.line_of(&text("block"));
             let mut told = format!(
-                "{:3} line {line}: {}, hit {} times",
+                "{:3} line {line}: {}, hits: {}",
                 point["number"],
                 self.listing.text(line).trim(),
                 point["hits"]
@@ -380,16 +423,31 @@ impl<'a> Terminal<'a> {
     }
 }
 
-/// Ctrl-C as something to read.
+/// Ctrl-C, and the ends of a terminal and a session, as something to read.
 fn interrupts() -> nix::Result<SignalFd> {
-    let mut signals = SigSet::empty();
-    signals.add(Signal::SIGINT);
+    let signals: SigSet = [Signal::SIGINT, Signal::SIGTERM, Signal::SIGHUP]
+        .into_iter()
+        .collect();
     signals.thread_block()?;
     SignalFd::with_flags(&signals, SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC)
 }
 
-fn pressed(keys: &SignalFd) -> bool {
-    matches!(keys.read_signal(), Ok(Some(_)))
+/// What a signal asks for.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Pressed {
+    /// To stop the program.
+    Interrupt,
+    /// To leave.
+    Leave,
+}
+
+fn pressed(keys: &SignalFd) -> Option<Pressed> {
+    let info = keys.read_signal().ok()??;
+    let is_interrupt = i32::try_from(info.ssi_signo) == Ok(Signal::SIGINT as i32);
+    Some(match is_interrupt {
+        true => Pressed::Interrupt,
+        false => Pressed::Leave,
+    })
 }
 
 /// Lines from standard input, read when there is room for them.
@@ -404,6 +462,13 @@ fn lines() -> Receiver<String> {
             match read {
                 Ok(0) | Err(_) => return,
                 Ok(_) => {}
+            }
+            if line.len() == limits::DEBUG_LINE_BYTES && !line.ends_with(b"\n") {
+                // What is left of it is no line of its own.
+                if input.skip_until(b'\n').is_err() {
+                    return;
+                }
+                line = b"(a line that is too long)".to_vec();
             }
             let line = String::from_utf8_lossy(&line);
             if sender

@@ -35,6 +35,8 @@ pub(super) enum NotUnderstood {
     Unknown(String),
     /// The command lacks something.
     Lacks(&'static str),
+    /// Nothing can follow this command.
+    Strange(String),
     /// The diagram has no such line, or no block there and after it.
     NoLine(String),
 }
@@ -44,6 +46,9 @@ impl fmt::Display for NotUnderstood {
         match self {
             Self::Unknown(word) => write!(f, "there is no command '{word}'; try help"),
             Self::Lacks(what) => write!(f, "{what} is needed"),
+            Self::Strange(text) => {
+                write!(f, "nothing can follow this command, and here is '{text}'")
+            }
             Self::NoLine(text) => write!(
                 f,
                 "'{text}' is neither a line that has a block nor the id of a block; list shows the lines"
@@ -56,7 +61,7 @@ impl fmt::Display for NotUnderstood {
 type Row = (&'static str, &'static str, &'static str);
 
 /// All commands, for help. The first word is the long one.
-pub(super) const ROWS: [Row; 25] = [
+pub(super) const ROWS: [Row; 26] = [
     (
         "continue c",
         "",
@@ -141,14 +146,27 @@ pub(super) const ROWS: [Row; 25] = [
         "hold a thread and let the others go on; release THREAD undoes it",
     ),
     ("where w", "", "where the robot is at this moment"),
+    (
+        "motors",
+        "rest|keep",
+        "on a robot: whether motors rest while the program is stopped",
+    ),
     ("quit q", "", "end; the program is ended too"),
 ];
+
+/// Commands after which nothing comes.
+const ALONE: &str = "continue c run r pause reverse-next rn reverse-step rs reverse-finish rf reverse-continue rc start \
+    present breakpoints threads variables backtrace bt where w help h ? quit q exit";
 
 /// What a line means, which is not empty.
 pub(super) fn understand(line: &str, listing: &Listing) -> Result<Typed, NotUnderstood> {
     let line = line.trim();
     let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
     let rest = rest.trim();
+    if !rest.is_empty() && ALONE.split(' ').any(|alone| alone == word) {
+        let rest = rest.chars().take(40).collect();
+        return Err(NotUnderstood::Strange(rest));
+    }
     if let Some(order) = moving(word, rest, listing)? {
         return Ok(Typed::Order(order));
     }
@@ -269,8 +287,7 @@ fn block(text: &str, listing: &Listing) -> Result<Box<str>, NotUnderstood> {
             let line = listing.line_with_block(line).ok_or_else(none)?;
             listing.blocks(line).first().cloned().ok_or_else(none)
         }
-        Err(_) if listing.has(text) => Ok(text.into()),
-        Err(_) => Err(none()),
+        Err(_) => listing.id_of(text).map(Into::into).ok_or_else(none),
     }
 }
 
@@ -279,9 +296,13 @@ fn breakpoint(text: &str, listing: &Listing) -> Result<Breakpoint, NotUnderstood
     let condition = match rest.trim() {
         "" => "",
         rest => rest
-            .strip_prefix("if ")
+            .strip_prefix("if")
+            .filter(|rest| rest.is_empty() || rest.starts_with(char::is_whitespace))
             .ok_or(NotUnderstood::Lacks("`if` before the condition"))?,
     };
+    if condition.trim().is_empty() && !rest.trim().is_empty() {
+        return Err(NotUnderstood::Lacks("a condition after `if`"));
+    }
     Ok(Breakpoint {
         block: block(place, listing)?,
         condition: condition.trim().into(),

@@ -45,6 +45,9 @@ impl Debugged {
         upload.send(&mut link, |_, _| {})?;
         let mut debugged = Self::over(link, Begun::Here);
         debugged.must(&format!("run {}", upload.name))?;
+        // What was told before is of the program that ran until then.
+        debugged.events.clear();
+        debugged.is_gone = false;
         Ok(debugged)
     }
 
@@ -119,7 +122,8 @@ impl Debugged {
                     let text = String::from_utf8_lossy(&text).into_owned();
                     self.put(Event::Said(Channel::Output, text));
                 }
-                Message::Info(_) | Message::Version | Message::Status(_) => {}
+                Message::Info(_) | Message::Version | Message::Status(_) | Message::Question(_) => {
+                }
             }
         }
         Ok(None)
@@ -173,8 +177,19 @@ impl Target for Debugged {
         }
     }
 
+    fn keeps_past(&self) -> bool {
+        false
+    }
+
     fn scene(&self, _ms: u64) -> Option<String> {
         None
+    }
+
+    fn end(&mut self) {
+        self.link.ask(&[b"stop"]);
+        // The motors are at rest when this is answered; who does not answer has lost its connection, which is told.
+        let _ = self.ask("leave");
+        self.is_gone = true;
     }
 
     fn close(&mut self) {
@@ -182,11 +197,7 @@ impl Target for Debugged {
             return;
         }
         match self.begun {
-            Begun::Here => {
-                self.link.ask(&[b"stop"]);
-                // The motors are at rest when this is answered.
-                let _ = self.ask("leave");
-            }
+            Begun::Here => self.end(),
             Begun::Elsewhere => {
                 let _ = self.ask(&Order::Detach.to_string());
             }

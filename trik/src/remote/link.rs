@@ -31,6 +31,8 @@ pub(super) enum Message {
     Status(String),
     /// Something that a debugger says, a JSON object.
     Debug(String),
+    /// A question to a person, a JSON object.
+    Question(String),
 }
 
 /// What a frame says; None: nothing that anybody here asked for.
@@ -46,6 +48,7 @@ fn message(frame: &[u8]) -> Option<Message> {
         b"version" => Some(Message::Version),
         b"status" => Some(Message::Status(text())),
         b"debug" => Some(Message::Debug(text())),
+        b"question" => Some(Message::Question(text())),
         _ => None,
     }
 }

@@ -80,8 +80,13 @@ fn ask(args: &SetArgs) -> Result<u8, Error> {
                     return Err(Error::Robot(text));
                 }
             }
-            Some(Message::Print(_) | Message::Version | Message::Status(_) | Message::Debug(_)) => {
-            }
+            Some(
+                Message::Print(_)
+                | Message::Version
+                | Message::Status(_)
+                | Message::Debug(_)
+                | Message::Question(_),
+            ) => {}
             None => link.turn(ms(limits::TURN_MS), None, true)?,
         }
     }

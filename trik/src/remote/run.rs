@@ -5,6 +5,7 @@
 use super::link::{Link, Message, ms};
 use super::live::{Watched, gone};
 use super::output::{Output, harmless, say};
+use super::person::Person;
 use super::target::{Target, target, the_one};
 use super::upload::{Upload, start};
 use crate::error::Error;
@@ -81,6 +82,8 @@ fn follow(args: &RunArgs) -> Result<u8, Error> {
     mask.thread_block().map_err(own)?;
     let flags = SfdFlags::SFD_NONBLOCK | SfdFlags::SFD_CLOEXEC;
     let signals = SignalFd::with_flags(&mask, flags).map_err(own)?;
+    // A question may be the first thing that it does.
+    link.ask(&[b"questions"]);
     start(&mut link, &upload.name, Some(signals.as_fd()))?;
     let mut session = Session {
         link,
@@ -89,6 +92,7 @@ fn follow(args: &RunArgs) -> Result<u8, Error> {
         signals,
         stopping: None,
         watched,
+        person: Person::default(),
     };
     let code = session.run();
     let Session {
@@ -111,6 +115,8 @@ struct Session {
     stopping: Option<Instant>,
     /// Its file, if saves of it change the program.
     watched: Option<Watched>,
+    /// Who answers its questions.
+    person: Person,
 }
 
 impl Session {
@@ -157,6 +163,9 @@ impl Session {
                     .iter()
                     .for_each(|request| self.link.ask(&[request]));
             }
+            if let Some(request) = self.person.answer() {
+                self.link.ask(&[&request]);
+            }
             self.turn()?;
         }
     }
@@ -201,6 +210,9 @@ impl Session {
                 }
             }
             Message::Status(text) => return self.compare(&text),
+            Message::Question(json) => {
+                self.person.ask(&json);
+            }
             Message::Version | Message::Debug(_) => {}
         }
         None

@@ -89,7 +89,8 @@ impl Upload {
                     Message::Print(_)
                     | Message::Info(_)
                     | Message::Status(_)
-                    | Message::Debug(_) => {}
+                    | Message::Debug(_)
+                    | Message::Question(_) => {}
                 }
             }
             if moved.0 != link.unsent() {
@@ -142,7 +143,11 @@ pub(super) fn start(
                     let why = format!("{} does not run {name}: {why}", link.name());
                     return Err(Error::Robot(why));
                 }
-                Message::Print(_) | Message::Info(_) | Message::Version | Message::Debug(_) => {}
+                Message::Print(_)
+                | Message::Info(_)
+                | Message::Version
+                | Message::Debug(_)
+                | Message::Question(_) => {}
             }
             errors.drain(..errors.len().saturating_sub(1));
         }

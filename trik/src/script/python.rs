@@ -278,7 +278,8 @@ impl Python {
             | FromProgram::Watch { .. }
             | FromProgram::Changed { .. }
             | FromProgram::Debug { .. }
-            | FromProgram::DebugLog(_) => {}
+            | FromProgram::DebugLog(_)
+            | FromProgram::Question { .. } => {}
         }
         None
     }

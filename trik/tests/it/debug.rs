@@ -127,7 +127,7 @@ fn a_robot_is_debugged_over_the_network_and_its_motors_rest_at_stops() {
         "break 5 if n == 3\nc\nprint n\nrn\nset n=7\npresent\nset n=10\nn\ninfo variables\nq\n";
     let said = told(&words, typed).good();
     for line in [
-        "0.00 s: pause\n>   1 Program:",
+        "0.00 s: before the first block\n>   1 Program:",
         "thread main: breakpoint 1\n>   5     Function: n = n + 1",
         "(trik) print n\n3\n",
         "this is the past: go to the present first",
@@ -149,9 +149,52 @@ fn a_robot_is_debugged_over_the_network_and_its_motors_rest_at_stops() {
     eventually("a robot that drives again", || {
         robot.robot.duty(3).is_ok_and(|duty| duty != 0)
     });
+    // Another one is put in its place: the end of that is not its own.
+    let said = told(&words[..4], "n\nquit\n").good();
+    assert!(!said.contains("has ended"), "{said}");
+    assert!(said.contains("thread main: step"), "{said}");
+    assert_eq!(robot.robot.duty(3).expect("a motor"), 0);
     drop(running);
     let refused = told(&["debug", &file, "--robot", "127.0.0.9:9"], "");
     assert_eq!(refused.code(), 2, "{}", refused.stderr);
     let why = "nothing takes programs at 127.0.0.9";
     assert!(refused.stderr.contains(why), "{}", refused.stderr);
+}
+
+#[test]
+fn a_person_is_asked_and_a_program_is_watched() {
+    let Some(robot) = Reachable::new() else {
+        return;
+    };
+    let home = &robot.robot.home;
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let ask = sketch.block("Input", &[("variable", "n"), ("prompt", "How many?")]);
+    let said = sketch.block("Function", &[("Body", "print(n * 10)")]);
+    let end = sketch.block("FinalNode", &[]);
+    sketch.chain(&[start, ask, said, end]);
+    let file = home.0.file("ask.qrs", sketch.qrs().expect("a save"));
+    let mut command = home.command(&["run", file.to_str().expect("UTF-8"), "--robot", robot.ip()]);
+    let said = tools::run(&mut command, b"2 + 2\n");
+    assert_eq!(
+        (said.code(), said.stdout.as_str()),
+        (0, "40\n"),
+        "{}",
+        said.stderr
+    );
+    assert!(said.stderr.contains("How many? "), "{}", said.stderr);
+
+    let nothing = home.run(&["watch", "--robot", robot.ip()]);
+    assert_eq!(nothing.code(), 1, "{}", nothing.stdout);
+    let file = home.0.file("drive.qrs", driving());
+    let file = file.to_str().expect("UTF-8").to_owned();
+    let running = robot.spawn_file(&file);
+    eventually("a robot that drives", || {
+        robot.robot.duty(3).is_ok_and(|duty| duty != 0)
+    });
+    let words = ["watch", &file, "--seconds", "1", "--robot", robot.ip()];
+    let watched = home.run(&words).good();
+    let last = watched.lines().last().expect("a line");
+    assert!(last.contains(" s  main: 6: Timer: 50; n = "), "{watched}");
+    drop(running);
 }

@@ -68,11 +68,19 @@ impl Debugging {
         answer
     }
 
-    /// Whoever was in control is gone: a program that is stopped stays so, another one loses its debugger.
+    /// Whoever was in control is gone: a program that is stopped stays so, with its motors at rest whatever was asked for;
+    /// another one loses its debugger.
     pub(super) fn left(&mut self, now: u32, robot: &mut Robot<'_>, watch: &mut Watch) {
-        if !self.desk.is_stopped() {
-            self.order((0, &Order::Detach.to_string()), now, robot, watch);
-        }
+        let order = match self.desk.is_stopped() {
+            true => Order::Motors(true),
+            false => Order::Detach,
+        };
+        self.order((0, &order.to_string()), now, robot, watch);
+    }
+
+    /// Somebody has changed the program from elsewhere: who debugs hears of it.
+    pub(super) fn changed(&mut self) {
+        self.desk.tell_again();
     }
 
     fn settle(&mut self, robot: &mut Robot<'_>) {

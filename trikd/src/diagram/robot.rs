@@ -3,6 +3,7 @@
 //! Owns which file a command goes to, and what a robot without that file means: the block does nothing, as on the robots
 //! of old, and the first failure of a device is told. Knows no blocks and no time.
 
+use super::asking::Asking;
 use super::readings::Readings;
 use crate::brick::Brick;
 use crate::brick::actuators::Motor;
@@ -11,7 +12,7 @@ use crate::host::Host;
 use crate::limits;
 use crate::program::child;
 use crate::protocol::program::mailbox::Question;
-use lang_diagram::brick::{self, Command, Figure};
+use lang_diagram::brick::{self, Answer, Command, Figure};
 use lang_diagram::ports::Port;
 use rand_core::{Rng as _, SeedableRng as _};
 use rand_xoshiro::Xoroshiro64Star;
@@ -20,6 +21,7 @@ use std::fmt::Display as Show;
 use std::fs::OpenOptions;
 use std::io::Write;
 use std::process::{Child, Stdio};
+use std::time::Instant;
 
 /// The robot of one diagram.
 pub struct Robot<'a> {
@@ -34,6 +36,7 @@ pub struct Robot<'a> {
     /// What has failed once.
     told: HashSet<String>,
     random: Random,
+    asking: Asking,
 }
 
 /// Random numbers; the generator is one for processors of 32 bits.
@@ -69,6 +72,7 @@ impl<'a> Robot<'a> {
             commands: Vec::new(),
             told: HashSet::new(),
             random: Random::new(),
+            asking: Asking::default(),
         }
     }
 
@@ -78,6 +82,11 @@ impl<'a> Robot<'a> {
             self.mail.pop_front();
         }
         self.mail.push_back(text);
+    }
+
+    /// What a person says to a question.
+    pub fn answer(&mut self, number: u32, text: Option<String>) {
+        self.asking.hear(number, text);
     }
 
     /// Between two steps: tells a camera again what it could not hear yet, and forgets commands of the system that have
@@ -258,6 +267,15 @@ impl brick::Brick for Robot<'_> {
             | Command::MarkerUp
             | Command::Rest => {}
         }
+    }
+
+    fn ask(&mut self, question: brick::Question<'_>) -> Answer {
+        let host = self.host;
+        self.asking
+            .ask(question, Instant::now(), &mut |number, json| {
+                // The daemon may be gone; then this process ends soon.
+                let _ = host.question(number, json);
+            })
     }
 
     fn scalar(&mut self, port: Port) -> Option<i32> {

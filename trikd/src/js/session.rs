@@ -67,7 +67,8 @@ fn serve(shared: &Shared, outside: &dyn Outside) -> io::Result<()> {
                 | Incoming::Patch(..)
                 | Incoming::Set(_)
                 | Incoming::Debug { .. }
-                | Incoming::DebugLeft => {}
+                | Incoming::DebugLeft
+                | Incoming::Reply(..) => {}
                 Incoming::Gone => return Ok(()),
             }
         }

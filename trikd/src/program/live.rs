@@ -42,6 +42,28 @@ impl Supervisor {
         self.broadcast(&news::not_changed(&name, &why));
     }
 
+    /// A question of the diagram, for everybody who answers questions.
+    pub(super) fn question(&mut self, number: u32, json: &str) {
+        if self.around.clients.ask(json) {
+            return;
+        }
+        let name = self.current.as_ref().map(|current| current.name.clone());
+        let name = name.unwrap_or_default();
+        if let Some(current) = &mut self.current
+            && !std::mem::replace(&mut current.has_asked_nobody, true)
+        {
+            self.broadcast(&format!("info: {}", news::nobody_answers(&name)));
+        }
+        self.reply(number, None);
+    }
+
+    /// What a person says to it.
+    pub(super) fn reply(&mut self, number: u32, text: Option<&str>) {
+        if self.runs_diagram() {
+            self.send(ToProgram::Reply { number, text });
+        }
+    }
+
     /// An assignment for the diagram that runs, `NAME=EXPRESSION`.
     pub(super) fn set(&mut self, text: &str) {
         if !self.runs_diagram() || !self.send(ToProgram::Set(text)) {

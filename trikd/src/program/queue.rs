@@ -26,6 +26,8 @@ pub enum Command {
     Patch(WhenGone, PathBuf),
     /// Assign a variable of the diagram that runs, `NAME=EXPRESSION`.
     Set(String),
+    /// What a person says to the question with this number; none: nobody answers.
+    Reply(u32, Option<String>),
     /// Something that a client wants who debugs; each has an answer.
     Debug(Asked, Wish),
     /// The client in control of the debugger is gone.
@@ -167,6 +169,7 @@ fn outlives_stop(command: &mut Command) -> bool {
         | Command::Direct(_)
         | Command::Patch(..)
         | Command::Set(_)
+        | Command::Reply(..)
         | Command::DebugLeft
         | Command::Stop(_)
         | Command::Mail(..)

@@ -62,7 +62,8 @@ impl Supervisor {
                 | FromProgram::Watch { .. }
                 | FromProgram::Changed { .. }
                 | FromProgram::Debug { .. }
-                | FromProgram::DebugLog(_),
+                | FromProgram::DebugLog(_)
+                | FromProgram::Question { .. },
             )
             | None => {}
         }

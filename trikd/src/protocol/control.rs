@@ -44,6 +44,15 @@ pub enum Request<'a> {
         /// The order.
         order: &'a [u8],
     },
+    /// Whether this client answers questions of a diagram to a person.
+    Questions(bool),
+    /// What a person says to a question, by its number; none: nobody answers.
+    Answer {
+        /// Which question.
+        number: u32,
+        /// The answer.
+        text: Option<&'a [u8]>,
+    },
     /// What runs now, and how the last program ended, when everything asked for before is done.
     Status,
     /// Something else.
@@ -63,6 +72,8 @@ impl<'a> Request<'a> {
             b"status" => return Self::Status,
             b"watch" => return Self::Watch(true),
             b"unwatch" => return Self::Watch(false),
+            b"questions" => return Self::Questions(true),
+            b"noquestions" => return Self::Questions(false),
             _ => {}
         }
         if let Some(rest) = frame.strip_prefix(b"file:") {
@@ -82,6 +93,9 @@ impl<'a> Request<'a> {
         }
         if let Some(rest) = frame.strip_prefix(b"patch:") {
             return Self::patch(rest).unwrap_or(Self::Unknown);
+        }
+        if let Some(rest) = frame.strip_prefix(b"answer:") {
+            return Self::answer(rest).unwrap_or(Self::Unknown);
         }
         if let Some(text) = frame.strip_prefix(b"set:") {
             return Self::Set(text);
@@ -104,6 +118,16 @@ impl<'a> Request<'a> {
             tag: number.and_then(|number| number.parse().ok()),
             order: order.get(1..).unwrap_or_default(),
         }
+    }
+
+    /// `NUMBER:TEXT`, or `NUMBER` for no answer.
+    fn answer(rest: &'a [u8]) -> Option<Self> {
+        let colon = rest.iter().position(|byte| *byte == b':');
+        let number = &rest[..colon.unwrap_or(rest.len())];
+        Some(Self::Answer {
+            number: std::str::from_utf8(number).ok()?.parse().ok()?,
+            text: colon.map(|colon| &rest[colon + 1..]),
+        })
     }
 
     fn patch(rest: &'a [u8]) -> Option<Self> {
@@ -144,6 +168,11 @@ mod tests {
         assert_eq!(Request::parse(b"patch:maybe:a.qrs"), Request::Unknown);
         assert_eq!(Request::parse(b"patch:a.qrs"), Request::Unknown);
         assert_eq!(Request::parse(b"set:n=5"), Request::Set(b"n=5"));
+        let answer = |number, text| Request::Answer { number, text };
+        assert_eq!(Request::parse(b"answer:3:a:b"), answer(3, Some(b"a:b")));
+        assert_eq!(Request::parse(b"answer:3"), answer(3, None));
+        assert_eq!(Request::parse(b"answer:x:1"), Request::Unknown);
+        assert_eq!(Request::parse(b"questions"), Request::Questions(true));
         for (frame, tag, order) in [
             (
                 &b"debug:7 break {b}\nif n > 3"[..],

@@ -39,6 +39,11 @@ pub fn has_control(who: std::net::SocketAddr) -> String {
     format!("{who} is in control")
 }
 
+/// What a robot says of a diagram that asks a person while nobody is there, after `info: `.
+pub fn nobody_answers(name: &str) -> String {
+    format!("{name} asks a person, and nobody is there: trik run {name} in a terminal would answer")
+}
+
 /// Why a diagram is not changed by the save of another one.
 pub fn other_runs(name: &str) -> String {
     format!("{name} runs; a new version has the name of the diagram that runs")

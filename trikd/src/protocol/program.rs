@@ -55,6 +55,13 @@ pub enum ToProgram<'a> {
     },
     /// Whoever was in control of the debugger is gone.
     DebugLeft,
+    /// What a person says to a question of the program.
+    Reply {
+        /// Which question.
+        number: u32,
+        /// The answer; none: nobody answers.
+        text: Option<&'a str>,
+    },
 }
 
 /// Something that a program sends to the daemon.
@@ -95,13 +102,20 @@ pub enum FromProgram<'a> {
     },
     /// Lines that breakpoints have written, a JSON object for all who debug.
     DebugLog(&'a str),
+    /// A question to a person.
+    Question {
+        /// Names its answer.
+        number: u32,
+        /// The question, a JSON object.
+        json: &'a str,
+    },
 }
 
 /// In the place of a client in [`FromProgram::Debug`]: all who debug.
 pub const ALL: u32 = 0;
 
 /// The words of [`ToProgram`], in the order of the document.
-pub const TO_PROGRAM: [&str; 13] = [
+pub const TO_PROGRAM: [&str; 14] = [
     "file",
     "script",
     "start",
@@ -115,10 +129,11 @@ pub const TO_PROGRAM: [&str; 13] = [
     "debug-file",
     "debug",
     "debug-left",
+    "reply",
 ];
 
 /// The words of [`FromProgram`], in the order of the document.
-pub const FROM_PROGRAM: [&str; 10] = [
+pub const FROM_PROGRAM: [&str; 11] = [
     "print",
     "error",
     "info",
@@ -129,6 +144,7 @@ pub const FROM_PROGRAM: [&str; 10] = [
     "changed",
     "debug",
     "debug-log",
+    "question",
 ];
 
 impl<'a> ToProgram<'a> {
@@ -148,6 +164,10 @@ impl<'a> ToProgram<'a> {
             Self::Debugged(path) => format!("debug-file:{path}"),
             Self::Debug { client, tag, order } => format!("debug:{client} {tag} {order}"),
             Self::DebugLeft => "debug-left:".to_owned(),
+            Self::Reply { number, text } => match text {
+                Some(text) => format!("reply:{number} {text}"),
+                None => format!("reply:{number}"),
+            },
         };
         text.into_bytes()
     }
@@ -189,6 +209,16 @@ impl<'a> ToProgram<'a> {
                 }
             }
             "debug-left" => Self::DebugLeft,
+            "reply" => {
+                let (number, text) = match rest.split_once(' ') {
+                    Some((number, text)) => (number, Some(text)),
+                    None => (rest, None),
+                };
+                Self::Reply {
+                    number: number.parse().ok()?,
+                    text,
+                }
+            }
             _ => return None,
         })
     }
@@ -210,6 +240,7 @@ impl<'a> FromProgram<'a> {
             }
             Self::Debug { client, json } => format!("debug:{client} {json}"),
             Self::DebugLog(json) => format!("debug-log:{json}"),
+            Self::Question { number, json } => format!("question:{number} {json}"),
         };
         text.into_bytes()
     }
@@ -243,6 +274,13 @@ impl<'a> FromProgram<'a> {
                 }
             }
             "debug-log" => Self::DebugLog(rest),
+            "question" => {
+                let (number, json) = rest.split_once(' ')?;
+                Self::Question {
+                    number: number.parse().ok()?,
+                    json,
+                }
+            }
             _ => return None,
         })
     }
@@ -303,6 +341,7 @@ mod tests {
                 FromProgram::Changed { is_changed: text.len() % 2 == 0, text },
                 FromProgram::Debug { client: u32::try_from(text.len()).unwrap(), json: text },
                 FromProgram::DebugLog(text),
+                FromProgram::Question { number: u32::try_from(text.len()).unwrap(), json: text },
             ] {
                 let payload = String::from_utf8(said.encode()).unwrap();
                 prop_assert_eq!(FromProgram::parse(&payload), Some(said));
@@ -321,13 +360,17 @@ mod tests {
             let second = match word {
                 "patch" => "end:x",
                 "debug" => "1 2 x",
+                "reply" => "1 x",
                 _ => "1:x",
             };
             let payload = format!("{word}:{second}");
             assert!(ToProgram::parse(&payload).is_some(), "{word}");
         }
         for word in FROM_PROGRAM {
-            let second = if word == "debug" { "1 x" } else { "1:x" };
+            let second = match word {
+                "debug" | "question" => "1 x",
+                _ => "1:x",
+            };
             let payload = format!("{word}:{second}");
             assert!(FromProgram::parse(&payload).is_some(), "{word}");
         }
@@ -345,16 +388,16 @@ mod tests {
     fn the_module_for_python_speaks_these_words_and_no_others() {
         let module = crate::program::python::MODULE;
         let said = words_behind(module, "_channel.send('");
-        // A diagram alone tells where it is, is changed while it runs, and has a debugger.
-        let only_diagrams = ["watch", "changed", "debug", "debug-log"];
+        // A diagram alone tells where it is, is changed while it runs, has a debugger, and asks a person.
+        let only_diagrams = ["watch", "changed", "debug", "debug-log", "question"];
         let expected: BTreeSet<_> = FROM_PROGRAM
             .into_iter()
             .filter(|word| !only_diagrams.contains(word))
             .collect();
         assert_eq!(said, expected);
         let heard = words_behind(module, "word == '");
-        // All other first messages name a file, and nobody watches, changes or debugs a program without blocks.
-        let only_others = ["file", "script", "watch", "patch", "set"];
+        // All other first messages name a file, and nobody watches, changes, debugs or answers a program without blocks.
+        let only_others = ["file", "script", "watch", "patch", "set", "reply"];
         let expected: BTreeSet<_> = TO_PROGRAM
             .into_iter()
             .filter(|word| !only_others.contains(word) && !word.starts_with("debug"))

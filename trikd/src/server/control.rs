@@ -12,6 +12,7 @@ use crate::outbox::Outbox;
 use crate::program::{Command, Programs};
 use crate::protocol::control::Request;
 use crate::protocol::news;
+use crate::protocol::program::WhenGone;
 use crate::{limits, log, scripts};
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -95,6 +96,23 @@ impl Session {
         }
     }
 
+    async fn patch(&self, when_gone: WhenGone, name: &[u8]) {
+        if !self.may_control() {
+            return;
+        }
+        match scripts::find(&self.control.scripts, name) {
+            Ok(path) => self.command(Command::Patch(when_gone, path)).await,
+            Err(why) => self.error(&why.to_string()),
+        }
+    }
+
+    /// What a person says to a question of the diagram.
+    async fn answer(&self, number: u32, said: Option<&[u8]>) {
+        if self.may_control() {
+            self.command(Command::Reply(number, said.map(text))).await;
+        }
+    }
+
     async fn keep(&self, name: &[u8], content: &[u8]) {
         let folder = self.control.scripts.clone();
         let (name, content) = (name.to_owned(), content.to_owned());
@@ -164,19 +182,19 @@ impl Handler for Session {
                     self.run(name).await;
                 }
             }
-            Request::Patch { when_gone, name } => {
-                if self.may_control() {
-                    match scripts::find(&self.control.scripts, name) {
-                        Ok(path) => self.command(Command::Patch(when_gone, path)).await,
-                        Err(why) => self.error(&why.to_string()),
-                    }
-                }
-            }
+            Request::Patch { when_gone, name } => self.patch(when_gone, name).await,
             Request::Set(assignment) => {
                 if self.may_control() {
                     self.command(Command::Set(text(assignment))).await;
                 }
             }
+            Request::Questions(is_wanted) => {
+                // An answer changes what a program does.
+                if self.may_control() {
+                    self.client.answers(is_wanted);
+                }
+            }
+            Request::Answer { number, text } => self.answer(number, text).await,
             Request::Debug { tag, order } => self.debug(tag, &text(order)).await,
             Request::DirectScript(code) => {
                 if self.may_control() {

@@ -217,6 +217,9 @@ fn a_program_whose_controller_is_lost_stays_stopped_or_runs_on_without_its_break
     expect(&mut one, 1, "attach", "true");
     expect(&mut one, 2, "pause", "true");
     until_state(&mut two, "stopped");
+    // Whatever was asked for: nobody looks at the robot any more.
+    expect(&mut one, 3, "motors keep", "true");
+    assert_eq!(motor(&robot), "40");
     drop(one);
     two.until("debug: {\"control\":null}");
     expect(&mut two, 2, "look", "\"state\":\"stopped\"");

@@ -287,3 +287,58 @@ fn a_thread_without_its_block_ends_with_an_error() {
     client.until("info: count.qrs has failed");
     assert!(robot.has_rested());
 }
+
+/// Asks twice: with a default, and without.
+fn asking() -> Vec<u8> {
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let many = [("variable", "n"), ("prompt", "How many?"), ("default", "7")];
+    let first = sketch.block("Input", &many);
+    let second = sketch.block("Input", &[("variable", "m"), ("prompt", "And?")]);
+    let said = sketch.block("Function", &[("Body", "print(n * 10)\nprint(m)")]);
+    let none = sketch.block("Function", &[("Body", "print(n)")]);
+    let end = sketch.block("FinalNode", &[]);
+    sketch.chain(&[start, first, second, said, end]);
+    sketch.guarded(second, none, "cancel");
+    sketch.link(none, end);
+    sketch.qrs().expect("a save")
+}
+
+#[test]
+fn a_diagram_asks_a_person_and_goes_on_if_nobody_is_there() {
+    let robot = robot(&[]);
+    let mut client = robot.client("control");
+    upload(&mut client, "ask.qrs", &asking());
+    client.send("run:ask.qrs");
+    client.expect("info: ask.qrs has started");
+    client.expect(
+        "info: ask.qrs asks a person, and nobody is there: trik run ask.qrs in a terminal would answer",
+    );
+    client.until("print: 7\n");
+    client.until("info: ask.qrs has ended");
+
+    let mut person = robot.client("control");
+    person.send("questions");
+    person.send("run:ask.qrs");
+    person.expect("info: ask.qrs has started");
+    person.expect(
+        "question: {\"number\":1,\"variable\":\"n\",\"question\":\"How many?\",\"default\":\"7\"}",
+    );
+    // Answers to other questions, and of nobody, count for nothing.
+    person.send("answer:9:1");
+    person.send("answer:x:1");
+    person.send("answer:1:2 + 1");
+    person.expect(
+        "question: {\"number\":2,\"variable\":\"m\",\"question\":\"And?\",\"default\":\"\"}",
+    );
+    person.send("answer:2:'a:b'");
+    person.expect("print: 30\n");
+    person.expect("print: a:b\n");
+    person.until("info: ask.qrs has ended");
+    person.send("run:ask.qrs");
+    person.expect("info: ask.qrs has started");
+    person.until("question: {\"number\":1,");
+    person.send("answer:1");
+    person.send("noquestions");
+    person.until("print: 7\n");
+}

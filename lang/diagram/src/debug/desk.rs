@@ -9,6 +9,7 @@ use crate::brick::Brick;
 use crate::limits;
 use crate::machine::Machine;
 use crate::machine::trace::Trace;
+use crate::machine::view::Doing;
 use lang_text::json::{Object, quoted};
 use lang_text::problem::{Locale, Problem};
 
@@ -54,6 +55,8 @@ pub enum Refused {
     NoThread(Option<Box<str>>),
     /// This thread is not held.
     NotHeld(Box<str>),
+    /// This thread is held, and makes no step.
+    Held(Box<str>),
     /// There is no way back.
     Back(NoBack),
     /// Nothing can be changed.
@@ -76,6 +79,7 @@ impl Refused {
             Self::NoThread(Some(name)) => format!("there is no thread '{name}'"),
             Self::NoThread(None) => "no thread lives".to_owned(),
             Self::NotHeld(name) => format!("the thread '{name}' is not held"),
+            Self::Held(name) => format!("the thread '{name}' is held: release it first"),
             Self::Back(why) => why.to_string(),
             Self::NotNow(why) => why.in_locale(locale),
             Self::Expression(problems) => report::problems(problems, locale),
@@ -118,6 +122,13 @@ impl Desk {
     /// Runs what is due at a moment of the caller's clock, in milliseconds.
     pub fn step(&mut self, now: u32, brick: &mut dyn Brick, trace: &mut dyn Trace) -> Phase {
         self.session.step(now, brick, trace)
+    }
+
+    /// Something else has changed the program: its state is told again.
+    pub fn tell_again(&mut self) {
+        if self.session.is_attached() {
+            self.told = Told::Detached;
+        }
     }
 
     /// Carries out an order; the answer is a JSON object that begins with the tag of the order.
@@ -334,6 +345,9 @@ impl Desk {
                 .views()
                 .find(|view| stop.thread.is_none_or(|thread| thread == view.number)),
         };
+        if let Some(view) = found.as_ref().filter(|view| view.doing == Doing::Held) {
+            return Err(Refused::Held(view.name.into()));
+        }
         let number = found.map(|view| view.number);
         number.ok_or_else(|| Refused::NoThread(name.map(Into::into)))
     }

@@ -193,18 +193,19 @@ impl History {
     /// The first moment after `after` and before `before` that passes a test.
     pub(super) fn first_between(
         &self,
-        (after, before): (Position, Position),
+        (after, before): (Option<Position>, Position),
         test: Test<'_>,
     ) -> Option<Position> {
         for at in 0..self.segments.len() {
             let until = self.until(at).min(before);
-            if until <= after.saturating_add(1) {
+            if after.is_some_and(|after| until <= after.saturating_add(1)) {
                 continue;
             }
             let mut found = None;
             let segment = &self.segments[at];
             self.replay(segment, until, &mut |position, machine, thread, node| {
-                let is_it = position > after && test(machine, thread, node);
+                let is_later = after.is_none_or(|after| position > after);
+                let is_it = is_later && test(machine, thread, node);
                 if is_it {
                     found = Some(position);
                 }
@@ -228,6 +229,65 @@ impl History {
         let (found, machine) =
             self.replay(segment, until, &mut |position, _, _, _| position == wanted)?;
         (found == wanted).then_some(machine)
+    }
+
+    /// The program at a time, between two steps, and how many blocks were entered before; none if it is not kept.
+    pub(super) fn at_time(&self, ms: u32) -> Option<(Position, Machine)> {
+        let at = self
+            .segments
+            .partition_point(|segment| segment.start.now() <= ms);
+        let segment = self.segments.get(at.saturating_sub(1))?;
+        let mut steps = 0;
+        self.rerun(segment, &mut |machine| {
+            let is_within = !machine.is_held() && machine.now() <= ms;
+            steps += usize::from(is_within);
+            is_within
+        });
+        let mut left = steps;
+        self.rerun(segment, &mut |_| {
+            left = left.saturating_sub(1);
+            left > 0
+        })
+        .filter(|_| steps > 0)
+        .or_else(|| Some((segment.first, segment.start.clone())))
+    }
+
+    /// Runs a segment again while each step is followed by another one that is wanted.
+    fn rerun(
+        &self,
+        segment: &Segment,
+        goes_on: &mut dyn FnMut(&Machine) -> bool,
+    ) -> Option<(Position, Machine)> {
+        let mut machine = segment.start.clone();
+        machine.set_guarded(true);
+        let mut stops = |_: Position, _: &Machine, _: u16, _: Node| false;
+        let mut seeker = Seeker {
+            next: segment.first,
+            until: Position::MAX,
+            held: &segment.held,
+            stops: &mut stops,
+        };
+        let is_last = self
+            .segments
+            .back()
+            .is_some_and(|last| std::ptr::eq(last, segment));
+        let count = segment.steps.len();
+        // A step that is not done yet is the present.
+        let whole = match is_last && self.open.is_some() {
+            true => count.saturating_sub(1),
+            false => count,
+        };
+        for kept in segment.steps.iter().take(whole) {
+            let mut robot = Remembering::new(&kept.answers);
+            match kept.begin {
+                Begin::Step(now) => machine.step(now, &mut robot, &mut seeker),
+                Begin::Rest => machine.go_on_held(&mut robot, &mut seeker),
+            };
+            if robot.is_astray || !goes_on(&machine) {
+                break;
+            }
+        }
+        Some((seeker.next, machine))
     }
 
     /// Where what a segment has ends.

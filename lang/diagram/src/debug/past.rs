@@ -16,7 +16,7 @@ pub enum Back {
     Step(Step),
     /// To the last moment at which a breakpoint would have stopped.
     Continue,
-    /// To the last block that was entered at this time or before, in milliseconds of the program.
+    /// To this time, in milliseconds of the program, between two steps.
     To(u32),
     /// To the first moment that is kept.
     Oldest,
@@ -31,6 +31,8 @@ pub enum NoBack {
     Runs,
     /// Nothing before this moment is kept.
     AtOldest,
+    /// The program has not come to that time.
+    NotYet,
 }
 
 impl fmt::Display for NoBack {
@@ -39,6 +41,7 @@ impl fmt::Display for NoBack {
             Self::NotKept => "the past of this program is not kept",
             Self::Runs => "the program runs: pause it first",
             Self::AtOldest => "this is the first moment that is kept",
+            Self::NotYet => "the program has not come to that time",
         })
     }
 }
@@ -84,6 +87,10 @@ pub(super) fn back(
     from: From<'_>,
     how: Back,
 ) -> Result<Past, NoBack> {
+    if let Back::To(ms) = how {
+        let (at, machine) = history.at_time(ms).ok_or(NoBack::NotKept)?;
+        return Ok(Past::new(machine, at, Reason::Past));
+    }
     if from.at <= history.first() {
         return Err(NoBack::AtOldest);
     }
@@ -95,8 +102,7 @@ pub(super) fn back(
         Back::Continue => history.last_before(from.at, &mut |machine, _, node| {
             debugger.is_marked(node) && debugger.stops_at(machine, node).is_some()
         }),
-        Back::To(ms) => history.last_before(from.at, &mut |machine, _, _| machine.now() <= ms),
-        Back::Oldest => None,
+        Back::To(_) | Back::Oldest => None,
     };
     let at = found.unwrap_or(history.first());
     let machine = history.at(at).ok_or(NoBack::NotKept)?;
@@ -117,7 +123,12 @@ pub(super) fn forth(
     present: Position,
     step: Option<Step>,
 ) -> Option<Past> {
-    let between = (from.at, present);
+    // Between two steps the next block is still to come.
+    let after = match from.thread {
+        Some(_) => Some(from.at),
+        None => from.at.checked_sub(1),
+    };
+    let between = (after, present);
     let (found, is_step) = match step {
         Some(step) => {
             let mut test = step_test(from, step);

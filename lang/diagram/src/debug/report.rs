@@ -73,7 +73,7 @@ pub fn state(session: &Session, locale: Locale) -> String {
 pub fn value(value: &Value) -> Object {
     object()
         .text("type", kind(value))
-        .text("value", &value.printed())
+        .text("value", &shown(value))
 }
 
 /// Breakpoints with their numbers, and how often each was hit, as a member of an object.
@@ -191,5 +191,18 @@ fn kind(value: &Value) -> &'static str {
         Value::Float(_) => "float",
         Value::Text(_) => "text",
         Value::List(_) => "list",
+    }
+}
+
+/// A value as an answer has it; a list in short.
+fn shown(value: &Value) -> String {
+    match value {
+        Value::List(_) => value.brief(),
+        Value::Nil
+        | Value::Unset
+        | Value::Bool(_)
+        | Value::Int(_)
+        | Value::Float(_)
+        | Value::Text(_) => value.printed().to_string(),
     }
 }

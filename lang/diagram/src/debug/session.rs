@@ -246,6 +246,11 @@ impl Session {
         if self.phase() == Phase::Runs {
             return Err(NoBack::Runs);
         }
+        if let Back::To(ms) = how
+            && ms >= self.machine.now()
+        {
+            return Err(NoBack::NotYet);
+        }
         let past = past::back(history, &self.debugger, self.here(), how)?;
         Ok(&self.past.insert(past).stop)
     }

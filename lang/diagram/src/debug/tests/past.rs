@@ -62,6 +62,17 @@ fn here(session: &Session) -> Seen {
     seen(session.machine(), stop.thread.unwrap(), stop.node.unwrap())
 }
 
+/// Whether a moment between two steps has the values with which the next block was entered.
+fn is_between(session: &Session, moments: &[Seen]) -> bool {
+    let machine = session.machine();
+    let seen = seen(machine, 0, 0);
+    let next = moments.iter().find(|one| one.ms > seen.ms);
+    let last = moments.iter().rfind(|one| one.ms <= seen.ms);
+    // A block may assign in its wait, and the last one of a step after it was entered.
+    let is_like = |one: Option<&Seen>| one.is_none_or(|one| one.values == seen.values);
+    is_like(next) || is_like(last) || next.is_some_and(|next| next.ms > seen.ms + STEP_MS)
+}
+
 #[test]
 fn every_moment_of_the_past_is_the_one_that_was() {
     const STEPS: u32 = 60;
@@ -102,15 +113,22 @@ fn every_moment_of_the_past_is_the_one_that_was() {
                         _ => Back::Step(Step::Into),
                     };
                     match session.back(how) {
+                        Ok(_) if matches!(how, Back::To(_)) => {
+                            looked += 1;
+                            assert!(is_between(&session, &moments), "{told}");
+                        }
                         Ok(_) => {
                             let here = here(&session);
                             assert!(moments.contains(&here), "{told}: {here:?}");
                             looked += 1;
                         }
-                        Err(NoBack::AtOldest) => {}
+                        Err(NoBack::AtOldest | NoBack::NotYet) => {}
                         Err(why) => panic!("{told}: {why}"),
                     }
-                    if dice.below(3) == 0 && session.forth(Some(Step::Into)) {
+                    if dice.below(3) == 0
+                        && session.stop().is_some_and(|stop| stop.node.is_some())
+                        && session.forth(Some(Step::Into))
+                    {
                         assert!(moments.contains(&here(&session)), "{told}");
                     }
                 }
@@ -189,11 +207,30 @@ fn it_runs_back_to_a_breakpoint_to_a_time_and_to_the_beginning() {
     assert_eq!(desk.session.back(Back::Continue), Err(NoBack::AtOldest));
     assert!(desk.session.forth(None));
     assert_eq!(desk.session.machine().now(), ms);
+    // In the middle of a wait.
     assert_eq!(
         desk.session.back(Back::To(250)).unwrap().reason,
         Reason::Past
     );
-    assert_eq!(desk.variable("n"), "3");
+    assert_eq!(
+        (desk.variable("n").as_str(), desk.session.machine().now()),
+        ("3", 250)
+    );
+    assert_eq!(desk.session.back(Back::To(90_000)), Err(NoBack::NotYet));
+    desk.session.back(Back::To(450)).unwrap();
+    assert_eq!(desk.variable("n"), "5");
+    desk.session.back(Back::To(250)).unwrap();
+    assert!(desk.session.forth(Some(Step::Into)));
+    assert_eq!(
+        (desk.variable("n").as_str(), desk.session.machine().now()),
+        ("3", 330)
+    );
+    desk.session.back(Back::To(250)).unwrap();
+    desk.session.back(Back::Step(Step::Into)).unwrap();
+    assert_eq!(
+        (desk.variable("n").as_str(), desk.session.machine().now()),
+        ("3", 230)
+    );
     assert_eq!(
         desk.session.back(Back::Oldest).unwrap().reason,
         Reason::Oldest

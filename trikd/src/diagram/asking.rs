@@ -1,0 +1,132 @@
+//! Questions of a diagram to a person, one at a time.
+//!
+//! Owns which question is open and how long it waits. Who is asked, and how, is the daemon's matter; what becomes of the
+//! answer, the diagram's.
+
+use crate::limits;
+use lang_diagram::brick::{Answer, Question};
+use lang_text::json::Object;
+use std::time::{Duration, Instant};
+
+/// A question that was asked.
+#[derive(Debug)]
+struct Open {
+    /// Another question waits until this one is done.
+    key: (String, String),
+    number: u32,
+    until: Instant,
+    answer: Option<Answer>,
+    /// What it comes to without an answer.
+    default: Answer,
+}
+
+/// The questions of a diagram.
+#[derive(Debug, Default)]
+pub(super) struct Asking {
+    open: Option<Open>,
+    count: u32,
+    /// A block that got no answer may ask at once again, and has to wait until then.
+    rests: Option<Instant>,
+}
+
+impl Asking {
+    /// What was answered. A question that is new is told, with its number.
+    pub(super) fn ask(
+        &mut self,
+        question: Question<'_>,
+        now: Instant,
+        tell: &mut dyn FnMut(u32, &str),
+    ) -> Answer {
+        let key = (question.variable.to_owned(), question.prompt.to_owned());
+        let Some(open) = &mut self.open else {
+            if self.rests.is_some_and(|until| now < until) {
+                return Answer::Waiting;
+            }
+            self.count = self.count.wrapping_add(1);
+            let told = Object::new(limits::QUESTION_CHARACTERS)
+                .plain("number", self.count)
+                .text("variable", question.variable)
+                .text("question", question.prompt)
+                .text("default", question.default)
+                .done();
+            tell(self.count, &told);
+            self.open = Some(Open {
+                key,
+                number: self.count,
+                until: now + Duration::from_millis(limits::QUESTION_MS),
+                answer: None,
+                default: match question.default {
+                    "" => Answer::Cancelled,
+                    text => Answer::Text(text.to_owned()),
+                },
+            });
+            return Answer::Waiting;
+        };
+        if open.key != key {
+            return Answer::Waiting;
+        }
+        let answer = match open.answer.take() {
+            None if now < open.until => return Answer::Waiting,
+            None | Some(Answer::Cancelled) => open.default.clone(),
+            Some(answer) => answer,
+        };
+        self.open = None;
+        self.rests = None;
+        if answer == Answer::Cancelled {
+            self.rests = Some(now + Duration::from_millis(limits::QUESTION_REST_MS));
+        }
+        answer
+    }
+
+    /// What a person says to the question with this number; nothing: no answer will come.
+    pub(super) fn hear(&mut self, number: u32, text: Option<String>) {
+        if let Some(open) = self.open.as_mut().filter(|open| open.number == number) {
+            open.answer = Some(text.map_or(Answer::Cancelled, Answer::Text));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn question(variable: &str) -> Question<'_> {
+        Question {
+            variable,
+            prompt: "How many?",
+            default: if variable == "n" { "1" } else { "" },
+        }
+    }
+
+    #[test]
+    fn one_question_waits_for_its_answer_and_the_next_one_for_its_turn() {
+        let mut asking = Asking::default();
+        let now = Instant::now();
+        let mut told = Vec::new();
+        let mut ask = |asking: &mut Asking, variable, now| {
+            asking.ask(question(variable), now, &mut |number, json| {
+                told.push((number, json.to_owned()));
+            })
+        };
+        assert_eq!(ask(&mut asking, "n", now), Answer::Waiting);
+        assert_eq!(ask(&mut asking, "m", now), Answer::Waiting);
+        asking.hear(7, Some("x".into()));
+        assert_eq!(ask(&mut asking, "n", now), Answer::Waiting);
+        asking.hear(1, Some("5".into()));
+        assert_eq!(ask(&mut asking, "m", now), Answer::Waiting);
+        assert_eq!(ask(&mut asking, "n", now), Answer::Text("5".into()));
+        assert_eq!(ask(&mut asking, "m", now), Answer::Waiting);
+        asking.hear(2, None);
+        assert_eq!(ask(&mut asking, "m", now), Answer::Cancelled);
+        // Who gets no answer does not ask again at once.
+        let rested = now + Duration::from_millis(limits::QUESTION_REST_MS);
+        assert_eq!(ask(&mut asking, "m", now), Answer::Waiting);
+        assert_eq!(ask(&mut asking, "n", rested), Answer::Waiting);
+        let late = rested + Duration::from_millis(limits::QUESTION_MS);
+        assert_eq!(ask(&mut asking, "n", late), Answer::Text("1".into()));
+        assert_eq!(told.len(), 3);
+        let first =
+            "{\"number\":1,\"variable\":\"n\",\"question\":\"How many?\",\"default\":\"1\"}";
+        assert_eq!(told[0], (1, first.to_owned()));
+    }
+}
