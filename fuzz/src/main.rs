@@ -8,10 +8,11 @@ use std::sync::LazyLock;
 
 type Target = fn(&[u8]);
 
-const TARGETS: [(&str, Target); 18] = [
+const TARGETS: [(&str, Target); 19] = [
     ("reader", lang_diagram::fuzz::reader),
     ("expression", lang_expr::fuzz::expression),
     ("lowering", lang_diagram::fuzz::lowering),
+    ("debugging", lang_diagram::fuzz::debugging),
     ("constraints", lang_constraint::fuzz::constraints),
     ("dcml", lang_dcml::fuzz::dcml),
     ("lsp", trik::fuzz::lsp),

@@ -2,8 +2,10 @@
 //!
 //! Run by tests with mutated saves, and by any fuzzer.
 
+mod debugging;
 pub(crate) mod lowering;
 mod saves;
 
+pub use debugging::debugging;
 pub use lowering::{lowering, project};
 pub use saves::reader;

@@ -104,6 +104,11 @@ proptest! {
     }
 
     #[test]
+    fn strange_orders_to_a_debugger_do_no_harm(bytes in vec(any::<u8>(), 0..600)) {
+        lang_diagram::fuzz::debugging(&bytes);
+    }
+
+    #[test]
     fn strange_bytes_do_no_harm(bytes in vec(any::<u8>(), 0..300)) {
         lang_diagram::fuzz::reader(&bytes);
     }

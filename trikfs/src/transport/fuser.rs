@@ -54,7 +54,11 @@ pub fn serve(device: OwnedFd, operations: Arc<dyn Operations>) -> io::Result<()>
     operations.start(link);
     let served = session.run();
     operations.stop();
-    served
+    match served {
+        // As in the native transport: the kernel says either of the two when the mount is gone.
+        Err(error) if error.raw_os_error() == Some(libc::ECONNABORTED) => Ok(()),
+        served => served,
+    }
 }
 
 fn caller(request: &Request) -> Caller {

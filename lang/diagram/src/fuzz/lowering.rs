@@ -60,10 +60,10 @@ const TEXTS: &[&str] = &[
 ];
 
 /// Reads numbers and texts out of bytes; nothing is left is 0 and empty.
-struct Bytes<'a>(&'a [u8]);
+pub(super) struct Bytes<'a>(pub &'a [u8]);
 
 impl Bytes<'_> {
-    fn next(&mut self) -> u8 {
+    pub fn next(&mut self) -> u8 {
         match self.0.split_first() {
             Some((&first, rest)) => {
                 self.0 = rest;
@@ -73,12 +73,12 @@ impl Bytes<'_> {
         }
     }
 
-    fn below(&mut self, count: usize) -> usize {
+    pub fn below(&mut self, count: usize) -> usize {
         usize::from(self.next()) % count.max(1)
     }
 
     /// A text of the list, or the next bytes as they are.
-    fn text(&mut self) -> String {
+    pub fn text(&mut self) -> String {
         let which = usize::from(self.next());
         match TEXTS.get(which % (TEXTS.len() + 1)) {
             Some(text) => (*text).to_owned(),
