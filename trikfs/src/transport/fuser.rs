@@ -56,7 +56,7 @@ pub fn serve(device: OwnedFd, operations: Arc<dyn Operations>) -> io::Result<()>
     operations.stop();
     match served {
         // As in the native transport: the kernel says either of the two when the mount is gone.
-        Err(error) if error.raw_os_error() == Some(libc::ECONNABORTED) => Ok(()),
+        Err(error) if error.kind() == io::ErrorKind::ConnectionAborted => Ok(()),
         served => served,
     }
 }
