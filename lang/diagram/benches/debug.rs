@@ -81,6 +81,8 @@ fn minute(session: &mut Session) -> f64 {
     for step in 0..MINUTE {
         session.step(step * STEP_MS, &mut robot, &mut Deaf);
     }
+    // A program that is stopped would cost nothing.
+    assert!(session.stop().is_none());
     began.elapsed().as_secs_f64() * 1000.0
 }
 
@@ -101,7 +103,7 @@ fn costs(program: &Rc<Program>, id: &str) {
         let mut marked = session(program, false);
         let point = Breakpoint {
             block: id.into(),
-            condition: "u > 100000".into(),
+            condition: "old > 100000".into(),
             ..Breakpoint::default()
         };
         marked.add(point).unwrap();
@@ -161,7 +163,7 @@ fn way_back(program: &Rc<Program>, id: &str) {
     session.to_present();
     let point = Breakpoint {
         block: id.into(),
-        condition: "u > 100000".into(),
+        condition: "old > 100000".into(),
         ..Breakpoint::default()
     };
     session.add(point).unwrap();
