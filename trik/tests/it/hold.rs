@@ -146,7 +146,10 @@ fn a_dead_encoder_stops_its_motor_and_says_why() {
     eventually("an error", || robot.errno("motors/left/speed") != 0);
     assert!(robot.write("motors/left/speed", "100").is_err());
     robot.fault(&["msp430", "--clear"]);
-    eventually("a measured speed", || robot.errno("motors/left/speed") == 0);
+    // Of both: the wheels are asked one after the other, and each is measured again by itself.
+    eventually("measured speeds", || {
+        robot.errno("motors/left/speed") == 0 && robot.errno("motors/right/speed") == 0
+    });
     assert!(fault().contains("0x48"), "{}", fault());
     order(&robot, 0, 0);
     assert!(is_at_rest(&robot));
