@@ -43,7 +43,7 @@ pub struct Newest {
     work: Mutex<Work>,
     /// Open files that keep the source of an unsampled node open.
     users: AtomicU32,
-    /// Who needs the samples of a node that is sampled by the clock.
+    /// Which users need the samples of a node that is sampled by the clock.
     need: Need,
     /// The source had its time and said nothing, and was left: nobody waits for it as long once more.
     was_silent: AtomicBool,

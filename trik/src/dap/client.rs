@@ -145,7 +145,7 @@ impl Client {
     fn send(&mut self, mut message: Value) {
         self.seq += 1;
         message["seq"] = json!(self.seq);
-        // Who does not listen any more is gone.
+        // A client that does not listen any more is gone.
         self.is_gone |= wire::write(&mut self.to, &message).is_err();
     }
 }

@@ -9,6 +9,7 @@ use lang_diagram::debug::Breakpoint;
 use lang_diagram::debug::order::Order;
 use lang_diagram::project::Project;
 use serde_json::{Value, json};
+use std::fmt;
 
 /// How a client says where a breakpoint is.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -46,8 +47,34 @@ fn text(value: &Value, name: &str) -> Box<str> {
         .into()
 }
 
+/// Why a breakpoint of a client is not set. Each is for the client's person to mend, or for the robot, which says why.
+#[derive(Clone, Debug, Eq, PartialEq)]
+enum Unset {
+    /// What is said of hits is no number of them.
+    Hits,
+    /// There is no block where it should be.
+    Nowhere(Kind),
+    /// The debugger refuses it.
+    Refused(String),
+}
+
+impl fmt::Display for Unset {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Hits => "a number of hits is wanted, such as 5, >= 5 or > 5",
+            Self::Nowhere(Kind::Line) => "this line has no block",
+            Self::Nowhere(Kind::Name) => "there is no subprogram and no block of this name",
+            Self::Nowhere(Kind::Id) => "there is no block with this id",
+            Self::Refused(why) => why,
+        })
+    }
+}
+
 /// From which hit on a breakpoint stops: `5`, `>= 5`, `> 5`.
-fn hits(text: &str) -> Result<u32, String> {
+///
+/// # Errors
+/// It is something else.
+fn hits(text: &str) -> Result<u32, Unset> {
     let (digits, more) = match text.trim().strip_prefix(">=") {
         Some(rest) => (rest, 0),
         None => match text.trim().strip_prefix('>') {
@@ -59,9 +86,8 @@ fn hits(text: &str) -> Result<u32, String> {
         "" => Ok(0),
         digits => {
             let hits: Result<u32, _> = digits.parse();
-            let why = "a number of hits is wanted, such as 5, >= 5 or > 5";
             hits.map(|hits| hits.saturating_add(more))
-                .map_err(|_| why.to_owned())
+                .map_err(|_| Unset::Hits)
         }
     }
 }
@@ -103,10 +129,13 @@ impl Points {
         let line = line
             .and_then(|line| usize::try_from(line).ok())
             .unwrap_or(0);
-        let refused = |why: String| json!({"verified": false, "message": why, "line": line.max(1)});
+        let refused = |why: &Unset| {
+            let why = why.to_string();
+            json!({"verified": false, "message": why, "line": line.max(1)})
+        };
         let from_hit = match hits(&text(one, "hitCondition")) {
             Ok(hits) => hits,
-            Err(why) => return Ok(refused(why)),
+            Err(why) => return Ok(refused(&why)),
         };
         let blocks: Vec<Box<str>> = match kind {
             Kind::Line => listing.blocks(line).first().cloned().into_iter().collect(),
@@ -127,7 +156,7 @@ impl Points {
             };
             let answer = target.order(&Order::Break(point.clone()))?;
             if let Some(why) = why_not(&answer) {
-                return Ok(refused(why));
+                return Ok(refused(&Unset::Refused(why)));
             }
             let number = answer.get("number").and_then(Value::as_u64).unwrap_or(0);
             self.set.push(Set {
@@ -139,14 +168,7 @@ impl Points {
         }
         Ok(match first {
             Some((number, line)) => json!({"id": number, "verified": true, "line": line}),
-            None => refused(
-                match kind {
-                    Kind::Line => "this line has no block",
-                    Kind::Name => "there is no subprogram and no block of this name",
-                    Kind::Id => "there is no block with this id",
-                }
-                .to_owned(),
-            ),
+            None => refused(&Unset::Nowhere(kind)),
         })
     }
 

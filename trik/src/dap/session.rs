@@ -8,7 +8,7 @@ use super::launch::Launch;
 use super::points::{Kind, Points};
 use super::view;
 use crate::debug::listing::Listing;
-use crate::debug::target::{Channel, Event, Target, why_not};
+use crate::debug::target::{Channel, Event, Target, log_lines, why_not};
 use crate::debug::told::{State, Told};
 use crate::error::Error;
 use lang_diagram::debug::order::Order;
@@ -215,13 +215,8 @@ impl<'a> Session<'a> {
         for event in events {
             match event {
                 Event::Told(value) => {
-                    for line in value
-                        .get("log")
-                        .and_then(Value::as_array)
-                        .into_iter()
-                        .flatten()
-                    {
-                        self.output("console", line.as_str().unwrap_or_default());
+                    for line in log_lines(value) {
+                        self.output("console", line);
                     }
                     is_stopped |=
                         Told::read(value).is_some_and(|told| told.state == State::Stopped);

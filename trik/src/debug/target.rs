@@ -54,6 +54,12 @@ pub(crate) enum Channel {
     Message,
 }
 
+/// The lines of breakpoints in what a debugger has told; none if it has told something else.
+pub(crate) fn log_lines(told: &Value) -> impl Iterator<Item = &str> {
+    let lines = told.get("log").and_then(Value::as_array);
+    lines.into_iter().flatten().filter_map(Value::as_str)
+}
+
 /// Why an answer says that the order was not carried out; none: it was.
 pub(crate) fn why_not(answer: &Value) -> Option<String> {
     match answer.get("done").and_then(Value::as_bool) {

@@ -4,7 +4,7 @@
 //! pipe are read one after the other, each when the program has stopped.
 
 use super::listing::Listing;
-use super::target::{Channel, Event, Target, why_not};
+use super::target::{Channel, Event, Target, log_lines, why_not};
 use super::told::{State, Told};
 use super::words::{ROWS, Typed, understand};
 use crate::error::Error;
@@ -244,13 +244,8 @@ impl<'a> Terminal<'a> {
         for event in events {
             match event {
                 Event::Told(value) => {
-                    for line in value
-                        .get("log")
-                        .and_then(Value::as_array)
-                        .into_iter()
-                        .flatten()
-                    {
-                        self.say(&harmless(line.as_str().unwrap_or_default()))?;
+                    for line in log_lines(value) {
+                        self.say(&harmless(line))?;
                     }
                 }
                 Event::Said(Channel::Output, text) => self.say(&harmless(text))?,

@@ -89,13 +89,15 @@ fn list<T>(value: &Value, name: &str, read: impl Fn(&Value) -> T) -> Vec<T> {
 }
 
 impl Told {
-    /// What a state says; none if it is something else.
+    /// What a state says; none if it is something else, or a state that is not known here.
     pub(crate) fn read(value: &Value) -> Option<Self> {
         let state = match value.get("state")?.as_str()? {
+            "running" => State::Running,
             "stopped" => State::Stopped,
             "past" => State::Past,
             "ended" => State::Ended,
-            _ => State::Running,
+            // Of a newer robot: whether it runs is not known.
+            _ => return None,
         };
         let kept = value.get("kept");
         Some(Self {
@@ -174,5 +176,22 @@ fn thread(value: &Value) -> Thread {
         at: value.get("at").map(at).unwrap_or_default(),
         does,
         calls: list(value, "calls", at),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn a_state_that_is_not_known_says_nothing() {
+        let state = |word: &str| Told::read(&json!({"state": word})).map(|told| told.state);
+        assert_eq!(state("running"), Some(State::Running));
+        assert_eq!(state("stopped"), Some(State::Stopped));
+        assert_eq!(state("past"), Some(State::Past));
+        assert_eq!(state("ended"), Some(State::Ended));
+        assert_eq!(state("asleep"), None);
+        assert_eq!(Told::read(&json!({"control": null})), None);
     }
 }

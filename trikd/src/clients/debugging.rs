@@ -1,4 +1,4 @@
-//! Who debugs the running diagram: clients that hear of it, and the one in control.
+//! Clients that debug the running diagram: those that hear of it, and the one in control.
 //!
 //! Owns who is in control, and what all hear when that changes. Knows no orders and no program.
 
@@ -9,7 +9,7 @@ use lang_text::json::Object;
 use std::net::SocketAddr;
 use std::rc::Rc;
 
-/// Characters of a text in what the daemon itself tells who debugs.
+/// Characters of a text in what the daemon itself tells clients that debug.
 const CHARACTERS_MAX: usize = 1000;
 
 /// A client by its number, which no other client ever has.
@@ -19,7 +19,7 @@ pub struct Holder {
     peer: SocketAddr,
 }
 
-/// An order, by who gave it and what he calls it.
+/// An order, by the client that gave it and what it calls it.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
 pub struct Asked {
     /// The number of the client.
@@ -28,7 +28,7 @@ pub struct Asked {
     pub tag: u32,
 }
 
-/// The frame of something for who debugs.
+/// The frame of something for clients that debug.
 fn frame(json: &str) -> Rc<[u8]> {
     encode(format!("debug: {json}").as_bytes()).into()
 }
@@ -37,7 +37,7 @@ fn object() -> Object {
     Object::new(CHARACTERS_MAX)
 }
 
-/// Who is in control, as all who debug hear it.
+/// Tells which client is in control, as all who debug hear it.
 fn control(holder: Option<SocketAddr>) -> String {
     match holder {
         Some(peer) => object().text("control", &peer.to_string()).done(),
@@ -84,7 +84,7 @@ impl Clients {
     /// This client takes control, if nobody else has it.
     ///
     /// # Errors
-    /// Who has it.
+    /// The client that has it.
     pub fn take_debugger(&self, client: &Client) -> Result<(), SocketAddr> {
         match self.debugger.get() {
             Some(holder) if holder.id == client.id => Ok(()),
@@ -144,7 +144,7 @@ impl Clients {
         }
     }
 
-    /// The answer of the program to an order; who gave it may have left.
+    /// The answer of the program to an order; the client that gave it may have left.
     pub fn tell_answer(&self, client: u32, json: &str) {
         if let Some(client) = self.living().iter().find(|found| found.id == client) {
             client.outbox.push(frame(json));

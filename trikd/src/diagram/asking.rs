@@ -1,7 +1,7 @@
 //! Questions of a diagram to a person, one at a time.
 //!
-//! Owns which question is open and how long it waits. Who is asked, and how, is the daemon's matter; what becomes of the
-//! answer, the diagram's.
+//! Owns which question is open and how long it waits. Which person is asked, and how, is the daemon's matter; what
+//! becomes of the answer, the diagram's.
 
 use crate::limits;
 use lang_diagram::brick::{Answer, Question};
@@ -118,7 +118,7 @@ mod tests {
         assert_eq!(ask(&mut asking, "m", now), Answer::Waiting);
         asking.hear(2, None);
         assert_eq!(ask(&mut asking, "m", now), Answer::Cancelled);
-        // Who gets no answer does not ask again at once.
+        // A block that gets no answer does not ask again at once.
         let rested = now + Duration::from_millis(limits::QUESTION_REST_MS);
         assert_eq!(ask(&mut asking, "m", now), Answer::Waiting);
         assert_eq!(ask(&mut asking, "n", rested), Answer::Waiting);

@@ -95,7 +95,7 @@ pub enum FromProgram<'a> {
     },
     /// The answer to an order, or a state of the program for all who debug.
     Debug {
-        /// Who is meant; [`ALL`].
+        /// The client that is meant; [`ALL`].
         client: u32,
         /// A JSON object.
         json: &'a str,

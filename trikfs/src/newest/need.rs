@@ -1,4 +1,4 @@
-//! Who needs the samples of a node, and whether the clock takes them at the moment.
+//! Which users need the samples of a node, and whether the clock takes them at the moment.
 //!
 //! Owns the count of those who need them and the time for which the clock goes on without anybody. Knows no node and takes
 //! no sample. What a node shows after a rest was taken after it: who ends a rest has everything forgotten first.

@@ -4,17 +4,57 @@
 //! word counts.
 
 use super::Session;
+use crate::blame::Blame;
 use crate::clients::debugging::Asked;
 use crate::program::child::Language;
 use crate::program::{Command, Wish};
 use crate::protocol::news;
-use crate::scripts;
-use lang_diagram::debug::order::Order;
+use crate::{log, scripts};
+use lang_diagram::debug::order::{NoOrder, Order};
+use std::fmt;
+use std::net::SocketAddr;
 
 /// The word of a request to hear nothing more, and to give up control.
 const LEAVE: &str = "leave";
 /// The word, with its blank, of a request to run a diagram that is stopped before its first block.
 const RUN: &str = "run ";
+
+/// Why a request is not passed on to a program.
+#[derive(Clone, Debug, Eq, PartialEq)]
+enum Refusal {
+    /// The computer is not paired.
+    NotPaired,
+    /// Somebody else is in control.
+    Taken(SocketAddr),
+    /// The text is no order.
+    Order(NoOrder),
+    /// There is no such program.
+    Program(scripts::Refusal),
+    /// The program is none of blocks.
+    NoDiagram,
+}
+
+impl Refusal {
+    /// Who can change something about it.
+    fn blame(&self) -> Blame {
+        match self {
+            Self::NotPaired | Self::Taken(_) | Self::Order(_) | Self::NoDiagram => Blame::Client,
+            Self::Program(why) => why.blame(),
+        }
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotPaired => out.write_str(news::NOT_PAIRED),
+            Self::Taken(who) => out.write_str(&news::has_control(*who)),
+            Self::Order(why) => write!(out, "{why}"),
+            Self::Program(why) => write!(out, "{why}"),
+            Self::NoDiagram => out.write_str(news::ONLY_DIAGRAMS),
+        }
+    }
+}
 
 impl Session {
     /// Does what a request asks for, or answers why not; each is answered once.
@@ -36,23 +76,26 @@ impl Session {
             None => self.order(asked, text).await,
         };
         if let Err(why) = done {
-            self.client.not_done(Some(tag), &why);
+            if why.blame() != Blame::Client {
+                log::report(&why);
+            }
+            self.client.not_done(Some(tag), &why.to_string());
         }
     }
 
-    async fn run_debugged(&self, asked: Asked, name: &str) -> Result<(), String> {
+    async fn run_debugged(&self, asked: Asked, name: &str) -> Result<(), Refusal> {
         self.takes_debugger()?;
         let found = scripts::find(&self.control.scripts, name.as_bytes());
-        let path = found.map_err(|why| why.to_string())?;
+        let path = found.map_err(Refusal::Program)?;
         if Language::of(&path) != Language::Diagram {
-            return Err(news::ONLY_DIAGRAMS.to_owned());
+            return Err(Refusal::NoDiagram);
         }
         self.command(Command::Debug(asked, Wish::Run(path))).await;
         Ok(())
     }
 
-    async fn order(&self, asked: Asked, text: &str) -> Result<(), String> {
-        let order = Order::parse(text).map_err(|why| why.to_string())?;
+    async fn order(&self, asked: Asked, text: &str) -> Result<(), Refusal> {
+        let order = Order::parse(text).map_err(Refusal::Order)?;
         let command = Command::Debug(asked, Wish::Order(text.to_owned()));
         if !order.is_for_control() {
             self.control.programs.send(command).await;
@@ -67,12 +110,12 @@ impl Session {
     }
 
     /// This client is in control now, or may not be.
-    fn takes_debugger(&self) -> Result<(), String> {
+    fn takes_debugger(&self) -> Result<(), Refusal> {
         if !self.is_paired() {
-            return Err(news::NOT_PAIRED.to_owned());
+            return Err(Refusal::NotPaired);
         }
         let taken = self.control.clients.take_debugger(&self.client);
-        taken.map_err(news::has_control)
+        taken.map_err(Refusal::Taken)
     }
 
     /// This client hears nothing more, and is not in control; the program learns that before anybody else is.
