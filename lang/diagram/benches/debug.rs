@@ -102,9 +102,8 @@ fn costs(program: &Rc<Program>, id: &str) {
         let alone = Machine::new(program.clone(), Options::default());
         let mut marked = session(program, false);
         let point = Breakpoint {
-            block: id.into(),
             condition: "old > 100000".into(),
-            ..Breakpoint::default()
+            ..Breakpoint::before(id)
         };
         marked.add(point).unwrap();
         let took = [
@@ -162,9 +161,8 @@ fn way_back(program: &Rc<Program>, id: &str) {
     told("to the beginning", vec![timed(Back::Oldest)]);
     session.to_present();
     let point = Breakpoint {
-        block: id.into(),
         condition: "old > 100000".into(),
-        ..Breakpoint::default()
+        ..Breakpoint::before(id)
     };
     session.add(point).unwrap();
     let began = Instant::now();

@@ -16,6 +16,7 @@ use lang_expr::words::{Fault, Reason};
 use lang_expr::{Compat, Kind, Names, Source, Value};
 use lang_text::problem::{Place, Problem, Severity};
 
+pub(crate) mod aside;
 #[cfg(test)]
 mod tests;
 
@@ -122,12 +123,15 @@ pub(super) fn successors(program: &Program, node: Node, tell: &mut dyn FnMut(Nod
     }
 }
 
-/// Errors of expressions that no order of running can mend.
-fn expressions(project: &Project, program: &Program, flow: &Flow) -> Vec<Problem> {
-    let mut names = Names::new(program.kit, Compat::Studio);
+/// Teaches names all that is known before a run; the texts, and names whose values nobody knows beforehand.
+fn taught(
+    program: &Program,
+    flow: &Flow,
+    names: &mut Names,
+) -> (HashMap<u32, Source>, HashSet<String>) {
     let mut unknown = HashSet::new();
     for &node in &flow.order {
-        declare(program, node, &mut names, &mut unknown);
+        declare(program, node, names, &mut unknown);
     }
     let mut texts: HashMap<u32, Source> = HashMap::new();
     // The first time teaches all names; what is still wrong the second time is wrong.
@@ -140,14 +144,21 @@ fn expressions(project: &Project, program: &Program, flow: &Flow) -> Vec<Problem
                 let source = texts
                     .entry(index)
                     .or_insert_with(|| Source::new(&text.text, wanted(text.wanted)));
-                let _ = lang_expr::analyse(source, &mut names);
+                let _ = lang_expr::analyse(source, names);
             }
         }
     }
+    let unknown = spread(unknown, &texts);
+    (texts, unknown)
+}
+
+/// Errors of expressions that no order of running can mend.
+fn expressions(project: &Project, program: &Program, flow: &Flow) -> Vec<Problem> {
+    let mut names = Names::new(program.kit, Compat::Studio);
+    let (mut texts, unknown) = taught(program, flow, &mut names);
     let mut given = given(program, flow, &texts);
     let parameters = project.diagrams.iter().flat_map(|one| &one.parameters);
     given.extend(parameters.map(|parameter| Rc::from(&*parameter.name)));
-    let unknown = spread(unknown, &texts);
     let mut problems = Vec::new();
     for &node in &flow.order {
         for index in program.texts(node) {

@@ -1,18 +1,16 @@
 //! A debugger for a running program: breakpoints, steps, pauses, and why it has stopped.
 //!
-//! Owns what a person has asked for and decides, as the trace of a guarded machine, whether it goes on. It knows blocks
-//! by the ids of the project, so that it survives a new version of the program. It changes nothing in the machine: a
-//! program that is debugged does what it does alone. Knows no clock, no files and no protocol.
+//! Owns what a person has asked for and decides, as the trace of a guarded machine, whether it goes on. It changes nothing
+//! in the machine: a program that is debugged does what it does alone. Knows no clock, no files and no protocol.
 
-use std::collections::{BTreeSet, VecDeque};
-use std::fmt;
+use std::collections::BTreeSet;
 use std::rc::Rc;
 
 use crate::limits;
 use crate::machine::Machine;
 use crate::machine::trace::{Guard, Moment, Trace};
 use crate::machine::view::Waits;
-use crate::program::{Node, Program};
+use crate::program::{NOWHERE, Node, Program};
 use lang_expr::Value;
 use lang_text::problem::{Problem, Severity};
 
@@ -21,61 +19,18 @@ pub mod desk;
 mod history;
 pub mod order;
 mod past;
+mod points;
 pub mod report;
 mod session;
 #[cfg(test)]
 mod tests;
+mod words;
 
 use history::Position;
 pub use past::{Back, NoBack};
+use points::Points;
+pub use points::{Breakpoint, NoBreakpoint, Spot};
 pub use session::{NotNow, Phase, Session};
-
-/// A breakpoint at a block.
-#[derive(Clone, Debug, Default, Eq, PartialEq)]
-pub struct Breakpoint {
-    /// The id of the block in the project.
-    pub block: Box<str>,
-    /// It counts only if this expression is true; empty: always.
-    pub condition: Box<str>,
-    /// It stops at this time and all later ones; 0 and 1: at each.
-    pub from_hit: u32,
-    /// It writes this line instead of stopping; `{expression}` stands for a value. Empty: it stops.
-    pub log: Box<str>,
-    /// It stops once and is gone.
-    pub is_once: bool,
-    /// It is kept but does nothing.
-    pub is_disabled: bool,
-}
-
-/// Why a breakpoint is refused.
-#[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub enum NoBreakpoint {
-    /// The program has no such block.
-    NoSuchBlock,
-    /// There are [`limits::BREAKPOINTS_MAX`].
-    TooMany,
-    /// A condition or a line is longer than [`limits::CONDITION_MAX`] bytes.
-    TooLong,
-}
-
-impl fmt::Display for NoBreakpoint {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NoSuchBlock => f.write_str("the program has no such block"),
-            Self::TooMany => {
-                let most = limits::BREAKPOINTS_MAX;
-                write!(
-                    f,
-                    "there are {most} breakpoints already, which is all that can be"
-                )
-            }
-            Self::TooLong => {
-                let most = limits::CONDITION_MAX;
-                write!(f, "a condition or a line has at most {most} bytes")
-            }
-        }
-    }
-}
 
 /// How far a thread goes.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -100,6 +55,8 @@ pub enum Reason {
     ThreadEnded,
     /// A breakpoint, by its number.
     Breakpoint(u32),
+    /// A variable that is watched has changed.
+    Changed(Box<Change>),
     /// The condition of a breakpoint cannot be computed.
     Condition(u32, Vec<Problem>),
     /// An error in a block. The thread ends when the program goes on.
@@ -108,6 +65,28 @@ pub enum Reason {
     Oldest,
     /// A moment of the past that somebody asked for.
     Past,
+}
+
+/// A change of a variable that is watched.
+#[derive(Clone, Debug)]
+pub struct Change {
+    /// The number of the breakpoint.
+    pub number: u32,
+    /// The variable.
+    pub variable: Box<str>,
+    /// What it held before; none: it had no value.
+    pub was: Option<Value>,
+    /// What it holds.
+    pub is: Option<Value>,
+    /// The block that has assigned it, if one has, and it is known.
+    pub by: Option<Node>,
+}
+
+impl PartialEq for Change {
+    /// A change is known by the breakpoint that tells of it.
+    fn eq(&self, other: &Self) -> bool {
+        self.number == other.number && self.variable == other.variable && self.by == other.by
+    }
 }
 
 /// A stop.
@@ -130,20 +109,13 @@ impl Stop {
             | Reason::Step
             | Reason::ThreadEnded
             | Reason::Breakpoint(_)
+            | Reason::Changed(_)
             | Reason::Condition(..)
             | Reason::Oldest
             | Reason::Past => false,
         };
         self.node.is_some() && !is_failure
     }
-}
-
-#[derive(Clone, Debug)]
-struct Kept {
-    number: u32,
-    point: Breakpoint,
-    node: Option<Node>,
-    hits: u32,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -156,10 +128,11 @@ struct Walk {
 /// What a person has asked for.
 #[derive(Clone, Debug, Default)]
 pub struct Debugger {
-    points: Vec<Kept>,
-    numbers: u32,
-    /// By node: whether there is a breakpoint.
-    marked: Vec<bool>,
+    points: Points,
+    /// By thread: the block that it has entered last.
+    entered_by: Vec<Node>,
+    /// Variables that are watched and were assigned since the last moment, and by which block.
+    assigned: Vec<(Box<str>, Node)>,
     /// Whether errors stop.
     pub stops_at_errors: bool,
     wants_pause: bool,
@@ -168,8 +141,6 @@ pub struct Debugger {
     walker_ended: bool,
     error: Option<Problem>,
     stop: Option<Stop>,
-    lines: VecDeque<String>,
-    lines_lost: u32,
     /// Blocks that threads were about to enter so far.
     entered: Position,
     /// Of those the ones before which a thread was held alone, since somebody took them.
@@ -181,81 +152,41 @@ impl Debugger {
     ///
     /// # Errors
     /// [`NoBreakpoint`].
-    pub fn add(&mut self, program: &Program, point: Breakpoint) -> Result<u32, NoBreakpoint> {
-        if self.points.len() >= limits::BREAKPOINTS_MAX {
-            return Err(NoBreakpoint::TooMany);
-        }
-        let longest = point.condition.len().max(point.log.len());
-        if longest > limits::CONDITION_MAX {
-            return Err(NoBreakpoint::TooLong);
-        }
-        if program.node(&point.block).is_none() {
-            return Err(NoBreakpoint::NoSuchBlock);
-        }
-        self.numbers = self.numbers.wrapping_add(1);
-        self.points.push(Kept {
-            number: self.numbers,
-            point,
-            node: None,
-            hits: 0,
-        });
-        self.bind(program);
-        Ok(self.numbers)
+    pub fn add(&mut self, machine: &Machine, point: Breakpoint) -> Result<u32, NoBreakpoint> {
+        self.points.add(machine, point)
     }
 
     /// Takes a breakpoint away; false if there is none with this number.
     pub fn remove(&mut self, number: u32) -> bool {
-        let before = self.points.len();
-        self.points.retain(|kept| kept.number != number);
-        self.mark();
-        self.points.len() < before
+        self.clear(Some(number))
     }
 
     /// Takes one breakpoint away, or all; false if there is none with this number.
     pub fn clear(&mut self, number: Option<u32>) -> bool {
-        match number {
-            Some(number) => self.remove(number),
-            None => {
-                self.points.clear();
-                self.mark();
-                true
-            }
-        }
+        self.points.clear(number)
     }
 
     /// Lets a breakpoint do something or nothing; false if there is none with this number.
     pub fn enable(&mut self, number: u32, is_enabled: bool) -> bool {
-        let mut points = self.points.iter_mut();
-        let found = points.find(|kept| kept.number == number);
-        found
-            .map(|kept| kept.point.is_disabled = !is_enabled)
-            .is_some()
+        self.points.enable(number, is_enabled)
     }
 
     /// The breakpoints with their numbers and how often each was hit.
     pub fn breakpoints(&self) -> impl Iterator<Item = (u32, &Breakpoint, u32)> {
-        let kept = self.points.iter();
-        kept.map(|kept| (kept.number, &kept.point, kept.hits))
+        self.points.all()
     }
 
-    /// The program that runs is another one: breakpoints are where their blocks are. Those of blocks that are gone wait
-    /// until such a block comes back.
+    /// The program that runs is another one: breakpoints are where their blocks are.
     pub fn bind(&mut self, program: &Program) {
-        for kept in &mut self.points {
-            kept.node = program.node(&kept.point.block);
-        }
-        self.mark();
+        self.points.bind(program);
+        // They are of blocks of the old one.
+        self.entered_by.clear();
+        self.assigned.clear();
     }
 
-    fn mark(&mut self) {
-        self.marked.clear();
-        for node in self.points.iter().filter_map(|kept| kept.node) {
-            let at = node as usize;
-            if self.marked.len() <= at {
-                self.marked.resize(at + 1, false);
-            }
-            self.marked[at] = true;
-        }
+    /// Somebody else than the program has changed values.
+    fn look(&mut self, machine: &Machine) {
+        self.points.look(machine);
     }
 
     /// The program stops as soon as it can.
@@ -291,7 +222,7 @@ impl Debugger {
     fn forget(&mut self) {
         *self = Self {
             stop: self.stop.take(),
-            numbers: self.numbers,
+            points: self.points.without_all(),
             ..Self::default()
         };
     }
@@ -317,8 +248,7 @@ impl Debugger {
 
     /// Lines of breakpoints that log, and how many were lost because nobody took them.
     pub fn take_lines(&mut self) -> (Vec<String>, u32) {
-        let lost = std::mem::take(&mut self.lines_lost);
-        (self.lines.drain(..).collect(), lost)
+        self.points.take_lines()
     }
 
     /// This debugger as the trace of a machine, with another one that hears everything as well.
@@ -341,21 +271,6 @@ impl Debugger {
         Guard::Hold
     }
 
-    /// The breakpoint that would stop at a block in the past: hits are not counted there, and nothing is logged.
-    fn stops_at(&self, machine: &Machine, node: Node) -> Option<u32> {
-        let here = self.points.iter().find(|kept| {
-            let point = &kept.point;
-            let is_here = kept.node == Some(node) && !point.is_disabled && point.log.is_empty();
-            let holds = |text: &str| {
-                machine
-                    .evaluate_aside(text)
-                    .is_ok_and(|value| value.to_bool())
-            };
-            is_here && (point.condition.is_empty() || holds(&point.condition))
-        });
-        here.map(|kept| kept.number)
-    }
-
     fn enters(&mut self, machine: &Machine, thread: u16, node: Node) -> Guard {
         let guard = self.decides(machine, thread, node);
         if guard == Guard::HoldThread {
@@ -366,9 +281,10 @@ impl Debugger {
     }
 
     fn decides(&mut self, machine: &Machine, thread: u16, node: Node) -> Guard {
-        if self.is_marked(node)
-            && let Some(reason) = self.hit(machine, node)
-        {
+        // Both have to count their hits.
+        let changed = self.changed(machine);
+        let hit = self.points.at_block(machine, node);
+        if let Some(reason) = changed.or(hit) {
             return self.halt(reason, Some(thread), Some(node));
         }
         if let Some(walk) = self.walk
@@ -387,56 +303,39 @@ impl Debugger {
         }
     }
 
-    fn is_marked(&self, node: Node) -> bool {
-        self.marked.get(node as usize).copied().unwrap_or(false)
-    }
-
-    /// What the breakpoints at a block do.
-    fn hit(&mut self, machine: &Machine, node: Node) -> Option<Reason> {
-        let mut reason = None;
-        let mut gone = None;
-        for at in 0..self.points.len() {
-            let kept = &mut self.points[at];
-            if kept.node != Some(node) || kept.point.is_disabled {
-                continue;
-            }
-            if !kept.point.condition.is_empty() {
-                match machine.evaluate_aside(&kept.point.condition) {
-                    Ok(value) if !value.to_bool() => continue,
-                    Ok(_) => {}
-                    Err(problems) => {
-                        reason.get_or_insert(Reason::Condition(kept.number, problems));
-                        continue;
-                    }
-                }
-            }
-            kept.hits = kept.hits.saturating_add(1);
-            if kept.hits < kept.point.from_hit {
-                continue;
-            }
-            let number = kept.number;
-            if kept.point.log.is_empty() {
-                if kept.point.is_once {
-                    gone = Some(number);
-                }
-                reason.get_or_insert(Reason::Breakpoint(number));
-            } else {
-                let line = filled(&kept.point.log, machine);
-                self.line(line);
-            }
+    /// What breakpoints do whose variables have changed.
+    fn changed(&mut self, machine: &Machine) -> Option<Reason> {
+        let mut reason = self.points.at_changes(machine);
+        if let Some(Reason::Changed(change)) = &mut reason {
+            let mut assigned = self.assigned.iter().rev();
+            let by = assigned.find(|(name, _)| *name == change.variable);
+            change.by = by.map(|(_, node)| *node);
         }
-        if let Some(number) = gone {
-            self.remove(number);
-        }
+        self.assigned.clear();
         reason
     }
 
-    fn line(&mut self, line: String) {
-        if self.lines.len() >= limits::DEBUG_LINES_MAX {
-            self.lines.pop_front();
-            self.lines_lost = self.lines_lost.saturating_add(1);
+    /// A thread has assigned a variable.
+    fn note_assigned(&mut self, thread: u16, variable: &str) {
+        if !self.points.is_watched(variable) {
+            return;
         }
-        self.lines.push_back(line);
+        let by = self.entered_by.get(usize::from(thread));
+        if let Some(&node) = by.filter(|&&node| node != NOWHERE) {
+            self.assigned.retain(|(name, _)| **name != *variable);
+            self.assigned.push((variable.into(), node));
+        }
+    }
+
+    fn note_entered(&mut self, thread: u16, node: Node) {
+        if !self.points.has_watches() {
+            return;
+        }
+        let at = usize::from(thread);
+        if self.entered_by.len() <= at {
+            self.entered_by.resize(at + 1, NOWHERE);
+        }
+        self.entered_by[at] = node;
     }
 }
 
@@ -452,37 +351,6 @@ impl Step {
     }
 }
 
-/// A line with values in the place of `{expression}`; what cannot be computed says why.
-fn filled(line: &str, machine: &Machine) -> String {
-    let mut out = String::new();
-    let mut rest = line;
-    while let Some((before, after)) = rest.split_once('{') {
-        out.push_str(before);
-        let Some((expression, after)) = after.split_once('}') else {
-            out.push('{');
-            rest = after;
-            continue;
-        };
-        match machine.evaluate_aside(expression) {
-            Ok(value) => out.push_str(&value.to_text()),
-            Err(problems) => {
-                let why = problems.first().map(|problem| &*problem.words.english);
-                out.push('<');
-                out.push_str(why.unwrap_or("?"));
-                out.push('>');
-            }
-        }
-        rest = after;
-        if out.len() > limits::DEBUG_LINE_BYTES_MAX {
-            break;
-        }
-    }
-    out.push_str(rest);
-    let end = out.floor_char_boundary(limits::DEBUG_LINE_BYTES_MAX);
-    out.truncate(end);
-    out
-}
-
 /// A debugger at a machine, with another trace beside it.
 pub struct Attached<'a> {
     debugger: &'a mut Debugger,
@@ -491,10 +359,12 @@ pub struct Attached<'a> {
 
 impl Trace for Attached<'_> {
     fn entered(&mut self, now: u32, thread: u16, node: Node) {
+        self.debugger.note_entered(thread, node);
         self.heard.entered(now, thread, node);
     }
 
     fn changed(&mut self, now: u32, thread: u16, variable: &str, value: &Value) {
+        self.debugger.note_assigned(thread, variable);
         self.heard.changed(now, thread, variable, value);
     }
 
@@ -537,6 +407,11 @@ impl Trace for Attached<'_> {
             // Errors of blocks that wait: their threads have ended.
             Moment::Between => match debugger.error.take() {
                 Some(problem) => debugger.halt(Reason::Error(problem), None, None),
+                None if debugger.points.has_watches()
+                    && let Some(reason) = debugger.changed(machine) =>
+                {
+                    debugger.halt(reason, None, None)
+                }
                 None if debugger.walker_ended => debugger.halt(Reason::ThreadEnded, None, None),
                 None if debugger.wants_pause => debugger.halt(Reason::Pause, None, None),
                 None => Guard::Go,

@@ -46,6 +46,8 @@ pub const PICTURE_BLOCKS_MAX: usize = 5000;
 pub const PICTURE_CORNERS_MAX: usize = 64;
 /// Breakpoints of a debugger, and threads that it holds alone.
 pub const BREAKPOINTS_MAX: usize = 1000;
+/// Variables that a debugger watches.
+pub const WATCHES_MAX: usize = 100;
 /// Bytes of a condition or a line of a breakpoint.
 pub const CONDITION_MAX: usize = 4096;
 /// Lines of breakpoints that wait for somebody to take them; the oldest are lost.
@@ -58,6 +60,10 @@ pub const HISTORY_STEPS: usize = 100;
 pub const HISTORY_BLOCKS: u64 = 2000;
 /// Bytes that the past of a program takes on a PC.
 pub const HISTORY_BYTES: usize = 64 << 20;
+/// Moments and steps of the past that are looked at before a search pauses for orders: a millisecond on a PC.
+pub const SEARCH_WORK: u64 = 4000;
+/// How many of those a moment counts for at which a condition or a variable is looked at.
+pub const SEARCH_LOOK_WORK: u64 = 50;
 /// Bytes of an order to a debugger.
 pub const ORDER_BYTES_MAX: usize = 16_384;
 /// Bytes of what a refusal repeats of it.

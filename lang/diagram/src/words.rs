@@ -387,6 +387,20 @@ pub(super) fn only_looked(function: &str) -> Words {
     )
 }
 
+pub(super) fn assigns() -> Words {
+    Words::new(
+        "An expression that is only looked at cannot assign; == compares",
+        "В просматриваемом выражении не может быть присваивания; сравнивает ==",
+    )
+}
+
+pub(super) fn never_changes(name: &str) -> Words {
+    Words::new(
+        format!("{name} is no variable and never changes"),
+        format!("{name} - не переменная и никогда не меняется"),
+    )
+}
+
 pub(super) fn no_name(text: &str) -> Words {
     Words::new(
         format!("{text:?} is no name of a variable"),

@@ -1,12 +1,12 @@
-//! Breakpoints as a client sets them: by lines, by names of subprograms and blocks, by ids.
+//! Breakpoints as a client sets them: by lines, by names of subprograms and blocks, by ids, by variables.
 //!
 //! Owns which of them are set. A client always says all of one kind; what it does not say any more is taken away.
 
 use crate::debug::listing::Listing;
 use crate::debug::target::{Target, why_not};
 use crate::error::Error;
-use lang_diagram::debug::Breakpoint;
 use lang_diagram::debug::order::Order;
+use lang_diagram::debug::{Breakpoint, Spot};
 use lang_diagram::project::Project;
 use serde_json::{Value, json};
 use std::fmt;
@@ -20,6 +20,8 @@ pub(super) enum Kind {
     Name,
     /// The id of a block.
     Id,
+    /// A variable that changes.
+    Variable,
 }
 
 /// A breakpoint that is set.
@@ -65,6 +67,7 @@ impl fmt::Display for Unset {
             Self::Nowhere(Kind::Line) => "this line has no block",
             Self::Nowhere(Kind::Name) => "there is no subprogram and no block of this name",
             Self::Nowhere(Kind::Id) => "there is no block with this id",
+            Self::Nowhere(Kind::Variable) => "a name of a variable is wanted",
             Self::Refused(why) => why,
         })
     }
@@ -137,18 +140,24 @@ impl Points {
             Ok(hits) => hits,
             Err(why) => return Ok(refused(&why)),
         };
-        let blocks: Vec<Box<str>> = match kind {
-            Kind::Line => listing.blocks(line).first().cloned().into_iter().collect(),
-            Kind::Name => named(project, &text(one, "name")),
+        let before = |blocks: Vec<Box<str>>| blocks.into_iter().map(Spot::Block).collect();
+        let spots: Vec<Spot> = match kind {
+            Kind::Line => before(listing.blocks(line).first().cloned().into_iter().collect()),
+            Kind::Name => before(named(project, &text(one, "name"))),
             Kind::Id => {
                 let id = text(one, "instructionReference");
-                listing.has(&id).then_some(id).into_iter().collect()
+                before(listing.has(&id).then_some(id).into_iter().collect())
+            }
+            Kind::Variable => {
+                let name = text(one, "dataId");
+                let name = (!name.is_empty()).then_some(name);
+                name.map(Spot::Change).into_iter().collect()
             }
         };
         let mut first = None;
-        for block in blocks {
+        for spot in spots {
             let point = Breakpoint {
-                block: block.clone(),
+                at: spot.clone(),
                 condition: text(one, "condition"),
                 from_hit,
                 log: text(one, "logMessage"),
@@ -164,10 +173,15 @@ impl Points {
                 number,
                 point,
             });
-            first.get_or_insert((number, listing.line_of(&block)));
+            let line = match &spot {
+                Spot::Block(block) => Some(listing.line_of(block)),
+                Spot::Change(_) => None,
+            };
+            first.get_or_insert((number, line));
         }
         Ok(match first {
-            Some((number, line)) => json!({"id": number, "verified": true, "line": line}),
+            Some((number, None)) => json!({"id": number, "verified": true}),
+            Some((number, Some(line))) => json!({"id": number, "verified": true, "line": line}),
             None => refused(&Unset::Nowhere(kind)),
         })
     }

@@ -71,6 +71,7 @@ fn capabilities() -> Value {
         "supportsHitConditionalBreakpoints",
         "supportsLogPoints",
         "supportsInstructionBreakpoints",
+        "supportsDataBreakpoints",
         "supportsStepBack",
         "supportsSetVariable",
         "supportsSetExpression",
@@ -146,8 +147,8 @@ impl<'a> Session<'a> {
             self.begin()?;
         }
         loop {
-            let is_running =
-                self.is_configured && self.told.state == State::Running && !self.is_over;
+            let is_running = self.is_configured && self.told.state.is_under_way() && !self.is_over
+                || self.told.state == State::Searching;
             let wait = if is_running { Duration::ZERO } else { PATIENCE };
             match self.client.next(wait) {
                 Come::Request(request) => {
@@ -210,7 +211,7 @@ impl<'a> Session<'a> {
 
     /// Passes on what has happened.
     fn hear(&mut self, events: &[Event], tells_stops: bool) {
-        let mut is_stopped = false;
+        let (mut is_stopped, mut is_at_end) = (false, false);
         let mut over = None;
         for event in events {
             match event {
@@ -218,8 +219,9 @@ impl<'a> Session<'a> {
                     for line in log_lines(value) {
                         self.output("console", line);
                     }
-                    is_stopped |=
-                        Told::read(value).is_some_and(|told| told.state == State::Stopped);
+                    let state = Told::read(value).map(|told| told.state);
+                    is_stopped |= matches!(state, Some(State::Stopped | State::Past));
+                    is_at_end |= self.is_over && state == Some(State::Ended);
                 }
                 Event::Said(Channel::Output, text) => self.output("stdout", text),
                 Event::Said(Channel::Message, text) => self.output("stderr", text),
@@ -236,6 +238,8 @@ impl<'a> Session<'a> {
             }
         } else if is_stopped && tells_stops {
             self.tell_stop();
+        } else if is_at_end && tells_stops {
+            self.at_end();
         }
     }
 
@@ -255,11 +259,16 @@ impl<'a> Session<'a> {
         let stop = self.told.stop.clone().unwrap_or_default();
         let reason = match stop.reason.as_str() {
             "breakpoint" | "condition" => "breakpoint",
+            "change" => "data breakpoint",
             "error" => "exception",
             "step" | "thread ended" => "step",
             _ => "pause",
         };
-        self.stopped(reason, (!stop.text.is_empty()).then_some(stop.text));
+        let text = match stop.change {
+            Some(change) => change.sentence(),
+            None => stop.text,
+        };
+        self.stopped(reason, (!text.is_empty()).then_some(text));
     }
 
     fn stopped(&mut self, reason: &str, text: Option<String>) {
@@ -303,8 +312,28 @@ impl<'a> Session<'a> {
                 }
                 self.tell_stop();
             }
-            State::Running | State::Ended => {}
+            State::Ended if self.is_over => self.at_end(),
+            State::Running | State::Searching | State::Ended => {}
         }
+    }
+
+    /// Whoever looked at the past of a run that is over is at its end again.
+    fn at_end(&mut self) {
+        match self.launch.stops_at_end && self.launch.is_debugged {
+            true => self.stopped("pause", None),
+            false => self.ended(0),
+        }
+    }
+
+    /// The program is to stop, or a search through its past is to end where it began.
+    fn pause(&mut self, request: &Request) -> Result<(), Error> {
+        let was = self.told.state;
+        let answer = self.order(&Order::Pause)?.map(|_| Value::Null);
+        self.client.answer(request, answer);
+        if was == State::Searching {
+            self.settle();
+        }
+        Ok(())
     }
 
     /// One request; what becomes of the program if this was its last one.
@@ -327,6 +356,14 @@ impl<'a> Session<'a> {
                 self.client.answer(&request, Ok(Value::Null));
                 self.is_over = true;
                 self.ended(0);
+                return Ok(None);
+            }
+            "pause" => return self.pause(&request).map(|()| None),
+            "cancel" if self.told.state == State::Searching => {
+                return self.pause(&request).map(|()| None);
+            }
+            "cancel" => {
+                self.client.answer(&request, Ok(Value::Null));
                 return Ok(None);
             }
             _ => {}
@@ -357,7 +394,8 @@ impl<'a> Session<'a> {
     }
 
     fn go(&mut self, request: &Request, order: &Order) -> Result<(), Error> {
-        if self.is_over && self.told.state != State::Past && !matches!(order, Order::Back(_)) {
+        let is_present = !matches!(self.told.state, State::Past | State::Searching);
+        if self.is_over && is_present && !matches!(order, Order::Back(_)) {
             self.client
                 .answer(request, Ok(json!({"allThreadsContinued": true})));
             self.ended(0);
@@ -389,6 +427,10 @@ impl<'a> Session<'a> {
             }
             "setFunctionBreakpoints" => set(self, Kind::Name, request.items("breakpoints"))?,
             "setInstructionBreakpoints" => set(self, Kind::Id, request.items("breakpoints"))?,
+            "dataBreakpointInfo" => {
+                view::data(&self.told, request.text("name").unwrap_or_default())
+            }
+            "setDataBreakpoints" => set(self, Kind::Variable, request.items("breakpoints"))?,
             "setExceptionBreakpoints" => {
                 let filters = request.items("filters");
                 let is_wanted = filters.iter().any(|filter| filter == "errors");
@@ -421,7 +463,6 @@ impl<'a> Session<'a> {
                 request.text("text").unwrap_or_default(),
                 request.number("column").unwrap_or(1),
             ),
-            "pause" => return Ok(self.order(&Order::Pause)?.map(|_| Value::Null)),
             "source" => json!({"content": self.listing.whole(), "mimeType": "text/plain"}),
             "loadedSources" => json!({"sources": [view::source(&self.name)]}),
             "breakpointLocations" => self.locations(request),
@@ -429,7 +470,6 @@ impl<'a> Session<'a> {
                 let stop = self.told.stop.clone().unwrap_or_default();
                 json!({"exceptionId": "error", "description": stop.text, "breakMode": "always"})
             }
-            "cancel" => Value::Null,
             other => {
                 return Ok(Err(Refused(format!(
                     "this adapter does not know '{other}'"

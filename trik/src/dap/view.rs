@@ -119,6 +119,25 @@ pub(super) fn variables(
     Ok(json!({ "variables": found }))
 }
 
+/// Whether a breakpoint can stop at changes of what has this name, and how the client calls it then.
+pub(super) fn data(told: &Told, name: &str) -> Value {
+    let mut own = told.variables.iter();
+    let is_known = own.any(|variable| variable.name == name)
+        || Port::all().any(|port| port.variable() == Some(name));
+    match is_known {
+        true => json!({
+            "dataId": name,
+            "description": name,
+            "accessTypes": ["write"],
+            "canPersist": true,
+        }),
+        false => {
+            let why = format!("'{name}' is no variable that has a value yet");
+            json!({"dataId": null, "description": why})
+        }
+    }
+}
+
 fn one(name: &str, value: &str, kind: &str) -> Value {
     json!({"name": name, "value": value, "type": kind, "variablesReference": 0, "evaluateName": name})
 }

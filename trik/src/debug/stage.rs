@@ -199,6 +199,7 @@ impl Target for Stage<'_> {
                 break;
             }
         }
+        while self.program.desk.session().search_on() && Instant::now() < until {}
         self.end_if_over();
         let mut events = self.news();
         if let (false, Some(outcome)) = (self.has_told_end, &self.outcome) {

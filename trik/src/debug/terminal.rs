@@ -5,11 +5,12 @@
 
 use super::listing::Listing;
 use super::target::{Channel, Event, Target, log_lines, why_not};
-use super::told::{State, Told};
+use super::told::{Change, State, Told};
 use super::words::{ROWS, Typed, understand};
 use crate::error::Error;
 use crate::limits;
 use crate::terminal::harmless;
+use lang_diagram::debug::Spot;
 use lang_diagram::debug::order::Order;
 use nix::sys::signal::{SigSet, Signal};
 use nix::sys::signalfd::{SfdFlags, SignalFd};
@@ -169,14 +170,15 @@ impl<'a> Terminal<'a> {
             return self.say(&self.set_at(number, order));
         }
         if let Some(points) = answer.get("breakpoints").and_then(Value::as_array) {
-            return self.breakpoints(points);
+            let points = points.clone();
+            return self.breakpoints(points, answer);
         }
         let Some(told) = answer.get("program").and_then(Told::read) else {
             return Ok(());
         };
         self.told = told;
         match self.told.state {
-            State::Running => self.wait(keys),
+            State::Running | State::Searching => self.wait(keys),
             State::Past | State::Stopped => {
                 // What was told of it meanwhile says the same again.
                 let events = self.target.turn(Duration::ZERO)?;
@@ -200,7 +202,7 @@ impl<'a> Terminal<'a> {
             let events = self.target.turn(TURN)?;
             let has_ended = events.iter().any(|event| matches!(event, Event::Over(_)));
             self.hear(&events)?;
-            if has_ended || self.told.state != State::Running {
+            if has_ended || !self.told.state.is_under_way() {
                 return Ok(());
             }
             match pressed(keys) {
@@ -236,7 +238,7 @@ impl<'a> Terminal<'a> {
             // The end of a run is said with its verdict.
             State::Ended if is_over => Ok(()),
             State::Ended => self.say(&format!("the program has ended at {}", self.time())),
-            State::Running => Ok(()),
+            State::Running | State::Searching => Ok(()),
         }
     }
 
@@ -270,9 +272,14 @@ impl<'a> Terminal<'a> {
         let Order::Break(point) = order else {
             return format!("breakpoint {number}");
         };
-        let line = self.listing.line_of(&point.block);
-        let text = self.listing.text(line);
-        format!("breakpoint {number} at line {line}: {}", text.trim())
+        match &point.at {
+            Spot::Block(block) => {
+                let line = self.listing.line_of(block);
+                let text = self.listing.text(line);
+                format!("breakpoint {number} at line {line}: {}", text.trim())
+            }
+            Spot::Change(variable) => format!("breakpoint {number} watches {variable}"),
+        }
     }
 
     fn time(&self) -> String {
@@ -290,6 +297,9 @@ impl<'a> Terminal<'a> {
                     "the condition of breakpoint {number}: {}",
                     harmless(&stop.text)
                 )
+            }
+            ("change", Some(number)) => {
+                self.change(number, &stop.change.clone().unwrap_or_default())
             }
             ("error", _) => format!("an error: {}", harmless(&stop.text)),
             ("oldest", _) => "nothing before this is kept".to_owned(),
@@ -316,6 +326,15 @@ impl<'a> Terminal<'a> {
             self.say(&format!(">     {diagram}, {block}: {what}"))?;
         }
         Ok(())
+    }
+
+    /// A variable that is watched, and the line that has changed it.
+    fn change(&self, number: u64, change: &Change) -> String {
+        let told = format!("breakpoint {number}: {}", harmless(&change.sentence()));
+        match change.by.as_ref().filter(|at| self.listing.has(&at.id)) {
+            Some(at) => format!("{told}, by line {}", self.listing.line_of(&at.id)),
+            None => told,
+        }
     }
 
     fn here(&self) -> Option<usize> {
@@ -379,22 +398,44 @@ impl<'a> Terminal<'a> {
         Ok(())
     }
 
-    fn breakpoints(&self, points: &[Value]) -> Result<(), Error> {
+    /// All breakpoints; those that one answer leaves out are in the next one.
+    fn breakpoints(&mut self, mut points: Vec<Value>, mut answer: Value) -> Result<(), Error> {
         if points.is_empty() {
             return self.say("there are no breakpoints");
         }
+        loop {
+            self.page(&points)?;
+            let left_out = answer.get("breakpoints_left_out").and_then(Value::as_u64);
+            let last = points
+                .last()
+                .and_then(|point| point.get("number")?.as_u64());
+            let last = last.and_then(|last| u32::try_from(last).ok());
+            let (Some(left_out), Some(last)) = (left_out, last) else {
+                return Ok(());
+            };
+            answer = self.target.order(&Order::Breakpoints(last))?;
+            let next = answer.get("breakpoints").and_then(Value::as_array);
+            points = next.cloned().unwrap_or_default();
+            if points.is_empty() {
+                return self.say(&format!("and {left_out} more"));
+            }
+        }
+    }
+
+    fn page(&self, points: &[Value]) -> Result<(), Error> {
         for point in points {
             let text = |name: &str| {
                 let text = point.get(name).and_then(Value::as_str);
                 harmless(text.unwrap_or_default())
             };
-            let line = self.listing.line_of(&text("block"));
-            let mut told = format!(
-                "{:3} line {line}: {}, hits: {}",
-                point["number"],
-                self.listing.text(line).trim(),
-                point["hits"]
-            );
+            let place = match text("variable").as_str() {
+                "" => {
+                    let line = self.listing.line_of(&text("block"));
+                    format!("line {line}: {}", self.listing.text(line).trim())
+                }
+                variable => format!("watches {variable}"),
+            };
+            let mut told = format!("{:3} {place}, hits: {}", point["number"], point["hits"]);
             for (word, name) in [("if", "if"), ("writes", "log")] {
                 if !text(name).is_empty() {
                     told.push_str(&format!(", {word} {}", text(name)));

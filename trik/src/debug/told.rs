@@ -26,6 +26,8 @@ pub(crate) enum State {
     #[default]
     Running,
     Stopped,
+    /// A search through its past goes on.
+    Searching,
     /// Somebody looks at its past.
     Past,
     Ended,
@@ -37,9 +39,22 @@ pub(crate) struct Stop {
     pub reason: String,
     pub number: Option<u64>,
     pub text: String,
+    /// The change of a variable that is watched.
+    pub change: Option<Change>,
     pub thread: Option<u64>,
     pub name: String,
     pub at: Option<At>,
+}
+
+/// A variable that has changed.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Change {
+    pub variable: String,
+    /// What it held; none: it had no value.
+    pub was: Option<String>,
+    pub is: Option<String>,
+    /// The block that has assigned it, if that is known.
+    pub by: Option<At>,
 }
 
 /// A block.
@@ -88,12 +103,36 @@ fn list<T>(value: &Value, name: &str, read: impl Fn(&Value) -> T) -> Vec<T> {
     items.into_iter().flatten().map(read).collect()
 }
 
+impl Change {
+    /// What has changed, for a person.
+    pub(crate) fn sentence(&self) -> String {
+        let held = |text: &Option<String>| match text.as_deref() {
+            None => "nothing".to_owned(),
+            Some("") => "\"\"".to_owned(),
+            Some(text) => text.to_owned(),
+        };
+        let (was, is) = (held(&self.was), held(&self.is));
+        format!("{} was {was} and is {is}", self.variable)
+    }
+}
+
+impl State {
+    /// Whether something is to come by itself: a stop, an end, the end of a search.
+    pub(crate) fn is_under_way(self) -> bool {
+        match self {
+            Self::Running | Self::Searching => true,
+            Self::Stopped | Self::Past | Self::Ended => false,
+        }
+    }
+}
+
 impl Told {
     /// What a state says; none if it is something else, or a state that is not known here.
     pub(crate) fn read(value: &Value) -> Option<Self> {
         let state = match value.get("state")?.as_str()? {
             "running" => State::Running,
             "stopped" => State::Stopped,
+            "searching" => State::Searching,
             "past" => State::Past,
             "ended" => State::Ended,
             // Of a newer robot: whether it runs is not known.
@@ -154,6 +193,12 @@ fn stop(value: &Value) -> Stop {
         reason: text(value, "reason"),
         number: number(value, "number"),
         text: text(value, "text"),
+        change: value.get("variable").map(|_| Change {
+            variable: text(value, "variable"),
+            was: value.get("was").map(|_| text(value, "was")),
+            is: value.get("is").map(|_| text(value, "is")),
+            by: value.get("by").map(at),
+        }),
         thread: number(value, "thread"),
         name: text(value, "name"),
         at: value.get("at").map(at),
@@ -189,6 +234,7 @@ mod tests {
         let state = |word: &str| Told::read(&json!({"state": word})).map(|told| told.state);
         assert_eq!(state("running"), Some(State::Running));
         assert_eq!(state("stopped"), Some(State::Stopped));
+        assert_eq!(state("searching"), Some(State::Searching));
         assert_eq!(state("past"), Some(State::Past));
         assert_eq!(state("ended"), Some(State::Ended));
         assert_eq!(state("asleep"), None);

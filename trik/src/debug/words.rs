@@ -61,7 +61,7 @@ impl fmt::Display for NotUnderstood {
 type Row = (&'static str, &'static str, &'static str);
 
 /// All commands, for help. The first word is the long one.
-pub(super) const ROWS: [Row; 26] = [
+pub(super) const ROWS: [Row; 27] = [
     (
         "continue c",
         "",
@@ -112,6 +112,11 @@ pub(super) const ROWS: [Row; 26] = [
         "stop before a line; LINE may be the id of a block",
     ),
     ("tbreak tb", "LINE [if EXPRESSION]", "the same, once"),
+    (
+        "watch",
+        "NAME [if EXPRESSION]",
+        "stop after a variable changes, or a sensor that the program reads",
+    ),
     (
         "dprintf",
         "LINE TEXT",
@@ -184,7 +189,7 @@ pub(super) fn understand(line: &str, listing: &Listing) -> Result<Typed, NotUnde
         "info" | "i" => match rest {
             "threads" | "t" => Typed::Threads,
             "variables" | "locals" | "v" => Typed::Variables,
-            "breakpoints" | "break" | "b" => Typed::Order(Order::Breakpoints),
+            "breakpoints" | "break" | "b" | "watchpoints" => Typed::Order(Order::Breakpoints(0)),
             _ => return Err(NotUnderstood::Lacks("threads, variables or breakpoints")),
         },
         "threads" => Typed::Threads,
@@ -231,6 +236,7 @@ fn order(word: &str, rest: &str, listing: &Listing) -> Result<Option<Order>, Not
             is_once: true,
             ..breakpoint(rest, listing)?
         }),
+        "watch" => Order::Break(watch(rest)?),
         "dprintf" => {
             let (line, text) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
             let text = text.trim().trim_matches('"');
@@ -243,7 +249,7 @@ fn order(word: &str, rest: &str, listing: &Listing) -> Result<Option<Order>, Not
         "delete" | "d" | "clear" => Order::Clear(Some(number(rest)?)),
         "disable" => Order::Enable(number(rest)?, false),
         "enable" => Order::Enable(number(rest)?, true),
-        "breakpoints" => Order::Breakpoints,
+        "breakpoints" => Order::Breakpoints(0),
         "errors" => Order::Errors(either(rest, ["stop", "go"], "stop or go")?),
         "motors" => Order::Motors(either(rest, ["rest", "keep"], "rest or keep")?),
         "print" | "p" | "inspect" => Order::Evaluate(some(rest, "an expression")?),
@@ -293,6 +299,25 @@ fn block(text: &str, listing: &Listing) -> Result<Box<str>, NotUnderstood> {
 
 fn breakpoint(text: &str, listing: &Listing) -> Result<Breakpoint, NotUnderstood> {
     let (place, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
+    let condition = condition(rest)?;
+    Ok(Breakpoint {
+        condition,
+        ..Breakpoint::before(block(place, listing)?)
+    })
+}
+
+fn watch(text: &str) -> Result<Breakpoint, NotUnderstood> {
+    let (name, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
+    let name = some(name, "the name of a variable")?;
+    let condition = condition(rest)?;
+    Ok(Breakpoint {
+        condition,
+        ..Breakpoint::of_changes(name)
+    })
+}
+
+/// What follows a place: nothing, or `if` and a condition.
+fn condition(rest: &str) -> Result<Box<str>, NotUnderstood> {
     let condition = match rest.trim() {
         "" => "",
         rest => rest
@@ -303,9 +328,5 @@ fn breakpoint(text: &str, listing: &Listing) -> Result<Breakpoint, NotUnderstood
     if condition.trim().is_empty() && !rest.trim().is_empty() {
         return Err(NotUnderstood::Lacks("a condition after `if`"));
     }
-    Ok(Breakpoint {
-        block: block(place, listing)?,
-        condition: condition.trim().into(),
-        ..Breakpoint::default()
-    })
+    Ok(condition.trim().into())
 }

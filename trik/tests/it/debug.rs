@@ -51,6 +51,29 @@ fn a_diagram_is_stopped_stepped_and_taken_back() {
 }
 
 #[test]
+fn a_variable_is_watched_forwards_and_backwards() {
+    let board = Board::new();
+    board.file("count.qrs", counting());
+    let typed = "watch nn\nwatch n if n >\nwatch n if n > 2\nbreak 4 if n = 3\ndprintf 4 n is {n +}\nc\nc\n\
+        info breakpoints\nrc\nrc\np n\nq\n";
+    let told = debug(&board, &["debug", "count.qrs"], typed).good();
+    insta::assert_snapshot!(told);
+}
+
+#[test]
+fn all_breakpoints_are_listed() {
+    let board = Board::new();
+    board.file("count.qrs", counting());
+    let mut typed: String = (0..999)
+        .map(|number| format!("dprintf 4 {number} {}\n", "x".repeat(300)))
+        .collect();
+    typed.push_str("i b\nq\n");
+    let told = debug(&board, &["debug", "count.qrs"], &typed).good();
+    let listed = told.split("(trik) i b\n").nth(1).expect("a list");
+    assert_eq!(listed.matches(", hits: 0, writes ").count(), 999);
+}
+
+#[test]
 fn what_cannot_be_done_is_told_and_changes_nothing() {
     let board = Board::new();
     board.file("count.qrs", counting());

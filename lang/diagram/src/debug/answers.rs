@@ -114,16 +114,28 @@ impl Brick for Noting<'_> {
 /// A robot that answers from notes. It moves nothing.
 pub(super) struct Remembering<'a> {
     notes: std::slice::Iter<'a, Answered>,
+    all: usize,
     /// Whether it was asked something else than what was noted: then this is not what has happened.
     pub(super) is_astray: bool,
 }
 
 impl<'a> Remembering<'a> {
     pub(super) fn new(notes: &'a Answers) -> Self {
+        Self::after(notes, 0)
+    }
+
+    /// One that has given so many answers already.
+    pub(super) fn after(notes: &'a Answers, given: usize) -> Self {
         Self {
-            notes: notes.0.iter(),
+            notes: notes.0.get(given..).unwrap_or_default().iter(),
+            all: notes.0.len(),
             is_astray: false,
         }
+    }
+
+    /// How many answers it has given.
+    pub(super) fn given(&self) -> usize {
+        self.all - self.notes.len()
     }
 
     fn next<T>(&mut self, expected: impl Fn(&'a Answered) -> Option<T>) -> Option<T> {

@@ -4,7 +4,7 @@
 //! texts, and decides what motors do at a stop. Knows no transport, no clients and no files.
 
 use super::order::{NoOrder, Order};
-use super::{Breakpoint, NoBack, NoBreakpoint, NotNow, Phase, Session, Step, report};
+use super::{Breakpoint, NoBack, NoBreakpoint, NotNow, Phase, Session, Step, report, words};
 use crate::brick::Brick;
 use crate::limits;
 use crate::machine::Machine;
@@ -32,6 +32,8 @@ enum Told {
     /// Nothing is to be told.
     Detached,
     Runs,
+    /// A search through the past goes on.
+    Searches,
     Stopped,
     Ended,
 }
@@ -68,22 +70,21 @@ pub enum Refused {
 impl Refused {
     /// For a person.
     pub fn in_locale(&self, locale: Locale) -> String {
-        match self {
-            Self::Order(why) => why.to_string(),
-            Self::NotAttached => "attach the debugger first".to_owned(),
-            Self::NotStopped => "the program is not stopped".to_owned(),
-            Self::Ended => "the program has ended".to_owned(),
-            Self::Breakpoint(why) => why.to_string(),
-            Self::NoBreakpoint(Some(number)) => format!("there is no breakpoint {number}"),
-            Self::NoBreakpoint(None) => "there is no breakpoint".to_owned(),
-            Self::NoThread(Some(name)) => format!("there is no thread '{name}'"),
-            Self::NoThread(None) => "no thread lives".to_owned(),
-            Self::NotHeld(name) => format!("the thread '{name}' is not held"),
-            Self::Held(name) => format!("the thread '{name}' is held: release it first"),
-            Self::Back(why) => why.to_string(),
-            Self::NotNow(why) => why.in_locale(locale),
-            Self::Expression(problems) => report::problems(problems, locale),
-        }
+        let words = match self {
+            Self::Order(why) => return why.to_string(),
+            Self::Breakpoint(why) => return why.in_locale(locale),
+            Self::Back(why) => return why.in_locale(locale),
+            Self::NotNow(why) => return why.in_locale(locale),
+            Self::Expression(problems) => return report::problems(problems, locale),
+            Self::NotAttached => words::not_attached(),
+            Self::NotStopped => words::not_stopped(),
+            Self::Ended => words::ended(),
+            Self::NoBreakpoint(number) => words::no_breakpoint(*number),
+            Self::NoThread(name) => words::no_thread(name.as_deref()),
+            Self::NotHeld(name) => words::not_held(name),
+            Self::Held(name) => words::held(name),
+        };
+        words.in_locale(locale).to_owned()
     }
 }
 
@@ -119,8 +120,10 @@ impl Desk {
         matches!(self.session.phase(), Phase::Stopped(_))
     }
 
-    /// Runs what is due at a moment of the caller's clock, in milliseconds.
+    /// Runs what is due at a moment of the caller's clock, in milliseconds; a program that is stopped goes on with a search
+    /// through its past.
     pub fn step(&mut self, now: u32, brick: &mut dyn Brick, trace: &mut dyn Trace) -> Phase {
+        self.session.search_on();
         self.session.step(now, brick, trace)
     }
 
@@ -167,6 +170,7 @@ impl Desk {
         let mut news: Vec<_> = self.log().into_iter().collect();
         let now = match self.session.phase() {
             _ if !self.session.is_attached() => Told::Detached,
+            _ if self.session.is_searching() => Told::Searches,
             Phase::Runs => Told::Runs,
             Phase::Stopped(_) => Told::Stopped,
             Phase::Ended { .. } => Told::Ended,
@@ -185,14 +189,8 @@ impl Desk {
         brick: &mut dyn Brick,
         trace: &mut dyn Trace,
     ) -> Result<Object, Refused> {
+        self.admit(order)?;
         let session = &mut self.session;
-        let is_free = matches!(
-            order,
-            Order::Attach | Order::Look | Order::Breakpoints | Order::Evaluate(_) | Order::Set(..)
-        );
-        if !is_free && !session.is_attached() {
-            return Err(Refused::NotAttached);
-        }
         match order {
             Order::Attach => self.attach(),
             Order::Detach => {
@@ -207,7 +205,8 @@ impl Desk {
             }
             Order::Until(block) => self.until(block, now, brick, trace)?,
             Order::Back(how) => {
-                session.back(*how).map_err(Refused::Back)?;
+                session.begin_back(*how).map_err(Refused::Back)?;
+                self.search();
             }
             Order::Present => session.to_present(),
             Order::Hold(name) => {
@@ -229,8 +228,8 @@ impl Desk {
                 let is_found = session.debugger().enable(*number, *is_enabled);
                 return found(is_found, Some(*number));
             }
-            Order::Breakpoints => {
-                return Ok(report::breakpoints(session, object()));
+            Order::Breakpoints(after) => {
+                return Ok(report::breakpoints(session, *after, object()));
             }
             Order::Errors(stop) => {
                 session.debugger().stops_at_errors = *stop;
@@ -253,6 +252,25 @@ impl Desk {
             }
         }
         Ok(self.state())
+    }
+
+    /// Whether an order can be carried out now; one that moves the program ends a search.
+    fn admit(&mut self, order: &Order) -> Result<(), Refused> {
+        let is_free = matches!(
+            order,
+            Order::Attach
+                | Order::Look
+                | Order::Breakpoints(_)
+                | Order::Evaluate(_)
+                | Order::Set(..)
+        );
+        if !is_free && !self.session.is_attached() {
+            return Err(Refused::NotAttached);
+        }
+        if order.is_for_control() && self.session.give_up_search() {
+            self.told = Told::Searches;
+        }
+        Ok(())
     }
 
     fn attach(&mut self) {
@@ -278,7 +296,8 @@ impl Desk {
     ) -> Result<(), Refused> {
         let number = self.thread(thread)?;
         if self.session.is_past() {
-            self.session.forth(Some(step));
+            self.session.begin_forth(Some(step));
+            self.search();
         } else {
             self.session.walk((number, step), now, brick, trace);
             self.told = Told::Runs;
@@ -297,9 +316,8 @@ impl Desk {
             return Err(Refused::NotNow(NotNow::Past));
         }
         let point = Breakpoint {
-            block: block.into(),
             is_once: true,
-            ..Breakpoint::default()
+            ..Breakpoint::before(block)
         };
         self.session.add(point).map_err(Refused::Breakpoint)?;
         if self.is_stopped() {
@@ -315,7 +333,8 @@ impl Desk {
         trace: &mut dyn Trace,
     ) -> Result<(), Refused> {
         if self.session.is_past() {
-            self.session.forth(None);
+            self.session.begin_forth(None);
+            self.search();
             return Ok(());
         }
         match self.session.phase() {
@@ -350,6 +369,14 @@ impl Desk {
         }
         let number = found.map(|view| view.number);
         number.ok_or_else(|| Refused::NoThread(name.map(Into::into)))
+    }
+
+    /// A search has begun. A short one is done at once; of a longer one the answer says that it goes on, and its end is told
+    /// like a stop.
+    fn search(&mut self) {
+        if self.session.search_on() {
+            self.told = Told::Searches;
+        }
     }
 
     fn state(&self) -> Object {

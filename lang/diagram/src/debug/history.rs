@@ -58,8 +58,53 @@ pub(super) struct History {
     is_changed: bool,
 }
 
-/// What a search finds at a moment.
-pub(super) type Test<'a> = &'a mut dyn FnMut(&Machine, u16, Node) -> bool;
+/// What a search is told of while a part of the past is run again.
+pub(super) trait Look {
+    /// A thread is about to enter a block at a position, or none is, and that position is the next.
+    fn sees(&mut self, at: Position, machine: &Machine, entering: Option<(u16, Node)>) -> Seen;
+}
+
+/// What a search says to a moment.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum Seen {
+    /// On to the next one.
+    On,
+    /// It has looked long enough for now.
+    Pause,
+    /// It has found what it looks for.
+    Enough,
+}
+
+/// A part of the past that is being run again, and may be left and gone on with.
+#[derive(Clone, Debug)]
+pub(super) struct Rerun {
+    machine: Machine,
+    pub(super) part: usize,
+    /// The next moment.
+    next: Position,
+    /// The step that is run, and how many of its answers were given.
+    step: usize,
+    read: usize,
+}
+
+impl Rerun {
+    /// The program where it was left.
+    pub(super) fn machine(&self) -> &Machine {
+        &self.machine
+    }
+}
+
+/// How far a part was run again.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum Ran {
+    /// It was left.
+    Left,
+    /// Nothing is left of it.
+    Through,
+}
+
+/// What is asked at each moment of a part that is run again: a position and what is entered there.
+type Stops<'a> = &'a mut dyn FnMut(Position, &Machine, Option<(u16, Node)>) -> bool;
 
 impl History {
     /// Nothing yet, and never more than about so many bytes.
@@ -168,54 +213,54 @@ impl History {
         }
     }
 
-    /// The last moment before `before` that passes a test.
-    pub(super) fn last_before(&self, before: Position, test: Test<'_>) -> Option<Position> {
-        for at in (0..self.segments.len()).rev() {
-            let segment = &self.segments[at];
-            if segment.first >= before {
-                continue;
-            }
-            let mut found = None;
-            let until = self.until(at).min(before);
-            self.replay(segment, until, &mut |position, machine, thread, node| {
-                if test(machine, thread, node) {
-                    found = Some(position);
-                }
-                false
-            });
-            if found.is_some() {
-                return found;
-            }
-        }
-        None
+    /// How many parts are kept, and which of them has a moment.
+    pub(super) fn parts(&self, moment: Position) -> (usize, Option<usize>) {
+        let after = self
+            .segments
+            .partition_point(|segment| segment.first <= moment);
+        (self.segments.len(), after.checked_sub(1))
     }
 
-    /// The first moment after `after` and before `before` that passes a test.
-    pub(super) fn first_between(
+    /// Begins to run a part again.
+    pub(super) fn rerun_of(&self, part: usize) -> Option<Rerun> {
+        let segment = self.segments.get(part)?;
+        let mut machine = segment.start.clone();
+        machine.set_guarded(true);
+        Some(Rerun {
+            machine,
+            part,
+            next: segment.first,
+            step: 0,
+            read: 0,
+        })
+    }
+
+    /// Runs a part again from where it was left, until it is left again or is through, or until the moment `before`.
+    pub(super) fn look_through(
         &self,
-        (after, before): (Option<Position>, Position),
-        test: Test<'_>,
-    ) -> Option<Position> {
-        for at in 0..self.segments.len() {
-            let until = self.until(at).min(before);
-            if after.is_some_and(|after| until <= after.saturating_add(1)) {
-                continue;
-            }
-            let mut found = None;
-            let segment = &self.segments[at];
-            self.replay(segment, until, &mut |position, machine, thread, node| {
-                let is_later = after.is_none_or(|after| position > after);
-                let is_it = is_later && test(machine, thread, node);
-                if is_it {
-                    found = Some(position);
-                }
-                is_it
-            });
-            if found.is_some() {
-                return found;
-            }
-        }
-        None
+        rerun: &mut Rerun,
+        before: Position,
+        look: &mut dyn Look,
+    ) -> Ran {
+        let Some(segment) = self.segments.get(rerun.part) else {
+            return Ran::Through;
+        };
+        let mut is_left = false;
+        self.run_on(
+            segment,
+            rerun,
+            before,
+            &mut |position, machine, entering| {
+                is_left = match look.sees(position, machine, entering) {
+                    Seen::On => false,
+                    // Between threads, or where one was held alone, it cannot be gone on with.
+                    Seen::Pause => entering.is_some() && !segment.held.contains(&position),
+                    Seen::Enough => true,
+                };
+                is_left
+            },
+        );
+        if is_left { Ran::Left } else { Ran::Through }
     }
 
     /// The program at a moment, held before the block that a thread enters there; none if it is not kept.
@@ -225,9 +270,9 @@ impl History {
             .partition_point(|segment| segment.first <= wanted);
         let at = at.checked_sub(1)?;
         let until = self.until(at);
-        let segment = self.segments.get(at)?;
-        let (found, machine) =
-            self.replay(segment, until, &mut |position, _, _, _| position == wanted)?;
+        let (found, machine) = self.replay(at, until, &mut |position, _, entering| {
+            entering.is_some() && position == wanted
+        })?;
         (found == wanted).then_some(machine)
     }
 
@@ -260,7 +305,7 @@ impl History {
     ) -> Option<(Position, Machine)> {
         let mut machine = segment.start.clone();
         machine.set_guarded(true);
-        let mut stops = |_: Position, _: &Machine, _: u16, _: Node| false;
+        let mut stops = |_: Position, _: &Machine, _: Option<(u16, Node)>| false;
         let mut seeker = Seeker {
             next: segment.first,
             until: Position::MAX,
@@ -299,38 +344,58 @@ impl History {
     /// Runs a segment again until a moment for which `stops` is true, or the one before `until`. What is held, and where.
     fn replay(
         &self,
-        segment: &Segment,
+        segment: usize,
         until: Position,
-        stops: &mut dyn FnMut(Position, &Machine, u16, Node) -> bool,
+        stops: Stops<'_>,
     ) -> Option<(Position, Machine)> {
-        let mut machine = segment.start.clone();
-        machine.set_guarded(true);
-        let mut seeker = Seeker {
-            next: segment.first,
-            until,
-            held: &segment.held,
-            stops,
-        };
-        let count = segment.steps.len();
-        for (index, kept) in segment.steps.iter().enumerate() {
-            let is_open = index + 1 == count && std::ptr::eq(segment, self.segments.back()?);
+        let mut rerun = self.rerun_of(segment)?;
+        let is_held = self.run_on(self.segments.get(segment)?, &mut rerun, until, stops);
+        is_held.then(|| (rerun.next - 1, rerun.machine))
+    }
+
+    /// The same from where it was left; whether it is held.
+    fn run_on(
+        &self,
+        segment: &Segment,
+        rerun: &mut Rerun,
+        until: Position,
+        stops: Stops<'_>,
+    ) -> bool {
+        let last = self.segments.back();
+        let is_last = last.is_some_and(|last| std::ptr::eq(last, segment));
+        while let Some(kept) = segment.steps.get(rerun.step) {
+            let is_open = is_last && rerun.step + 1 == segment.steps.len();
             let answers = match &self.open {
                 Some(open) if is_open => open,
                 Some(_) | None => &kept.answers,
             };
-            let mut robot = Remembering::new(answers);
-            match kept.begin {
-                Begin::Step(now) => machine.step(now, &mut robot, &mut seeker),
-                Begin::Rest => machine.go_on_held(&mut robot, &mut seeker),
+            let mut robot = Remembering::after(answers, rerun.read);
+            let mut seeker = Seeker {
+                next: rerun.next,
+                until,
+                held: &segment.held,
+                stops,
             };
-            if machine.is_held() {
-                return Some((seeker.next - 1, machine));
+            let machine = &mut rerun.machine;
+            match (machine.is_held(), kept.begin) {
+                (false, Begin::Step(now)) => machine.step(now, &mut robot, &mut seeker),
+                // It was left in the middle of this step, or was held when the part began.
+                (true, Begin::Step(_) | Begin::Rest) | (false, Begin::Rest) => {
+                    machine.go_on_held(&mut robot, &mut seeker)
+                }
+            };
+            rerun.next = seeker.next;
+            if rerun.machine.is_held() {
+                rerun.read = robot.given();
+                return true;
             }
+            rerun.step += 1;
+            rerun.read = 0;
             if robot.is_astray {
-                return None;
+                return false;
             }
         }
-        None
+        false
     }
 }
 
@@ -359,20 +424,25 @@ struct Seeker<'a> {
     next: Position,
     until: Position,
     held: &'a BTreeSet<Position>,
-    stops: &'a mut dyn FnMut(Position, &Machine, u16, Node) -> bool,
+    stops: Stops<'a>,
 }
 
 impl Trace for Seeker<'_> {
     fn guard(&mut self, machine: &Machine, at: Moment) -> Guard {
-        let Moment::Enters { thread, node } = at else {
-            return Guard::Go;
+        let (thread, node) = match at {
+            Moment::Enters { thread, node } => (thread, node),
+            Moment::Between => {
+                let is_it = self.next < self.until && (self.stops)(self.next, machine, None);
+                return if is_it { Guard::Hold } else { Guard::Go };
+            }
+            Moment::Fails { .. } => return Guard::Go,
         };
         let position = self.next;
         self.next += 1;
         if position >= self.until {
             return Guard::Hold;
         }
-        let is_it = (self.stops)(position, machine, thread, node);
+        let is_it = (self.stops)(position, machine, Some((thread, node)));
         if is_it || self.next == self.until {
             return Guard::Hold;
         }

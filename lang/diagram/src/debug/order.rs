@@ -5,7 +5,7 @@
 
 use std::fmt;
 
-use super::{Back, Breakpoint, Step};
+use super::{Back, Breakpoint, Spot, Step};
 use crate::limits;
 
 /// Something that is asked of a debugger.
@@ -33,14 +33,14 @@ pub enum Order {
     Hold(Box<str>),
     /// Let it go on.
     Release(Box<str>),
-    /// A breakpoint.
+    /// A breakpoint, at a block or at changes of a variable.
     Break(Breakpoint),
     /// A breakpoint away, by its number; none: all.
     Clear(Option<u32>),
     /// Keep a breakpoint, and let it do nothing, or something again.
     Enable(u32, bool),
-    /// Say which breakpoints there are.
-    Breakpoints,
+    /// Say which breakpoints there are with numbers after this one.
+    Breakpoints(u32),
     /// Whether errors stop the program.
     Errors(bool),
     /// Whether motors rest while the program is stopped.
@@ -76,10 +76,11 @@ impl fmt::Display for NoOrder {
 }
 
 /// All words with which orders begin.
-pub const WORDS: &str = "attach, detach, look, pause, continue, step, until, back, present, hold, release, break, clear, \
-    enable, disable, breakpoints, errors, motors, set, evaluate";
+pub const WORDS: &str = "attach, detach, look, pause, continue, step, until, back, present, hold, release, break, watch, \
+    clear, enable, disable, breakpoints, errors, motors, set, evaluate";
 
 const A_BLOCK: &str = "the id of a block";
+const A_VARIABLE: &str = "the name of a variable";
 const A_THREAD: &str = "the name of a thread";
 const A_NUMBER: &str = "the number of a breakpoint";
 
@@ -95,7 +96,7 @@ impl Order {
         let (line, more) = text.split_once('\n').unwrap_or((text, ""));
         let (word, rest) = line.trim().split_once(' ').unwrap_or((line.trim(), ""));
         let rest = rest.trim();
-        if !more.is_empty() && word != "break" {
+        if !more.is_empty() && !matches!(word, "break" | "watch") {
             return Err(NoOrder::Strange(more.into()));
         }
         let order = match word {
@@ -105,13 +106,15 @@ impl Order {
             "pause" => Self::Pause,
             "continue" => Self::Continue,
             "present" => Self::Present,
-            "breakpoints" => Self::Breakpoints,
+            "breakpoints" if rest.is_empty() => Self::Breakpoints(0),
+            "breakpoints" => return breakpoints(rest),
             "step" => return step(rest),
             "until" => return Ok(Self::Until(some(rest, A_BLOCK)?)),
             "back" => return back(rest).map(Self::Back),
             "hold" => return Ok(Self::Hold(some(rest, A_THREAD)?)),
             "release" => return Ok(Self::Release(some(rest, A_THREAD)?)),
-            "break" => return breakpoint(rest, more).map(Self::Break),
+            "break" => return breakpoint((rest, A_BLOCK), more, Spot::Block).map(Self::Break),
+            "watch" => return breakpoint((rest, A_VARIABLE), more, Spot::Change).map(Self::Break),
             "clear" if rest == "all" => return Ok(Self::Clear(None)),
             "clear" => return number(rest).map(|number| Self::Clear(Some(number))),
             "enable" => return number(rest).map(|number| Self::Enable(number, true)),
@@ -135,7 +138,7 @@ impl Order {
     /// Whether it changes what the program does, so that only whoever is in control may give it.
     pub fn is_for_control(&self) -> bool {
         match self {
-            Self::Look | Self::Breakpoints | Self::Evaluate(_) => false,
+            Self::Look | Self::Breakpoints(_) | Self::Evaluate(_) => false,
             Self::Attach
             | Self::Detach
             | Self::Pause
@@ -176,7 +179,10 @@ impl fmt::Display for Order {
             Self::Hold(thread) => write!(f, "hold {thread}"),
             Self::Release(thread) => write!(f, "release {thread}"),
             Self::Break(point) => {
-                write!(f, "break {}", point.block)?;
+                match &point.at {
+                    Spot::Block(block) => write!(f, "break {block}")?,
+                    Spot::Change(variable) => write!(f, "watch {variable}")?,
+                }
                 if point.from_hit > 0 {
                     write!(f, " from {}", point.from_hit)?;
                 }
@@ -198,7 +204,8 @@ impl fmt::Display for Order {
             Self::Clear(Some(number)) => write!(f, "clear {number}"),
             Self::Enable(number, true) => write!(f, "enable {number}"),
             Self::Enable(number, false) => write!(f, "disable {number}"),
-            Self::Breakpoints => f.write_str("breakpoints"),
+            Self::Breakpoints(0) => f.write_str("breakpoints"),
+            Self::Breakpoints(after) => write!(f, "breakpoints after {after}"),
             Self::Errors(stop) => f.write_str(if *stop { "errors stop" } else { "errors go" }),
             Self::Motors(rest) => f.write_str(if *rest { "motors rest" } else { "motors keep" }),
             Self::Set(name, text) => write!(f, "set {name}={text}"),
@@ -277,10 +284,21 @@ fn back(rest: &str) -> Result<Back, NoOrder> {
     }
 }
 
-fn breakpoint(rest: &str, more: &str) -> Result<Breakpoint, NoOrder> {
+fn breakpoints(rest: &str) -> Result<Order, NoOrder> {
+    match rest.strip_prefix("after ") {
+        Some(after) => number(after.trim()).map(Order::Breakpoints),
+        None => Err(NoOrder::Strange(shortened(rest))),
+    }
+}
+
+fn breakpoint(
+    (rest, what): (&str, &'static str),
+    more: &str,
+    spot: impl FnOnce(Box<str>) -> Spot,
+) -> Result<Breakpoint, NoOrder> {
     let mut words = rest.split_whitespace();
     let mut point = Breakpoint {
-        block: some(words.next().unwrap_or_default(), A_BLOCK)?,
+        at: spot(some(words.next().unwrap_or_default(), what)?),
         ..Breakpoint::default()
     };
     while let Some(word) = words.next() {
@@ -312,7 +330,7 @@ mod tests {
     #[test]
     fn orders_are_what_they_are_written_as() {
         let point = Breakpoint {
-            block: "{b}".into(),
+            at: Spot::Block("{b}".into()),
             condition: "n > 3".into(),
             from_hit: 2,
             log: "n is {n}".into(),
@@ -335,12 +353,17 @@ mod tests {
             Order::Present,
             Order::Hold("main".into()),
             Order::Release("main".into()),
+            Order::Break(Breakpoint {
+                at: Spot::Change("n".into()),
+                ..point.clone()
+            }),
             Order::Break(point),
             Order::Clear(Some(3)),
             Order::Clear(None),
             Order::Enable(3, true),
             Order::Enable(3, false),
-            Order::Breakpoints,
+            Order::Breakpoints(0),
+            Order::Breakpoints(17),
             Order::Errors(true),
             Order::Errors(false),
             Order::Motors(true),
@@ -368,6 +391,12 @@ mod tests {
             ("step sideways", "'sideways' cannot be in this order"),
             ("until", "this order needs the id of a block"),
             ("break", "this order needs the id of a block"),
+            ("watch", "this order needs the name of a variable"),
+            ("breakpoints 5", "'5' cannot be in this order"),
+            (
+                "breakpoints after all",
+                "this order needs the number of a breakpoint",
+            ),
             ("break b from x", "this order needs a number of hits"),
             ("break b often", "'often' cannot be in this order"),
             ("break b\nwhile 1", "'while 1' cannot be in this order"),
@@ -387,7 +416,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn nothing_that_comes_makes_it_fall(text in "\\PC{0,40}|(break|step|back|set) [a-z{}=0-9\\n ]{0,30}") {
+        fn nothing_that_comes_makes_it_fall(text in "\\PC{0,40}|(break|watch|breakpoints|step|back|set) [a-z{}=0-9\\n ]{0,30}") {
             if let Ok(order) = Order::parse(&text) {
                 let again = Order::parse(&order.to_string());
                 prop_assert_eq!(again, Ok(order));

@@ -1,13 +1,15 @@
-//! A look at the past of a program: where somebody stands in it, and how he goes back and forth.
+//! A look at the past of a program: where somebody stands in it, and how people go back and forth.
 //!
-//! Owns the rules of going back: which earlier moment a step back or a run back means. What is kept is known in `history`.
+//! Owns the rules of going back: which earlier moment a step back or a run back means, and the search for it, which is done
+//! in pieces so that it can be given up. What is kept is known in `history`.
 
-use std::fmt;
-
-use super::history::{History, Position};
-use super::{Debugger, Reason, Step, Stop};
+use super::history::{History, Look, Position, Ran, Rerun, Seen};
+use super::{Debugger, Reason, Step, Stop, words};
+use crate::limits;
 use crate::machine::Machine;
 use crate::program::Node;
+use lang_expr::Value;
+use lang_text::problem::{Locale, Words};
 
 /// How far somebody goes back.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -35,14 +37,16 @@ pub enum NoBack {
     NotYet,
 }
 
-impl fmt::Display for NoBack {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::NotKept => "the past of this program is not kept",
-            Self::Runs => "the program runs: pause it first",
-            Self::AtOldest => "this is the first moment that is kept",
-            Self::NotYet => "the program has not come to that time",
-        })
+impl NoBack {
+    /// For a person.
+    pub fn in_locale(&self, locale: Locale) -> String {
+        let words: Words = match self {
+            Self::NotKept => words::not_kept(),
+            Self::Runs => words::runs(),
+            Self::AtOldest => words::at_oldest(),
+            Self::NotYet => words::not_yet(),
+        };
+        words.in_locale(locale).to_owned()
     }
 }
 
@@ -80,90 +84,205 @@ impl Past {
     }
 }
 
-/// The earlier moment that is meant.
-pub(super) fn back(
-    history: &History,
-    debugger: &Debugger,
-    from: From<'_>,
-    how: Back,
-) -> Result<Past, NoBack> {
-    if let Back::To(ms) = how {
-        let (at, machine) = history.at_time(ms).ok_or(NoBack::NotKept)?;
-        return Ok(Past::new(machine, at, Reason::Past));
-    }
-    if from.at <= history.first() {
-        return Err(NoBack::AtOldest);
-    }
-    let found = match how {
-        Back::Step(step) => {
-            let mut test = step_test(from, step);
-            history.last_before(from.at, &mut test)
-        }
-        Back::Continue => history.last_before(from.at, &mut |machine, _, node| {
-            debugger.is_marked(node) && debugger.stops_at(machine, node).is_some()
-        }),
-        Back::To(_) | Back::Oldest => None,
-    };
-    let at = found.unwrap_or(history.first());
-    let machine = history.at(at).ok_or(NoBack::NotKept)?;
-    let reason = match (found, how) {
-        (None, _) => Reason::Oldest,
-        (Some(_), Back::Step(_)) => Reason::Step,
-        (Some(_), Back::Continue) => stopped(debugger, &machine),
-        (Some(_), Back::To(_) | Back::Oldest) => Reason::Past,
-    };
-    Ok(Past::new(machine, at, reason))
+/// The program at a time, between two steps.
+pub(super) fn at_time(history: &History, ms: u32) -> Option<Past> {
+    let (at, machine) = history.at_time(ms)?;
+    Some(Past::new(machine, at, Reason::Past))
 }
 
-/// The later moment of the past that is meant; none if the present comes first.
-pub(super) fn forth(
-    history: &History,
-    debugger: &Debugger,
-    from: From<'_>,
-    present: Position,
-    step: Option<Step>,
-) -> Option<Past> {
-    // Between two steps the next block is still to come.
-    let after = match from.thread {
-        Some(_) => Some(from.at),
-        None => from.at.checked_sub(1),
-    };
-    let between = (after, present);
-    let (found, is_step) = match step {
-        Some(step) => {
-            let mut test = step_test(from, step);
-            (history.first_between(between, &mut test), true)
+/// The first moment that is kept.
+pub(super) fn oldest(history: &History) -> Option<Past> {
+    let at = history.first();
+    Some(Past::new(history.at(at)?, at, Reason::Oldest))
+}
+
+/// In which direction a search goes.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+enum Way {
+    Back,
+    Forth,
+}
+
+/// A search through the past that goes on piece by piece.
+#[derive(Clone, Debug)]
+pub(super) struct Search {
+    /// Steps end there; without one, breakpoints are looked for.
+    step: Option<Ends>,
+    way: Way,
+    after: Option<Position>,
+    before: Position,
+    /// The part that is looked through, or comes next.
+    part: Option<usize>,
+    /// Where it was left, and what variables that are watched held there.
+    rerun: Option<Rerun>,
+    held: Vec<Option<Value>>,
+    /// The last moment of the part so far that is one.
+    found: Option<(Position, Reason)>,
+}
+
+/// Where a step ends: at a moment of this thread with these calls.
+#[derive(Clone, Copy, Debug)]
+struct Ends {
+    thread: Option<u16>,
+    depth: usize,
+    step: Step,
+}
+
+/// What a piece of a search has come to.
+#[derive(Debug)]
+#[allow(clippy::large_enum_variant, reason = "pieces are rare")]
+pub(super) enum Piece {
+    /// It has to be looked further.
+    More,
+    /// The moment that is meant.
+    Found(Past),
+    /// There is none in this direction.
+    Nothing,
+}
+
+impl Search {
+    /// For the earlier moment to which a step leads, or before which a breakpoint would have stopped.
+    pub(super) fn back(history: &History, from: From<'_>, step: Option<Step>) -> Self {
+        let last = from.at.checked_sub(1);
+        Self {
+            step: step.map(|step| Ends::of(from, step)),
+            way: Way::Back,
+            after: None,
+            before: from.at,
+            part: last.and_then(|last| history.parts(last).1),
+            rerun: None,
+            held: Vec::new(),
+            found: None,
         }
-        None => {
-            let test = &mut |machine: &Machine, _, node| {
-                debugger.is_marked(node) && debugger.stops_at(machine, node).is_some()
+    }
+
+    /// For the later one; the present comes at `present`.
+    pub(super) fn forth(
+        history: &History,
+        from: From<'_>,
+        present: Position,
+        step: Option<Step>,
+    ) -> Self {
+        // Between two steps the next block is still to come.
+        let after = match from.thread {
+            Some(_) => Some(from.at),
+            None => from.at.checked_sub(1),
+        };
+        Self {
+            way: Way::Forth,
+            after,
+            before: present,
+            part: history.parts(from.at).1,
+            ..Self::back(history, from, step)
+        }
+    }
+
+    /// Looks further, for about [`limits::SEARCH_WORK`].
+    pub(super) fn piece(&mut self, history: &History, debugger: &Debugger) -> Piece {
+        let mut work = 0;
+        while work < limits::SEARCH_WORK {
+            let Some(part) = self.part else {
+                return Piece::Nothing;
             };
-            (history.first_between(between, test), false)
+            let begun = self.rerun.take().or_else(|| {
+                let rerun = history.rerun_of(part)?;
+                self.held = debugger.points.watched(rerun.machine());
+                Some(rerun)
+            });
+            let Some(mut rerun) = begun else {
+                return Piece::Nothing;
+            };
+            // A part costs something although nothing happens in it.
+            work += 1;
+            let before = self.before;
+            let mut look = Looked {
+                search: self,
+                debugger,
+                work: &mut work,
+            };
+            let ran = history.look_through(&mut rerun, before, &mut look);
+            match (ran, self.way, &self.found) {
+                (Ran::Left, Way::Forth, Some(_)) | (Ran::Through, _, Some(_)) => {
+                    return self.end(history);
+                }
+                (Ran::Left, Way::Back | Way::Forth, _) => self.rerun = Some(rerun),
+                (Ran::Through, Way::Back, None) => self.part = part.checked_sub(1),
+                (Ran::Through, Way::Forth, None) => {
+                    let (parts, _) = history.parts(0);
+                    self.part = Some(part + 1).filter(|next| *next < parts);
+                }
+            }
         }
-    };
-    let at = found?;
-    let machine = history.at(at)?;
-    let reason = match is_step {
-        true => Reason::Step,
-        false => stopped(debugger, &machine),
-    };
-    Some(Past::new(machine, at, reason))
+        Piece::More
+    }
+
+    fn end(&mut self, history: &History) -> Piece {
+        let found = self.found.take();
+        let past = found.and_then(|(at, reason)| Some(Past::new(history.at(at)?, at, reason)));
+        past.map_or(Piece::Nothing, Piece::Found)
+    }
+
+    /// Whether it goes back.
+    pub(super) fn is_back(&self) -> bool {
+        self.way == Way::Back
+    }
 }
 
-fn stopped(debugger: &Debugger, machine: &Machine) -> Reason {
-    let view = machine
-        .views()
-        .find(|view| Some(view.number) == machine.held_thread());
-    let number = view.and_then(|view| debugger.stops_at(machine, view.node));
-    number.map_or(Reason::Past, Reason::Breakpoint)
+impl Ends {
+    fn of(from: From<'_>, step: Step) -> Self {
+        let depth = from.thread.map_or(0, |thread| from.machine.depth(thread));
+        Self {
+            thread: from.thread,
+            depth,
+            step,
+        }
+    }
 }
 
-/// Whether a moment is one to which a step of this thread leads, in either direction.
-fn step_test(from: From<'_>, step: Step) -> impl FnMut(&Machine, u16, Node) -> bool {
-    let thread = from.thread;
-    let depth = thread.map_or(0, |thread| from.machine.depth(thread));
-    move |machine, entering, _| {
-        thread.is_none_or(|thread| thread == entering)
-            && step.ends_at(machine.depth(entering), depth)
+/// A search that looks at moments.
+struct Looked<'a> {
+    search: &'a mut Search,
+    debugger: &'a Debugger,
+    work: &'a mut u64,
+}
+
+impl Look for Looked<'_> {
+    fn sees(&mut self, at: Position, machine: &Machine, entering: Option<(u16, Node)>) -> Seen {
+        *self.work += 1;
+        let reason = match self.search.step {
+            Some(ends) => entering.and_then(|(thread, _)| {
+                let is_it = ends.thread.is_none_or(|wanted| wanted == thread)
+                    && ends.step.ends_at(machine.depth(thread), ends.depth);
+                is_it.then_some(Reason::Step)
+            }),
+            None => self.stops(machine, entering.map(|(_, node)| node)),
+        };
+        let is_later = self.search.after.is_none_or(|after| at > after);
+        if let Some(reason) = reason.filter(|_| is_later) {
+            self.search.found = Some((at, reason));
+            if self.search.way == Way::Forth {
+                return Seen::Enough;
+            }
+        }
+        match *self.work < limits::SEARCH_WORK {
+            true => Seen::On,
+            false => Seen::Pause,
+        }
+    }
+}
+
+impl Looked<'_> {
+    /// Why a breakpoint would have stopped at a moment.
+    fn stops(&mut self, machine: &Machine, node: Option<Node>) -> Option<Reason> {
+        let points = &self.debugger.points;
+        if points.has_watches() {
+            *self.work += limits::SEARCH_LOOK_WORK;
+        }
+        let changed = points.stops_at_changes(machine, &mut self.search.held);
+        let node = node.filter(|node| points.is_marked(*node));
+        if node.is_some() {
+            *self.work += limits::SEARCH_LOOK_WORK;
+        }
+        changed.or_else(|| points.stops_at(machine, node?))
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Owns the form, which `docs/protocol.md` describes. Knows no transport.
 
-use super::{Breakpoint, Phase, Reason, Session, Stop};
+use super::{Breakpoint, Phase, Reason, Session, Spot, Stop};
 use crate::limits;
 use crate::machine::Machine;
 use crate::machine::view::{Doing, ThreadView, Waits};
@@ -44,6 +44,7 @@ pub fn state(session: &Session, locale: Locale) -> String {
     let machine = session.machine();
     let phase = session.phase();
     let word = match (&phase, session.is_past()) {
+        _ if session.is_searching() => "searching",
         (_, true) => "past",
         (Phase::Runs, false) => "running",
         (Phase::Stopped(_), false) => "stopped",
@@ -76,20 +77,26 @@ pub fn value(value: &Value) -> Object {
         .text("value", &shown(value))
 }
 
-/// Breakpoints with their numbers, and how often each was hit, as a member of an object.
-pub fn breakpoints(session: &mut Session, told: Object) -> Object {
-    let all = session.debugger().breakpoints().count();
-    let points = session.debugger().breakpoints();
-    let points = points.map(breakpoint);
+/// Breakpoints with their numbers, and how often each was hit, as a member of an object: those after a number.
+pub fn breakpoints(session: &mut Session, after: u32, told: Object) -> Object {
+    let debugger = session.debugger();
+    let points = || {
+        let points = debugger.breakpoints();
+        points.filter(move |(number, ..)| *number > after)
+    };
+    let all = points().count();
+    let points = points().map(breakpoint);
     let points = bounded(points, limits::TOLD_VARIABLES_BYTES);
     listed(told, "breakpoints", (points, all))
 }
 
 fn breakpoint((number, point, hits): (u32, &Breakpoint, u32)) -> String {
-    object()
-        .plain("number", number)
-        .text("block", &point.block)
-        .text("if", &point.condition)
+    let told = object().plain("number", number);
+    let told = match &point.at {
+        Spot::Block(block) => told.text("block", block),
+        Spot::Change(variable) => told.text("variable", variable),
+    };
+    told.text("if", &point.condition)
         .plain("from", point.from_hit)
         .text("log", &point.log)
         .plain("once", point.is_once)
@@ -111,6 +118,21 @@ fn stopped(machine: &Machine, stop: &Stop, locale: Locale) -> String {
         Reason::Step => told.text("reason", "step"),
         Reason::ThreadEnded => told.text("reason", "thread ended"),
         Reason::Breakpoint(number) => told.text("reason", "breakpoint").plain("number", number),
+        Reason::Changed(change) => {
+            told = told
+                .text("reason", "change")
+                .plain("number", change.number)
+                .text("variable", &change.variable);
+            for (name, value) in [("was", &change.was), ("is", &change.is)] {
+                if let Some(value) = value {
+                    told = told.text(name, &shown(value));
+                }
+            }
+            match change.by {
+                Some(node) => told.plain("by", place(machine, node)),
+                None => told,
+            }
+        }
         Reason::Condition(number, found) => told
             .text("reason", "condition")
             .plain("number", number)

@@ -7,8 +7,8 @@ use std::rc::Rc;
 
 use super::answers::Noting;
 use super::history::{Begin, History, Position};
-use super::past::{self, Back, From, NoBack, Past};
-use super::{Breakpoint, Debugger, NoBreakpoint, Step, Stop, report};
+use super::past::{self, Back, From, NoBack, Past, Piece, Search};
+use super::{Breakpoint, Debugger, NoBreakpoint, Step, Stop, report, words};
 use crate::brick::Brick;
 use crate::machine::patch::{Patched, Refused, Version, WhenGone};
 use crate::machine::trace::Trace;
@@ -46,7 +46,7 @@ impl NotNow {
     /// For a person, a line for each problem.
     pub fn in_locale(&self, locale: Locale) -> String {
         match self {
-            Self::Past => "this is the past: go to the present first".to_owned(),
+            Self::Past => words::past().in_locale(locale).to_owned(),
             Self::Problems(problems) => report::problems(problems, locale),
         }
     }
@@ -60,6 +60,8 @@ pub struct Session {
     history: Option<History>,
     /// Where somebody stands who looks at the past.
     past: Option<Past>,
+    /// A search through the past that goes on.
+    search: Option<Search>,
     /// Milliseconds of the caller's clock that passed while it was stopped.
     stopped_ms: u32,
     /// When the present stop began, by the caller's clock.
@@ -81,6 +83,7 @@ impl Session {
             debugger: Debugger::default(),
             history: None,
             past: None,
+            search: None,
             stopped_ms: 0,
             since: 0,
         }
@@ -105,6 +108,7 @@ impl Session {
         self.debugger.forget();
         self.history = None;
         self.past = None;
+        self.search = None;
         self.machine.set_guarded(false);
         self.go_on(now, brick, trace);
     }
@@ -158,7 +162,7 @@ impl Session {
     /// # Errors
     /// [`NoBreakpoint`].
     pub fn add(&mut self, point: Breakpoint) -> Result<u32, NoBreakpoint> {
-        self.debugger.add(self.machine.program(), point)
+        self.debugger.add(&self.machine, point)
     }
 
     /// What it is doing, whether or not somebody looks at the past.
@@ -184,6 +188,7 @@ impl Session {
     /// Whoever looks at the past is in the present with that.
     pub fn go_on(&mut self, now: u32, brick: &mut dyn Brick, trace: &mut dyn Trace) -> Phase {
         self.past = None;
+        self.search = None;
         if self.debugger.stop().is_some() {
             self.stopped_ms = self
                 .stopped_ms
@@ -237,37 +242,96 @@ impl Session {
         history.end(!self.machine.is_held(), self.debugger.held_at.drain(..));
     }
 
-    /// Goes back. The program itself stays where it is stopped.
+    /// Goes back, however long the search takes. The program itself stays where it is stopped.
     ///
     /// # Errors
     /// [`NoBack`]; then nothing has changed.
     pub fn back(&mut self, how: Back) -> Result<&Stop, NoBack> {
+        self.begin_back(how)?;
+        while self.search_on() {}
+        let past = self.past.as_ref().map(|past| &past.stop);
+        past.ok_or(NoBack::NotKept)
+    }
+
+    /// Begins to go back; [`Session::search_on`] goes on with it.
+    ///
+    /// # Errors
+    /// [`NoBack`]; then nothing has changed.
+    pub fn begin_back(&mut self, how: Back) -> Result<(), NoBack> {
         let history = self.history.as_ref().ok_or(NoBack::NotKept)?;
         if self.phase() == Phase::Runs {
             return Err(NoBack::Runs);
         }
-        if let Back::To(ms) = how
-            && ms >= self.machine.now()
-        {
-            return Err(NoBack::NotYet);
+        let step = match how {
+            Back::To(ms) if ms >= self.machine.now() => return Err(NoBack::NotYet),
+            Back::To(ms) => {
+                let past = past::at_time(history, ms).ok_or(NoBack::NotKept)?;
+                self.search = None;
+                self.past = Some(past);
+                return Ok(());
+            }
+            Back::Step(step) => Some(step),
+            Back::Continue | Back::Oldest => None,
+        };
+        if self.here().at <= history.first() {
+            return Err(NoBack::AtOldest);
         }
-        let past = past::back(history, &self.debugger, self.here(), how)?;
-        Ok(&self.past.insert(past).stop)
+        if how == Back::Oldest {
+            let past = past::oldest(history).ok_or(NoBack::NotKept)?;
+            self.search = None;
+            self.past = Some(past);
+            return Ok(());
+        }
+        self.search = Some(Search::back(history, self.here(), step));
+        Ok(())
     }
 
     /// Goes forth in the past, by a step or to the next breakpoint; false: this is the present now.
     pub fn forth(&mut self, step: Option<Step>) -> bool {
-        let (Some(history), Some(_)) = (&self.history, &self.past) else {
+        self.begin_forth(step);
+        while self.search_on() {}
+        self.is_past()
+    }
+
+    /// Begins to go forth in the past; [`Session::search_on`] goes on with it.
+    pub fn begin_forth(&mut self, step: Option<Step>) {
+        if let (Some(history), Some(_)) = (&self.history, &self.past) {
+            let search = Search::forth(history, self.here(), self.present(), step);
+            self.search = Some(search);
+        }
+    }
+
+    /// Whether a search through the past goes on.
+    pub fn is_searching(&self) -> bool {
+        self.search.is_some()
+    }
+
+    /// Does a piece of a search through the past, in bounded time; whether there is more to do.
+    pub fn search_on(&mut self) -> bool {
+        let (Some(history), Some(search)) = (&self.history, &mut self.search) else {
             return false;
         };
-        let present = self.present();
-        self.past = past::forth(history, &self.debugger, self.here(), present, step);
-        self.past.is_some()
+        let past = match search.piece(history, &self.debugger) {
+            Piece::More => return true,
+            Piece::Found(past) => Some(past),
+            Piece::Nothing if search.is_back() => past::oldest(history),
+            // What comes next is the present.
+            Piece::Nothing => None,
+        };
+        self.past = past;
+        self.search = None;
+        false
+    }
+
+    /// Ends a search: whoever looks at the program stays where it was begun.
+    pub fn give_up_search(&mut self) -> bool {
+        self.search.take().is_some()
     }
 
     /// Leaves the past.
     pub fn to_present(&mut self) {
         self.past = None;
+        self.search = None;
     }
 
     fn here(&self) -> From<'_> {
@@ -330,6 +394,7 @@ impl Session {
         let thread = self.machine.held_thread().unwrap_or(0);
         let assigned = self.machine.assign(variable, text, thread, brick, trace);
         assigned.map_err(NotNow::Problems)?;
+        self.debugger.look(&self.machine);
         self.changes();
         Ok(())
     }
@@ -347,7 +412,9 @@ impl Session {
     ) -> Result<Patched, Refused> {
         let patched = self.machine.patch(version, when_gone, brick, trace)?;
         self.debugger.bind(self.machine.program());
+        self.debugger.look(&self.machine);
         self.past = None;
+        self.search = None;
         self.changes();
         Ok(patched)
     }

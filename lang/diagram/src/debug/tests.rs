@@ -2,6 +2,7 @@
 
 mod desk;
 mod past;
+mod points;
 mod random;
 
 use std::rc::Rc;
@@ -94,11 +95,7 @@ impl Desk {
     }
 
     fn stop_at(&mut self, block: &str) -> u32 {
-        let point = Breakpoint {
-            block: block.into(),
-            ..Breakpoint::default()
-        };
-        self.session.add(point).unwrap()
+        self.session.add(Breakpoint::before(block)).unwrap()
     }
 }
 
@@ -155,14 +152,18 @@ fn disturbed(
     session.debugger().stops_at_errors = seed.is_multiple_of(2);
     for node in 0..program.len().min(20) as u32 {
         if dice.below(3) == 0 {
+            let at = match dice.below(4) {
+                0 => Breakpoint::of_changes("x"),
+                _ => Breakpoint::before(program.id(node).unwrap()),
+            };
             let point = Breakpoint {
-                block: program.id(node).unwrap().into(),
-                condition: ["", "x > 0", "1 +", "x = 7"][dice.below(4) as usize].into(),
+                condition: ["", "x > 0", "1 / x > 0", "1 +"][dice.below(4) as usize].into(),
                 from_hit: dice.below(4),
                 log: ["", "x is {x}"][dice.below(2) as usize].into(),
-                ..Breakpoint::default()
+                ..at
             };
-            session.add(point).unwrap();
+            let is_broken = &*point.condition == "1 +";
+            assert!(!(session.add(point).is_ok() && is_broken));
         }
     }
     let mut robot = robot();
@@ -249,16 +250,14 @@ fn conditions_hits_and_lines_are_heeded() {
     let (project, ids) = counting("n = n + 1", "10");
     let mut desk = Desk::of(&project);
     let point = Breakpoint {
-        block: ids[3].as_str().into(),
         condition: "n > 5".into(),
         from_hit: 3,
-        ..Breakpoint::default()
+        ..Breakpoint::before(ids[3].as_str())
     };
     desk.session.add(point.clone()).unwrap();
     let line = Breakpoint {
-        block: ids[3].as_str().into(),
-        log: "n is {n}, twice {n * 2}, {sensorA1} {".into(),
-        ..Breakpoint::default()
+        log: "n is {n}, twice {n * 2}, {1 / (n - 8)} {".into(),
+        ..Breakpoint::before(ids[3].as_str())
     };
     desk.session.add(line).unwrap();
     let phase = desk.run(1000);
@@ -266,11 +265,9 @@ fn conditions_hits_and_lines_are_heeded() {
     assert_eq!(desk.variable("n"), "8");
     let (lines, lost) = desk.session.debugger().take_lines();
     assert_eq!((lines.len(), lost), (8, 0));
-    let expected =
-        "n is 8, twice 16, <The program does not read sensorA1, so its value is not known here> {";
-    assert_eq!(lines[7], expected);
+    assert_eq!(lines[7], "n is 8, twice 16, <Division by zero> {");
     let wrong = Breakpoint {
-        condition: "n +".into(),
+        condition: "1 / (n - 10) > 0".into(),
         ..point
     };
     let number = desk.session.add(wrong).unwrap();
@@ -288,24 +285,17 @@ fn conditions_hits_and_lines_are_heeded() {
 fn breakpoints_that_cannot_be_are_refused() {
     let (project, ids) = counting("n = n + 1", "10");
     let mut desk = Desk::of(&project);
-    let nowhere = Breakpoint {
-        block: "{no}".into(),
-        ..Breakpoint::default()
-    };
+    let nowhere = Breakpoint::before("{no}");
     assert_eq!(desk.session.add(nowhere), Err(NoBreakpoint::NoSuchBlock));
     let long = Breakpoint {
-        block: ids[1].as_str().into(),
         condition: "1 + ".repeat(limits::CONDITION_MAX).into(),
-        ..Breakpoint::default()
+        ..Breakpoint::before(ids[1].as_str())
     };
     assert_eq!(desk.session.add(long), Err(NoBreakpoint::TooLong));
     for _ in 0..limits::BREAKPOINTS_MAX {
         desk.stop_at(&ids[1]);
     }
-    let more = Breakpoint {
-        block: ids[1].as_str().into(),
-        ..Breakpoint::default()
-    };
+    let more = Breakpoint::before(ids[1].as_str());
     assert_eq!(desk.session.add(more), Err(NoBreakpoint::TooMany));
 }
 

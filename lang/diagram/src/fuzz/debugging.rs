@@ -22,7 +22,7 @@ const HISTORY_BYTES: usize = 100_000;
 /// Orders of one input.
 const ORDERS: u32 = 60;
 /// The first word of an order, and what follows it.
-const FORMS: [&str; 30] = [
+const FORMS: [&str; 33] = [
     "attach",
     "detach",
     "look",
@@ -46,6 +46,9 @@ const FORMS: [&str; 30] = [
     "break BLOCK from 2\nif TEXT",
     "break BLOCK once",
     "break BLOCK\nlog x is {TEXT}",
+    "watch x",
+    "watch x from 2\nif TEXT",
+    "breakpoints after 1",
     "clear all",
     "clear 1",
     "breakpoints",

@@ -71,6 +71,11 @@ impl Formulas {
         found
     }
 
+    /// What is known of names.
+    pub fn names(&self) -> &Names {
+        &self.names
+    }
+
     /// Which sensor variables the texts may name.
     pub fn sensors(&self) -> impl Iterator<Item = usize> {
         let named = |name: &str| {

@@ -7,6 +7,7 @@ use super::threads::{State, Thread};
 use super::trace::Trace;
 use super::{Deferred, Env, Machine, words};
 use crate::brick::Brick;
+use crate::check::aside;
 use crate::ports::Port;
 use crate::program::{Given, Leads, Node, Op};
 use lang_expr::reserved::{SENSORS, SensorIndex};
@@ -178,6 +179,34 @@ impl Machine {
             None => Ok(value),
             Some(problem) => Err(vec![problem]),
         }
+    }
+
+    /// What is wrong with an expression whatever the program does from here on; nothing, if it may be good.
+    pub fn mistakes_aside(&self, text: &str) -> Vec<Problem> {
+        self.known(|known| aside::mistakes(known, text))
+    }
+
+    fn known<T>(&self, ask: impl FnOnce(&aside::Known<'_>) -> T) -> T {
+        ask(&aside::Known {
+            program: &self.program,
+            names: self.formulas.names(),
+            has_value: &|name| self.variable(name).is_some(),
+        })
+    }
+
+    /// Why this is not the name of a variable, or of a sensor that the program reads; nothing, if it is.
+    pub fn no_variable(&self, name: &str) -> Vec<Problem> {
+        match is_name(name) {
+            true => self.known(|known| aside::no_variable(known, name)),
+            false => vec![Problem::error(words::no_name(name))],
+        }
+    }
+
+    /// What a variable holds, or the variable of a sensor that the program reads.
+    pub fn value_of(&self, name: &str) -> Option<Value> {
+        let sensor = SENSORS.iter().position(|sensor| sensor.name == name);
+        let reading = sensor.and_then(|index| self.sensors.known(index));
+        reading.or_else(|| self.variable(name))
     }
 
     /// Assigns a variable as a block with this expression would; the trace hears it as the doing of a thread.

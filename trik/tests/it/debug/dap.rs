@@ -4,6 +4,7 @@ use super::counting;
 use crate::rig::TRIK;
 use harness::Board;
 use harness::wait::LIFE;
+use lang_diagram::sketch::Sketch;
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
@@ -203,6 +204,86 @@ fn an_editor_stops_at_lines_and_steps_both_ways() {
             )
             .contains("the past")
     );
+    editor.end();
+}
+
+#[test]
+fn an_editor_stops_at_changes_and_hears_what_is_wrong_with_conditions() {
+    let board = board();
+    let mut editor = Editor::start();
+    editor.launch(&board, json!({"stopOnEntry": true}));
+    let points = json!({"breakpoints": [
+        {"line": 4, "condition": "n +"}, {"line": 4, "condition": "n == 2"},
+        {"line": 4, "logMessage": "n is {nn}"},
+    ]});
+    let set = editor.good("setBreakpoints", points);
+    for (at, why) in [(0, "the condition: 1:3 "), (2, "the line: 1:7 ")] {
+        let told = set["breakpoints"][at]["message"].as_str().expect("why");
+        assert!(told.starts_with(why), "{set}");
+        assert_eq!(set["breakpoints"][at]["verified"], false);
+    }
+    assert_eq!(set["breakpoints"][1]["verified"], true);
+    editor.good("configurationDone", json!({}));
+    editor.event("stopped");
+    editor.good("continue", json!({"threadId": 1}));
+    editor.event("stopped");
+    let ask = json!({"variablesReference": 1, "name": "m"});
+    let info = editor.good("dataBreakpointInfo", ask);
+    assert_eq!(info["dataId"], "m", "{info}");
+    let unknown = editor.good("dataBreakpointInfo", json!({"name": "1 + 1"}));
+    assert_eq!(unknown["dataId"], Value::Null);
+    let points = json!({"breakpoints": [
+        {"dataId": "m", "accessType": "write"}, {"dataId": "nn"}, {"dataId": "m", "condition": "("},
+    ]});
+    let set = editor.good("setDataBreakpoints", points);
+    let verified = set["breakpoints"].as_array().expect("all").iter();
+    let verified: Vec<bool> = verified.map(|one| one["verified"] == true).collect();
+    assert_eq!(verified, [true, false, false], "{set}");
+    editor.good("continue", json!({"threadId": 1}));
+    let stopped = editor.event("stopped");
+    assert_eq!(stopped["reason"], "data breakpoint");
+    assert_eq!(stopped["text"], "m was 4 and is 6", "{stopped}");
+    editor.good("reverseContinue", json!({"threadId": 1}));
+    assert_eq!(editor.event("stopped")["reason"], "breakpoint");
+    editor.good("reverseContinue", json!({"threadId": 1}));
+    assert_eq!(editor.event("stopped")["text"], "m was 2 and is 4");
+    editor.end();
+}
+
+/// Counts for as long as ten minutes of model time.
+fn long() -> Vec<u8> {
+    let mut sketch = Sketch::new();
+    let start = sketch.block("InitialNode", &[]);
+    let clear = sketch.block("Function", &[("Body", "n = 0")]);
+    let count = sketch.block("Function", &[("Body", "n = n + 1")]);
+    let wait = sketch.block("Timer", &[("Delay", "10")]);
+    sketch.chain(&[start, clear, count, wait, count]);
+    sketch.qrs().expect("a save")
+}
+
+#[test]
+fn a_long_way_back_is_given_up_when_an_editor_pauses() {
+    let board = board();
+    board.file("count.qrs", long());
+    let mut editor = Editor::start();
+    editor.launch(&board, json!({"stopAtEnd": true}));
+    editor.good("configurationDone", json!({}));
+    editor.event("stopped");
+    let last = editor.value("n");
+    let points = json!({"breakpoints": [{"line": 3, "condition": "n < 0"}]});
+    editor.good("setBreakpoints", points);
+    for end in ["pause", "cancel"] {
+        editor.good("reverseContinue", json!({"threadId": 1}));
+        editor.good(end, json!({"threadId": 1}));
+        let stopped = editor.event("stopped");
+        assert_eq!(stopped["reason"], "pause", "{end}: {stopped}");
+        assert_eq!(editor.value("n"), last, "{end}");
+    }
+    editor.good("reverseContinue", json!({"threadId": 1}));
+    editor.event("stopped");
+    // Before the first block it has no value.
+    let why = editor.bad("evaluate", json!({"expression": "n"}));
+    assert!(why.contains("uninitialized variable n"), "{why}");
     editor.end();
 }
 

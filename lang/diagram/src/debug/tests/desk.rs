@@ -203,3 +203,83 @@ fn a_pause_of_a_program_that_is_stopped_asks_for_nothing() {
     stage.run(2);
     assert!(stage.order("look").contains("\"state\":\"running\""));
 }
+
+#[test]
+fn breakpoints_come_in_pages_and_none_is_left_out() {
+    let (mut stage, ids) = stage();
+    stage.order("attach");
+    for _ in 0..limits::BREAKPOINTS_MAX {
+        let line = "x".repeat(400);
+        stage.order(&format!("break {}\nlog {line}", ids[2]));
+    }
+    let mut seen = Vec::new();
+    let mut pages = 0;
+    loop {
+        let after = seen.last().copied().unwrap_or(0);
+        let page = match after {
+            0 => stage.order("breakpoints"),
+            after => stage.order(&format!("breakpoints after {after}")),
+        };
+        assert!(page.len() < 200_000, "{}", page.len());
+        pages += 1;
+        let numbers = page.split("\"number\":").skip(1);
+        let numbers = numbers.map(|rest| rest.split(',').next().unwrap().parse::<u32>().unwrap());
+        seen.extend(numbers);
+        if !page.contains("breakpoints_left_out") {
+            break;
+        }
+    }
+    assert!(pages > 2, "{pages}");
+    let all: Vec<u32> = (1..=limits::BREAKPOINTS_MAX as u32).collect();
+    assert_eq!(seen, all);
+}
+
+#[test]
+fn a_change_is_told_with_what_was_and_what_is() {
+    let (mut stage, ids) = stage();
+    stage.order("attach");
+    let refused = stage.order("watch nn");
+    assert!(
+        refused.contains("this cannot be watched: 1:1 "),
+        "{refused}"
+    );
+    let refused = stage.order(&format!("break {}\nif n +", ids[2]));
+    assert!(
+        refused.contains("\"why\":\"the condition: 1:3 "),
+        "{refused}"
+    );
+    assert!(stage.order("watch n\nif n == 3").contains("\"number\":1"));
+    let news = stage.run(100).join("\n");
+    for part in [
+        "\"reason\":\"change\",\"number\":1,\"variable\":\"n\",\"was\":\"2\",\"is\":\"3\",\"by\":{",
+        &format!("\"id\":{:?}", ids[2]),
+    ] {
+        assert!(news.contains(part), "{part}: {news}");
+    }
+    assert!(
+        stage
+            .order("breakpoints")
+            .contains("\"variable\":\"n\",\"if\":\"n == 3\"")
+    );
+}
+
+#[test]
+fn a_long_search_is_told_at_its_end_and_a_pause_ends_it() {
+    let (mut stage, ids) = stage();
+    stage.order("attach");
+    stage.run(8000);
+    stage.order("pause");
+    stage.run(1);
+    stage.order(&format!("break {}\nif n < 0", ids[2]));
+    let answer = stage.order("back continue");
+    assert!(answer.contains("\"state\":\"searching\""), "{answer}");
+    assert!(stage.order("evaluate n").contains("\"done\":true"));
+    let answer = stage.order("pause");
+    assert!(answer.contains("\"state\":\"stopped\""), "{answer}");
+    let ms = stage.desk.live().now();
+    stage.order("back continue");
+    let news = stage.run(500).join("\n");
+    assert!(news.contains("\"state\":\"past\""), "{news}");
+    assert!(news.contains("\"reason\":\"oldest\""), "{news}");
+    assert_eq!(stage.desk.live().now(), ms, "the program stands still");
+}

@@ -123,7 +123,7 @@ fn every_moment_of_the_past_is_the_one_that_was() {
                             looked += 1;
                         }
                         Err(NoBack::AtOldest | NoBack::NotYet) => {}
-                        Err(why) => panic!("{told}: {why}"),
+                        Err(why) => panic!("{told}: {why:?}"),
                     }
                     if dice.below(3) == 0
                         && session.stop().is_some_and(|stop| stop.node.is_some())
@@ -149,10 +149,9 @@ fn stopped() -> (Desk, Vec<String>) {
     let mut desk = Desk::of(&project);
     desk.session.keep(limits::HISTORY_BYTES);
     let point = Breakpoint {
-        block: ids[2].as_str().into(),
         condition: "n == 9".into(),
         is_once: true,
-        ..Breakpoint::default()
+        ..Breakpoint::before(ids[2].as_str())
     };
     desk.session.add(point).unwrap();
     assert!(matches!(desk.run(1000), Phase::Stopped(_)));
@@ -189,9 +188,8 @@ fn steps_back_undo_what_steps_do() {
 fn it_runs_back_to_a_breakpoint_to_a_time_and_to_the_beginning() {
     let (mut desk, ids) = stopped();
     let point = Breakpoint {
-        block: ids[3].as_str().into(),
         condition: "n == 4".into(),
-        ..Breakpoint::default()
+        ..Breakpoint::before(ids[3].as_str())
     };
     let number = desk.session.add(point).unwrap();
     let stop = desk.session.back(Back::Continue).unwrap();

@@ -1,0 +1,497 @@
+//! Breakpoints: at blocks and at changes of variables; what each was asked for, and how often it was hit.
+//!
+//! Owns the list, which of them may be set, and what those at a moment do. It knows blocks by the ids of the project, so
+//! that it survives a new version of the program. Whether the program goes on is decided by the debugger.
+
+use std::collections::VecDeque;
+
+use super::{Change, Reason};
+use crate::check::aside;
+use crate::limits;
+use crate::machine::Machine;
+use crate::program::{Node, Program};
+use lang_expr::Value;
+use lang_text::problem::{Locale, Problem};
+
+/// Where a breakpoint counts.
+#[derive(Clone, Debug, Eq, PartialEq)]
+pub enum Spot {
+    /// Before the block with this id in the project.
+    Block(Box<str>),
+    /// After a change of this variable, or of this sensor's variable.
+    Change(Box<str>),
+}
+
+impl Default for Spot {
+    fn default() -> Self {
+        Self::Block(Box::default())
+    }
+}
+
+/// A breakpoint.
+#[derive(Clone, Debug, Default, Eq, PartialEq)]
+pub struct Breakpoint {
+    /// Where.
+    pub at: Spot,
+    /// It counts only if this expression is true; empty: always.
+    pub condition: Box<str>,
+    /// It stops at this time and all later ones; 0 and 1: at each.
+    pub from_hit: u32,
+    /// It writes this line instead of stopping; `{expression}` stands for a value. Empty: it stops.
+    pub log: Box<str>,
+    /// It stops once and is gone.
+    pub is_once: bool,
+    /// It is kept but does nothing.
+    pub is_disabled: bool,
+}
+
+impl Breakpoint {
+    /// One that stops each time before a block.
+    pub fn before(block: impl Into<Box<str>>) -> Self {
+        Self {
+            at: Spot::Block(block.into()),
+            ..Self::default()
+        }
+    }
+
+    /// One that stops each time after a change of a variable.
+    pub fn of_changes(variable: impl Into<Box<str>>) -> Self {
+        Self {
+            at: Spot::Change(variable.into()),
+            ..Self::default()
+        }
+    }
+}
+
+/// Why a breakpoint is refused.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoBreakpoint {
+    /// The program has no such block.
+    NoSuchBlock,
+    /// There are [`limits::BREAKPOINTS_MAX`].
+    TooMany,
+    /// There are [`limits::WATCHES_MAX`] of those that stop at changes.
+    TooManyWatches,
+    /// A condition or a line is longer than [`limits::CONDITION_MAX`] bytes.
+    TooLong,
+    /// What is to be watched is no variable of the program.
+    Variable(Vec<Problem>),
+    /// The condition can never be computed.
+    Condition(Vec<Problem>),
+    /// An expression in the line can never be computed.
+    Line(Vec<Problem>),
+}
+
+impl NoBreakpoint {
+    /// For a person, a line for each problem.
+    pub fn in_locale(&self, locale: Locale) -> String {
+        use super::words;
+        match self {
+            Self::NoSuchBlock => words::no_such_block().in_locale(locale).to_owned(),
+            Self::TooMany => words::too_many_breakpoints(limits::BREAKPOINTS_MAX)
+                .in_locale(locale)
+                .to_owned(),
+            Self::TooManyWatches => words::too_many_watches(limits::WATCHES_MAX)
+                .in_locale(locale)
+                .to_owned(),
+            Self::TooLong => words::condition_too_long(limits::CONDITION_MAX)
+                .in_locale(locale)
+                .to_owned(),
+            Self::Variable(problems) => told(words::watched(), problems, locale),
+            Self::Condition(problems) => told(words::condition(), problems, locale),
+            Self::Line(problems) => told(words::line(), problems, locale),
+        }
+    }
+}
+
+/// What is wrong with a part of a breakpoint, a line for each problem.
+fn told(part: lang_text::problem::Words, problems: &[Problem], locale: Locale) -> String {
+    let lines = problems.iter().map(|problem| {
+        let problem = problem.in_locale(locale);
+        format!("{}: {problem}", part.in_locale(locale))
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+#[derive(Clone, Debug)]
+struct Kept {
+    number: u32,
+    point: Breakpoint,
+    /// Where its block is in the program that runs.
+    node: Option<Node>,
+    /// What its variable held when it was last looked at.
+    held: Option<Value>,
+    hits: u32,
+}
+
+/// All breakpoints of a debugger, and the lines that they have written.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Points {
+    all: Vec<Kept>,
+    numbers: u32,
+    /// By node: whether there is a breakpoint.
+    marked: Vec<bool>,
+    /// How many stop at changes.
+    watches: usize,
+    lines: VecDeque<String>,
+    lines_lost: u32,
+}
+
+impl Points {
+    /// None, whose numbers go on after these.
+    pub(super) fn without_all(&self) -> Self {
+        Self {
+            numbers: self.numbers,
+            ..Self::default()
+        }
+    }
+
+    pub(super) fn add(
+        &mut self,
+        machine: &Machine,
+        point: Breakpoint,
+    ) -> Result<u32, NoBreakpoint> {
+        if self.all.len() >= limits::BREAKPOINTS_MAX {
+            return Err(NoBreakpoint::TooMany);
+        }
+        let longest = point.condition.len().max(point.log.len());
+        if longest > limits::CONDITION_MAX {
+            return Err(NoBreakpoint::TooLong);
+        }
+        match &point.at {
+            Spot::Block(block) if machine.program().node(block).is_none() => {
+                return Err(NoBreakpoint::NoSuchBlock);
+            }
+            Spot::Change(_) if self.watches >= limits::WATCHES_MAX => {
+                return Err(NoBreakpoint::TooManyWatches);
+            }
+            Spot::Change(name) => refuse(machine.no_variable(name), NoBreakpoint::Variable)?,
+            Spot::Block(_) => {}
+        }
+        refuse(mistakes(machine, &point.condition), NoBreakpoint::Condition)?;
+        refuse(
+            aside::mistakes_of_line(&point.log, |text| mistakes(machine, text)),
+            NoBreakpoint::Line,
+        )?;
+        self.numbers = self.numbers.wrapping_add(1);
+        self.all.push(Kept {
+            number: self.numbers,
+            held: point.held(machine),
+            point,
+            node: None,
+            hits: 0,
+        });
+        self.bind(machine.program());
+        Ok(self.numbers)
+    }
+
+    /// Takes one away, or all; false if there is none with this number.
+    pub(super) fn clear(&mut self, number: Option<u32>) -> bool {
+        let before = self.all.len();
+        self.all
+            .retain(|kept| number.is_some_and(|number| kept.number != number));
+        self.mark();
+        number.is_none() || self.all.len() < before
+    }
+
+    pub(super) fn enable(&mut self, number: u32, is_enabled: bool) -> bool {
+        let mut points = self.all.iter_mut();
+        let found = points.find(|kept| kept.number == number);
+        found
+            .map(|kept| kept.point.is_disabled = !is_enabled)
+            .is_some()
+    }
+
+    pub(super) fn all(&self) -> impl Iterator<Item = (u32, &Breakpoint, u32)> {
+        let kept = self.all.iter();
+        kept.map(|kept| (kept.number, &kept.point, kept.hits))
+    }
+
+    /// The program that runs is another one: breakpoints are where their blocks are. Those of blocks that are gone wait
+    /// until such a block comes back.
+    pub(super) fn bind(&mut self, program: &Program) {
+        for kept in &mut self.all {
+            kept.node = match &kept.point.at {
+                Spot::Block(block) => program.node(block),
+                Spot::Change(_) => None,
+            };
+        }
+        self.mark();
+    }
+
+    fn mark(&mut self) {
+        self.marked.clear();
+        for node in self.all.iter().filter_map(|kept| kept.node) {
+            let at = node as usize;
+            if self.marked.len() <= at {
+                self.marked.resize(at + 1, false);
+            }
+            self.marked[at] = true;
+        }
+        let watches = self.all.iter().filter(|kept| kept.point.is_watch());
+        self.watches = watches.count();
+    }
+
+    /// Whether any stops at changes.
+    pub(super) fn has_watches(&self) -> bool {
+        self.watches > 0
+    }
+
+    /// Whether one stops at changes of this variable.
+    pub(super) fn is_watched(&self, variable: &str) -> bool {
+        let watches = |kept: &Kept| match &kept.point.at {
+            Spot::Change(name) => **name == *variable,
+            Spot::Block(_) => false,
+        };
+        self.watches > 0 && self.all.iter().any(watches)
+    }
+
+    /// Somebody else has changed values: that is no change of the program's.
+    pub(super) fn look(&mut self, machine: &Machine) {
+        for kept in &mut self.all {
+            kept.held = kept.point.held(machine);
+        }
+    }
+
+    pub(super) fn is_marked(&self, node: Node) -> bool {
+        self.marked.get(node as usize).copied().unwrap_or(false)
+    }
+
+    /// What the breakpoints at a block do.
+    pub(super) fn at_block(&mut self, machine: &Machine, node: Node) -> Option<Reason> {
+        if !self.is_marked(node) {
+            return None;
+        }
+        self.meet(machine, |kept| {
+            (kept.node == Some(node)).then_some(Reason::Breakpoint(kept.number))
+        })
+    }
+
+    /// What those do whose variables have changed since they were last looked at.
+    pub(super) fn at_changes(&mut self, machine: &Machine) -> Option<Reason> {
+        if self.watches == 0 {
+            return None;
+        }
+        self.meet(machine, |kept| {
+            let is = kept.point.held(machine);
+            changed(kept, is).map(|change| Reason::Changed(Box::new(change)))
+        })
+    }
+
+    fn meet(
+        &mut self,
+        machine: &Machine,
+        mut is_met: impl FnMut(&mut Kept) -> Option<Reason>,
+    ) -> Option<Reason> {
+        let mut reason = None;
+        let mut gone = None;
+        for at in 0..self.all.len() {
+            let kept = &mut self.all[at];
+            let Some(why) = is_met(kept) else { continue };
+            if kept.point.is_disabled {
+                continue;
+            }
+            if !kept.point.condition.is_empty() {
+                match machine.evaluate_aside(&kept.point.condition) {
+                    Ok(value) if !value.to_bool() => continue,
+                    Ok(_) => {}
+                    Err(problems) => {
+                        reason.get_or_insert(Reason::Condition(kept.number, problems));
+                        continue;
+                    }
+                }
+            }
+            kept.hits = kept.hits.saturating_add(1);
+            if kept.hits < kept.point.from_hit {
+                continue;
+            }
+            if kept.point.log.is_empty() {
+                if kept.point.is_once {
+                    gone = Some(kept.number);
+                }
+                reason.get_or_insert(why);
+            } else {
+                let line = filled(&kept.point.log, machine);
+                self.line(line);
+            }
+        }
+        if gone.is_some() {
+            self.clear(gone);
+        }
+        reason
+    }
+
+    /// The breakpoint that would stop at a block in the past: hits are not counted there, and nothing is logged.
+    pub(super) fn stops_at(&self, machine: &Machine, node: Node) -> Option<Reason> {
+        let mut points = self.all.iter();
+        let here = points.find(|kept| kept.node == Some(node) && kept.point.would_stop(machine));
+        here.map(|kept| Reason::Breakpoint(kept.number))
+    }
+
+    /// What variables that are watched hold, in the order of the breakpoints.
+    pub(super) fn watched(&self, machine: &Machine) -> Vec<Option<Value>> {
+        let all = self.all.iter();
+        all.map(|kept| kept.point.held(machine)).collect()
+    }
+
+    /// The breakpoint that would stop in the past because its variable is another one than `before`, which becomes what it
+    /// is now.
+    pub(super) fn stops_at_changes(
+        &self,
+        machine: &Machine,
+        before: &mut Vec<Option<Value>>,
+    ) -> Option<Reason> {
+        if self.watches == 0 {
+            return None;
+        }
+        let now = self.watched(machine);
+        let was = std::mem::replace(before, now);
+        let all = self.all.iter().zip(was).zip(before);
+        let mut changes = all.filter_map(|((kept, was), is)| {
+            let change = Change::of(kept.number, &kept.point, was, is.clone())?;
+            kept.point.would_stop(machine).then_some(change)
+        });
+        changes
+            .next()
+            .map(|change| Reason::Changed(Box::new(change)))
+    }
+
+    fn line(&mut self, line: String) {
+        if self.lines.len() >= limits::DEBUG_LINES_MAX {
+            self.lines.pop_front();
+            self.lines_lost = self.lines_lost.saturating_add(1);
+        }
+        self.lines.push_back(line);
+    }
+
+    /// Lines of breakpoints that log, and how many were lost because nobody took them.
+    pub(super) fn take_lines(&mut self) -> (Vec<String>, u32) {
+        let lost = std::mem::take(&mut self.lines_lost);
+        (self.lines.drain(..).collect(), lost)
+    }
+}
+
+impl Breakpoint {
+    /// Whether it stops at changes.
+    fn is_watch(&self) -> bool {
+        match self.at {
+            Spot::Block(_) => false,
+            Spot::Change(_) => true,
+        }
+    }
+
+    /// What its variable holds.
+    fn held(&self, machine: &Machine) -> Option<Value> {
+        match &self.at {
+            Spot::Block(_) => None,
+            Spot::Change(name) => machine.value_of(name),
+        }
+    }
+
+    /// Whether it stops where it is met, whatever its hits.
+    fn would_stop(&self, machine: &Machine) -> bool {
+        let holds = || {
+            let found = machine.evaluate_aside(&self.condition);
+            found.is_ok_and(|value| value.to_bool())
+        };
+        !self.is_disabled && self.log.is_empty() && (self.condition.is_empty() || holds())
+    }
+}
+
+fn refuse(
+    problems: Vec<Problem>,
+    why: impl FnOnce(Vec<Problem>) -> NoBreakpoint,
+) -> Result<(), NoBreakpoint> {
+    match problems.is_empty() {
+        true => Ok(()),
+        false => Err(why(problems)),
+    }
+}
+
+/// What is wrong with an expression whatever the program does; an empty one is none.
+fn mistakes(machine: &Machine, text: &str) -> Vec<Problem> {
+    match text.trim() {
+        "" => Vec::new(),
+        _ => machine.mistakes_aside(text),
+    }
+}
+
+/// Whether what is kept of a variable is another value now, which becomes what is kept.
+fn changed(kept: &mut Kept, is: Option<Value>) -> Option<Change> {
+    let was = std::mem::replace(&mut kept.held, is.clone());
+    Change::of(kept.number, &kept.point, was, is)
+}
+
+impl Change {
+    fn of(number: u32, point: &Breakpoint, was: Option<Value>, is: Option<Value>) -> Option<Self> {
+        let Spot::Change(variable) = &point.at else {
+            return None;
+        };
+        let is_same = match (&was, &is) {
+            (Some(was), Some(is)) => same(was, is),
+            (None, None) => true,
+            (Some(_), None) | (None, Some(_)) => false,
+        };
+        (!is_same).then(|| Self {
+            number,
+            variable: variable.clone(),
+            was,
+            is,
+            by: None,
+        })
+    }
+}
+
+/// Whether two values are the same; one that is no number is the same as itself.
+fn same(one: &Value, other: &Value) -> bool {
+    match one {
+        Value::Nil => matches!(other, Value::Nil),
+        Value::Unset => matches!(other, Value::Unset),
+        Value::Bool(one) => matches!(other, Value::Bool(other) if one == other),
+        Value::Int(one) => matches!(other, Value::Int(other) if one == other),
+        Value::Float(one) => {
+            matches!(other, Value::Float(other) if one.to_bits() == other.to_bits())
+        }
+        Value::Text(one) => matches!(other, Value::Text(other) if one == other),
+        Value::List(one) => {
+            let Value::List(other) = other else {
+                return false;
+            };
+            let (ones, others) = (one.items(), other.items());
+            let mut pairs = ones.iter().zip(others);
+            std::rc::Rc::ptr_eq(one, other)
+                || ones.len() == others.len() && pairs.all(|(one, other)| same(one, other))
+        }
+    }
+}
+
+/// A line with values in the place of `{expression}`; what cannot be computed says why.
+fn filled(line: &str, machine: &Machine) -> String {
+    let mut out = String::new();
+    let mut rest = line;
+    while let Some((before, after)) = rest.split_once('{') {
+        out.push_str(before);
+        let Some((expression, after)) = after.split_once('}') else {
+            out.push('{');
+            rest = after;
+            continue;
+        };
+        match machine.evaluate_aside(expression) {
+            Ok(value) => out.push_str(&value.to_text()),
+            Err(problems) => {
+                let why = problems.first().map(|problem| &*problem.words.english);
+                out.push('<');
+                out.push_str(why.unwrap_or("?"));
+                out.push('>');
+            }
+        }
+        rest = after;
+        if out.len() > limits::DEBUG_LINE_BYTES_MAX {
+            break;
+        }
+    }
+    out.push_str(rest);
+    let end = out.floor_char_boundary(limits::DEBUG_LINE_BYTES_MAX);
+    out.truncate(end);
+    out
+}
