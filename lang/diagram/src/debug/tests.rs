@@ -2,6 +2,7 @@
 
 mod desk;
 mod past;
+mod patches;
 mod points;
 mod random;
 
@@ -57,6 +58,12 @@ impl Desk {
         } else {
             self.now = STEP_MS;
         }
+    }
+
+    /// Goes on for so many steps, from a stop too.
+    fn go_on_for(&mut self, steps: u32) {
+        self.session.go_on(self.now, &mut self.robot, &mut Deaf);
+        self.run(steps);
     }
 
     fn go_on(&mut self) -> Phase {
