@@ -79,6 +79,22 @@ enum Command {
     /// Exit status: 0 the program has ended, or the time is over; 1 no diagram runs; 2 the robot could not be reached, or
     /// does not answer.
     Watch(remote::watch::WatchArgs),
+    /// Let the diagram that runs on a robot run until it comes to a block, and stop there.
+    ///
+    /// Prints where it stands. It stays stopped, with its motors at rest, until trik step, trik continue or trik stop;
+    /// trik debug --attach looks closer.
+    ///
+    /// Exit status: 0 it is stopped there; 1 it has ended before, or does not stop there; 2 the robot could not be reached,
+    /// or the place is none.
+    Break(remote::step::BreakArgs),
+    /// Let the diagram that is stopped on a robot make a step; one that runs is stopped where it is.
+    ///
+    /// Prints where it stands. Exit status: as of trik break.
+    Step(remote::step::StepArgs),
+    /// Let the diagram that is stopped on a robot go on.
+    ///
+    /// Exit status: 0 it goes on; 2 the robot could not be reached, or no diagram runs.
+    Continue(remote::step::ContinueArgs),
     /// End the program of a robot, and bring everything to rest.
     ///
     /// Several robots are stopped at once. Exit status: 0 all are at rest; 1 a robot does not say so; 2 one could not be
@@ -255,6 +271,9 @@ fn run(command: Command) -> Result<u8, Refusal> {
         Command::NewTask(args) => task::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Watch(args) => remote::watch::run(&args),
+        Command::Break(args) => remote::step::stop_at(&args),
+        Command::Step(args) => remote::step::step(&args),
+        Command::Continue(args) => remote::step::go_on(&args),
         Command::Debug(args) => debug::run(&args),
         Command::Dap(args) => dap::run(&args),
         Command::Dcml { command } => dcml::run(&command),

@@ -2,11 +2,12 @@
 //!
 //! Owns the options, and which target a front end gets. `stage` is a simulated robot in this process, one in the network is
 //! in `remote::debugged`; `terminal` talks to a
-//! person, `listing` is the diagram as text, `words` what can be typed, `told` what comes back. The debugger itself is in
+//! person, `stops` says where it is stopped, `listing` is the diagram as text, `words` what can be typed, `told` what comes back. The debugger itself is in
 //! `lang_diagram::debug`.
 
 pub(crate) mod listing;
 pub(crate) mod stage;
+pub(crate) mod stops;
 pub(crate) mod target;
 mod terminal;
 pub(crate) mod told;
@@ -146,7 +147,8 @@ fn run_on(robot: &remote::target::Target, args: &DebugArgs) -> Result<u8, Refusa
         // A person types at a program that is stopped.
         target.order(&Order::Pause).map_err(unreachable)?;
     }
-    let talked = Terminal::new(&mut target, listing).run();
+    let source = (args.file.clone(), args.world.language);
+    let talked = Terminal::new(&mut target, listing, source).run();
     target.close();
     talked.map_err(unreachable)?;
     Ok(0)
@@ -160,7 +162,8 @@ pub(crate) fn talk(staged: &Staged, speed: Option<f64>, start: Start) -> Result<
     say(&staged.strange);
     let listing = Listing::of(&staged.project, staged.settings.locale);
     let mut stage = Stage::of(staged, start).at_speed(speed);
-    Terminal::new(&mut stage, listing).run()?;
+    let file = staged.file.clone();
+    Terminal::new(&mut stage, listing, (file, staged.settings.locale)).run()?;
     Ok(0)
 }
 

@@ -12,7 +12,7 @@ const program = path.join(__dirname, "texts", "count.qrs");
 
 async function talk(client) {
   const caps = await client.initializeRequest();
-  assert.ok(caps.body.supportsStepBack && caps.body.supportsLogPoints && caps.body.supportsRestartRequest);
+  assert.ok(caps.body.supportsStepBack && caps.body.supportsLogPoints && caps.body.supportsDataBreakpoints && caps.body.supportsRestartRequest);
   const initialized = client.waitForEvent("initialized");
   await client.launch({ program, stopOnEntry: true });
   await initialized;
@@ -57,6 +57,14 @@ async function talk(client) {
   assert.strictEqual(value.body.result, "20");
   const source = await client.sourceRequest({ sourceReference: top.source.sourceReference });
   assert.ok(source.body.content.includes("print(n)"));
+
+  const info = await client.customRequest("dataBreakpointInfo", { variablesReference: 1, name: "n" });
+  assert.strictEqual(info.body.dataId, "n");
+  const watched = await client.customRequest("setDataBreakpoints", {
+    breakpoints: [{ dataId: "n", accessType: "write" }, { dataId: "nobody" }],
+  });
+  assert.deepStrictEqual(watched.body.breakpoints.map((one) => one.verified), [true, false]);
+  await client.customRequest("setDataBreakpoints", { breakpoints: [] });
 
   // The present: there variables can be set.
   await client.customRequest("continue", { threadId });

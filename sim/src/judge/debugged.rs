@@ -9,6 +9,7 @@ use lang_diagram::brick::{Brick, Command};
 use lang_diagram::debug::Session;
 use lang_diagram::debug::desk::Desk;
 use lang_diagram::limits::HISTORY_BYTES;
+use lang_diagram::machine::patch::{Patched, Refused, Version, WhenGone};
 use lang_diagram::machine::trace::Deaf;
 use lang_diagram::machine::{Options, Status};
 use lang_diagram::ports::Port;
@@ -24,6 +25,9 @@ pub struct Debugged {
     /// An order for a program that is held, and what has come of it.
     order: Option<(u32, String)>,
     answer: Option<String>,
+    /// A new version for a program that is held, and what has come of it.
+    version: Option<Version>,
+    patched: Option<Result<Patched, Refused>>,
 }
 
 impl Debugged {
@@ -35,7 +39,43 @@ impl Debugged {
             desk: Desk::new(session, locale, HISTORY_BYTES),
             order: None,
             answer: None,
+            version: None,
+            patched: None,
         }
+    }
+}
+
+impl Debugged {
+    fn patch(&mut self, version: &Version, robot: &mut dyn Brick) -> Result<Patched, Refused> {
+        let session = self.desk.session();
+        let patched = session.patch(version, WhenGone::Refuse, robot, &mut Deaf)?;
+        self.desk.tell_again();
+        Ok(patched)
+    }
+}
+
+/// Puts a new version in the place of a debugged program in its run, if no thread is at a block that it does not have. Model
+/// time does not pass.
+///
+/// # Errors
+/// [`Refused`]; nothing has changed then.
+pub fn patch(
+    trial: &mut Trial<'_>,
+    program: &mut Debugged,
+    version: &Version,
+) -> Result<Patched, Refused> {
+    match trial.progress() {
+        Progress::Held => {
+            program.version = Some(version.clone());
+            trial.tick(program);
+            program.patched.take().unwrap_or(Err(Refused::Ended))
+        }
+        Progress::Runs => {
+            let mut patched = Err(Refused::Ended);
+            trial.aside(&mut |_, robot| patched = program.patch(version, robot));
+            patched
+        }
+        Progress::Over => Err(Refused::Ended),
     }
 }
 
@@ -43,6 +83,8 @@ impl Program for Debugged {
     fn step(&mut self, now_ms: u32, robot: &mut dyn Brick) -> Status {
         if let Some((tag, text)) = self.order.take() {
             self.answer = Some(self.desk.order((tag, &text), now_ms, robot, &mut Deaf));
+        } else if let Some(version) = self.version.take() {
+            self.patched = Some(self.patch(&version, robot));
         } else {
             self.desk.step(now_ms, robot, &mut Deaf);
         }

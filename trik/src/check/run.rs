@@ -363,11 +363,7 @@ impl Solution {
 
     /// The diagram, lowered; the task gets the sensors that it needs.
     fn diagram(&self, task: &mut Task, args: &CheckArgs) -> Result<Rc<Lowered>, Refused> {
-        let world = World::Simulated {
-            mailbox: false,
-            gamepad: args.gamepad.is_some(),
-        };
-        let lowered = lower(&self.project, world);
+        let lowered = lower(&self.project, world(args));
         let lowered =
             lowered.map_err(|problem| Refused::broken(vec![problem.in_locale(args.language)]))?;
         task.plug_in(&self.project, &lowered.program);
@@ -404,8 +400,11 @@ pub(crate) enum Start {
 
 /// A diagram that is ready to run in its world, for whoever runs it tick by tick.
 pub(crate) struct Staged {
+    pub file: PathBuf,
     pub project: Project,
     pub program: Rc<Lowered>,
+    /// In which it was lowered.
+    pub world: World,
     pub task: Task,
     pub settings: Settings,
     /// What is strange in the world.
@@ -435,14 +434,24 @@ pub(crate) fn staged(args: &CheckArgs) -> Result<Staged, Lines> {
         let (mut task, strange) = solution.task(job, args)?;
         let program = solution.diagram(&mut task, args)?;
         Ok(Staged {
+            file: job.solution.clone(),
             project: solution.project,
             program,
+            world: world(args),
             task,
             settings,
             strange,
         })
     };
     all().map_err(|refused: Refused| refused.lines)
+}
+
+/// What a diagram finds in a world.
+fn world(args: &CheckArgs) -> World {
+    World::Simulated {
+        mailbox: false,
+        gamepad: args.gamepad.is_some(),
+    }
 }
 
 /// The program that a save holds beside its diagram.

@@ -4,17 +4,19 @@
 
 use super::client::{Client, Refused, Request};
 use super::points::Points;
-use super::session::{After, Session};
+use super::session::{After, Begins, Session};
 use crate::check::Start;
 use crate::debug::WorldArgs;
 use crate::debug::listing::Listing;
 use crate::debug::stage::Stage;
-use crate::debug::target::Target;
-use crate::diagrams::save::must_open;
+use crate::debug::target::{Changed, Target};
+use crate::diagrams::save::{self, must_open};
+use crate::error::Error;
 use crate::language;
 use crate::remote::debugged::Debugged;
 use crate::remote::target::{Target as Place, target as place, the_one};
 use lang_diagram::project::Project;
+use lang_text::problem::Locale;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
@@ -117,6 +119,7 @@ impl Launch {
 
     /// Once in a simulated world.
     fn here(&self, request: &Request, client: &mut Client, points: (&mut Points, bool)) -> Next {
+        let seen = save::bytes(&self.program).ok();
         let staged = match self.world.stage(self.program.clone()) {
             Ok(staged) => staged,
             Err(lines) => {
@@ -126,12 +129,11 @@ impl Launch {
         };
         client.answer(request, Ok(Value::Null));
         for line in &staged.strange {
-            let body = json!({"category": "important", "output": format!("{line}\n")});
-            client.event("output", body);
+            important(client, line);
         }
-        let listing = Listing::of(&staged.project, staged.settings.locale);
         let mut stage = Stage::of(&staged, Start::Stopped).at_speed(self.world.speed);
-        self.session(client, &mut stage, (&listing, &staged.project), points)
+        let sheets = Sheets::of(staged.project.clone(), staged.settings.locale, seen);
+        self.talk(client, &mut stage, sheets, points)
     }
 
     /// Once on a robot.
@@ -142,6 +144,7 @@ impl Launch {
         client: &mut Client,
         points: (&mut Points, bool),
     ) -> Next {
+        let seen = save::bytes(&self.program).ok();
         let opened = match must_open(&self.program, self.world.language) {
             Ok(opened) => opened,
             Err(refusal) => {
@@ -161,31 +164,130 @@ impl Launch {
             }
         };
         client.answer(request, Ok(Value::Null));
-        let listing = Listing::of(&opened.project, self.world.language);
-        let next = self.session(client, &mut target, (&listing, &opened.project), points);
+        let sheets = Sheets::of(opened.project, self.world.language, seen);
+        let next = self.talk(client, &mut target, sheets, points);
         target.close();
         next
+    }
+
+    /// A talk about one run, whose program may become another version on the way.
+    fn talk(
+        &self,
+        client: &mut Client,
+        target: &mut dyn Target,
+        mut sheets: Sheets,
+        (points, is_first): (&mut Points, bool),
+    ) -> Next {
+        let mut begins = match is_first {
+            true => Begins::First,
+            false => Begins::Anew,
+        };
+        let mut is_over = false;
+        loop {
+            let talked = self.session(client, target, &sheets, (points, begins, is_over));
+            let (request, was_over) = match talked {
+                Ok(After::Again(request, is_over)) => (request, is_over),
+                Ok(After::End) => return Next::End,
+                Err(error) => {
+                    important(client, &format!("trik dap: {error}"));
+                    client.event("terminated", json!({}));
+                    return Next::End;
+                }
+            };
+            is_over = was_over;
+            let (answer, next) = match self.restart(client, target, &mut sheets) {
+                Restart::Anew => return Next::Again(request),
+                Restart::Changed => (Ok(Value::Null), Begins::Changed),
+                Restart::Same => (Ok(Value::Null), Begins::Same),
+                Restart::Refused(why) => (Err(Refused(why)), Begins::Same),
+            };
+            client.answer(&request, answer);
+            begins = next;
+        }
+    }
+
+    /// Puts the file as it is now in the place of what runs, if it has changed.
+    fn restart(
+        &self,
+        client: &mut Client,
+        target: &mut dyn Target,
+        sheets: &mut Sheets,
+    ) -> Restart {
+        let now = save::bytes(&self.program).ok();
+        if now == sheets.seen {
+            // Whoever has joined a program does not begin it.
+            return match self.is_joining {
+                true => Restart::Same,
+                false => Restart::Anew,
+            };
+        }
+        let opened = match must_open(&self.program, self.world.language) {
+            Ok(opened) => opened,
+            Err(refusal) => return Restart::Refused(refusal.lines.join("\n")),
+        };
+        match target.change(&self.program, &opened.project) {
+            Ok(Changed::InForce(what)) => {
+                important(client, &format!("changed: {what}"));
+                *sheets = Sheets::of(opened.project, self.world.language, now);
+                Restart::Changed
+            }
+            Ok(Changed::Wrong(why)) => {
+                Restart::Refused(format!("{why}\nwhat runs goes on as it was"))
+            }
+            Ok(Changed::CannotBe(why)) if self.is_joining => Restart::Refused(why),
+            Ok(Changed::CannotBe(why)) => {
+                important(client, &format!("the program begins anew: {why}"));
+                Restart::Anew
+            }
+            Err(error) => Restart::Refused(error.to_string()),
+        }
     }
 
     fn session(
         &self,
         client: &mut Client,
         target: &mut dyn Target,
-        (listing, project): (&Listing, &Project),
-        (points, is_first): (&mut Points, bool),
-    ) -> Next {
+        sheets: &Sheets,
+        (points, begins, is_over): (&mut Points, Begins, bool),
+    ) -> Result<After, Error> {
         let name = self.program.file_name().unwrap_or_default();
         let name = format!("{}.txt", name.to_string_lossy());
-        let mut session = Session::new(client, target, (listing, project, name), points, self);
-        match session.run(is_first) {
-            Ok(After::End) => Next::End,
-            Ok(After::Again(again)) => Next::Again(again),
-            Err(error) => {
-                let text = format!("trik dap: {error}\n");
-                client.event("output", json!({"category": "important", "output": text}));
-                client.event("terminated", json!({}));
-                Next::End
-            }
+        let shown = (&sheets.listing, &sheets.project, name);
+        Session::new(client, target, shown, (points, is_over), self).run(begins)
+    }
+}
+
+/// What a restart has come to.
+enum Restart {
+    /// Another version runs.
+    Changed,
+    /// The same one runs on.
+    Same,
+    /// Nothing has changed, and why.
+    Refused(String),
+    /// The program has to begin anew.
+    Anew,
+}
+
+/// The diagram that runs.
+struct Sheets {
+    listing: Listing,
+    project: Project,
+    /// Its file when it was read, for whoever looks whether it has changed.
+    seen: Option<Vec<u8>>,
+}
+
+impl Sheets {
+    fn of(project: Project, locale: Locale, seen: Option<Vec<u8>>) -> Self {
+        Self {
+            listing: Listing::of(&project, locale),
+            project,
+            seen,
         }
     }
+}
+
+fn important(client: &mut Client, line: &str) {
+    let body = json!({"category": "important", "output": format!("{line}\n")});
+    client.event("output", body);
 }

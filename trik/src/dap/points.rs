@@ -186,13 +186,33 @@ impl Points {
         })
     }
 
-    /// Sets all again, for a program that has begun anew. Blocks that are gone are passed over.
-    pub fn set_again(&mut self, target: &mut dyn Target) -> Result<(), Error> {
+    /// Sets all again, for a program that has begun anew; what is to be told of those that cannot be set any more.
+    pub fn set_again(&mut self, target: &mut dyn Target) -> Result<Vec<Value>, Error> {
+        let mut told = Vec::new();
         for set in &mut self.set {
             let answer = target.order(&Order::Break(set.point.clone()))?;
+            if let Some(why) = why_not(&answer) {
+                told.push(json!({"id": set.number, "verified": false, "message": why}));
+            }
             set.number = answer.get("number").and_then(Value::as_u64).unwrap_or(0);
         }
-        Ok(())
+        Ok(told)
+    }
+
+    /// Where those of blocks are in another text.
+    pub fn places(&self, listing: &Listing) -> Vec<Value> {
+        let places = self.set.iter().filter_map(|set| match &set.point.at {
+            Spot::Block(block) if listing.has(block) => {
+                let line = listing.line_of(block);
+                Some(json!({"id": set.number, "verified": true, "line": line}))
+            }
+            Spot::Block(_) => {
+                let why = "the new version has no such block";
+                Some(json!({"id": set.number, "verified": false, "message": why}))
+            }
+            Spot::Change(_) => None,
+        });
+        places.collect()
     }
 }
 

@@ -22,12 +22,25 @@ const PIECE: Duration = Duration::from_millis(5);
 /// How long a program that is stopped waits for one.
 const PATIENCE: Duration = Duration::from_millis(100);
 
+/// How a program comes into a talk.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum Begins {
+    /// For the first time: the client says its breakpoints.
+    First,
+    /// Anew, with the breakpoints that were said before.
+    Anew,
+    /// It goes on as another version, with breakpoints and all it has.
+    Changed,
+    /// It goes on as it was: nothing has come of a restart.
+    Same,
+}
+
 /// What becomes of a program.
 pub(super) enum After {
     /// The talk is over.
     End,
-    /// It begins anew; this request is answered then.
-    Again(Request),
+    /// It begins anew, or becomes another version; this request is answered then. And whether its run is over.
+    Again(Request, bool),
 }
 
 /// Serves one client.
@@ -110,7 +123,7 @@ impl<'a> Session<'a> {
         client: &'a mut Client,
         target: &'a mut dyn Target,
         (listing, project, name): (&'a Listing, &'a Project, String),
-        points: &'a mut Points,
+        (points, is_over): (&'a mut Points, bool),
         launch: &'a Launch,
     ) -> Self {
         Self {
@@ -122,30 +135,71 @@ impl<'a> Session<'a> {
             points,
             told: Told::default(),
             is_configured: false,
-            is_over: false,
+            is_over,
             launch,
         }
     }
 
-    /// Until the talk is over, or the program is to begin anew. A first session waits for breakpoints.
+    /// Until the talk is over, or the program is to begin anew.
     ///
     /// # Errors
     /// The robot is gone.
-    pub fn run(&mut self, is_first: bool) -> Result<After, Error> {
-        // To the stop before the first block.
+    pub fn run(&mut self, begins: Begins) -> Result<After, Error> {
+        match begins {
+            Begins::First | Begins::Anew => self.start(begins)?,
+            Begins::Changed => self.go_on_changed()?,
+            Begins::Same => {
+                self.is_configured = true;
+                self.order(&Order::Look)?.ok();
+            }
+        }
+        self.talk()
+    }
+
+    /// To the stop before the first block, and on if nobody wants it there.
+    fn start(&mut self, begins: Begins) -> Result<(), Error> {
         let mut events = Vec::new();
         while !self.launch.is_joining && self.told.state == State::Running && !self.is_over {
             events.extend(self.turn(PIECE)?);
         }
         self.hear(&events, false);
-        if is_first {
+        if begins == Begins::First {
             self.client.event("initialized", json!({}));
         } else {
-            self.points.set_again(self.target)?;
+            let told = self.points.set_again(self.target)?;
+            self.tell_points(told);
             self.order(&Order::Errors(self.points.stops_at_errors))?
                 .ok();
             self.begin()?;
         }
+        Ok(())
+    }
+
+    /// Another version runs: its text is another one, and breakpoints are elsewhere in it.
+    fn go_on_changed(&mut self) -> Result<(), Error> {
+        self.is_configured = true;
+        self.order(&Order::Look)?.ok();
+        let source = view::source(&self.name);
+        self.client.event(
+            "loadedSource",
+            json!({"reason": "changed", "source": source}),
+        );
+        let told = self.points.places(self.listing);
+        self.tell_points(told);
+        if matches!(self.told.state, State::Stopped | State::Past) {
+            self.tell_stop();
+        }
+        Ok(())
+    }
+
+    fn tell_points(&mut self, points: Vec<Value>) {
+        for point in points {
+            let body = json!({"reason": "changed", "breakpoint": point});
+            self.client.event("breakpoint", body);
+        }
+    }
+
+    fn talk(&mut self) -> Result<After, Error> {
         loop {
             let is_running = self.is_configured && self.told.state.is_under_way() && !self.is_over
                 || self.told.state == State::Searching;
@@ -343,7 +397,7 @@ impl<'a> Session<'a> {
                 self.client.answer(&request, Ok(Value::Null));
                 return Ok(Some(After::End));
             }
-            "restart" => return Ok(Some(After::Again(request))),
+            "restart" => return Ok(Some(After::Again(request, self.is_over))),
             "configurationDone" => {
                 self.client.answer(&request, Ok(Value::Null));
                 if !self.is_configured {

@@ -3,16 +3,20 @@
 //! Owns the run, where its robot was at each moment, and what was said of it so far. Rules, program and debugger are those
 //! of `sim` and `lang-diagram`.
 
-use super::target::{Channel, Event, Target};
+use super::target::{Changed, Channel, Event, Target, problems, version};
 use crate::check::{Staged, Start};
 use crate::error::Error;
 use crate::limits;
 use lang_constraint::Level;
 use lang_diagram::debug::order::Order;
+use lang_diagram::lower::World;
+use lang_diagram::machine::patch::Refused;
+use lang_diagram::project::Project;
 use serde_json::Value;
 use sim::judge::debugged::{self, Debugged};
 use sim::judge::{Failure, Outcome, Progress, Settings, Task, Trial, Verdict};
 use std::collections::VecDeque;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Ticks between two looks at the clock.
@@ -32,6 +36,7 @@ pub(crate) struct Stage<'a> {
     entries: usize,
     printed: usize,
     settings: &'a Settings,
+    world: World,
     /// The program is faster than time by this; none: as fast as can be.
     speed: Option<f64>,
     /// When the model's time was what, while it runs at a speed.
@@ -40,7 +45,7 @@ pub(crate) struct Stage<'a> {
 
 impl<'a> Stage<'a> {
     /// Stopped before the first block.
-    pub(crate) fn new(task: &Task, program: Debugged, settings: &'a Settings) -> Self {
+    fn new(task: &Task, program: Debugged, settings: &'a Settings, world: World) -> Self {
         Self {
             trial: Some(Trial::new(task, &program, settings)),
             program,
@@ -51,6 +56,7 @@ impl<'a> Stage<'a> {
             entries: 0,
             printed: 0,
             settings,
+            world,
             speed: None,
             pace: None,
         }
@@ -63,7 +69,7 @@ impl<'a> Stage<'a> {
             Start::Stopped => program.desk.session().debugger().pause(),
             Start::Running => {}
         }
-        Self::new(&staged.task, program, &staged.settings)
+        Self::new(&staged.task, program, &staged.settings, staged.world)
     }
 
     /// Model time goes so many times faster than real time.
@@ -210,6 +216,23 @@ impl Target for Stage<'_> {
             std::thread::sleep(until.saturating_duration_since(Instant::now()));
         }
         Ok(events)
+    }
+
+    fn change(&mut self, _file: &Path, project: &Project) -> Result<Changed, Error> {
+        let locale = self.settings.locale;
+        let version = match version(project, self.world, locale) {
+            Ok(version) => version,
+            Err(why) => return Ok(Changed::Wrong(why)),
+        };
+        let Some(trial) = &mut self.trial else {
+            return Ok(Changed::CannotBe(problems(&Refused::Ended, locale)));
+        };
+        let patched = debugged::patch(trial, &mut self.program, &version);
+        self.end_if_over();
+        Ok(match patched {
+            Ok(patched) => Changed::InForce(patched.to_string()),
+            Err(why) => Changed::CannotBe(problems(&why, locale)),
+        })
     }
 
     /// Nothing moves any more: its time stands still.

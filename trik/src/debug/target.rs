@@ -4,7 +4,12 @@
 
 use crate::error::Error;
 use lang_diagram::debug::order::Order;
+use lang_diagram::lower::World;
+use lang_diagram::machine::patch::{Refused, Version};
+use lang_diagram::project::Project;
+use lang_text::problem::{Locale, Problem};
 use serde_json::Value;
+use std::path::Path;
 use std::time::Duration;
 
 /// A diagram with its debugger.
@@ -21,6 +26,12 @@ pub(crate) trait Target {
     /// The robot is gone.
     fn turn(&mut self, wait: Duration) -> Result<Vec<Event>, Error>;
 
+    /// Puts the diagram of a file in the place of the one that runs, which goes on where it is with what it has.
+    ///
+    /// # Errors
+    /// The robot does not answer.
+    fn change(&mut self, file: &Path, project: &Project) -> Result<Changed, Error>;
+
     /// Ends the program: motors rest.
     fn end(&mut self);
 
@@ -32,6 +43,17 @@ pub(crate) trait Target {
 
     /// What the world looks like at a time of the program, in a line; none if nobody knows.
     fn scene(&self, ms: u64) -> Option<String>;
+}
+
+/// What has become of a new version of a diagram.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Changed {
+    /// It runs, and this is what it has changed.
+    InForce(String),
+    /// It has mistakes; what ran goes on.
+    Wrong(String),
+    /// It cannot take the place of what runs, for this reason: it would have to begin anew.
+    CannotBe(String),
 }
 
 /// Something that has happened.
@@ -52,6 +74,26 @@ pub(crate) enum Channel {
     Output,
     /// It is an error or a message of rules.
     Message,
+}
+
+/// A new version for a world, if it has no mistakes.
+///
+/// # Errors
+/// A line for each mistake.
+pub(crate) fn version(project: &Project, world: World, locale: Locale) -> Result<Version, String> {
+    Version::of(project, world).map_err(|why| problems(&why, locale))
+}
+
+/// Why a version is refused, a line for each problem.
+pub(crate) fn problems(why: &Refused, locale: Locale) -> String {
+    let line = |problem: &Problem| problem.in_locale(locale);
+    match why {
+        Refused::Ended => "the program has ended".to_owned(),
+        Refused::Mistakes(_) | Refused::Occupied(_) => {
+            let lines: Vec<String> = why.problems().iter().map(line).collect();
+            lines.join("\n")
+        }
+    }
 }
 
 /// The lines of breakpoints in what a debugger has told; none if it has told something else.

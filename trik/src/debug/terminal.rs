@@ -4,18 +4,22 @@
 //! pipe are read one after the other, each when the program has stopped.
 
 use super::listing::Listing;
-use super::target::{Channel, Event, Target, log_lines, why_not};
-use super::told::{Change, State, Told};
+use super::stops;
+use super::target::{Changed, Channel, Event, Target, log_lines, why_not};
+use super::told::{State, Told};
 use super::words::{ROWS, Typed, understand};
+use crate::diagrams::save::must_open;
 use crate::error::Error;
 use crate::limits;
 use crate::terminal::harmless;
 use lang_diagram::debug::Spot;
 use lang_diagram::debug::order::Order;
+use lang_text::problem::Locale;
 use nix::sys::signal::{SigSet, Signal};
 use nix::sys::signalfd::{SfdFlags, SignalFd};
 use serde_json::Value;
 use std::io::{self, BufRead, IsTerminal, Read, Write};
+use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::Duration;
 
@@ -30,6 +34,7 @@ const TURN: Duration = Duration::from_millis(50);
 pub(crate) struct Terminal<'a> {
     target: &'a mut dyn Target,
     listing: Listing,
+    source: (PathBuf, Locale),
     told: Told,
     /// Whether somebody reads prompts.
     is_interactive: bool,
@@ -39,10 +44,16 @@ pub(crate) struct Terminal<'a> {
 }
 
 impl<'a> Terminal<'a> {
-    pub(crate) fn new(target: &'a mut dyn Target, listing: Listing) -> Self {
+    /// Of a diagram in a file, in a language.
+    pub(crate) fn new(
+        target: &'a mut dyn Target,
+        listing: Listing,
+        source: (PathBuf, Locale),
+    ) -> Self {
         Self {
             target,
             listing,
+            source,
             told: Told::default(),
             is_interactive: io::stdin().is_terminal() && io::stdout().is_terminal(),
             last: String::new(),
@@ -143,6 +154,7 @@ impl<'a> Terminal<'a> {
                 Some(scene) => self.say(&scene),
                 None => self.say("where a robot is can be seen, and is not known here"),
             },
+            Typed::Reload => self.reload(),
             Typed::Help => self.help(),
             // The caller ends at this one.
             Typed::Quit => Ok(()),
@@ -190,7 +202,10 @@ impl<'a> Terminal<'a> {
                 self.hear_but_states(&events)?;
                 match events.iter().any(|event| matches!(event, Event::Over(_))) {
                     true => Ok(()),
-                    false => self.say(&format!("the program has ended at {}", self.time())),
+                    false => self.say(&format!(
+                        "the program has ended at {}",
+                        stops::time(&self.told)
+                    )),
                 }
             }
         }
@@ -237,7 +252,10 @@ impl<'a> Terminal<'a> {
             State::Stopped | State::Past => self.show_stop(),
             // The end of a run is said with its verdict.
             State::Ended if is_over => Ok(()),
-            State::Ended => self.say(&format!("the program has ended at {}", self.time())),
+            State::Ended => self.say(&format!(
+                "the program has ended at {}",
+                stops::time(&self.told)
+            )),
             State::Running | State::Searching => Ok(()),
         }
     }
@@ -282,58 +300,34 @@ impl<'a> Terminal<'a> {
         }
     }
 
-    fn time(&self) -> String {
-        format!("{:.2} s", self.told.ms as f64 / 1000.0)
-    }
-
     fn show_stop(&mut self) -> Result<(), Error> {
-        let Some(stop) = &self.told.stop else {
-            return Ok(());
-        };
-        let why = match (stop.reason.as_str(), stop.number) {
-            ("breakpoint", Some(number)) => format!("breakpoint {number}"),
-            ("condition", Some(number)) => {
-                format!(
-                    "the condition of breakpoint {number}: {}",
-                    harmless(&stop.text)
-                )
-            }
-            ("change", Some(number)) => {
-                self.change(number, &stop.change.clone().unwrap_or_default())
-            }
-            ("error", _) => format!("an error: {}", harmless(&stop.text)),
-            ("oldest", _) => "nothing before this is kept".to_owned(),
-            ("pause", _) if self.told.ms == 0 => "before the first block".to_owned(),
-            (reason, _) => harmless(reason),
-        };
-        let past = if self.told.state == State::Past {
-            "past, "
-        } else {
-            ""
-        };
-        let thread = match stop.name.as_str() {
-            "" => String::new(),
-            name => format!(", thread {}", harmless(name)),
-        };
-        self.say(&format!("{past}{}{thread}: {why}", self.time()))?;
-        if let Some(at) = self.told.at() {
-            if self.listing.has(&at.id) {
-                let line = self.listing.line_of(&at.id);
-                return self.say(&format!("> {line:3} {}", self.listing.text(line)));
-            }
-            let (diagram, block) = (harmless(&at.diagram), harmless(&at.block));
-            let what = "this block is not in the file: another diagram runs";
-            self.say(&format!(">     {diagram}, {block}: {what}"))?;
+        for line in stops::lines(&self.told, Some(&self.listing)) {
+            self.say(&line)?;
         }
         Ok(())
     }
 
-    /// A variable that is watched, and the line that has changed it.
-    fn change(&self, number: u64, change: &Change) -> String {
-        let told = format!("breakpoint {number}: {}", harmless(&change.sentence()));
-        match change.by.as_ref().filter(|at| self.listing.has(&at.id)) {
-            Some(at) => format!("{told}, by line {}", self.listing.line_of(&at.id)),
-            None => told,
+    /// The file as it is now takes the place of what runs.
+    fn reload(&mut self) -> Result<(), Error> {
+        let (file, locale) = &self.source;
+        let opened = match must_open(file, *locale) {
+            Ok(opened) => opened,
+            Err(refusal) => return self.say(&lines_of(&refusal.lines.join("\n"))),
+        };
+        match self.target.change(file, &opened.project)? {
+            Changed::InForce(what) => {
+                self.listing = Listing::of(&opened.project, *locale);
+                self.say(&format!("changed: {}", harmless(&what)))?;
+                let events = self.target.turn(Duration::ZERO)?;
+                self.hear_but_states(&events)?;
+                self.look()?;
+                self.show_stop()
+            }
+            Changed::Wrong(why) => self.say(&format!("{}\nnothing is changed", lines_of(&why))),
+            Changed::CannotBe(why) => self.say(&format!(
+                "{}\nnothing is changed; quit and start again to begin anew",
+                lines_of(&why)
+            )),
         }
     }
 
@@ -457,6 +451,11 @@ impl<'a> Terminal<'a> {
         }
         self.say("an empty line is the line before; Ctrl-C stops a program that runs")
     }
+}
+
+/// Lines of others, for a terminal.
+fn lines_of(text: &str) -> String {
+    text.lines().map(harmless).collect::<Vec<_>>().join("\n")
 }
 
 /// Ctrl-C, and the ends of a terminal and a session, as something to read.

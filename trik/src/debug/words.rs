@@ -22,6 +22,8 @@ pub(super) enum Typed {
     Variables,
     /// Where the robot is.
     Scene,
+    /// The file again, for the program that runs.
+    Reload,
     /// What can be typed.
     Help,
     /// The end.
@@ -61,7 +63,7 @@ impl fmt::Display for NotUnderstood {
 type Row = (&'static str, &'static str, &'static str);
 
 /// All commands, for help. The first word is the long one.
-pub(super) const ROWS: [Row; 27] = [
+pub(super) const ROWS: [Row; 28] = [
     (
         "continue c",
         "",
@@ -150,6 +152,11 @@ pub(super) const ROWS: [Row; 27] = [
         "THREAD",
         "hold a thread and let the others go on; release THREAD undoes it",
     ),
+    (
+        "reload",
+        "",
+        "take the file as it is now; the program goes on where it is, with what its variables hold",
+    ),
     ("where w", "", "where the robot is at this moment"),
     (
         "motors",
@@ -161,7 +168,7 @@ pub(super) const ROWS: [Row; 27] = [
 
 /// Commands after which nothing comes.
 const ALONE: &str = "continue c run r pause reverse-next rn reverse-step rs reverse-finish rf reverse-continue rc start \
-    present breakpoints threads variables backtrace bt where w help h ? quit q exit";
+    present breakpoints threads variables backtrace bt reload where w help h ? quit q exit";
 
 /// What a line means, which is not empty.
 pub(super) fn understand(line: &str, listing: &Listing) -> Result<Typed, NotUnderstood> {
@@ -195,6 +202,7 @@ pub(super) fn understand(line: &str, listing: &Listing) -> Result<Typed, NotUnde
         "threads" => Typed::Threads,
         "variables" => Typed::Variables,
         "backtrace" | "bt" => Typed::Calls,
+        "reload" => Typed::Reload,
         "where" | "w" => Typed::Scene,
         "help" | "h" | "?" => Typed::Help,
         "quit" | "q" | "exit" => Typed::Quit,

@@ -5,15 +5,19 @@
 
 use super::link::{Link, Message, ms};
 use super::upload::Upload;
-use crate::debug::target::{Channel, Event, Target, why_not};
+use crate::debug::target::{Changed, Channel, Event, Target, version, why_not};
 use crate::error::Error;
 use crate::limits;
 use lang_diagram::debug::order::Order;
+use lang_diagram::lower::World;
+use lang_diagram::project::Project;
+use lang_text::problem::Locale;
 use serde_json::Value;
 use std::collections::VecDeque;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use trikd::protocol::news;
+use trikd::protocol::program::WhenGone;
 
 /// How a talk about a program begins, and with that how it ends.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -32,6 +36,9 @@ pub(crate) struct Debugged {
     /// What has come and was not asked for yet.
     events: VecDeque<Event>,
     is_gone: bool,
+    /// The program whose change is waited for, and what has become of it.
+    awaits: Option<String>,
+    is_changed: Option<Changed>,
 }
 
 impl Debugged {
@@ -71,6 +78,8 @@ impl Debugged {
             begun,
             events: VecDeque::new(),
             is_gone: false,
+            awaits: None,
+            is_changed: None,
         }
     }
 
@@ -93,11 +102,46 @@ impl Debugged {
             }
             self.link.turn(ms(limits::TURN_MS), None, true)?;
         }
-        Err(Error::Robot(format!(
+        Err(self.silence())
+    }
+
+    fn silence(&self) -> Error {
+        Error::Robot(format!(
             "{} has not answered for {} s: perhaps its trikd is older than this program",
             self.link.name(),
             limits::ANSWER_MS / 1000
-        )))
+        ))
+    }
+
+    /// Whether a text is the answer to a change that is waited for.
+    fn is_answer(&mut self, text: &str) -> bool {
+        let name = self.awaits.as_deref();
+        let answer = name.and_then(|name| Some((name, news::is_changed(text, name)?)));
+        let Some((name, is_changed)) = answer else {
+            return false;
+        };
+        let what = text.strip_prefix(name).unwrap_or(text);
+        let what = what.split_once(": ").map_or(what, |(_, what)| what);
+        self.is_changed = Some(match is_changed {
+            true => Changed::InForce(what.to_owned()),
+            false => Changed::CannotBe(what.to_owned()),
+        });
+        true
+    }
+
+    /// States that were told so far are of before the next order.
+    pub(crate) fn forget_states(&mut self) {
+        self.events.retain(|event| match event {
+            Event::Told(told) => told.get("state").is_none(),
+            Event::Said(..) | Event::Over(_) => true,
+        });
+    }
+
+    /// Gives up control as if the connection had ended: a program that is stopped stays so, with its motors at rest.
+    pub(crate) fn leave(&mut self) {
+        // Whoever does not answer has lost its connection, which means the same.
+        let _ = self.ask("leave");
+        self.is_gone = true;
     }
 
     /// Takes what has come; the answer to the last order, if it is among it.
@@ -114,6 +158,7 @@ impl Debugged {
                     self.hear(told);
                 }
                 Message::Error(text) if text == news::NOT_PAIRED => return Err(Error::Robot(text)),
+                Message::Error(text) | Message::Info(text) if self.is_answer(&text) => {}
                 Message::Error(text) => {
                     self.link.remember(&text);
                     self.put(Event::Said(Channel::Message, text));
@@ -175,6 +220,26 @@ impl Target for Debugged {
             }
             self.link.turn(left, None, true)?;
         }
+    }
+
+    fn change(&mut self, file: &Path, project: &Project) -> Result<Changed, Error> {
+        if let Err(why) = version(project, World::Robot, Locale::English) {
+            return Ok(Changed::Wrong(why));
+        }
+        let upload = Upload::read(file)?;
+        let patch = format!("patch:{}:{}", WhenGone::Refuse.word(), upload.name);
+        self.is_changed = None;
+        self.awaits = Some(upload.name.clone());
+        self.link.ask(&[&upload.request()]);
+        self.link.ask(&[patch.as_bytes()]);
+        let deadline = Instant::now() + ms(limits::ANSWER_MS);
+        while self.is_changed.is_none() && Instant::now() < deadline {
+            self.take()?;
+            self.link.turn(ms(limits::TURN_MS), None, true)?;
+        }
+        self.awaits = None;
+        let changed = self.is_changed.take();
+        changed.ok_or_else(|| self.silence())
     }
 
     fn keeps_past(&self) -> bool {

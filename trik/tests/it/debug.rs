@@ -11,6 +11,11 @@ use std::process::Command;
 
 /// Counts to 5 with a call in each round: lines 1 to 6 are the program, from 8 on the subprogram.
 pub(super) fn counting() -> Vec<u8> {
+    counting_by("n = n + 1\nprint(n)")
+}
+
+/// The same blocks with another body of the one that counts.
+pub(super) fn counting_by(body: &str) -> Vec<u8> {
     let mut sketch = Sketch::new();
     let twice = sketch.subprogram("twice", &[]);
     sketch.draw_on(twice);
@@ -23,7 +28,7 @@ pub(super) fn counting() -> Vec<u8> {
     let start = sketch.block("InitialNode", &[]);
     let clear = sketch.block("Function", &[("Body", "n = 0")]);
     let head = sketch.block("Loop", &[("Iterations", "5")]);
-    let count = sketch.block("Function", &[("Body", "n = n + 1\nprint(n)")]);
+    let count = sketch.block("Function", &[("Body", body)]);
     let call = sketch.call(twice, &[]);
     let wait = sketch.block("Timer", &[("Delay", "100")]);
     let end = sketch.block("FinalNode", &[]);
@@ -71,6 +76,91 @@ fn all_breakpoints_are_listed() {
     let told = debug(&board, &["debug", "count.qrs"], &typed).good();
     let listed = told.split("(trik) i b\n").nth(1).expect("a list");
     assert_eq!(listed.matches(", hits: 0, writes ").count(), 999);
+}
+
+#[test]
+fn a_file_is_taken_again_and_the_program_goes_on() {
+    let board = Board::new();
+    board.file("count.qrs", counting());
+    let typed = "reload now\nbreak 4 if n == 2\nc\nreload\nprint n\nd\nc\nreload\nq\n";
+    let told = debug(&board, &["debug", "count.qrs"], typed).good();
+    for line in [
+        "nothing can follow this command",
+        "(trik) reload\nchanged: 10 blocks kept, 0 new, 0 gone\n0.23 s, thread main: breakpoint 1\n>   4 ",
+        "(trik) print n\n2\n",
+        "(trik) reload\nthe program has ended\nnothing is changed; quit and start again to begin anew",
+    ] {
+        assert!(told.contains(line), "{line}: {told}");
+    }
+}
+
+#[test]
+fn a_robot_is_stopped_stepped_and_let_go_from_the_shell() {
+    let Some(robot) = Reachable::new() else {
+        return;
+    };
+    let home = &robot.robot.home;
+    let file = home.0.file("drive.qrs", driving());
+    let file = file.to_str().expect("UTF-8").to_owned();
+    let trik = |words: &[&str]| home.run(&[words, &["--robot", robot.ip()]].concat());
+    let nothing = trik(&["step"]);
+    assert_eq!(nothing.code(), 2, "{}", nothing.stdout);
+    assert!(
+        nothing.stderr.contains("no diagram runs"),
+        "{}",
+        nothing.stderr
+    );
+    let running = robot.spawn_file(&file);
+    let drives = || robot.robot.duty(3).is_ok_and(|duty| duty != 0);
+    eventually("a robot that drives", drives);
+    let said = trik(&["break", "5", "--if", "n > 5", "--file", &file]).good();
+    assert!(
+        said.contains("thread main: breakpoint 1\n>   5     Function: n = n + 1"),
+        "{said}"
+    );
+    assert_eq!(robot.robot.duty(3).expect("a motor"), 0);
+    let said = trik(&["step", "--file", &file]).good();
+    assert!(
+        said.contains("thread main: step\n>   6     Timer: 50"),
+        "{said}"
+    );
+    let said = trik(&["step", "back", "--file", &file]).good();
+    assert!(said.contains("past, "), "{said}");
+    let said = trik(&["break", "n", "--change"]).good();
+    assert!(said.contains(": n was "), "{said}");
+    for (words, why) in [
+        (&["break", "5"][..], "lines are those of --file"),
+        (&["break", "99", "--file", &file], "no such line"),
+        (&["break", "{nobody}"], "the program has no such block"),
+        (
+            &["break", "5", "--if", "n >", "--file", &file],
+            "the condition: 1:3 ",
+        ),
+    ] {
+        let refused = trik(words);
+        assert_ne!(refused.code(), 0, "{words:?}");
+        assert!(
+            refused.stderr.contains(why),
+            "{words:?}: {}",
+            refused.stderr
+        );
+        assert_eq!(robot.robot.duty(3).expect("a motor"), 0);
+    }
+    trik(&["continue"]).good();
+    eventually("a robot that drives again", drives);
+    let waited = trik(&[
+        "break",
+        "5",
+        "--if",
+        "n < 0",
+        "--file",
+        &file,
+        "--seconds",
+        "1",
+    ]);
+    assert_eq!(waited.code(), 1, "{}", waited.stdout);
+    eventually("a robot that goes on", drives);
+    drop(running);
 }
 
 #[test]

@@ -10,8 +10,8 @@ use crate::protocol::news;
 use lang_diagram::brick::Brick;
 use lang_diagram::debug::Session;
 use lang_diagram::lower::World;
-use lang_diagram::machine::patch::{Patched, Refused, Version, WhenGone};
-use lang_text::problem::{Locale, Problem};
+use lang_diagram::machine::patch::{Refused, Version, WhenGone};
+use lang_text::problem::Locale;
 use std::path::Path;
 
 /// What a person is told.
@@ -60,33 +60,18 @@ pub(super) fn patch(
         Err(why) => return refused(&why),
     };
     match session.patch(&version, when_gone, robot, watch) {
-        Ok(patched) => Answer::changed(&name, &summary(&patched)),
+        Ok(patched) => Answer::changed(&name, &patched.to_string()),
         Err(why) => refused(&why),
     }
 }
 
-fn summary(patched: &Patched) -> String {
-    let Patched {
-        kept,
-        added,
-        gone,
-        ended,
-    } = patched;
-    let mut text = format!("{kept} blocks kept, {added} new, {gone} gone");
-    if !ended.is_empty() {
-        text.push_str(&format!(", {} threads ended", ended.len()));
-    }
-    text
-}
-
 fn explained(why: &Refused, locale: Locale) -> String {
-    let lines = |problems: &[Problem]| {
-        let lines = problems.iter().map(|problem| problem.in_locale(locale));
-        lines.collect::<Vec<_>>().join("\n")
-    };
     match why {
         Refused::Ended => news::NO_DIAGRAM.to_owned(),
-        Refused::Mistakes(problems) | Refused::Occupied(problems) => lines(problems),
+        Refused::Mistakes(problems) | Refused::Occupied(problems) => {
+            let lines = problems.iter().map(|problem| problem.in_locale(locale));
+            lines.collect::<Vec<_>>().join("\n")
+        }
     }
 }
 

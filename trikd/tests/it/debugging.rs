@@ -294,15 +294,25 @@ fn rubbish_changes_nothing_and_each_order_is_answered_once() {
     }
     let long = format!("evaluate {}", "1+".repeat(100_000));
     expect(&mut client, 8, &long, "an order has at most 16384 bytes");
-    // Conditions that are as long and deep as they may be.
+    // Conditions that are as long as they may be, and deeper.
     expect(&mut client, 9, "attach", "true");
-    for condition in [
-        "1 + ".repeat(1000) + "1 < 0",
-        "(".repeat(2000) + "0" + &")".repeat(2000),
+    for (condition, told) in [
+        ("1 + ".repeat(1000) + "1 < 0", "\"number\":1,"),
+        (
+            "(".repeat(2000) + "0" + &")".repeat(2000),
+            "\"why\":\"the condition: 1:",
+        ),
+        ("n +".to_owned(), "\"why\":\"the condition: 1:3 "),
     ] {
         let order = format!("break {}\nif {condition}", save.ids[WAIT]);
-        ask(&mut client, 10, &order);
+        expect(&mut client, 10, &order, told);
     }
+    expect(
+        &mut client,
+        10,
+        "watch nobody",
+        "this cannot be watched: 1:1 ",
+    );
     expect(&mut client, 11, "clear all", "true");
     expect(
         &mut client,
@@ -313,7 +323,7 @@ fn rubbish_changes_nothing_and_each_order_is_answered_once() {
     // A condition before may have stopped it.
     ask(&mut client, 13, "continue");
     eventually("a stop", || {
-        ask(&mut client, 14, "look").contains("\"reason\":\"condition\",\"number\":3")
+        ask(&mut client, 14, "look").contains("\"reason\":\"condition\",\"number\":2")
     });
     assert_eq!(motor(&robot), "0");
     expect(&mut client, 15, "detach", "true");

@@ -5,6 +5,7 @@
 //! anything changes, and nothing is told to a device.
 
 use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
+use std::fmt;
 use std::mem::discriminant;
 use std::rc::Rc;
 
@@ -70,6 +71,33 @@ pub struct Patched {
     pub gone: usize,
     /// Threads that have ended because their block is gone.
     pub ended: Vec<Problem>,
+}
+
+impl fmt::Display for Patched {
+    /// For a person, without the threads by name: those were told as errors.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            kept,
+            added,
+            gone,
+            ended,
+        } = self;
+        write!(f, "{kept} blocks kept, {added} new, {gone} gone")?;
+        match ended.len() {
+            0 => Ok(()),
+            some => write!(f, ", {some} threads ended"),
+        }
+    }
+}
+
+impl Refused {
+    /// The problems, of which an ended program has none.
+    pub fn problems(&self) -> &[Problem] {
+        match self {
+            Self::Ended => &[],
+            Self::Mistakes(problems) | Self::Occupied(problems) => problems,
+        }
+    }
 }
 
 /// A new version that is good as far as it can be known without the program that runs.

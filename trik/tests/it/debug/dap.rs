@@ -1,6 +1,6 @@
 //! The Debug Adapter Protocol by hand: real frames on the standard streams of the real program, and over TCP.
 
-use super::counting;
+use super::{counting, counting_by};
 use crate::rig::TRIK;
 use harness::Board;
 use harness::wait::LIFE;
@@ -247,6 +247,72 @@ fn an_editor_stops_at_changes_and_hears_what_is_wrong_with_conditions() {
     assert_eq!(editor.event("stopped")["reason"], "breakpoint");
     editor.good("reverseContinue", json!({"threadId": 1}));
     assert_eq!(editor.event("stopped")["text"], "m was 2 and is 4");
+    editor.end();
+}
+
+#[test]
+fn a_restart_changes_what_runs_and_begins_anew_only_if_it_must() {
+    let board = board();
+    let mut editor = Editor::start();
+    editor.launch(&board, json!({"stopAtEnd": true}));
+    let points = json!({"breakpoints": [{"line": 4, "condition": "n == 2"}]});
+    editor.good("setBreakpoints", points);
+    editor.good("configurationDone", json!({}));
+    editor.event("stopped");
+    board.file("count.qrs", counting_by("n = n + 10\nprint(n)"));
+    editor.good("restart", json!({}));
+    assert_eq!(editor.event("loadedSource")["reason"], "changed");
+    assert_eq!(editor.event("breakpoint")["breakpoint"]["line"], 4);
+    assert_eq!(editor.event("stopped")["reason"], "breakpoint");
+    assert_eq!(editor.value("n"), "2", "it goes on where it was");
+    let text = editor.good("source", json!({"sourceReference": 1}));
+    assert!(
+        text["content"]
+            .as_str()
+            .expect("a text")
+            .contains("n = n + 10")
+    );
+    editor.good("next", json!({"threadId": 1}));
+    editor.event("stopped");
+    assert_eq!(editor.value("n"), "12");
+    // Mistakes change nothing.
+    board.file("count.qrs", counting_by("n = n +"));
+    let why = editor.bad("restart", json!({}));
+    assert!(
+        why.contains("1:7 ") && why.contains("goes on as it was"),
+        "{why}"
+    );
+    board.file("count.qrs", "rubbish");
+    let why = editor.bad("restart", json!({}));
+    assert!(why.contains("count.qrs: "), "{why}");
+    assert_eq!(editor.value("n"), "12");
+    // Another type of a variable, which only a new beginning can have.
+    board.file("count.qrs", counting_by("n = 'a'"));
+    editor.good("setBreakpoints", json!({"breakpoints": []}));
+    let why = editor.ask("restart", json!({}));
+    assert_eq!(
+        why["success"], false,
+        "n is a number in other blocks: {why}"
+    );
+    // The same file again: the person wants a beginning.
+    board.file("count.qrs", counting_by("n = n + 10\nprint(n)"));
+    editor.good("restart", json!({}));
+    let stopped = editor.event("stopped");
+    assert!(
+        stopped["text"].as_str().expect("why").contains("has ended"),
+        "{stopped}"
+    );
+    assert_eq!(editor.value("n"), "50");
+    // It is over, and begins anew with what is in the file.
+    board.file("count.qrs", counting_by("n = n + 100\nprint(n)"));
+    editor.good("restart", json!({}));
+    let told = editor.wait(|message| {
+        let text = message["body"]["output"].as_str();
+        text.is_some_and(|text| text.starts_with("the program begins anew: "))
+    });
+    assert_eq!(told["body"]["category"], "important");
+    editor.event("stopped");
+    assert_eq!(editor.value("n"), "500");
     editor.end();
 }
 

@@ -1,0 +1,279 @@
+//! `trik break`, `trik step`, `trik continue`: one order to the debugger of the diagram that runs on a robot.
+//!
+//! Owns how a program is left between two commands: stopped, with its motors at rest, under nobody's control, so that the
+//! next command gets it. What an order does is known in `lang_diagram::debug`.
+
+use super::debugged::Debugged;
+use super::output::say;
+use super::target::{Target, target, the_one};
+use crate::debug::listing::Listing;
+use crate::debug::stops;
+use crate::debug::target::{Channel, Event, Target as _, log_lines, why_not};
+use crate::debug::told::{State, Told};
+use crate::diagrams::save::must_open;
+use crate::error::Error;
+use crate::language;
+use crate::output::standard;
+use crate::refusal::{Refusal, UNREADABLE};
+use crate::terminal::harmless;
+use clap::{Args, ValueEnum};
+use lang_diagram::debug::order::Order;
+use lang_diagram::debug::{Back, Breakpoint, Step};
+use lang_text::problem::Locale;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// How long one look at the robot takes.
+const TURN: Duration = Duration::from_millis(50);
+
+/// Which program is meant, and how long it is waited for.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct WhereArgs {
+    /// The diagram that runs, a file NAME.qrs: with it lines are those of `trik show`.
+    #[arg(long, value_name = "FILE.qrs")]
+    pub file: Option<PathBuf>,
+    /// Name or address of the robot, and its port if that is not 8888 [default: the virtual robot that runs on this
+    /// computer, or else 127.0.0.1].
+    #[arg(long, value_name = "HOST[:PORT]", value_parser = target)]
+    pub robot: Option<Target>,
+    /// Give up after this many seconds; the program goes on then [default: wait].
+    #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u32).range(1..=86_400))]
+    pub seconds: Option<u32>,
+    /// Language of sentences: en or ru.
+    #[arg(long, value_name = "LANGUAGE", default_value = "en", value_parser = language::locale)]
+    pub language: Locale,
+}
+
+/// What `trik break` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct BreakArgs {
+    /// A line of the text of --file, the id of a block, or the name of a variable that is to change (with --change).
+    pub place: String,
+    /// Stop only if this expression is true.
+    #[arg(long = "if", value_name = "EXPRESSION")]
+    pub condition: Option<String>,
+    /// Stop when this variable has changed, and not at a block.
+    #[arg(long)]
+    pub change: bool,
+    #[command(flatten)]
+    pub at: WhereArgs,
+}
+
+/// A way of `trik step`.
+#[derive(Clone, Copy, Debug, Default, Eq, PartialEq, ValueEnum)]
+pub(crate) enum Way {
+    /// To the next block of this diagram
+    #[default]
+    Over,
+    /// To the next block, into subprograms too
+    Into,
+    /// To the block after the call of this subprogram
+    Out,
+    /// To the block before
+    Back,
+}
+
+/// What `trik step` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct StepArgs {
+    /// How far.
+    #[arg(value_enum, default_value_t)]
+    pub way: Way,
+    #[command(flatten)]
+    pub at: WhereArgs,
+}
+
+/// What `trik continue` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct ContinueArgs {
+    /// Name or address of the robot, and its port if that is not 8888 [default: the virtual robot that runs on this
+    /// computer, or else 127.0.0.1].
+    #[arg(long, value_name = "HOST[:PORT]", value_parser = target)]
+    pub robot: Option<Target>,
+}
+
+/// Lets the program run until it comes to a place. The exit code: 0 it is stopped there, 1 it has ended before, or the order
+/// is refused, 2 the robot could not be reached.
+///
+/// # Errors
+/// The file cannot be read, the place is none, or the robot is gone.
+pub(crate) fn stop_at(args: &BreakArgs) -> Result<u8, Refusal> {
+    let listing = listing(&args.at)?;
+    let point = match args.change {
+        true => Breakpoint::of_changes(args.place.trim()),
+        false => Breakpoint::before(block(&args.place, listing.as_ref())?),
+    };
+    let point = Breakpoint {
+        is_once: true,
+        condition: args.condition.as_deref().unwrap_or_default().trim().into(),
+        ..point
+    };
+    let mut robot = attached(args.at.robot.as_ref())?;
+    let talked = (|| {
+        let state = ordered(&mut robot, &Order::Break(point))?;
+        let state = match state {
+            Said::Done => ordered(&mut robot, &Order::Look)?,
+            Said::State(_) | Said::Refused(_) => state,
+        };
+        match state {
+            Said::State(told) if told.state != State::Running => {
+                // Somebody may have looked at the past, where it would go on no further than to the present.
+                ordered(&mut robot, &Order::Present)?;
+                ordered(&mut robot, &Order::Continue)
+            }
+            Said::State(_) | Said::Done | Said::Refused(_) => Ok(state),
+        }
+    })();
+    finish(&mut robot, talked, (&args.at, listing.as_ref()))
+}
+
+/// Goes on by a step. Exit codes as those of [`stop_at`].
+///
+/// # Errors
+/// The file cannot be read, or the robot is gone.
+pub(crate) fn step(args: &StepArgs) -> Result<u8, Refusal> {
+    let listing = listing(&args.at)?;
+    let order = match args.way {
+        Way::Over => Order::Step(Step::Over, None),
+        Way::Into => Order::Step(Step::Into, None),
+        Way::Out => Order::Step(Step::Out, None),
+        Way::Back => Order::Back(Back::Step(Step::Over)),
+    };
+    let mut robot = attached(args.at.robot.as_ref())?;
+    let talked = (|| {
+        if let Said::State(told) = ordered(&mut robot, &Order::Look)?
+            && told.state == State::Running
+        {
+            // It is stopped where it is; the next step goes on from there.
+            return ordered(&mut robot, &Order::Pause);
+        }
+        ordered(&mut robot, &order)
+    })();
+    finish(&mut robot, talked, (&args.at, listing.as_ref()))
+}
+
+/// Lets the program go on, without a debugger. Exit codes as those of [`stop_at`].
+///
+/// # Errors
+/// The robot is gone.
+pub(crate) fn go_on(args: &ContinueArgs) -> Result<u8, Refusal> {
+    let mut robot = attached(args.robot.as_ref())?;
+    robot.close();
+    Ok(0)
+}
+
+/// What a robot says to an order.
+enum Said {
+    /// It is done, and nothing is said of the program.
+    Done,
+    /// Where the program is.
+    State(Box<Told>),
+    /// Why not.
+    Refused(String),
+}
+
+fn ordered(robot: &mut Debugged, order: &Order) -> Result<Said, Error> {
+    let answer = robot.order(order)?;
+    robot.forget_states();
+    if let Some(why) = why_not(&answer) {
+        return Ok(Said::Refused(why));
+    }
+    let told = answer.get("program").and_then(Told::read);
+    Ok(told.map_or(Said::Done, |told| Said::State(Box::new(told))))
+}
+
+fn attached(robot: Option<&Target>) -> Result<Debugged, Refusal> {
+    let begun = match robot {
+        Some(robot) => Debugged::attach(robot),
+        None => the_one().and_then(|robot| Debugged::attach(&robot)),
+    };
+    begun.map_err(unreachable)
+}
+
+fn unreachable(error: Error) -> Refusal {
+    Refusal {
+        code: UNREADABLE,
+        ..Refusal::new(error.to_string())
+    }
+}
+
+fn listing(at: &WhereArgs) -> Result<Option<Listing>, Refusal> {
+    let file = at.file.as_ref();
+    let opened = file.map(|file| must_open(file, at.language)).transpose()?;
+    Ok(opened.map(|opened| Listing::of(&opened.project, at.language)))
+}
+
+/// The block of a line or an id.
+fn block(place: &str, listing: Option<&Listing>) -> Result<Box<str>, Refusal> {
+    let place = place.trim();
+    let none = |why: &str| Refusal {
+        code: UNREADABLE,
+        ..Refusal::new(format!("'{}': {why}", harmless(place)))
+    };
+    match (place.parse::<usize>(), listing) {
+        (Ok(line), Some(listing)) => {
+            let line = listing.line_with_block(line);
+            let block = line.and_then(|line| listing.blocks(line).first().cloned());
+            block.ok_or_else(|| none("the diagram has no such line"))
+        }
+        (Ok(_), None) => Err(none("lines are those of --file FILE.qrs")),
+        (Err(_), Some(listing)) => {
+            let id = listing.id_of(place).map(Into::into);
+            id.ok_or_else(|| none("the diagram has no such block"))
+        }
+        (Err(_), None) => Ok(place.into()),
+    }
+}
+
+/// Waits until the program is stopped, says where, and leaves it so.
+fn finish(
+    robot: &mut Debugged,
+    talked: Result<Said, Error>,
+    (at, listing): (&WhereArgs, Option<&Listing>),
+) -> Result<u8, Refusal> {
+    let until = at
+        .seconds
+        .map(|seconds| Instant::now() + Duration::from_secs(seconds.into()));
+    let mut told = match talked.map_err(unreachable)? {
+        Said::State(told) => *told,
+        Said::Done => Told::default(),
+        Said::Refused(why) => {
+            say(&harmless(&why));
+            robot.leave();
+            return Ok(1);
+        }
+    };
+    while told.state.is_under_way() {
+        if until.is_some_and(|until| Instant::now() >= until) {
+            say("it has not come there; the program goes on");
+            robot.close();
+            return Ok(1);
+        }
+        for event in robot.turn(TURN).map_err(unreachable)? {
+            match event {
+                Event::Told(value) => {
+                    for line in log_lines(&value) {
+                        say(&harmless(line));
+                    }
+                    if let Some(state) = Told::read(&value) {
+                        told = state;
+                    }
+                }
+                Event::Said(Channel::Output, text) => {
+                    let text = text.trim_end_matches('\n');
+                    standard(format!("{}\n", harmless(text)).as_bytes())?;
+                }
+                Event::Said(Channel::Message, text) => say(&harmless(&text)),
+                Event::Over(why) => {
+                    say(&harmless(&why));
+                    return Ok(1);
+                }
+            }
+        }
+    }
+    for line in stops::lines(&told, listing) {
+        standard(format!("{line}\n").as_bytes())?;
+    }
+    robot.leave();
+    Ok(u8::from(told.state == State::Ended))
+}
