@@ -94,6 +94,11 @@ impl Launch {
         })
     }
 
+    /// The language of messages.
+    pub fn locale(&self) -> Locale {
+        self.world.language
+    }
+
     /// Debugs until the talk is over, or false: it could not begin.
     pub fn serve(&self, mut request: Request, client: &mut Client) -> bool {
         let mut points = Points::default();

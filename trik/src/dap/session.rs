@@ -319,7 +319,7 @@ impl<'a> Session<'a> {
             _ => "pause",
         };
         let text = match stop.change {
-            Some(change) => change.sentence(),
+            Some(change) => change.sentence(self.launch.locale()),
             None => stop.text,
         };
         self.stopped(reason, (!text.is_empty()).then_some(text));

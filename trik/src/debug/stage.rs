@@ -3,6 +3,7 @@
 //! Owns the run, where its robot was at each moment, and what was said of it so far. Rules, program and debugger are those
 //! of `sim` and `lang-diagram`.
 
+use super::stops::words;
 use super::target::{Changed, Channel, Event, Target, problems, version};
 use crate::check::{Staged, Start};
 use crate::error::Error;
@@ -12,6 +13,7 @@ use lang_diagram::debug::order::Order;
 use lang_diagram::lower::World;
 use lang_diagram::machine::patch::Refused;
 use lang_diagram::project::Project;
+use lang_text::problem::Locale;
 use serde_json::Value;
 use sim::judge::debugged::{self, Debugged};
 use sim::judge::{Failure, Outcome, Progress, Settings, Task, Trial, Verdict};
@@ -149,20 +151,20 @@ impl<'a> Stage<'a> {
 }
 
 /// How a run has ended, for a person.
-fn ending(outcome: &Outcome) -> String {
+fn ending(outcome: &Outcome, locale: Locale) -> String {
     let seconds = f64::from(outcome.ms) / 1000.0;
     let what = match outcome.verdict {
-        Verdict::Accomplished => "the task is accomplished",
-        Verdict::Ended => "the program has ended",
+        Verdict::Accomplished => words::ACCOMPLISHED,
+        Verdict::Ended => words::ENDED,
         Verdict::Failed => match outcome.failure {
-            Some(Failure::ModelTime) => "the run was stopped, its model time is over",
-            Some(Failure::Program) => "the program has failed",
-            Some(Failure::Structure) => "the program cannot begin",
-            Some(Failure::Wrong) | None => "the task is not accomplished",
+            Some(Failure::ModelTime) => words::TIME_IS_OVER,
+            Some(Failure::Program) => words::FAILED,
+            Some(Failure::Structure) => words::CANNOT_BEGIN,
+            Some(Failure::Wrong) | None => words::NOT_ACCOMPLISHED,
         },
-        Verdict::Unknown => "the run was given up",
+        Verdict::Unknown => words::GIVEN_UP,
     };
-    format!("{what} at {seconds:.2} s of model time")
+    words::said(locale, words::ending(what, seconds))
 }
 
 impl Target for Stage<'_> {
@@ -210,7 +212,7 @@ impl Target for Stage<'_> {
         let mut events = self.news();
         if let (false, Some(outcome)) = (self.has_told_end, &self.outcome) {
             self.has_told_end = true;
-            events.push(Event::Over(ending(outcome)));
+            events.push(Event::Over(ending(outcome, self.settings.locale)));
         }
         if events.is_empty() && self.progress() != Progress::Runs {
             std::thread::sleep(until.saturating_duration_since(Instant::now()));

@@ -2,9 +2,13 @@
 //!
 //! Owns the sentences, with the line of the diagram's text if that is known. Knows no target.
 
+pub(crate) mod words;
+
 use super::listing::Listing;
 use super::told::{At, State, Stop, Told};
 use crate::terminal::harmless;
+use lang_text::problem::Locale;
+use words::said;
 
 /// The time of the program.
 pub(crate) fn time(told: &Told) -> String {
@@ -12,60 +16,58 @@ pub(crate) fn time(told: &Told) -> String {
 }
 
 /// Where it is stopped and why, and the block that comes next; nothing if it is not stopped.
-pub(crate) fn lines(told: &Told, listing: Option<&Listing>) -> Vec<String> {
+pub(crate) fn lines(told: &Told, listing: Option<&Listing>, locale: Locale) -> Vec<String> {
     let Some(stop) = &told.stop else {
         return Vec::new();
     };
     let past = match told.state {
-        State::Past => "past, ",
-        State::Running | State::Searching | State::Stopped | State::Ended => "",
+        State::Past => said(locale, words::past()),
+        State::Running | State::Searching | State::Stopped | State::Ended => String::new(),
     };
     let thread = match stop.name.as_str() {
         "" => String::new(),
-        name => format!(", thread {}", harmless(name)),
+        name => said(locale, words::thread(&harmless(name))),
     };
-    let why = why(told, stop, listing);
+    let why = why((told, stop), listing, locale);
     let mut lines = vec![format!("{past}{}{thread}: {why}", time(told))];
-    lines.extend(told.at().map(|at| place(at, listing)));
+    lines.extend(told.at().map(|at| place(at, listing, locale)));
     lines
 }
 
-fn why(told: &Told, stop: &Stop, listing: Option<&Listing>) -> String {
+fn why((told, stop): (&Told, &Stop), listing: Option<&Listing>, locale: Locale) -> String {
     let number = stop.number.unwrap_or_default();
-    match stop.reason.as_str() {
-        "breakpoint" => format!("breakpoint {number}"),
-        "condition" => {
-            let text = harmless(&stop.text);
-            format!("the condition of breakpoint {number}: {text}")
-        }
+    let words = match stop.reason.as_str() {
+        "breakpoint" => words::breakpoint(number),
+        "condition" => words::condition(number, &harmless(&stop.text)),
         "change" => {
             let change = stop.change.clone().unwrap_or_default();
-            let told = format!("breakpoint {number}: {}", harmless(&change.sentence()));
+            let breakpoint = said(locale, words::breakpoint(number));
+            let told = format!("{breakpoint}: {}", harmless(&change.sentence(locale)));
             let by = change.by.as_ref();
-            match by.and_then(|at| Some((listing?, at))) {
+            return match by.and_then(|at| Some((listing?, at))) {
                 Some((listing, at)) if listing.has(&at.id) => {
-                    format!("{told}, by line {}", listing.line_of(&at.id))
+                    let line = listing.line_of(&at.id);
+                    told + &said(locale, words::by_line(line))
                 }
                 Some(_) | None => told,
-            }
+            };
         }
-        "error" => format!("an error: {}", harmless(&stop.text)),
-        "oldest" => "nothing before this is kept".to_owned(),
-        "pause" if told.ms == 0 => "before the first block".to_owned(),
-        reason => harmless(reason),
-    }
+        "error" => words::error(&harmless(&stop.text)),
+        "oldest" => words::oldest(),
+        "pause" if told.ms == 0 => words::first(),
+        reason => words::reason(&harmless(reason)),
+    };
+    said(locale, words)
 }
 
-fn place(at: &At, listing: Option<&Listing>) -> String {
+fn place(at: &At, listing: Option<&Listing>, locale: Locale) -> String {
     let (diagram, block) = (harmless(&at.diagram), harmless(&at.block));
     match listing {
         Some(listing) if listing.has(&at.id) => {
             let line = listing.line_of(&at.id);
             format!("> {line:3} {}", listing.text(line))
         }
-        Some(_) => {
-            format!(">     {diagram}, {block}: this block is not in the file: another diagram runs")
-        }
+        Some(_) => said(locale, words::another_runs(&diagram, &block)),
         None => format!(">     {diagram}, {block} {}", harmless(&at.id)),
     }
 }

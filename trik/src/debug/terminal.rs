@@ -4,7 +4,7 @@
 //! pipe are read one after the other, each when the program has stopped.
 
 use super::listing::Listing;
-use super::stops;
+use super::stops::{self, words};
 use super::target::{Changed, Channel, Event, Target, log_lines, why_not};
 use super::told::{State, Told};
 use super::words::{ROWS, Typed, understand};
@@ -14,7 +14,7 @@ use crate::limits;
 use crate::terminal::harmless;
 use lang_diagram::debug::Spot;
 use lang_diagram::debug::order::Order;
-use lang_text::problem::Locale;
+use lang_text::problem::{Locale, Words};
 use nix::sys::signal::{SigSet, Signal};
 use nix::sys::signalfd::{SfdFlags, SignalFd};
 use serde_json::Value;
@@ -25,8 +25,6 @@ use std::time::Duration;
 
 /// Lines of the diagram that are shown before and after one.
 const AROUND: usize = 5;
-/// After the end of a run.
-const PAST_REMAINS: &str = "what was can still be looked at: reverse-next, back, print, where";
 /// How long one look at the program and the keyboard takes.
 const TURN: Duration = Duration::from_millis(50);
 
@@ -68,7 +66,7 @@ impl<'a> Terminal<'a> {
     pub(crate) fn run(&mut self) -> Result<(), Error> {
         let keys = interrupts().map_err(|error| Error::system("signals", error))?;
         let lines = lines();
-        self.say("This is trik debug; help shows what can be typed.")?;
+        self.says(words::greeting())?;
         self.wait(&keys)?;
         while !self.is_leaving {
             self.prompt()?;
@@ -86,7 +84,7 @@ impl<'a> Terminal<'a> {
                 continue;
             }
             match understand(&self.last, &self.listing) {
-                Err(why) => self.say(&harmless(&why.to_string()))?,
+                Err(why) => self.say(&harmless(&why.in_locale(self.source.1)))?,
                 Ok(Typed::Quit) => return Ok(()),
                 Ok(typed) => self.carry_out(&typed, &keys)?,
             }
@@ -98,6 +96,10 @@ impl<'a> Terminal<'a> {
         let mut out = io::stdout().lock();
         let said = writeln!(out, "{line}").and_then(|()| out.flush());
         said.map_err(|error| Error::system("standard output", error))
+    }
+
+    fn says(&self, words: Words) -> Result<(), Error> {
+        self.say(words.in_locale(self.source.1))
     }
 
     fn prompt(&self) -> Result<(), Error> {
@@ -119,7 +121,7 @@ impl<'a> Terminal<'a> {
                     match pressed(keys) {
                         Some(Pressed::Leave) => return Ok(None),
                         Some(Pressed::Interrupt) if self.is_interactive => {
-                            self.say("\ntype quit to end")?;
+                            self.says(words::ends_by_quit())?;
                             self.prompt()?;
                         }
                         // Nobody types who could be told.
@@ -152,7 +154,7 @@ impl<'a> Terminal<'a> {
             }
             Typed::Scene => match self.target.scene(self.told.ms) {
                 Some(scene) => self.say(&scene),
-                None => self.say("where a robot is can be seen, and is not known here"),
+                None => self.says(words::scene_unknown()),
             },
             Typed::Reload => self.reload(),
             Typed::Help => self.help(),
@@ -179,7 +181,7 @@ impl<'a> Terminal<'a> {
             return self.say(&harmless(value));
         }
         if let Some(number) = answer.get("number") {
-            return self.say(&self.set_at(number, order));
+            return self.says(self.set_at(number, order));
         }
         if let Some(points) = answer.get("breakpoints").and_then(Value::as_array) {
             let points = points.clone();
@@ -202,10 +204,7 @@ impl<'a> Terminal<'a> {
                 self.hear_but_states(&events)?;
                 match events.iter().any(|event| matches!(event, Event::Over(_))) {
                     true => Ok(()),
-                    false => self.say(&format!(
-                        "the program has ended at {}",
-                        stops::time(&self.told)
-                    )),
+                    false => self.says(words::ended_at(&stops::time(&self.told))),
                 }
             }
         }
@@ -252,10 +251,7 @@ impl<'a> Terminal<'a> {
             State::Stopped | State::Past => self.show_stop(),
             // The end of a run is said with its verdict.
             State::Ended if is_over => Ok(()),
-            State::Ended => self.say(&format!(
-                "the program has ended at {}",
-                stops::time(&self.told)
-            )),
+            State::Ended => self.says(words::ended_at(&stops::time(&self.told))),
             State::Running | State::Searching => Ok(()),
         }
     }
@@ -276,7 +272,7 @@ impl<'a> Terminal<'a> {
                 Event::Over(why) => {
                     self.say(&harmless(why))?;
                     if self.target.keeps_past() {
-                        self.say(PAST_REMAINS)?;
+                        self.says(words::past_remains())?;
                     }
                 }
             }
@@ -285,23 +281,23 @@ impl<'a> Terminal<'a> {
     }
 
     /// A breakpoint that was set, and where.
-    fn set_at(&self, number: &Value, order: &Order) -> String {
+    fn set_at(&self, number: &Value, order: &Order) -> Words {
         // Only that order has a number for an answer.
         let Order::Break(point) = order else {
-            return format!("breakpoint {number}");
+            return words::breakpoint(number.as_u64().unwrap_or_default());
         };
         match &point.at {
             Spot::Block(block) => {
                 let line = self.listing.line_of(block);
                 let text = self.listing.text(line);
-                format!("breakpoint {number} at line {line}: {}", text.trim())
+                words::set_at(&number.to_string(), line, text.trim())
             }
-            Spot::Change(variable) => format!("breakpoint {number} watches {variable}"),
+            Spot::Change(variable) => words::watches(&number.to_string(), variable),
         }
     }
 
     fn show_stop(&mut self) -> Result<(), Error> {
-        for line in stops::lines(&self.told, Some(&self.listing)) {
+        for line in stops::lines(&self.told, Some(&self.listing), self.source.1) {
             self.say(&line)?;
         }
         Ok(())
@@ -317,17 +313,14 @@ impl<'a> Terminal<'a> {
         match self.target.change(file, &opened.project)? {
             Changed::InForce(what) => {
                 self.listing = Listing::of(&opened.project, *locale);
-                self.say(&format!("changed: {}", harmless(&what)))?;
+                self.says(words::changed(&harmless(&what)))?;
                 let events = self.target.turn(Duration::ZERO)?;
                 self.hear_but_states(&events)?;
                 self.look()?;
                 self.show_stop()
             }
-            Changed::Wrong(why) => self.say(&format!("{}\nnothing is changed", lines_of(&why))),
-            Changed::CannotBe(why) => self.say(&format!(
-                "{}\nnothing is changed; quit and start again to begin anew",
-                lines_of(&why)
-            )),
+            Changed::Wrong(why) => self.says(words::unchanged(&lines_of(&why))),
+            Changed::CannotBe(why) => self.says(words::unchanged_unless_anew(&lines_of(&why))),
         }
     }
 
@@ -346,7 +339,7 @@ impl<'a> Terminal<'a> {
             None => (1, 2 * AROUND),
         };
         if from > self.listing.len() {
-            return self.say(&format!("there are {} lines", self.listing.len()));
+            return self.says(words::lines_there_are(self.listing.len()));
         }
         for line in from..=to.min(self.listing.len()) {
             let mark = if Some(line) == here { '>' } else { ' ' };
@@ -358,19 +351,22 @@ impl<'a> Terminal<'a> {
     fn threads(&self) -> Result<(), Error> {
         for thread in &self.told.threads {
             let line = self.listing.line_of(&thread.at.id);
-            let (name, does) = (harmless(&thread.name), harmless(&thread.does));
+            let (name, does) = (
+                harmless(&thread.name),
+                harmless(&thread.doing(self.source.1)),
+            );
             let text = self.listing.text(line);
             self.say(&format!("{name:12} {does:20} {line:3} {}", text.trim()))?;
         }
         if self.told.threads.is_empty() {
-            self.say("no thread lives")?;
+            self.says(words::no_thread())?;
         }
         Ok(())
     }
 
     fn calls(&self) -> Result<(), Error> {
         let Some(thread) = self.told.thread() else {
-            return self.say("no thread lives");
+            return self.says(words::no_thread());
         };
         let places = std::iter::once(&thread.at).chain(thread.calls.iter().rev());
         for (index, at) in places.take(limits::DEBUG_CALLS_SHOWN).enumerate() {
@@ -387,7 +383,7 @@ impl<'a> Terminal<'a> {
             self.say(&format!("{name} = {value}"))?;
         }
         if self.told.variables.is_empty() {
-            self.say("no variable has a value yet")?;
+            self.says(words::no_variable())?;
         }
         Ok(())
     }
@@ -395,7 +391,7 @@ impl<'a> Terminal<'a> {
     /// All breakpoints; those that one answer leaves out are in the next one.
     fn breakpoints(&mut self, mut points: Vec<Value>, mut answer: Value) -> Result<(), Error> {
         if points.is_empty() {
-            return self.say("there are no breakpoints");
+            return self.says(words::no_breakpoints());
         }
         loop {
             self.page(&points)?;
@@ -411,12 +407,13 @@ impl<'a> Terminal<'a> {
             let next = answer.get("breakpoints").and_then(Value::as_array);
             points = next.cloned().unwrap_or_default();
             if points.is_empty() {
-                return self.say(&format!("and {left_out} more"));
+                return self.says(words::more(left_out));
             }
         }
     }
 
     fn page(&self, points: &[Value]) -> Result<(), Error> {
+        let said = |words: Words| words::said(self.source.1, words);
         for point in points {
             let text = |name: &str| {
                 let text = point.get(name).and_then(Value::as_str);
@@ -425,18 +422,27 @@ impl<'a> Terminal<'a> {
             let place = match text("variable").as_str() {
                 "" => {
                     let line = self.listing.line_of(&text("block"));
-                    format!("line {line}: {}", self.listing.text(line).trim())
+                    format!(
+                        "{} {line}: {}",
+                        said(words::line()),
+                        self.listing.text(line).trim()
+                    )
                 }
-                variable => format!("watches {variable}"),
+                variable => format!("{} {variable}", said(words::watching())),
             };
-            let mut told = format!("{:3} {place}, hits: {}", point["number"], point["hits"]);
-            for (word, name) in [("if", "if"), ("writes", "log")] {
+            let mut told = format!(
+                "{:3} {place}, {}: {}",
+                point["number"],
+                said(words::hits()),
+                point["hits"]
+            );
+            for (word, name) in [(words::if_(), "if"), (words::writes(), "log")] {
                 if !text(name).is_empty() {
-                    told.push_str(&format!(", {word} {}", text(name)));
+                    told.push_str(&format!(", {} {}", said(word), text(name)));
                 }
             }
             if point["disabled"] == Value::Bool(true) {
-                told.push_str(", disabled");
+                told.push_str(&format!(", {}", said(words::disabled())));
             }
             self.say(&told)?;
         }
@@ -444,12 +450,11 @@ impl<'a> Terminal<'a> {
     }
 
     fn help(&self) -> Result<(), Error> {
-        for (words, more, what) in ROWS {
-            let words = words.replace(' ', ", ");
-            let head = format!("{words} {more}");
-            self.say(&format!("{head:42} {what}"))?;
+        for row in ROWS {
+            let head = format!("{} {}", row.words.replace(' ', ", "), row.more);
+            self.say(&format!("{head:42} {}", row.what(self.source.1)))?;
         }
-        self.say("an empty line is the line before; Ctrl-C stops a program that runs")
+        self.says(words::last_of_help())
     }
 }
 

@@ -3,6 +3,8 @@
 //! Owns the way from the form that `docs/protocol.md` describes to values. What is missing is empty: an older robot may
 //! tell less.
 
+use super::stops::words;
+use lang_text::problem::Locale;
 use serde_json::Value;
 
 /// Where a program is.
@@ -71,8 +73,12 @@ pub(crate) struct Thread {
     pub number: u64,
     pub name: String,
     pub at: At,
-    /// What it does, in words.
-    pub does: String,
+    /// What it does, by its word in the protocol.
+    does: String,
+    /// For what it waits, and what belongs to that.
+    waits_for: String,
+    port: String,
+    left_ms: u64,
     /// The blocks that call, the outermost first.
     pub calls: Vec<At>,
 }
@@ -105,14 +111,29 @@ fn list<T>(value: &Value, name: &str, read: impl Fn(&Value) -> T) -> Vec<T> {
 
 impl Change {
     /// What has changed, for a person.
-    pub(crate) fn sentence(&self) -> String {
-        let held = |text: &Option<String>| match text.as_deref() {
-            None => "nothing".to_owned(),
-            Some("") => "\"\"".to_owned(),
-            Some(text) => text.to_owned(),
+    pub(crate) fn sentence(&self, locale: Locale) -> String {
+        let nothing = words::nothing();
+        let held = |text: &'_ Option<String>| match text.as_deref() {
+            None => [nothing.english.clone(), nothing.russian.clone()],
+            Some("") => ["\"\"".to_owned(), "\"\"".to_owned()],
+            Some(text) => [text.to_owned(), text.to_owned()],
         };
         let (was, is) = (held(&self.was), held(&self.is));
-        format!("{} was {was} and is {is}", self.variable)
+        let words = words::was_and_is(&self.variable, [&was[0], &was[1]], [&is[0], &is[1]]);
+        words::said(locale, words)
+    }
+}
+
+impl Thread {
+    /// What it does, for a person.
+    pub(crate) fn doing(&self, locale: Locale) -> String {
+        let words = match (self.does.as_str(), self.waits_for.as_str()) {
+            ("waits", "time") => words::waits_more(self.left_ms),
+            ("waits", "device") => words::waits_for(&self.port),
+            ("waits", what) => words::waits_for(what),
+            (does, _) => words::does(does),
+        };
+        words::said(locale, words)
     }
 }
 
@@ -206,20 +227,14 @@ fn stop(value: &Value) -> Stop {
 }
 
 fn thread(value: &Value) -> Thread {
-    let does = match (text(value, "does").as_str(), text(value, "for").as_str()) {
-        ("waits", "time") => {
-            let left = number(value, "left_ms").unwrap_or_default();
-            format!("waits {left} ms more")
-        }
-        ("waits", "device") => format!("waits for {}", text(value, "port")),
-        ("waits", what) => format!("waits for {what}"),
-        (does, _) => does.to_owned(),
-    };
     Thread {
         number: number(value, "number").unwrap_or_default(),
         name: text(value, "name"),
         at: value.get("at").map(at).unwrap_or_default(),
-        does,
+        does: text(value, "does"),
+        waits_for: text(value, "for"),
+        port: text(value, "port"),
+        left_ms: number(value, "left_ms").unwrap_or_default(),
         calls: list(value, "calls", at),
     }
 }

@@ -5,7 +5,7 @@
 use super::listing::Listing;
 use lang_diagram::debug::order::Order;
 use lang_diagram::debug::{Back, Breakpoint, Step};
-use std::fmt;
+use lang_text::problem::{Locale, Words};
 
 /// Something that is typed.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,134 +36,289 @@ pub(super) enum NotUnderstood {
     /// There is no such command.
     Unknown(String),
     /// The command lacks something.
-    Lacks(&'static str),
+    Lacks(Lacking),
     /// Nothing can follow this command.
     Strange(String),
     /// The diagram has no such line, or no block there and after it.
     NoLine(String),
 }
 
-impl fmt::Display for NotUnderstood {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Unknown(word) => write!(f, "there is no command '{word}'; try help"),
-            Self::Lacks(what) => write!(f, "{what} is needed"),
-            Self::Strange(text) => {
-                write!(f, "nothing can follow this command, and here is '{text}'")
-            }
-            Self::NoLine(text) => write!(
-                f,
-                "'{text}' is neither a line that has a block nor the id of a block; list shows the lines"
+impl NotUnderstood {
+    /// For a person.
+    pub(super) fn in_locale(&self, locale: Locale) -> String {
+        let words = match self {
+            Self::Unknown(word) => Words::new(
+                format!("there is no command '{word}'; try help"),
+                format!("команды '{word}' нет; попробуйте help"),
             ),
+            Self::Lacks(what) => Words::new(
+                format!("{} is needed", what.english()),
+                format!("нужно: {}", what.russian()),
+            ),
+            Self::Strange(text) => Words::new(
+                format!("nothing can follow this command, and here is '{text}'"),
+                format!("после этой команды ничего не пишут, а здесь '{text}'"),
+            ),
+            Self::NoLine(text) => Words::new(
+                format!(
+                    "'{text}' is neither a line that has a block nor the id of a block; list shows the lines"
+                ),
+                format!("'{text}' - не строка с блоком и не id блока; строки показывает list"),
+            ),
+        };
+        words.in_locale(locale).to_owned()
+    }
+}
+
+/// What a command lacks.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub(super) enum Lacking {
+    Kinds,
+    Time,
+    Thread,
+    Line,
+    LineText,
+    Variable,
+    Assignment,
+    Expression,
+    Number,
+    StopOrGo,
+    RestOrKeep,
+    If,
+    Condition,
+}
+
+impl Lacking {
+    fn english(self) -> &'static str {
+        match self {
+            Self::Kinds => "threads, variables or breakpoints",
+            Self::Time => "a time in milliseconds",
+            Self::Thread => "the name of a thread",
+            Self::Line => "a line",
+            Self::LineText => "a text after the line",
+            Self::Variable => "the name of a variable",
+            Self::Assignment => "NAME=EXPRESSION",
+            Self::Expression => "an expression",
+            Self::Number => "the number of a breakpoint",
+            Self::StopOrGo => "stop or go",
+            Self::RestOrKeep => "rest or keep",
+            Self::If => "`if` before the condition",
+            Self::Condition => "a condition after `if`",
+        }
+    }
+
+    fn russian(self) -> &'static str {
+        match self {
+            Self::Kinds => "threads, variables или breakpoints",
+            Self::Time => "время в миллисекундах",
+            Self::Thread => "имя потока",
+            Self::Line => "строка",
+            Self::LineText => "текст после номера строки",
+            Self::Variable => "имя переменной",
+            Self::Assignment => "NAME=EXPRESSION",
+            Self::Expression => "выражение",
+            Self::Number => "номер точки останова",
+            Self::StopOrGo => "stop или go",
+            Self::RestOrKeep => "rest или keep",
+            Self::If => "`if` перед условием",
+            Self::Condition => "условие после `if`",
         }
     }
 }
 
-/// A command: its words, what follows them, and what it does.
-type Row = (&'static str, &'static str, &'static str);
+/// A command: its words, what follows them, and what it does in English and Russian.
+pub(super) struct Row {
+    /// The first one is the long one.
+    pub words: &'static str,
+    pub more: &'static str,
+    english: &'static str,
+    russian: &'static str,
+}
 
-/// All commands, for help. The first word is the long one.
+impl Row {
+    /// What it does.
+    pub(super) fn what(&self, locale: Locale) -> &'static str {
+        match locale {
+            Locale::English => self.english,
+            Locale::Russian => self.russian,
+        }
+    }
+}
+
+const fn row(
+    words: &'static str,
+    more: &'static str,
+    english: &'static str,
+    russian: &'static str,
+) -> Row {
+    Row {
+        words,
+        more,
+        english,
+        russian,
+    }
+}
+
+/// All commands, for help.
 pub(super) const ROWS: [Row; 28] = [
-    (
+    row(
         "continue c",
         "",
         "go on to the next breakpoint; in the past to the next one there, or to the present",
+        "дальше до следующей точки останова; в прошлом - до следующей там или до настоящего",
     ),
-    (
+    row(
         "next n",
         "[THREAD]",
         "go on to the next block of this diagram",
+        "к следующему блоку этой диаграммы",
     ),
-    (
+    row(
         "step s",
         "[THREAD]",
         "go on to the next block, into subprograms too",
+        "к следующему блоку, в том числе в подпрограмме",
     ),
-    (
+    row(
         "finish fin",
         "[THREAD]",
         "go on to the block after the call of this subprogram",
+        "к блоку после вызова этой подпрограммы",
     ),
-    ("until u", "LINE", "go on to a line"),
-    (
+    row("until u", "LINE", "go on to a line", "до строки"),
+    row(
         "reverse-next rn",
         "",
         "back to the block before, in this diagram",
+        "назад к предыдущему блоку этой диаграммы",
     ),
-    (
+    row(
         "reverse-step rs",
         "",
         "back to the block before, into subprograms too",
+        "назад к предыдущему блоку, в том числе в подпрограмме",
     ),
-    (
+    row(
         "reverse-finish rf",
         "",
         "back to where this subprogram was called",
+        "назад к вызову этой подпрограммы",
     ),
-    ("reverse-continue rc", "", "back to the last breakpoint"),
-    (
+    row(
+        "reverse-continue rc",
+        "",
+        "back to the last breakpoint",
+        "назад к последней точке останова",
+    ),
+    row(
         "back",
         "MS",
         "back to a time of the program, in milliseconds",
+        "назад к моменту программы, в миллисекундах",
     ),
-    ("start", "", "back to the first moment that is kept"),
-    ("present", "", "leave the past"),
-    (
+    row(
+        "start",
+        "",
+        "back to the first moment that is kept",
+        "назад к самому раннему из сохранённых моментов",
+    ),
+    row("present", "", "leave the past", "вернуться в настоящее"),
+    row(
         "break b",
         "LINE [if EXPRESSION]",
         "stop before a line; LINE may be the id of a block",
+        "остановка перед строкой; вместо строки можно написать id блока",
     ),
-    ("tbreak tb", "LINE [if EXPRESSION]", "the same, once"),
-    (
+    row(
+        "tbreak tb",
+        "LINE [if EXPRESSION]",
+        "the same, once",
+        "то же, один раз",
+    ),
+    row(
         "watch",
         "NAME [if EXPRESSION]",
         "stop after a variable changes, or a sensor that the program reads",
+        "остановка после изменения переменной или датчика, который программа читает",
     ),
-    (
+    row(
         "dprintf",
         "LINE TEXT",
         "write a line there; {EXPRESSION} in it is a value",
+        "писать там строку; {EXPRESSION} в ней - значение",
     ),
-    ("delete d", "[NUMBER]", "take a breakpoint away, or all"),
-    (
+    row(
+        "delete d",
+        "[NUMBER]",
+        "take a breakpoint away, or all",
+        "убрать точку останова или все",
+    ),
+    row(
         "disable",
         "NUMBER",
         "let a breakpoint do nothing; enable NUMBER undoes it",
+        "выключить точку останова; enable NUMBER включает",
     ),
-    (
+    row(
         "errors",
         "stop|go",
         "whether an error in a block stops the program",
+        "останавливает ли программу ошибка в блоке",
     ),
-    (
+    row(
         "print p",
         "EXPRESSION",
         "compute an expression, which changes nothing",
+        "вычислить выражение, ничего не меняя",
     ),
-    ("set", "NAME=EXPRESSION", "assign a variable"),
-    ("list l", "[LINE]", "show the diagram as text"),
-    (
+    row(
+        "set",
+        "NAME=EXPRESSION",
+        "assign a variable",
+        "присвоить переменной",
+    ),
+    row(
+        "list l",
+        "[LINE]",
+        "show the diagram as text",
+        "показать диаграмму как текст",
+    ),
+    row(
         "info i",
         "threads|variables|breakpoints",
         "show all of them; backtrace (bt): the calls of this thread",
+        "показать все потоки, переменные, точки останова; backtrace (bt) - вызовы этого потока",
     ),
-    (
+    row(
         "hold",
         "THREAD",
         "hold a thread and let the others go on; release THREAD undoes it",
+        "задержать поток, остальные идут дальше; release THREAD отпускает",
     ),
-    (
+    row(
         "reload",
         "",
         "take the file as it is now; the program goes on where it is, with what its variables hold",
+        "взять файл, какой он сейчас; программа продолжает с того же места и с теми же переменными",
     ),
-    ("where w", "", "where the robot is at this moment"),
-    (
+    row(
+        "where w",
+        "",
+        "where the robot is at this moment",
+        "где робот в этот момент",
+    ),
+    row(
         "motors",
         "rest|keep",
         "on a robot: whether motors rest while the program is stopped",
+        "на роботе: стоят ли моторы, пока программа остановлена",
     ),
-    ("quit q", "", "end; the program is ended too"),
+    row(
+        "quit q",
+        "",
+        "end; the program is ended too",
+        "закончить; программа заканчивается тоже",
+    ),
 ];
 
 /// Commands after which nothing comes.
@@ -197,7 +352,7 @@ pub(super) fn understand(line: &str, listing: &Listing) -> Result<Typed, NotUnde
             "threads" | "t" => Typed::Threads,
             "variables" | "locals" | "v" => Typed::Variables,
             "breakpoints" | "break" | "b" | "watchpoints" => Typed::Order(Order::Breakpoints(0)),
-            _ => return Err(NotUnderstood::Lacks("threads, variables or breakpoints")),
+            _ => return Err(NotUnderstood::Lacks(Lacking::Kinds)),
         },
         "threads" => Typed::Threads,
         "variables" => Typed::Variables,
@@ -225,13 +380,13 @@ fn moving(word: &str, rest: &str, listing: &Listing) -> Result<Option<Order>, No
         "reverse-finish" | "rf" => Order::Back(Back::Step(Step::Out)),
         "reverse-continue" | "rc" => Order::Back(Back::Continue),
         "back" => {
-            let lacks = NotUnderstood::Lacks("a time in milliseconds");
+            let lacks = NotUnderstood::Lacks(Lacking::Time);
             Order::Back(Back::To(rest.parse().map_err(|_| lacks)?))
         }
         "start" => Order::Back(Back::Oldest),
         "present" => Order::Present,
-        "hold" => Order::Hold(some(rest, "the name of a thread")?),
-        "release" => Order::Release(some(rest, "the name of a thread")?),
+        "hold" => Order::Hold(some(rest, Lacking::Thread)?),
+        "release" => Order::Release(some(rest, Lacking::Thread)?),
         _ => return Ok(None),
     }))
 }
@@ -249,7 +404,7 @@ fn order(word: &str, rest: &str, listing: &Listing) -> Result<Option<Order>, Not
             let (line, text) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
             let text = text.trim().trim_matches('"');
             Order::Break(Breakpoint {
-                log: some(text, "a text after the line")?,
+                log: some(text, Lacking::LineText)?,
                 ..breakpoint(line, listing)?
             })
         }
@@ -258,12 +413,12 @@ fn order(word: &str, rest: &str, listing: &Listing) -> Result<Option<Order>, Not
         "disable" => Order::Enable(number(rest)?, false),
         "enable" => Order::Enable(number(rest)?, true),
         "breakpoints" => Order::Breakpoints(0),
-        "errors" => Order::Errors(either(rest, ["stop", "go"], "stop or go")?),
-        "motors" => Order::Motors(either(rest, ["rest", "keep"], "rest or keep")?),
-        "print" | "p" | "inspect" => Order::Evaluate(some(rest, "an expression")?),
+        "errors" => Order::Errors(either(rest, ["stop", "go"], Lacking::StopOrGo)?),
+        "motors" => Order::Motors(either(rest, ["rest", "keep"], Lacking::RestOrKeep)?),
+        "print" | "p" | "inspect" => Order::Evaluate(some(rest, Lacking::Expression)?),
         "set" => {
             let rest = rest.strip_prefix("var ").unwrap_or(rest);
-            let lacks = NotUnderstood::Lacks("NAME=EXPRESSION");
+            let lacks = NotUnderstood::Lacks(Lacking::Assignment);
             let (name, text) = rest.split_once('=').ok_or(lacks)?;
             Order::Set(name.trim().into(), text.trim().into())
         }
@@ -271,14 +426,14 @@ fn order(word: &str, rest: &str, listing: &Listing) -> Result<Option<Order>, Not
     }))
 }
 
-fn either(text: &str, words: [&str; 2], what: &'static str) -> Result<bool, NotUnderstood> {
+fn either(text: &str, words: [&str; 2], what: Lacking) -> Result<bool, NotUnderstood> {
     let found = words.iter().position(|word| *word == text);
     found
         .map(|index| index == 0)
         .ok_or(NotUnderstood::Lacks(what))
 }
 
-fn some(text: &str, what: &'static str) -> Result<Box<str>, NotUnderstood> {
+fn some(text: &str, what: Lacking) -> Result<Box<str>, NotUnderstood> {
     match text {
         "" => Err(NotUnderstood::Lacks(what)),
         text => Ok(text.into()),
@@ -286,14 +441,14 @@ fn some(text: &str, what: &'static str) -> Result<Box<str>, NotUnderstood> {
 }
 
 fn number(text: &str) -> Result<u32, NotUnderstood> {
-    let lacks = NotUnderstood::Lacks("the number of a breakpoint");
+    let lacks = NotUnderstood::Lacks(Lacking::Number);
     text.parse().map_err(|_| lacks)
 }
 
 /// The block that a line or an id means. A line without a block means the next one that has one.
 fn block(text: &str, listing: &Listing) -> Result<Box<str>, NotUnderstood> {
     if text.is_empty() {
-        return Err(NotUnderstood::Lacks("a line"));
+        return Err(NotUnderstood::Lacks(Lacking::Line));
     }
     let none = || NotUnderstood::NoLine(text.chars().take(80).collect());
     match text.parse::<usize>() {
@@ -316,7 +471,7 @@ fn breakpoint(text: &str, listing: &Listing) -> Result<Breakpoint, NotUnderstood
 
 fn watch(text: &str) -> Result<Breakpoint, NotUnderstood> {
     let (name, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
-    let name = some(name, "the name of a variable")?;
+    let name = some(name, Lacking::Variable)?;
     let condition = condition(rest)?;
     Ok(Breakpoint {
         condition,
@@ -331,10 +486,10 @@ fn condition(rest: &str) -> Result<Box<str>, NotUnderstood> {
         rest => rest
             .strip_prefix("if")
             .filter(|rest| rest.is_empty() || rest.starts_with(char::is_whitespace))
-            .ok_or(NotUnderstood::Lacks("`if` before the condition"))?,
+            .ok_or(NotUnderstood::Lacks(Lacking::If))?,
     };
     if condition.trim().is_empty() && !rest.trim().is_empty() {
-        return Err(NotUnderstood::Lacks("a condition after `if`"));
+        return Err(NotUnderstood::Lacks(Lacking::Condition));
     }
     Ok(condition.trim().into())
 }

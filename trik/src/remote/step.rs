@@ -271,7 +271,7 @@ fn finish(
             }
         }
     }
-    for line in stops::lines(&told, listing) {
+    for line in stops::lines(&told, listing, at.language) {
         standard(format!("{line}\n").as_bytes())?;
     }
     robot.leave();

@@ -76,7 +76,7 @@ fn watch(args: &WatchArgs, listing: Option<&Listing>) -> Result<u8, Error> {
     let until = args
         .seconds
         .map(|seconds| Instant::now() + Duration::from_secs(seconds.into()));
-    let mut picture = Picture::new(listing, io::stdout().is_terminal());
+    let mut picture = Picture::new(listing, io::stdout().is_terminal(), args.language);
     let mut has_seen = false;
     for tag in 1u64.. {
         if until.is_some_and(|until| Instant::now() >= until) {
@@ -134,16 +134,18 @@ fn look(link: &mut Link, tag: u64) -> Result<Value, Error> {
 struct Picture<'a> {
     listing: Option<&'a Listing>,
     is_drawn: bool,
+    locale: Locale,
     /// The last values of each variable that is a number.
     values: BTreeMap<String, VecDeque<f64>>,
     last: Vec<String>,
 }
 
 impl<'a> Picture<'a> {
-    fn new(listing: Option<&'a Listing>, is_drawn: bool) -> Self {
+    fn new(listing: Option<&'a Listing>, is_drawn: bool, locale: Locale) -> Self {
         Self {
             listing,
             is_drawn,
+            locale,
             values: BTreeMap::new(),
             last: Vec::new(),
         }
@@ -191,7 +193,10 @@ impl<'a> Picture<'a> {
             };
             let name = harmless(&thread.name);
             lines.push(match self.is_drawn {
-                true => format!("{name:12} {:22} {place}", harmless(&thread.does)),
+                true => format!(
+                    "{name:12} {:22} {place}",
+                    harmless(&thread.doing(self.locale))
+                ),
                 false => format!("{name}: {place}"),
             });
         }
@@ -243,7 +248,7 @@ mod tests {
 
     #[test]
     fn the_last_values_of_a_variable_are_drawn() {
-        let mut picture = Picture::new(None, true);
+        let mut picture = Picture::new(None, true, Locale::English);
         for value in [0.0, 7.0, 3.5] {
             picture.spark("n", value);
         }

@@ -164,6 +164,16 @@ fn a_robot_is_stopped_stepped_and_let_go_from_the_shell() {
 }
 
 #[test]
+fn the_debugger_speaks_russian_where_the_diagram_does() {
+    let board = Board::new();
+    board.file("count.qrs", counting());
+    let typed = "help\nfly\nback noon\nwatch n if n > 3\nbreak 4 if n = 3\ndelete 7\nc\nrc\npresent\ni b\nrelease x\ni t\nd\nc\ni t\nq\n";
+    let words = ["debug", "count.qrs", "--language", "ru"];
+    let told = debug(&board, &words, typed).good();
+    insta::assert_snapshot!(told);
+}
+
+#[test]
 fn what_cannot_be_done_is_told_and_changes_nothing() {
     let board = Board::new();
     board.file("count.qrs", counting());

@@ -1,0 +1,255 @@
+//! What a debugger in a terminal says of a program, in English and Russian.
+//!
+//! Owns the words. What can be typed, and its help, are in `debug::words`.
+
+use lang_text::problem::{Locale, Words};
+
+/// A sentence of these words.
+pub(crate) fn said(locale: Locale, words: Words) -> String {
+    words.in_locale(locale).to_owned()
+}
+
+pub(crate) fn greeting() -> Words {
+    Words::new(
+        "This is trik debug; help shows what can be typed.",
+        "Это trik debug; help показывает, что можно ввести.",
+    )
+}
+
+pub(crate) fn ends_by_quit() -> Words {
+    Words::new("\ntype quit to end", "\nчтобы закончить, введите quit")
+}
+
+pub(crate) fn scene_unknown() -> Words {
+    Words::new(
+        "where a robot is can be seen, and is not known here",
+        "где робот, видно, а здесь неизвестно",
+    )
+}
+
+pub(crate) fn ended_at(time: &str) -> Words {
+    Words::new(
+        format!("the program has ended at {time}"),
+        format!("программа закончилась в {time}"),
+    )
+}
+
+pub(crate) fn past_remains() -> Words {
+    Words::new(
+        "what was can still be looked at: reverse-next, back, print, where",
+        "прошлое ещё можно смотреть: reverse-next, back, print, where",
+    )
+}
+
+pub(crate) fn set_at(number: &str, line: usize, text: &str) -> Words {
+    Words::new(
+        format!("breakpoint {number} at line {line}: {text}"),
+        format!("точка останова {number}, строка {line}: {text}"),
+    )
+}
+
+pub(crate) fn watches(number: &str, variable: &str) -> Words {
+    Words::new(
+        format!("breakpoint {number} watches {variable}"),
+        format!("точка останова {number} наблюдает за {variable}"),
+    )
+}
+
+pub(crate) fn changed(what: &str) -> Words {
+    Words::new(format!("changed: {what}"), format!("изменено: {what}"))
+}
+
+pub(crate) fn unchanged(why: &str) -> Words {
+    Words::new(
+        format!("{why}\nnothing is changed"),
+        format!("{why}\nничего не изменено"),
+    )
+}
+
+pub(crate) fn unchanged_unless_anew(why: &str) -> Words {
+    Words::new(
+        format!("{why}\nnothing is changed; quit and start again to begin anew"),
+        format!("{why}\nничего не изменено; чтобы начать сначала, введите quit и запустите снова"),
+    )
+}
+
+pub(crate) fn lines_there_are(count: usize) -> Words {
+    Words::new(
+        format!("there are {count} lines"),
+        format!("строк всего {count}"),
+    )
+}
+
+pub(crate) fn no_thread() -> Words {
+    Words::new("no thread lives", "ни один поток не выполняется")
+}
+
+pub(crate) fn no_variable() -> Words {
+    Words::new(
+        "no variable has a value yet",
+        "ни у одной переменной ещё нет значения",
+    )
+}
+
+pub(crate) fn no_breakpoints() -> Words {
+    Words::new("there are no breakpoints", "точек останова нет")
+}
+
+pub(crate) fn more(count: u64) -> Words {
+    Words::new(format!("and {count} more"), format!("и ещё {count}"))
+}
+
+pub(crate) fn line() -> Words {
+    Words::new("line", "строка")
+}
+
+pub(crate) fn watching() -> Words {
+    Words::new("watches", "наблюдает за")
+}
+
+pub(crate) fn hits() -> Words {
+    Words::new("hits", "срабатываний")
+}
+
+pub(crate) fn if_() -> Words {
+    Words::new("if", "если")
+}
+
+pub(crate) fn writes() -> Words {
+    Words::new("writes", "пишет")
+}
+
+pub(crate) fn disabled() -> Words {
+    Words::new("disabled", "выключена")
+}
+
+pub(crate) fn last_of_help() -> Words {
+    Words::new(
+        "an empty line is the line before; Ctrl-C stops a program that runs",
+        "пустая строка повторяет предыдущую; Ctrl-C останавливает программу, которая выполняется",
+    )
+}
+
+pub(crate) fn past() -> Words {
+    Words::new("past, ", "прошлое, ")
+}
+
+pub(crate) fn thread(name: &str) -> Words {
+    Words::new(format!(", thread {name}"), format!(", поток {name}"))
+}
+
+pub(crate) fn breakpoint(number: u64) -> Words {
+    Words::new(
+        format!("breakpoint {number}"),
+        format!("точка останова {number}"),
+    )
+}
+
+pub(crate) fn condition(number: u64, why: &str) -> Words {
+    Words::new(
+        format!("the condition of breakpoint {number}: {why}"),
+        format!("условие точки останова {number}: {why}"),
+    )
+}
+
+pub(crate) fn nothing() -> Words {
+    Words::new("nothing", "ничего")
+}
+
+pub(crate) fn was_and_is(variable: &str, was: [&str; 2], is: [&str; 2]) -> Words {
+    Words::new(
+        format!("{variable} was {} and is {}", was[0], is[0]),
+        format!("{variable}: было {}, стало {}", was[1], is[1]),
+    )
+}
+
+pub(crate) fn by_line(line: usize) -> Words {
+    Words::new(format!(", by line {line}"), format!(", строка {line}"))
+}
+
+pub(crate) fn error(text: &str) -> Words {
+    Words::new(format!("an error: {text}"), format!("ошибка: {text}"))
+}
+
+pub(crate) fn oldest() -> Words {
+    Words::new("nothing before this is kept", "более раннее не сохранилось")
+}
+
+pub(crate) fn first() -> Words {
+    Words::new("before the first block", "перед первым блоком")
+}
+
+/// A reason by its word in the protocol, which may be of a newer robot.
+pub(crate) fn reason(word: &str) -> Words {
+    let russian = match word {
+        "pause" => "пауза",
+        "step" => "шаг",
+        "thread ended" => "поток закончился",
+        "past" => "этот момент",
+        word => word,
+    };
+    Words::new(word, russian)
+}
+
+pub(crate) fn waits_more(left_ms: u64) -> Words {
+    Words::new(
+        format!("waits {left_ms} ms more"),
+        format!("ждёт ещё {left_ms} мс"),
+    )
+}
+
+/// For a port, or for something by its word in the protocol.
+pub(crate) fn waits_for(what: &str) -> Words {
+    let russian = match what {
+        "button" => "кнопку",
+        "mail" => "сообщение робота",
+        "answer" => "ответ",
+        "message" => "сообщение",
+        "threads" => "потоки",
+        "step" => "следующий шаг",
+        "nothing" => "неизвестно чего",
+        what => what,
+    };
+    Words::new(format!("waits for {what}"), format!("ждёт: {russian}"))
+}
+
+/// By its word in the protocol.
+pub(crate) fn does(word: &str) -> Words {
+    let russian = match word {
+        "enters" => "входит",
+        "gives way" => "уступает",
+        "held" => "задержан",
+        "failed" => "с ошибкой",
+        word => word,
+    };
+    Words::new(word, russian)
+}
+
+/// How a run has ended, and when.
+pub(crate) fn ending(what: [&str; 2], seconds: f64) -> Words {
+    let [english, russian] = what;
+    Words::new(
+        format!("{english} at {seconds:.2} s of model time"),
+        format!("{russian} в {seconds:.2} с модельного времени"),
+    )
+}
+
+pub(crate) const ACCOMPLISHED: [&str; 2] = ["the task is accomplished", "задание выполнено"];
+pub(crate) const ENDED: [&str; 2] = ["the program has ended", "программа закончилась"];
+pub(crate) const TIME_IS_OVER: [&str; 2] = [
+    "the run was stopped, its model time is over",
+    "запуск остановлен, его модельное время вышло",
+];
+pub(crate) const FAILED: [&str; 2] = ["the program has failed", "в программе ошибка"];
+pub(crate) const CANNOT_BEGIN: [&str; 2] =
+    ["the program cannot begin", "программа не может начаться"];
+pub(crate) const NOT_ACCOMPLISHED: [&str; 2] =
+    ["the task is not accomplished", "задание не выполнено"];
+pub(crate) const GIVEN_UP: [&str; 2] = ["the run was given up", "запуск прерван"];
+
+pub(crate) fn another_runs(diagram: &str, block: &str) -> Words {
+    Words::new(
+        format!(">     {diagram}, {block}: this block is not in the file: another diagram runs"),
+        format!(">     {diagram}, {block}: этого блока в файле нет: выполняется другая диаграмма"),
+    )
+}
