@@ -281,10 +281,9 @@ impl Debugger {
     }
 
     fn decides(&mut self, machine: &Machine, thread: u16, node: Node) -> Guard {
-        // Both have to count their hits.
-        let changed = self.changed(machine);
-        let hit = self.points.at_block(machine, node);
-        if let Some(reason) = changed.or(hit) {
+        if (self.points.has_watches() || self.points.is_marked(node))
+            && let Some(reason) = self.met(machine, node)
+        {
             return self.halt(reason, Some(thread), Some(node));
         }
         if let Some(walk) = self.walk
@@ -301,6 +300,15 @@ impl Debugger {
             true => Guard::HoldThread,
             false => Guard::Go,
         }
+    }
+
+    /// What breakpoints do before a block: those at it, and those whose variables have changed.
+    #[cold]
+    fn met(&mut self, machine: &Machine, node: Node) -> Option<Reason> {
+        // Both have to count their hits.
+        let changed = self.changed(machine);
+        let hit = self.points.at_block(machine, node);
+        changed.or(hit)
     }
 
     /// What breakpoints do whose variables have changed.
