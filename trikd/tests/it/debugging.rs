@@ -294,10 +294,14 @@ fn rubbish_changes_nothing_and_each_order_is_answered_once() {
     }
     let long = format!("evaluate {}", "1+".repeat(100_000));
     expect(&mut client, 8, &long, "an order has at most 16384 bytes");
-    // Conditions that are as long as they may be, and deeper.
+    // Conditions that are as deep as they may be, and deeper.
     expect(&mut client, 9, "attach", "true");
     for (condition, told) in [
-        ("1 + ".repeat(1000) + "1 < 0", "\"number\":1,"),
+        ("1 + ".repeat(150) + "1 < 0", "\"number\":1,"),
+        (
+            "1 + ".repeat(1000) + "1 < 0",
+            "\"why\":\"the condition: 1:1 The expression is nested too deeply",
+        ),
         (
             "(".repeat(2000) + "0" + &")".repeat(2000),
             "\"why\":\"the condition: 1:",
