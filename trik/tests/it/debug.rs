@@ -246,12 +246,12 @@ fn a_robot_is_debugged_over_the_network_and_its_motors_rest_at_stops() {
         let mut command = home.command(words);
         tools::run(&mut command, typed.as_bytes())
     };
-    let typed =
-        "break 5 if n == 3\nc\nprint n\nrn\nset n=7\npresent\nset n=10\nn\ninfo variables\nq\n";
+    let typed = "break 5 if n == 3\nc\nreload\nprint n\nrn\nset n=7\npresent\nset n=10\nn\ninfo variables\nq\n";
     let said = told(&words, typed).good();
     for line in [
         "0.00 s: before the first block\n>   1 Program:",
         "thread main: breakpoint 1\n>   5     Function: n = n + 1",
+        "(trik) reload\nchanged: 5 blocks kept, 0 new, 0 gone\n",
         "(trik) print n\n3\n",
         "this is the past: go to the present first",
         "(trik) info variables\nn = 11\n",
