@@ -6,6 +6,11 @@
 pub const CONFIG_BYTES_MAX: usize = 1 << 20;
 /// Bytes of one tuple, before or after a converter; a camera's picture is the largest.
 pub const TUPLE_BYTES_MAX: usize = 4 << 20;
+/// Bytes of the name of one channel of a player.
+pub const CHANNEL_BYTES_MAX: usize = 512;
+/// Bytes of one tuple that a player gives: one message of a Unix socket, whose buffer the kernel limits to 208 KiB
+/// (`net.core.wmem_max`) with its own overhead.
+pub const PLAYED_BYTES_MAX: usize = 128 << 10;
 /// Nodes and attributes in one configuration.
 pub const NODES_MAX: usize = 4096;
 /// Depth of nested groups.

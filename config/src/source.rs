@@ -24,6 +24,7 @@ mod newest;
 mod node;
 mod packets;
 mod path;
+mod played;
 mod program;
 mod pwm;
 mod regulator;
@@ -47,6 +48,7 @@ pub use newest::NewestDescription;
 pub use node::LinkDescription;
 pub use packets::{ByteOrder, Checksum, LengthField, PacketsDescription};
 pub use path::PathDescription;
+pub use played::PlayedDescription;
 pub use program::ProgramDescription;
 pub use pwm::PwmDescription;
 pub use regulator::RegulatorDescription;
@@ -142,6 +144,8 @@ kinds! {
     Absent(AbsentDescription),
     /// `replay{ ... }`: bytes recorded with their timing.
     Replay(ReplayDescription),
+    /// `played{ path, channel }`: a channel of a player that has the clock of a recording.
+    Played(PlayedDescription),
     /// `faulty{ ... }`: another source that fails on purpose.
     Faulty(FaultyDescription),
     /// `src = 'trikfs:other'`: the converted tuples of another node.

@@ -44,6 +44,14 @@ pub fn file_name(node: &str) -> io::Result<String> {
     fitting(name)
 }
 
+/// The file of what is written to an actuator: `motors/M3` is `motors+M3%w`, which is no name of a node's own ring.
+///
+/// # Errors
+/// As of [`file_name`].
+pub fn written_file_name(node: &str) -> io::Result<String> {
+    fitting(file_name(node)? + "%w")
+}
+
 fn fitting(name: String) -> io::Result<String> {
     if name.len() > limits::NAME_BYTES_MAX {
         return Err(io::Error::new(

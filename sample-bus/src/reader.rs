@@ -49,6 +49,23 @@ fn value_of(mountpoint: &Path, node: &str) -> Option<File> {
     files.iter().find_map(|file| File::open(file).ok())
 }
 
+/// The folder of a tree's rings, if it belongs to the owner of the tree.
+fn directory_of(mountpoint: &Path) -> io::Result<PathBuf> {
+    let directory = place::directory(Path::new(place::SHARED_MEMORY), mountpoint)?;
+    let owner = std::fs::symlink_metadata(&directory)?.uid();
+    if owner == std::fs::metadata(mountpoint)?.uid() {
+        return Ok(directory);
+    }
+    Err(io::Error::new(
+        io::ErrorKind::PermissionDenied,
+        format!(
+            "{} is not of the owner of {}",
+            directory.display(),
+            mountpoint.display()
+        ),
+    ))
+}
+
 impl Reader {
     /// Opens the ring of a node of a mounted tree, both by their paths.
     ///
@@ -57,25 +74,24 @@ impl Reader {
     /// the tree is another user's and not open to others, or the ring is not of the tree's owner.
     pub fn open(mountpoint: &Path, node: &str) -> io::Result<Self> {
         let mountpoint = mountpoint.canonicalize()?;
-        let directory = place::directory(Path::new(place::SHARED_MEMORY), &mountpoint)?;
-        let owner = std::fs::symlink_metadata(&directory)?.uid();
-        if owner != std::fs::metadata(&mountpoint)?.uid() {
-            return Err(io::Error::new(
-                io::ErrorKind::PermissionDenied,
-                format!(
-                    "{} is not of the owner of {}",
-                    directory.display(),
-                    mountpoint.display()
-                ),
-            ));
-        }
-        let file = directory.join(place::file_name(node)?);
+        let file = directory_of(&mountpoint)?.join(place::file_name(node)?);
         // First, so that what the ring has is new.
         let value = value_of(&mountpoint, node);
         Ok(Self {
             _value: value,
             ..Self::open_file(&file)?
         })
+    }
+
+    /// Opens the ring of what is written to an actuator: each tuple that has gone to its device, those that bring it to rest
+    /// too, as a program writes it.
+    ///
+    /// # Errors
+    /// As of [`Reader::open`]; `NotFound` for a node without `rest`.
+    pub fn open_written(mountpoint: &Path, node: &str) -> io::Result<Self> {
+        let mountpoint = mountpoint.canonicalize()?;
+        let file = directory_of(&mountpoint)?.join(place::written_file_name(node)?);
+        Self::open_file(&file)
     }
 
     /// Opens a ring by the path of its file. The file's owner must be trusted not to shorten it. Nothing tells the daemon that

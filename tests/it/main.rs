@@ -42,6 +42,8 @@ mod devices {
     mod lines;
     /// Serial lines.
     mod packets;
+    /// Channels of a player.
+    mod played;
     /// Texts for programs.
     mod program;
     /// Pulses.

@@ -21,6 +21,7 @@ pub mod lines;
 pub mod linked;
 pub mod packets;
 mod path;
+pub mod played;
 pub mod program;
 pub mod pwm;
 mod regulator;

@@ -200,6 +200,15 @@ impl Error {
         }
     }
 
+    /// What a recorded device failed with, so that a reader gets the same errno again.
+    pub fn of_recording(reason: String, errno: i32) -> Self {
+        match errno {
+            libc::ETIMEDOUT => Self::TimedOut(reason),
+            libc::EIO => Self::Measurement(reason),
+            errno => Self::of_number(reason, errno),
+        }
+    }
+
     /// Nobody acknowledges at an address of a bus.
     pub fn no_answer(what: String) -> Self {
         Self::Device(libc::EREMOTEIO, what)

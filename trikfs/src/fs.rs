@@ -250,6 +250,8 @@ impl Fs {
 
 /// The extended attribute with the time of the newest sample.
 const TIME_ATTRIBUTE: &[u8] = b"user.trik.time_ns";
+/// That with what brings an actuator to rest.
+const REST_ATTRIBUTE: &[u8] = b"user.trik.rest";
 
 impl Operations for Fs {
     fn start(&self, kernel: Arc<dyn Kernel>) {
@@ -344,6 +346,12 @@ impl Operations for Fs {
     }
 
     fn getxattr(&self, ino: u64, name: &[u8]) -> Result<Vec<u8>, Error> {
+        if name == REST_ATTRIBUTE {
+            let node = self.node_of(ino)?;
+            let rest = node.description.rest.as_ref().ok_or(Error::NoAttribute)?;
+            let numbers: Vec<String> = rest.iter().map(f64::to_string).collect();
+            return Ok(numbers.join(" ").into_bytes());
+        }
         if name != TIME_ATTRIBUTE {
             return Err(Error::NoAttribute);
         }
@@ -358,12 +366,15 @@ impl Operations for Fs {
 
     fn listxattr(&self, ino: u64) -> Result<Vec<u8>, Error> {
         let mut names = Vec::new();
-        if self
-            .node_of(ino)
-            .is_ok_and(|node| node.sampling.newest.stamp().is_some())
-        {
-            names.extend_from_slice(TIME_ATTRIBUTE);
-            names.push(0);
+        if let Ok(node) = self.node_of(ino) {
+            let has_sample = node.sampling.newest.stamp().is_some();
+            let has_rest = node.description.rest.is_some();
+            for (name, is_there) in [(TIME_ATTRIBUTE, has_sample), (REST_ATTRIBUTE, has_rest)] {
+                if is_there {
+                    names.extend_from_slice(name);
+                    names.push(0);
+                }
+            }
         }
         Ok(names)
     }

@@ -73,6 +73,10 @@ pub const LUA_STATES_BATCH_MS: u64 = 2;
 pub const LUA_STATES_NICE: i32 = 10;
 /// Prepared Lua states after many openings in a row.
 pub const LUA_STATES_READY: usize = 32;
+/// Largest errno of Linux (`MAX_ERRNO` of linux/err.h).
+pub const ERRNO_MAX: i32 = 4095;
+/// Bytes of a reason that a player gives for a recorded failure; the rest is cut.
+pub const REASON_BYTES_MAX: usize = 512;
 /// Bytes of the text of one number that is written.
 pub const TEXT_BYTES_MAX: usize = 64 << 10;
 /// Milliseconds until an event that found too many operations inside its node is looked at again.

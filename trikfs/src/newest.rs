@@ -119,6 +119,12 @@ impl Newest {
         if node.description.pace != Pace::OnRead {
             self.join_bus(&node);
         }
+        if node.description.rest.is_some() {
+            match node.engine.samples.ring_of_writes(&node.description) {
+                Ok(ring) => node.driving.set_ring(ring),
+                Err(reason) => (node.engine.log).line(&format!("{}: {reason}", node.path())),
+            }
+        }
         match node.description.pace {
             Pace::OnRead => {}
             Pace::Every { .. } => {
@@ -153,6 +159,9 @@ impl Newest {
     /// Ends the node's part of the sample bus.
     pub fn leave_bus(&self) {
         self.latch.set_ring(None);
+        if let Some(node) = self.node.upgrade() {
+            node.driving.set_ring(None);
+        }
     }
 
     /// Starts the clock at a time; `first` hears of the first attempt.

@@ -114,7 +114,7 @@ impl Writer {
                 }
             })?;
             self.node.driving.written.sent(tuple, &self.output);
-            self.node.driving.count_write();
+            self.node.driving.went(tuple);
         }
         Ok(())
     }

@@ -6,7 +6,7 @@ mod sources;
 
 use crate::description::{
     EvdevDescription, EvdevLayout, FakeDescription, FaultyDescription, NodeDescription, Pace,
-    ReplayDescription, SourceDescription, StageKind,
+    PlayedDescription, ReplayDescription, SourceDescription, StageKind,
 };
 use crate::load::{Loaded, Loader};
 use crate::problem::Problem;

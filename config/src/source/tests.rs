@@ -5,8 +5,9 @@ mod ports;
 
 use super::rest::{Bytes, Resting};
 use super::{
-    GpioDescription, GpioDirection, I2cDescription, I2cTransfer, LinesDescription, PwmDescription,
-    SourceDescription, TAGS, constructors, is_constructor, taken,
+    GpioDescription, GpioDirection, I2cDescription, I2cTransfer, LinesDescription,
+    PlayedDescription, PwmDescription, SourceDescription, TAGS, constructors, is_constructor,
+    taken,
 };
 
 /// One device of each form.
@@ -43,6 +44,10 @@ fn devices() -> Vec<SourceDescription> {
             write_transfer: I2cTransfer::Raw,
             readable: true,
             once: false,
+        }),
+        SourceDescription::Played(PlayedDescription {
+            path: "/run/player.sock".into(),
+            channel: "motors/M3".to_owned(),
         }),
     ]
 }

@@ -391,3 +391,40 @@ fn shared_memory_that_is_missing_is_told_and_files_go_on() {
     assert!(text.contains("sample bus: off: /dev/shm/trikfs+"), "{text}");
     assert!(text.ends_with("samples come\n"), "{text}");
 }
+
+#[test]
+fn what_is_written_to_an_actuator_is_in_a_ring_of_its_own() {
+    let Some(m) = mount(
+        "trikfs = {
+  m = { src = '/dev/null', format = 'i8 power', rest = 0 },
+  plain = { src = '/dev/null', format = 'i8 power' },
+}",
+    ) else {
+        return;
+    };
+    m.python(
+        "for power in ('30', '-30'):
+    open(M + '/m/value', 'w').write(power)
+open(M + '/stop', 'w').write('1')
+",
+    );
+    let mut ring = Reader::open_written(m.root(), "m").expect("a ring");
+    let mut tuple = Vec::new();
+    let mut powers = Vec::new();
+    while let Step::Event(event) = ring.next_event(&mut tuple) {
+        assert_eq!(event.errno, 0);
+        powers.push(i8::from_le_bytes([tuple[0]]));
+    }
+    // A rest when the tree was made may be before them.
+    assert!(powers.ends_with(&[30, -30, 0]), "{powers:?}");
+    // What needs no rest is none, and the node itself is not sampled.
+    for missing in [
+        Reader::open_written(m.root(), "plain"),
+        Reader::open(m.root(), "m"),
+    ] {
+        assert_eq!(
+            missing.err().map(|error| error.kind()),
+            Some(ErrorKind::NotFound)
+        );
+    }
+}

@@ -1,4 +1,4 @@
-//! Extended attributes: the exact time of the newest sample.
+//! Extended attributes: the exact time of the newest sample, and what brings an actuator to rest.
 
 use crate::mount_on;
 use harness::Board;
@@ -51,6 +51,22 @@ assert error_of(os.setxattr, M + '/n/value', 'user.other', b'1') in ('EPERM', 'E
 assert error_of(os.removexattr, M + '/n/value', 'user.trik.time_ns') in ('EPERM', 'EOPNOTSUPP', 'ENOTSUP', 'EACCES')
 os.pread(open_ro(M + '/n/value'), 9, 0)
 assert len(os.getxattr(M + '/n/value', 'user.trik.time_ns')) >= 9
+",
+    );
+}
+
+#[test]
+fn an_actuator_tells_what_brings_it_to_rest() {
+    let board = Board::new();
+    let Some(m) = mount_on(
+        board,
+        "trikfs = { m = { src = '/dev/null', format = 'i8 left, f32 right', rest = { 0, -1.5 } } }",
+    ) else {
+        return;
+    };
+    m.python(
+        "assert os.getxattr(M + '/m/value', 'user.trik.rest') == b'0 -1.5'
+assert os.listxattr(M + '/m/value') == ['user.trik.rest']
 ",
     );
 }

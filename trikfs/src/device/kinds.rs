@@ -24,6 +24,7 @@ fn kind(source: &SourceDescription) -> &dyn Kind {
         SourceDescription::I2cBus(source) => source,
         SourceDescription::Absent(source) => source,
         SourceDescription::Replay(source) => source,
+        SourceDescription::Played(source) => source,
         SourceDescription::Faulty(source) => source,
         SourceDescription::Node(source) => source,
         SourceDescription::Newest(source) => source,

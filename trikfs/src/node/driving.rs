@@ -6,12 +6,14 @@
 
 use super::Node;
 use super::written::Written;
+use crate::clock::Stamp;
 use crate::crew::lock_patiently;
 use crate::device::{Drives, kinds};
 use crate::errno::Error;
 use crate::events::lock;
 use crate::lease::Lease;
 use crate::regulation::Regulation;
+use crate::sample_bus::Ring;
 use config::description::NodeDescription;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -33,6 +35,8 @@ pub struct Driving {
     writes: AtomicU32,
     /// What was written last.
     pub written: Written,
+    /// What is written, in shared memory.
+    ring: Mutex<Option<Ring>>,
 }
 
 impl Driving {
@@ -64,6 +68,7 @@ impl Driving {
             lost: Mutex::default(),
             writes: AtomicU32::new(0),
             written: Written::new(description.read_back),
+            ring: Mutex::default(),
         }
     }
 
@@ -112,10 +117,19 @@ impl Driving {
         generations.fold(0, u32::wrapping_add)
     }
 
-    /// A tuple went to the device.
-    pub fn count_write(&self) {
+    /// A tuple, as it was written, went to the device.
+    pub fn went(&self, tuple: &[u8]) {
         self.writes.fetch_add(1, Ordering::Relaxed);
         *lock(&self.lost) = None;
+        if let Some(ring) = &mut *lock(&self.ring) {
+            ring.publish(Stamp::now(), tuple);
+        }
+    }
+
+    /// From now on everything that goes to the device is published in this ring, or in none.
+    pub fn set_ring(&self, ring: Option<Ring>) {
+        // Outside the lock: the end of a ring removes a file.
+        let _before = std::mem::replace(&mut *lock(&self.ring), ring);
     }
 
     /// A regulator that drove this node had to give up: `fault` says why until somebody drives the node again.

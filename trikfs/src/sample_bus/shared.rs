@@ -115,6 +115,26 @@ impl SampleBus {
     /// # Errors
     /// Why this node has none.
     pub fn ring(&self, description: &NodeDescription) -> Result<Option<Ring>, BusError> {
+        let size = description.output_tuple_size;
+        self.with_rights(description, place::file_name(&description.path), size)
+    }
+
+    /// A ring for what is written to an actuator, with the rights of its files; as `ring`.
+    ///
+    /// # Errors
+    /// Why this node has none.
+    pub fn ring_of_writes(&self, description: &NodeDescription) -> Result<Option<Ring>, BusError> {
+        let size = description.written_tuple_size();
+        let name = place::written_file_name(&description.path);
+        self.with_rights(description, name, size)
+    }
+
+    fn with_rights(
+        &self,
+        description: &NodeDescription,
+        name: std::io::Result<String>,
+        size: usize,
+    ) -> Result<Option<Ring>, BusError> {
         let place = lock(&self.place);
         let Some(place) = place.as_ref() else {
             return Ok(None);
@@ -127,8 +147,7 @@ impl SampleBus {
             mode: u32::from(description.mode) & shown,
             group: description.group,
         };
-        let size = description.output_tuple_size;
-        let ring = self.make(place, &description.path, size, rights);
+        let ring = name.and_then(|name| self.make(place, &name, size, rights));
         ring.map(Some)
             .map_err(|error| BusError::Ring(error.to_string()))
     }
@@ -136,11 +155,11 @@ impl SampleBus {
     fn make(
         &self,
         place: &Place,
-        path: &str,
+        name: &str,
         tuple_bytes: usize,
         rights: Rights,
     ) -> std::io::Result<Ring> {
-        let file = place.directory.path().join(place::file_name(path)?);
+        let file = place.directory.path().join(name);
         let bytes = Writer::bytes_for(tuple_bytes)?;
         let before = self.used_bytes.fetch_add(bytes, Ordering::Relaxed);
         let made = if before + bytes > limits::SAMPLE_BUS_BYTES_MAX {

@@ -49,6 +49,14 @@ fn sources_that_make_their_own_bytes_are_read() {
         source("replay{ '/tmp/run.rec', speed = 0.5 }"),
         SourceDescription::Replay(replay)
     );
+    let played = PlayedDescription {
+        path: "/run/player.sock".into(),
+        channel: "sensors/A1".to_owned(),
+    };
+    assert_eq!(
+        source("played{ '/run/player.sock', channel = 'sensors/A1' }"),
+        SourceDescription::Played(played)
+    );
     let faulty = |errno, from, count, short| {
         SourceDescription::Faulty(FaultyDescription {
             source: Box::new(SourceDescription::Fake(fake.clone())),
@@ -181,6 +189,18 @@ fn sources_that_cannot_make_bytes_are_refused() {
     assert_eq!(
         source("replay{ '/x', speed = 0 }"),
         "robot.lua:2: x: replay: speed must be from 0.001 to 1000000, not 0"
+    );
+    assert_eq!(
+        source("played{ '/run/x' }"),
+        "robot.lua:2: x: played: channel is missing"
+    );
+    assert_eq!(
+        source("played{ '/run/x', channel = '' }"),
+        "robot.lua:2: x: played: channel must be 1 to 512 bytes without control characters"
+    );
+    assert_eq!(
+        refused("src = played{ '/run/x', channel = 'c' }, input_tuple_size = 131073"),
+        "robot.lua:2: x: played: a tuple may have 131072 bytes, this one has 131073"
     );
     assert_eq!(
         source("faulty{ fail = 'EIO' }"),

@@ -5,6 +5,7 @@
 
 use super::bus::{Failure, Time};
 use super::{Data, Transfer};
+use crate::limits;
 use nix::sys::socket::{
     AddressFamily, MsgFlags, SockFlag, SockType, UnixAddr, connect, recv, send, setsockopt, socket,
     sockopt,
@@ -17,8 +18,6 @@ use std::time::{Duration, Instant};
 const VERSION: u8 = 1;
 const REQUEST_BYTES: usize = 8;
 const ANSWER_BYTES: usize = 4;
-/// Largest errno of Linux.
-const ERRNO_MAX: i32 = 4095;
 
 pub(super) struct VirtualBus {
     socket: OwnedFd,
@@ -151,7 +150,7 @@ fn decode(answer: &[u8], transfer: &mut Transfer<'_>) -> Result<(), Failure> {
     };
     match i32::from_le_bytes(*errno) {
         0 => {}
-        errno @ 1..=ERRNO_MAX => return Err(Failure::Errno(errno)),
+        errno @ 1..=limits::ERRNO_MAX => return Err(Failure::Errno(errno)),
         other => return Err(Failure::Garbage(format!("an answer with errno {other}"))),
     }
     let wanted = match &transfer.data {
