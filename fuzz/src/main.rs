@@ -8,13 +8,15 @@ use std::sync::LazyLock;
 
 type Target = fn(&[u8]);
 
-const TARGETS: [(&str, Target); 19] = [
+const TARGETS: [(&str, Target); 21] = [
     ("reader", lang_diagram::fuzz::reader),
     ("expression", lang_expr::fuzz::expression),
     ("lowering", lang_diagram::fuzz::lowering),
     ("debugging", lang_diagram::fuzz::debugging),
     ("constraints", lang_constraint::fuzz::constraints),
     ("dcml", lang_dcml::fuzz::dcml),
+    ("recording", journal::fuzz::recording),
+    ("message", journal::fuzz::message),
     ("lsp", trik::fuzz::lsp),
     ("field", sim::fuzz::field),
     ("frames", trikd::fuzz::fuzz_frames),

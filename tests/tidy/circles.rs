@@ -8,11 +8,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// The largest circle that a crate may have. Lower a number with the circle; never raise one.
-const LARGEST: [(&str, usize); 17] = [
+const LARGEST: [(&str, usize); 18] = [
     ("config", 4),
     ("converter", 3),
     ("ev3dev", 2),
     ("filters", 1),
+    ("journal", 2),
     ("lang/constraint", 2),
     ("lang/dcml", 4),
     ("lang/diagram", 9),

@@ -11,11 +11,12 @@ mod prose;
 /// Rules of waiting.
 mod waits;
 
-const CRATES: [&str; 19] = [
+const CRATES: [&str; 20] = [
     "config",
     "converter",
     "ev3dev",
     "filters",
+    "journal",
     "lang/constraint",
     "lang/dcml",
     "lang/diagram",

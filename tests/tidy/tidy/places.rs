@@ -5,11 +5,10 @@
 use super::{Source, none, sources};
 
 /// Crates whose limits all stand in their `limits.rs`. Those of `filters` are ranges of parameters, which stand with them.
-const LIMITED: [&str; 4] = ["config", "converter", "sample-bus", "trikfs"];
+const LIMITED: [&str; 5] = ["config", "converter", "journal", "sample-bus", "trikfs"];
 /// Constants of such a crate that are named like limits and are none of ours, as beginnings of paths with a name.
-const NO_LIMITS: [(&str, &str); 4] = [
+const NO_LIMITS: [(&str, &str); 3] = [
     ("config/src/vm/memory", "SMALL_MAX"),
-    ("trikfs/src/device/i2c/virtual_bus", "ERRNO_MAX"),
     ("trikfs/src/transport/native/abi", "MAX_PAGES"),
     ("trikfs/src/transport/native/abi", "MINOR_MIN"),
 ];

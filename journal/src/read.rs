@@ -1,0 +1,550 @@
+//! Reading a recording: what is in it, and what happened from any moment on.
+//!
+//! Owns seeking and its bounds. The file comes from anywhere: every length in it is checked before memory is taken for it, and
+//! whatever contradicts itself is an error and no panic. A file without an end is for `mend`.
+
+use crate::error::Error;
+use crate::layout::Layout;
+use crate::limits::{
+    ATTACHMENT_BYTES_MAX, CHUNKS_BACK, INFLATION_MAX, NODES_MAX, RECORD_BYTES_MAX,
+    SUMMARY_BYTES_MAX,
+};
+use crate::node::{self, Node};
+use crate::standard::{self, Log};
+use crate::write::{FAULTS, LOG};
+use mcap::Summary;
+use mcap::records::op;
+use mcap::sans_io::{
+    IndexedReadEvent, IndexedReader, IndexedReaderOptions, SummaryReadEvent, SummaryReader,
+    SummaryReaderOptions, indexed_reader::ReadOrder,
+};
+use std::collections::{BTreeMap, HashMap};
+use std::io::{Read, Seek, SeekFrom};
+
+/// Bytes of a footer with its head, and of the magic after it.
+const FOOTER_BYTES: u64 = 9 + 20;
+const MAGIC_BYTES: u64 = 8;
+
+/// A recording that can be read.
+pub struct Reader<F> {
+    file: F,
+    size: u64,
+    summary: Summary,
+    nodes: Vec<Node>,
+    layouts: Vec<Layout>,
+    /// What each channel carries.
+    carries: HashMap<u16, Carries>,
+    /// Reads forwards; None before the first event is wanted.
+    forwards: Option<IndexedReader>,
+    from_ns: u64,
+    chunk: Vec<u8>,
+}
+
+/// What the messages of a channel are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Carries {
+    /// Samples of the node with this number, in the layout with this number.
+    Samples(usize, usize),
+    Faults,
+    Log,
+}
+
+/// Something that happened.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Event {
+    /// When, in ns since 1970.
+    pub unix_ns: u64,
+    /// What.
+    pub what: What,
+}
+
+/// What happened.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum What {
+    /// A sample of the node with this number.
+    Sample {
+        /// Among `nodes`.
+        node: usize,
+        /// Its layout, among `layouts`; one node may have several, one after the other.
+        layout: usize,
+        /// Its number among the samples of the node, from 1.
+        sequence: u32,
+        /// Its bytes, as `bin_data` had them.
+        tuple: Vec<u8>,
+    },
+    /// A node had no value.
+    Fault {
+        /// Among `nodes`.
+        node: usize,
+        /// Its errno.
+        errno: i32,
+        /// Why.
+        reason: String,
+    },
+    /// A line of the log.
+    Log(Log),
+}
+
+impl<F: Read + Seek> Reader<F> {
+    /// Reads what is in it, and none of the events.
+    ///
+    /// # Errors
+    /// It is none, it is cut, or it contradicts itself.
+    pub fn open(mut file: F) -> Result<Self, Error> {
+        let size = file.seek(SeekFrom::End(0))?;
+        file.rewind()?;
+        let mut magic = [0; MAGIC_BYTES as usize];
+        let begins = file.read_exact(&mut magic);
+        if begins.is_err() || magic != *mcap::MAGIC {
+            return Err(Error::NotARecording);
+        }
+        if size < 2 * MAGIC_BYTES + FOOTER_BYTES {
+            return Err(Error::Cut);
+        }
+        file.seek(SeekFrom::End(-(MAGIC_BYTES as i64)))?;
+        file.read_exact(&mut magic)?;
+        if magic != *mcap::MAGIC {
+            return Err(Error::Cut);
+        }
+        check_footer(&mut file, size)?;
+        let summary = summary(&mut file, size)?;
+        for index in &summary.chunk_indexes {
+            check_chunk(index, size)?;
+        }
+        let mut reader = Self {
+            file,
+            size,
+            summary,
+            nodes: Vec::new(),
+            layouts: Vec::new(),
+            carries: HashMap::new(),
+            forwards: None,
+            from_ns: 0,
+            chunk: Vec::new(),
+        };
+        reader.learn_channels()?;
+        reader.from_ns = reader.begin_ns();
+        Ok(reader)
+    }
+
+    /// Which channels are nodes. Those of other programs are left out.
+    fn learn_channels(&mut self) -> Result<(), Error> {
+        let mut channels: Vec<_> = self.summary.channels.values().cloned().collect();
+        channels.sort_by_key(|channel| channel.id);
+        for channel in channels {
+            let carries = match channel.topic.as_str() {
+                FAULTS => Carries::Faults,
+                LOG => Carries::Log,
+                topic => {
+                    let Some(node) = Node::of_channel(topic, &channel.metadata) else {
+                        continue;
+                    };
+                    if self.layouts.len() == NODES_MAX {
+                        return Err(Error::TooMany("nodes"));
+                    }
+                    self.layouts.push(Layout::parse(&node.format)?);
+                    let known = self.nodes.iter().position(|other| other.path == node.path);
+                    let number = known.unwrap_or(self.nodes.len());
+                    match known {
+                        // A later format is the one that it has.
+                        Some(number) => self.nodes[number] = node,
+                        None => self.nodes.push(node),
+                    }
+                    Carries::Samples(number, self.layouts.len() - 1)
+                }
+            };
+            self.carries.insert(channel.id, carries);
+        }
+        Ok(())
+    }
+
+    /// The nodes, in the order in which they were added.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// All layouts of samples, in the order in which they came.
+    pub fn layouts(&self) -> &[Layout] {
+        &self.layouts
+    }
+
+    /// The numbers of the layouts that samples of a node have.
+    pub fn layouts_of(&self, node: usize) -> Vec<usize> {
+        let of_node = self.carries.values().filter_map(|carries| match carries {
+            Carries::Samples(number, layout) if *number == node => Some(*layout),
+            Carries::Samples(..) | Carries::Faults | Carries::Log => None,
+        });
+        let mut all: Vec<usize> = of_node.collect();
+        all.sort_unstable();
+        all
+    }
+
+    /// The layout of the samples of a node; of one that changed it, the last.
+    pub fn layout(&self, node: usize) -> Option<&Layout> {
+        let last = self.layouts_of(node).pop()?;
+        self.layouts.get(last)
+    }
+
+    /// When the first event was, in ns since 1970; 0 if there is none.
+    pub fn begin_ns(&self) -> u64 {
+        let chunks = self.summary.chunk_indexes.iter();
+        // A chunk of schemas and channels alone has no time.
+        let begins = chunks.filter(|index| index.message_end_time > 0);
+        begins
+            .map(|index| index.message_start_time)
+            .min()
+            .unwrap_or(0)
+    }
+
+    /// When the last event was.
+    pub fn end_ns(&self) -> u64 {
+        let ends = self.summary.chunk_indexes.iter();
+        ends.map(|index| index.message_end_time).max().unwrap_or(0)
+    }
+
+    /// How many messages each topic has, and how many there are in all.
+    pub fn counts(&self) -> (BTreeMap<String, u64>, u64) {
+        let mut counts = BTreeMap::new();
+        let Some(stats) = &self.summary.stats else {
+            return (counts, 0);
+        };
+        for (id, count) in &stats.channel_message_counts {
+            if let Some(channel) = self.summary.channels.get(id) {
+                *counts.entry(channel.topic.clone()).or_default() += count;
+            }
+        }
+        (counts, stats.message_count)
+    }
+
+    /// Bytes of the file.
+    pub fn size(&self) -> u64 {
+        self.size
+    }
+
+    /// Names and sizes of the files that go with it.
+    pub fn attachments(&self) -> Vec<(String, u64)> {
+        let indexes = self.summary.attachment_indexes.iter();
+        indexes
+            .map(|index| (index.name.clone(), index.data_size))
+            .collect()
+    }
+
+    /// The last file of this name.
+    ///
+    /// # Errors
+    /// There is none, it is too large, or the file contradicts itself.
+    pub fn attachment(&mut self, name: &str) -> Result<Vec<u8>, Error> {
+        let mut indexes = self.summary.attachment_indexes.iter().rev();
+        let found = indexes.find(|index| index.name == name);
+        let index = found.ok_or_else(|| Error::Absent(format!("attachment {name}")))?;
+        let (offset, length) = (index.offset, index.length);
+        let record = self.record(offset, length, ATTACHMENT_BYTES_MAX)?;
+        attachment_of(&record).ok_or_else(|| Error::Damaged(format!("attachment {name}")))
+    }
+
+    /// Facts of this name; empty if there are none.
+    ///
+    /// # Errors
+    /// The file contradicts itself.
+    pub fn facts(&mut self, name: &str) -> Result<BTreeMap<String, String>, Error> {
+        let mut indexes = self.summary.metadata_indexes.iter().rev();
+        let Some(index) = indexes.find(|index| index.name == name) else {
+            return Ok(BTreeMap::new());
+        };
+        let (offset, length) = (index.offset, index.length);
+        let record = self.record(offset, length, RECORD_BYTES_MAX as u64)?;
+        let damaged = || Error::Damaged("an index of metadata".to_owned());
+        let body = match record.split_first() {
+            Some((&op::METADATA, rest)) => rest.get(8..).ok_or_else(damaged)?,
+            Some(_) | None => return Err(damaged()),
+        };
+        let parsed = mcap::parse_record(op::METADATA, body).map_err(Error::reading)?;
+        let mcap::records::Record::Metadata(metadata) = parsed else {
+            return Err(damaged());
+        };
+        Ok(metadata.metadata)
+    }
+
+    /// A whole record, its head too.
+    fn record(&mut self, offset: u64, length: u64, most: u64) -> Result<Vec<u8>, Error> {
+        if length > most {
+            return Err(Error::TooLarge {
+                what: "a part of the recording",
+                bytes: length,
+                most,
+            });
+        }
+        if offset.checked_add(length).is_none_or(|end| end > self.size) {
+            return Err(Error::Damaged("an index leads outside the file".to_owned()));
+        }
+        self.file.seek(SeekFrom::Start(offset))?;
+        let mut record = vec![0; usize::try_from(length).unwrap_or(0)];
+        self.file.read_exact(&mut record)?;
+        Ok(record)
+    }
+
+    /// From now on `next` gives what happened at this moment and after it.
+    pub fn seek(&mut self, unix_ns: u64) {
+        self.from_ns = unix_ns;
+        self.forwards = None;
+    }
+
+    /// The next event, in the order of time.
+    ///
+    /// # Errors
+    /// The file cannot be read, or contradicts itself.
+    #[allow(
+        clippy::should_implement_trait,
+        reason = "it fails, and a position can be chosen in between"
+    )]
+    pub fn next(&mut self) -> Result<Option<Event>, Error> {
+        loop {
+            let forwards = match &mut self.forwards {
+                Some(forwards) => forwards,
+                none => {
+                    let options = IndexedReaderOptions::new()
+                        .with_order(ReadOrder::LogTime)
+                        .starting_at(self.from_ns)
+                        .with_record_length_limit(RECORD_BYTES_MAX);
+                    none.insert(new_indexed(&self.summary, options)?)
+                }
+            };
+            let Some((id, unix_ns, data)) =
+                step(forwards, &mut self.file, &mut self.chunk, &mut 0)?
+            else {
+                return Ok(None);
+            };
+            let event = self.event(id, unix_ns, &data);
+            if let Some(event) = event? {
+                return Ok(Some(event));
+            }
+        }
+    }
+
+    /// What each node had before this moment, the newest of it.
+    ///
+    /// # Errors
+    /// The file cannot be read, or contradicts itself.
+    pub fn newest(&mut self, unix_ns: u64) -> Result<Vec<Option<Event>>, Error> {
+        let mut newest: Vec<Option<Event>> = vec![None; self.nodes.len()];
+        let mut missing = newest.len();
+        let mut before = unix_ns;
+        let mut is_first = true;
+        // First of all nodes; then, further back, of those alone that have been silent for long.
+        while missing > 0 && before > 0 {
+            let topics = self.topics_without(&newest);
+            let options = IndexedReaderOptions::new()
+                .with_order(ReadOrder::ReverseLogTime)
+                .ending_before(before)
+                .include_topics(topics)
+                .with_record_length_limit(RECORD_BYTES_MAX);
+            let mut backwards = new_indexed(&self.summary, options)?;
+            let mut chunks = 0;
+            let had = missing;
+            loop {
+                let got = step(&mut backwards, &mut self.file, &mut self.chunk, &mut chunks)?;
+                let Some((id, at, data)) = got else {
+                    return Ok(newest);
+                };
+                before = at;
+                let event = self.event(id, at, &data)?;
+                let node = event.as_ref().and_then(Event::node);
+                if let Some(node) = node
+                    && newest[node].is_none()
+                {
+                    newest[node] = event;
+                    missing -= 1;
+                }
+                if missing == 0 {
+                    return Ok(newest);
+                }
+                let found_some = missing < had;
+                if chunks > CHUNKS_BACK && (is_first || found_some) {
+                    break;
+                }
+            }
+            is_first = false;
+            // What has the same moment as the last one that was read is read again.
+            before = before.saturating_add(1);
+        }
+        Ok(newest)
+    }
+
+    fn topics_without(&self, newest: &[Option<Event>]) -> Vec<String> {
+        let nodes = self.nodes.iter().zip(newest);
+        let missing = nodes.filter(|(_, newest)| newest.is_none());
+        let topics = missing.map(|(node, _)| node.topic());
+        topics.chain([FAULTS.to_owned()]).collect()
+    }
+
+    /// A message as an event; None if it is of another program.
+    fn event(&self, id: u16, unix_ns: u64, data: &[u8]) -> Result<Option<Event>, Error> {
+        let damaged = |what: &str| Error::Damaged(format!("a message of {what} is none"));
+        let what = match self.carries.get(&id) {
+            None => return Ok(None),
+            Some(&Carries::Samples(node, layout)) => {
+                let name = &self.nodes[node].path;
+                let tuple = node::decode(&self.layouts[layout], data);
+                What::Sample {
+                    node,
+                    layout,
+                    sequence: sequence(data).unwrap_or(0),
+                    tuple: tuple.ok_or_else(|| damaged(name))?,
+                }
+            }
+            Some(Carries::Faults) => {
+                let fault = Log::decode(data).ok_or_else(|| damaged("faults"))?;
+                let found = self.nodes.iter().position(|node| node.path == fault.name);
+                let Some(node) = found else { return Ok(None) };
+                What::Fault {
+                    node,
+                    errno: i32::try_from(fault.errno).unwrap_or(i32::MAX),
+                    reason: fault.text,
+                }
+            }
+            Some(Carries::Log) => {
+                What::Log(standard::Log::decode(data).ok_or_else(|| damaged("the log"))?)
+            }
+        };
+        Ok(Some(Event { unix_ns, what }))
+    }
+}
+
+impl Event {
+    /// The node that it is of.
+    pub fn node(&self) -> Option<usize> {
+        match &self.what {
+            What::Sample { node, .. } | What::Fault { node, .. } => Some(*node),
+            What::Log(_) => None,
+        }
+    }
+}
+
+fn sequence(data: &[u8]) -> Option<u32> {
+    let mut read = crate::cdr::Reader::new(data)?;
+    read.i32()?;
+    read.u32()?;
+    read.string()?;
+    read.u32()
+}
+
+/// The library trusts the footer with memory for all that follows the start of the summary.
+fn check_footer<F: Read + Seek>(file: &mut F, size: u64) -> Result<(), Error> {
+    let begin = size - MAGIC_BYTES - FOOTER_BYTES;
+    file.seek(SeekFrom::Start(begin))?;
+    let mut footer = [0; FOOTER_BYTES as usize];
+    file.read_exact(&mut footer)?;
+    if footer[0] != op::FOOTER || footer[1..9] != 20_u64.to_le_bytes() {
+        return Err(Error::Damaged("there is no footer at its end".to_owned()));
+    }
+    let start = u64_at(&footer, 9).unwrap_or(0);
+    if start == 0 {
+        // Without a summary it can only be read from its beginning on.
+        return Err(Error::Cut);
+    }
+    match begin.checked_sub(start) {
+        None => Err(Error::Damaged("its summary lies outside it".to_owned())),
+        Some(bytes) if bytes > SUMMARY_BYTES_MAX => Err(Error::TooLarge {
+            what: "the summary",
+            bytes,
+            most: SUMMARY_BYTES_MAX,
+        }),
+        Some(_) => Ok(()),
+    }
+}
+
+fn summary<F: Read + Seek>(file: &mut F, size: u64) -> Result<Summary, Error> {
+    let options = SummaryReaderOptions::default()
+        .with_file_size(size)
+        .with_record_length_limit(RECORD_BYTES_MAX);
+    let mut reader = SummaryReader::new_with_options(options);
+    while let Some(event) = reader.next_event() {
+        match event.map_err(Error::reading)? {
+            SummaryReadEvent::ReadRequest(wanted) => {
+                let read = file.read(reader.insert(wanted))?;
+                reader.notify_read(read);
+            }
+            SummaryReadEvent::SeekRequest(to) => {
+                let at = file.seek(to)?;
+                reader.notify_seeked(at);
+            }
+        }
+    }
+    reader.finish().ok_or(Error::Cut)
+}
+
+/// Whether a chunk lies in the file and becomes no more than it can.
+fn check_chunk(index: &mcap::records::ChunkIndex, size: u64) -> Result<(), Error> {
+    let end = index.chunk_start_offset.checked_add(index.chunk_length);
+    if end.is_none_or(|end| end > size) || index.compressed_size > index.chunk_length {
+        return Err(Error::Damaged("a chunk leads outside the file".to_owned()));
+    }
+    let most = (RECORD_BYTES_MAX as u64).min(index.compressed_size.saturating_mul(INFLATION_MAX));
+    if index.uncompressed_size > most {
+        return Err(Error::TooLarge {
+            what: "a chunk",
+            bytes: index.uncompressed_size,
+            most,
+        });
+    }
+    Ok(())
+}
+
+fn new_indexed(summary: &Summary, options: IndexedReaderOptions) -> Result<IndexedReader, Error> {
+    IndexedReader::new_with_options(summary, options).map_err(Error::reading)
+}
+
+/// The next message: its channel, time and bytes. `chunks` counts those that were read for it.
+fn step<F: Read + Seek>(
+    reader: &mut IndexedReader,
+    file: &mut F,
+    chunk: &mut Vec<u8>,
+    chunks: &mut usize,
+) -> Result<Option<(u16, u64, Vec<u8>)>, Error> {
+    loop {
+        let wanted = match reader.next_event() {
+            None => return Ok(None),
+            Some(event) => match event.map_err(Error::reading)? {
+                IndexedReadEvent::ReadChunkRequest { offset, length } => (offset, length),
+                IndexedReadEvent::Message { header, data } => {
+                    return Ok(Some((header.channel_id, header.log_time, data.to_vec())));
+                }
+            },
+        };
+        let (offset, length) = wanted;
+        *chunks += 1;
+        file.seek(SeekFrom::Start(offset))?;
+        chunk.resize(length, 0);
+        file.read_exact(chunk)?;
+        reader
+            .insert_chunk_record_data(offset, chunk)
+            .map_err(Error::reading)?;
+    }
+}
+
+fn u64_at(bytes: &[u8], at: usize) -> Option<u64> {
+    let bytes = bytes.get(at..at.checked_add(8)?)?;
+    Some(u64::from_le_bytes(bytes.try_into().ok()?))
+}
+
+fn u32_at(bytes: &[u8], at: usize) -> Option<u32> {
+    let bytes = bytes.get(at..at.checked_add(4)?)?;
+    Some(u32::from_le_bytes(bytes.try_into().ok()?))
+}
+
+/// The bytes of a file in its record: opcode and length, two times, name, media type, length, bytes, checksum.
+fn attachment_of(record: &[u8]) -> Option<Vec<u8>> {
+    let (&opcode, _) = record.split_first()?;
+    let mut at = 9 + 16;
+    for _ in ["name", "media type"] {
+        let length = usize::try_from(u32_at(record, at)?).ok()?;
+        at = at.checked_add(4)?.checked_add(length)?;
+    }
+    let length = usize::try_from(u64_at(record, at)?).ok()?;
+    let begin = at.checked_add(8)?;
+    let bytes = record.get(begin..begin.checked_add(length)?)?;
+    (opcode == op::ATTACHMENT).then(|| bytes.to_vec())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,274 @@
+//! Tests of files: what was written is read, from any moment on, whole, cut and damaged.
+
+use super::*;
+use crate::mend::mend;
+use crate::standard::Level;
+use crate::write::{ABOUT, Writer};
+use proptest::prelude::*;
+use std::io::Cursor;
+
+const MS: u64 = 1_000_000;
+const ZERO: u64 = 1_700_000_000_000_000_000;
+
+/// Two nodes: `fast` each ms, `slow` once at the beginning, with a failure of `fast` at half the time.
+fn recording(ms: u64) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut out = Writer::new(Cursor::new(&mut bytes), "test 1").unwrap();
+    out.facts(
+        ABOUT,
+        BTreeMap::from([("robot".to_owned(), "r".to_owned())]),
+    )
+    .unwrap();
+    out.attach(ZERO, "config.lua", "text/x-lua", b"trikfs = {}")
+        .unwrap();
+    let fast = out.add(&Node::sensor("a/fast", "i32 x, >u16 y")).unwrap();
+    let slow = out.add(&Node::sensor("slow", "text 8")).unwrap();
+    out.sample(slow, ZERO, b"here\0\0\0\0").unwrap();
+    for at in 0..ms {
+        let time = ZERO + at * MS;
+        if at == ms / 2 {
+            out.fault(fast, time, 5, "device: gone").unwrap();
+            continue;
+        }
+        let mut tuple = u32::try_from(at).unwrap().to_le_bytes().to_vec();
+        tuple.extend_from_slice(&[1, 2]);
+        out.sample(fast, time, &tuple).unwrap();
+    }
+    let log = Log {
+        level: Level::Warn,
+        name: "trikfs".to_owned(),
+        text: "a line".to_owned(),
+        errno: 0,
+    };
+    out.log(ZERO + ms * MS, &log).unwrap();
+    out.finish().unwrap();
+    bytes
+}
+
+fn open(bytes: &[u8]) -> Result<Reader<Cursor<&[u8]>>, Error> {
+    Reader::open(Cursor::new(bytes))
+}
+
+fn all(reader: &mut Reader<Cursor<&[u8]>>) -> Vec<Event> {
+    let mut events = Vec::new();
+    while let Some(event) = reader.next().unwrap() {
+        events.push(event);
+    }
+    events
+}
+
+#[test]
+fn everything_that_was_written_is_read_in_its_order() {
+    let bytes = recording(1000);
+    let mut reader = open(&bytes).unwrap();
+    assert_eq!(
+        (reader.begin_ns(), reader.end_ns()),
+        (ZERO, ZERO + 1000 * MS)
+    );
+    let paths: Vec<&str> = reader.nodes().iter().map(|node| &*node.path).collect();
+    assert_eq!(paths, ["a/fast", "slow"]);
+    assert_eq!(reader.layout(0).unwrap().names(), ["x", "y"]);
+    assert_eq!(reader.counts().1, 1002);
+    assert_eq!(reader.counts().0["/a/fast"], 999);
+    assert_eq!(reader.attachment("config.lua").unwrap(), b"trikfs = {}");
+    assert!(matches!(reader.attachment("x"), Err(Error::Absent(_))));
+    assert_eq!(reader.facts(ABOUT).unwrap()["robot"], "r");
+    let events = all(&mut reader);
+    assert_eq!(events.len(), 1002);
+    assert!(events.is_sorted_by_key(|event| event.unix_ns));
+    let third = events.iter().find(|event| event.unix_ns == ZERO + 3 * MS);
+    let wanted = What::Sample {
+        node: 0,
+        layout: 0,
+        sequence: 4,
+        tuple: vec![3, 0, 0, 0, 1, 2],
+    };
+    assert_eq!(third.unwrap().what, wanted);
+    let fault = events.iter().find(|event| event.unix_ns == ZERO + 500 * MS);
+    let wanted = What::Fault {
+        node: 0,
+        errno: 5,
+        reason: "device: gone".to_owned(),
+    };
+    assert_eq!(fault.unwrap().what, wanted);
+    assert!(matches!(&events.last().unwrap().what, What::Log(log) if log.text == "a line"));
+}
+
+#[test]
+fn a_moment_is_found_with_what_each_node_had_before_it() {
+    let bytes = recording(30_000);
+    let mut reader = open(&bytes).unwrap();
+    let at = ZERO + 20_000 * MS;
+    reader.seek(at);
+    assert_eq!(reader.next().unwrap().unwrap().unix_ns, at);
+    let newest = reader.newest(at).unwrap();
+    let times: Vec<u64> = newest.iter().flatten().map(|event| event.unix_ns).collect();
+    // The slow one is many chunks further back.
+    assert_eq!(times, [at - MS, ZERO]);
+    // It has disturbed nothing.
+    assert_eq!(reader.next().unwrap().unwrap().unix_ns, at + MS);
+    assert_eq!(reader.newest(ZERO).unwrap(), [None, None]);
+    let failed = reader.newest(ZERO + 15_000 * MS + 1).unwrap();
+    assert!(matches!(
+        failed[0].as_ref().unwrap().what,
+        What::Fault { errno: 5, .. }
+    ));
+}
+
+#[test]
+fn a_node_whose_format_changes_stays_one_node() {
+    let mut bytes = Vec::new();
+    let mut out = Writer::new(Cursor::new(&mut bytes), "test 1").unwrap();
+    let before = out.add(&Node::sensor("n", "u8 x")).unwrap();
+    out.sample(before, ZERO, &[1]).unwrap();
+    let after = out.add(&Node::sensor("n", "u16 x")).unwrap();
+    out.sample(after, ZERO + MS, &[1, 0]).unwrap();
+    out.finish().unwrap();
+    let mut reader = open(&bytes).unwrap();
+    assert_eq!(reader.nodes().len(), 1);
+    assert_eq!(reader.nodes()[0].format, "u16 x");
+    let tuples: Vec<usize> = all(&mut reader)
+        .iter()
+        .map(|event| match &event.what {
+            What::Sample { tuple, .. } => tuple.len(),
+            What::Fault { .. } | What::Log(_) => 0,
+        })
+        .collect();
+    assert_eq!(tuples, [1, 2]);
+}
+
+#[test]
+fn bytes_that_are_no_recording_are_refused() {
+    assert_eq!(open(b"").err(), Some(Error::NotARecording));
+    assert_eq!(open(b"#!/bin/sh").err(), Some(Error::NotARecording));
+    assert_eq!(open(mcap::MAGIC).err(), Some(Error::Cut));
+    let refused = mend(&b"#!/bin/sh"[..], Cursor::new(Vec::new()));
+    assert_eq!(refused, Err(Error::NotARecording));
+}
+
+#[test]
+fn a_recording_that_is_cut_anywhere_is_mended_up_to_its_last_whole_chunk() {
+    let mut bytes = Vec::new();
+    let mut out = Writer::new(Cursor::new(&mut bytes), "test 1").unwrap();
+    let node = out.add(&Node::sensor("n", "u32 x")).unwrap();
+    for at in 0..200_u32 {
+        out.sample(node, ZERO + u64::from(at) * MS, &at.to_le_bytes())
+            .unwrap();
+        if at == 99 {
+            out.flush().unwrap();
+        }
+    }
+    out.finish().unwrap();
+    let whole = open(&bytes).unwrap();
+    let chunks = &whole.summary.chunk_indexes;
+    assert_eq!(chunks.len(), 2);
+    let begin = usize::try_from(chunks[1].chunk_start_offset).unwrap();
+    let end = begin + usize::try_from(chunks[1].chunk_length).unwrap();
+    // At every byte of the last chunk, and some beyond it.
+    for cut in begin..(end + 40).min(bytes.len() - 1) {
+        assert_eq!(open(&bytes[..cut]).err(), Some(Error::Cut), "{cut}");
+        let mut mended = Vec::new();
+        let saved = mend(&bytes[..cut], Cursor::new(&mut mended)).unwrap();
+        // The last bytes of a chunk say nothing: all that it holds, or nothing of it, and never a part.
+        let wanted = match cut {
+            _ if cut < end - 8 => 100,
+            _ if cut < end => saved.messages.max(100),
+            _ => 200,
+        };
+        assert_eq!(saved.messages, wanted, "{cut}");
+        assert!([100, 200].contains(&wanted), "{cut}: {wanted}");
+        let mut reader = open(&mended).unwrap();
+        let events = all(&mut reader);
+        assert_eq!(events.len() as u64, wanted, "{cut}");
+        assert_eq!(reader.nodes()[0].format, "u32 x");
+    }
+    // Mending what is whole changes nothing that can be read.
+    let mut mended = Vec::new();
+    let saved = mend(&bytes[..], Cursor::new(&mut mended)).unwrap();
+    assert_eq!((saved.messages, saved.cut), (200, None));
+    assert_eq!(
+        all(&mut open(&mended).unwrap()),
+        all(&mut open(&bytes).unwrap())
+    );
+}
+
+#[test]
+fn an_index_that_leads_elsewhere_takes_no_memory() {
+    let bytes = recording(10);
+    let mut reader = open(&bytes).unwrap();
+    reader.summary.attachment_indexes[0].length = u64::MAX;
+    assert!(matches!(
+        reader.attachment("config.lua"),
+        Err(Error::TooLarge { .. })
+    ));
+    reader.summary.attachment_indexes[0].length = 10_000;
+    assert!(matches!(
+        reader.attachment("config.lua"),
+        Err(Error::Damaged(_))
+    ));
+    let mut chunk = reader.summary.chunk_indexes[0].clone();
+    chunk.uncompressed_size = u64::MAX;
+    assert!(check_chunk(&chunk, u64::MAX).is_err());
+    chunk.chunk_start_offset = u64::MAX;
+    assert!(check_chunk(&chunk, u64::MAX).is_err());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+    #[test]
+    fn damage_is_an_error_and_never_a_crash(
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8),
+        cut in any::<prop::sample::Index>(),
+        is_cut in any::<bool>(),
+    ) {
+        let mut bytes = recording(60);
+        for (at, value) in changes {
+            let at = at.index(bytes.len());
+            bytes[at] = value;
+        }
+        if is_cut {
+            bytes.truncate(cut.index(bytes.len()));
+        }
+        crate::fuzz::recording(&bytes);
+    }
+}
+
+#[test]
+fn a_piece_has_what_is_wanted_and_all_that_explains_it() {
+    let bytes = recording(1000);
+    let mut piece = Vec::new();
+    let wanted = |topic: &str, at: u64| topic != "/log" && at >= ZERO + 499 * MS;
+    let saved = crate::mend::copy(&bytes[..], Cursor::new(&mut piece), wanted).unwrap();
+    // 499, 501 to 999, and the failure between them.
+    assert_eq!(
+        (saved.messages, saved.attachments, saved.cut),
+        (501, 1, None)
+    );
+    let mut reader = open(&piece).unwrap();
+    assert_eq!(reader.begin_ns(), ZERO + 499 * MS);
+    assert_eq!(reader.nodes().len(), 2);
+    assert_eq!(reader.attachment("config.lua").unwrap(), b"trikfs = {}");
+    assert_eq!(reader.facts(ABOUT).unwrap()["robot"], "r");
+}
+
+#[test]
+fn samples_before_and_after_a_change_of_the_format_are_told_apart() {
+    let mut bytes = Vec::new();
+    let mut out = Writer::new(Cursor::new(&mut bytes), "test 1").unwrap();
+    for (at, format) in ["i32 x", "f32 x"].into_iter().enumerate() {
+        let node = out.add(&Node::sensor("a", format)).unwrap();
+        out.sample(node, ZERO + at as u64, &[0, 0, 128, 63])
+            .unwrap();
+    }
+    out.finish().unwrap();
+    let mut reader = open(&bytes).unwrap();
+    assert_eq!(reader.layouts_of(0), [0, 1]);
+    let shown: Vec<String> = all(&mut reader)
+        .into_iter()
+        .map(|event| match event.what {
+            What::Sample { layout, tuple, .. } => reader.layouts()[layout].show(&tuple),
+            What::Fault { .. } | What::Log(_) => String::new(),
+        })
+        .collect();
+    assert_eq!(shown, ["1065353216", "1"]);
+}

@@ -1,0 +1,256 @@
+//! Writing a recording.
+//!
+//! Owns the order of what is in a file, and its channels. Compression and framing are those of the crate `mcap`. Nothing here
+//! waits for a device or reads a clock: a caller that must not be delayed writes on a thread of its own.
+
+use crate::error::Error;
+use crate::layout::Layout;
+use crate::limits::{CHUNK_BYTES, NODES_MAX, TEXT_BYTES_MAX};
+use crate::node::{self, Node};
+use crate::schema::{ENCODING, MESSAGE_ENCODING, Names, schema_of, text_of, type_of};
+use crate::standard::robot::{self, Message};
+use crate::standard::{self, Log};
+use mcap::records::MessageHeader;
+use mcap::{Attachment, Compression, WriteOptions};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::io::{Seek, Write};
+use std::marker::PhantomData;
+
+/// The topic of failures: a node has no value, and why.
+pub const FAULTS: &str = "/faults";
+/// The topic of lines of the log.
+pub const LOG: &str = "/log";
+/// The name of the metadata that say where the recording is from.
+pub const ABOUT: &str = "trikfs";
+
+/// A recording that is being written. It is finished by `finish`, or when it is dropped.
+pub struct Writer<W: Write + Seek> {
+    file: mcap::Writer<W>,
+    nodes: Vec<Channel>,
+    names: Names,
+    faults: u16,
+    log: u16,
+}
+
+struct Channel {
+    id: u16,
+    path: String,
+    layout: Layout,
+    sequence: u32,
+}
+
+/// A node of a recording that is being written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Id(usize);
+
+/// A topic with messages of a standard type in a recording that is being written.
+#[derive(Debug)]
+pub struct Topic<M> {
+    id: u16,
+    sequence: u32,
+    kind: PhantomData<M>,
+}
+
+impl<W: Write + Seek> Writer<W> {
+    /// Begins a recording; `library` is the program that writes, with its version.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn new(out: W, library: &str) -> Result<Self, Error> {
+        let options = WriteOptions::new()
+            .profile("ros2")
+            .library(library)
+            .compression(Some(Compression::Lz4))
+            .chunk_size(Some(CHUNK_BYTES))
+            // A chunk is written whole: a recorder that is killed leaves none that is broken.
+            .disable_seeking(true);
+        let mut file = options.create(out).map_err(Error::writing)?;
+        let text = standard::log_text();
+        let schema = file.add_schema(standard::LOG, ENCODING, text.as_bytes());
+        let schema = schema.map_err(Error::writing)?;
+        let mut channel = |topic| {
+            file.add_channel(schema, topic, MESSAGE_ENCODING, &BTreeMap::new())
+                .map_err(Error::writing)
+        };
+        let (faults, log) = (channel(FAULTS)?, channel(LOG)?);
+        Ok(Self {
+            file,
+            nodes: Vec::new(),
+            names: Names::default(),
+            faults,
+            log,
+        })
+    }
+
+    /// A node from now on. One whose format changes is added once more: same topic, another type.
+    ///
+    /// # Errors
+    /// Its format is none, there are too many nodes, or the file cannot be written.
+    pub fn add(&mut self, node: &Node) -> Result<Id, Error> {
+        if self.nodes.len() == NODES_MAX {
+            return Err(Error::TooMany("nodes"));
+        }
+        let layout = Layout::parse(&node.format)?;
+        let name = schema_of(&self.names.take(type_of(&node.path)));
+        let schema = (self.file)
+            .add_schema(&name, ENCODING, text_of(&layout).as_bytes())
+            .map_err(Error::writing)?;
+        let id = (self.file)
+            .add_channel(schema, &node.topic(), MESSAGE_ENCODING, &node.metadata())
+            .map_err(Error::writing)?;
+        self.nodes.push(Channel {
+            id,
+            path: node.path.clone(),
+            layout,
+            sequence: 0,
+        });
+        Ok(Id(self.nodes.len() - 1))
+    }
+
+    /// A sample of a node.
+    ///
+    /// # Errors
+    /// The tuple is not as the format says, or the file cannot be written.
+    pub fn sample(&mut self, node: Id, unix_ns: u64, tuple: &[u8]) -> Result<(), Error> {
+        let channel = &mut self.nodes[node.0];
+        let sequence = channel.sequence.wrapping_add(1);
+        let message = node::encode(&channel.path, &channel.layout, unix_ns, sequence, tuple)?;
+        channel.sequence = sequence;
+        let id = channel.id;
+        self.message(id, sequence, unix_ns, &message)
+    }
+
+    /// A topic with messages of a standard type from now on; its name begins with `/`.
+    ///
+    /// # Errors
+    /// There are too many, or the file cannot be written.
+    pub fn topic<M: Message>(&mut self, name: &str) -> Result<Topic<M>, Error> {
+        let text = robot::text_of::<M>();
+        let schema = (self.file)
+            .add_schema(M::NAME, ENCODING, text.as_bytes())
+            .map_err(Error::writing)?;
+        let id = (self.file)
+            .add_channel(schema, name, MESSAGE_ENCODING, &BTreeMap::new())
+            .map_err(Error::writing)?;
+        Ok(Topic {
+            id,
+            sequence: 0,
+            kind: PhantomData,
+        })
+    }
+
+    /// A message of a standard type.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn publish<M: Message>(
+        &mut self,
+        topic: &mut Topic<M>,
+        unix_ns: u64,
+        message: &M,
+    ) -> Result<(), Error> {
+        topic.sequence = topic.sequence.wrapping_add(1);
+        let data = robot::encode(message, unix_ns);
+        self.message(topic.id, topic.sequence, unix_ns, &data)
+    }
+
+    /// A node has no value.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn fault(&mut self, node: Id, unix_ns: u64, errno: i32, reason: &str) -> Result<(), Error> {
+        let fault = Log {
+            level: standard::Level::Error,
+            name: self.nodes[node.0].path.clone(),
+            text: cut(reason).to_owned(),
+            errno: errno.unsigned_abs(),
+        };
+        self.message(self.faults, 0, unix_ns, &fault.encode(unix_ns))
+    }
+
+    /// A line of the log.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn log(&mut self, unix_ns: u64, line: &Log) -> Result<(), Error> {
+        let line = Log {
+            text: cut(&line.text).to_owned(),
+            ..line.clone()
+        };
+        self.message(self.log, 0, unix_ns, &line.encode(unix_ns))
+    }
+
+    fn message(&mut self, id: u16, sequence: u32, unix_ns: u64, data: &[u8]) -> Result<(), Error> {
+        let header = MessageHeader {
+            channel_id: id,
+            sequence,
+            log_time: unix_ns,
+            publish_time: unix_ns,
+        };
+        (self.file)
+            .write_to_known_channel(&header, data)
+            .map_err(Error::writing)
+    }
+
+    /// A file that goes with the recording: the configuration in force, a program.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn attach(
+        &mut self,
+        unix_ns: u64,
+        name: &str,
+        media_type: &str,
+        bytes: &[u8],
+    ) -> Result<(), Error> {
+        let attachment = Attachment {
+            log_time: unix_ns,
+            create_time: unix_ns,
+            name: name.to_owned(),
+            media_type: media_type.to_owned(),
+            data: Cow::Borrowed(bytes),
+        };
+        self.file.attach(&attachment).map_err(Error::writing)
+    }
+
+    /// Facts about the recording, by a name; [`ABOUT`] for where it is from.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn facts(&mut self, name: &str, facts: BTreeMap<String, String>) -> Result<(), Error> {
+        let metadata = mcap::records::Metadata {
+            name: name.to_owned(),
+            metadata: facts,
+        };
+        (self.file)
+            .write_metadata(&metadata)
+            .map_err(Error::writing)
+    }
+
+    /// Ends the chunk and hands everything to the file, so that a kill loses nothing of it. What a power cut loses is the
+    /// business of whoever has the file: it must be synced.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn flush(&mut self) -> Result<(), Error> {
+        self.file.flush().map_err(Error::writing)
+    }
+
+    /// Writes the summary, by which readers find things, and the end.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn finish(mut self) -> Result<(), Error> {
+        self.file.finish().map(drop).map_err(Error::writing)
+    }
+}
+
+/// A text within the limit.
+fn cut(text: &str) -> &str {
+    let mut end = text.len().min(TEXT_BYTES_MAX);
+    while !text.is_char_boundary(end) {
+        end -= 1;
+    }
+    &text[..end]
+}
