@@ -17,7 +17,7 @@ mod control;
 mod display;
 pub mod faults;
 pub mod field;
-mod fifo;
+pub mod fifo;
 mod files;
 pub mod fuzz;
 pub mod geometry;

@@ -7,7 +7,7 @@ use crate::check::{self, of_misuse, original};
 use crate::dcml::{self, Dcml};
 use crate::output::standard;
 use crate::refusal::{Refusal, end};
-use crate::{dap, debug, diagrams, fault, remote, task, up};
+use crate::{dap, debug, diagrams, fault, record, recording, remote, replay, task, up};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -37,6 +37,10 @@ Examples:
   trik check maze.qrs                does it solve its task?
   trik check class/ --field hard.xml --results all.jsonl   a class, in another world
   trik debug maze.qrs                stop its diagram, step, and go back
+  trik record -o run.mcap            record everything that the robot gives
+  trik replay run.mcap               and make the same tree of it
+  trik export run.mcap --csv -o run.csv   or a table
+  trik plot run.mcap sensors motors/M1 -o run.svg   or a picture
   trik fault D1 unplug               pull the plug of the distance sensor D1
   trik fault D1 --clear              and put it back
   trik fault --robot /tmp/robot D1 unplug   the same, if several robots run
@@ -108,6 +112,59 @@ enum Command {
     Send(remote::fleet::SendArgs),
     /// Show what runs on a robot, and how the last program ended.
     Status(remote::fleet::FleetArgs),
+    /// Record what the nodes of a mounted tree give.
+    ///
+    /// Every sample of each node that is sampled in the background, with its own time, every failure with its reason, the lines
+    /// of the log, and the configuration, into one MCAP file that tools of ROS 2 open too. The tree is read from outside, so
+    /// nobody is delayed; what could not be recorded is counted. A recorder that is killed loses its last second; trik mend
+    /// makes its file whole.
+    ///
+    /// Exit status: 0 recorded; 1 there is no tree, or the file cannot be written; 2 the command line was not understood.
+    Record(record::args::RecordArgs),
+    /// Mount the tree of a recording: its nodes give what was recorded, when its time comes.
+    ///
+    /// Programs, filters and diagrams run on it as on the robot, and trikd takes them. What they write to actuators moves
+    /// nothing: it is compared with what was recorded, and the first difference of each is told with its time. Keys of the
+    /// terminal, or lines in a control file, stop the clock, step it, and go to another moment.
+    ///
+    /// Exit status: 0 somebody has ended it; 1 the recording cannot be replayed, or with --exit a program has written something
+    /// else than was recorded; 2 the command line was not understood.
+    Replay(replay::args::ReplayArgs),
+    /// Show what is in a recording.
+    ///
+    /// How long it is, where it is from, what was lost, and how many messages each node has.
+    ///
+    /// Exit status: 0 shown; 1 it is no recording, or it is cut; 2 the command line was not understood.
+    Info(recording::InfoArgs),
+    /// Make a cut recording whole.
+    ///
+    /// A recorder that was killed, or that met a full disk, leaves a file without an end, which most programs refuse. All
+    /// whole parts are kept; with the usual recorder the last second is lost.
+    ///
+    /// Exit status: 0 it is whole; 1 it is no recording, or the disk takes no more; 2 the command line was not understood.
+    Mend(recording::MendArgs),
+    /// Write a piece of a recording, or some of its nodes, as a recording.
+    ///
+    /// Configuration, facts and moments are kept. A node that gave nothing within the piece has no value there.
+    ///
+    /// Exit status: 0 written; 1 the recording cannot be read, nothing happens in the piece, or it cannot be written; 2 the
+    /// command line was not understood.
+    Cut(recording::cut::CutArgs),
+    /// Write a recording as a table.
+    ///
+    /// Each row is a sample of one node or a failure, in the order of time; the other cells of the row are empty. The first
+    /// column has seconds from the beginning, the last one failures.
+    ///
+    /// Exit status: 0 written; 1 the recording cannot be read, or the table cannot be written; 2 the command line was not
+    /// understood.
+    Export(recording::export::ExportArgs),
+    /// Draw numbers of a recording over time, as a picture in SVG.
+    ///
+    /// A panel for each number. A failure interrupts the line and has a red mark.
+    ///
+    /// Exit status: 0 drawn; 1 the recording cannot be read, has no such numbers, or the picture cannot be written; 2 the
+    /// command line was not understood.
+    Plot(recording::plot::PlotArgs),
     /// Break a device of a running virtual robot, or repair it.
     ///
     /// Programs see what they would see with a real device that fails in this way. Without a MOUNTPOINT it is the only robot
@@ -271,6 +328,13 @@ fn run(command: Command) -> Result<u8, Refusal> {
         Command::NewTask(args) => task::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Watch(args) => remote::watch::run(&args),
+        Command::Info(args) => recording::info(&args),
+        Command::Mend(args) => recording::mend_file(&args),
+        Command::Cut(args) => recording::cut::run(&args),
+        Command::Export(args) => recording::export::run(&args),
+        Command::Plot(args) => recording::plot::run(&args),
+        Command::Record(args) => record::run(&args),
+        Command::Replay(args) => replay::run(&args),
         Command::Break(args) => remote::step::stop_at(&args),
         Command::Step(args) => remote::step::step(&args),
         Command::Continue(args) => remote::step::go_on(&args),

@@ -3,11 +3,13 @@
 //! `cli` lists the commands. `up` starts the virtual board and the tree over it, `fault` breaks devices of a running board,
 //! `place` knows where the robots of a user are, `remote` brings programs to robots, `diagrams` shows, checks and translates
 //! diagrams without a robot, `dcml` does the same with models of robots, `check` runs and judges solutions of tasks,
-//! `script` runs programs with text for it, `debug` stops diagrams and goes back in them, `dap` does so for editors. All of them stand on `error`, `refusal`, `input`, `output`,
-//! `terminal` and `language`, which know no command. Nothing of this runs on the controller.
+//! `script` runs programs with text for it, `debug` stops diagrams and goes back in them, `dap` does so for editors,
+//! `record` writes what a tree gives into a file, `replay` makes a tree of it, `recording` looks into such files. All of them stand on `error`, `refusal`, `input`, `output`,
+//! `terminal`, `language`, `pattern` and `chart`, which know no command. Nothing of this runs on the controller.
 
 #![deny(clippy::wildcard_enum_match_arm)]
 
+mod chart;
 mod check;
 pub mod cli;
 mod dap;
@@ -21,9 +23,13 @@ mod input;
 mod language;
 pub mod limits;
 mod output;
+mod pattern;
 pub mod place;
+mod record;
+mod recording;
 mod refusal;
 mod remote;
+mod replay;
 pub mod script;
 mod task;
 mod terminal;

@@ -173,3 +173,53 @@ pub const DAP_WAITING: usize = 1000;
 pub const DEBUG_EVENTS_MAX: usize = 10_000;
 /// Threads, and variables, that `trik watch` shows.
 pub const WATCH_LINES_MAX: usize = 40;
+/// Slowest replay: a second of the recording in more than a minute and a half.
+pub const REPLAY_SPEED_MIN: f64 = 0.01;
+/// Fastest replay: far above, a daemon cannot take all events.
+pub const REPLAY_SPEED_MAX: f64 = 1000.0;
+/// Events that a player gives out before it listens to anybody again.
+pub const REPLAY_BATCH: usize = 1_000;
+/// Connections to a player: each node that is read and each that is written has one, and a guardian may have more.
+pub const REPLAY_PEERS_MAX: usize = 2 * 4096 + 64;
+/// Bytes of what one connection says at once: the greatest tuple of a `played` source.
+pub const REPLAY_MESSAGE_BYTES: usize = 128 << 10;
+/// Keys that wait for the player.
+pub const REPLAY_ORDERS_MAX: usize = 64;
+/// Lines of news that wait to be told, and differences that are shown.
+pub const REPLAY_NEWS_MAX: usize = 64;
+/// Changes of one actuator that are compared.
+pub const REPLAY_CHANGES_MAX: usize = 100_000;
+/// Depth of directories below a mount point: groups of a configuration, and the nodes in them.
+pub const TREE_DEPTH_MAX: usize = 17;
+/// Nodes of a tree that are recorded.
+pub const RECORDED_NODES_MAX: usize = 4096;
+/// Bytes of a small text of the tree: a format of 1024 fields.
+pub const RECORDED_TEXT_BYTES_MAX: u64 = 128 << 10;
+/// Bytes of the numbers that bring a node to rest.
+pub const RECORDED_REST_BYTES_MAX: usize = 4096;
+/// Bytes of a configuration that goes with a recording.
+pub const RECORDED_CONFIG_BYTES_MAX: u64 = 1 << 20;
+/// How often a recorder looks at the rings: they hold at least 3 samples, mostly 15.
+pub const RECORD_LOOK_MS: u16 = 5;
+/// How often what was recorded is handed to the disk.
+pub const RECORD_FLUSH_MS: u32 = 1_000;
+/// Batches of events that wait for the disk; a batch is what came in one look.
+pub const RECORD_BATCHES: usize = 1_024;
+/// Bytes of events that wait for the disk.
+pub const RECORD_BYTES: usize = 16 << 20;
+/// Reads of 4 KiB that skip the lines of a log that are kept: 64 KiB, and some that come meanwhile.
+pub const LOG_READS_MAX: usize = 32;
+/// Seconds of a moment of a recording: 30 years.
+pub(crate) const RECORDING_SECONDS_MAX: f64 = 1e9;
+/// How often a long work says how far it is.
+pub(crate) const PROGRESS: std::time::Duration = std::time::Duration::from_millis(250);
+/// Columns of a table: as many as spreadsheet programs take.
+pub(crate) const TABLE_COLUMNS_MAX: usize = 16_384;
+/// Panels of the picture of a recording.
+pub(crate) const PLOT_PANELS_MAX: usize = 40;
+/// Steps of time in such a picture, each with its least and greatest number: more than it has px.
+pub(crate) const PLOT_STEPS: usize = 1_120;
+/// Failures that are marked in a panel.
+pub(crate) const PLOT_FAULTS_MAX: usize = 1_000;
+/// Gaps within one step of time of such a picture.
+pub(crate) const PLOT_GAPS_MAX: usize = 4;

@@ -2,6 +2,7 @@
 //!
 //! Owns the choice between standard output, a new file and one that is replaced. Knows nothing of what is written.
 
+pub(crate) mod csv;
 mod words;
 
 use crate::refusal::Refusal;

@@ -64,6 +64,16 @@ pub(crate) struct UpArgs {
     /// mount point of the robot with .ev3dev added to its name].
     #[arg(long, value_name = "DIR", num_args = 0..=1, require_equals = true)]
     pub ev3dev: Option<Option<PathBuf>>,
+    #[command(flatten)]
+    pub serving: ServingArgs,
+    /// An empty directory; created if it does not exist, and then removed again [default: robot, or else robot-2 and so on, in
+    /// $XDG_RUNTIME_DIR/trik or /tmp/trik-UID].
+    pub mountpoint: Option<PathBuf>,
+}
+
+/// How trikd serves over a tree.
+#[derive(Args, Clone, Debug, PartialEq)]
+pub(crate) struct ServingArgs {
     /// Do not start trikd: no TRIK Studio, no gamepad and no `trik run` reaches the robot.
     #[arg(long, conflicts_with_all = ["trikd_address", "trikd_ports", "scripts"])]
     pub no_trikd: bool,
@@ -78,9 +88,6 @@ pub(crate) struct UpArgs {
     /// Where uploaded programs are kept [default: a directory that is removed with the robot].
     #[arg(long, value_name = "DIR")]
     pub scripts: Option<PathBuf>,
-    /// An empty directory; created if it does not exist, and then removed again [default: robot, or else robot-2 and so on, in
-    /// $XDG_RUNTIME_DIR/trik or /tmp/trik-UID].
-    pub mountpoint: Option<PathBuf>,
 }
 
 /// The name of a robot that there is, or of a model.
@@ -129,6 +136,6 @@ fn speed(text: &str) -> Result<f64, String> {
 }
 
 /// A path of the command line, whatever directory this process goes to.
-pub(super) fn absolute(path: &Path) -> Result<PathBuf, Error> {
+pub(crate) fn absolute(path: &Path) -> Result<PathBuf, Error> {
     std::path::absolute(path).map_err(|error| Error::file(path, error))
 }

@@ -13,16 +13,19 @@ use terminal_size::{Height, Width, terminal_size_of};
 pub(super) struct Screen {
     /// The terminal as it was, while it is changed.
     saved: Option<Termios>,
+    /// Keys are taken one by one, and not as lines.
+    has_keys: bool,
     /// Lengths of the lines that are shown now.
     shown: Vec<usize>,
 }
 
 impl Screen {
     /// Nothing if standard output is not a terminal on which lines can be drawn anew.
-    pub(super) fn new() -> Option<Self> {
+    pub(super) fn new(has_keys: bool) -> Option<Self> {
         let can_move = std::env::var_os("TERM").is_some_and(|name| name != "dumb");
         (can_move && io::stdout().is_terminal()).then(|| Self {
             saved: None,
+            has_keys,
             shown: Vec::new(),
         })
     }
@@ -44,6 +47,11 @@ impl Screen {
         let (text, _) = frame(&self.shown, &[], width, height);
         self.shown.clear();
         say(&format!("{text}{line}\n"));
+    }
+
+    /// Whether the terminal is in our hands now, so that keys are typed for us.
+    pub(super) fn is_ours(&self) -> bool {
+        self.saved.is_some() && is_foreground()
     }
 
     /// Gives the terminal back as it was; the last lines stay on it.
@@ -70,6 +78,9 @@ impl Screen {
         {
             let mut quiet = found.clone();
             quiet.local_flags.remove(LocalFlags::ECHO);
+            if self.has_keys {
+                quiet.local_flags.remove(LocalFlags::ICANON);
+            }
             let _ = tcsetattr(io::stdout(), SetArg::TCSADRAIN, &quiet);
             self.saved = Some(found);
             say("\x1b[?25l");

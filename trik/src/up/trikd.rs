@@ -4,7 +4,7 @@
 //! machine alone unless somebody names other addresses, because a client that reaches it runs programs with the rights of the
 //! person who started the robot.
 
-use super::args::{UpArgs, absolute};
+use super::args::{ServingArgs, absolute};
 use super::companion::Companion;
 use crate::error::Error;
 use crate::place::Place;
@@ -21,7 +21,7 @@ const READY: &str = "trikd: ready: ";
 const ADVICE: &str = ", or take another port with --";
 
 /// trikd of one robot.
-pub(super) struct Trikd {
+pub(crate) struct Trikd {
     pub(super) process: Companion,
     /// Where uploaded programs are.
     pub(super) scripts: PathBuf,
@@ -34,7 +34,7 @@ impl Trikd {
     ///
     /// # Errors
     /// The ports that are wanted do not exist.
-    pub(super) fn of(args: &UpArgs, place: &Place) -> Result<Self, Error> {
+    pub(crate) fn of(args: &ServingArgs, place: &Place) -> Result<Self, Error> {
         let addresses = match &args.trikd_address[..] {
             [] => vec![own_address(place.number)],
             named => named.to_vec(),

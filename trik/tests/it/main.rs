@@ -38,6 +38,9 @@ mod models;
 mod programs;
 /// A running `trik up`.
 mod raw;
+/// Recordings cut, and made into tables and pictures.
+mod recording;
+mod replay;
 mod rig;
 /// Programs with text as solutions.
 mod scripts;

@@ -115,7 +115,18 @@ impl Robot {
     pub fn start(home: Arc<Home>, words: &[&str]) -> Self {
         let cache = home.0.path("cache");
         let mut command = home.command(&["up", "--cache"]);
-        command.arg(cache).args(words);
+        command.arg(cache);
+        Self::begin(home, command, words)
+    }
+
+    /// The tree of a recording of this home; `devices` is the folder of its player.
+    pub fn replay(home: Arc<Home>, recording: &str, words: &[&str]) -> Self {
+        let command = home.command(&["replay", recording]);
+        Self::begin(home, command, words)
+    }
+
+    fn begin(home: Arc<Home>, mut command: Command, words: &[&str]) -> Self {
+        command.args(words);
         if !words.iter().any(|word| word.starts_with("--trikd")) {
             // Tests run side by side, and there is one set of ports that clients know.
             command.arg("--no-trikd");

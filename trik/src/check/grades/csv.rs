@@ -1,18 +1,14 @@
 //! The table of a class as CSV: UTF-8 with a mark at its beginning, commas, as RFC 4180 has it.
 //!
-//! Owns that form. A text that a spreadsheet program would take for a formula begins with an apostrophe.
+//! Owns the rows and columns; how a text becomes a cell is known to `output`.
 
 use super::{Grades, number};
 use crate::check::words;
+use crate::output::csv::text;
 use std::fmt::Write as _;
 
 /// By which spreadsheet programs know that a file is UTF-8.
 const MARK: char = '\u{feff}';
-/// What formulas begin with, in narrow and in wide letters.
-const FORMULA: [char; 10] = [
-    '=', '+', '-', '@', '\t', '\r', '\u{ff1d}', '\u{ff0b}', '\u{ff0d}', '\u{ff20}',
-];
-
 /// The whole file.
 pub(super) fn write(grades: &Grades) -> String {
     let mut out = String::from(MARK);
@@ -47,36 +43,4 @@ pub(super) fn write(grades: &Grades) -> String {
 
 fn line(out: &mut String, cells: &[String]) {
     let _ = write!(out, "{}\r\n", cells.join(","));
-}
-
-/// A text, in quotes if it needs them.
-fn text(text: &str) -> String {
-    let is_formula = text.trim_start_matches(' ').starts_with(FORMULA);
-    let mark = if is_formula { "'" } else { "" };
-    let needs_quotes = |c: char| matches!(c, ',' | ';' | '"' | '\t' | '\r' | '\n');
-    match is_formula || text.contains(needs_quotes) {
-        true => format!("\"{mark}{}\"", text.replace('"', "\"\"")),
-        false => text.to_owned(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn no_text_is_a_formula() {
-        for (name, written) in [
-            ("anna", "anna"),
-            (
-                "=HYPERLINK(\"http://x\")",
-                "\"'=HYPERLINK(\"\"http://x\"\")\"",
-            ),
-            (" =1", "\"' =1\""),
-            ("-5", "\"'-5\""),
-            ("@a", "\"'@a\""),
-            ("a,b;c", "\"a,b;c\""),
-            ("\u{ff1d}1", "\"'\u{ff1d}1\""),
-        ] {
-            assert_eq!(super::text(name), written);
-        }
-    }
 }

@@ -3,9 +3,9 @@
 //! Owns the layout.
 
 use super::table::{Column, Table};
+use crate::chart::{self, Panel, STYLE};
 use crate::limits;
 use lang_text::svg::{Svg, View};
-use std::fmt::{Arguments, Display};
 
 /// Size of the path's panel and of those below it, without their margins, in px.
 const PATH: (f64, f64) = (560.0, 400.0);
@@ -14,85 +14,6 @@ const LEFT: f64 = 70.0;
 const TOP: f64 = 34.0;
 const RIGHT: f64 = 20.0;
 const BOTTOM: f64 = 36.0;
-
-/// A rectangle of the picture, and the numbers at its edges.
-struct Panel {
-    left: f64,
-    top: f64,
-    size: (f64, f64),
-    across: (f64, f64),
-    upwards: (f64, f64),
-}
-
-impl Panel {
-    fn point(&self, x: f64, y: f64) -> (f64, f64) {
-        let part = |number: f64, (from, to): (f64, f64)| (number - from) / (to - from);
-        (
-            self.left + part(x, self.across) * self.size.0,
-            self.top + (1.0 - part(y, self.upwards)) * self.size.1,
-        )
-    }
-
-    /// Frame, numbers at the edges, names of the axes.
-    fn frame(&self, svg: &mut Svg, across: &str, upwards: &str) {
-        let (left, top, (width, height)) = (self.left, self.top, self.size);
-        for x in ticks(self.across) {
-            let (at, _) = self.point(x, 0.0);
-            let low = top + height;
-            grid(svg, format_args!("M{at:.1} {top}V{low}"));
-            text(svg, (at, low + 14.0), "middle", short(x));
-        }
-        for y in ticks(self.upwards) {
-            let (_, at) = self.point(0.0, y);
-            grid(svg, format_args!("M{left} {at:.1}h{width}"));
-            text(svg, (left - 5.0, at + 4.0), "end", short(y));
-        }
-        svg.tag("rect")
-            .with("x", left)
-            .with("y", top)
-            .with("width", width)
-            .with("height", height)
-            .with("class", "f")
-            .close();
-        svg.tag("text")
-            .with("x", left)
-            .numbers(1, [("y", top - 7.0)])
-            .with("font-weight", "bold")
-            .text(upwards);
-        text(svg, (left + width, top + height + 28.0), "end", across);
-    }
-
-    /// A line through points; angles are not drawn across where they wrap, nor anything across what is no number.
-    fn line(&self, svg: &mut Svg, points: impl Iterator<Item = (f64, f64)>, is_circle: bool) {
-        let mut last: Option<f64> = None;
-        let steps = points.filter_map(|(x, y)| {
-            if !(x.is_finite() && y.is_finite()) {
-                last = None;
-                return None;
-            }
-            let wraps =
-                last.is_some_and(|last| is_circle && (y - last).abs() > std::f64::consts::PI);
-            let sign = if last.is_none() || wraps { 'M' } else { 'L' };
-            last = Some(y);
-            Some((sign, self.point(x, y)))
-        });
-        svg.tag("path").with("class", "l").path(2, steps).close();
-    }
-}
-
-fn grid(svg: &mut Svg, path: Arguments<'_>) {
-    svg.tag("path").with("class", "g").with("d", path).close();
-}
-
-fn text(svg: &mut Svg, (x, y): (f64, f64), anchor: &str, text: impl Display) {
-    svg.tag("text")
-        .numbers(1, [("x", x), ("y", y)])
-        .with("text-anchor", anchor)
-        .text(text);
-}
-
-const STYLE: &str = "<style>.g{stroke:#e8e8e8;fill:none}.f{stroke:#808080;fill:none}\
-    .l{stroke:#0057b8;stroke-width:1.6;fill:none}</style>\n";
 
 /// The picture.
 pub(super) fn svg(title: &str, table: &Table) -> String {
@@ -182,61 +103,10 @@ fn draw_path(svg: &mut Svg, table: &Table, (x, y): (usize, usize), top: f64) {
     }
 }
 
-/// Least and greatest number of a column with some air; never nothing, and never without an end.
+/// Least and greatest number of a column with some air.
 fn range(table: &Table, column: usize) -> (f64, f64) {
-    let numbers = || {
-        table
-            .rows
-            .iter()
-            .map(|row| row[column])
-            .filter(|one| one.is_finite())
-    };
-    let (from, to) = (
-        numbers().fold(f64::INFINITY, f64::min),
-        numbers().fold(f64::NEG_INFINITY, f64::max),
-    );
-    if from > to {
-        return (-1.0, 1.0);
-    }
-    // Halves, so that the widest range has a size.
-    let (middle, half) = (from / 2.0 + to / 2.0, to / 2.0 - from / 2.0);
-    let least = (middle.abs() * 1e-9).max(1e-6);
     let air = if column == 0 { 1.0 } else { 1.05 };
-    let half = if half < least {
-        1.0_f64.max(least)
-    } else {
-        half * air
-    };
-    let end = f64::MAX / 4.0;
-    ((middle - half).max(-end), (middle + half).min(end))
-}
-
-/// Round numbers within a range, about five.
-fn ticks((from, to): (f64, f64)) -> Vec<f64> {
-    let rough = (to - from) / 5.0;
-    let power = 10.0_f64.powf(rough.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0]
-        .into_iter()
-        .map(|one| one * power)
-        .find(|one| *one >= rough)
-        .unwrap_or(rough);
-    let first = (from / step).ceil();
-    let all = (0..20).map(|at| (first + f64::from(at)) * step);
-    all.take_while(|one| *one <= to).collect()
-}
-
-/// A number of an axis.
-fn short(number: f64) -> String {
-    if number != 0.0 && (number.abs() >= 1e6 || number.abs() < 1e-4) {
-        return format!("{number:.2e}");
-    }
-    let text = format!("{number:.6}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" {
-        "0".into()
-    } else {
-        text.into()
-    }
+    chart::range(table.rows.iter().map(|row| row[column]), air)
 }
 
 fn label(column: &Column) -> String {
@@ -294,13 +164,5 @@ mod tests {
             let is_whole = !svg.contains("inf") && !svg.contains("NaN") && svg.len() < 20_000;
             assert!(is_whole, "{svg}");
         }
-    }
-
-    #[test]
-    fn axes_have_round_numbers() {
-        assert_eq!(ticks((0.0, 10.0)), [0.0, 2.0, 4.0, 6.0, 8.0, 10.0]);
-        assert_eq!(short(-0.5), "-0.5");
-        assert_eq!(short(0.0), "0");
-        assert_eq!(short(1.5e7), "1.50e7");
     }
 }

@@ -1,0 +1,149 @@
+//! `trik info` and `trik mend`: looks into recordings, and makes cut ones whole.
+//!
+//! Owns what a person is told of a file. What is in one is known to `journal`. `cut` takes a piece of one, `export` makes a
+//! table of it, `plot` a picture.
+
+pub(crate) mod cut;
+pub(crate) mod export;
+mod fresh;
+pub(crate) mod plot;
+mod shared;
+
+use crate::error::Error;
+use crate::output::standard;
+use crate::refusal::Refusal;
+use crate::terminal::harmless;
+use clap::Args;
+use journal::mend::mend;
+use journal::read::Reader;
+use journal::write::ABOUT;
+use std::fmt::Write;
+use std::fs::File;
+use std::io::{BufReader, BufWriter};
+use std::path::{Path, PathBuf};
+
+/// The options of `trik info`.
+#[derive(Args, Clone, Debug, PartialEq, Eq)]
+pub(crate) struct InfoArgs {
+    /// The recording.
+    pub file: PathBuf,
+}
+
+/// The options of `trik mend`.
+#[derive(Args, Clone, Debug, PartialEq, Eq)]
+pub(crate) struct MendArgs {
+    /// The cut recording.
+    pub file: PathBuf,
+    /// Another file for the whole one, which must not exist yet [default: it takes the place of the cut one].
+    #[arg(long, short, value_name = "FILE.mcap")]
+    pub output: Option<PathBuf>,
+}
+
+/// Tells what is in a recording.
+///
+/// # Errors
+/// It is none, or it is cut.
+pub(crate) fn info(args: &InfoArgs) -> Result<u8, Refusal> {
+    standard(told(&args.file)?.as_bytes())?;
+    Ok(0)
+}
+
+fn told(path: &Path) -> Result<String, Error> {
+    let fail = |why| Error::file(path, why);
+    let mut reader = Reader::open(open(path)?).map_err(fail)?;
+    let facts = reader.facts(ABOUT).map_err(fail)?;
+    let lost = reader.facts("counts").map_err(fail)?;
+    let (counts, all) = reader.counts();
+    let seconds = reader.end_ns().saturating_sub(reader.begin_ns()) as f64 / 1e9;
+    let mut text = format!(
+        "{}: {seconds:.1} s, {all} messages, {} bytes\n",
+        path.display(),
+        reader.size()
+    );
+    for key in ["program", "host", "tree"] {
+        if let Some(value) = facts.get(key) {
+            put(&mut text, format_args!("{key:<9} {}\n", harmless(value)));
+        }
+    }
+    for key in ["missed", "dropped"] {
+        if let Some(count) = lost.get(key).filter(|count| *count != "0") {
+            put(
+                &mut text,
+                format_args!("{key:<9} {} events\n", harmless(count)),
+            );
+        }
+    }
+    for (name, bytes) in reader.attachments() {
+        put(
+            &mut text,
+            format_args!("file      {} ({bytes} bytes)\n", harmless(&name)),
+        );
+    }
+    let nodes = reader.nodes();
+    for (topic, count) in &counts {
+        let node = nodes
+            .iter()
+            .find(|node| format!("/{}", node.path) == *topic);
+        let what = node.map_or_else(String::new, |node| {
+            let format: String = node.format.chars().take(40).collect();
+            format!("{format}   {}", node.units)
+        });
+        let name = harmless(topic.trim_start_matches('/'));
+        put(
+            &mut text,
+            format_args!("{count:>9} {name:<24} {}\n", harmless(what.trim_end())),
+        );
+    }
+    Ok(text)
+}
+
+/// Writing to a string cannot fail.
+fn put(text: &mut String, what: std::fmt::Arguments<'_>) {
+    let _ = text.write_fmt(what);
+}
+
+fn open(path: &Path) -> Result<BufReader<File>, Error> {
+    let file = File::open(path).map_err(|error| Error::file(path, error))?;
+    match file.metadata().is_ok_and(|file| file.is_file()) {
+        true => Ok(BufReader::new(file)),
+        false => Err(Error::file(path, "a recording is a regular file")),
+    }
+}
+
+/// Makes a cut recording whole.
+///
+/// # Errors
+/// It is no recording, or the whole one cannot be written.
+pub(crate) fn mend_file(args: &MendArgs) -> Result<u8, Refusal> {
+    standard(mended(args)?.as_bytes())?;
+    Ok(0)
+}
+
+fn mended(args: &MendArgs) -> Result<String, Error> {
+    let path = &args.file;
+    if args.output.is_none() && Reader::open(open(path)?).is_ok() {
+        return Ok(format!("{}: it is whole\n", path.display()));
+    }
+    let from = open(path)?;
+    let fresh = match &args.output {
+        Some(output) => output.clone(),
+        // Beside it, so that it can take its place at one stroke.
+        None => path.with_extension("mending"),
+    };
+    let file = File::create_new(&fresh).map_err(|error| Error::file(&fresh, error))?;
+    let saved = mend(from, BufWriter::new(&file));
+    let saved = saved.and_then(|saved| Ok(file.sync_all().map(|()| saved)?));
+    let saved = saved.map_err(|why| {
+        // What could not be written helps nobody.
+        let _ = std::fs::remove_file(&fresh);
+        Error::file(path, why)
+    })?;
+    if args.output.is_none() {
+        std::fs::rename(&fresh, path).map_err(|error| Error::file(path, error))?;
+    }
+    let shown = args.output.as_ref().unwrap_or(path).display();
+    Ok(format!(
+        "{shown}: {} messages and {} files that go with them\n",
+        saved.messages, saved.attachments
+    ))
+}

@@ -1,0 +1,395 @@
+//! `trik plot`: numbers of a recording over time, as a picture.
+//!
+//! Owns which numbers are drawn, and what is left of them: of each step of time the first, least, greatest and last number,
+//! so that a long recording makes no larger picture and no peak is lost. Axes and lines are the business of `chart`.
+
+use super::shared::{Opened, Progress, moment, open};
+use crate::chart::{self, Panel, STYLE};
+use crate::error::Error;
+use crate::limits;
+use crate::output::Output;
+use crate::pattern::matches;
+use crate::refusal::Refusal;
+use crate::terminal::{harmless, named};
+use clap::Args;
+use journal::layout::Layout;
+use journal::read::{Event, What};
+use lang_text::problem::Locale;
+use lang_text::svg::{Svg, View};
+use std::path::PathBuf;
+
+/// Size of a panel, and what is around it, in px.
+const PANEL: (f64, f64) = (560.0, 110.0);
+const LEFT: f64 = 80.0;
+const TOP: f64 = 30.0;
+const RIGHT: f64 = 20.0;
+const BOTTOM: f64 = 36.0;
+
+/// The options of `trik plot`.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct PlotArgs {
+    /// The recording.
+    pub file: PathBuf,
+    /// What to draw: a node, a group, a pattern with * for anything, or one number, NODE.NAME.
+    #[arg(required = true, value_name = "CHANNEL")]
+    pub channels: Vec<String>,
+    /// From this moment on, in seconds from the beginning [default: from the beginning].
+    #[arg(long, value_name = "SECONDS", value_parser = moment)]
+    pub from: Option<u64>,
+    /// Up to this moment and with it [default: to the end].
+    #[arg(long, value_name = "SECONDS", value_parser = moment)]
+    pub to: Option<u64>,
+    /// The picture, a new file; - is standard output.
+    #[arg(long, short, value_name = "OUT.svg")]
+    pub output: PathBuf,
+    /// Overwrite the picture if it exists.
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// One number over time.
+struct Line {
+    node: usize,
+    name: String,
+    title: String,
+    steps: Vec<Step>,
+    /// Moments of failures, in s.
+    faults: Vec<f64>,
+    /// Since when there is no number, in s.
+    lost: Option<f64>,
+    /// Gaps within the last step of time.
+    gaps: usize,
+}
+
+/// What is left of all numbers within a step of time: first, least, greatest and last, each with its moment in s.
+struct Step {
+    number: usize,
+    /// When what was before had ended, in s, if there was no number in between.
+    gap: Option<f64>,
+    points: [(f64, f64); 4],
+}
+
+/// Draws it.
+///
+/// # Errors
+/// It is no whole recording, has no such numbers or too many, or the picture cannot be written.
+pub(crate) fn run(args: &PlotArgs) -> Result<u8, Refusal> {
+    let output = Output {
+        path: Some(&args.output),
+        force: args.force,
+        source: &args.file,
+        locale: Locale::English,
+    };
+    let is_svg = (args.output.extension()).is_some_and(|end| end.eq_ignore_ascii_case("svg"));
+    if !is_svg && !output.is_standard() {
+        return Err(Refusal::new("the picture is SVG: its name ends with .svg"));
+    }
+    output.refuse_present()?;
+    let mut opened = open(&args.file)?;
+    let mut lines = lines(&opened, args)?;
+    let begin = opened.begin_ns();
+    let first = begin.saturating_add(args.from.unwrap_or(0));
+    let last = args.to.map_or(u64::MAX, |to| begin.saturating_add(to));
+    let last = last.min(opened.end_ns());
+    if last < first {
+        return Err(Error::file(&args.file, "nothing happens in this time").into());
+    }
+    opened.seek(first);
+    read(&mut opened, &mut lines, (begin, first, last))
+        .map_err(|why| Error::file(&args.file, why))?;
+    if lines.iter().all(|line| line.steps.is_empty()) {
+        return Err(Error::file(&args.file, "nothing happens in this time").into());
+    }
+    let second = |at: u64| (at - begin) as f64 / 1e9;
+    let across = chart::range([second(first), second(last)].into_iter(), 1.0);
+    let picture = picture(&named(&args.file), &lines, across);
+    output.write(picture.as_bytes())?;
+    Ok(0)
+}
+
+/// The numbers that are meant, in the order of the nodes.
+fn lines(opened: &Opened, args: &PlotArgs) -> Result<Vec<Line>, Error> {
+    let mut lines = Vec::new();
+    let mut is_used = vec![false; args.channels.len()];
+    for (node, about) in opened.nodes().iter().enumerate() {
+        let names = match opened.layout(node) {
+            Some(layout @ Layout::Fields(_)) => layout.names(),
+            Some(Layout::Bytes(_) | Layout::Text(_)) | None => continue,
+        };
+        for name in names {
+            let channel = format!("{}.{name}", about.path);
+            let mut is_wanted = false;
+            for (used, pattern) in is_used.iter_mut().zip(&args.channels) {
+                if matches(pattern, &about.path) || matches(pattern, &channel) {
+                    (*used, is_wanted) = (true, true);
+                }
+            }
+            if !is_wanted {
+                continue;
+            }
+            if lines.len() == limits::PLOT_PANELS_MAX {
+                let most = limits::PLOT_PANELS_MAX;
+                let why = format!("these are more than {most} numbers: name fewer");
+                return Err(Error::file(&args.file, why));
+            }
+            let unit = match about.units.as_str() {
+                "" => String::new(),
+                unit => format!(", {}", harmless(unit)),
+            };
+            lines.push(Line {
+                node,
+                name,
+                title: format!("{}{unit}", harmless(&channel)),
+                steps: Vec::new(),
+                faults: Vec::new(),
+                lost: None,
+                gaps: 0,
+            });
+        }
+    }
+    match is_used.iter().position(|used| !used) {
+        None => Ok(lines),
+        Some(at) => {
+            let channel = harmless(&args.channels[at]);
+            let why = format!("no node with numbers is {channel}: trik info lists the nodes");
+            Err(Error::file(&args.file, why))
+        }
+    }
+}
+
+/// Fills the lines from the first moment to the last.
+fn read(
+    opened: &mut Opened,
+    lines: &mut [Line],
+    (begin, first, last): (u64, u64, u64),
+) -> Result<(), journal::error::Error> {
+    let mut progress = Progress::new();
+    let length = (last - first).max(1);
+    // What a node had before holds until it gives something else.
+    for event in opened.newest(first)?.into_iter().flatten() {
+        take(opened, lines, &event, 0, (first - begin) as f64 / 1e9);
+    }
+    while let Some(event) = opened.next()? {
+        if event.unix_ns > last {
+            break;
+        }
+        let passed = event.unix_ns - first;
+        progress.at(passed, length);
+        let step = u128::from(passed) * limits::PLOT_STEPS as u128 / u128::from(length);
+        let step = usize::try_from(step).unwrap_or(usize::MAX);
+        take(
+            opened,
+            lines,
+            &event,
+            step,
+            (event.unix_ns - begin) as f64 / 1e9,
+        );
+    }
+    Ok(())
+}
+
+fn take(opened: &Opened, lines: &mut [Line], event: &Event, step: usize, at: f64) {
+    match &event.what {
+        What::Sample {
+            node,
+            layout,
+            tuple,
+            ..
+        } => {
+            let layout = &opened.layouts()[*layout];
+            let mut of_node = lines
+                .iter_mut()
+                .filter(|line| line.node == *node)
+                .peekable();
+            if of_node.peek().is_none() {
+                return;
+            }
+            let (names, numbers) = (layout.names(), layout.numbers(tuple));
+            for line in of_node {
+                // Before its format changed a node may have had other numbers.
+                let found = names.iter().position(|name| *name == line.name);
+                if let Some(number) = found.and_then(|found| numbers.get(found)) {
+                    line.take(step, at, number.to_f64());
+                }
+            }
+        }
+        What::Fault { node, .. } => {
+            for line in lines.iter_mut().filter(|line| line.node == *node) {
+                line.fail(at);
+            }
+        }
+        What::Log(_) => {}
+    }
+}
+
+impl Line {
+    fn take(&mut self, number: usize, at: f64, value: f64) {
+        if !value.is_finite() {
+            self.lost.get_or_insert(at);
+            return;
+        }
+        let gap = self.lost.take();
+        match self.steps.last_mut() {
+            // More gaps than these cannot be seen.
+            Some(step)
+                if step.number == number
+                    && (gap.is_none() || self.gaps == limits::PLOT_GAPS_MAX) =>
+            {
+                let [_, least, greatest, last] = &mut step.points;
+                if value < least.1 {
+                    *least = (at, value);
+                }
+                if value > greatest.1 {
+                    *greatest = (at, value);
+                }
+                *last = (at, value);
+            }
+            last => {
+                let is_same = last.is_some_and(|step| step.number == number);
+                self.gaps = if is_same { self.gaps + 1 } else { 0 };
+                self.steps.push(Step {
+                    number,
+                    gap,
+                    points: [(at, value); 4],
+                });
+            }
+        }
+    }
+
+    fn fail(&mut self, at: f64) {
+        self.lost.get_or_insert(at);
+        if self.faults.len() < limits::PLOT_FAULTS_MAX {
+            self.faults.push(at);
+        }
+    }
+
+    /// Places of the pen up to the end. A number holds until the next one comes or the node fails, as for a program that
+    /// reads; a gap is a place without a number.
+    fn points(&self, end: f64) -> Vec<(f64, f64)> {
+        let mut points: Vec<(f64, f64)> = Vec::new();
+        for step in &self.steps {
+            let held = points.last().copied();
+            if let Some((lost, (_, value))) = step.gap.zip(held) {
+                points.extend([(lost, value), (f64::NAN, f64::NAN)]);
+            }
+            let mut of_step = step.points;
+            of_step[1..3].sort_by(|one, other| one.0.total_cmp(&other.0));
+            for (at, value) in of_step {
+                if let Some((_, held)) = points.last().filter(|last| last.1.is_finite())
+                    && *held != value
+                {
+                    points.push((at, *held));
+                }
+                if points.last() != Some(&(at, value)) {
+                    points.push((at, value));
+                }
+            }
+        }
+        if let Some((_, value)) = points.last().copied() {
+            points.push((self.lost.unwrap_or(end), value));
+        }
+        points
+    }
+}
+
+fn picture(name: &str, lines: &[Line], across: (f64, f64)) -> String {
+    let each = PANEL.1 + BOTTOM + TOP;
+    let (width, height) = (LEFT + PANEL.0 + RIGHT, 10.0 + each * lines.len() as f64);
+    let mut svg = Svg::new();
+    let view = View {
+        frame: [0.0, 0.0, width, height],
+        digits: 0,
+        is_sized: true,
+    };
+    svg.picture(view)
+        .style(&[("font-family", "sans-serif"), ("font-size", "12")])
+        .open();
+    svg.tag("title").text(name);
+    svg.raw(STYLE);
+    svg.tag("rect")
+        .numbers(0, [("width", width), ("height", height)])
+        .with("fill", "#ffffff")
+        .close();
+    for (at, line) in lines.iter().enumerate() {
+        let points = line.points(across.1);
+        let panel = Panel {
+            left: LEFT,
+            top: 10.0 + TOP + each * at as f64 - 8.0,
+            size: PANEL,
+            across,
+            upwards: chart::range(points.iter().map(|point| point.1), 1.05),
+        };
+        let is_last = at + 1 == lines.len();
+        panel.frame(&mut svg, if is_last { "t, s" } else { "" }, &line.title);
+        panel.line(&mut svg, points.into_iter(), false);
+        let low = panel.top + PANEL.1;
+        let marks = line.faults.iter().flat_map(|fault| {
+            let (at, _) = panel.point(*fault, 0.0);
+            [('M', (at, low)), ('L', (at, low - 8.0))]
+        });
+        if !line.faults.is_empty() {
+            svg.tag("path")
+                .with("stroke", "#c0392b")
+                .with("stroke-width", "2")
+                .path(1, marks)
+                .close();
+        }
+    }
+    svg.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line() -> Line {
+        Line {
+            node: 0,
+            name: "x".to_owned(),
+            title: "a.x".to_owned(),
+            steps: Vec::new(),
+            faults: Vec::new(),
+            lost: None,
+            gaps: 0,
+        }
+    }
+
+    #[test]
+    fn a_number_holds_until_the_next_one_or_a_failure() {
+        let mut line = line();
+        line.take(0, 0.0, 1.0);
+        line.take(10, 1.0, 2.0);
+        line.fail(3.0);
+        line.take(40, 4.0, 5.0);
+        let points = line.points(9.0);
+        let before = [(0.0, 1.0), (1.0, 1.0), (1.0, 2.0), (3.0, 2.0)];
+        assert_eq!(points[..4], before);
+        assert!(points[4].0.is_nan());
+        assert_eq!(points[5..], [(4.0, 5.0), (9.0, 5.0)]);
+        // What is lost to the end is drawn no further.
+        line.fail(5.0);
+        assert_eq!(line.points(9.0).last(), Some(&(5.0, 5.0)));
+    }
+
+    #[test]
+    fn many_numbers_take_little_and_no_peak_is_lost() {
+        let mut line = line();
+        for at in 0..100_000_u32 {
+            let value = match at {
+                50_000 => 9.0,
+                _ if at % 2 == 0 => f64::NAN,
+                _ => f64::from(at % 3),
+            };
+            line.take(at as usize / 10_000, at.into(), value);
+            line.fail(at.into());
+        }
+        assert!(line.steps.len() <= 10 * (limits::PLOT_GAPS_MAX + 1));
+        assert_eq!(line.faults.len(), limits::PLOT_FAULTS_MAX);
+        let greatest = line
+            .points(1e5)
+            .iter()
+            .map(|point| point.1)
+            .fold(0.0, f64::max);
+        assert_eq!(greatest, 9.0);
+    }
+}

@@ -1,0 +1,168 @@
+//! `trik replay`: the tree of a recording, which gives what was recorded when its time comes.
+//!
+//! Owns the order of place, player and tree, and what the player is for the session over it. `file` is the recording,
+//! `player` has the clock, `tree` is the configuration, `outputs` compares what programs write, `order` are the words.
+
+pub(crate) mod args;
+mod clock;
+mod file;
+mod order;
+mod outputs;
+mod player;
+mod recording;
+mod tree;
+mod words;
+
+use crate::error::Error;
+use crate::place::{self, Place};
+use crate::refusal::Refusal;
+use crate::up::args::absolute;
+use crate::up::session::{Beneath, Over, Session, signals};
+use crate::up::trikd::Trikd;
+use args::ReplayArgs;
+use file::FileRecording;
+use order::Order;
+use player::{Begin, CONTROL, Player, SOCKET};
+use recording::Recording;
+use std::ffi::OsString;
+use std::path::Path;
+
+/// Replays until somebody stops it.
+///
+/// # Errors
+/// The file is no recording, the tree does not start, or with `--exit` programs did not do what was recorded.
+pub(crate) fn run(args: &ReplayArgs) -> Result<u8, Refusal> {
+    Ok(u8::from(!replay(args)?))
+}
+
+/// True if nothing differs from the recording.
+fn replay(args: &ReplayArgs) -> Result<bool, Error> {
+    let recording = FileRecording::open(&args.file)?;
+    let begin = Begin {
+        at: args.start.unwrap_or_default(),
+        speed: args.speed,
+        is_paused: args.paused,
+        is_loop: args.is_loop,
+    };
+    if begin.at > recording.length() {
+        let why = format!("the recording has {} only", words::time(recording.length()));
+        return Err(Error::file(&args.file, why));
+    }
+    // Before the player has a thread, so that these come to the main thread alone.
+    let signals = signals().map_err(|error| Error::system("signals", error))?;
+    let mountpoint = args.mountpoint.as_deref().map(absolute).transpose()?;
+    let place = Place::claim(&place::base()?, mountpoint.as_deref())?;
+    let trikd = match args.serving.no_trikd {
+        true => None,
+        false => Some(Trikd::of(&args.serving, &place)?),
+    };
+    std::fs::create_dir_all(&place.board).map_err(|why| Error::file(&place.board, why))?;
+    let _board = Board(&place.board);
+    let text = tree::configuration(recording.channels(), &place.board.join(SOCKET));
+    std::fs::write(&place.world, text).map_err(|why| Error::file(&place.world, why))?;
+    let hints = hints(recording.channels());
+    let name = args.file.file_name().unwrap_or_default().to_string_lossy();
+    let player = Player::start(Box::new(recording), &place.board, begin)?;
+    let beneath = Replay {
+        name: name.into_owned(),
+        hints,
+        ends: args.exit,
+        folder: &place.board,
+        press: &|key| {
+            if let Some(order) = Order::of_key(key) {
+                player.order(order);
+            }
+        },
+        player: &player,
+    };
+    let arguments: Vec<OsString> = vec![
+        "mount".into(),
+        option("--config", &place.world),
+        "--".into(),
+        place.mountpoint.clone().into(),
+    ];
+    let over = Over::of(trikd, !args.no_view);
+    let mut session = Session::start(&arguments, &beneath, &place, signals, over)?;
+    let end = session.run();
+    drop(session);
+    let is_same = player.state().differences.is_empty();
+    end.map(|()| is_same || !args.exit)
+}
+
+/// An option of trikfs in one word, so that a path that begins with a dash stays a value.
+fn option(name: &str, value: &Path) -> OsString {
+    let mut argument = OsString::from(name);
+    argument.push("=");
+    argument.push(value);
+    argument
+}
+
+/// The folder of the player, which goes with it.
+struct Board<'a>(&'a Path);
+
+impl Drop for Board<'_> {
+    fn drop(&mut self) {
+        // It may have gone with the place.
+        let _ = std::fs::remove_dir_all(self.0);
+    }
+}
+
+/// The player of a recording as what is beneath a tree.
+struct Replay<'a> {
+    name: String,
+    hints: Vec<(String, String)>,
+    /// The session ends with the recording.
+    ends: bool,
+    folder: &'a Path,
+    press: &'a dyn Fn(u8),
+    player: &'a Player,
+}
+
+impl Beneath for Replay<'_> {
+    fn name(&self) -> String {
+        format!("the recording {}", self.name)
+    }
+
+    fn lines(&self) -> Vec<String> {
+        words::view(&self.name, &self.player.state())
+    }
+
+    fn news(&self) -> Vec<String> {
+        self.player.take_news()
+    }
+
+    fn hints(&self) -> Vec<(String, String)> {
+        self.hints.clone()
+    }
+
+    fn about(&self) -> String {
+        let control = self.folder.join(CONTROL);
+        let state = self.player.state();
+        format!(
+            "\nIt lasts {}. Its clock is driven by lines in {}:\npause, go, step 10, speed 2, seek 1:30, seek +5, loop on\n",
+            words::time(state.length),
+            control.display()
+        )
+    }
+
+    fn keys(&self) -> Option<&dyn Fn(u8)> {
+        Some(self.press)
+    }
+
+    fn is_over(&self) -> bool {
+        self.ends && self.player.state().is_at_end
+    }
+}
+
+/// Nodes to look at.
+fn hints(channels: &[recording::Channel]) -> Vec<(String, String)> {
+    let sensors = channels.iter().filter(|channel| !channel.is_written);
+    let some = sensors.take(3).map(|channel| {
+        let unit = match channel.units.is_empty() {
+            true => "what was recorded".to_owned(),
+            false => format!("what was recorded, in {}", channel.units),
+        };
+        (format!("cat {}/value", channel.path), unit)
+    });
+    some.collect()
+}

@@ -1,0 +1,556 @@
+//! The player: one thread that has the clock, gives each node of a replayed tree what was recorded when its time comes, and
+//! hears what programs write.
+//!
+//! Owns the socket that `played` sources connect to, and the control file. What comes is bounded: a reader without room loses
+//! the event, and is told the newest value again when the recording is turned. Knows no file format: see `recording`.
+
+use super::clock::Clock;
+use super::order::{BadOrder, Order, Seek};
+use super::outputs::Output;
+use super::recording::{Event, Recording, What};
+use crate::error::Error;
+use crate::limits;
+use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
+use nix::sys::eventfd::{EfdFlags, EventFd};
+use nix::sys::socket::{
+    AddressFamily, Backlog, MsgFlags, SockFlag, SockType, UnixAddr, bind, listen, recv, send,
+    socket,
+};
+use rustix::net::{SocketFlags, accept_with};
+use sim::fifo::In;
+use std::os::fd::{AsFd, AsRawFd, OwnedFd};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+/// What a player tells of itself.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct State {
+    pub(crate) position: Duration,
+    pub(crate) length: Duration,
+    pub(crate) speed: f64,
+    pub(crate) runs: bool,
+    pub(crate) is_loop: bool,
+    /// Events that were given out.
+    pub(crate) given: u64,
+    /// Events for which a reader had no room.
+    pub(crate) dropped: u64,
+    /// Changes that programs have made as recorded.
+    pub(crate) same: u32,
+    /// Where actuators leave the recording, as lines.
+    pub(crate) differences: Vec<String>,
+    /// The end was reached and nothing follows.
+    pub(crate) is_at_end: bool,
+}
+
+/// What both threads have.
+#[derive(Default)]
+struct Shared {
+    state: State,
+    orders: Vec<Order>,
+    /// For a person who sees no view.
+    news: Vec<String>,
+    is_ending: bool,
+}
+
+/// A running player. Dropping it ends it.
+pub(crate) struct Player {
+    shared: Arc<Mutex<Shared>>,
+    wake: Arc<EventFd>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// How a replay begins.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Begin {
+    pub(crate) at: Duration,
+    pub(crate) speed: f64,
+    pub(crate) is_paused: bool,
+    pub(crate) is_loop: bool,
+}
+
+impl Player {
+    /// Serves a recording at a socket, and takes orders from a FIFO; both are made in the folder.
+    ///
+    /// # Errors
+    /// The socket, the FIFO or the recording cannot be had.
+    pub(crate) fn start(
+        recording: Box<dyn Recording + Send>,
+        folder: &Path,
+        begin: Begin,
+    ) -> Result<Self, Error> {
+        let path = folder.join(SOCKET);
+        let fail = |error: nix::Error| Error::file(&path, error.desc());
+        let flags = SockFlag::SOCK_CLOEXEC | SockFlag::SOCK_NONBLOCK;
+        let listener =
+            socket(AddressFamily::Unix, SockType::SeqPacket, flags, None).map_err(fail)?;
+        let address = UnixAddr::new(&path).map_err(fail)?;
+        bind(listener.as_raw_fd(), &address).map_err(fail)?;
+        listen(&listener, Backlog::MAXCONN).map_err(fail)?;
+        let control = folder.join(CONTROL);
+        let control_in = In::make(control.clone()).map_err(|why| Error::file(&control, why))?;
+        let wake = EventFd::from_flags(EfdFlags::EFD_CLOEXEC | EfdFlags::EFD_NONBLOCK)
+            .map_err(|why| Error::system("eventfd", why))?;
+        let wake = Arc::new(wake);
+        let shared = Arc::<Mutex<Shared>>::default();
+        let mut scene = Scene {
+            clock: Clock::new(
+                Instant::now(),
+                recording.length(),
+                begin.speed,
+                !begin.is_paused,
+            ),
+            newest: vec![None; recording.channels().len()],
+            outputs: vec![Output::new(); recording.channels().len()],
+            recording,
+            listener,
+            control: control_in,
+            complaint: folder.join(format!("{CONTROL}.error")),
+            wake: wake.clone(),
+            shared: shared.clone(),
+            peers: Vec::new(),
+            next: None,
+            steps: 0,
+            is_loop: begin.is_loop,
+            was_at_end: false,
+        };
+        scene.learn_outputs()?;
+        scene.seek(begin.at)?;
+        scene.tell();
+        let thread = std::thread::Builder::new()
+            .name("player".to_owned())
+            .spawn(move || scene.run())
+            .map_err(|why| Error::system("a thread", why))?;
+        Ok(Self {
+            shared,
+            wake,
+            thread: Some(thread),
+        })
+    }
+
+    /// Asks for something about the clock.
+    pub(crate) fn order(&self, order: Order) {
+        let mut shared = lock(&self.shared);
+        if shared.orders.len() < limits::REPLAY_ORDERS_MAX {
+            shared.orders.push(order);
+        }
+        drop(shared);
+        // A counter that is full wakes as well.
+        let _ = self.wake.write(1);
+    }
+
+    /// How it is.
+    pub(crate) fn state(&self) -> State {
+        lock(&self.shared).state.clone()
+    }
+
+    /// What has happened since the last call.
+    pub(crate) fn take_news(&self) -> Vec<String> {
+        std::mem::take(&mut lock(&self.shared).news)
+    }
+}
+
+impl Drop for Player {
+    fn drop(&mut self) {
+        lock(&self.shared).is_ending = true;
+        let _ = self.wake.write(1);
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+/// The socket in the folder of a player.
+pub(crate) const SOCKET: &str = "player.sock";
+/// The FIFO that takes orders.
+pub(crate) const CONTROL: &str = "replay";
+
+/// A panic elsewhere has left whole values here.
+fn lock(shared: &Mutex<Shared>) -> MutexGuard<'_, Shared> {
+    shared.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// What somebody who is connected wants.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Wish {
+    /// It has not said anything yet.
+    Unknown,
+    /// Reads this channel.
+    Read(usize),
+    /// Writes it.
+    Write(usize),
+    /// It has left, or said something else.
+    Gone,
+}
+
+struct Peer {
+    socket: OwnedFd,
+    wish: Wish,
+}
+
+/// Everything that the thread has.
+struct Scene {
+    recording: Box<dyn Recording + Send>,
+    clock: Clock,
+    /// What each channel has at the position.
+    newest: Vec<Option<What>>,
+    outputs: Vec<Output>,
+    listener: OwnedFd,
+    control: In,
+    /// Where a bad order is told.
+    complaint: PathBuf,
+    wake: Arc<EventFd>,
+    shared: Arc<Mutex<Shared>>,
+    peers: Vec<Peer>,
+    /// What comes next; None at the end.
+    next: Option<Event>,
+    /// Events to give while the clock stands.
+    steps: u32,
+    is_loop: bool,
+    was_at_end: bool,
+}
+
+impl Scene {
+    fn run(&mut self) {
+        loop {
+            if lock(&self.shared).is_ending {
+                return;
+            }
+            let outcome = self.play();
+            if let Err(error) = outcome {
+                self.news(format!("the replay ends here: {error}"));
+                self.next = None;
+                self.clock.run(Instant::now(), false);
+            }
+            self.tell();
+            if self.wait().is_err() {
+                return self.news("the replay cannot wait any more".to_owned());
+            }
+            self.hear();
+        }
+    }
+
+    /// The rows of changes of all that can be written.
+    fn learn_outputs(&mut self) -> Result<(), Error> {
+        let is_written: Vec<bool> = (self.recording.channels().iter())
+            .map(|channel| channel.is_written)
+            .collect();
+        if !is_written.contains(&true) {
+            return Ok(());
+        }
+        self.recording.seek(Duration::ZERO)?;
+        while let Some(event) = self.recording.next()? {
+            if let (true, What::Sample(tuple)) = (is_written[event.channel], &event.what) {
+                self.outputs[event.channel].record(event.at, tuple, limits::REPLAY_CHANGES_MAX);
+            }
+        }
+        Ok(())
+    }
+
+    /// Gives out all that is due, a bounded number at once.
+    fn play(&mut self) -> Result<(), Error> {
+        for _ in 0..limits::REPLAY_BATCH {
+            let Some(next) = &self.next else {
+                return self.end();
+            };
+            let now = Instant::now();
+            if self.steps > 0 {
+                self.steps -= 1;
+                let at = next.at;
+                self.clock.jump(now, at);
+            } else if next.at > self.clock.position(now) {
+                return Ok(());
+            }
+            let Some(event) = self.next.take() else {
+                return Ok(());
+            };
+            self.newest[event.channel] = Some(event.what);
+            self.give(event.channel);
+            lock(&self.shared).state.given += 1;
+            self.next = self.recording.next()?;
+        }
+        Ok(())
+    }
+
+    /// Nothing follows: begins again when the clock is at the end, if that is wanted.
+    fn end(&mut self) -> Result<(), Error> {
+        self.steps = 0;
+        let now = Instant::now();
+        let is_at_end = self.clock.position(now) >= self.clock.length();
+        if is_at_end && self.is_loop && self.clock.length() > Duration::ZERO {
+            return self.seek(Duration::ZERO);
+        }
+        if is_at_end && !std::mem::replace(&mut self.was_at_end, true) {
+            self.news("the recording is at its end".to_owned());
+        }
+        Ok(())
+    }
+
+    /// Tells the newest of a channel to its readers.
+    fn give(&mut self, channel: usize) {
+        let Some(what) = &self.newest[channel] else {
+            return;
+        };
+        let message = message(what);
+        let mut dropped = 0;
+        for peer in &mut self.peers {
+            if peer.wish == Wish::Read(channel) {
+                match send(peer.socket.as_raw_fd(), &message, QUIET) {
+                    Ok(_) => {}
+                    Err(nix::Error::EAGAIN) => dropped += 1,
+                    Err(_) => peer.wish = Wish::Gone,
+                }
+            }
+        }
+        lock(&self.shared).state.dropped += dropped;
+    }
+
+    /// Goes to a position: every reader gets what its node had there.
+    fn seek(&mut self, position: Duration) -> Result<(), Error> {
+        self.clock.jump(Instant::now(), position);
+        let position = position.min(self.clock.length());
+        let before = std::mem::replace(&mut self.newest, self.recording.newest(position)?);
+        for (newest, before) in self.newest.iter_mut().zip(before) {
+            if newest.is_none() && before.is_some() {
+                // Readers have a value that is not of this moment.
+                *newest = Some(What::Failure(
+                    nix::Error::ETIMEDOUT as i32,
+                    "nothing was recorded before this moment".to_owned(),
+                ));
+            }
+        }
+        self.recording.seek(position)?;
+        self.next = self.recording.next()?;
+        self.was_at_end = false;
+        for output in &mut self.outputs {
+            output.seek(position);
+        }
+        for channel in 0..self.newest.len() {
+            self.give(channel);
+        }
+        Ok(())
+    }
+
+    fn wait(&self) -> nix::Result<()> {
+        let now = Instant::now();
+        let due = match &self.next {
+            Some(next) => self.clock.due(next.at),
+            None => self.clock.due(self.clock.length()),
+        };
+        let until = due.filter(|_| self.clock.runs(now) || self.next.is_some());
+        let until = match until {
+            Some(at) if at <= now && self.next.is_none() && !self.is_loop => None,
+            until => until,
+        };
+        let most = Duration::from_millis(limits::VIEW_MS.into());
+        let left = until.map_or(most, |at| at.saturating_duration_since(now));
+        let left = PollTimeout::try_from(left.min(most)).unwrap_or(PollTimeout::MAX);
+        let mut fds = vec![
+            PollFd::new(self.listener.as_fd(), PollFlags::POLLIN),
+            PollFd::new(self.control.fd(), PollFlags::POLLIN),
+            PollFd::new(self.wake.as_fd(), PollFlags::POLLIN),
+        ];
+        let peers = self.peers.iter();
+        fds.extend(peers.map(|peer| PollFd::new(peer.socket.as_fd(), PollFlags::POLLIN)));
+        match poll(&mut fds, left) {
+            Err(nix::Error::EINTR) | Ok(_) => Ok(()),
+            Err(error) => Err(error),
+        }
+    }
+
+    fn hear(&mut self) {
+        let _ = self.wake.read();
+        self.admit();
+        for at in 0..self.peers.len() {
+            self.hear_peer(at);
+        }
+        self.peers.retain(|peer| peer.wish != Wish::Gone);
+        for line in self.control.lines() {
+            let order = Order::read(&line);
+            self.complain(order.as_ref().err());
+            if let Ok(order) = order {
+                self.obey(order);
+            }
+        }
+        if self.control.take_left_out() > 0 {
+            self.complain(Some(&BadOrder::Argument("one printable line")));
+        }
+        let orders = std::mem::take(&mut lock(&self.shared).orders);
+        for order in orders {
+            self.obey(order);
+        }
+        self.miss();
+    }
+
+    /// The last bad order is in a file until the next good one.
+    fn complain(&self, bad: Option<&BadOrder>) {
+        // Who cannot be told has lost the folder.
+        let _ = match bad {
+            None => std::fs::remove_file(&self.complaint),
+            Some(bad) => std::fs::write(&self.complaint, format!("{bad}\n")),
+        };
+    }
+
+    fn admit(&mut self) {
+        let flags = SocketFlags::CLOEXEC | SocketFlags::NONBLOCK;
+        while let Ok(socket) = accept_with(&self.listener, flags) {
+            if self.peers.len() < limits::REPLAY_PEERS_MAX {
+                self.peers.push(Peer {
+                    socket,
+                    wish: Wish::Unknown,
+                });
+            }
+        }
+    }
+
+    fn hear_peer(&mut self, at: usize) {
+        let mut bytes = [0; limits::REPLAY_MESSAGE_BYTES];
+        for _ in 0..limits::REPLAY_BATCH {
+            let peer = &mut self.peers[at];
+            let size = match recv(peer.socket.as_raw_fd(), &mut bytes, MsgFlags::empty()) {
+                Ok(0) => 0,
+                Ok(size) => size,
+                Err(nix::Error::EAGAIN | nix::Error::EINTR) => return,
+                Err(_) => 0,
+            };
+            let said = &bytes[..size];
+            match peer.wish {
+                _ if size == 0 => peer.wish = Wish::Gone,
+                Wish::Unknown => {
+                    peer.wish = wish(&*self.recording, said);
+                    if let Wish::Read(channel) = peer.wish {
+                        let newest = self.newest[channel].as_ref().map(message);
+                        let sent = newest.map(|it| send(peer.socket.as_raw_fd(), &it, QUIET));
+                        if sent.is_some_and(|sent| sent.is_err()) {
+                            peer.wish = Wish::Gone;
+                        }
+                    }
+                }
+                Wish::Write(channel) => self.wrote(channel, said),
+                // A reader has nothing to say.
+                Wish::Read(_) | Wish::Gone => peer.wish = Wish::Gone,
+            }
+        }
+    }
+
+    /// A program has written to an actuator: nothing moves, and readers see what was recorded.
+    fn wrote(&mut self, channel: usize, tuple: &[u8]) {
+        let position = self.clock.position(Instant::now());
+        let described = &self.recording.channels()[channel];
+        if tuple.len() != described.bytes {
+            return;
+        }
+        let output = &mut self.outputs[channel];
+        let is_rest = described.layout.show(tuple) == described.rest;
+        let differs = match is_rest {
+            true => output.rest(position, tuple),
+            false => output.write(position, tuple),
+        };
+        if differs {
+            self.differs(channel);
+        }
+    }
+
+    fn miss(&mut self) {
+        let (position, speed) = (self.clock.position(Instant::now()), self.clock.speed());
+        for channel in 0..self.outputs.len() {
+            if self.outputs[channel].miss(position, speed) {
+                self.differs(channel);
+            }
+        }
+    }
+
+    fn differs(&self, channel: usize) {
+        let described = &self.recording.channels()[channel];
+        if let Some(difference) = self.outputs[channel].difference() {
+            self.news(super::words::difference(described, difference));
+        }
+    }
+
+    fn obey(&mut self, order: Order) {
+        let now = Instant::now();
+        match order {
+            Order::Pause => self.clock.run(now, false),
+            Order::Go => self.clock.run(now, true),
+            Order::Toggle => self.clock.run(now, !self.clock.runs(now)),
+            Order::Step(count) => {
+                self.clock.run(now, false);
+                self.steps = count;
+            }
+            Order::Speed(speed) => self.clock.set_speed(now, speed),
+            Order::Double(up) => {
+                let factor = if up { 2.0 } else { 0.5 };
+                let speed = (self.clock.speed() * factor)
+                    .clamp(limits::REPLAY_SPEED_MIN, limits::REPLAY_SPEED_MAX);
+                self.clock.set_speed(now, speed);
+            }
+            Order::Loop(is_loop) => self.is_loop = is_loop,
+            Order::Seek(seek) => {
+                let here = self.clock.position(now);
+                let position = match seek {
+                    Seek::To(position) => position,
+                    Seek::Forward(by) => here.saturating_add(by),
+                    Seek::Back(by) => here.saturating_sub(by),
+                };
+                if let Err(error) = self.seek(position) {
+                    self.news(format!("no way to that position: {error}"));
+                }
+            }
+        }
+    }
+
+    fn news(&self, line: String) {
+        let mut shared = lock(&self.shared);
+        if shared.news.len() < limits::REPLAY_NEWS_MAX {
+            shared.news.push(line);
+        }
+    }
+
+    fn tell(&self) {
+        let now = Instant::now();
+        let channels = self.recording.channels().iter();
+        let differences = channels.zip(&self.outputs).filter_map(|(channel, output)| {
+            let difference = output.difference()?;
+            Some(super::words::difference(channel, difference))
+        });
+        let mut shared = lock(&self.shared);
+        let state = &mut shared.state;
+        state.position = self.clock.position(now);
+        state.length = self.clock.length();
+        state.speed = self.clock.speed();
+        state.runs = self.clock.runs(now);
+        state.is_loop = self.is_loop;
+        state.same = self.outputs.iter().map(Output::same).sum();
+        state.differences = differences.take(limits::REPLAY_NEWS_MAX).collect();
+        state.is_at_end = self.next.is_none() && !state.runs && !self.is_loop;
+    }
+}
+
+const QUIET: MsgFlags = MsgFlags::MSG_NOSIGNAL;
+
+/// What a reader gets: see `device/played.rs` of trikfs.
+fn message(what: &What) -> Vec<u8> {
+    let (errno, body) = match what {
+        What::Sample(tuple) => (0, tuple.as_slice()),
+        What::Failure(errno, reason) => (*errno, reason.as_bytes()),
+    };
+    let mut message = errno.to_le_bytes().to_vec();
+    message.extend_from_slice(body);
+    message
+}
+
+/// What a first message asks for.
+fn wish(recording: &dyn Recording, said: &[u8]) -> Wish {
+    let said = std::str::from_utf8(said).ok();
+    let Some((direction, name)) = said.and_then(|said| said.split_once(' ')) else {
+        return Wish::Gone;
+    };
+    let mut channels = recording.channels().iter();
+    let found = channels.position(|channel| channel.path == name);
+    match (direction, found) {
+        ("read", Some(channel)) => Wish::Read(channel),
+        ("write", Some(channel)) => Wish::Write(channel),
+        _ => Wish::Gone,
+    }
+}

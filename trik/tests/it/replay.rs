@@ -1,0 +1,201 @@
+//! `trik record` and `trik replay`: what a robot gave is given again, from any moment on, and what programs write is compared.
+
+use crate::rig::{Home, Robot};
+use harness::eventually;
+use journal::read::{Reader, What};
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::process::{Child, Stdio};
+use std::sync::Arc;
+
+/// A recorder that has begun, and is asked to end by SIGINT.
+struct Recorder(Child);
+
+impl Recorder {
+    fn start(home: &Home, words: &[&str]) -> Self {
+        let mut command = home.command(&["record", "-o", "run.mcap"]);
+        command
+            .args(words)
+            .stdout(Stdio::null())
+            .stderr(Stdio::null());
+        Self(command.spawn().expect("trik record"))
+    }
+
+    fn end(mut self) {
+        let pid = Pid::from_raw(i32::try_from(self.0.id()).expect("a pid"));
+        kill(pid, Signal::SIGINT).expect("SIGINT");
+        assert!(self.0.wait().expect("an end").success());
+    }
+}
+
+/// Samples of each node as texts, in their order.
+fn samples(home: &Home) -> BTreeMap<String, Vec<String>> {
+    let file = File::open(home.0.path("run.mcap")).expect("a recording");
+    let mut reader = Reader::open(file).expect("a recording");
+    let mut all: BTreeMap<String, Vec<String>> = BTreeMap::new();
+    while let Some(event) = reader.next().expect("an event") {
+        if let What::Sample { node, tuple, .. } = event.what {
+            let text = reader.layout(node).expect("a layout").show(&tuple);
+            let path = reader.nodes()[node].path.clone();
+            all.entry(path).or_default().push(text);
+        }
+    }
+    all
+}
+
+/// Records a robot that drives to some encoder reading and back to rest.
+fn drive_and_record(home: &Arc<Home>) {
+    let mut robot = Robot::start(home.clone(), &[]);
+    let recorder = Recorder::start(home, &[]);
+    eventually("a recording", || home.0.path("run.mcap").exists());
+    // The recorder needs the samples, so they come without any other reader.
+    robot.drive(30, 40);
+    eventually("a way", || robot.number("encoders/E3/value") > 300.0);
+    robot.write("stop", "1").expect("stop");
+    eventually("rest in the recording", || {
+        robot.number("motors/M4/value") == 0.0
+    });
+    recorder.end();
+    assert!(robot.end(Signal::SIGINT).success());
+}
+
+#[test]
+fn what_was_recorded_is_given_again_and_stays_where_the_clock_stands() {
+    let Some(home) = Home::new() else { return };
+    let home = Arc::new(home);
+    drive_and_record(&home);
+    let recorded = samples(&home);
+    assert_eq!(recorded["motors/M4"].last().map(String::as_str), Some("0"));
+    assert!(recorded["motors/M4"].iter().any(|power| power == "40"));
+    let way: f64 = recorded["encoders/E3"]
+        .last()
+        .expect("samples")
+        .parse()
+        .expect("a number");
+    assert!(way > 300.0, "{way}");
+
+    let mut replay = Robot::replay(home.clone(), "run.mcap", &["--paused"]);
+    let control = replay.devices.join("replay");
+    let order = |line: &str| std::fs::write(&control, format!("{line}\n")).expect("an order");
+    // Where it stands, each node has what it had then, by both of its names.
+    order("seek 0.3");
+    eventually("samples", || replay.errno("encoders/E3/value") == 0);
+    assert_eq!(
+        replay.number("encoders/left/value"),
+        replay.number("encoders/E3/value")
+    );
+    assert_eq!(replay.read("sensors/D1/units").expect("units"), "cm");
+    order("seek 100:00");
+    eventually("the end", || {
+        replay.errno("encoders/E3/value") == 0 && replay.number("encoders/E3/value") == way
+    });
+    assert_eq!(replay.number("motors/M4/value"), 0.0);
+    // A recorded failure has its errno and its reason.
+    eventually("a failure", || {
+        replay.errno("sensors/D3/value") == nix::libc::ETIMEDOUT
+    });
+    assert!(
+        replay
+            .read("sensors/D3/fault")
+            .expect("a fault")
+            .starts_with("device: no echo")
+    );
+    order("seek 0.3");
+    eventually("the beginning", || {
+        replay.errno("encoders/E3/value") == 0 && replay.number("encoders/E3/value") < way / 2.0
+    });
+    order("dance");
+    let complaint = replay.devices.join("replay.error");
+    eventually("a complaint", || {
+        std::fs::read_to_string(&complaint).is_ok_and(|text| text.contains("unknown word 'dance'"))
+    });
+    order("go");
+    eventually("the end in its own time", || {
+        replay.number("encoders/E3/value") == way
+    });
+    assert!(!complaint.exists());
+    assert!(replay.end(Signal::SIGINT).success());
+    assert!(!control.exists());
+}
+
+#[test]
+fn a_program_that_does_something_else_is_told_with_its_time() {
+    let Some(home) = Home::new() else { return };
+    let home = Arc::new(home);
+    drive_and_record(&home);
+    let mut replay = Robot::replay(home.clone(), "run.mcap", &["--paused"]);
+    eventually("the first samples", || {
+        replay.errno("encoders/E3/value") == 0
+    });
+    // What was recorded first: the same is no difference, and moves nothing.
+    replay.write("motors/M3/value", "30").expect("a write");
+    replay.write("motors/M4/value", "40").expect("a write");
+    replay.write("motors/M4/value", "55").expect("a write");
+    let mut told = replay.next_line();
+    while told.is_empty() {
+        told = replay.next_line();
+    }
+    assert!(
+        told.starts_with("motors/M4 at 0:00.0: a program wrote 55, recorded is 0 at "),
+        "{told}"
+    );
+    // Nothing moves: the tree has what was recorded, and nothing is recorded here.
+    assert_ne!(replay.errno("motors/M4/value"), 0);
+    assert!(replay.end(Signal::SIGINT).success());
+}
+
+#[test]
+fn a_killed_recorder_leaves_what_can_be_mended() {
+    let Some(home) = Home::new() else { return };
+    let home = Arc::new(home);
+    let mut robot = Robot::start(home.clone(), &[]);
+    let mut recorder = Recorder::start(&home, &["--only", "encoders", "--only", "battery"]);
+    let path = home.0.path("run.mcap");
+    // A second flush: there is something to save.
+    let size = || std::fs::metadata(&path).map_or(0, |file| file.len());
+    eventually("a flush", || size() > 4000);
+    recorder.0.kill().expect("SIGKILL");
+    recorder.0.wait().expect("an end");
+    let refused = home.run(&["replay", "run.mcap"]);
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(refused.stderr.contains("trik mend"), "{}", refused.stderr);
+    assert_eq!(home.run(&["info", "run.mcap"]).status.code(), Some(1));
+    let mended = home.run(&["mend", "run.mcap"]);
+    assert_eq!(mended.status.code(), Some(0), "{}", mended.stderr);
+    let info = home.run(&["info", "run.mcap"]);
+    assert!(info.stdout.contains("encoders/E3"), "{}", info.stdout);
+    assert!(!info.stdout.contains("sensors/"), "{}", info.stdout);
+    assert!(samples(&home)["encoders/E3"].len() > 10);
+    let again = home.run(&["mend", "run.mcap"]);
+    assert!(again.stdout.contains("it is whole"), "{}", again.stdout);
+    assert!(robot.end(Signal::SIGINT).success());
+}
+
+#[test]
+fn what_is_no_recording_and_no_tree_is_refused() {
+    let Some(home) = Home::new() else { return };
+    home.0.file("text", "hello");
+    for words in [["replay", "text"], ["info", "text"], ["mend", "text"]] {
+        let refused = home.run(&words);
+        assert_eq!(refused.status.code(), Some(1), "{words:?}");
+        assert!(
+            refused.stderr.contains("text: no recording"),
+            "{}",
+            refused.stderr
+        );
+    }
+    assert_eq!(home.run(&["replay", "nothing"]).status.code(), Some(1));
+    let refused = home.run(&["record", "."]);
+    assert!(
+        refused.stderr.contains("no tree of trikfs"),
+        "{}",
+        refused.stderr
+    );
+    assert_eq!(home.run(&["record"]).status.code(), Some(1));
+    assert_eq!(
+        home.run(&["replay", "text", "--speed", "0"]).status.code(),
+        Some(2)
+    );
+}
