@@ -279,7 +279,9 @@ impl Scene {
         let now = Instant::now();
         let is_at_end = self.clock.position(now) >= self.clock.length();
         if is_at_end && self.is_loop && self.clock.length() > Duration::ZERO {
-            return self.seek(Duration::ZERO);
+            // What each node had at the end stays until its next sample: nobody went anywhere.
+            let newest = self.newest.clone();
+            return self.turn_to(Duration::ZERO, newest);
         }
         if is_at_end && !std::mem::replace(&mut self.was_at_end, true) {
             self.news("the recording is at its end".to_owned());
@@ -308,10 +310,9 @@ impl Scene {
 
     /// Goes to a position: every reader gets what its node had there.
     fn seek(&mut self, position: Duration) -> Result<(), Error> {
-        self.clock.jump(Instant::now(), position);
         let position = position.min(self.clock.length());
-        let before = std::mem::replace(&mut self.newest, self.recording.newest(position)?);
-        for (newest, before) in self.newest.iter_mut().zip(before) {
+        let mut newest = self.recording.newest(position)?;
+        for (newest, before) in newest.iter_mut().zip(&self.newest) {
             if newest.is_none() && before.is_some() {
                 // Readers have a value that is not of this moment.
                 *newest = Some(What::Failure(
@@ -320,14 +321,22 @@ impl Scene {
                 ));
             }
         }
+        self.turn_to(position, newest)?;
+        for channel in 0..self.newest.len() {
+            self.give(channel);
+        }
+        Ok(())
+    }
+
+    /// Goes on from a position, at which nodes have this.
+    fn turn_to(&mut self, position: Duration, newest: Vec<Option<What>>) -> Result<(), Error> {
+        self.clock.jump(Instant::now(), position);
+        self.newest = newest;
         self.recording.seek(position)?;
         self.next = self.recording.next()?;
         self.was_at_end = false;
         for output in &mut self.outputs {
             output.seek(position);
-        }
-        for channel in 0..self.newest.len() {
-            self.give(channel);
         }
         Ok(())
     }

@@ -106,6 +106,16 @@ fn what_was_recorded_is_given_again_and_stays_where_the_clock_stands() {
     eventually("the beginning", || {
         replay.errno("encoders/E3/value") == 0 && replay.number("encoders/E3/value") < way / 2.0
     });
+    // Again and again, and so fast that only what stays can be read.
+    for line in ["speed 100", "loop on", "go"] {
+        order(line);
+    }
+    eventually("samples at any time", || {
+        (0..200).all(|_| replay.errno("encoders/E3/value") == 0)
+    });
+    for line in ["pause", "loop off", "speed 1", "seek 0.3"] {
+        order(line);
+    }
     order("dance");
     let complaint = replay.devices.join("replay.error");
     eventually("a complaint", || {
