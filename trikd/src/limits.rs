@@ -223,7 +223,3 @@ pub const QUESTION_MS: u64 = 120_000;
 pub const QUESTION_CHARACTERS: usize = 1000;
 /// Milliseconds between a question without an answer and the next one.
 pub const QUESTION_REST_MS: u64 = 10_000;
-/// How often a program asks what a distance sensor without a distance says by itself, when that is not there yet.
-pub const RAW_TRIES: u32 = 20;
-/// The wait between two of these.
-pub const RAW_WAIT_MS: u32 = 10;

@@ -111,6 +111,12 @@ pub trait Stream: Send {
         self.wake_at().is_none() && open >= patience.by_itself
     }
 
+    /// Whether it speaks of changes only, so that its last tuple says what is so until the next one: a reader that comes to
+    /// an opening that others have already gets it first.
+    fn tells_changes_only(&self) -> bool {
+        false
+    }
+
     /// Whether opening it again after [`Got::End`] can give more (the next writer of a FIFO).
     fn begins_anew(&self) -> bool {
         true

@@ -27,6 +27,8 @@ struct Inner {
     watch: Option<Watch>,
     raw: Vec<u8>,
     raw_len: usize,
+    /// The last tuple of a source that speaks of changes only; empty before the first, and of any other.
+    last: Vec<u8>,
     /// The source is over for good (a recording).
     is_over: bool,
     opened: Instant,
@@ -69,6 +71,7 @@ impl Hub {
             watch: None,
             raw,
             raw_len: 0,
+            last: Vec::new(),
             is_over: false,
             opened: Instant::now(),
             has_spoken: false,
@@ -85,16 +88,15 @@ impl Hub {
         })
     }
 
-    /// A queue that gets every tuple from now on, after what the source answered last.
+    /// A queue that gets every tuple from now on, after what the source answered last, or said last if it speaks of changes
+    /// only.
     pub fn subscribe(self: &Arc<Self>, on_ready: Weak<dyn Ready>) -> Arc<Subscription> {
         let mut inner = lock(&self.inner);
         let node = self.node.upgrade();
+        let answer = node.and_then(|node| node.source.answer().tuple());
         let queue = Queue {
             is_over: inner.is_over,
-            bytes: node
-                .and_then(|node| node.source.answer().tuple())
-                .unwrap_or_default()
-                .into(),
+            bytes: answer.unwrap_or_else(|| inner.last.clone()).into(),
             ..Queue::default()
         };
         let subscription = Arc::new(Subscription {
@@ -185,6 +187,7 @@ impl Hub {
             stream: Some(stream),
             raw,
             raw_len,
+            last,
             wakes_at,
             has_spoken,
             ..
@@ -203,6 +206,10 @@ impl Hub {
                         .answer()
                         .note(source, &raw[..whole], self.tuple_size);
                     self.each(|subscription| subscription.push(&raw[..whole]));
+                    if stream.tells_changes_only() {
+                        last.clear();
+                        last.extend_from_slice(&raw[whole - self.tuple_size..whole]);
+                    }
                     raw.copy_within(whole..*raw_len, 0);
                     *raw_len -= whole;
                 }
@@ -220,6 +227,7 @@ impl Hub {
                     let what = "the source ended inside a tuple".to_owned();
                     node.report(&Error::Malformed(what));
                 }
+                inner.last.clear();
                 inner.is_over = !again;
                 self.each(|subscription| subscription.end(!again));
                 if again {
@@ -234,6 +242,7 @@ impl Hub {
             }
             Err(error) => {
                 inner.raw_len = 0;
+                inner.last.clear();
                 inner.watch = None;
                 inner.stream = None;
                 self.lose(node, &error);
@@ -310,6 +319,7 @@ impl Due for Presence {
             let is_gone = stream.is_some_and(|stream| !stream.is_still_there());
             if is_gone {
                 inner.raw_len = 0;
+                inner.last.clear();
                 inner.watch = None;
                 inner.stream = None;
                 let what = "the device was removed or replaced".to_owned();

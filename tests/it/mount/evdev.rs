@@ -40,3 +40,43 @@ fn events_of_64_bit_machines_become_tuples() {
 fn events_of_32_bit_machines_become_tuples() {
     with_events("bits32", 8);
 }
+
+/// Everybody shares one opening, and who listens to a device that speaks of changes only may have come too late for all of them.
+#[test]
+fn a_reader_that_comes_later_begins_with_the_present_values_and_not_with_old_events() {
+    let board = Board::new();
+    board.fifo("events");
+    let Some(m) = mount_on(
+        board,
+        "local function pad(events)
+  return { src = evdev{ path = '$DIR/events', axes = not events and { 'ABS_X' } or nil, events = events, layout = 'bits64' } }
+end
+trikfs = { pad = pad(), all = pad(true) }",
+    ) else {
+        return;
+    };
+    m.python(
+        "def event(kind, code, value): return bytes(16) + struct.pack('=HHi', kind, code, value)
+for node, first in (('pad', struct.pack('<i', 7)), ('all', None)):
+    early, pipe = open_ro(M + '/' + node + '/device', os.O_NONBLOCK), feed('events')
+    os.write(pipe, event(3, 0, -5) + event(0, 0, 0) + event(3, 0, 7) + event(0, 0, 0))
+    eventually(lambda: ready(early), 'events')
+    size = 0
+    def all_come():
+        global size
+        size += len(os.read(early, 100)) if ready(early) else 0
+        return size == (8 if first else 64)
+    eventually(all_come, 'all of them')
+    late = open_ro(M + '/' + node + '/device', os.O_NONBLOCK)
+    if first:
+        assert os.read(late, 100) == first
+    expect('EAGAIN', os.read, late, 100)
+    # What comes now is for both.
+    os.write(pipe, event(3, 0, 9) + event(0, 0, 0))
+    for fd in (early, late):
+        assert ready(fd, ms=10000) and len(os.read(fd, 100)) == (4 if first else 32)
+        os.close(fd)
+    os.close(pipe)
+",
+    );
+}

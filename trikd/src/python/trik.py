@@ -304,18 +304,9 @@ class Sensor:
             return self._value.number()
         except OSError:
             # Without an echo there is no distance, and programs expect -1.
-            if self._distance and self._said() == -1:
+            if self._distance and self._raw.number() == -1:
                 return -1
             raise
-
-    def _said(self):
-        # It comes by a way of its own, on a busy robot some milliseconds later.
-        for _ in range(20):
-            try:
-                return self._raw.number()
-            except OSError:
-                time.sleep(0.01)
-        return None
 
     def readRawData(self):
         return self._raw.number()

@@ -218,19 +218,8 @@ fn a_tree_in_which_programs_cannot_drive_is_told_with_what_to_do() {
 
 #[test]
 fn all_sensors_of_the_board_arrive() {
-    // A driver that speaks once, as that of D3, is missed now and then by one of its two readers; then another robot is asked.
-    for last in [false, false, true] {
-        let Some(board) = virtual_robot() else { return };
-        if all_sensors_arrive(&board.robot, last) {
-            return;
-        }
-    }
-}
-
-/// Whether telemetry has everything within 20 s; the last robot has as long as it takes.
-fn all_sensors_arrive(robot: &Robot, is_last: bool) -> bool {
-    let late = std::time::Instant::now() + std::time::Duration::from_secs(20);
-    let mut gave_up = false;
+    let Some(board) = virtual_robot() else { return };
+    let robot = &board.robot;
     let mut client = robot.client("telemetry");
     let mut ports = String::new();
     // Before the tree is looked through for the first time there are no names.
@@ -256,14 +245,7 @@ fn all_sensors_arrive(robot: &Robot, is_last: bool) -> bool {
             && !data.contains("AccelerometerPort:;")
             && data.contains(";D3:-1:-1;")
             && !data.contains("D1::")
-            || {
-                gave_up = !is_last && std::time::Instant::now() > late;
-                gave_up
-            }
     });
-    if gave_up {
-        return false;
-    }
     for entry in data.trim_start_matches("allData:").split(';') {
         let fields: Vec<&str> = entry.split(':').collect();
         assert!(fields.len() >= 2 && !fields[0].is_empty(), "{data}");
@@ -274,7 +256,6 @@ fn all_sensors_arrive(robot: &Robot, is_last: bool) -> bool {
             );
         }
     }
-    true
 }
 
 #[test]

@@ -103,6 +103,11 @@ impl Stream for Evdev {
         self.decoder.ready.is_empty() && open >= Patience::WITH_NOBODY
     }
 
+    /// With every event as a tuple, each is news of its own.
+    fn tells_changes_only(&self) -> bool {
+        !self.decoder.codes.is_empty()
+    }
+
     fn is_still_there(&self) -> bool {
         self.bytes.is_still_there()
     }

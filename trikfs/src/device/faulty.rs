@@ -144,6 +144,10 @@ impl Stream for FaultyStream {
         self.stream.is_still_there()
     }
 
+    fn tells_changes_only(&self) -> bool {
+        self.stream.tells_changes_only()
+    }
+
     fn begins_anew(&self) -> bool {
         self.stream.begins_anew()
     }

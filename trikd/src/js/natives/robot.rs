@@ -14,7 +14,6 @@ use std::collections::HashMap;
 use std::io;
 use std::path::Path;
 use std::rc::Rc;
-use std::time::Duration;
 
 /// What our scripts get for no handle.
 const NONE: i32 = -1;
@@ -133,16 +132,9 @@ fn motor_place(brick: &Brick, port: &str) -> String {
 
 /// Programs expect a number for a distance without an echo; all other failures are told.
 fn read_or_no_echo(sensor: &Sensor) -> io::Result<f64> {
-    sensor.read().or_else(|error| {
-        // What the driver says comes to `raw` by a way of its own, on a busy robot some milliseconds later.
-        for _ in 0..limits::RAW_TRIES {
-            match sensor.read_raw() {
-                Ok(raw) if raw == NO_ECHO => return Ok(NO_ECHO),
-                Ok(_) => break,
-                Err(_) => std::thread::sleep(Duration::from_millis(limits::RAW_WAIT_MS.into())),
-            }
-        }
-        Err(error)
+    sensor.read().or_else(|error| match sensor.read_raw() {
+        Ok(raw) if raw == NO_ECHO => Ok(NO_ECHO),
+        _ => Err(error),
     })
 }
 
