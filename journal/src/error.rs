@@ -75,7 +75,11 @@ impl Error {
             reason = "their errors: all that are not named here are damage, with their words"
         )]
         match error {
-            E::Io(error) if error.kind() != io::ErrorKind::UnexpectedEof => Self::from(error),
+            // Without a number of the system it is what the decompressor says.
+            E::Io(error) if error.raw_os_error().is_some() => Self::from(error),
+            E::Io(error) if error.kind() != io::ErrorKind::UnexpectedEof => {
+                Self::Damaged(error.to_string())
+            }
             E::Io(_) | E::UnexpectedEof | E::UnexpectedEoc => Self::Cut,
             E::BadMagic => Self::NotARecording,
             other => Self::Damaged(other.to_string()),

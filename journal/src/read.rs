@@ -1,29 +1,24 @@
 //! Reading a recording: what is in it, and what happened from any moment on.
 //!
-//! Owns seeking and its bounds. The file comes from anywhere: every length in it is checked before memory is taken for it, and
-//! whatever contradicts itself is an error and no panic. A file without an end is for `mend`.
+//! Owns seeking and its bounds, and what messages mean. The file comes from anywhere: `container` checks it, and whatever
+//! contradicts itself is an error and no panic. A file without an end is for `mend`.
+
+mod container;
 
 use crate::error::Error;
 use crate::layout::Layout;
-use crate::limits::{
-    ATTACHMENT_BYTES_MAX, CHUNKS_BACK, INFLATION_MAX, NODES_MAX, RECORD_BYTES_MAX,
-    SUMMARY_BYTES_MAX,
-};
+use crate::limits::{ATTACHMENT_BYTES_MAX, CHUNKS_BACK, NODES_MAX, RECORD_BYTES_MAX};
 use crate::node::{self, Node};
 use crate::standard::{self, Log};
 use crate::write::{FAULTS, LOG};
+use container::{
+    FOOTER_BYTES, MAGIC_BYTES, attachment_of, check_chunk, check_footer, new_indexed, step, summary,
+};
 use mcap::Summary;
 use mcap::records::op;
-use mcap::sans_io::{
-    IndexedReadEvent, IndexedReader, IndexedReaderOptions, SummaryReadEvent, SummaryReader,
-    SummaryReaderOptions, indexed_reader::ReadOrder,
-};
+use mcap::sans_io::{IndexedReader, IndexedReaderOptions, indexed_reader::ReadOrder};
 use std::collections::{BTreeMap, HashMap};
 use std::io::{Read, Seek, SeekFrom};
-
-/// Bytes of a footer with its head, and of the magic after it.
-const FOOTER_BYTES: u64 = 9 + 20;
-const MAGIC_BYTES: u64 = 8;
 
 /// A recording that can be read.
 pub struct Reader<F> {
@@ -37,6 +32,8 @@ pub struct Reader<F> {
     /// Reads forwards; None before the first event is wanted.
     forwards: Option<IndexedReader>,
     from_ns: u64,
+    /// Topics that are wanted; empty for all.
+    only: Vec<String>,
     chunk: Vec<u8>,
 }
 
@@ -107,7 +104,11 @@ impl<F: Read + Seek> Reader<F> {
             return Err(Error::Cut);
         }
         check_footer(&mut file, size)?;
-        let summary = summary(&mut file, size)?;
+        let mut summary = summary(&mut file, size)?;
+        // Chunks are found again by their place.
+        summary
+            .chunk_indexes
+            .sort_by_key(|index| index.chunk_start_offset);
         for index in &summary.chunk_indexes {
             check_chunk(index, size)?;
         }
@@ -120,6 +121,7 @@ impl<F: Read + Seek> Reader<F> {
             carries: HashMap::new(),
             forwards: None,
             from_ns: 0,
+            only: Vec::new(),
             chunk: Vec::new(),
         };
         reader.learn_channels()?;
@@ -285,7 +287,13 @@ impl<F: Read + Seek> Reader<F> {
 
     /// From now on `next` gives what happened at this moment and after it.
     pub fn seek(&mut self, unix_ns: u64) {
+        self.seek_among(unix_ns, &[]);
+    }
+
+    /// As `seek`, but it gives samples of these nodes alone, and does not read chunks without any; of all if there are none.
+    pub fn seek_among(&mut self, unix_ns: u64, nodes: &[usize]) {
         self.from_ns = unix_ns;
+        self.only = nodes.iter().map(|node| self.nodes[*node].topic()).collect();
         self.forwards = None;
     }
 
@@ -302,15 +310,23 @@ impl<F: Read + Seek> Reader<F> {
             let forwards = match &mut self.forwards {
                 Some(forwards) => forwards,
                 none => {
-                    let options = IndexedReaderOptions::new()
+                    let mut options = IndexedReaderOptions::new()
                         .with_order(ReadOrder::LogTime)
                         .starting_at(self.from_ns)
                         .with_record_length_limit(RECORD_BYTES_MAX);
+                    if !self.only.is_empty() {
+                        options = options.include_topics(self.only.clone());
+                    }
                     none.insert(new_indexed(&self.summary, options)?)
                 }
             };
-            let Some((id, unix_ns, data)) =
-                step(forwards, &mut self.file, &mut self.chunk, &mut 0)?
+            let Some((id, unix_ns, data)) = step(
+                forwards,
+                &self.summary,
+                &mut self.file,
+                &mut self.chunk,
+                &mut 0,
+            )?
             else {
                 return Ok(None);
             };
@@ -342,7 +358,8 @@ impl<F: Read + Seek> Reader<F> {
             let mut chunks = 0;
             let had = missing;
             loop {
-                let got = step(&mut backwards, &mut self.file, &mut self.chunk, &mut chunks)?;
+                let (file, chunk) = (&mut self.file, &mut self.chunk);
+                let got = step(&mut backwards, &self.summary, file, chunk, &mut chunks)?;
                 let Some((id, at, data)) = got else {
                     return Ok(newest);
                 };
@@ -426,124 +443,6 @@ fn sequence(data: &[u8]) -> Option<u32> {
     read.u32()?;
     read.string()?;
     read.u32()
-}
-
-/// The library trusts the footer with memory for all that follows the start of the summary.
-fn check_footer<F: Read + Seek>(file: &mut F, size: u64) -> Result<(), Error> {
-    let begin = size - MAGIC_BYTES - FOOTER_BYTES;
-    file.seek(SeekFrom::Start(begin))?;
-    let mut footer = [0; FOOTER_BYTES as usize];
-    file.read_exact(&mut footer)?;
-    if footer[0] != op::FOOTER || footer[1..9] != 20_u64.to_le_bytes() {
-        return Err(Error::Damaged("there is no footer at its end".to_owned()));
-    }
-    let start = u64_at(&footer, 9).unwrap_or(0);
-    if start == 0 {
-        // Without a summary it can only be read from its beginning on.
-        return Err(Error::Cut);
-    }
-    match begin.checked_sub(start) {
-        None => Err(Error::Damaged("its summary lies outside it".to_owned())),
-        Some(bytes) if bytes > SUMMARY_BYTES_MAX => Err(Error::TooLarge {
-            what: "the summary",
-            bytes,
-            most: SUMMARY_BYTES_MAX,
-        }),
-        Some(_) => Ok(()),
-    }
-}
-
-fn summary<F: Read + Seek>(file: &mut F, size: u64) -> Result<Summary, Error> {
-    let options = SummaryReaderOptions::default()
-        .with_file_size(size)
-        .with_record_length_limit(RECORD_BYTES_MAX);
-    let mut reader = SummaryReader::new_with_options(options);
-    while let Some(event) = reader.next_event() {
-        match event.map_err(Error::reading)? {
-            SummaryReadEvent::ReadRequest(wanted) => {
-                let read = file.read(reader.insert(wanted))?;
-                reader.notify_read(read);
-            }
-            SummaryReadEvent::SeekRequest(to) => {
-                let at = file.seek(to)?;
-                reader.notify_seeked(at);
-            }
-        }
-    }
-    reader.finish().ok_or(Error::Cut)
-}
-
-/// Whether a chunk lies in the file and becomes no more than it can.
-fn check_chunk(index: &mcap::records::ChunkIndex, size: u64) -> Result<(), Error> {
-    let end = index.chunk_start_offset.checked_add(index.chunk_length);
-    if end.is_none_or(|end| end > size) || index.compressed_size > index.chunk_length {
-        return Err(Error::Damaged("a chunk leads outside the file".to_owned()));
-    }
-    let most = (RECORD_BYTES_MAX as u64).min(index.compressed_size.saturating_mul(INFLATION_MAX));
-    if index.uncompressed_size > most {
-        return Err(Error::TooLarge {
-            what: "a chunk",
-            bytes: index.uncompressed_size,
-            most,
-        });
-    }
-    Ok(())
-}
-
-fn new_indexed(summary: &Summary, options: IndexedReaderOptions) -> Result<IndexedReader, Error> {
-    IndexedReader::new_with_options(summary, options).map_err(Error::reading)
-}
-
-/// The next message: its channel, time and bytes. `chunks` counts those that were read for it.
-fn step<F: Read + Seek>(
-    reader: &mut IndexedReader,
-    file: &mut F,
-    chunk: &mut Vec<u8>,
-    chunks: &mut usize,
-) -> Result<Option<(u16, u64, Vec<u8>)>, Error> {
-    loop {
-        let wanted = match reader.next_event() {
-            None => return Ok(None),
-            Some(event) => match event.map_err(Error::reading)? {
-                IndexedReadEvent::ReadChunkRequest { offset, length } => (offset, length),
-                IndexedReadEvent::Message { header, data } => {
-                    return Ok(Some((header.channel_id, header.log_time, data.to_vec())));
-                }
-            },
-        };
-        let (offset, length) = wanted;
-        *chunks += 1;
-        file.seek(SeekFrom::Start(offset))?;
-        chunk.resize(length, 0);
-        file.read_exact(chunk)?;
-        reader
-            .insert_chunk_record_data(offset, chunk)
-            .map_err(Error::reading)?;
-    }
-}
-
-fn u64_at(bytes: &[u8], at: usize) -> Option<u64> {
-    let bytes = bytes.get(at..at.checked_add(8)?)?;
-    Some(u64::from_le_bytes(bytes.try_into().ok()?))
-}
-
-fn u32_at(bytes: &[u8], at: usize) -> Option<u32> {
-    let bytes = bytes.get(at..at.checked_add(4)?)?;
-    Some(u32::from_le_bytes(bytes.try_into().ok()?))
-}
-
-/// The bytes of a file in its record: opcode and length, two times, name, media type, length, bytes, checksum.
-fn attachment_of(record: &[u8]) -> Option<Vec<u8>> {
-    let (&opcode, _) = record.split_first()?;
-    let mut at = 9 + 16;
-    for _ in ["name", "media type"] {
-        let length = usize::try_from(u32_at(record, at)?).ok()?;
-        at = at.checked_add(4)?.checked_add(length)?;
-    }
-    let length = usize::try_from(u64_at(record, at)?).ok()?;
-    let begin = at.checked_add(8)?;
-    let bytes = record.get(begin..begin.checked_add(length)?)?;
-    (opcode == op::ATTACHMENT).then(|| bytes.to_vec())
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //!
 //! Owns how numbers become places. Where panels stand and what is in them is known to whoever draws.
 
-use lang_text::svg::Svg;
+use lang_text::svg::{Svg, View};
 use std::fmt::{Arguments, Display};
 
 /// A rectangle of the picture, and the numbers at its edges.
@@ -12,6 +12,26 @@ pub(crate) struct Panel {
     pub size: (f64, f64),
     pub across: (f64, f64),
     pub upwards: (f64, f64),
+}
+
+/// A white sheet with the name and the style of all charts, on which panels are drawn.
+pub(crate) fn sheet(title: &str, width: f64, height: f64) -> Svg {
+    let mut svg = Svg::new();
+    let view = View {
+        frame: [0.0, 0.0, width, height],
+        digits: 0,
+        is_sized: true,
+    };
+    svg.picture(view)
+        .style(&[("font-family", "sans-serif"), ("font-size", "12")])
+        .open();
+    svg.tag("title").text(title);
+    svg.raw(STYLE);
+    svg.tag("rect")
+        .numbers(0, [("width", width), ("height", height)])
+        .with("fill", "#ffffff")
+        .close();
+    svg
 }
 
 impl Panel {
@@ -83,7 +103,7 @@ fn text(svg: &mut Svg, (x, y): (f64, f64), anchor: &str, text: impl Display) {
 }
 
 /// How its lines look.
-pub(crate) const STYLE: &str = "<style>.g{stroke:#e8e8e8;fill:none}.f{stroke:#808080;fill:none}\
+const STYLE: &str = "<style>.g{stroke:#e8e8e8;fill:none}.f{stroke:#808080;fill:none}\
     .l{stroke:#0057b8;stroke-width:1.6;fill:none}</style>\n";
 
 /// Least and greatest of numbers, with some air around them; never nothing, and never without an end.

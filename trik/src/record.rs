@@ -59,7 +59,7 @@ pub(crate) fn run(args: &RecordArgs) -> Result<u8, Refusal> {
         if is_watched && now >= shown + Duration::from_secs(1) {
             shown = now;
             let line = counted(watch.counts(), begin.elapsed(), disk.size());
-            // Who looks at the terminal no longer is no reason to stop.
+            // A terminal that is gone is no reason to stop.
             let _ = write!(io::stderr(), "\r{line}\x1b[K");
         }
         let mut fds = [PollFd::new(signals.as_fd(), PollFlags::POLLIN)];

@@ -85,8 +85,11 @@ fn replay(args: &ReplayArgs) -> Result<bool, Error> {
     let mut session = Session::start(&arguments, &beneath, &place, signals, over)?;
     let end = session.run();
     drop(session);
-    let is_same = player.state().differences.is_empty();
-    end.map(|()| is_same || !args.exit)
+    let state = player.state();
+    match state.failure {
+        Some(why) => end.and(Err(Error::Refused(why))),
+        None => end.map(|()| state.differences.is_empty() || !args.exit),
+    }
 }
 
 /// An option of trikfs in one word, so that a path that begins with a dash stays a value.

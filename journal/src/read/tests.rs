@@ -105,6 +105,11 @@ fn a_moment_is_found_with_what_each_node_had_before_it() {
     let times: Vec<u64> = newest.iter().flatten().map(|event| event.unix_ns).collect();
     // The slow one is many chunks further back.
     assert_eq!(times, [at - MS, ZERO]);
+    reader.seek_among(ZERO, &[1]);
+    let slow = reader.next().unwrap().unwrap();
+    assert_eq!((slow.unix_ns, slow.node()), (ZERO, Some(1)));
+    assert_eq!(reader.next().unwrap(), None);
+    reader.seek(at + MS);
     // It has disturbed nothing.
     assert_eq!(reader.next().unwrap().unwrap().unix_ns, at + MS);
     assert_eq!(reader.newest(ZERO).unwrap(), [None, None]);
@@ -211,6 +216,36 @@ fn an_index_that_leads_elsewhere_takes_no_memory() {
     assert!(check_chunk(&chunk, u64::MAX).is_err());
     chunk.chunk_start_offset = u64::MAX;
     assert!(check_chunk(&chunk, u64::MAX).is_err());
+}
+
+/// Everything that a reader believes, of a file with one other byte: an error, or what was written.
+#[test]
+fn no_other_byte_becomes_another_number() {
+    let whole = recording(60);
+    let everything = |bytes: &[u8]| -> Result<_, Error> {
+        let mut reader = open(bytes)?;
+        let file = reader.attachment("config.lua")?;
+        let nodes = reader.nodes().to_vec();
+        let mut events = Vec::new();
+        while let Some(event) = reader.next()? {
+            events.push(event);
+        }
+        let newest = reader.newest(ZERO + 30 * MS)?;
+        Ok((file, nodes, events, newest))
+    };
+    let wanted = everything(&whole).unwrap();
+    let mut refused = 0;
+    for at in 0..whole.len() {
+        for change in [0x01, 0x80, 0xff] {
+            let mut bytes = whole.clone();
+            bytes[at] ^= change;
+            match everything(&bytes) {
+                Ok(read) => assert!(read == wanted, "byte {at}"),
+                Err(_) => refused += 1,
+            }
+        }
+    }
+    assert!(refused > whole.len(), "{refused}");
 }
 
 proptest! {

@@ -4,14 +4,14 @@
 //! of `sim` and `lang-diagram`.
 
 use super::stops::words;
-use super::target::{Changed, Channel, Event, Target, problems, version};
+use super::target::{Changed, Channel, Event, Target, problems};
 use crate::check::{Staged, Start};
 use crate::error::Error;
 use crate::limits;
 use lang_constraint::Level;
 use lang_diagram::debug::order::Order;
 use lang_diagram::lower::World;
-use lang_diagram::machine::patch::Refused;
+use lang_diagram::machine::patch::{Refused, Version};
 use lang_diagram::project::Project;
 use lang_text::problem::Locale;
 use serde_json::Value;
@@ -222,9 +222,9 @@ impl Target for Stage<'_> {
 
     fn change(&mut self, _file: &Path, project: &Project) -> Result<Changed, Error> {
         let locale = self.settings.locale;
-        let version = match version(project, self.world, locale) {
+        let version = match Version::of(project, self.world) {
             Ok(version) => version,
-            Err(why) => return Ok(Changed::Wrong(why)),
+            Err(why) => return Ok(Changed::Wrong(problems(&why, locale))),
         };
         let Some(trial) = &mut self.trial else {
             return Ok(Changed::CannotBe(problems(&Refused::Ended, locale)));

@@ -4,8 +4,7 @@
 
 use crate::error::Error;
 use lang_diagram::debug::order::Order;
-use lang_diagram::lower::World;
-use lang_diagram::machine::patch::{Refused, Version};
+use lang_diagram::machine::patch::Refused;
 use lang_diagram::project::Project;
 use lang_text::problem::{Locale, Problem};
 use serde_json::Value;
@@ -74,14 +73,6 @@ pub(crate) enum Channel {
     Output,
     /// It is an error or a message of rules.
     Message,
-}
-
-/// A new version for a world, if it has no mistakes.
-///
-/// # Errors
-/// A line for each mistake.
-pub(crate) fn version(project: &Project, world: World, locale: Locale) -> Result<Version, String> {
-    Version::of(project, world).map_err(|why| problems(&why, locale))
 }
 
 /// Why a version is refused, a line for each problem.

@@ -163,7 +163,7 @@ fn write(
         written = event_row(&mut out, opened, columns, &event, begin);
     }
     match written {
-        // Who reads a pipe and has seen enough is no failure.
+        // A reader of a pipe that has seen enough is no failure.
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Error::file(place, error)),
         Ok(()) | Err(_) => Ok(()),
     }

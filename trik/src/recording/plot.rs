@@ -4,7 +4,7 @@
 //! so that a long recording makes no larger picture and no peak is lost. Axes and lines are the business of `chart`.
 
 use super::shared::{Opened, Progress, moment, open};
-use crate::chart::{self, Panel, STYLE};
+use crate::chart::{self, Panel};
 use crate::error::Error;
 use crate::limits;
 use crate::output::Output;
@@ -15,7 +15,6 @@ use clap::Args;
 use journal::layout::Layout;
 use journal::read::{Event, What};
 use lang_text::problem::Locale;
-use lang_text::svg::{Svg, View};
 use std::path::PathBuf;
 
 /// Size of a panel, and what is around it, in px.
@@ -295,21 +294,7 @@ impl Line {
 fn picture(name: &str, lines: &[Line], across: (f64, f64)) -> String {
     let each = PANEL.1 + BOTTOM + TOP;
     let (width, height) = (LEFT + PANEL.0 + RIGHT, 10.0 + each * lines.len() as f64);
-    let mut svg = Svg::new();
-    let view = View {
-        frame: [0.0, 0.0, width, height],
-        digits: 0,
-        is_sized: true,
-    };
-    svg.picture(view)
-        .style(&[("font-family", "sans-serif"), ("font-size", "12")])
-        .open();
-    svg.tag("title").text(name);
-    svg.raw(STYLE);
-    svg.tag("rect")
-        .numbers(0, [("width", width), ("height", height)])
-        .with("fill", "#ffffff")
-        .close();
+    let mut svg = chart::sheet(name, width, height);
     for (at, line) in lines.iter().enumerate() {
         let points = line.points(across.1);
         let panel = Panel {

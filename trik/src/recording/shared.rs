@@ -74,7 +74,7 @@ impl Progress {
         if now >= self.next {
             self.next = now + limits::PROGRESS;
             let percent = u128::from(done) * 100 / u128::from(whole.max(1));
-            // Who looks at the terminal no longer is no reason to stop.
+            // A terminal that is gone is no reason to stop.
             let _ = write!(io::stderr(), "\r{} %\x1b[K", percent.min(100));
         }
     }

@@ -5,11 +5,12 @@
 
 use super::link::{Link, Message, ms};
 use super::upload::Upload;
-use crate::debug::target::{Changed, Channel, Event, Target, version, why_not};
+use crate::debug::target::{Changed, Channel, Event, Target, problems, why_not};
 use crate::error::Error;
 use crate::limits;
 use lang_diagram::debug::order::Order;
 use lang_diagram::lower::World;
+use lang_diagram::machine::patch::Version;
 use lang_diagram::project::Project;
 use lang_text::problem::Locale;
 use serde_json::Value;
@@ -223,8 +224,8 @@ impl Target for Debugged {
     }
 
     fn change(&mut self, file: &Path, project: &Project) -> Result<Changed, Error> {
-        if let Err(why) = version(project, World::Robot, Locale::English) {
-            return Ok(Changed::Wrong(why));
+        if let Err(why) = Version::of(project, World::Robot) {
+            return Ok(Changed::Wrong(problems(&why, Locale::English)));
         }
         let upload = Upload::read(file)?;
         let patch = format!("patch:{}:{}", WhenGone::Refuse.word(), upload.name);

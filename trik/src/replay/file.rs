@@ -116,6 +116,11 @@ impl Recording for FileRecording {
         Ok(())
     }
 
+    fn seek_among(&mut self, position: Duration, channels: &[usize]) -> Result<(), Error> {
+        self.reader.seek_among(self.moment(position), channels);
+        Ok(())
+    }
+
     fn next(&mut self) -> Result<Option<Event>, Error> {
         loop {
             let next = self.reader.next();

@@ -42,6 +42,8 @@ pub(crate) struct State {
     pub(crate) differences: Vec<String>,
     /// The end was reached and nothing follows.
     pub(crate) is_at_end: bool,
+    /// Why it went no further than this.
+    pub(crate) failure: Option<String>,
 }
 
 /// What both threads have.
@@ -114,6 +116,7 @@ impl Player {
             steps: 0,
             is_loop: begin.is_loop,
             was_at_end: false,
+            message: vec![0; limits::REPLAY_MESSAGE_BYTES],
         };
         scene.learn_outputs()?;
         scene.seek(begin.at)?;
@@ -209,6 +212,8 @@ struct Scene {
     steps: u32,
     is_loop: bool,
     was_at_end: bool,
+    /// Room for what a peer says.
+    message: Vec<u8>,
 }
 
 impl Scene {
@@ -217,31 +222,31 @@ impl Scene {
             if lock(&self.shared).is_ending {
                 return;
             }
-            let outcome = self.play();
-            if let Err(error) = outcome {
-                self.news(format!("the replay ends here: {error}"));
+            if let Err(error) = self.play() {
                 self.next = None;
+                self.was_at_end = true;
                 self.clock.run(Instant::now(), false);
+                self.fail(&error.to_string());
             }
             self.tell();
-            if self.wait().is_err() {
-                return self.news("the replay cannot wait any more".to_owned());
+            match self.wait() {
+                Ok(speaking) => self.hear(&speaking),
+                Err(error) => return self.fail(&format!("poll: {error}")),
             }
-            self.hear();
         }
     }
 
     /// The rows of changes of all that can be written.
     fn learn_outputs(&mut self) -> Result<(), Error> {
-        let is_written: Vec<bool> = (self.recording.channels().iter())
-            .map(|channel| channel.is_written)
-            .collect();
-        if !is_written.contains(&true) {
+        let channels = self.recording.channels().iter().enumerate();
+        let written = channels.filter(|(_, channel)| channel.is_written);
+        let written: Vec<usize> = written.map(|(at, _)| at).collect();
+        if written.is_empty() {
             return Ok(());
         }
-        self.recording.seek(Duration::ZERO)?;
+        self.recording.seek_among(Duration::ZERO, &written)?;
         while let Some(event) = self.recording.next()? {
-            if let (true, What::Sample(tuple)) = (is_written[event.channel], &event.what) {
+            if let What::Sample(tuple) = &event.what {
                 self.outputs[event.channel].record(event.at, tuple, limits::REPLAY_CHANGES_MAX);
             }
         }
@@ -338,43 +343,54 @@ impl Scene {
         for output in &mut self.outputs {
             output.seek(position);
         }
+        lock(&self.shared).state.differences.clear();
         Ok(())
     }
 
-    fn wait(&self) -> nix::Result<()> {
-        let now = Instant::now();
-        let due = match &self.next {
+    /// When there is something to do without anybody asking.
+    fn due(&self, now: Instant) -> Option<Instant> {
+        match &self.next {
+            Some(_) if self.steps > 0 => Some(now),
             Some(next) => self.clock.due(next.at),
+            // Its end, once.
+            None if self.was_at_end => None,
             None => self.clock.due(self.clock.length()),
-        };
-        let until = due.filter(|_| self.clock.runs(now) || self.next.is_some());
-        let until = match until {
-            Some(at) if at <= now && self.next.is_none() && !self.is_loop => None,
-            until => until,
-        };
-        let most = Duration::from_millis(limits::VIEW_MS.into());
-        let left = until.map_or(most, |at| at.saturating_duration_since(now));
-        let left = PollTimeout::try_from(left.min(most)).unwrap_or(PollTimeout::MAX);
-        let mut fds = vec![
-            PollFd::new(self.listener.as_fd(), PollFlags::POLLIN),
-            PollFd::new(self.control.fd(), PollFlags::POLLIN),
-            PollFd::new(self.wake.as_fd(), PollFlags::POLLIN),
-        ];
-        let peers = self.peers.iter();
-        fds.extend(peers.map(|peer| PollFd::new(peer.socket.as_fd(), PollFlags::POLLIN)));
-        match poll(&mut fds, left) {
-            Err(nix::Error::EINTR) | Ok(_) => Ok(()),
-            Err(error) => Err(error),
         }
     }
 
-    fn hear(&mut self) {
-        let _ = self.wake.read();
-        self.admit();
-        for at in 0..self.peers.len() {
-            self.hear_peer(at);
+    /// Waits for that, for orders, and for peers; gives those that have something to say.
+    fn wait(&self) -> nix::Result<Vec<usize>> {
+        let now = Instant::now();
+        let most = Duration::from_millis(limits::VIEW_MS.into());
+        let left = (self.due(now)).map_or(most, |at| at.saturating_duration_since(now));
+        let left = PollTimeout::try_from(left.min(most)).unwrap_or(PollTimeout::MAX);
+        let ours = [self.listener.as_fd(), self.control.fd(), self.wake.as_fd()];
+        let peers = self.peers.iter().map(|peer| peer.socket.as_fd());
+        let all = ours.into_iter().chain(peers);
+        let mut fds: Vec<_> = all.map(|fd| PollFd::new(fd, PollFlags::POLLIN)).collect();
+        match poll(&mut fds, left) {
+            Err(nix::Error::EINTR) => Ok(Vec::new()),
+            Err(error) => Err(error),
+            Ok(_) => {
+                let peers = fds[ours.len()..].iter().enumerate();
+                let speaks = |fd: &PollFd<'_>| fd.any().unwrap_or(true);
+                Ok(peers
+                    .filter_map(|(at, fd)| speaks(fd).then_some(at))
+                    .collect())
+            }
         }
+    }
+
+    fn hear(&mut self, speaking: &[usize]) {
+        let _ = self.wake.read();
+        // One buffer for all; it is too large to be made anew for each.
+        let mut bytes = std::mem::take(&mut self.message);
+        for &at in speaking {
+            self.hear_peer(at, &mut bytes);
+        }
+        self.message = bytes;
         self.peers.retain(|peer| peer.wish != Wish::Gone);
+        self.admit();
         for line in self.control.lines() {
             let order = Order::read(&line);
             self.complain(order.as_ref().err());
@@ -394,7 +410,7 @@ impl Scene {
 
     /// The last bad order is in a file until the next good one.
     fn complain(&self, bad: Option<&BadOrder>) {
-        // Who cannot be told has lost the folder.
+        // If nobody can be told, the folder is gone.
         let _ = match bad {
             None => std::fs::remove_file(&self.complaint),
             Some(bad) => std::fs::write(&self.complaint, format!("{bad}\n")),
@@ -413,11 +429,10 @@ impl Scene {
         }
     }
 
-    fn hear_peer(&mut self, at: usize) {
-        let mut bytes = [0; limits::REPLAY_MESSAGE_BYTES];
+    fn hear_peer(&mut self, at: usize, bytes: &mut [u8]) {
         for _ in 0..limits::REPLAY_BATCH {
             let peer = &mut self.peers[at];
-            let size = match recv(peer.socket.as_raw_fd(), &mut bytes, MsgFlags::empty()) {
+            let size = match recv(peer.socket.as_raw_fd(), bytes, MsgFlags::empty()) {
                 Ok(0) => 0,
                 Ok(size) => size,
                 Err(nix::Error::EAGAIN | nix::Error::EINTR) => return,
@@ -472,9 +487,21 @@ impl Scene {
 
     fn differs(&self, channel: usize) {
         let described = &self.recording.channels()[channel];
-        if let Some(difference) = self.outputs[channel].difference() {
-            self.news(super::words::difference(described, difference));
+        let Some(difference) = self.outputs[channel].difference() else {
+            return;
+        };
+        let line = super::words::difference(described, difference);
+        self.news(line.clone());
+        let mut shared = lock(&self.shared);
+        if shared.state.differences.len() < limits::REPLAY_NEWS_MAX {
+            shared.state.differences.push(line);
         }
+    }
+
+    /// It goes no further, and a person has to know why.
+    fn fail(&self, why: &str) {
+        self.news(format!("the replay ends here: {why}"));
+        lock(&self.shared).state.failure = Some(why.to_owned());
     }
 
     fn obey(&mut self, order: Order) {
@@ -518,11 +545,6 @@ impl Scene {
 
     fn tell(&self) {
         let now = Instant::now();
-        let channels = self.recording.channels().iter();
-        let differences = channels.zip(&self.outputs).filter_map(|(channel, output)| {
-            let difference = output.difference()?;
-            Some(super::words::difference(channel, difference))
-        });
         let mut shared = lock(&self.shared);
         let state = &mut shared.state;
         state.position = self.clock.position(now);
@@ -531,7 +553,6 @@ impl Scene {
         state.runs = self.clock.runs(now);
         state.is_loop = self.is_loop;
         state.same = self.outputs.iter().map(Output::same).sum();
-        state.differences = differences.take(limits::REPLAY_NEWS_MAX).collect();
         state.is_at_end = self.next.is_none() && !state.runs && !self.is_loop;
     }
 }

@@ -60,6 +60,12 @@ pub(crate) trait Recording {
     /// The file cannot be read.
     fn seek(&mut self, position: Duration) -> Result<(), Error>;
 
+    /// As `seek`, but `next` gives events of these channels alone, until the next of both.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    fn seek_among(&mut self, position: Duration, channels: &[usize]) -> Result<(), Error>;
+
     /// The next event; None at the end.
     ///
     /// # Errors

@@ -3,9 +3,9 @@
 //! Owns the layout.
 
 use super::table::{Column, Table};
-use crate::chart::{self, Panel, STYLE};
+use crate::chart::{self, Panel};
 use crate::limits;
-use lang_text::svg::{Svg, View};
+use lang_text::svg::Svg;
 
 /// Size of the path's panel and of those below it, without their margins, in px.
 const PATH: (f64, f64) = (560.0, 400.0);
@@ -32,21 +32,7 @@ pub(super) fn svg(title: &str, table: &Table) -> String {
     let below_path = top + path.map_or(0.0, |_| PATH.1 + BOTTOM + TOP);
     let each = PANEL.1 + BOTTOM + 16.0;
     let (width, height) = (LEFT + PATH.0 + RIGHT, below_path + each * shown as f64);
-    let mut svg = Svg::new();
-    let view = View {
-        frame: [0.0, 0.0, width, height],
-        digits: 0,
-        is_sized: true,
-    };
-    svg.picture(view)
-        .style(&[("font-family", "sans-serif"), ("font-size", "12")])
-        .open();
-    svg.tag("title").text(title);
-    svg.raw(STYLE);
-    svg.tag("rect")
-        .numbers(0, [("width", width), ("height", height)])
-        .with("fill", "#ffffff")
-        .close();
+    let mut svg = chart::sheet(title, width, height);
     if let Some((x, y)) = path {
         draw_path(&mut svg, table, (x + 1, y + 1), top);
         top = below_path;
