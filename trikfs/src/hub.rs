@@ -49,6 +49,8 @@ pub struct Subscription {
     node: Weak<Node>,
     tuple_size: usize,
     queue: Mutex<Queue>,
+    /// When its reader came.
+    since: Instant,
     on_ready: Weak<dyn Ready>,
 }
 
@@ -104,6 +106,7 @@ impl Hub {
             node: self.node.clone(),
             tuple_size: self.tuple_size,
             queue: Mutex::new(queue),
+            since: Instant::now(),
             on_ready,
         });
         let mut subscriptions = lock(&self.subscriptions);
@@ -251,13 +254,19 @@ impl Hub {
         }
     }
 
-    /// Whether the source has given nothing since it was opened, and nothing is on its way.
-    fn is_silent(&self, patience: Patience) -> bool {
+    /// Whether the source has given nothing since it was opened, and nothing is on its way. For a reader that came after
+    /// something was said, this counts from `since`, when it came.
+    fn is_silent(&self, since: Instant, patience: Patience) -> bool {
         let inner = lock(&self.inner);
-        let Some(stream) = inner.stream.as_deref().filter(|_| !inner.has_spoken) else {
-            return false;
+        let begin = if inner.has_spoken {
+            since
+        } else {
+            inner.opened
         };
-        stream.is_silent(inner.opened.elapsed(), patience) && !is_readable(stream)
+        let stream = inner.stream.as_deref();
+        stream.is_some_and(|stream| {
+            stream.is_silent(begin.elapsed(), patience) && !is_readable(stream)
+        })
     }
 
     fn reopen(&self, node: &Arc<Node>, inner: &mut Inner) {
@@ -377,9 +386,10 @@ impl Subscription {
         Ok(Got::Bytes(n))
     }
 
-    /// See [`Stream::is_silent`]; asked of the opening that all readers share.
+    /// See [`Stream::is_silent`]; asked of the opening that all readers share, by a reader that has heard nothing yet.
     pub fn is_silent(&self, patience: Patience) -> bool {
-        self.hub.is_silent(patience)
+        let has_some = !lock(&self.queue).bytes.is_empty();
+        !has_some && self.hub.is_silent(self.since, patience)
     }
 
     fn push(&self, tuples: &[u8]) {

@@ -71,6 +71,13 @@ for node, first in (('pad', struct.pack('<i', 7)), ('all', None)):
     if first:
         assert os.read(late, 100) == first
     expect('EAGAIN', os.read, late, 100)
+    # That nothing more comes is known soon, also after others have heard something.
+    value = open_ro(M + '/' + node + '/value')
+    if first:
+        assert os.read(value, 100).split() == [b'7', b'0', b'0', b'0']
+    else:
+        expect('ENODATA', os.read, value, 100)
+    os.close(value)
     # What comes now is for both.
     os.write(pipe, event(3, 0, 9) + event(0, 0, 0))
     for fd in (early, late):
