@@ -6,9 +6,11 @@
 
 use crate::error::Error;
 use crate::limits::{CHUNK_BYTES, RECORD_BYTES_MAX};
+use crate::write::{FAULTS, Story};
 use mcap::records::{MessageHeader, Record};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use mcap::{Attachment, Compression, WriteOptions};
+use std::cell::RefCell;
 use std::collections::HashMap;
 use std::io::{Read, Seek, Write};
 
@@ -36,57 +38,47 @@ pub fn mend<R: Read, W: Write + Seek>(from: R, to: W) -> Result<Saved, Error> {
 /// # Errors
 /// It is no recording, or the new one cannot be written.
 pub fn copy<R: Read, W: Write + Seek>(
-    mut from: R,
+    from: R,
     to: W,
     is_wanted: impl Fn(&str, u64) -> bool,
 ) -> Result<Saved, Error> {
-    let options = LinearReaderOptions::default()
-        .with_skip_end_magic(true)
-        .with_validate_chunk_crcs(true)
-        // Else messages of a damaged chunk would come before anybody knows that they are none.
-        .with_prevalidate_chunk_crcs(true)
-        .with_record_length_limit(RECORD_BYTES_MAX);
-    let mut reader = LinearReader::new_with_options(options);
+    let mut target = Target::new(to);
     let mut saved = Saved::default();
-    let mut target = Target {
-        out: None,
-        to: Some(to),
-        schemas: HashMap::new(),
-        channels: HashMap::new(),
-    };
-    loop {
-        let step = match reader.next_event() {
-            None => break,
-            Some(step) => step,
+    target.pour(from, &mut saved, &is_wanted)?;
+    target.finish()?;
+    Ok(saved)
+}
+
+/// Puts recordings of one recorder that follow each other into one. Each may begin with what nodes had before; that is left
+/// out where an earlier one has it. One that is cut gives what is whole of it.
+///
+/// # Errors
+/// None of them is a recording, or the new one cannot be written.
+pub fn join<R: Read, W: Write + Seek>(
+    all: impl IntoIterator<Item = R>,
+    to: W,
+) -> Result<Saved, Error> {
+    let mut target = Target::new(to);
+    let mut saved = Saved::default();
+    let last: RefCell<HashMap<String, u64>> = RefCell::default();
+    for from in all {
+        let before = last.borrow().clone();
+        let is_new = |topic: &str, unix_ns: u64| {
+            // Lines are never repeated, and failures of all nodes have one topic.
+            let is_of_a_node = topic != FAULTS && Story::of(topic).is_none();
+            let repeats = before.get(topic).is_some_and(|last| unix_ns <= *last);
+            let mut last = last.borrow_mut();
+            let newest = last.entry(topic.to_owned()).or_default();
+            *newest = (*newest).max(unix_ns);
+            !(is_of_a_node && repeats)
         };
-        match step {
-            Ok(LinearReadEvent::ReadRequest(wanted)) => {
-                let read = from.read(reader.insert(wanted))?;
-                reader.notify_read(read);
-            }
-            Ok(LinearReadEvent::Record { opcode, data }) => {
-                match target.take(opcode, data, &mut saved, &is_wanted) {
-                    Ok(true) => {}
-                    Ok(false) => break,
-                    Err(Stop::Damage(error)) => {
-                        saved.cut = Some(error);
-                        break;
-                    }
-                    Err(Stop::Disk(error)) => return Err(error),
-                }
-            }
-            Err(error) => {
-                let error = Error::reading(error);
-                if error == Error::NotARecording {
-                    return Err(error);
-                }
-                saved.cut = Some(error);
-                break;
-            }
+        match target.pour(from, &mut saved, &is_new) {
+            // It was begun and nothing was written: the recorder was killed just then.
+            Ok(()) | Err(Error::NotARecording) => {}
+            Err(error) => return Err(error),
         }
     }
-    let mut out = target.out.ok_or(Error::NotARecording)?;
-    out.finish().map_err(Error::writing)?;
+    target.finish()?;
     Ok(saved)
 }
 
@@ -102,16 +94,88 @@ struct Target<W: Write + Seek> {
     /// From the header on.
     out: Option<mcap::Writer<W>>,
     to: Option<W>,
+    /// The header of the recording that is copied now has come.
+    is_begun: bool,
     /// Numbers there to numbers here.
     schemas: HashMap<u16, u16>,
     channels: HashMap<u16, (u16, String)>,
 }
 
 impl<W: Write + Seek> Target<W> {
-    /// Begins the new file as the old one was begun.
+    fn new(to: W) -> Self {
+        Self {
+            out: None,
+            to: Some(to),
+            is_begun: false,
+            schemas: HashMap::new(),
+            channels: HashMap::new(),
+        }
+    }
+
+    /// Copies what is whole of a recording.
+    fn pour<R: Read>(
+        &mut self,
+        mut from: R,
+        saved: &mut Saved,
+        is_wanted: &impl Fn(&str, u64) -> bool,
+    ) -> Result<(), Error> {
+        let options = LinearReaderOptions::default()
+            .with_skip_end_magic(true)
+            .with_validate_chunk_crcs(true)
+            // Else messages of a damaged chunk would come before anybody knows that they are none.
+            .with_prevalidate_chunk_crcs(true)
+            .with_record_length_limit(RECORD_BYTES_MAX);
+        let mut reader = LinearReader::new_with_options(options);
+        self.is_begun = false;
+        self.schemas.clear();
+        self.channels.clear();
+        while let Some(step) = reader.next_event() {
+            match step {
+                Ok(LinearReadEvent::ReadRequest(wanted)) => {
+                    let read = from.read(reader.insert(wanted))?;
+                    reader.notify_read(read);
+                }
+                Ok(LinearReadEvent::Record { opcode, data }) => {
+                    match self.take(opcode, data, saved, is_wanted) {
+                        Ok(true) => {}
+                        Ok(false) => break,
+                        Err(Stop::Damage(error)) => {
+                            saved.cut = Some(error);
+                            break;
+                        }
+                        Err(Stop::Disk(error)) => return Err(error),
+                    }
+                }
+                Err(error) => {
+                    let error = Error::reading(error);
+                    if error == Error::NotARecording {
+                        return Err(error);
+                    }
+                    saved.cut = Some(error);
+                    break;
+                }
+            }
+        }
+        match self.is_begun {
+            true => Ok(()),
+            false => Err(Error::NotARecording),
+        }
+    }
+
+    /// Writes the summary and the end.
+    fn finish(self) -> Result<(), Error> {
+        let mut out = self.out.ok_or(Error::NotARecording)?;
+        out.finish().map(drop).map_err(Error::writing)
+    }
+
+    /// Begins the new file as the old one was begun; a further one goes on in the same file.
     fn begin(&mut self, header: &mcap::records::Header) -> Result<(), Stop> {
-        let Some(to) = self.to.take() else {
+        if self.is_begun {
             return Err(Stop::Damage(Error::Damaged("a second header".to_owned())));
+        }
+        self.is_begun = true;
+        let Some(to) = self.to.take() else {
+            return Ok(());
         };
         let options = WriteOptions::new()
             .profile(header.profile.clone())
@@ -142,7 +206,8 @@ impl<W: Write + Seek> Target<W> {
         if let Record::Header(header) = &record {
             return self.begin(header).map(|()| true);
         }
-        let Some(out) = &mut self.out else {
+        let out = self.out.as_mut().filter(|_| self.is_begun);
+        let Some(out) = out else {
             return Err(Stop::Damage(Error::NotARecording));
         };
         let unknown = |what: &str| Stop::Damage(Error::Damaged(format!("an unknown {what}")));

@@ -9,8 +9,8 @@ use crate::error::Error;
 use crate::layout::Layout;
 use crate::limits::{ATTACHMENT_BYTES_MAX, CHUNKS_BACK, NODES_MAX, RECORD_BYTES_MAX};
 use crate::node::{self, Node};
-use crate::standard::{self, Log};
-use crate::write::{FAULTS, LOG};
+use crate::standard::Log;
+use crate::write::{FAULTS, Story};
 use container::{
     FOOTER_BYTES, MAGIC_BYTES, attachment_of, check_chunk, check_footer, new_indexed, step, summary,
 };
@@ -43,7 +43,7 @@ enum Carries {
     /// Samples of the node with this number, in the layout with this number.
     Samples(usize, usize),
     Faults,
-    Log,
+    Lines(Story),
 }
 
 /// Something that happened.
@@ -78,8 +78,8 @@ pub enum What {
         /// Why.
         reason: String,
     },
-    /// A line of the log.
-    Log(Log),
+    /// A line of the log, or of another story.
+    Line(Story, Log),
 }
 
 impl<F: Read + Seek> Reader<F> {
@@ -136,7 +136,7 @@ impl<F: Read + Seek> Reader<F> {
         for channel in channels {
             let carries = match channel.topic.as_str() {
                 FAULTS => Carries::Faults,
-                LOG => Carries::Log,
+                topic if let Some(story) = Story::of(topic) => Carries::Lines(story),
                 topic => {
                     let Some(node) = Node::of_channel(topic, &channel.metadata) else {
                         continue;
@@ -174,7 +174,7 @@ impl<F: Read + Seek> Reader<F> {
     pub fn layouts_of(&self, node: usize) -> Vec<usize> {
         let of_node = self.carries.values().filter_map(|carries| match carries {
             Carries::Samples(number, layout) if *number == node => Some(*layout),
-            Carries::Samples(..) | Carries::Faults | Carries::Log => None,
+            Carries::Samples(..) | Carries::Faults | Carries::Lines(_) => None,
         });
         let mut all: Vec<usize> = of_node.collect();
         all.sort_unstable();
@@ -419,8 +419,9 @@ impl<F: Read + Seek> Reader<F> {
                     reason: fault.text,
                 }
             }
-            Some(Carries::Log) => {
-                What::Log(standard::Log::decode(data).ok_or_else(|| damaged("the log"))?)
+            Some(&Carries::Lines(story)) => {
+                let line = Log::decode(data).ok_or_else(|| damaged(story.topic()))?;
+                What::Line(story, line)
             }
         };
         Ok(Some(Event { unix_ns, what }))
@@ -432,7 +433,7 @@ impl Event {
     pub fn node(&self) -> Option<usize> {
         match &self.what {
             What::Sample { node, .. } | What::Fault { node, .. } => Some(*node),
-            What::Log(_) => None,
+            What::Line(..) => None,
         }
     }
 }

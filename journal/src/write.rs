@@ -14,15 +14,56 @@ use mcap::records::MessageHeader;
 use mcap::{Attachment, Compression, WriteOptions};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::io::{Seek, Write};
+use std::io::{self, Cursor, Seek, SeekFrom, Write};
 use std::marker::PhantomData;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// The topic of failures: a node has no value, and why.
 pub const FAULTS: &str = "/faults";
-/// The topic of lines of the log.
-pub const LOG: &str = "/log";
 /// The name of the metadata that say where the recording is from.
 pub const ABOUT: &str = "trikfs";
+
+/// What a line of a recording is about; each has a topic of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Story {
+    /// The log of the tree.
+    Log,
+    /// Programs begin and end, and what is wrong with them.
+    Programs,
+    /// What programs print.
+    Output,
+    /// Messages of other robots.
+    Mail,
+    /// Where a diagram is, with its variables: JSON.
+    Diagram,
+}
+
+impl Story {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Log,
+        Self::Programs,
+        Self::Output,
+        Self::Mail,
+        Self::Diagram,
+    ];
+
+    /// Its topic.
+    pub fn topic(self) -> &'static str {
+        match self {
+            Self::Log => "/log",
+            Self::Programs => "/programs",
+            Self::Output => "/output",
+            Self::Mail => "/mail",
+            Self::Diagram => "/diagram",
+        }
+    }
+
+    /// That of a topic; None if it is another one.
+    pub fn of(topic: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|story| story.topic() == topic)
+    }
+}
 
 /// A recording that is being written. It is finished by `finish`, or when it is dropped.
 pub struct Writer<W: Write + Seek> {
@@ -30,7 +71,8 @@ pub struct Writer<W: Write + Seek> {
     nodes: Vec<Channel>,
     names: Names,
     faults: u16,
-    log: u16,
+    /// The channels of lines; None before the first line.
+    stories: [Option<u16>; Story::ALL.len()],
 }
 
 struct Channel {
@@ -38,6 +80,39 @@ struct Channel {
     path: String,
     layout: Layout,
     sequence: u32,
+}
+
+/// Bytes of a recording that is read while it is made; copies are the same bytes.
+#[derive(Clone, Debug, Default)]
+pub struct Out(Arc<Mutex<Cursor<Vec<u8>>>>);
+
+impl Out {
+    /// What was written since the last call.
+    pub fn take(&self) -> Vec<u8> {
+        std::mem::take(&mut *self.lock()).into_inner()
+    }
+
+    fn lock(&self) -> std::sync::MutexGuard<'_, Cursor<Vec<u8>>> {
+        // Bytes are whole, whatever failed elsewhere.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Write for Out {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.lock().write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Seek for Out {
+    /// It only goes forward: the place that is asked for is that of the bytes that nobody has taken yet.
+    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
+        self.lock().seek(to)
+    }
 }
 
 /// A node of a recording that is being written.
@@ -65,21 +140,36 @@ impl<W: Write + Seek> Writer<W> {
             .chunk_size(Some(CHUNK_BYTES))
             // A chunk is written whole: a recorder that is killed leaves none that is broken.
             .disable_seeking(true);
-        let mut file = options.create(out).map_err(Error::writing)?;
-        let text = standard::log_text();
-        let schema = file.add_schema(standard::LOG, ENCODING, text.as_bytes());
-        let schema = schema.map_err(Error::writing)?;
-        let mut channel = |topic| {
-            file.add_channel(schema, topic, MESSAGE_ENCODING, &BTreeMap::new())
-                .map_err(Error::writing)
-        };
-        let (faults, log) = (channel(FAULTS)?, channel(LOG)?);
+        Self::with(options.create(out))
+    }
+
+    /// Begins a recording that is read while it is made and has no end: each message is written at once, and nothing of it is
+    /// kept. It has neither chunks nor a summary; `mend` makes a file of it.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn live(out: W, library: &str) -> Result<Self, Error> {
+        let options = WriteOptions::new()
+            .profile("ros2")
+            .library(library)
+            .use_chunks(false)
+            .calculate_data_section_crc(false)
+            .disable_seeking(true);
+        Self::with(options.create(out))
+    }
+
+    fn with(file: mcap::McapResult<mcap::Writer<W>>) -> Result<Self, Error> {
+        let mut file = file.map_err(Error::writing)?;
+        let faults = lines(&mut file, FAULTS)?;
+        let log = lines(&mut file, Story::Log.topic())?;
+        let mut stories = [None; Story::ALL.len()];
+        stories[Story::Log as usize] = Some(log);
         Ok(Self {
             file,
             nodes: Vec::new(),
             names: Names::default(),
             faults,
-            log,
+            stories,
         })
     }
 
@@ -174,11 +264,24 @@ impl<W: Write + Seek> Writer<W> {
     /// # Errors
     /// The file cannot be written.
     pub fn log(&mut self, unix_ns: u64, line: &Log) -> Result<(), Error> {
+        self.line(Story::Log, unix_ns, line)
+    }
+
+    /// A line of one of the stories.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn line(&mut self, story: Story, unix_ns: u64, line: &Log) -> Result<(), Error> {
         let line = Log {
             text: cut(&line.text).to_owned(),
             ..line.clone()
         };
-        self.message(self.log, 0, unix_ns, &line.encode(unix_ns))
+        let id = match self.stories[story as usize] {
+            Some(id) => id,
+            None => lines(&mut self.file, story.topic())?,
+        };
+        self.stories[story as usize] = Some(id);
+        self.message(id, 0, unix_ns, &line.encode(unix_ns))
     }
 
     fn message(&mut self, id: u16, sequence: u32, unix_ns: u64, data: &[u8]) -> Result<(), Error> {
@@ -244,6 +347,15 @@ impl<W: Write + Seek> Writer<W> {
     pub fn finish(mut self) -> Result<(), Error> {
         self.file.finish().map(drop).map_err(Error::writing)
     }
+}
+
+/// A channel of lines.
+fn lines<W: Write + Seek>(file: &mut mcap::Writer<W>, topic: &str) -> Result<u16, Error> {
+    let text = standard::log_text();
+    let schema = file.add_schema(standard::LOG, ENCODING, text.as_bytes());
+    let schema = schema.map_err(Error::writing)?;
+    file.add_channel(schema, topic, MESSAGE_ENCODING, &BTreeMap::new())
+        .map_err(Error::writing)
 }
 
 /// A text within the limit.

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// The largest circle that a crate may have. Lower a number with the circle; never raise one.
-const LARGEST: [(&str, usize); 18] = [
+const LARGEST: [(&str, usize); 19] = [
     ("config", 4),
     ("converter", 3),
     ("ev3dev", 2),
@@ -21,6 +21,7 @@ const LARGEST: [(&str, usize); 18] = [
     ("lang/expr", 1),
     ("lang/plan", 1),
     ("lang/text", 2),
+    ("recorder", 1),
     ("sample-bus", 1),
     ("screen", 3),
     ("sim", 8),

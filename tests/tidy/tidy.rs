@@ -11,7 +11,7 @@ mod prose;
 /// Rules of waiting.
 mod waits;
 
-const CRATES: [&str; 20] = [
+const CRATES: [&str; 21] = [
     "config",
     "converter",
     "ev3dev",
@@ -24,6 +24,7 @@ const CRATES: [&str; 20] = [
     "lang/expr",
     "lang/plan",
     "lang/text",
+    "recorder",
     "sample-bus",
     "screen",
     "sim",

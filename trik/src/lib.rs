@@ -23,7 +23,6 @@ mod input;
 mod language;
 pub mod limits;
 mod output;
-mod pattern;
 pub mod place;
 mod record;
 mod recording;

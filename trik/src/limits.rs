@@ -189,26 +189,6 @@ pub const REPLAY_ORDERS_MAX: usize = 64;
 pub const REPLAY_NEWS_MAX: usize = 64;
 /// Changes of one actuator that are compared.
 pub const REPLAY_CHANGES_MAX: usize = 100_000;
-/// Depth of directories below a mount point: groups of a configuration, and the nodes in them.
-pub const TREE_DEPTH_MAX: usize = 17;
-/// Nodes of a tree that are recorded.
-pub const RECORDED_NODES_MAX: usize = 4096;
-/// Bytes of a small text of the tree: a format of 1024 fields.
-pub const RECORDED_TEXT_BYTES_MAX: u64 = 128 << 10;
-/// Bytes of the numbers that bring a node to rest.
-pub const RECORDED_REST_BYTES_MAX: usize = 4096;
-/// Bytes of a configuration that goes with a recording.
-pub const RECORDED_CONFIG_BYTES_MAX: u64 = 1 << 20;
-/// How often a recorder looks at the rings: they hold at least 3 samples, mostly 15.
-pub const RECORD_LOOK_MS: u16 = 5;
-/// How often what was recorded is handed to the disk.
-pub const RECORD_FLUSH_MS: u32 = 1_000;
-/// Batches of events that wait for the disk; a batch is what came in one look.
-pub const RECORD_BATCHES: usize = 1_024;
-/// Bytes of events that wait for the disk.
-pub const RECORD_BYTES: usize = 16 << 20;
-/// Reads of 4 KiB that skip the lines of a log that are kept: 64 KiB, and some that come meanwhile.
-pub const LOG_READS_MAX: usize = 32;
 /// Seconds of a moment of a recording: 30 years.
 pub(crate) const RECORDING_SECONDS_MAX: f64 = 1e9;
 /// How often a long work says how far it is.

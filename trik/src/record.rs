@@ -1,27 +1,26 @@
 //! `trik record`: what the nodes of a mounted tree give, into a recording.
 //!
-//! Owns the run: which tree, when it ends, and what a person is told. The tree is read from outside, as any program reads it,
-//! so nobody who samples or reads is delayed. `nodes` finds the nodes, `watch` looks at their rings, `disk` writes.
+//! Owns the run: which tree, when it ends, and what a person is told. What is seen and how it gets into a file is `recorder`'s.
 
 pub(crate) mod args;
-mod disk;
-mod nodes;
-mod watch;
 
 use crate::error::Error;
-use crate::limits;
 use crate::place;
 use crate::refusal::Refusal;
 use crate::up::session::signals;
 use args::RecordArgs;
-use disk::Disk;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
+use recorder::entry::{Batch, Entry, events};
+use recorder::file::Disk;
+use recorder::watch::Watch;
 use std::io::{self, IsTerminal, Write};
 use std::os::fd::AsFd;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
-use watch::{Counts, Watch};
 
+/// The program that records, with its version.
+const LIBRARY: &str = concat!("trik/", env!("CARGO_PKG_VERSION"));
 /// Where a tree is when nothing is said and no virtual robot runs.
 const USUAL: &str = "/trikfs";
 
@@ -32,9 +31,13 @@ const USUAL: &str = "/trikfs";
 pub(crate) fn run(args: &RecordArgs) -> Result<u8, Refusal> {
     let root = tree(args.mountpoint.as_deref())?;
     let signals = signals().map_err(|error| Error::system("signals", error))?;
-    let mut watch = Watch::begin(&root, |path| args.wants(path))?;
-    let disk = Disk::create(&args.output)?;
-    say(&begun(&watch, args))?;
+    let wanted = args.clone();
+    let wants = Box::new(move |path: &str| wanted.wants(path));
+    let watch = Watch::begin(&root, LIBRARY, wants).map_err(refused)?;
+    let disk = Disk::create(&args.output, LIBRARY, recorder::limits::WAITING_BYTES);
+    let disk = disk.map_err(refused)?;
+    let mut tape = Tape::begin(watch, disk);
+    say(&begun(&tape.watch, args))?;
     let is_watched = io::stderr().is_terminal();
     let begin = Instant::now();
     let end = args
@@ -42,7 +45,7 @@ pub(crate) fn run(args: &RecordArgs) -> Result<u8, Refusal> {
         .map(|seconds| begin + Duration::from_secs(seconds.into()));
     let mut shown = begin;
     let why = loop {
-        watch.look(&disk);
+        tape.look();
         let now = Instant::now();
         if let Ok(Some(_)) = signals.read_signal() {
             break "stopped";
@@ -50,24 +53,22 @@ pub(crate) fn run(args: &RecordArgs) -> Result<u8, Refusal> {
         if end.is_some_and(|end| now >= end) {
             break "the time is over";
         }
-        if watch.is_gone() {
+        if tape.watch.is_gone() {
             break "the tree is gone";
         }
-        if disk.has_failed() {
+        if tape.disk.has_failed() {
             break "the disk takes no more";
         }
         if is_watched && now >= shown + Duration::from_secs(1) {
             shown = now;
-            let line = counted(watch.counts(), begin.elapsed(), disk.size());
+            let line = counted(tape.counts(), begin.elapsed(), tape.disk.size());
             // A terminal that is gone is no reason to stop.
             let _ = write!(io::stderr(), "\r{line}\x1b[K");
         }
         let mut fds = [PollFd::new(signals.as_fd(), PollFlags::POLLIN)];
-        let _ = poll(&mut fds, PollTimeout::from(limits::RECORD_LOOK_MS));
+        let _ = poll(&mut fds, PollTimeout::from(recorder::limits::LOOK_MS));
     };
-    watch.end(&disk);
-    let counts = watch.counts();
-    disk.finish()?;
+    let counts = tape.end().map_err(refused)?;
     if is_watched {
         let _ = write!(io::stderr(), "\r\x1b[K");
     }
@@ -77,6 +78,80 @@ pub(crate) fn run(args: &RecordArgs) -> Result<u8, Refusal> {
     Ok(0)
 }
 
+/// What has come, and what has not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Counts {
+    events: u64,
+    /// Overwritten in their rings before they were looked at.
+    missed: u64,
+    /// The disk was too slow.
+    dropped: u64,
+}
+
+/// A tree that is looked at, and the file that has what it does.
+struct Tape {
+    watch: Watch,
+    disk: Disk,
+    counts: Counts,
+}
+
+impl Tape {
+    fn begin(watch: Watch, disk: Disk) -> Self {
+        // An empty queue takes it.
+        disk.put(&watch.beginning().into());
+        Self {
+            watch,
+            disk,
+            counts: Counts::default(),
+        }
+    }
+
+    fn counts(&self) -> Counts {
+        Counts {
+            missed: self.watch.missed(),
+            ..self.counts
+        }
+    }
+
+    /// Takes what has come since the last look.
+    fn look(&mut self) {
+        let mut entries = Vec::new();
+        self.watch.look(&mut entries);
+        if entries.is_empty() {
+            return;
+        }
+        let batch: Batch = entries.into();
+        match self.disk.put(&batch) {
+            true => self.counts.events += events(&batch),
+            false => {
+                self.counts.dropped += events(&batch);
+                self.watch.tell_again();
+            }
+        }
+    }
+
+    /// Says what is missing, and writes the end.
+    fn end(mut self) -> Result<Counts, recorder::error::Error> {
+        self.look();
+        let counts = self.counts();
+        let facts = [
+            ("events", counts.events),
+            ("missed", counts.missed),
+            ("dropped", counts.dropped),
+        ];
+        let facts = facts.map(|(key, count)| (key.to_owned(), count.to_string()));
+        // Without room the end of the file is all that is left to write.
+        let _ = (self.disk).put(&vec![Entry::Facts("counts", Arc::new(facts.into()))].into());
+        self.disk.finish()?;
+        Ok(counts)
+    }
+}
+
+/// What cannot be recorded, for the person.
+fn refused(error: recorder::error::Error) -> Error {
+    Error::Refused(error.to_string())
+}
+
 /// A line of the run itself.
 fn say(text: &str) -> Result<(), Refusal> {
     crate::output::standard(text.as_bytes())
@@ -84,14 +159,15 @@ fn say(text: &str) -> Result<(), Refusal> {
 
 /// What is recorded, and what is not.
 fn begun(watch: &Watch, args: &RecordArgs) -> String {
-    let (recorded, left_out) = (watch.recorded(), watch.left_out());
+    let recorded = watch.recorded();
+    let left_out: Vec<&str> = watch.left_out().collect();
     let mut text = format!(
         "recording {recorded} nodes of {} into {}; Ctrl-C ends it\n",
         watch.root().display(),
         args.output.display()
     );
     if !left_out.is_empty() {
-        let some: Vec<&str> = left_out.iter().take(4).map(String::as_str).collect();
+        let some = &left_out[..left_out.len().min(4)];
         let more = if left_out.len() > some.len() {
             ", ..."
         } else {

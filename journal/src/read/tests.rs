@@ -3,7 +3,7 @@
 use super::*;
 use crate::mend::mend;
 use crate::standard::Level;
-use crate::write::{ABOUT, Writer};
+use crate::write::{ABOUT, Story, Writer};
 use proptest::prelude::*;
 use std::io::Cursor;
 
@@ -91,7 +91,9 @@ fn everything_that_was_written_is_read_in_its_order() {
         reason: "device: gone".to_owned(),
     };
     assert_eq!(fault.unwrap().what, wanted);
-    assert!(matches!(&events.last().unwrap().what, What::Log(log) if log.text == "a line"));
+    assert!(
+        matches!(&events.last().unwrap().what, What::Line(Story::Log, log) if log.text == "a line")
+    );
 }
 
 #[test]
@@ -136,7 +138,7 @@ fn a_node_whose_format_changes_stays_one_node() {
         .iter()
         .map(|event| match &event.what {
             What::Sample { tuple, .. } => tuple.len(),
-            What::Fault { .. } | What::Log(_) => 0,
+            What::Fault { .. } | What::Line(..) => 0,
         })
         .collect();
     assert_eq!(tuples, [1, 2]);
@@ -302,7 +304,7 @@ fn samples_before_and_after_a_change_of_the_format_are_told_apart() {
         .into_iter()
         .map(|event| match event.what {
             What::Sample { layout, tuple, .. } => reader.layouts()[layout].show(&tuple),
-            What::Fault { .. } | What::Log(_) => String::new(),
+            What::Fault { .. } | What::Line(..) => String::new(),
         })
         .collect();
     assert_eq!(shown, ["1065353216", "1"]);

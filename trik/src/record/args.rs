@@ -2,8 +2,8 @@
 //!
 //! Owns the options. Knows nothing of what they do.
 
-use crate::pattern::matches;
 use clap::Args;
+use recorder::pattern::matches;
 use std::path::PathBuf;
 
 /// The options of `trik record`.

@@ -6,11 +6,11 @@ use super::fresh::Fresh;
 use super::shared::{Watched, moment, open, seconds};
 use crate::error::Error;
 use crate::output::standard;
-use crate::pattern::matches;
 use crate::refusal::Refusal;
 use crate::terminal::named;
 use clap::Args;
 use journal::mend::copy;
+use recorder::pattern::matches;
 use std::io::BufWriter;
 use std::path::PathBuf;
 

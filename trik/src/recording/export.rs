@@ -7,11 +7,11 @@ use super::shared::{Opened, Progress, moment, open, seconds};
 use crate::error::Error;
 use crate::limits;
 use crate::output::csv;
-use crate::pattern::matches;
 use crate::refusal::Refusal;
 use clap::Args;
 use journal::layout::Layout;
 use journal::read::{Event, What};
+use recorder::pattern::matches;
 use std::collections::HashMap;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -198,7 +198,7 @@ fn event_row(
             let fault = csv::text(&format!("{path}: errno {errno}: {reason}"));
             row(out, &time, &all, &fault)
         }
-        What::Fault { .. } | What::Log(_) => Ok(()),
+        What::Fault { .. } | What::Line(..) => Ok(()),
     }
 }
 

@@ -8,13 +8,13 @@ use crate::chart::{self, Panel};
 use crate::error::Error;
 use crate::limits;
 use crate::output::Output;
-use crate::pattern::matches;
 use crate::refusal::Refusal;
 use crate::terminal::{harmless, named};
 use clap::Args;
 use journal::layout::Layout;
 use journal::read::{Event, What};
 use lang_text::problem::Locale;
+use recorder::pattern::matches;
 use std::path::PathBuf;
 
 /// Size of a panel, and what is around it, in px.
@@ -217,7 +217,7 @@ fn take(opened: &Opened, lines: &mut [Line], event: &Event, step: usize, at: f64
                 line.fail(at);
             }
         }
-        What::Log(_) => {}
+        What::Line(..) => {}
     }
 }
 

@@ -82,7 +82,7 @@ impl FileRecording {
                 let reason = reason.strip_prefix("device: ").unwrap_or(&reason);
                 (node, What::Failure(errno, reason.to_owned()))
             }
-            read::What::Log(_) => return None,
+            read::What::Line(..) => return None,
         };
         // Before its format changed it was another node.
         let fits = match &what {

@@ -16,7 +16,7 @@ const FORMAT: &str = "format";
 const NEWEST: &str = "bin_data";
 
 /// All nodes below a mount point, in the order of their paths; second names are with their nodes.
-pub(super) fn find(root: &Path) -> Vec<Node> {
+pub fn find(root: &Path) -> Vec<Node> {
     let mut found: Vec<Node> = Vec::new();
     let mut directories = vec![(root.to_owned(), 0)];
     while let Some((directory, depth)) = directories.pop() {
@@ -27,10 +27,7 @@ pub(super) fn find(root: &Path) -> Vec<Node> {
         };
         names.sort();
         for path in names {
-            if depth < limits::TREE_DEPTH_MAX
-                && found.len() < limits::RECORDED_NODES_MAX
-                && path.is_dir()
-            {
+            if depth < limits::TREE_DEPTH_MAX && found.len() < limits::NODES_MAX && path.is_dir() {
                 if let Some(node) = node(root, &path) {
                     found.push(node);
                 } else {
@@ -91,17 +88,17 @@ fn with_aliases(root: &Path, found: Vec<Node>) -> Vec<Node> {
 }
 
 /// The text of a small file, without the end of its line; None if there is no such file.
-pub(super) fn text(path: &Path) -> Option<String> {
+pub(crate) fn text(path: &Path) -> Option<String> {
     let mut text = String::new();
     let file = fs::File::open(path).ok()?;
-    let most = limits::RECORDED_TEXT_BYTES_MAX;
+    let most = limits::TEXT_BYTES_MAX;
     file.take(most).read_to_string(&mut text).ok()?;
     Some(text.trim_end_matches('\n').to_owned())
 }
 
 /// An extended attribute as text; None if there is none.
 fn attribute(path: &Path, name: &str) -> Option<String> {
-    let mut bytes = [0; limits::RECORDED_REST_BYTES_MAX];
+    let mut bytes = [0; limits::REST_BYTES_MAX];
     let size = rustix::fs::getxattr(path, name, &mut bytes[..]).ok()?;
     String::from_utf8(bytes[..size].to_vec()).ok()
 }

@@ -3,7 +3,7 @@
 //! Owns what they match. Knows no tree and no recording.
 
 /// `*` stands for anything; a pattern without an end at a name is a group.
-pub(crate) fn matches(pattern: &str, path: &str) -> bool {
+pub fn matches(pattern: &str, path: &str) -> bool {
     let pattern = pattern.trim_matches('/');
     let whole = is_match(pattern.as_bytes(), path.as_bytes());
     let ends = path.match_indices('/').map(|(at, _)| at);

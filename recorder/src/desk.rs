@@ -1,0 +1,292 @@
+//! The thread that looks at a tree for all who take what it sees: the black box and live streams.
+//!
+//! Owns who takes it. Looks at nothing while nobody does; a tree that is not there yet is waited for. Lines about programs and
+//! messages come from the one who has the desk.
+
+use crate::entry::{Batch, Entry};
+use crate::error::Error;
+use crate::kept::{self, Kept, Told, Why};
+use crate::limits;
+use crate::stream::{Client, Request, Stream};
+use crate::watch::{Wants, Watch, now_ns};
+use journal::standard::{Level, Log};
+use journal::write::Story;
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
+use std::time::{Duration, Instant};
+
+/// What the thread is told.
+enum Order {
+    /// Something has happened beside the tree.
+    Line(Entry),
+    /// The last minutes shall be saved.
+    Save(Why, Told),
+    /// A client comes.
+    Stream(Request, Box<dyn Client>),
+}
+
+/// The way to the thread. It ends when the last of these is gone.
+#[derive(Clone)]
+pub struct Desk {
+    orders: SyncSender<Order>,
+}
+
+/// What a desk is for.
+pub struct Settings {
+    /// Where the tree is mounted.
+    pub root: PathBuf,
+    /// The program that records, with its version, as `trikd/0.1.0`.
+    pub library: String,
+    /// The black box; None without one.
+    pub kept: Option<kept::Settings>,
+}
+
+impl Desk {
+    /// Starts the thread. `told` hears when minutes were saved that nobody has asked for.
+    ///
+    /// # Errors
+    /// The folder of the black box cannot be used, or there are no more threads.
+    pub fn start(
+        settings: Settings,
+        told: impl Fn(Result<PathBuf, Error>) + Clone + Send + 'static,
+    ) -> Result<Self, Error> {
+        let left: Told = Box::new(told.clone());
+        let kept = settings
+            .kept
+            .map(|kept| Kept::open(kept, &settings.library, left))
+            .transpose()?;
+        let (orders, come) = sync_channel(limits::LINES);
+        let mut work = Work {
+            root: settings.root,
+            library: settings.library,
+            watch: None,
+            looks_at: Instant::now(),
+            kept,
+            streams: Vec::new(),
+            told: Box::new(move || Box::new(told.clone())),
+            batch: Vec::new(),
+            values: Values::default(),
+        };
+        std::thread::Builder::new()
+            .name("recorder".to_owned())
+            .spawn(move || {
+                work.run(&come);
+                if let Some(kept) = work.kept.take() {
+                    kept.close();
+                }
+            })
+            .map_err(|error| Error::Thread(error.to_string()))?;
+        Ok(Self { orders })
+    }
+
+    /// Something has happened beside the tree. It is lost if the thread is far too slow.
+    pub fn line(&self, story: Story, name: &str, level: Level, text: &str) {
+        let line = Log {
+            level,
+            name: name.to_owned(),
+            text: text.to_owned(),
+            errno: 0,
+        };
+        let entry = Entry::Line(story, now_ns(), Arc::new(line));
+        let _ = self.orders.try_send(Order::Line(entry));
+    }
+
+    /// Saves the last minutes; `told` hears the file, or why there is none.
+    pub fn save(&self, why: Why, told: Told) {
+        self.give(Order::Save(why, told));
+    }
+
+    /// A client has what it wants from now on, until it is gone.
+    pub fn stream(&self, request: Request, client: Box<dyn Client>) {
+        self.give(Order::Stream(request, client));
+    }
+
+    fn give(&self, order: Order) {
+        match self.orders.try_send(order) {
+            Ok(()) => {}
+            Err(TrySendError::Full(order) | TrySendError::Disconnected(order)) => match order {
+                Order::Save(_, told) => told(Err(Error::TooMany("orders at once"))),
+                // Dropping the client ends its connection.
+                Order::Line(_) | Order::Stream(..) => {}
+            },
+        }
+    }
+}
+
+struct Work {
+    root: PathBuf,
+    library: String,
+    /// None while nobody wants anything, or there is no tree.
+    watch: Option<Watch>,
+    /// When a tree that is not there is looked for again.
+    looks_at: Instant,
+    kept: Option<Kept>,
+    streams: Vec<Stream>,
+    told: Box<dyn Fn() -> Told + Send>,
+    batch: Vec<Entry>,
+    values: Values,
+}
+
+impl Work {
+    fn run(&mut self, orders: &Receiver<Order>) {
+        let turn = Duration::from_millis(limits::LOOK_MS.into());
+        loop {
+            let is_idle = self.kept.is_none() && self.streams.is_empty();
+            let order = match is_idle {
+                true => orders.recv().map_err(|_| RecvTimeoutError::Disconnected),
+                false => orders.recv_timeout(turn),
+            };
+            match order {
+                Ok(order) => self.obey(order),
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
+            while let Ok(order) = orders.try_recv() {
+                self.obey(order);
+            }
+            self.look();
+        }
+    }
+
+    fn obey(&mut self, order: Order) {
+        match order {
+            Order::Line(line) => self.batch.push(line),
+            Order::Save(why, told) => self.save(why, told),
+            Order::Stream(request, client) => self.welcome(request, client),
+        }
+    }
+
+    fn save(&mut self, why: Why, told: Told) {
+        let Some(kept) = &mut self.kept else {
+            told(Err(Error::Request(
+                "no black box is kept here: start trikd with --box".to_owned(),
+            )));
+            return;
+        };
+        if !kept.is_due(why) {
+            return;
+        }
+        // What has come until now belongs to it.
+        self.hand_over();
+        if let Some(kept) = &mut self.kept {
+            kept.save(why, told);
+        }
+    }
+
+    fn welcome(&mut self, request: Request, client: Box<dyn Client>) {
+        if self.streams.len() == limits::STREAMS {
+            return;
+        }
+        let Ok(stream) = Stream::begin(request, &self.library, client) else {
+            return;
+        };
+        // Until now it is another one's.
+        self.hand_over();
+        self.streams.push(stream);
+        self.want();
+        self.ensure();
+        let beginning = self.watch.as_ref().map(Watch::beginning);
+        if let (Some(stream), Some(beginning)) = (self.streams.last_mut(), beginning) {
+            stream.put(&beginning, now_ns());
+        }
+    }
+
+    /// Which nodes anybody wants.
+    fn wants(&self) -> Wants {
+        if self.kept.is_some() {
+            return Box::new(|_| true);
+        }
+        let requests = self.streams.iter().map(|stream| stream.request().clone());
+        let requests: Vec<Request> = requests.collect();
+        Box::new(move |path| requests.iter().any(|request| request.wants(path)))
+    }
+
+    /// What anybody wants has changed.
+    fn want(&mut self) {
+        let wants = self.wants();
+        if let Some(watch) = &mut self.watch {
+            watch.want(wants, &mut self.batch);
+        }
+    }
+
+    /// Looks for the tree if it is not there.
+    fn ensure(&mut self) {
+        let is_gone = self.watch.as_ref().is_some_and(Watch::is_gone);
+        if is_gone {
+            self.watch = None;
+        }
+        if self.watch.is_some() || Instant::now() < self.looks_at {
+            return;
+        }
+        self.looks_at = Instant::now() + Duration::from_secs(1);
+        if !is_tree(&self.root) {
+            return;
+        }
+        if let Ok(watch) = Watch::begin(&self.root, &self.library, self.wants()) {
+            self.batch.extend(watch.beginning());
+            self.watch = Some(watch);
+        }
+    }
+
+    fn look(&mut self) {
+        if self.kept.is_none() && self.streams.is_empty() {
+            // Rings that nobody reads are not filled.
+            self.watch = None;
+            self.batch.clear();
+            return;
+        }
+        self.ensure();
+        if let Some(watch) = &mut self.watch {
+            watch.look(&mut self.batch);
+        }
+        self.hand_over();
+    }
+
+    /// Gives what has come to all.
+    fn hand_over(&mut self) {
+        let now_ns = now_ns();
+        let before = self.streams.len();
+        let batch: Batch = std::mem::take(&mut self.batch).into();
+        self.streams.retain_mut(|stream| stream.put(&batch, now_ns));
+        if self.streams.len() < before {
+            self.want();
+        }
+        if batch.is_empty() {
+            return;
+        }
+        if let Some(kept) = &mut self.kept {
+            let watch = &self.watch;
+            kept.put(&batch, || {
+                watch.as_ref().map(Watch::beginning).unwrap_or_default()
+            });
+            if self.values.have_gone(&batch) && kept.is_due(Why::Fault) {
+                kept.save(Why::Fault, (self.told)());
+            }
+        }
+    }
+}
+
+/// Which nodes have a value.
+#[derive(Default)]
+struct Values(HashSet<u32>);
+
+impl Values {
+    /// Whether one that had a value has none any more.
+    fn have_gone(&mut self, batch: &[Entry]) -> bool {
+        let mut have_gone = false;
+        for entry in batch {
+            match entry {
+                Entry::Sample(known, ..) => drop(self.0.insert(known.number)),
+                Entry::Fault(known, ..) => have_gone |= self.0.remove(&known.number),
+                Entry::Node(_) | Entry::Line(..) | Entry::Attachment(..) | Entry::Facts(..) => {}
+            }
+        }
+        have_gone
+    }
+}
+
+fn is_tree(root: &Path) -> bool {
+    root.join("config").exists() && root.join("status").exists()
+}

@@ -1,0 +1,469 @@
+//! The black box: the last minutes, as a ring of files.
+//!
+//! Owns the folder. The minutes are in parts, each a whole recording, of which the oldest goes when there are too many bytes or
+//! it is too old; so a process that is killed loses what the last second has brought and no more. Saving puts the parts into
+//! one file, which stays. Whether the folder is on a disk or in memory is the business of the one who names it.
+
+use crate::entry::{Batch, Entry};
+use crate::error::Error;
+use crate::file::{Disk, Writing};
+use crate::limits;
+use crate::watch::now_ns;
+use std::collections::VecDeque;
+use std::fs::{self, File};
+use std::io::{BufReader, BufWriter};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// What the minutes are kept for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Why {
+    /// A person wants them.
+    Asked,
+    /// A key of the robot was pressed.
+    Key,
+    /// Everything was stopped.
+    Stop,
+    /// A program ended by a mistake.
+    Crash,
+    /// A node has no value any more.
+    Fault,
+    /// The process before this one left them.
+    Restart,
+}
+
+impl Why {
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::Asked,
+        Self::Key,
+        Self::Stop,
+        Self::Crash,
+        Self::Fault,
+        Self::Restart,
+    ];
+
+    /// Its name, as names of files have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Asked => "asked",
+            Self::Key => "key",
+            Self::Stop => "stop",
+            Self::Crash => "crash",
+            Self::Fault => "fault",
+            Self::Restart => "restart",
+        }
+    }
+}
+
+/// How much is kept, and where.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// The folder, which is made if it is not there.
+    pub directory: PathBuf,
+    /// What is older goes.
+    pub span: Duration,
+    /// Bytes of all parts together.
+    pub bytes: u64,
+}
+
+/// One part that is not written any more.
+struct Part {
+    path: PathBuf,
+    /// When the next one began.
+    ended: Instant,
+    bytes: u64,
+    /// Until its end is written.
+    writing: Option<Writing>,
+}
+
+/// Beginnings of names in the folder.
+const PART: &str = "part-";
+const SAVED: &str = "saved-";
+
+/// The last minutes.
+pub struct Kept {
+    settings: Settings,
+    library: String,
+    parts: VecDeque<Part>,
+    disk: Option<(Disk, Instant)>,
+    looks_at: Instant,
+    /// Number of the next part.
+    next: u64,
+    saved_at: Option<Instant>,
+}
+
+/// What is told when minutes are saved: the file, or why there is none.
+pub type Told = Box<dyn FnOnce(Result<PathBuf, Error>) + Send>;
+
+impl Kept {
+    /// Takes the folder. What a process that was killed has left there is saved first, and `told` hears of it; `library` is the
+    /// program that records, with its version.
+    ///
+    /// # Errors
+    /// The folder cannot be used.
+    pub fn open(settings: Settings, library: &str, told: Told) -> Result<Self, Error> {
+        let directory = &settings.directory;
+        fs::create_dir_all(directory).map_err(|error| Error::io(directory, error))?;
+        let left = named(directory, PART)?;
+        let kept = Self {
+            library: library.to_owned(),
+            parts: VecDeque::new(),
+            disk: None,
+            looks_at: Instant::now(),
+            next: now_ns() / 1_000_000,
+            saved_at: None,
+            settings,
+        };
+        let left: Vec<Source> = left.into_iter().filter_map(Source::left).collect();
+        if !left.is_empty() {
+            kept.save_parts(left, Why::Restart, told);
+        }
+        Ok(kept)
+    }
+
+    /// Keeps what has come. `beginning` gives what a part must have first.
+    pub fn put(&mut self, batch: &Batch, beginning: impl FnOnce() -> Vec<Entry>) {
+        let now = Instant::now();
+        if now >= self.looks_at {
+            self.looks_at = now + Duration::from_secs(1);
+            let most = self.part_bytes();
+            let span = self.settings.span / u32::try_from(limits::BOX_PARTS).unwrap_or(1);
+            let is_full = self.disk.as_ref().is_some_and(|(disk, begun)| {
+                disk.has_failed() || disk.size() >= most || begun.elapsed() >= span
+            });
+            if is_full {
+                self.end_part();
+            }
+            self.forget(now);
+        }
+        if self.disk.is_none() {
+            let path = (self.settings.directory).join(format!("{PART}{:016}.mcap", self.next));
+            self.next += 1;
+            let Ok(disk) = Disk::create(&path, &self.library, limits::BOX_WAITING_BYTES) else {
+                // The disk is full or read-only; the next second may be better.
+                return;
+            };
+            disk.put(&Arc::from(beginning()));
+            self.disk = Some((disk, now));
+        }
+        if let Some((disk, _)) = &self.disk {
+            // A disk that is too slow loses this and not the robot.
+            disk.put(batch);
+        }
+    }
+
+    fn part_bytes(&self) -> u64 {
+        (self.settings.bytes / limits::BOX_PARTS).max(limits::BOX_PART_BYTES_MIN)
+    }
+
+    fn end_part(&mut self) {
+        if let Some((disk, _)) = self.disk.take() {
+            self.parts.push_back(Part {
+                path: disk.path().to_owned(),
+                ended: Instant::now(),
+                bytes: disk.size(),
+                writing: Some(disk.end()),
+            });
+        }
+    }
+
+    /// Throws away what is too old or too much.
+    fn forget(&mut self, now: Instant) {
+        let room = self.settings.bytes.saturating_sub(self.part_bytes());
+        while let Some(oldest) = self.parts.front() {
+            let all: u64 = self.parts.iter().map(|part| part.bytes).sum();
+            if all <= room && now.duration_since(oldest.ended) < self.settings.span {
+                return;
+            }
+            if let Some(part) = self.parts.pop_front() {
+                // Somebody may have taken it away.
+                let _ = fs::remove_file(&part.path);
+            }
+        }
+    }
+
+    /// Whether it is time to save the minutes for this: what no person has asked for is not saved again and again.
+    pub fn is_due(&self, why: Why) -> bool {
+        let again_ms = match why {
+            Why::Asked | Why::Restart => return true,
+            Why::Key | Why::Stop | Why::Crash => limits::BOX_AGAIN_MS,
+            Why::Fault => limits::BOX_FAULT_AGAIN_MS,
+        };
+        let again = Duration::from_millis(again_ms);
+        self.saved_at.is_none_or(|at| at.elapsed() >= again)
+    }
+
+    /// Saves the last minutes on a thread of its own, while the next ones are kept. `told` hears where, or why not; if there
+    /// are no more threads, it is dropped.
+    pub fn save(&mut self, why: Why, told: Told) {
+        self.end_part();
+        self.saved_at = Some(Instant::now());
+        let parts = self.parts.iter_mut().filter_map(|part| {
+            Some(Source {
+                // From now on it may be thrown away, and is still read.
+                file: File::open(&part.path).ok()?,
+                writing: part.writing.take(),
+                remove: None,
+            })
+        });
+        let parts: Vec<Source> = parts.collect();
+        if parts.is_empty() {
+            let error = journal::error::Error::Absent("events in the black box yet".to_owned());
+            told(Err(Error::File(self.settings.directory.clone(), error)));
+            return;
+        }
+        self.save_parts(parts, why, told);
+    }
+
+    fn save_parts(&self, parts: Vec<Source>, why: Why, told: Told) {
+        let directory = self.settings.directory.clone();
+        let seconds = now_ns() / 1_000_000_000;
+        let path = directory.join(format!("{SAVED}{seconds}-{}.mcap", why.name()));
+        let work = move || {
+            let saved = join(parts, &path);
+            // What is too much now goes with the next one.
+            let _ = prune(&directory);
+            told(saved.map(|()| path));
+        };
+        let _ = std::thread::Builder::new()
+            .name("box".to_owned())
+            .spawn(work);
+    }
+
+    /// Ends it: nothing has happened that anybody wants to know of, so the parts go.
+    pub fn close(mut self) {
+        self.end_part();
+        for part in self.parts {
+            if let Some(writing) = part.writing {
+                // It goes anyway.
+                let _ = writing.join();
+            }
+            let _ = fs::remove_file(&part.path);
+        }
+    }
+}
+
+/// A part that is put into one file with others.
+struct Source {
+    file: File,
+    writing: Option<Writing>,
+    /// It goes when the file is there.
+    remove: Option<PathBuf>,
+}
+
+impl Source {
+    /// One that an earlier process has left; None if it cannot be read.
+    fn left(path: PathBuf) -> Option<Self> {
+        Some(Self {
+            file: File::open(&path).ok()?,
+            writing: None,
+            remove: Some(path),
+        })
+    }
+}
+
+/// Puts parts into one file, which is whole when it has its name.
+fn join(parts: Vec<Source>, path: &Path) -> Result<(), Error> {
+    let failed = |error| Error::File(path.to_owned(), error);
+    let begun = path.with_extension("begun");
+    let to = File::create(&begun).map_err(|error| Error::io(&begun, error))?;
+    let mut files = Vec::new();
+    let mut remove = Vec::new();
+    for part in parts {
+        if let Some(writing) = part.writing {
+            // A part without its end is cut, and what is whole of it is taken.
+            let _ = writing.join();
+        }
+        files.push(BufReader::new(part.file));
+        remove.extend(part.remove);
+    }
+    let synced = to.try_clone().map_err(|error| Error::io(&begun, error))?;
+    let joined = journal::mend::join(files, BufWriter::new(to));
+    let is_saved = joined.map_err(failed).and_then(|_| {
+        synced.sync_all().map_err(|error| Error::io(path, error))?;
+        fs::rename(&begun, path).map_err(|error| Error::io(path, error))
+    });
+    if is_saved.is_err() {
+        let _ = fs::remove_file(&begun);
+    }
+    for path in remove {
+        // What cannot be read will not be read the next time either.
+        let _ = fs::remove_file(path);
+    }
+    is_saved
+}
+
+/// Throws away the oldest saved files.
+fn prune(directory: &Path) -> Result<(), Error> {
+    let saved = named(directory, SAVED)?;
+    for path in saved.iter().rev().skip(limits::BOX_SAVED) {
+        // The next saving tries it again.
+        let _ = fs::remove_file(path);
+    }
+    Ok(())
+}
+
+/// The saved files of a folder, from the oldest to the newest.
+///
+/// # Errors
+/// The folder cannot be read.
+pub fn saved(directory: &Path) -> Result<Vec<PathBuf>, Error> {
+    let mut all = named(directory, SAVED)?;
+    all.retain(|path| path.extension().is_some_and(|end| end == "mcap"));
+    Ok(all)
+}
+
+/// Files of a folder whose names begin so, in the order of their names.
+fn named(directory: &Path, begin: &str) -> Result<Vec<PathBuf>, Error> {
+    let entries = fs::read_dir(directory).map_err(|error| Error::io(directory, error))?;
+    let mut all: Vec<PathBuf> = entries
+        .flatten()
+        .filter(|entry| entry.file_name().to_string_lossy().starts_with(begin))
+        .map(|entry| entry.path())
+        .collect();
+    all.sort();
+    Ok(all)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::entry::Known;
+    use journal::node::Node;
+    use journal::read::{Reader, What};
+    use std::sync::mpsc::channel;
+    use tempfile::tempdir;
+
+    fn settings(directory: &Path) -> Settings {
+        Settings {
+            directory: directory.to_owned(),
+            span: Duration::from_secs(3600),
+            bytes: 1 << 20,
+        }
+    }
+
+    fn nothing() -> Told {
+        Box::new(|told| panic!("nothing was left, but {told:?}"))
+    }
+
+    fn known() -> Arc<Known> {
+        Arc::new(Known {
+            number: 1,
+            node: Node::sensor("a", "u32 x"),
+        })
+    }
+
+    fn sample(known: &Arc<Known>, at: u32) -> Entry {
+        let unix_ns = 1_700_000_000_000_000_000 + u64::from(at);
+        Entry::Sample(known.clone(), unix_ns, Arc::new(at.to_ne_bytes()))
+    }
+
+    fn values(path: &Path) -> Vec<u32> {
+        let mut reader = Reader::open(File::open(path).unwrap()).unwrap();
+        let mut all = Vec::new();
+        while let Some(event) = reader.next().unwrap() {
+            if let What::Sample { tuple, .. } = event.what {
+                all.push(u32::from_ne_bytes(tuple.try_into().unwrap()));
+            }
+        }
+        all
+    }
+
+    /// Keeps one sample after the other, and begins a new part before each number that is named.
+    fn fill(kept: &mut Kept, all: std::ops::Range<u32>, parts: &[u32]) {
+        let known = known();
+        for at in all {
+            if parts.contains(&at) {
+                kept.end_part();
+            }
+            let before = at.checked_sub(1).map(|before| sample(&known, before));
+            let batch: Batch = vec![sample(&known, at)].into();
+            kept.put(&batch, || {
+                let node = [Entry::Node(known.clone())];
+                node.into_iter().chain(before).collect()
+            });
+        }
+    }
+
+    fn saved_now(kept: &mut Kept, why: Why) -> PathBuf {
+        let (tell, told) = channel();
+        kept.save(why, Box::new(move |path| tell.send(path).unwrap()));
+        told.recv().unwrap().unwrap()
+    }
+
+    #[test]
+    fn parts_are_saved_as_one_file_without_what_they_repeat() {
+        let folder = tempdir().unwrap();
+        let mut kept = Kept::open(settings(folder.path()), "test", nothing()).unwrap();
+        assert!(kept.is_due(Why::Stop));
+        fill(&mut kept, 0..100, &[30, 60]);
+        let path = saved_now(&mut kept, Why::Stop);
+        assert!(path.to_string_lossy().ends_with("-stop.mcap"));
+        assert_eq!(values(&path), (0..100).collect::<Vec<_>>());
+        assert!(!kept.is_due(Why::Stop), "not again and again");
+        // It goes on meanwhile.
+        fill(&mut kept, 100..150, &[]);
+        let path = saved_now(&mut kept, Why::Asked);
+        assert_eq!(values(&path), (0..150).collect::<Vec<_>>());
+        kept.close();
+        assert_eq!(named(folder.path(), PART).unwrap(), [] as [PathBuf; 0]);
+        assert_eq!(saved(folder.path()).unwrap().len(), 2);
+    }
+
+    #[test]
+    fn what_is_too_much_or_too_old_goes() {
+        let folder = tempdir().unwrap();
+        let mut kept = Kept::open(settings(folder.path()), "test", nothing()).unwrap();
+        fill(&mut kept, 0..30, &[10, 20]);
+        kept.end_part();
+        for part in &mut kept.parts {
+            part.bytes = 400 << 10;
+        }
+        kept.forget(Instant::now());
+        assert_eq!(kept.parts.len(), 2, "of three parts with 1200 KiB");
+        assert_eq!(values(&saved_now(&mut kept, Why::Asked))[0], 9);
+        kept.forget(Instant::now() + Duration::from_secs(3601));
+        assert_eq!(kept.parts.len(), 0);
+        let (tell, told) = channel();
+        kept.save(Why::Asked, Box::new(move |path| tell.send(path).unwrap()));
+        let told = told.recv().unwrap().unwrap_err().to_string();
+        assert!(told.contains("yet"), "{told}");
+    }
+
+    #[test]
+    fn what_a_killed_process_has_left_is_saved_by_the_next() {
+        let folder = tempdir().unwrap();
+        let mut kept = Kept::open(settings(folder.path()), "test", nothing()).unwrap();
+        fill(&mut kept, 0..100, &[50]);
+        kept.end_part();
+        for part in &mut kept.parts {
+            part.writing.take().unwrap().join().unwrap().unwrap();
+        }
+        // The last part has no end, as after a kill.
+        let last = kept.parts.back().unwrap().path.clone();
+        let bytes = fs::read(&last).unwrap();
+        fs::write(&last, &bytes[..bytes.len() - 8]).unwrap();
+        drop(kept);
+        fs::write(folder.path().join("part-9999999999999999.mcap"), "").unwrap();
+        let (tell, told) = channel();
+        let tell = Box::new(move |path| tell.send(path).unwrap());
+        let _kept = Kept::open(settings(folder.path()), "test", tell).unwrap();
+        let path = told.recv().unwrap().unwrap();
+        assert_eq!(values(&path), (0..100).collect::<Vec<_>>());
+        assert_eq!(named(folder.path(), PART).unwrap(), [] as [PathBuf; 0]);
+    }
+
+    #[test]
+    fn only_so_many_saved_files_are_kept() {
+        let folder = tempdir().unwrap();
+        for at in 0..limits::BOX_SAVED + 3 {
+            fs::write(folder.path().join(format!("{SAVED}{at:02}-stop.mcap")), "").unwrap();
+        }
+        prune(folder.path()).unwrap();
+        let left = saved(folder.path()).unwrap();
+        assert_eq!(left.len(), limits::BOX_SAVED);
+        assert!(left[0].ends_with("saved-03-stop.mcap"));
+    }
+}

@@ -1,0 +1,381 @@
+//! What happens in a tree, as its rings of samples, its log and its configuration show it.
+//!
+//! Owns what has been seen by now, and the newest of each node. Looks when it is told to, which must be often enough that no
+//! ring goes round; waits for nothing and counts what was overwritten meanwhile. Keeps no file.
+
+use crate::entry::{Entry, Known};
+use crate::error::Error;
+use crate::{limits, nodes};
+use journal::layout::Layout;
+use journal::node::Node;
+use journal::standard::{Level, Log};
+use journal::write::{ABOUT, Story};
+use nix::time::{ClockId, clock_gettime};
+use sample_bus::{Event, Reader, Step};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{File, OpenOptions};
+use std::io::Read;
+use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// One node that is looked at.
+struct Watched {
+    known: Arc<Known>,
+    ring: Reader,
+    /// The last errno, and what `fault` said of it.
+    fault: (i32, Arc<str>),
+    /// What it had last.
+    newest: Option<Entry>,
+}
+
+/// Its samples; of an actuator, what is written to it.
+fn ring(root: &Path, node: &Node) -> Option<Reader> {
+    let is_actuator = !node.rest.is_empty();
+    let written = is_actuator.then(|| Reader::open_written(root, &node.path).ok());
+    written
+        .flatten()
+        .or_else(|| Reader::open(root, &node.path).ok())
+}
+
+impl Watched {
+    fn new(number: u32, mut node: Node, ring: Reader) -> Self {
+        let size = Layout::parse(&node.format).map_or(0, |layout| layout.size());
+        if size != ring.tuple_bytes() {
+            // What is written has no names if it is converted on its way.
+            node.format = format!("u8 x {}", ring.tuple_bytes());
+        }
+        Self {
+            known: Arc::new(Known { number, node }),
+            ring,
+            fault: (0, Arc::default()),
+            newest: None,
+        }
+    }
+
+    /// One event of its ring.
+    fn entry(&mut self, root: &Path, event: Event, unix_ns: u64, tuple: &[u8]) -> Entry {
+        let is_new = event.errno != self.fault.0;
+        if is_new {
+            let told = match event.errno {
+                0 => None,
+                _ => nodes::text(&root.join(&self.known.node.path).join("fault")),
+            };
+            self.fault = (event.errno, told.unwrap_or_default().into());
+        }
+        match event.errno {
+            0 => Entry::Sample(self.known.clone(), unix_ns, tuple.into()),
+            errno => Entry::Fault(self.known.clone(), unix_ns, errno, self.fault.1.clone()),
+        }
+    }
+
+    /// Takes what has come; gives how much was overwritten before. What a node had when the looking began comes first.
+    fn look(&mut self, from: &From<'_>, tuple: &mut Vec<u8>, out: &mut Vec<Entry>) -> u64 {
+        let begin = out.len();
+        let mut missed = 0;
+        let mut before = None;
+        loop {
+            match self.ring.next_event(tuple) {
+                Step::Event(event) => {
+                    let time_ns = event.time_ns.max(from.begin_ns);
+                    let unix_ns = time_ns.saturating_add_signed(from.offset_ns);
+                    let entry = self.entry(from.root, event, unix_ns, tuple);
+                    if event.time_ns < from.begin_ns {
+                        before = Some(entry);
+                    } else {
+                        out.extend(before.take());
+                        out.push(entry);
+                    }
+                }
+                Step::Missed(count) => missed += u64::from(count),
+                Step::Nothing => break,
+            }
+        }
+        out.extend(before);
+        if out.len() > begin {
+            self.newest = out.last().cloned();
+        }
+        missed
+    }
+}
+
+/// What times of samples are counted from.
+struct From<'a> {
+    root: &'a Path,
+    begin_ns: u64,
+    offset_ns: i64,
+}
+
+/// Which nodes are looked at.
+pub type Wants = Box<dyn Fn(&str) -> bool + Send>;
+
+/// A tree that is looked at.
+pub struct Watch {
+    root: PathBuf,
+    wants: Wants,
+    /// What says of itself that it records.
+    program: String,
+    watched: Vec<Watched>,
+    /// Nodes that nothing samples in the background.
+    left_out: BTreeSet<String>,
+    log: Option<File>,
+    /// What of a line of the log has come.
+    line: Vec<u8>,
+    /// Length and time of the configuration, and its text.
+    configuration: (u64, i64),
+    text: Option<Entry>,
+    offset_ns: i64,
+    /// When it began, by the clock of the machine.
+    begin_ns: u64,
+    missed: u64,
+    /// The facts are in what was handed over.
+    is_told: bool,
+    numbers: u32,
+    looks_at: Instant,
+    is_gone: bool,
+    tuple: Vec<u8>,
+}
+
+/// How often it is looked whether nodes, configuration and clock are still the same.
+const CARE: Duration = Duration::from_secs(1);
+/// A clock that is off by more has been set.
+const CLOCK_NS: i64 = 1_000_000;
+
+impl Watch {
+    /// Finds the nodes that are wanted; `program` is what records, with its version.
+    ///
+    /// # Errors
+    /// There are none.
+    pub fn begin(root: &Path, program: &str, wants: Wants) -> Result<Self, Error> {
+        let mut watch = Self {
+            root: root.to_owned(),
+            wants,
+            program: program.to_owned(),
+            watched: Vec::new(),
+            left_out: BTreeSet::new(),
+            log: log(root),
+            line: Vec::new(),
+            configuration: (0, 0),
+            text: None,
+            offset_ns: offset_ns(),
+            begin_ns: u64::try_from(clock_ns(ClockId::CLOCK_MONOTONIC)).unwrap_or(0),
+            missed: 0,
+            is_told: true,
+            numbers: 0,
+            looks_at: Instant::now(),
+            is_gone: false,
+            tuple: Vec::new(),
+        };
+        watch.find(&mut Vec::new());
+        if watch.watched.is_empty() {
+            return Err(Error::Nothing(root.to_owned()));
+        }
+        Ok(watch)
+    }
+
+    /// Where the tree is mounted.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// How many nodes are looked at.
+    pub fn recorded(&self) -> usize {
+        self.watched.len()
+    }
+
+    /// Nodes that are wanted and have no samples.
+    pub fn left_out(&self) -> impl Iterator<Item = &str> {
+        self.left_out.iter().map(String::as_str)
+    }
+
+    /// Samples that were overwritten before they were looked at.
+    pub fn missed(&self) -> u64 {
+        self.missed
+    }
+
+    /// The tree is not mounted any more.
+    pub fn is_gone(&self) -> bool {
+        self.is_gone
+    }
+
+    /// Takes what has come since the last look.
+    pub fn look(&mut self, out: &mut Vec<Entry>) {
+        if Instant::now() >= self.looks_at {
+            self.looks_at = Instant::now() + CARE;
+            self.care(out);
+        }
+        let from = From {
+            root: &self.root,
+            begin_ns: self.begin_ns,
+            offset_ns: self.offset_ns,
+        };
+        for watched in &mut self.watched {
+            self.missed += watched.look(&from, &mut self.tuple, out);
+        }
+        self.read_log(out);
+    }
+
+    /// What a recording that begins now must have first: facts, configuration, all nodes, and what each had last.
+    pub fn beginning(&self) -> Vec<Entry> {
+        let facts = Entry::Facts(ABOUT, Arc::new(self.facts()));
+        let nodes = self.watched.iter();
+        let nodes = nodes.map(|watched| Entry::Node(watched.known.clone()));
+        let newest = self.watched.iter().filter_map(|one| one.newest.clone());
+        let first = [facts].into_iter().chain(self.text.clone());
+        first.chain(nodes).chain(newest).collect()
+    }
+
+    /// The next look tells once more what is told only when it changes: it was lost.
+    pub fn tell_again(&mut self) {
+        self.configuration = (0, 0);
+        self.is_told = false;
+    }
+
+    /// Other nodes are wanted from now on; new ones come at once.
+    pub fn want(&mut self, wants: Wants, out: &mut Vec<Entry>) {
+        self.wants = wants;
+        let wants = &self.wants;
+        self.watched.retain(|one| wants(&one.known.node.path));
+        self.find(out);
+    }
+
+    /// Nodes that are wanted and not looked at yet.
+    fn find(&mut self, out: &mut Vec<Entry>) {
+        self.left_out.clear();
+        for node in nodes::find(&self.root) {
+            let is_known = |one: &Watched| one.known.node.path == node.path;
+            if !(self.wants)(&node.path) || self.watched.iter().any(is_known) {
+                continue;
+            }
+            match ring(&self.root, &node) {
+                Some(ring) => {
+                    self.numbers += 1;
+                    let watched = Watched::new(self.numbers, node, ring);
+                    out.push(Entry::Node(watched.known.clone()));
+                    self.watched.push(watched);
+                }
+                None => {
+                    self.left_out.insert(node.path);
+                }
+            }
+        }
+    }
+
+    /// Looks after nodes whose rings have ended, the configuration and the clock.
+    fn care(&mut self, out: &mut Vec<Entry>) {
+        self.is_gone = !self.root.join("status").exists();
+        let offset_ns = offset_ns();
+        let is_set = (offset_ns - self.offset_ns).abs() > CLOCK_NS;
+        if is_set || !self.is_told {
+            self.offset_ns = offset_ns;
+            self.is_told = true;
+            out.push(Entry::Facts(ABOUT, Arc::new(self.facts())));
+        }
+        let path = self.root.join("config");
+        let found = path.metadata().map(|file| (file.len(), file.mtime()));
+        if let Ok(found) = found
+            && found != self.configuration
+        {
+            let mut text = Vec::new();
+            let most = limits::CONFIG_BYTES_MAX;
+            let read = File::open(&path).map(|file| file.take(most).read_to_end(&mut text));
+            if read.is_ok_and(|read| read.is_ok()) {
+                self.configuration = found;
+                let entry =
+                    Entry::Attachment(now_ns(), "config.lua".into(), "text/x-lua", text.into());
+                self.text = Some(entry.clone());
+                out.push(entry);
+                // It may have other nodes.
+                self.find(out);
+            }
+        }
+        for watched in &mut self.watched {
+            if watched.ring.is_current() {
+                continue;
+            }
+            let Some(ring) = ring(&self.root, &watched.known.node) else {
+                continue;
+            };
+            let mut node = watched.known.node.clone();
+            let format = nodes::text(&self.root.join(&node.path).join("format"));
+            node.format = format.unwrap_or_default();
+            let mut fresh = Watched::new(watched.known.number, node, ring);
+            if fresh.known.node.format != watched.known.node.format {
+                // Of another format, it is another channel.
+                self.numbers += 1;
+                let node = fresh.known.node.clone();
+                let number = self.numbers;
+                fresh.known = Arc::new(Known { number, node });
+            }
+            *watched = fresh;
+        }
+    }
+
+    fn facts(&self) -> BTreeMap<String, String> {
+        let boot = nodes::text(Path::new("/proc/sys/kernel/random/boot_id"));
+        let host = nodes::text(Path::new("/proc/sys/kernel/hostname"));
+        let all = [
+            ("program", self.program.clone()),
+            ("tree", self.root.display().to_string()),
+            ("host", host.unwrap_or_default()),
+            ("boot_id", boot.unwrap_or_default()),
+            ("realtime_offset_ns", self.offset_ns.to_string()),
+        ];
+        all.into_iter()
+            .map(|(key, value)| (key.to_owned(), value))
+            .collect()
+    }
+
+    fn read_log(&mut self, out: &mut Vec<Entry>) {
+        let Some(log) = &mut self.log else { return };
+        let mut bytes = [0; 4096];
+        // A log that is read to its end has nothing; what is too much for one look comes with the next.
+        let count = log.read(&mut bytes).unwrap_or(0);
+        for &byte in &bytes[..count] {
+            match byte {
+                b'\n' => {
+                    let text =
+                        String::from_utf8_lossy(&std::mem::take(&mut self.line)).into_owned();
+                    let line = Log {
+                        level: Level::Info,
+                        name: "trikfs".to_owned(),
+                        text,
+                        errno: 0,
+                    };
+                    out.push(Entry::Line(Story::Log, now_ns(), Arc::new(line)));
+                }
+                _ if self.line.len() < limits::LINE_BYTES_MAX => self.line.push(byte),
+                _ => {}
+            }
+        }
+    }
+}
+
+/// Lines from now on: those that are kept have no time.
+fn log(root: &Path) -> Option<File> {
+    let mut options = OpenOptions::new();
+    let log = options.read(true).custom_flags(libc::O_NONBLOCK);
+    let mut log = log.open(root.join("log")).ok()?;
+    let mut kept = [0; 4096];
+    for _ in 0..limits::LOG_READS_MAX {
+        if log.read(&mut kept).unwrap_or(0) == 0 {
+            break;
+        }
+    }
+    Some(log)
+}
+
+fn clock_ns(clock: ClockId) -> i64 {
+    clock_gettime(clock).map_or(0, |time| time.tv_sec() * 1_000_000_000 + time.tv_nsec())
+}
+
+/// What the clock of the world is ahead of the machine's own.
+fn offset_ns() -> i64 {
+    clock_ns(ClockId::CLOCK_REALTIME) - clock_ns(ClockId::CLOCK_MONOTONIC)
+}
+
+/// The time of the world, in ns since 1970.
+pub fn now_ns() -> u64 {
+    u64::try_from(clock_ns(ClockId::CLOCK_REALTIME)).unwrap_or(0)
+}
