@@ -14,6 +14,9 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::io::{Read, Seek, Write};
 
+/// How much of a recording that is followed may be in memory alone.
+const FLUSH_NS: u64 = 1_000_000_000;
+
 /// What was saved.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Saved {
@@ -45,6 +48,20 @@ pub fn copy<R: Read, W: Write + Seek>(
     let mut target = Target::new(to);
     let mut saved = Saved::default();
     target.pour(from, &mut saved, &is_wanted)?;
+    target.finish()?;
+    Ok(saved)
+}
+
+/// Makes a file of a recording that is read while it is made, until `from` ends: what is a second old, by the time of the
+/// messages, is in the file if this is killed.
+///
+/// # Errors
+/// It is no recording, or the file cannot be written.
+pub fn follow<R: Read, W: Write + Seek>(from: R, to: W) -> Result<Saved, Error> {
+    let mut target = Target::new(to);
+    target.flushed_ns = Some(0);
+    let mut saved = Saved::default();
+    target.pour(from, &mut saved, &|_, _| true)?;
     target.finish()?;
     Ok(saved)
 }
@@ -96,6 +113,8 @@ struct Target<W: Write + Seek> {
     to: Option<W>,
     /// The header of the recording that is copied now has come.
     is_begun: bool,
+    /// The message with which all was handed to the file the last time; None if nobody waits for that.
+    flushed_ns: Option<u64>,
     /// Numbers there to numbers here.
     schemas: HashMap<u16, u16>,
     channels: HashMap<u16, (u16, String)>,
@@ -107,6 +126,7 @@ impl<W: Write + Seek> Target<W> {
             out: None,
             to: Some(to),
             is_begun: false,
+            flushed_ns: None,
             schemas: HashMap::new(),
             channels: HashMap::new(),
         }
@@ -240,6 +260,11 @@ impl<W: Write + Seek> Target<W> {
                     };
                     out.write_to_known_channel(&header, &data).map_err(disk)?;
                     saved.messages += 1;
+                    let is_due = |before: u64| header.log_time.abs_diff(before) >= FLUSH_NS;
+                    if self.flushed_ns.is_some_and(is_due) {
+                        self.flushed_ns = Some(header.log_time);
+                        out.flush().map_err(disk)?;
+                    }
                 }
             }
             Record::Attachment { header, data, .. } => {

@@ -7,13 +7,13 @@ use crate::entry::{Batch, Entry};
 use crate::error::Error;
 use crate::kept::{self, Kept, Told, Why};
 use crate::limits;
-use crate::stream::{Client, Request, Stream};
 use crate::watch::{Wants, Watch, now_ns};
 use journal::standard::{Level, Log};
 use journal::write::Story;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
 use std::time::{Duration, Instant};
 
@@ -23,14 +23,25 @@ enum Order {
     Line(Entry),
     /// The last minutes shall be saved.
     Save(Why, Told),
-    /// A client comes.
-    Stream(Request, Box<dyn Client>),
+    /// Somebody who wants to hear comes.
+    Listen(Box<dyn Listener>),
+}
+
+/// Somebody who takes what is seen. It is called from the thread that looks, so it waits for nothing.
+pub trait Listener: Send {
+    /// Whether a node is wanted.
+    fn wants(&self) -> Box<dyn Fn(&str) -> bool + Send>;
+
+    /// Takes what has come, which may be nothing, at this moment in ns since 1970. False: it wants no more.
+    fn put(&mut self, entries: &[Entry], now_ns: u64) -> bool;
 }
 
 /// The way to the thread. It ends when the last of these is gone.
 #[derive(Clone)]
 pub struct Desk {
     orders: SyncSender<Order>,
+    keeps: bool,
+    is_heard: Arc<AtomicBool>,
 }
 
 /// What a desk is for.
@@ -58,16 +69,19 @@ impl Desk {
             .map(|kept| Kept::open(kept, &settings.library, left))
             .transpose()?;
         let (orders, come) = sync_channel(limits::LINES);
+        let keeps = kept.is_some();
+        let is_heard = Arc::new(AtomicBool::new(keeps));
         let mut work = Work {
             root: settings.root,
             library: settings.library,
             watch: None,
             looks_at: Instant::now(),
             kept,
-            streams: Vec::new(),
+            listeners: Vec::new(),
             told: Box::new(move || Box::new(told.clone())),
             batch: Vec::new(),
             values: Values::default(),
+            is_heard: is_heard.clone(),
         };
         std::thread::Builder::new()
             .name("recorder".to_owned())
@@ -78,7 +92,21 @@ impl Desk {
                 }
             })
             .map_err(|error| Error::Thread(error.to_string()))?;
-        Ok(Self { orders })
+        Ok(Self {
+            orders,
+            keeps,
+            is_heard,
+        })
+    }
+
+    /// Whether the last minutes are kept.
+    pub fn keeps(&self) -> bool {
+        self.keeps
+    }
+
+    /// Whether anybody takes what is seen, so that lines are worth their while.
+    pub fn is_heard(&self) -> bool {
+        self.is_heard.load(Ordering::Relaxed)
     }
 
     /// Something has happened beside the tree. It is lost if the thread is far too slow.
@@ -98,9 +126,9 @@ impl Desk {
         self.give(Order::Save(why, told));
     }
 
-    /// A client has what it wants from now on, until it is gone.
-    pub fn stream(&self, request: Request, client: Box<dyn Client>) {
-        self.give(Order::Stream(request, client));
+    /// A listener has what it wants from now on. If there are too many of them, it is dropped.
+    pub fn listen(&self, listener: Box<dyn Listener>) {
+        self.give(Order::Listen(listener));
     }
 
     fn give(&self, order: Order) {
@@ -108,8 +136,8 @@ impl Desk {
             Ok(()) => {}
             Err(TrySendError::Full(order) | TrySendError::Disconnected(order)) => match order {
                 Order::Save(_, told) => told(Err(Error::TooMany("orders at once"))),
-                // Dropping the client ends its connection.
-                Order::Line(_) | Order::Stream(..) => {}
+                // Dropping a listener ends its connection.
+                Order::Line(_) | Order::Listen(_) => {}
             },
         }
     }
@@ -123,17 +151,19 @@ struct Work {
     /// When a tree that is not there is looked for again.
     looks_at: Instant,
     kept: Option<Kept>,
-    streams: Vec<Stream>,
+    listeners: Vec<Box<dyn Listener>>,
     told: Box<dyn Fn() -> Told + Send>,
     batch: Vec<Entry>,
     values: Values,
+    is_heard: Arc<AtomicBool>,
 }
 
 impl Work {
     fn run(&mut self, orders: &Receiver<Order>) {
         let turn = Duration::from_millis(limits::LOOK_MS.into());
         loop {
-            let is_idle = self.kept.is_none() && self.streams.is_empty();
+            let is_idle = self.kept.is_none() && self.listeners.is_empty();
+            self.is_heard.store(!is_idle, Ordering::Relaxed);
             let order = match is_idle {
                 true => orders.recv().map_err(|_| RecvTimeoutError::Disconnected),
                 false => orders.recv_timeout(turn),
@@ -154,7 +184,7 @@ impl Work {
         match order {
             Order::Line(line) => self.batch.push(line),
             Order::Save(why, told) => self.save(why, told),
-            Order::Stream(request, client) => self.welcome(request, client),
+            Order::Listen(listener) => self.welcome(listener),
         }
     }
 
@@ -175,21 +205,18 @@ impl Work {
         }
     }
 
-    fn welcome(&mut self, request: Request, client: Box<dyn Client>) {
-        if self.streams.len() == limits::STREAMS {
+    fn welcome(&mut self, listener: Box<dyn Listener>) {
+        if self.listeners.len() == limits::LISTENERS {
             return;
         }
-        let Ok(stream) = Stream::begin(request, &self.library, client) else {
-            return;
-        };
-        // Until now it is another one's.
+        // Until now it is for the others.
         self.hand_over();
-        self.streams.push(stream);
+        self.listeners.push(listener);
         self.want();
         self.ensure();
         let beginning = self.watch.as_ref().map(Watch::beginning);
-        if let (Some(stream), Some(beginning)) = (self.streams.last_mut(), beginning) {
-            stream.put(&beginning, now_ns());
+        if let (Some(listener), Some(beginning)) = (self.listeners.last_mut(), beginning) {
+            listener.put(&beginning, now_ns());
         }
     }
 
@@ -198,9 +225,10 @@ impl Work {
         if self.kept.is_some() {
             return Box::new(|_| true);
         }
-        let requests = self.streams.iter().map(|stream| stream.request().clone());
-        let requests: Vec<Request> = requests.collect();
-        Box::new(move |path| requests.iter().any(|request| request.wants(path)))
+        let all: Vec<_> = (self.listeners.iter())
+            .map(|listener| listener.wants())
+            .collect();
+        Box::new(move |path| all.iter().any(|wants| wants(path)))
     }
 
     /// What anybody wants has changed.
@@ -231,7 +259,7 @@ impl Work {
     }
 
     fn look(&mut self) {
-        if self.kept.is_none() && self.streams.is_empty() {
+        if self.kept.is_none() && self.listeners.is_empty() {
             // Rings that nobody reads are not filled.
             self.watch = None;
             self.batch.clear();
@@ -247,10 +275,11 @@ impl Work {
     /// Gives what has come to all.
     fn hand_over(&mut self) {
         let now_ns = now_ns();
-        let before = self.streams.len();
+        let before = self.listeners.len();
         let batch: Batch = std::mem::take(&mut self.batch).into();
-        self.streams.retain_mut(|stream| stream.put(&batch, now_ns));
-        if self.streams.len() < before {
+        self.listeners
+            .retain_mut(|listener| listener.put(&batch, now_ns));
+        if self.listeners.len() < before {
             self.want();
         }
         if batch.is_empty() {

@@ -42,5 +42,7 @@ pub const PATTERNS_MAX: usize = 64;
 pub const PATTERN_BYTES_MAX: usize = 256;
 /// Clients of live streams at once.
 pub const STREAMS: usize = 32;
+/// Those who hear what is seen, at once.
+pub const LISTENERS: usize = 32;
 /// Lines of others that wait until the next look.
 pub const LINES: usize = 1_024;

@@ -3,6 +3,7 @@
 //! Owns what the client wants: patterns of nodes, and how often each may speak. A client that does not read loses events and
 //! is told how many; it delays nobody. Knows no network.
 
+use crate::desk::Listener;
 use crate::entry::{Entry, Known};
 use crate::error::Error;
 use crate::limits::{PATTERN_BYTES_MAX, PATTERNS_MAX};
@@ -129,41 +130,6 @@ impl Stream {
         })
     }
 
-    /// What it wants.
-    pub fn request(&self) -> &Request {
-        &self.request
-    }
-
-    /// Sends what is wanted of these, and what was held until `now_ns`. False: the client is gone.
-    pub fn put(&mut self, entries: &[Entry], now_ns: u64) -> bool {
-        match self.client.state() {
-            Took::Gone => return false,
-            Took::Full => {
-                self.lose(entries);
-                return true;
-            }
-            Took::All => {}
-        }
-        let due = self.due(entries, now_ns);
-        for entry in &due {
-            if self.pen.put(entry).is_err() {
-                // A sample that is none, or more nodes than a recording has.
-                self.lost += 1;
-            }
-        }
-        if self.lost > self.told {
-            self.told = self.lost;
-            let lost = BTreeMap::from([("dropped".to_owned(), self.lost.to_string())]);
-            // It is told again with the next.
-            let _ = self.pen.put(&Entry::Facts("counts", Arc::new(lost)));
-        }
-        let bytes = self.out.take();
-        if !bytes.is_empty() {
-            self.client.send(bytes);
-        }
-        true
-    }
-
     /// There is no room: nodes and files must come later, since they come only once; the newest of each node as well.
     fn lose(&mut self, entries: &[Entry]) {
         for entry in entries {
@@ -221,6 +187,42 @@ impl Stream {
         pace.held = None;
         pace.due_ns = unix_ns + self.request.period_ns;
         due.push(entry.clone());
+    }
+}
+
+impl Listener for Stream {
+    fn wants(&self) -> Box<dyn Fn(&str) -> bool + Send> {
+        let request = self.request.clone();
+        Box::new(move |path| request.wants(path))
+    }
+
+    fn put(&mut self, entries: &[Entry], now_ns: u64) -> bool {
+        match self.client.state() {
+            Took::Gone => return false,
+            Took::Full => {
+                self.lose(entries);
+                return true;
+            }
+            Took::All => {}
+        }
+        let due = self.due(entries, now_ns);
+        for entry in &due {
+            if self.pen.put(entry).is_err() {
+                // A sample that is none, or more nodes than a recording has.
+                self.lost += 1;
+            }
+        }
+        if self.lost > self.told {
+            self.told = self.lost;
+            let lost = BTreeMap::from([("dropped".to_owned(), self.lost.to_string())]);
+            // It is told again with the next.
+            let _ = self.pen.put(&Entry::Facts("counts", Arc::new(lost)));
+        }
+        let bytes = self.out.take();
+        if !bytes.is_empty() {
+            self.client.send(bytes);
+        }
+        true
     }
 }
 

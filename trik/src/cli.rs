@@ -38,6 +38,7 @@ Examples:
   trik check class/ --field hard.xml --results all.jsonl   a class, in another world
   trik debug maze.qrs                stop its diagram, step, and go back
   trik record -o run.mcap            record everything that the robot gives
+  trik box save -o before.mcap       the last minutes of a robot, after something has happened
   trik replay run.mcap               and make the same tree of it
   trik export run.mcap --csv -o run.csv   or a table
   trik plot run.mcap sensors motors/M1 -o run.svg   or a picture
@@ -47,6 +48,18 @@ Examples:
 
 Exit status: 0 success; 1 refused, or something failed; 2 bad command line, or a robot could not be
 reached.";
+
+/// What can be done with a black box.
+#[derive(Subcommand)]
+enum BoxCommand {
+    /// Save the last minutes of a robot in a file here.
+    ///
+    /// The robot keeps them as well, with those that it has saved by itself: when a program failed, everything was stopped,
+    /// or a sensor failed. A robot keeps none unless its trikd is told to by --box-minutes; trik up does.
+    ///
+    /// Exit status: 0 saved; 1 the robot keeps none, or the file cannot be written; 2 the robot could not be reached.
+    Save(remote::recorded::SaveArgs),
+}
 
 #[derive(Subcommand)]
 enum Command {
@@ -121,6 +134,10 @@ enum Command {
     ///
     /// Exit status: 0 recorded; 1 there is no tree, or the file cannot be written; 2 the command line was not understood.
     Record(record::args::RecordArgs),
+    /// The black box of a robot: the last minutes of everything that it sensed and did.
+    #[command(subcommand)]
+    #[command(name = "box")]
+    BlackBox(BoxCommand),
     /// Mount the tree of a recording: its nodes give what was recorded, when its time comes.
     ///
     /// Programs, filters and diagrams run on it as on the robot, and trikd takes them. What they write to actuators moves
@@ -334,6 +351,7 @@ fn run(command: Command) -> Result<u8, Refusal> {
         Command::Export(args) => recording::export::run(&args),
         Command::Plot(args) => recording::plot::run(&args),
         Command::Record(args) => record::run(&args),
+        Command::BlackBox(BoxCommand::Save(args)) => remote::recorded::save(&args),
         Command::Replay(args) => replay::run(&args),
         Command::Break(args) => remote::step::stop_at(&args),
         Command::Step(args) => remote::step::step(&args),

@@ -7,6 +7,7 @@ pub(crate) mod args;
 use crate::error::Error;
 use crate::place;
 use crate::refusal::Refusal;
+use crate::remote::recorded;
 use crate::up::session::signals;
 use args::RecordArgs;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
@@ -29,6 +30,9 @@ const USUAL: &str = "/trikfs";
 /// # Errors
 /// There is no tree, or the file cannot be written.
 pub(crate) fn run(args: &RecordArgs) -> Result<u8, Refusal> {
+    if let Some(robot) = &args.robot {
+        return recorded::record(args, robot);
+    }
     let root = tree(args.mountpoint.as_deref())?;
     let signals = signals().map_err(|error| Error::system("signals", error))?;
     let wanted = args.clone();

@@ -3,7 +3,7 @@
 //! Owns nothing but its parts: `target` is which robot is meant, `link` one connection, `upload` how a program gets there,
 //! `run` follows one program, `live` changes it, `watch` shows it, `debugged` stops it, `step` gives one order, `fleet` does something with several
 //! robots at once, `output` is where a program's text goes, `person` who
-//! answers its questions.
+//! answers its questions, `recorded` fetches recordings.
 
 pub(crate) mod debugged;
 pub(crate) mod fleet;
@@ -11,6 +11,7 @@ mod link;
 pub(crate) mod live;
 mod output;
 mod person;
+pub(crate) mod recorded;
 pub(crate) mod run;
 pub(crate) mod step;
 pub(crate) mod target;

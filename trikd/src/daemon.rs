@@ -17,20 +17,24 @@ use crate::program::child::Owner;
 use crate::program::reaper::Reaper;
 use crate::program::rest::Rest;
 use crate::program::{self, Command, Programs, Supervisor, boot};
+use crate::record::Record;
 use crate::sampler::Sampler;
 use crate::server::control::Control;
+use crate::server::datagrams::Datagrams;
 use crate::server::discovery::{self, About};
 use crate::server::gamepad::{Gamepads, Pipe};
 use crate::server::mailbox::{self, Mailbox};
+use crate::server::recordings::Recordings;
 use crate::server::telemetry::Telemetry;
 use crate::server::variables::Variables;
 use crate::server::video::Video;
 use crate::server::{self, Admission, Port, Seats};
-use crate::settings::{Service, Settings, StopKey};
+use crate::settings::{BoxKey, Service, Settings, StopKey};
 use crate::status::Status;
 use crate::{heartbeat, keys, status};
 use crate::{limits, log};
 use nix::unistd::{User, chown, geteuid};
+use recorder::kept::Why;
 use std::io::Write;
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::Path;
@@ -153,6 +157,7 @@ struct Parts {
     programs: Rc<Programs>,
     mailbox: Rc<Mailbox>,
     gamepads: Rc<Gamepads>,
+    record: Rc<Record>,
 }
 
 impl Parts {
@@ -199,6 +204,7 @@ impl Parts {
             reaper: Rc::default(),
             programs,
             mailbox: Rc::new(mailbox),
+            record: Rc::new(Record::start(&settings)?),
             settings: Rc::new(settings),
         })
     }
@@ -213,6 +219,7 @@ impl Parts {
             rest: self.rest.clone(),
             reaper: self.reaper.clone(),
             feedback: self.feedback.clone(),
+            record: self.record.clone(),
         })
     }
 
@@ -262,7 +269,11 @@ impl Parts {
             seats: self.seats.clone(),
         });
         let control_port = ports.control.number();
-        let control = Rc::new(self.control());
+        let recordings = Rc::new(Recordings {
+            access: self.access.clone(),
+            record: self.record.clone(),
+        });
+        let control = Rc::new(self.control(recordings.clone()));
         ports
             .control
             .serve(&admission, &control, server::control::serve);
@@ -270,6 +281,8 @@ impl Parts {
             clients: self.clients.clone(),
             held: self.held.clone(),
             sampler: self.sampler.clone(),
+            recordings: recordings.clone(),
+            tree: self.settings.tree.clone(),
         });
         ports
             .telemetry
@@ -299,8 +312,9 @@ impl Parts {
         self.open_datagrams(control_port);
     }
 
-    fn control(&self) -> Control {
+    fn control(&self, recordings: Rc<Recordings>) -> Control {
         Control {
+            recordings,
             access: self.access.clone(),
             clients: self.clients.clone(),
             held: self.held.clone(),
@@ -333,12 +347,18 @@ impl Parts {
                 let sent = server::datagrams::send(sampler, to, period_ms).await;
                 report("telemetry by datagrams", sent);
             });
+            match Datagrams::to(to, period_ms) {
+                Ok(all) => self.record.listen(Box::new(all)),
+                Err(error) => report("telemetry of all nodes by datagrams", Err(error)),
+            }
         }
     }
 
     fn keys(&self) -> Keys {
         Keys {
             stop_key: self.settings.stop_key,
+            box_key: self.settings.box_key,
+            record: self.record.clone(),
             access: self.access.clone(),
             programs: self.programs.clone(),
         }
@@ -429,6 +449,8 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), Error> {
 /// What the keys of the robot act on.
 struct Keys {
     stop_key: StopKey,
+    box_key: BoxKey,
+    record: Rc<Record>,
     access: Rc<Access>,
     programs: Rc<Programs>,
 }
@@ -441,7 +463,17 @@ impl Keys {
             StopKey::Esc => "Esc",
             StopKey::None => "",
         };
+        let freeze = match self.box_key {
+            BoxKey::Up => "Up",
+            BoxKey::Down => "Down",
+            BoxKey::Left => "Left",
+            BoxKey::Right => "Right",
+            BoxKey::None => "",
+        };
         while let Some(key) = pressed.recv().await {
+            if key == freeze {
+                self.record.freeze(Why::Key);
+            }
             if key == stop && self.programs.runs() {
                 self.programs.send(Command::Stop("the stop key")).await;
             } else if key == "Enter" && self.access.pairs() {

@@ -74,6 +74,8 @@ pub enum Error {
     NoCommand(String),
     /// The tree.
     Rest(rest::Failure),
+    /// The black box.
+    Recorder(recorder::error::Error),
     /// A question to the running trikd.
     Ask(status::Unanswered),
     /// Orders for the display.
@@ -97,6 +99,10 @@ impl Error {
             Self::Display(why) => why.blame(),
             Self::Program(failure) => failure.blame(),
             Self::Rest(_) => Blame::Tree,
+            Self::Recorder(why) => match why.blame() {
+                recorder::error::Blame::Caller => Blame::Operator,
+                recorder::error::Blame::Machine => Blame::System,
+            },
             Self::Os(_)
             | Self::File(..)
             | Self::Thread(_)
@@ -132,6 +138,9 @@ impl fmt::Display for Error {
             Self::Directory(path, os, option) => {
                 let path = path.display();
                 write!(out, "{path}: {os}: name another directory with {option}")
+            }
+            Self::Recorder(why) => {
+                write!(out, "the black box: {why}: name another folder with --box")
             }
             Self::Thread(os) => write!(out, "a thread cannot be started: {os}"),
             Self::EventLoop(os) => write!(out, "no event loop: {os}"),

@@ -32,6 +32,7 @@ pub mod pictures;
 pub mod priority;
 pub mod program;
 pub mod protocol;
+pub mod record;
 pub mod sampler;
 pub mod scripts;
 pub mod server;

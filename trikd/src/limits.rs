@@ -194,6 +194,16 @@ pub const BEAT_MS: u64 = 500;
 pub const BEATS_MISSING: u32 = 20;
 /// Rests of which the status tells how long they took.
 pub const RESTS_SHOWN: usize = 256;
+/// Bytes that wait for one client of a stream, besides those in its outbox.
+pub const STREAM_BYTES: usize = 1 << 20;
+/// Bytes of one piece of a recording.
+pub const STREAM_PIECE_BYTES: usize = 16 << 10;
+/// Bytes of the path of a node that is asked for by its name.
+pub const NODE_PATH_BYTES: usize = 1024;
+/// Bytes of one datagram with values of nodes; more come in further ones.
+pub const DATAGRAM_BYTES: usize = 8 << 10;
+/// Numbers of a node with more are in no datagram.
+pub const DATAGRAM_NUMBERS: usize = 512;
 /// Numbers of one picture that a program shows, three for each pixel at most.
 pub const SHOWN_NUMBERS: usize = 3 << 20;
 

@@ -25,16 +25,20 @@ use crate::clients::debugging::Asked;
 use crate::feedback::{Feedback, Moment};
 use crate::protocol::news::{self, End};
 use crate::protocol::program::{FromProgram, ToProgram};
+use crate::record::Record;
 use crate::server::mailbox::Mailbox;
 use crate::settings::Settings;
 use crate::{limits, log};
 use child::{Child, Event, Language, Owner};
+use journal::standard::Level;
+use journal::write::Story;
 use kill::{freeze, group, sweep};
 use nix::sys::signal::Signal;
 use nix::unistd::Pid;
 use output::Meter;
 pub use queue::{Command, Programs, Wish};
 use reaper::{Ended, Reaper};
+use recorder::kept::Why;
 use rest::Rest;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -93,6 +97,8 @@ pub struct Surroundings {
     pub reaper: Rc<Reaper>,
     /// What a person beside the robot sees.
     pub feedback: Rc<Feedback>,
+    /// What is remembered of what programs do.
+    pub record: Rc<Record>,
 }
 
 /// Runs programs until it is told to quit.
@@ -169,11 +175,16 @@ impl Supervisor {
             Command::Debug(asked, wish) => self.debug(asked, wish).await,
             Command::DebugLeft => self.debugger_left(),
             Command::Stop(who) => {
+                let ran = self.current.is_some();
                 self.end(Cause::Ordered(who)).await;
+                if ran {
+                    self.around.record.freeze(Why::Stop);
+                }
                 // Also what came while nothing ran: after a stop everything begins anew.
                 self.around.mailbox.forget_kept();
             }
             Command::Mail(hull, text) => {
+                (self.around.record).line(Story::Mail, &format!("robot {hull}"), &text);
                 let heard = self
                     .current
                     .as_ref()
@@ -281,6 +292,11 @@ impl Supervisor {
         ));
         drop(shown);
         tracing::info!(target: log::PROGRAMS, "{name} starts as process {}", child.pid);
+        around.record.line(
+            Story::Programs,
+            &name,
+            &format!("{} as {}", news::started(&name), language.name()),
+        );
         if !is_quiet {
             self.broadcast(&format!("info: {}", news::started(&name)));
         }
@@ -353,7 +369,10 @@ impl Supervisor {
                     let _ = answer.send(json.to_owned());
                 }
             }
-            FromProgram::Watch { line, json } => self.around.clients.send_to_watchers(line, json),
+            FromProgram::Watch { line, json } => {
+                self.around.clients.send_to_watchers(line, json);
+                self.around.record.line(Story::Diagram, "diagram", json);
+            }
             FromProgram::Changed { is_changed, text } => {
                 let kind = if is_changed { "info" } else { "error" };
                 self.show(kind, text);
@@ -504,6 +523,11 @@ impl Supervisor {
         match failed {
             true => tracing::warn!(target: log::PROGRAMS, "{text}"),
             false => tracing::info!(target: log::PROGRAMS, "{text}"),
+        }
+        let level = if failed { Level::Error } else { Level::Info };
+        (self.around.record).level(Story::Programs, level, name, &text);
+        if failed {
+            self.around.record.freeze(Why::Crash);
         }
         let is_news = failed && !current.has_reported_error;
         if is_news {

@@ -11,6 +11,7 @@ pub mod datagrams;
 pub mod discovery;
 pub mod gamepad;
 pub mod mailbox;
+pub mod recordings;
 pub mod telemetry;
 pub mod variables;
 pub mod video;

@@ -38,6 +38,21 @@ pub enum StopKey {
     None,
 }
 
+/// The key that saves the black box.
+#[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
+pub enum BoxKey {
+    /// The key Up.
+    Up,
+    /// The key Down.
+    Down,
+    /// The key Left.
+    Left,
+    /// The key Right.
+    Right,
+    /// No key.
+    None,
+}
+
 /// The rules by which diagrams run.
 #[derive(Clone, Copy, Debug, Eq, PartialEq, ValueEnum)]
 pub enum Compat {
@@ -96,6 +111,19 @@ pub struct Settings {
     /// Turn this off; may be given several times.
     #[arg(long, value_name = "SERVICE", value_enum)]
     pub without: Vec<Service>,
+    /// Keep the last minutes of everything that the robot senses and does, so many, in the folder of --box; a program that
+    /// fails, a stop and a sensor that fails save them, and `trik box save` does.
+    #[arg(long, value_name = "MINUTES", value_parser = clap::value_parser!(u16).range(1..=24 * 60))]
+    pub box_minutes: Option<u16>,
+    /// Maximum size of these minutes, in MiB; the last 8 that were saved come on top.
+    #[arg(long, value_name = "MIB", default_value_t = 16, value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub box_mib: u16,
+    /// Folder of these minutes, on a disk or in memory [default: box in the directory of --state].
+    #[arg(long = "box", value_name = "DIR")]
+    pub box_dir: Option<PathBuf>,
+    /// The key that saves them.
+    #[arg(long, value_name = "KEY", value_enum, default_value = "none")]
+    pub box_key: BoxKey,
     /// Send sensor values to this address, one JSON object in each datagram.
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub udp_telemetry: Option<SocketAddr>,
@@ -182,10 +210,16 @@ impl Settings {
             &mut self.run,
             &mut self.gamepad_fifo,
         ];
-        for path in paths {
+        for path in paths.into_iter().chain(&mut self.box_dir) {
             *path = std::path::absolute(&*path).map_err(|error| Error::file(path, error))?;
         }
         Ok(())
+    }
+
+    /// Where the last minutes are kept.
+    pub fn box_directory(&self) -> PathBuf {
+        let named = self.box_dir.clone();
+        named.unwrap_or_else(|| self.state.join("box"))
     }
 
     /// Whether a service is wanted.

@@ -8,7 +8,7 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::fmt;
 use std::fs::{File, OpenOptions};
-use std::io;
+use std::io::{self, Read};
 use std::os::unix::fs::{FileExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -185,6 +185,22 @@ impl Tree {
         names.sort();
         names
     }
+}
+
+/// What the node at a path below the tree has now, as text; None if there is no such node, or it has nothing.
+pub fn value(tree: &Path, path: &str) -> Option<String> {
+    // A path does not lead out of the tree.
+    let is_inside = |part: &str| !part.is_empty() && part != "." && part != "..";
+    if !path.split('/').all(is_inside) {
+        return None;
+    }
+    let mut how = OpenOptions::new();
+    how.read(true).custom_flags(libc::O_NONBLOCK);
+    let file = how.open(tree.join(path).join("value")).ok()?;
+    let mut text = String::new();
+    let most = limits::VALUE_BYTES as u64;
+    file.take(most).read_to_string(&mut text).ok()?;
+    (!text.trim().is_empty()).then_some(text)
 }
 
 impl Node {

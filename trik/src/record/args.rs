@@ -2,12 +2,14 @@
 //!
 //! Owns the options. Knows nothing of what they do.
 
+use crate::error::Error;
+use crate::remote::target::{Target, target};
 use clap::Args;
 use recorder::pattern::matches;
 use std::path::PathBuf;
 
 /// The options of `trik record`.
-#[derive(Args, Clone, Debug, PartialEq, Eq)]
+#[derive(Args, Clone, Debug, PartialEq)]
 pub(crate) struct RecordArgs {
     /// The recording, which must not exist yet.
     #[arg(long, short, value_name = "FILE.mcap", default_value = "robot.mcap")]
@@ -18,6 +20,12 @@ pub(crate) struct RecordArgs {
     /// Stop after so many seconds [default: on Ctrl-C, or when the tree is unmounted].
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..=86400 * 7))]
     pub seconds: Option<u32>,
+    /// Record what happens on this robot, which sends it over the network: name or address, and its port if that is not 8888.
+    #[arg(long, value_name = "HOST[:PORT]", value_parser = target, conflicts_with = "mountpoint")]
+    pub robot: Option<Target>,
+    /// With --robot: at most so many samples a second of each node, the newest ones [default: all].
+    #[arg(long, value_name = "NUMBER", requires = "robot", value_parser = rate)]
+    pub hz: Option<f64>,
     /// The mounted tree [default: the virtual robot that runs, or else /trikfs].
     pub mountpoint: Option<PathBuf>,
 }
@@ -27,4 +35,11 @@ impl RecordArgs {
     pub(super) fn wants(&self, path: &str) -> bool {
         self.only.is_empty() || self.only.iter().any(|pattern| matches(pattern, path))
     }
+}
+
+/// A number of samples in a second.
+fn rate(text: &str) -> Result<f64, Error> {
+    let number = text.parse().ok();
+    let fits = number.filter(|number| (0.01..=10_000.0).contains(number));
+    fits.ok_or_else(|| Error::Refused("a number from 0.01 to 10000".to_owned()))
 }

@@ -168,8 +168,11 @@ impl Debugged {
                     let text = String::from_utf8_lossy(&text).into_owned();
                     self.put(Event::Said(Channel::Output, text));
                 }
-                Message::Info(_) | Message::Version | Message::Status(_) | Message::Question(_) => {
-                }
+                Message::Info(_)
+                | Message::Version
+                | Message::Status(_)
+                | Message::Question(_)
+                | Message::Stream(_) => {}
             }
         }
         Ok(None)

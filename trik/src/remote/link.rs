@@ -33,12 +33,17 @@ pub(super) enum Message {
     Debug(String),
     /// A question to a person, a JSON object.
     Question(String),
+    /// A piece of a recording; an empty one is the end of a file.
+    Stream(Vec<u8>),
 }
 
 /// What a frame says; None: nothing that anybody here asked for.
 fn message(frame: &[u8]) -> Option<Message> {
     let colon = frame.iter().position(|&byte| byte == b':')?;
     let (word, rest) = (&frame[..colon], &frame[colon + 1..]);
+    if word == b"stream" {
+        return Some(Message::Stream(rest.to_vec()));
+    }
     let rest = rest.strip_prefix(b" ").unwrap_or(rest);
     let text = || String::from_utf8_lossy(rest).into_owned();
     match word {

@@ -85,7 +85,8 @@ fn ask(args: &SetArgs) -> Result<u8, Error> {
                 | Message::Version
                 | Message::Status(_)
                 | Message::Debug(_)
-                | Message::Question(_),
+                | Message::Question(_)
+                | Message::Stream(_),
             ) => {}
             None => link.turn(ms(limits::TURN_MS), None, true)?,
         }

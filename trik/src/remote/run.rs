@@ -213,7 +213,7 @@ impl Session {
             Message::Question(json) => {
                 self.person.ask(&json);
             }
-            Message::Version | Message::Debug(_) => {}
+            Message::Version | Message::Debug(_) | Message::Stream(_) => {}
         }
         None
     }

@@ -90,7 +90,8 @@ impl Upload {
                     | Message::Info(_)
                     | Message::Status(_)
                     | Message::Debug(_)
-                    | Message::Question(_) => {}
+                    | Message::Question(_)
+                    | Message::Stream(_) => {}
                 }
             }
             if moved.0 != link.unsent() {
@@ -147,7 +148,8 @@ pub(super) fn start(
                 | Message::Info(_)
                 | Message::Version
                 | Message::Debug(_)
-                | Message::Question(_) => {}
+                | Message::Question(_)
+                | Message::Stream(_) => {}
             }
             errors.drain(..errors.len().saturating_sub(1));
         }

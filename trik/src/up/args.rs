@@ -7,7 +7,7 @@ use crate::limits;
 use clap::Args;
 use lang_dcml::models;
 use sim::body::rolling::Actuator;
-use std::net::IpAddr;
+use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
 
 /// The robot used if none is named.
@@ -75,7 +75,7 @@ pub(crate) struct UpArgs {
 #[derive(Args, Clone, Debug, PartialEq)]
 pub(crate) struct ServingArgs {
     /// Do not start trikd: no TRIK Studio, no gamepad and no `trik run` reaches the robot.
-    #[arg(long, conflicts_with_all = ["trikd_address", "trikd_ports", "scripts"])]
+    #[arg(long, conflicts_with_all = ["trikd_address", "trikd_ports", "scripts", "box_dir", "udp_telemetry"])]
     pub no_trikd: bool,
     /// Address at which trikd serves; may be given several times. If others can reach it (0.0.0.0 for all), they can run
     /// programs with your rights [default: 127.0.0.1; for robot-2 127.0.0.2 and so on].
@@ -85,6 +85,15 @@ pub(crate) struct ServingArgs {
     /// takes any free ones [default: 8888, 9000, 4444, 8080, 10000, 8889, which TRIK Studio uses].
     #[arg(long, value_name = "PORT")]
     pub trikd_ports: Option<u16>,
+    /// Minutes of everything that happens which are kept for trik box save; 0 keeps none.
+    #[arg(long, value_name = "MINUTES", default_value_t = 10, value_parser = clap::value_parser!(u16).range(0..=24 * 60))]
+    pub box_minutes: u16,
+    /// Folder of these minutes and of what is saved of them [default: a directory that is removed with the robot].
+    #[arg(long = "box", value_name = "DIR")]
+    pub box_dir: Option<PathBuf>,
+    /// Send the values of all nodes to this address, as JSON in datagrams; PlotJuggler listens at port 9870.
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub udp_telemetry: Option<SocketAddr>,
     /// Where uploaded programs are kept [default: a directory that is removed with the robot].
     #[arg(long, value_name = "DIR")]
     pub scripts: Option<PathBuf>,

@@ -61,6 +61,17 @@ impl Trikd {
         if std::env::var_os("TRIKD_LOG").is_none() {
             list.push("--log=info,clients=warn".into());
         }
+        if args.box_minutes > 0 {
+            list.push(format!("--box-minutes={}", args.box_minutes).into());
+        }
+        if let Some(path) = &args.box_dir {
+            let mut argument = OsString::from("--box=");
+            argument.push(absolute(path)?);
+            list.push(argument);
+        }
+        if let Some(to) = args.udp_telemetry {
+            list.push(format!("--udp-telemetry={to}").into());
+        }
         if addresses.iter().all(IpAddr::is_loopback) {
             // Nobody else could connect.
             list.push("--without=discovery".into());

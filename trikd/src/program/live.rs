@@ -155,7 +155,7 @@ impl Supervisor {
     pub(super) fn send_watch(&mut self) {
         let clients = &self.around.clients;
         let is_again = clients.take_behind();
-        let watched = clients.are_watching();
+        let watched = clients.are_watching() || self.around.record.is_heard();
         if let Some(current) = &mut self.current
             && (current.is_watched != watched || watched && is_again)
         {

@@ -5,6 +5,8 @@
 use super::{Current, Supervisor};
 use crate::limits;
 use crate::protocol::program::FromProgram;
+use journal::standard::Level;
+use journal::write::Story;
 use std::time::Instant;
 
 impl Supervisor {
@@ -22,7 +24,20 @@ impl Supervisor {
         let shown = current.meter.offer(message, now);
         self.show_held();
         if let Some(message) = shown {
-            self.broadcast(&message);
+            self.say(&message);
+        }
+    }
+
+    /// Something that a program said, for all who hear.
+    fn say(&self, message: &str) {
+        self.broadcast(message);
+        if self.around.record.is_heard() {
+            let name = self.current.as_ref().map_or("", |current| &current.name);
+            let level = match message.starts_with("error: ") {
+                true => Level::Error,
+                false => Level::Info,
+            };
+            (self.around.record).level(Story::Output, level, name, message);
         }
     }
 
@@ -36,7 +51,7 @@ impl Supervisor {
         let held: Vec<_> = std::iter::from_fn(|| current.meter.release(now, false)).collect();
         self.report_dropped(dropped);
         for message in held {
-            self.broadcast(&message);
+            self.say(&message);
         }
     }
 
@@ -75,7 +90,7 @@ impl Supervisor {
                 .meter
                 .offer(format!("{kind}: {text}"), Instant::now());
             if let Some(message) = shown {
-                self.broadcast(&message);
+                self.say(&message);
             }
         }
     }

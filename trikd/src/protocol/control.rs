@@ -55,6 +55,10 @@ pub enum Request<'a> {
     },
     /// What runs now, and how the last program ended, when everything asked for before is done.
     Status,
+    /// Everything that happens, from now on, as a recording: which nodes, and how often.
+    Stream(&'a str),
+    /// The last minutes, as a recording.
+    Box,
     /// Something else.
     Unknown,
 }
@@ -70,6 +74,7 @@ impl<'a> Request<'a> {
             b"configVersion" => return Self::ConfigVersion,
             b"stop" => return Self::Stop,
             b"status" => return Self::Status,
+            b"box" => return Self::Box,
             b"watch" => return Self::Watch(true),
             b"unwatch" => return Self::Watch(false),
             b"questions" => return Self::Questions(true),
@@ -96,6 +101,9 @@ impl<'a> Request<'a> {
         }
         if let Some(rest) = frame.strip_prefix(b"answer:") {
             return Self::answer(rest).unwrap_or(Self::Unknown);
+        }
+        if let Some(wanted) = frame.strip_prefix(b"stream:") {
+            return std::str::from_utf8(wanted).map_or(Self::Unknown, Self::Stream);
         }
         if let Some(text) = frame.strip_prefix(b"set:") {
             return Self::Set(text);

@@ -8,6 +8,9 @@ use std::fmt::Write;
 /// Keys in the order and by the names of this protocol.
 pub const KEYS: [&str; 7] = ["Left", "Up", "Down", "Enter", "Right", "Power", "Esc"];
 
+/// What a piece of a recording begins with.
+pub const STREAM: &[u8] = b"stream:";
+
 /// What a client asks for.
 #[derive(Clone, Debug, Eq, PartialEq)]
 pub enum Request<'a> {
@@ -23,6 +26,10 @@ pub enum Request<'a> {
     Key(&'a str),
     /// One sensor.
     Sensor(&'a str),
+    /// Everything that happens, from now on, as a recording: which nodes, and how often.
+    Stream(&'a str),
+    /// The last minutes, as a recording.
+    Box,
     /// Something else.
     Unknown,
 }
@@ -43,6 +50,12 @@ impl<'a> Request<'a> {
         }
         if text.starts_with("ports") {
             return Self::Ports;
+        }
+        if text == "box" {
+            return Self::Box;
+        }
+        if let Some(wanted) = text.strip_prefix("stream:") {
+            return Self::Stream(wanted);
         }
         match text.strip_prefix("sensor:") {
             Some(name) => name
@@ -106,13 +119,25 @@ fn text(number: Option<i32>) -> String {
     number.map_or_else(String::new, |number| number.to_string())
 }
 
-fn list(numbers: &[i32]) -> String {
+fn vector_of(numbers: &[i32]) -> String {
     let words: Vec<_> = numbers.iter().map(i32::to_string).collect();
     format!("({})", words.join(","))
 }
 
+/// The words of any node: one as it is, several as a vector. What the protocol separates with is not in them.
+pub fn list(text: &str) -> String {
+    let words: Vec<String> = text
+        .split_whitespace()
+        .map(|word| word.replace([':', ';', ','], "_"))
+        .collect();
+    match &words[..] {
+        [one] => one.clone(),
+        several => format!("({})", several.join(",")),
+    }
+}
+
 fn vector(reading: &Reading) -> String {
-    reading.as_deref().map_or_else(String::new, list)
+    reading.as_deref().map_or_else(String::new, vector_of)
 }
 
 impl Snapshot {
@@ -254,7 +279,7 @@ impl Gamepad {
         let flag = |is_set: bool| u8::from(is_set).to_string();
         let place = |pad: Option<(i32, i32)>| {
             let (x, y) = pad.unwrap_or((UNTOUCHED, UNTOUCHED));
-            list(&[x, y])
+            vector_of(&[x, y])
         };
         Some(match index {
             0..=4 => flag(self.buttons[index]),

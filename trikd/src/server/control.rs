@@ -4,6 +4,7 @@
 mod debug;
 
 use super::Guest;
+use super::recordings::{Recordings, Sending};
 use crate::access::Access;
 use crate::clients::{Client, Clients, Watching};
 use crate::connection::{self, Handler, Held, VERSION};
@@ -37,12 +38,15 @@ pub struct Control {
     pub upload_bytes: usize,
     /// The model of the controller.
     pub config_version: String,
+    /// What has happened, and what happens.
+    pub recordings: Rc<Recordings>,
 }
 
 /// One connection.
 struct Session {
     control: Rc<Control>,
     client: Rc<Client>,
+    sending: Sending,
 }
 
 impl Session {
@@ -162,6 +166,8 @@ impl Handler for Session {
                 self.client.outbox.send(answer.as_bytes());
             }
             Request::Status => self.status().await,
+            Request::Stream(wanted) => self.sending.stream(wanted),
+            Request::Box => self.sending.last_minutes(),
             Request::Watch(is_wanted) => {
                 let watching = if is_wanted {
                     Watching::Lines
@@ -221,6 +227,7 @@ pub async fn serve(control: Rc<Control>, guest: Guest) {
     tracing::info!(target: log::CLIENTS, "control: {} has come", guest.peer);
     let mut handler = Session {
         control: control.clone(),
+        sending: Sending::new(control.recordings.clone(), client.clone()),
         client,
     };
     let why = connection::serve(

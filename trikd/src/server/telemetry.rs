@@ -1,12 +1,15 @@
-//! Port 9000: answers questions about sensors. Asks nothing of the tree while nobody asks here.
+//! Port 9000: answers questions about sensors; recordings are `recordings`'. Asks nothing of the tree while nobody asks here.
 
 use super::Guest;
+use super::recordings::{Recordings, Sending};
 use crate::clients::{Client, Clients};
 use crate::connection::{self, Handler, Held, VERSION};
 use crate::outbox::Outbox;
-use crate::protocol::telemetry::Request;
+use crate::protocol::telemetry::{Request, list};
 use crate::sampler::Sampler;
+use crate::tree::value;
 use crate::{limits, log};
+use std::path::PathBuf;
 use std::rc::Rc;
 
 /// What this port works with.
@@ -18,28 +21,52 @@ pub struct Telemetry {
     pub held: Rc<Held>,
     /// What the robot senses.
     pub sampler: Rc<Sampler>,
+    /// What has happened, and what happens.
+    pub recordings: Rc<Recordings>,
+    /// Where the tree is mounted.
+    pub tree: PathBuf,
 }
 
 /// One connection.
 struct Session {
-    sampler: Rc<Sampler>,
+    telemetry: Rc<Telemetry>,
     client: Rc<Client>,
+    sending: Sending,
+}
+
+impl Session {
+    /// A port, or any node by its path.
+    async fn sensor(&self, name: &str) -> String {
+        let answer = self.telemetry.sampler.snapshot().await.sensor(name);
+        if !answer.ends_with(':') || name.len() > limits::NODE_PATH_BYTES {
+            return answer;
+        }
+        let (tree, path) = (self.telemetry.tree.clone(), name.to_owned());
+        let read = tokio::task::spawn_blocking(move || value(&tree, &path)).await;
+        match read.ok().flatten() {
+            Some(words) => format!("sensor:{name}:{}", list(&words)),
+            None => answer,
+        }
+    }
 }
 
 impl Handler for Session {
     async fn frame(&mut self, frame: &[u8]) {
-        let out = &self.client.outbox;
+        let out = self.client.outbox.clone();
         // Who does not read its answers is not answered further.
         out.room().await;
         self.client.count();
+        let sampler = &self.telemetry.sampler;
         let answer = match Request::parse(frame) {
             Request::Keepalive => return,
             Request::Version => return out.send(VERSION),
             Request::Unknown => String::new(),
-            Request::Data => return out.push(self.sampler.all_data().await),
-            Request::Ports => self.sampler.snapshot().await.port_names(),
-            Request::Key(name) => self.sampler.snapshot().await.key(name),
-            Request::Sensor(name) => self.sampler.snapshot().await.sensor(name),
+            Request::Data => return out.push(sampler.all_data().await),
+            Request::Ports => sampler.snapshot().await.port_names(),
+            Request::Key(name) => sampler.snapshot().await.key(name),
+            Request::Sensor(name) => self.sensor(name).await,
+            Request::Stream(wanted) => return self.sending.stream(wanted),
+            Request::Box => return self.sending.last_minutes(),
         };
         out.send(answer.as_bytes());
     }
@@ -53,7 +80,8 @@ pub async fn serve(telemetry: Rc<Telemetry>, guest: Guest) {
         .add("telemetry", guest.peer, outbox.clone());
     tracing::info!(target: log::CLIENTS, "telemetry: {} has come", guest.peer);
     let mut handler = Session {
-        sampler: telemetry.sampler.clone(),
+        telemetry: telemetry.clone(),
+        sending: Sending::new(telemetry.recordings.clone(), client.clone()),
         client,
     };
     let why = connection::serve(

@@ -1,0 +1,215 @@
+//! Recordings that come from a robot: what happens there from now on, and the last minutes of its black box.
+//!
+//! Owns the way from pieces of a connection to a file, and what a person is told meanwhile. What is in the pieces is known to
+//! `journal`.
+
+use super::link::{Link, Message, ms};
+use super::target::{Target, target, the_one};
+use crate::error::Error;
+use crate::limits;
+use crate::record::args::RecordArgs;
+use crate::refusal::Refusal;
+use crate::up::session::signals;
+use clap::Args;
+use nix::sys::signalfd::SignalFd;
+use std::fs::File;
+use std::io::{self, BufWriter, IsTerminal, Read, Write};
+use std::os::fd::AsFd;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// What `trik box save` can be told.
+#[derive(Args, Clone, Debug)]
+pub(crate) struct SaveArgs {
+    /// The recording, which must not exist yet.
+    #[arg(long, short, value_name = "FILE.mcap", default_value = "box.mcap")]
+    pub output: PathBuf,
+    /// Name or address of the robot, and its port if that is not 8888 [default: the virtual robot that runs on this
+    /// computer, or else 127.0.0.1].
+    #[arg(long, value_name = "HOST[:PORT]", value_parser = target)]
+    pub robot: Option<Target>,
+}
+
+/// Records what happens on a robot, until somebody stops it.
+///
+/// # Errors
+/// The robot is not reached, does not send, or the file cannot be written.
+pub(crate) fn record(args: &RecordArgs, robot: &Target) -> Result<u8, Refusal> {
+    let mut wanted = args.only.join(",");
+    if let Some(rate_hz) = args.hz {
+        wanted.push_str(&format!(";hz={rate_hz}"));
+    }
+    let seconds = args
+        .seconds
+        .map(|seconds| Duration::from_secs(seconds.into()));
+    let pieces = Pieces::of(robot, &[b"stream:", wanted.as_bytes()], seconds)?;
+    say(&format!(
+        "recording what {robot} sends into {}; Ctrl-C ends it\n",
+        args.output.display()
+    ))?;
+    keep(pieces, &args.output)
+}
+
+/// Fetches the last minutes of a robot, which has saved them as well.
+///
+/// # Errors
+/// The robot is not reached or keeps none, or the file cannot be written.
+pub(crate) fn save(args: &SaveArgs) -> Result<u8, Refusal> {
+    let robot = match &args.robot {
+        Some(robot) => robot.clone(),
+        None => the_one()?,
+    };
+    keep(Pieces::of(&robot, &[b"box"], None)?, &args.output)
+}
+
+fn say(text: &str) -> Result<(), Refusal> {
+    crate::output::standard(text.as_bytes())
+}
+
+/// Puts all pieces into a file.
+fn keep(mut pieces: Pieces, path: &Path) -> Result<u8, Refusal> {
+    let begin = Instant::now();
+    // A robot that refuses leaves no empty file.
+    pieces.wait()?;
+    let file = File::create_new(path).map_err(|error| Error::file(path, error))?;
+    let saved = journal::mend::follow(&mut pieces, BufWriter::new(file));
+    if pieces.is_watched {
+        // A terminal that is gone has nothing to clear.
+        let _ = write!(io::stderr(), "\r\x1b[K");
+    }
+    let saved = saved.map_err(|error| Error::file(path, error))?;
+    let size = path.metadata().map_or(0, |file| file.len());
+    say(&format!(
+        "{}: {}; {:.1} s, {} messages, {} KiB\n",
+        path.display(),
+        pieces.end.as_deref().unwrap_or("all is there"),
+        begin.elapsed().as_secs_f64(),
+        saved.messages,
+        size / 1024
+    ))?;
+    match pieces.failure {
+        Some(error) => Err(error.into()),
+        None => Ok(0),
+    }
+}
+
+/// Pieces of a recording as they come, until the robot, the person or the time ends it.
+struct Pieces {
+    link: Link,
+    signals: SignalFd,
+    until: Option<Instant>,
+    piece: Vec<u8>,
+    /// What of it is taken.
+    taken: usize,
+    bytes: u64,
+    is_over: bool,
+    /// Why it ended, if it was not whole.
+    end: Option<String>,
+    failure: Option<Error>,
+    is_watched: bool,
+    shown: Instant,
+}
+
+impl Pieces {
+    fn of(robot: &Target, request: &[&[u8]], seconds: Option<Duration>) -> Result<Self, Error> {
+        let signals = signals().map_err(|error| Error::system("signals", error))?;
+        let mut link = robot.connect()?;
+        link.ask(request);
+        Ok(Self {
+            link,
+            signals,
+            until: seconds.map(|seconds| Instant::now() + seconds),
+            piece: Vec::new(),
+            taken: 0,
+            bytes: 0,
+            is_over: false,
+            end: None,
+            failure: None,
+            is_watched: io::stderr().is_terminal(),
+            shown: Instant::now(),
+        })
+    }
+
+    /// Waits for the first piece.
+    fn wait(&mut self) -> Result<(), Error> {
+        while self.taken == self.piece.len() && !self.is_over {
+            self.turn();
+        }
+        match self.failure.take() {
+            Some(error) => Err(error),
+            None if self.bytes == 0 => Err(Error::Robot(format!(
+                "{} has sent nothing: its trikd may be older than this program",
+                self.link.name()
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    fn ends(&mut self, why: &str) {
+        self.is_over = true;
+        self.end = Some(why.to_owned());
+    }
+
+    /// Takes what comes next, or waits a moment for it.
+    fn turn(&mut self) {
+        if let Ok(Some(_)) = self.signals.read_signal() {
+            return self.ends("stopped");
+        }
+        if self.until.is_some_and(|until| Instant::now() >= until) {
+            return self.ends("the time is over");
+        }
+        match self.link.next() {
+            Some(Message::Stream(piece)) if piece.is_empty() => self.is_over = true,
+            Some(Message::Stream(piece)) => {
+                self.bytes += piece.len() as u64;
+                (self.piece, self.taken) = (piece, 0);
+                self.show();
+            }
+            // On this connection nothing was asked for but a recording; errors of programs come to all.
+            Some(Message::Error(text)) if self.bytes == 0 => {
+                self.is_over = true;
+                self.failure = Some(Error::Robot(format!("{}: {text}", self.link.name())));
+            }
+            Some(
+                Message::Print(_)
+                | Message::Error(_)
+                | Message::Info(_)
+                | Message::Version
+                | Message::Status(_)
+                | Message::Debug(_)
+                | Message::Question(_),
+            ) => {}
+            None => {
+                let also = Some(self.signals.as_fd());
+                if let Err(error) = self.link.turn(ms(limits::TURN_MS), also, true) {
+                    self.ends("the robot has ended it");
+                    self.failure = Some(error);
+                }
+            }
+        }
+    }
+
+    fn show(&mut self) {
+        if self.is_watched && self.shown.elapsed() >= Duration::from_secs(1) {
+            self.shown = Instant::now();
+            // A terminal that is gone is no reason to stop.
+            let _ = write!(io::stderr(), "\r{} KiB\x1b[K", self.bytes / 1024);
+        }
+    }
+}
+
+impl Read for Pieces {
+    fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
+        while self.taken == self.piece.len() {
+            if self.is_over {
+                return Ok(0);
+            }
+            self.turn();
+        }
+        let left = &self.piece[self.taken..];
+        let count = left.len().min(out.len());
+        out[..count].copy_from_slice(&left[..count]);
+        self.taken += count;
+        Ok(count)
+    }
+}
