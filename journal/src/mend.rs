@@ -6,7 +6,7 @@
 
 use crate::error::Error;
 use crate::limits::{CHUNK_BYTES, RECORD_BYTES_MAX};
-use crate::write::{FAULTS, Story};
+use crate::write::Story;
 use mcap::records::{MessageHeader, Record};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use mcap::{Attachment, Compression, WriteOptions};
@@ -76,13 +76,14 @@ pub fn join<R: Read, W: Write + Seek>(
     to: W,
 ) -> Result<Saved, Error> {
     let mut target = Target::new(to);
+    target.joins = true;
     let mut saved = Saved::default();
     let last: RefCell<HashMap<String, u64>> = RefCell::default();
     for from in all {
         let before = last.borrow().clone();
         let is_new = |topic: &str, unix_ns: u64| {
-            // Lines are never repeated, and failures of all nodes have one topic.
-            let is_of_a_node = topic != FAULTS && Story::of(topic).is_none();
+            // Lines are never repeated.
+            let is_of_a_node = Story::of(topic).is_none();
             let repeats = before.get(topic).is_some_and(|last| unix_ns <= *last);
             let mut last = last.borrow_mut();
             let newest = last.entry(topic.to_owned()).or_default();
@@ -115,6 +116,10 @@ struct Target<W: Write + Seek> {
     is_begun: bool,
     /// The message with which all was handed to the file the last time; None if nobody waits for that.
     flushed_ns: Option<u64>,
+    /// Several recordings become one.
+    joins: bool,
+    /// Checksums of the files that go with it, by their names.
+    attached: HashMap<String, u32>,
     /// Numbers there to numbers here.
     schemas: HashMap<u16, u16>,
     channels: HashMap<u16, (u16, String)>,
@@ -127,6 +132,8 @@ impl<W: Write + Seek> Target<W> {
             to: Some(to),
             is_begun: false,
             flushed_ns: None,
+            joins: false,
+            attached: HashMap::new(),
             schemas: HashMap::new(),
             channels: HashMap::new(),
         }
@@ -275,8 +282,13 @@ impl<W: Write + Seek> Target<W> {
                     media_type: header.media_type,
                     data,
                 };
-                out.attach(&attachment).map_err(disk)?;
-                saved.attachments += 1;
+                let checksum = crc32fast::hash(&attachment.data);
+                let last = self.attached.insert(attachment.name.clone(), checksum);
+                // One that is there is there in each part.
+                if !self.joins || last != Some(checksum) {
+                    out.attach(&attachment).map_err(disk)?;
+                    saved.attachments += 1;
+                }
             }
             Record::Metadata(metadata) => out.write_metadata(&metadata).map_err(disk)?,
             // The summary begins, which is made anew.

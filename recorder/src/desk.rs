@@ -7,7 +7,7 @@ use crate::entry::{Batch, Entry};
 use crate::error::Error;
 use crate::kept::{self, Kept, Told, Why};
 use crate::limits;
-use crate::watch::{Wants, Watch, now_ns};
+use crate::watch::{Wants, Watch, Wish, now_ns};
 use journal::standard::{Level, Log};
 use journal::write::Story;
 use std::collections::HashSet;
@@ -29,8 +29,8 @@ enum Order {
 
 /// Somebody who takes what is seen. It is called from the thread that looks, so it waits for nothing.
 pub trait Listener: Send {
-    /// Whether a node is wanted.
-    fn wants(&self) -> Box<dyn Fn(&str) -> bool + Send>;
+    /// Which nodes are wanted, and how much.
+    fn wants(&self) -> Wants;
 
     /// Takes what has come, which may be nothing, at this moment in ns since 1970. False: it wants no more.
     fn put(&mut self, entries: &[Entry], now_ns: u64) -> bool;
@@ -222,13 +222,12 @@ impl Work {
 
     /// Which nodes anybody wants.
     fn wants(&self) -> Wants {
-        if self.kept.is_some() {
-            return Box::new(|_| true);
-        }
+        let kept = self.kept.as_ref().map(|_| Wish::ByTheClock);
         let all: Vec<_> = (self.listeners.iter())
             .map(|listener| listener.wants())
             .collect();
-        Box::new(move |path| all.iter().any(|wants| wants(path)))
+        let most = move |path: &str| all.iter().filter_map(|wants| wants(path)).max();
+        Box::new(move |path| most(path).max(kept))
     }
 
     /// What anybody wants has changed.

@@ -54,6 +54,27 @@ impl Entry {
         }
     }
 
+    /// Whether this is news of the same thing: of one node, or a file of one name.
+    pub fn replaces(&self, other: &Self) -> bool {
+        match (self, other) {
+            (
+                Self::Sample(known, ..) | Self::Fault(known, ..),
+                Self::Sample(other, ..) | Self::Fault(other, ..),
+            ) => known.number == other.number,
+            (Self::Attachment(_, name, ..), Self::Attachment(_, other, ..)) => name == other,
+            (Self::Facts(name, _), Self::Facts(other, _)) => name == other,
+            (
+                Self::Node(_)
+                | Self::Sample(..)
+                | Self::Fault(..)
+                | Self::Line(..)
+                | Self::Attachment(..)
+                | Self::Facts(..),
+                _,
+            ) => false,
+        }
+    }
+
     /// The node that it is of.
     pub fn node(&self) -> Option<&Arc<Known>> {
         match self {

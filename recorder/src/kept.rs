@@ -13,7 +13,6 @@ use std::collections::VecDeque;
 use std::fs::{self, File};
 use std::io::{BufReader, BufWriter};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// What the minutes are kept for.
@@ -145,7 +144,11 @@ impl Kept {
                 // The disk is full or read-only; the next second may be better.
                 return;
             };
-            disk.put(&Arc::from(beginning()));
+            // What has just come is not also before it.
+            let has_come = |one: &Entry| batch.iter().any(|entry| entry.replaces(one));
+            let mut first = beginning();
+            first.retain(|entry| !has_come(entry));
+            disk.put(&first.into());
             self.disk = Some((disk, now));
         }
         if let Some((disk, _)) = &self.disk {
@@ -333,6 +336,7 @@ mod tests {
     use crate::entry::Known;
     use journal::node::Node;
     use journal::read::{Reader, What};
+    use std::sync::Arc;
     use std::sync::mpsc::channel;
     use tempfile::tempdir;
 
@@ -348,11 +352,9 @@ mod tests {
         Box::new(|told| panic!("nothing was left, but {told:?}"))
     }
 
-    fn known() -> Arc<Known> {
-        Arc::new(Known {
-            number: 1,
-            node: Node::sensor("a", "u32 x"),
-        })
+    fn known(number: u32, path: &str) -> Arc<Known> {
+        let node = Node::sensor(path, "u32 x");
+        Arc::new(Known { number, node })
     }
 
     fn sample(known: &Arc<Known>, at: u32) -> Entry {
@@ -360,6 +362,7 @@ mod tests {
         Entry::Sample(known.clone(), unix_ns, Arc::new(at.to_ne_bytes()))
     }
 
+    /// All values, in their order in time; that of the node that speaks once is the last.
     fn values(path: &Path) -> Vec<u32> {
         let mut reader = Reader::open(File::open(path).unwrap()).unwrap();
         let mut all = Vec::new();
@@ -373,16 +376,20 @@ mod tests {
 
     /// Keeps one sample after the other, and begins a new part before each number that is named.
     fn fill(kept: &mut Kept, all: std::ops::Range<u32>, parts: &[u32]) {
-        let known = known();
+        let (known, still) = (known(1, "a"), known(2, "still"));
         for at in all {
             if parts.contains(&at) {
                 kept.end_part();
             }
-            let before = at.checked_sub(1).map(|before| sample(&known, before));
-            let batch: Batch = vec![sample(&known, at)].into();
-            kept.put(&batch, || {
-                let node = [Entry::Node(known.clone())];
-                node.into_iter().chain(before).collect()
+            // One node speaks once and each part begins with it; the other all the time.
+            let mut batch = vec![sample(&known, at)];
+            if at == 0 {
+                batch.push(sample(&still, 1000));
+            }
+            kept.put(&batch.into(), || {
+                let before = at.checked_sub(1).map(|before| sample(&known, before));
+                let nodes = [Entry::Node(known.clone()), sample(&still, 1000)];
+                nodes.into_iter().chain(before).collect()
             });
         }
     }
@@ -401,12 +408,12 @@ mod tests {
         fill(&mut kept, 0..100, &[30, 60]);
         let path = saved_now(&mut kept, Why::Stop);
         assert!(path.to_string_lossy().ends_with("-stop.mcap"));
-        assert_eq!(values(&path), (0..100).collect::<Vec<_>>());
+        assert_eq!(values(&path), (0..100).chain([1000]).collect::<Vec<_>>());
         assert!(!kept.is_due(Why::Stop), "not again and again");
         // It goes on meanwhile.
         fill(&mut kept, 100..150, &[]);
         let path = saved_now(&mut kept, Why::Asked);
-        assert_eq!(values(&path), (0..150).collect::<Vec<_>>());
+        assert_eq!(values(&path), (0..150).chain([1000]).collect::<Vec<_>>());
         kept.close();
         assert_eq!(named(folder.path(), PART).unwrap(), [] as [PathBuf; 0]);
         assert_eq!(saved(folder.path()).unwrap().len(), 2);
@@ -423,7 +430,7 @@ mod tests {
         }
         kept.forget(Instant::now());
         assert_eq!(kept.parts.len(), 2, "of three parts with 1200 KiB");
-        assert_eq!(values(&saved_now(&mut kept, Why::Asked))[0], 9);
+        assert_eq!(values(&saved_now(&mut kept, Why::Asked))[0], 10);
         kept.forget(Instant::now() + Duration::from_secs(3601));
         assert_eq!(kept.parts.len(), 0);
         let (tell, told) = channel();
@@ -451,7 +458,7 @@ mod tests {
         let tell = Box::new(move |path| tell.send(path).unwrap());
         let _kept = Kept::open(settings(folder.path()), "test", tell).unwrap();
         let path = told.recv().unwrap().unwrap();
-        assert_eq!(values(&path), (0..100).collect::<Vec<_>>());
+        assert_eq!(values(&path), (0..100).chain([1000]).collect::<Vec<_>>());
         assert_eq!(named(folder.path(), PART).unwrap(), [] as [PathBuf; 0]);
     }
 

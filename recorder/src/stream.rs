@@ -9,6 +9,7 @@ use crate::error::Error;
 use crate::limits::{PATTERN_BYTES_MAX, PATTERNS_MAX};
 use crate::pattern::matches;
 use crate::pen::Pen;
+use crate::watch::{Wants, Wish};
 use journal::write::{Out, Writer};
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
@@ -191,9 +192,14 @@ impl Stream {
 }
 
 impl Listener for Stream {
-    fn wants(&self) -> Box<dyn Fn(&str) -> bool + Send> {
+    /// What is named is needed; everything is what there is anyway.
+    fn wants(&self) -> Wants {
         let request = self.request.clone();
-        Box::new(move |path| request.wants(path))
+        let wish = match request.patterns.is_empty() {
+            true => Wish::ByTheClock,
+            false => Wish::Samples,
+        };
+        Box::new(move |path| request.wants(path).then_some(wish))
     }
 
     fn put(&mut self, entries: &[Entry], now_ns: u64) -> bool {

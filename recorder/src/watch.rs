@@ -24,6 +24,7 @@ use std::time::{Duration, Instant};
 struct Watched {
     known: Arc<Known>,
     ring: Reader,
+    wish: Wish,
     /// The last errno, and what `fault` said of it.
     fault: (i32, Arc<str>),
     /// What it had last.
@@ -31,16 +32,29 @@ struct Watched {
 }
 
 /// Its samples; of an actuator, what is written to it.
-fn ring(root: &Path, node: &Node) -> Option<Reader> {
+fn ring(root: &Path, node: &Node, wish: Wish) -> Option<Reader> {
     let is_actuator = !node.rest.is_empty();
     let written = is_actuator.then(|| Reader::open_written(root, &node.path).ok());
-    written
-        .flatten()
-        .or_else(|| Reader::open(root, &node.path).ok())
+    if let Some(written) = written.flatten() {
+        return Some(written);
+    }
+    let is_needed = match wish {
+        Wish::Samples => true,
+        Wish::ByTheClock => is_sampled_by_the_clock(root, &node.path),
+    };
+    match is_needed {
+        true => Reader::open(root, &node.path).ok(),
+        false => Reader::open_beside(root, &node.path).ok(),
+    }
+}
+
+fn is_sampled_by_the_clock(root: &Path, node: &str) -> bool {
+    let period_ms = nodes::text(&root.join(node).join("poll_ms"));
+    period_ms.is_some_and(|text| text.trim().parse().is_ok_and(|ms: f64| ms > 0.0))
 }
 
 impl Watched {
-    fn new(number: u32, mut node: Node, ring: Reader) -> Self {
+    fn new(number: u32, mut node: Node, ring: Reader, wish: Wish) -> Self {
         let size = Layout::parse(&node.format).map_or(0, |layout| layout.size());
         if size != ring.tuple_bytes() {
             // What is written has no names if it is converted on its way.
@@ -49,6 +63,7 @@ impl Watched {
         Self {
             known: Arc::new(Known { number, node }),
             ring,
+            wish,
             fault: (0, Arc::default()),
             newest: None,
         }
@@ -107,8 +122,17 @@ struct From<'a> {
     offset_ns: i64,
 }
 
-/// Which nodes are looked at.
-pub type Wants = Box<dyn Fn(&str) -> bool + Send>;
+/// How much a node is wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Wish {
+    /// Its samples, if the clock takes them or if others need them: a camera is not started for that.
+    ByTheClock,
+    /// Its samples, whatever has to run for them.
+    Samples,
+}
+
+/// Which nodes are looked at; None for one that is not.
+pub type Wants = Box<dyn Fn(&str) -> Option<Wish> + Send>;
 
 /// A tree that is looked at.
 pub struct Watch {
@@ -236,7 +260,8 @@ impl Watch {
     pub fn want(&mut self, wants: Wants, out: &mut Vec<Entry>) {
         self.wants = wants;
         let wants = &self.wants;
-        self.watched.retain(|one| wants(&one.known.node.path));
+        // One that is wanted in another way is opened anew, which it takes for the ring of another daemon.
+        (self.watched).retain(|one| wants(&one.known.node.path) == Some(one.wish));
         self.find(out);
     }
 
@@ -245,13 +270,16 @@ impl Watch {
         self.left_out.clear();
         for node in nodes::find(&self.root) {
             let is_known = |one: &Watched| one.known.node.path == node.path;
-            if !(self.wants)(&node.path) || self.watched.iter().any(is_known) {
+            let Some(wish) = (self.wants)(&node.path) else {
+                continue;
+            };
+            if self.watched.iter().any(is_known) {
                 continue;
             }
-            match ring(&self.root, &node) {
+            match ring(&self.root, &node, wish) {
                 Some(ring) => {
                     self.numbers += 1;
-                    let watched = Watched::new(self.numbers, node, ring);
+                    let watched = Watched::new(self.numbers, node, ring, wish);
                     out.push(Entry::Node(watched.known.clone()));
                     self.watched.push(watched);
                 }
@@ -294,13 +322,13 @@ impl Watch {
             if watched.ring.is_current() {
                 continue;
             }
-            let Some(ring) = ring(&self.root, &watched.known.node) else {
+            let Some(ring) = ring(&self.root, &watched.known.node, watched.wish) else {
                 continue;
             };
             let mut node = watched.known.node.clone();
             let format = nodes::text(&self.root.join(&node.path).join("format"));
             node.format = format.unwrap_or_default();
-            let mut fresh = Watched::new(watched.known.number, node, ring);
+            let mut fresh = Watched::new(watched.known.number, node, ring, watched.wish);
             if fresh.known.node.format != watched.known.node.format {
                 // Of another format, it is another channel.
                 self.numbers += 1;

@@ -83,6 +83,16 @@ impl Reader {
         })
     }
 
+    /// As [`Reader::open`] without a need for samples: there are those that others need.
+    ///
+    /// # Errors
+    /// As of [`Reader::open`].
+    pub fn open_beside(mountpoint: &Path, node: &str) -> io::Result<Self> {
+        let mountpoint = mountpoint.canonicalize()?;
+        let file = directory_of(&mountpoint)?.join(place::file_name(node)?);
+        Self::open_file(&file)
+    }
+
     /// Opens the ring of what is written to an actuator: each tuple that has gone to its device, those that bring it to rest
     /// too, as a program writes it.
     ///

@@ -203,3 +203,5 @@ pub(crate) const PLOT_STEPS: usize = 1_120;
 pub(crate) const PLOT_FAULTS_MAX: usize = 1_000;
 /// Gaps within one step of time of such a picture.
 pub(crate) const PLOT_GAPS_MAX: usize = 4;
+/// Size of the black box of a virtual robot, in MiB: ten minutes of its nodes, at some 40 KB/s.
+pub const BOX_MIB: u16 = 32;

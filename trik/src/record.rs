@@ -13,7 +13,7 @@ use args::RecordArgs;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use recorder::entry::{Batch, Entry, events};
 use recorder::file::Disk;
-use recorder::watch::Watch;
+use recorder::watch::{Watch, Wish};
 use std::io::{self, IsTerminal, Write};
 use std::os::fd::AsFd;
 use std::path::{Path, PathBuf};
@@ -36,7 +36,7 @@ pub(crate) fn run(args: &RecordArgs) -> Result<u8, Refusal> {
     let root = tree(args.mountpoint.as_deref())?;
     let signals = signals().map_err(|error| Error::system("signals", error))?;
     let wanted = args.clone();
-    let wants = Box::new(move |path: &str| wanted.wants(path));
+    let wants = Box::new(move |path: &str| wanted.wants(path).then_some(Wish::Samples));
     let watch = Watch::begin(&root, LIBRARY, wants).map_err(refused)?;
     let disk = Disk::create(&args.output, LIBRARY, recorder::limits::WAITING_BYTES);
     let disk = disk.map_err(refused)?;

@@ -7,6 +7,7 @@
 use super::args::{ServingArgs, absolute};
 use super::companion::Companion;
 use crate::error::Error;
+use crate::limits;
 use crate::place::Place;
 use nix::unistd::{User, geteuid};
 use std::ffi::{OsStr, OsString};
@@ -63,6 +64,7 @@ impl Trikd {
         }
         if args.box_minutes > 0 {
             list.push(format!("--box-minutes={}", args.box_minutes).into());
+            list.push(format!("--box-mib={}", limits::BOX_MIB).into());
         }
         if let Some(path) = &args.box_dir {
             let mut argument = OsString::from("--box=");

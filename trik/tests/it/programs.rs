@@ -78,7 +78,7 @@ impl Reachable {
     }
 
     /// The guardian of its trikd, and the process that serves.
-    fn trikd(&self) -> (u32, u32) {
+    pub fn trikd(&self) -> (u32, u32) {
         let mut found = None;
         eventually("the processes of trikd", || {
             let is_trikd = |pid: &u32| {

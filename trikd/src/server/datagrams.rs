@@ -8,6 +8,7 @@ use journal::layout::{Layout, Number};
 use lang_text::json::quoted;
 use recorder::desk::Listener;
 use recorder::entry::Entry;
+use recorder::watch::{Wants, Wish};
 use std::collections::BTreeMap;
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
@@ -122,8 +123,8 @@ impl Datagrams {
 }
 
 impl Listener for Datagrams {
-    fn wants(&self) -> Box<dyn Fn(&str) -> bool + Send> {
-        Box::new(|_| true)
+    fn wants(&self) -> Wants {
+        Box::new(|_| Some(Wish::ByTheClock))
     }
 
     fn put(&mut self, entries: &[Entry], now_ns: u64) -> bool {
