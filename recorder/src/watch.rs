@@ -10,6 +10,7 @@ use journal::layout::Layout;
 use journal::node::Node;
 use journal::standard::{Level, Log};
 use journal::write::{ABOUT, Story};
+use nix::sys::time::TimeSpec;
 use nix::time::{ClockId, clock_gettime};
 use sample_bus::{Event, Reader, Step};
 use std::collections::{BTreeMap, BTreeSet};
@@ -395,7 +396,10 @@ fn log(root: &Path) -> Option<File> {
 }
 
 fn clock_ns(clock: ClockId) -> i64 {
-    clock_gettime(clock).map_or(0, |time| time.tv_sec() * 1_000_000_000 + time.tv_nsec())
+    // Seconds of the controller have 32 bits.
+    #[allow(clippy::useless_conversion, reason = "they have 64 on a PC")]
+    let ns = |time: TimeSpec| i64::from(time.tv_sec()) * 1_000_000_000 + i64::from(time.tv_nsec());
+    clock_gettime(clock).map_or(0, ns)
 }
 
 /// What the clock of the world is ahead of the machine's own.
