@@ -19,8 +19,8 @@ pub(crate) struct GradeArgs {
     /// the runs are told and no table is written.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["field", "own", "task", "script", "log", "platform"])]
     pub tasks: Option<PathBuf>,
-    /// The names of all pupils, one in a line, as their folders or files are called: whoever has handed in nothing has a
-    /// row too.
+    /// The names of all pupils, one in a line, as their folders or files are called: a pupil who has handed in nothing has
+    /// a row too.
     #[arg(long, value_name = "NAMES.txt", requires = "out")]
     pub pupils: Option<PathBuf>,
     /// What the points of a task, or of one of its fields, are multiplied with for the sum: maze=2 or maze/far=0.5
