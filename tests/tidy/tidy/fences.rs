@@ -18,7 +18,7 @@ const ON_EVERY_PAGE: [&str; 6] = [
 /// Marks of examples that are run on pages that the source of a test names: the mark, that source, and the page if it
 /// runs the mark on no other one of those that it names.
 const ON_NAMED_PAGES: [(&str, &str, &str); 16] = [
-    ("dcml", "lang/dcml/src/tests.rs", ""),
+    ("dcml", "trik/tests/it/dcml.rs", ""),
     ("expression", "lang/expr/src/tests/documents.rs", ""),
     ("js generated", "lang/diagram/tests/generate/main.rs", ""),
     ("python stepik", "trik/tests/it/check/class.rs", ""),
@@ -37,8 +37,8 @@ const ON_NAMED_PAGES: [(&str, &str, &str); 16] = [
 ];
 
 /// Languages of examples that are only shown, though a test may read some of them.
-const SHOWN: [&str; 11] = [
-    "", "c", "java", "js", "json", "lua", "python", "sh", "text", "toml", "xml",
+const SHOWN: [&str; 12] = [
+    "", "c", "dcml", "java", "js", "json", "lua", "python", "sh", "text", "toml", "xml",
 ];
 
 /// Whether the words of a fence are those of a mark, with names behind them.
