@@ -79,7 +79,8 @@ macro_rules! kinds {
         }
 
         /// Whether a word of the sandbox makes a source.
-        pub(crate) fn is_constructor(word: &[u8]) -> bool {
+        #[must_use]
+        pub fn is_constructor(word: &[u8]) -> bool {
             false $(|| is_word_of::<$description>(word))+
         }
 

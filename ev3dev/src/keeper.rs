@@ -7,6 +7,7 @@
 
 use crate::cli::SERVE;
 use crate::failure::Failure;
+use crate::limits;
 use crate::limits::GRACE_MS;
 use crate::scan::Options;
 use crate::tree::Tree;
@@ -35,8 +36,6 @@ use trikfs::transport::{Operations, native};
 const SOURCE: &str = "trikfs-ev3dev";
 /// What ends the view in order.
 const SIGNALS: [Signal; 3] = [Signal::SIGTERM, Signal::SIGINT, Signal::SIGHUP];
-/// Longest line of the serving process.
-const LINE_BYTES_MAX: usize = 64;
 
 /// What to show where.
 #[derive(Clone, Debug)]
@@ -206,7 +205,7 @@ impl Server {
 
     /// Takes what it says; true at its end.
     fn hear(&mut self, ready: &mut dyn FnMut(usize)) -> io::Result<bool> {
-        let mut piece = [0; LINE_BYTES_MAX];
+        let mut piece = [0; limits::LINE_BYTES_MAX];
         let size = match self.said.read(&mut piece) {
             Err(error) if error.kind() == io::ErrorKind::Interrupted => return Ok(false),
             result => result?,
@@ -219,7 +218,7 @@ impl Server {
                 ready(devices);
             }
         }
-        self.heard.truncate(LINE_BYTES_MAX);
+        self.heard.truncate(limits::LINE_BYTES_MAX);
         Ok(size == 0)
     }
 

@@ -24,5 +24,7 @@ pub const LOST_S: f64 = 0.2;
 pub const RAMP_MS_MAX: i32 = 60_000;
 /// Longest ramp of a motor without an encoder.
 pub const DC_RAMP_MS_MAX: i32 = 10_000;
+/// Longest line of the serving process.
+pub const LINE_BYTES_MAX: usize = 64;
 /// Time for the serving process to end after it was asked to, before it is forced.
 pub const GRACE_MS: u64 = 2_000;

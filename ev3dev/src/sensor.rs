@@ -519,4 +519,18 @@ mod tests {
             assert_eq!(Kind::of_format(format), kind);
         }
     }
+
+    /// A type that is not told apart here is shown as a plain analog sensor.
+    #[test]
+    fn every_type_of_the_analog_ports_is_told() {
+        let family = include_str!("../../config/lua/trik/analog.lua");
+        let (types, _) = family.split_once("local ports").expect("types, then ports");
+        let formats = types.split("format = '").skip(1);
+        let kinds: Vec<Kind> = formats
+            .filter_map(|rest| rest.split_once('\''))
+            .filter(|(format, _)| *format != "i32 percent")
+            .map(|(format, _)| Kind::of_format(format))
+            .collect();
+        assert_eq!(kinds, [Kind::Infrared, Kind::Touch, Kind::Light]);
+    }
 }

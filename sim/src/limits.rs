@@ -114,3 +114,5 @@ pub const DEEDS: usize = 100_000;
 pub const RUNNING_MAX: usize = 32;
 /// Characters of a name in it.
 pub const RUNNING_CHARS_MAX: usize = 200;
+/// Readings of an arena that wait for a program; those that none hears of are not kept for ever.
+pub const ANNOUNCED_MAX: usize = 64;

@@ -15,7 +15,7 @@ pub struct Example {
     pub text: String,
 }
 
-/// All documents of the project.
+/// All documents of the project; not those that are copied into projects of users.
 pub fn documents() -> Vec<PathBuf> {
     let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
     let mut found: Vec<_> = [
@@ -23,11 +23,16 @@ pub fn documents() -> Vec<PathBuf> {
         "ARCHITECTURE.md",
         "CONTRIBUTING.md",
         "CHANGELOG.md",
+        "SECURITY.md",
+        "editors/vscode/README.md",
+        "tests/recorded/README.md",
     ]
     .iter()
     .map(|name| root.join(name))
     .collect();
-    let mut folders = vec![root.join("docs"), root.join("cross")];
+    let mut folders = ["docs", "cross", ".github"]
+        .map(|name| root.join(name))
+        .to_vec();
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();

@@ -91,7 +91,7 @@ enum Command {
     /// Show where the diagram that runs on a robot is, and what its variables hold.
     ///
     /// In a terminal a picture, with the last values of each number; elsewhere a line for each change. It only looks, and
-    /// anybody may, beside whoever is in control.
+    /// any client may do so, also while another one is in control.
     ///
     /// Exit status: 0 the program has ended, or the time is over; 1 no diagram runs; 2 the robot could not be reached, or
     /// does not answer.
@@ -144,7 +144,7 @@ enum Command {
     /// nothing: it is compared with what was recorded, and the first difference of each is told with its time. Keys of the
     /// terminal, or lines in a control file, stop the clock, step it, and go to another moment.
     ///
-    /// Exit status: 0 somebody has ended it; 1 the recording cannot be replayed, or with --exit a program has written something
+    /// Exit status: 0 you have ended it; 1 the recording cannot be replayed, or with --exit a program has written something
     /// else than was recorded; 2 the command line was not understood.
     Replay(replay::args::ReplayArgs),
     /// Show what is in a recording.
@@ -235,7 +235,7 @@ enum Command {
     /// reverse-continue, back. Lines may also come from a file or a pipe. With --robot it runs on a robot, whose motors rest
     /// while it is stopped.
     ///
-    /// Exit status: 0 the person had enough; 2 the diagram cannot run, or the command line was not understood.
+    /// Exit status: 0 you have ended it; 2 the diagram cannot run, or the command line was not understood.
     Debug(debug::DebugArgs),
     /// Debug diagrams from an editor, by the Debug Adapter Protocol.
     ///

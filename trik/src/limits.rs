@@ -14,6 +14,16 @@ pub const SPEED_MAX: f64 = 20.0;
 pub const VIEW_MS: u16 = 100;
 /// Characters of what the loudspeaker gave that a line tells: they fit into a pipe that has any room.
 pub const SOUND_CHARS_MAX: usize = 500;
+/// Names of diagrams that a message lists.
+pub const DIAGRAM_NAMES_MAX: usize = 20;
+/// How far a judged run may be ahead of the first one that is not done.
+pub const RUNS_AHEAD_MAX: usize = 2_000;
+/// Bytes of one path of a job of judged runs.
+pub const JOB_BYTES_MAX: u64 = 64 << 10;
+/// Characters of a name or a message that a terminal is shown.
+pub const SHOWN_CHARS_MAX: usize = 400;
+/// Seconds of a moment that a replay is sent to: far enough for any recording.
+pub const SEEK_S_MAX: f64 = 1e9;
 /// Time for the tree to be there.
 pub const START_MS: u32 = 60_000;
 /// Time for the tree to end after it was asked to, before it is forced.

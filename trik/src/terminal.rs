@@ -2,10 +2,8 @@
 //!
 //! Owns which characters those are, and how much of a text is shown.
 
+use crate::limits;
 use std::path::Path;
-
-/// Characters of a name or a message that are shown.
-const SHOWN_CHARS_MAX: usize = 400;
 
 /// A path for people.
 pub(crate) fn named(path: &Path) -> String {
@@ -17,7 +15,7 @@ pub(crate) fn harmless(text: &str) -> String {
     let is_turn = |c: char| matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     let mut shown = String::new();
     for (count, c) in text.trim_end().chars().enumerate() {
-        if count == SHOWN_CHARS_MAX {
+        if count == limits::SHOWN_CHARS_MAX {
             shown.push_str("...");
             break;
         }
@@ -41,7 +39,7 @@ mod tests {
             "a\u{fffd}[2Jb c\u{fffd}d"
         );
         let long = harmless(&"x".repeat(10_000));
-        assert_eq!(long.len(), SHOWN_CHARS_MAX + 3);
+        assert_eq!(long.len(), limits::SHOWN_CHARS_MAX + 3);
         assert_eq!(harmless("ends\n"), "ends");
     }
 }

@@ -246,6 +246,19 @@ mod tests {
         text
     }
 
+    #[test]
+    fn every_command_that_is_shown_is_documented_and_has_a_page_in_the_package() {
+        let document = include_str!("../../docs/user/trikd.md");
+        let package = include_str!("../../cross/install/test/deb.sh").replace(';', " ");
+        for one in Cli::command().get_subcommands() {
+            let name = one.get_name();
+            if !one.is_hide_set() {
+                assert!(document.contains(&format!("`trikd {name} ")), "{name}");
+                assert!(package.contains(&format!(" trikd-{name} ")), "{name}");
+            }
+        }
+    }
+
     #[cfg(feature = "manual")]
     #[test]
     fn help_has_these_words() {

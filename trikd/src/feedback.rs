@@ -1,5 +1,5 @@
 //! What a person beside the robot hears and sees of programs: a beep when one has come, the green light when one is
-//! over, as on the robots of old (trikRuntime: 2500 Hz for 150 ms; green at the reset after each program).
+//! over, as on the original robots (trikRuntime: 2500 Hz for 150 ms; green at the reset after each program).
 //!
 //! Owns a thread, because neither a loudspeaker nor a light may delay anything, and what stands in their files. What
 //! cannot be shown is left out.

@@ -8,6 +8,12 @@ pub const PORT_NAME_BYTES: usize = 32;
 pub const VALUE_BYTES: usize = 4096;
 /// How often processes outside of the program's group are looked for before the motors rest: they may start others.
 pub const FREEZE_ROUNDS: usize = 4;
+/// Questions of one message of multicast DNS that are looked at.
+pub const DNS_QUESTIONS_MAX: u16 = 32;
+/// Pointers in one name of multicast DNS.
+pub const DNS_POINTERS_MAX: usize = 8;
+/// Characters of a text in what the daemon itself tells clients that debug.
+pub const DEBUG_CHARACTERS_MAX: usize = 1000;
 /// Bytes of one transfer on a bus: as many as i2c-dev takes.
 pub const TRANSFER_BYTES: usize = 8192;
 /// Memory of one engine of JavaScript; each thread of a program has one.

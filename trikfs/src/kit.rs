@@ -5,6 +5,7 @@
 
 use crate::failure::Failure;
 use crate::limits::PROJECT_NAME_BYTES_MAX;
+use config::source::is_constructor;
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -23,7 +24,11 @@ pub enum Language {
 /// What the templates are called; replaced by the name of the project, in both spellings.
 const TEMPLATE: (&str, &str) = ("battery_mean", "BatteryMean");
 
-/// Names that would be syntax, or something else already, in a file of a project.
+/// What a name is that the sandbox of configurations has taken.
+const GLOBAL: &str = "a global name of configurations";
+
+/// Names that would be syntax, or something else already, in a file of a project. Words that make sources are known to
+/// `config`.
 const RESERVED: &[(&str, &[&str])] = &[
     (
         "a word of Lua",
@@ -34,34 +39,24 @@ const RESERVED: &[(&str, &[&str])] = &[
         ],
     ),
     (
-        "a global name of configurations",
+        GLOBAL,
         &[
-            "absent",
-            "attribute",
             "ba",
+            "bit",
+            "coroutine",
+            "dcml",
             "error",
-            "evdev",
-            "fake",
-            "faulty",
-            "fifo",
             "filter",
-            "gpio",
-            "i2c",
-            "iio",
+            "id_create",
             "include",
-            "lines",
+            "load",
             "math",
-            "packets",
             "params",
-            "pictures",
-            "program",
-            "pwm",
-            "regulator",
-            "replay",
-            "several",
+            "print",
             "string",
             "table",
             "trikfs",
+            "trikfs_log",
         ],
     ),
     ("a file of the tree", &["config", "log", "status", "stop"]),
@@ -362,7 +357,8 @@ fn check_name(name: &str) -> Result<(), Failure> {
     let meaning = RESERVED
         .iter()
         .find(|(_, words)| words.contains(&name))
-        .map(|(meaning, _)| *meaning);
+        .map(|(meaning, _)| *meaning)
+        .or_else(|| is_constructor(name.as_bytes()).then_some(GLOBAL));
     match meaning {
         Some(meaning) => Err(Failure::Refused(format!(
             "the name '{name}' does not do: it is {meaning}; try {name}_sensor"
@@ -449,6 +445,8 @@ mod tests {
             ("self", "it is a word of Rust; try self_sensor"),
             ("log", "it is a file of the tree; try log_sensor"),
             ("converter", "it is a library that is there already"),
+            ("i2c_bus", "it is a global name of configurations"),
+            ("bit", "it is a global name of configurations"),
         ] {
             let refusal = check_name(name).unwrap_err().to_string();
             assert!(

@@ -348,12 +348,24 @@ impl Kind {
             (Some(a), Some(b)) => Arc::ptr_eq(a, b),
             _ => false,
         };
-        let same_view = match (self, other) {
-            (Self::Value(_, a), Self::Value(_, b)) => a == b,
-            (Self::Param(_, a), Self::Param(_, b)) => a == b,
-            _ => true,
+        // What a variant has beside its node is compared here: one that is new has to say so.
+        let same_view = match self {
+            Self::Value(_, view) => matches!(other, Self::Value(_, of_other) if view == of_other),
+            Self::Param(_, name) => matches!(other, Self::Param(_, of_other) if name == of_other),
+            Self::Directory
+            | Self::Config
+            | Self::Status
+            | Self::Log
+            | Self::Stop
+            | Self::Device(_)
+            | Self::Units(_)
+            | Self::Format(_)
+            | Self::Period(_)
+            | Self::Fault(_)
+            | Self::Stats(_)
+            | Self::Owner(_) => std::mem::discriminant(self) == std::mem::discriminant(other),
         };
-        std::mem::discriminant(self) == std::mem::discriminant(other) && same_node && same_view
+        same_node && same_view
     }
 }
 

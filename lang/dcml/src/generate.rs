@@ -25,54 +25,49 @@ use graph::Scene;
 use row::Row;
 use std::fmt;
 
-/// A language that a model can be written in.
-#[derive(Clone, Copy, Debug, Eq, PartialEq, Hash)]
-pub enum Target {
+/// Makes the type of all languages with what is known of each, so that none is missing in a list.
+macro_rules! targets {
+    ($($(#[$what:meta])* $target:ident: $row:expr,)+) => {
+        /// A language that a model can be written in.
+        #[derive(Clone, Copy, Debug, Eq, PartialEq, Hash)]
+        pub enum Target {
+            $($(#[$what])* $target,)+
+        }
+
+        impl Target {
+            /// All, in the order of the documentation.
+            pub const ALL: [Self; [$(stringify!($target)),+].len()] = [$(Self::$target),+];
+
+            /// What is known of it.
+            const fn row(self) -> &'static Row {
+                match self {
+                    $(Self::$target => &$row,)+
+                }
+            }
+        }
+    };
+}
+
+targets! {
     /// Rust without allocation: one module.
-    Rust,
+    Rust: rust::ROW,
     /// C99 and C++ without allocation: one header.
-    C,
+    C: c::ROW,
     /// Java: a class for the solvers of Commons Math 3.
-    Java,
+    Java: java::ROW,
     /// Java: a class for the solvers of Hipparchus.
-    JavaHipparchus,
+    JavaHipparchus: java::ROW_HIPPARCHUS,
     /// Python: functions over NumPy arrays, for the solvers of SciPy.
-    Python,
+    Python: python::ROW,
     /// Lua 5.1 and later: a module, for converters too.
-    Lua,
+    Lua: lua::ROW,
     /// JavaScript of ECMAScript 5: a module.
-    JavaScript,
+    JavaScript: javascript::ROW,
     /// LaTeX: equations to be read by people.
-    Latex,
+    Latex: latex::ROW,
 }
 
 impl Target {
-    /// All, in the order of the documentation.
-    pub const ALL: [Self; 8] = [
-        Self::Rust,
-        Self::C,
-        Self::Java,
-        Self::JavaHipparchus,
-        Self::Python,
-        Self::Lua,
-        Self::JavaScript,
-        Self::Latex,
-    ];
-
-    /// What is known of it.
-    const fn row(self) -> &'static Row {
-        match self {
-            Self::Rust => &rust::ROW,
-            Self::C => &c::ROW,
-            Self::Java => &java::ROW,
-            Self::JavaHipparchus => &java::ROW_HIPPARCHUS,
-            Self::Python => &python::ROW,
-            Self::Lua => &lua::ROW,
-            Self::JavaScript => &javascript::ROW,
-            Self::Latex => &latex::ROW,
-        }
-    }
-
     /// Its name on the command line.
     pub const fn name(self) -> &'static str {
         self.row().name

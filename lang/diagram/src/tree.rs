@@ -1,4 +1,4 @@
-//! Programs with loops and branches in place of arrows: what structural analysis makes and printers print.
+//! Programs with loops and branches instead of arrows: what structural analysis makes and printers print.
 //!
 //! Owns the shape of such a program. Knows blocks as numbers only: what a block does is known to who prints it.
 

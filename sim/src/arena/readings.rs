@@ -6,6 +6,7 @@
 //! Facts are those of the original: a rule sees what was read last and reads nothing itself; a locked sensor is not read
 //! every 20 ms, but a block that waits for it reads it all the same.
 
+use crate::limits;
 use std::collections::VecDeque;
 
 use lang_diagram::ports::Port;
@@ -14,8 +15,6 @@ use lang_diagram::ports::Port;
 pub(super) const RENEWAL_MS: u32 = 20;
 /// More than there are ports.
 const PORTS: usize = 64;
-/// Readings that no program hears of are not kept for ever.
-const ANNOUNCED_MAX: usize = 64;
 
 /// Last readings of a robot.
 #[derive(Clone, Debug)]
@@ -66,7 +65,7 @@ impl Readings {
     /// A rule gives a sensor a reading, which its program hears of at once.
     pub fn give(&mut self, port: Port, reading: i32) {
         self.last[place(port)] = reading;
-        if self.announced.len() == ANNOUNCED_MAX {
+        if self.announced.len() == limits::ANNOUNCED_MAX {
             self.announced.pop_front();
         }
         self.announced.push_back((port, reading));

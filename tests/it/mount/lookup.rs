@@ -42,6 +42,43 @@ fn nodes_groups_and_reserved_files_are_found() {
     }
 }
 
+/// A file that is added to the tree takes its name from configurations: the list of `config` has it, or a description could
+/// take the place of that file.
+#[test]
+fn names_of_files_are_refused_as_names_of_nodes_and_attributes() {
+    let text = "trikfs = {
+      motor = { src = '/dev/null', input_tuple_size = 4, output_tuple_size = 4, format = 'i32 percent', rest = { 0 } },
+    }";
+    let Some(m) = mount(text) else { return };
+    let names = |path: &str| -> Vec<String> {
+        let entries = std::fs::read_dir(m.path(path)).unwrap();
+        entries
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect()
+    };
+    let source = "src = '/dev/zero', input_tuple_size = 1";
+    let refusal = |text: String| {
+        let loaded = config::load::Loader::default().load("robot.lua", None, text.as_bytes());
+        loaded.err().map(|problem| problem.to_string())
+    };
+    let of_nodes = names("");
+    let of_attributes = names("motor");
+    assert!(of_attributes.len() >= 9, "{of_attributes:?}");
+    for name in of_nodes.iter().filter(|name| *name != "motor") {
+        let text = format!("trikfs = {{ {name} = {{ {source} }} }}");
+        assert!(refusal(text).is_some(), "a node can be called {name}");
+    }
+    for name in &of_attributes {
+        let text = format!(
+            "trikfs = {{ x = {{ {source}, attributes = {{ {name} = {{ {source} }} }} }} }}"
+        );
+        assert!(refusal(text).is_some(), "an attribute can be called {name}");
+    }
+    let text =
+        format!("trikfs = {{ x = {{ {source}, attributes = {{ motor = {{ {source} }} }} }} }}");
+    assert_eq!(refusal(text), None);
+}
+
 #[test]
 fn other_names_are_enoent_and_files_are_no_directories() {
     let Some(m) = mount(TREE) else { return };

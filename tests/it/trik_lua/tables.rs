@@ -75,6 +75,31 @@ fn tables() -> String {
     text
 }
 
+/// A device that is absent by default has a row only if the robot of the tables lists it.
+#[test]
+fn every_port_that_gives_a_node_at_the_top_is_in_the_tables() {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../config/lua/trik"));
+    let tables = tables();
+    let mut count = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let text = std::fs::read_to_string(entry.unwrap().path()).unwrap();
+        let Some((_, rest)) = text.split_once("top = true, ports = { ") else {
+            continue;
+        };
+        let (ports, _) = rest.split_once(" } }").unwrap();
+        for port in ports.split(", ") {
+            let name = port.strip_suffix(" = {}").unwrap_or(port);
+            let name = name.strip_suffix(" = {").unwrap_or(name);
+            assert!(
+                tables.contains(&format!("\n### {name}\n")),
+                "{name} has no table: list it in the robot of `tables`"
+            );
+            count += 1;
+        }
+    }
+    assert!(count >= 14, "only {count} ports at the top");
+}
+
 #[test]
 fn the_tables_of_the_document_are_those_of_the_configuration() {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/user/trik.md"));

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::{CRATES, files, none, root};
+use crate::circles::LARGEST;
 
 /// Libraries that stand behind a border, and the only crates that may link them.
 const BEHIND_A_BORDER: [(&str, &[&str]); 9] = [
@@ -95,6 +96,57 @@ fn rules() -> BTreeMap<String, BTreeSet<String>> {
         }
     }
     rules
+}
+
+/// Folders that the workspace has as members.
+fn members() -> BTreeSet<String> {
+    let manifest = text(&root().join("Cargo.toml"));
+    let list = manifest
+        .split_once("members = [")
+        .and_then(|(_, rest)| rest.split_once(']'))
+        .expect("the workspace has members")
+        .0;
+    list.split('"')
+        .skip(1)
+        .step_by(2)
+        .map(str::to_owned)
+        .collect()
+}
+
+#[test]
+fn the_lists_of_the_rules_have_every_crate() {
+    let mut complaints = Vec::new();
+    let mut compare = |list: &str, found: BTreeSet<String>, wanted: &BTreeSet<String>| {
+        for name in wanted.symmetric_difference(&found) {
+            complaints.push(format!("{list}: {name} is there or in `members` alone"));
+        }
+    };
+    let members = members();
+    let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
+    compare("CRATES in tidy.rs", owned(&CRATES), &members);
+    // Those have no product.
+    let products = members
+        .iter()
+        .filter(|name| !name.starts_with("tests"))
+        .cloned()
+        .collect();
+    let measured: Vec<&str> = LARGEST.iter().map(|(name, _)| *name).collect();
+    compare("LARGEST in circles.rs", owned(&measured), &products);
+    none(&complaints);
+}
+
+#[test]
+fn every_crate_takes_the_lints_and_has_no_tests_in_comments() {
+    let mut complaints = Vec::new();
+    for folder in CRATES {
+        let manifest = text(&root().join(folder).join("Cargo.toml"));
+        for section in ["[lints]\nworkspace = true", "doctest = false"] {
+            if !manifest.contains(section) {
+                complaints.push(format!("{folder}/Cargo.toml: no {section:?}"));
+            }
+        }
+    }
+    none(&complaints);
 }
 
 #[test]

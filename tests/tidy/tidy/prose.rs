@@ -6,12 +6,13 @@ use super::none;
 use harness::documents::documents;
 
 /// Phrases that a reader stumbles over, in small letters, with what to write instead.
-const BANNED: [(&str, &str); 12] = [
+const BANNED: [(&str, &str); 13] = [
     ("who is not", "if you are not"),
     ("whoever", "if you, anyone who, a program that"),
     ("may have so much", "is at most"),
     ("may have so many", "has at most"),
     ("in the place of", "instead of"),
+    ("in place of", "instead of"),
     ("one behind the other", "one after the other"),
     ("thereof", "of it"),
     ("gives itself", "takes"),
@@ -73,6 +74,26 @@ fn every_row_of_a_table_has_as_many_cells_as_its_header() {
                     "{}:{number}: {found} cells, not {wanted}",
                     path.display()
                 ));
+            }
+        }
+    }
+    none(&complaints);
+}
+
+/// Rows that show fences themselves.
+const SHOWS_FENCES: &str = "docs/maintainer/testing.md";
+
+/// A quotation that goes on in the next line has lost what stood at the break: `\n` that became a new line.
+#[test]
+fn quotations_end_in_their_line() {
+    let mut complaints = Vec::new();
+    for (path, lines) in prose() {
+        for (number, line) in lines {
+            let is_odd = line.matches('`').count() % 2 != 0;
+            let shows_fences = path.ends_with(SHOWS_FENCES) && line.starts_with('|');
+            if is_odd && !shows_fences {
+                let path = path.display();
+                complaints.push(format!("{path}:{number}: a backtick has no partner"));
             }
         }
     }

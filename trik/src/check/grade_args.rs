@@ -19,8 +19,8 @@ pub(crate) struct GradeArgs {
     /// the runs are told and no table is written.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["field", "own", "task", "script", "log", "platform"])]
     pub tasks: Option<PathBuf>,
-    /// The names of all pupils, one in a line, as their folders or files are called: whoever has handed in nothing has a
-    /// row too.
+    /// The names of all pupils, one in a line, as their folders or files are called: a pupil who has handed in nothing has
+    /// a row too.
     #[arg(long, value_name = "NAMES.txt", requires = "out")]
     pub pupils: Option<PathBuf>,
     /// What the points of a task, or of one of its fields, are multiplied with for the sum: maze=2 or maze/far=0.5
@@ -51,34 +51,35 @@ pub(crate) enum Source {
     Accomplished,
 }
 
-/// A form of the table.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Form {
-    /// Text with commas.
-    Csv,
-    /// A table of spreadsheet programs.
-    Ods,
-    /// A page with links to replays.
-    Html,
+/// Makes the type of all forms with the ending of their files, so that none is missing in a list.
+macro_rules! forms {
+    ($($(#[$what:meta])* $form:ident: $ending:literal,)+) => {
+        /// A form of the table.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub(super) enum Form {
+            $($(#[$what])* $form,)+
+        }
+
+        impl Form {
+            /// By the name of a file.
+            pub fn of(path: &Path) -> Option<Self> {
+                let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+                match ending.as_str() {
+                    $($ending => Some(Self::$form),)+
+                    _ => None,
+                }
+            }
+        }
+    };
 }
 
-impl Form {
-    const ALL: [Self; 3] = [Self::Csv, Self::Ods, Self::Html];
-
-    /// How its files end.
-    fn ending(self) -> &'static str {
-        match self {
-            Self::Csv => "csv",
-            Self::Ods => "ods",
-            Self::Html => "html",
-        }
-    }
-
-    /// By the name of a file.
-    pub fn of(path: &Path) -> Option<Self> {
-        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
-        Self::ALL.into_iter().find(|form| form.ending() == ending)
-    }
+forms! {
+    /// Text with commas.
+    Csv: "csv",
+    /// A table of spreadsheet programs.
+    Ods: "ods",
+    /// A page with links to replays.
+    Html: "html",
 }
 
 fn form(text: &str) -> Result<PathBuf, String> {

@@ -24,13 +24,15 @@ pub(crate) enum Platform {
 /// The exit code of a command line that is not understood. A checker with codes of testlib has failed then: the 2 that
 /// other commands give would blame the pupil.
 pub(crate) fn of_misuse(code: u8, mut words: impl Iterator<Item = OsString>) -> u8 {
-    let contest = "yandex-contest";
-    let is_for = words.any(|word| word == contest || word == *format!("--for={contest}"));
-    if is_for && code != 0 {
-        testlib(Verdict::NotRun).0
-    } else {
-        code
+    if code == 0 {
+        return 0;
     }
+    let of_word = |word: OsString| {
+        let word = word.to_str()?;
+        let name = word.strip_prefix("--for=").unwrap_or(word);
+        Platform::from_str(name, false).ok()?.misuse()
+    };
+    words.find_map(of_word).unwrap_or(code)
 }
 
 /// What a platform is told.
@@ -55,6 +57,14 @@ fn testlib(verdict: Verdict) -> (u8, &'static str) {
 }
 
 impl Platform {
+    /// The exit code of a command line that is not understood; None for that of other commands.
+    fn misuse(self) -> Option<u8> {
+        match self {
+            Self::YandexContest => Some(testlib(Verdict::NotRun).0),
+            Self::Stepik => None,
+        }
+    }
+
     /// The exit code if nothing could be judged.
     pub fn failed(self) -> u8 {
         match self {
@@ -158,6 +168,16 @@ mod tests {
         let expected = [(0, 0), (0, 0), (1, 0), (1, 0), (1, 0), (2, 0), (3, 2)];
         assert_eq!(codes, expected);
         assert_eq!(Platform::YandexContest.failed(), 3);
+    }
+
+    #[test]
+    fn a_command_line_that_is_not_understood_is_told_to_the_platform_that_it_names() {
+        let code = |code, line: &[&str]| of_misuse(code, line.iter().map(OsString::from));
+        assert_eq!(code(2, &["check", "--for", "yandex-contest"]), 3);
+        assert_eq!(code(2, &["check", "--for=yandex-contest", "-x"]), 3);
+        assert_eq!(code(2, &["check", "--for=stepik"]), 2);
+        assert_eq!(code(2, &["check", "a.qrs"]), 2);
+        assert_eq!(code(0, &["check", "--for=yandex-contest", "--help"]), 0);
     }
 
     #[test]

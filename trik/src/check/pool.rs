@@ -28,8 +28,6 @@ use std::time::{Duration, Instant};
 const SELF: &str = "/proc/self/exe";
 /// Where the mark of a process comes from.
 const RANDOM: &str = "/dev/urandom";
-/// How far a run may be ahead of the first one that is not done.
-const AHEAD_MAX: usize = 2_000;
 
 /// Which run is next, and which is the first that has not been told.
 #[derive(Debug, Default)]
@@ -57,7 +55,7 @@ impl Shared {
             if progress.is_over || progress.next >= count {
                 return None;
             }
-            if progress.next < progress.told + AHEAD_MAX {
+            if progress.next < progress.told + limits::RUNS_AHEAD_MAX {
                 progress.next += 1;
                 return Some(progress.next - 1);
             }

@@ -26,8 +26,6 @@ use trikd::program::kill::{adopt_orphans, sweep};
 pub(super) const RUNS: &str = "runs";
 /// See [`RUNS`].
 pub(super) const ENDED: &str = "ended";
-/// Bytes of one path.
-const JOB_BYTES_MAX: u64 = 64 << 10;
 
 /// Serves until there are no more jobs.
 ///
@@ -42,7 +40,10 @@ pub(super) fn serve(args: &CheckArgs) -> Result<(), Error> {
     let mut input = io::stdin().lock();
     let mut output = io::stdout().lock();
     let mut mark = String::new();
-    let read = input.by_ref().take(JOB_BYTES_MAX).read_line(&mut mark);
+    let read = input
+        .by_ref()
+        .take(limits::JOB_BYTES_MAX)
+        .read_line(&mut mark);
     read.map_err(|error| Error::system("jobs", error))?;
     let mark = mark.trim_end_matches('\n');
     while let Some(job) = next(&mut input).map_err(|error| Error::system("jobs", error))? {
@@ -102,7 +103,10 @@ fn guarded(job: &Job, args: &CheckArgs, report_phase: &mut dyn FnMut(Phase)) -> 
 fn next(input: &mut impl BufRead) -> io::Result<Option<Job>> {
     let mut parts: [Vec<u8>; 5] = Default::default();
     for part in &mut parts {
-        input.by_ref().take(JOB_BYTES_MAX).read_until(0, part)?;
+        input
+            .by_ref()
+            .take(limits::JOB_BYTES_MAX)
+            .read_until(0, part)?;
         if part.pop() != Some(0) {
             return Ok(None);
         }

@@ -5,6 +5,7 @@
 use super::report::Reporter;
 use super::save::must_open;
 use crate::language;
+use crate::limits;
 use crate::output::{Output, standard};
 use crate::refusal::{REFUSED, Refusal};
 use crate::terminal::harmless;
@@ -13,9 +14,6 @@ use lang_diagram::project::Project;
 use lang_diagram::show::{outline::outline, picture::picture};
 use lang_text::problem::Locale;
 use std::path::PathBuf;
-
-/// Names of diagrams that a message lists.
-const NAMES_MAX: usize = 20;
 
 /// What `trik show` can be told.
 #[derive(Args, Clone, Debug)]
@@ -84,9 +82,9 @@ fn choose(project: &Project, name: Option<&str>) -> Result<usize, Refusal> {
     };
     let mut all = project.diagrams.iter();
     all.position(|diagram| diagram.name == name).ok_or_else(|| {
-        let some = project.diagrams.iter().take(NAMES_MAX);
+        let some = project.diagrams.iter().take(limits::DIAGRAM_NAMES_MAX);
         let mut names: Vec<_> = some.map(|diagram| harmless(&diagram.name)).collect();
-        if project.diagrams.len() > NAMES_MAX {
+        if project.diagrams.len() > limits::DIAGRAM_NAMES_MAX {
             names.push("others".to_owned());
         }
         let (name, names) = (harmless(name), names.join(", "));

@@ -63,8 +63,6 @@ const STEP: &str = "step NUMBER, 1 to 1000000 events";
 const SPEED: &str = "speed NUMBER, 0.01 to 1000 times the real time";
 const SEEK: &str = "seek TIME: seconds, MINUTES:SECONDS, or +SECONDS and -SECONDS from here";
 const LOOP: &str = "loop on or loop off";
-/// Far enough for any recording.
-const SECONDS_MAX: f64 = 1e9;
 
 impl Order {
     /// One line.
@@ -139,7 +137,7 @@ pub(crate) fn time(text: &str) -> Option<Duration> {
         }
         None => number(text)?,
     };
-    let fits = seconds <= SECONDS_MAX;
+    let fits = seconds <= limits::SEEK_S_MAX;
     fits.then(|| Duration::try_from_secs_f64(seconds).ok())
         .flatten()
 }

@@ -13,7 +13,30 @@ pub(super) fn of(robot: &str, world: Option<&Field>) -> Vec<Hint> {
     if let Some(field) = world {
         return in_world(field);
     }
-    let known: &[(&str, &str)] = match robot {
+    known(robot)
+        .unwrap_or(&OF_A_MODEL)
+        .iter()
+        .map(|&(command, meaning)| (command.to_owned(), meaning))
+        .collect()
+}
+
+/// For a robot with a model in DCML.
+const OF_A_MODEL: [(&str, &str); 4] = [
+    (
+        "ls motors servos",
+        "what drives it, named after the actions?",
+    ),
+    (
+        "cat pose/value",
+        "where is it by its model, in metres and radians?",
+    ),
+    ("grep . pose/params/*", "which numbers has the model?"),
+    ("echo > stop", "bring everything to rest"),
+];
+
+/// For a robot with a name.
+fn known(robot: &str) -> Option<&'static [(&'static str, &'static str)]> {
+    Some(match robot {
         "two-wheels" => &[
             ("cat sensors/D1/value", "how far is the wall, in cm?"),
             ("cat heading/value", "where does it look, in degrees?"),
@@ -40,24 +63,8 @@ pub(super) fn of(robot: &str, world: Option<&Field>) -> Vec<Hint> {
             ("echo > stop", "bring everything to rest"),
         ],
         "bare" => &[("cat status", "what is there?")],
-        // A model in DCML.
-        _ => &[
-            (
-                "ls motors servos",
-                "what drives it, named after the actions?",
-            ),
-            (
-                "cat pose/value",
-                "where is it by its model, in metres and radians?",
-            ),
-            ("grep . pose/params/*", "which numbers has the model?"),
-            ("echo > stop", "bring everything to rest"),
-        ],
-    };
-    known
-        .iter()
-        .map(|&(command, meaning)| (command.to_owned(), meaning))
-        .collect()
+        _ => return None,
+    })
 }
 
 /// Commands for what the robot of a world has.
@@ -101,6 +108,14 @@ fn in_world(field: &Field) -> Vec<Hint> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_robot_with_a_name_has_hints_of_its_own() {
+        for name in sim::robots::names() {
+            assert!(known(name).is_some(), "{name}");
+        }
+        assert_eq!(known("arm.dcml"), None);
+    }
 
     #[test]
     fn hints_of_a_world_are_of_what_it_has() {

@@ -3,14 +3,12 @@
 //! Owns who is in control, and what all hear when that changes. Knows no orders and no program.
 
 use super::{Client, Clients};
+use crate::limits;
 use crate::outbox::Latest;
 use crate::protocol::frame::encode;
 use lang_text::json::Object;
 use std::net::SocketAddr;
 use std::rc::Rc;
-
-/// Characters of a text in what the daemon itself tells clients that debug.
-const CHARACTERS_MAX: usize = 1000;
 
 /// A client by its number, which no other client ever has.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -34,7 +32,7 @@ fn frame(json: &str) -> Rc<[u8]> {
 }
 
 fn object() -> Object {
-    Object::new(CHARACTERS_MAX)
+    Object::new(limits::DEBUG_CHARACTERS_MAX)
 }
 
 /// Tells which client is in control, as all who debug hear it.

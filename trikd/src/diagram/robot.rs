@@ -1,7 +1,7 @@
 //! The tree as a running diagram sees it: commands of blocks to files.
 //!
-//! Owns which file a command goes to, and what a robot without that file means: the block does nothing, as on the robots
-//! of old, and the first failure of a device is told. Knows no blocks and no time.
+//! Owns which file a command goes to, and what a robot without that file means: the block does nothing, as on the
+//! original robots, and the first failure of a device is told. Knows no blocks and no time.
 
 use super::asking::Asking;
 use super::readings::Readings;

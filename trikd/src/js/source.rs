@@ -80,7 +80,7 @@ fn is_function(value: &str) -> bool {
 }
 
 /// The text as it is run: what makes `var main = function()` and does not end in `main();` gets that call. A plain
-/// `function main()` does not, as on the robots of old.
+/// `function main()` does not, as on the original robots.
 pub fn with_call_of_main(text: String) -> String {
     if has_main(&text) && !text.trim_end().ends_with(CALL) {
         text + "\n" + CALL

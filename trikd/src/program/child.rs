@@ -38,7 +38,7 @@ pub enum Language {
 }
 
 impl Language {
-    /// The language of a file: by its ending, else by its first bytes, else JavaScript as on the robots of old.
+    /// The language of a file: by its ending, else by its first bytes, else JavaScript as on the original robots.
     pub fn of(path: &Path) -> Self {
         match path.extension().and_then(|ending| ending.to_str()) {
             Some("py") => Self::Python,

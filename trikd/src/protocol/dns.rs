@@ -2,6 +2,7 @@
 //!
 //! Owns the reading of names with their pointers, which strangers send, and the writing of answers.
 
+use crate::limits;
 use std::net::Ipv4Addr;
 
 /// Types of records (RFC 1035, RFC 2782).
@@ -15,10 +16,6 @@ const INTERNET: u16 = 1;
 const TOP_BIT: u16 = 0x8000;
 /// Seconds that others may remember an answer.
 const TTL_S: u32 = 120;
-/// Questions in one message that are looked at.
-const QUESTIONS_MAX: u16 = 32;
-/// Pointers in one name.
-const POINTERS_MAX: usize = 8;
 
 /// The kind of service.
 pub const SERVICE: &str = "_trik._tcp.local";
@@ -58,7 +55,7 @@ impl Reader<'_> {
     fn name(&mut self) -> Option<String> {
         let mut name = String::new();
         let mut end = None;
-        for _ in 0..=POINTERS_MAX {
+        for _ in 0..=limits::DNS_POINTERS_MAX {
             loop {
                 match self.byte()? {
                     0 => {
@@ -108,7 +105,7 @@ pub fn questions(bytes: &[u8]) -> Option<(u16, Vec<Question>)> {
     }
     reader.at = 12;
     let mut questions = Vec::new();
-    for _ in 0..count.min(QUESTIONS_MAX) {
+    for _ in 0..count.min(limits::DNS_QUESTIONS_MAX) {
         let name = reader.name()?;
         let (kind, class) = (reader.word()?, reader.word()?);
         if class & !TOP_BIT == INTERNET || class & !TOP_BIT == ANY {

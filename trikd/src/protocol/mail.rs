@@ -54,7 +54,7 @@ fn register(text: &str) -> Option<Message> {
     })
 }
 
-/// Fields are counted from the end, so that addresses of IPv6 need no other form; robots of old ignore those.
+/// Fields are counted from the end, so that addresses of IPv6 need no other form; the original robots ignore those.
 fn connection(text: &str) -> Option<Message> {
     let mut fields = text.rsplitn(3, ':');
     let hull = fields.next()?.trim().parse().ok()?;

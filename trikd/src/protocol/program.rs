@@ -321,6 +321,7 @@ mod tests {
                 ToProgram::Debugged(text),
                 ToProgram::Debug { client, tag: client.wrapping_add(1), order: text },
                 ToProgram::DebugLeft,
+                ToProgram::Reply { number: client, text: is_wanted.then_some(text) },
             ] {
                 let payload = String::from_utf8(said.encode()).unwrap();
                 prop_assert_eq!(ToProgram::parse(&payload), Some(said));

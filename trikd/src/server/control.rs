@@ -158,7 +158,7 @@ impl Handler for Session {
             String::from_utf8_lossy(begin)
         );
         match request {
-            // What is unknown has no answer, as on the robots of old.
+            // What is unknown has no answer, as on the original robots.
             Request::Keepalive | Request::Unknown => {}
             Request::Version => self.client.outbox.send(VERSION),
             Request::ConfigVersion => {

@@ -249,7 +249,7 @@ impl Mailbox {
         String::new()
     }
 
-    /// Joins a robot and remembers that; without a port, that of our own server, as on the robots of old.
+    /// Joins a robot and remembers that; without a port, that of our own server, as on the original robots.
     fn join_new(self: &Rc<Self>, address: &str, port: Option<u16>) {
         let ip = address.parse().ok();
         if let (Some(ip), Some(port)) = (ip, port.or(self.port.get())) {

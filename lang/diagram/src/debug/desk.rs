@@ -256,15 +256,7 @@ impl Desk {
 
     /// Whether an order can be carried out now; one that moves the program ends a search.
     fn admit(&mut self, order: &Order) -> Result<(), Refused> {
-        let is_free = matches!(
-            order,
-            Order::Attach
-                | Order::Look
-                | Order::Breakpoints(_)
-                | Order::Evaluate(_)
-                | Order::Set(..)
-        );
-        if !is_free && !self.session.is_attached() {
+        if order.is_for_debugger() && !self.session.is_attached() {
             return Err(Refused::NotAttached);
         }
         if order.is_for_control() && self.session.give_up_search() {

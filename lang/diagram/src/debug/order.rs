@@ -157,6 +157,31 @@ impl Order {
             | Self::Set(..) => true,
         }
     }
+
+    /// Whether it makes sense only while a debugger is attached.
+    pub(super) fn is_for_debugger(&self) -> bool {
+        match self {
+            Self::Attach
+            | Self::Look
+            | Self::Breakpoints(_)
+            | Self::Evaluate(_)
+            | Self::Set(..) => false,
+            Self::Detach
+            | Self::Pause
+            | Self::Continue
+            | Self::Step(..)
+            | Self::Until(_)
+            | Self::Back(_)
+            | Self::Present
+            | Self::Hold(_)
+            | Self::Release(_)
+            | Self::Break(_)
+            | Self::Clear(_)
+            | Self::Enable(..)
+            | Self::Errors(_)
+            | Self::Motors(_) => true,
+        }
+    }
 }
 
 impl fmt::Display for Order {

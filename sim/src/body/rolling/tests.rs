@@ -174,3 +174,17 @@ fn the_configuration_names_motors_servos_and_the_model() {
         assert!(lua.contains(line), "{line} in {lua}");
     }
 }
+
+/// What is left out comes from the model, or is there without a plug.
+#[test]
+fn every_sensor_that_is_plugged_in_is_in_the_configuration_of_a_model() {
+    let rolling = Rolling::new(&model(CAR), &said(&[("L", 0.2)], &[]), Pose::default()).unwrap();
+    let (_, lua) = crate::robots::modelled(rolling, "x", &said(&[("L", 0.2)], &[]));
+    let plugs = crate::robots::by_name("two-wheels").unwrap().ports;
+    let is_left_out =
+        |port: &str| port.starts_with(['M', 'E', 'S']) || ["camera", "ir_camera"].contains(&port);
+    for plug in plugs.iter().filter(|plug| !is_left_out(plug.port)) {
+        let entry = format!("  {{ port = '{}'", plug.port);
+        assert!(lua.contains(&entry), "{entry} in {lua}");
+    }
+}
