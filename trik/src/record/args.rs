@@ -18,6 +18,9 @@ pub(crate) struct RecordArgs {
     /// Stop after so many seconds [default: on Ctrl-C, or when the tree is unmounted].
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..=86400 * 7))]
     pub seconds: Option<u32>,
+    /// Leave out the messages of standard types, which other tools show at once: a smaller file.
+    #[arg(long)]
+    pub no_standard: bool,
     /// The mounted tree [default: the virtual robot that runs, or else /trikfs].
     pub mountpoint: Option<PathBuf>,
 }
