@@ -128,6 +128,8 @@ fn write(
 ) -> Result<(), journal::error::Error> {
     let period = Duration::from_millis(limits::FLUSH_MS.into());
     let mut flush_at = Instant::now() + period;
+    // A file that was begun is a recording, whenever it ends.
+    pen.file.flush()?;
     loop {
         let left = flush_at.saturating_duration_since(Instant::now());
         match entries.recv_timeout(left) {

@@ -154,8 +154,11 @@ impl Standard {
             Role::Position(_) => self.positions.join(&part.path, stays),
             Role::Speed(_) => self.speeds.join(&part.path, stays),
             Role::Pad(_) => self.pads.entry(group).or_default().join(&part.path, true),
-            Role::Range(..) | Role::Voltage(_) | Role::Scan(_) | Role::Picture | Role::Place(..) => {
-            }
+            Role::Range(..)
+            | Role::Voltage(_)
+            | Role::Scan(_)
+            | Role::Picture
+            | Role::Place(..) => {}
         }
     }
 

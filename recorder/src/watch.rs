@@ -30,9 +30,12 @@ struct Watched {
     newest: Option<Entry>,
 }
 
-/// Its samples; of an actuator, what is written to it.
-fn ring(root: &Path, node: &Node) -> Option<Reader> {
-    let is_actuator = !node.rest.is_empty();
+/// How the configuration of a tree begins that gives what was recorded.
+pub const REPLAYED: &str = "-- Made for a replay";
+
+/// Its samples; of an actuator, what is written to it, which in a replayed tree is a sample as well.
+fn ring(root: &Path, node: &Node, is_replayed: bool) -> Option<Reader> {
+    let is_actuator = !node.rest.is_empty() && !is_replayed;
     let written = is_actuator.then(|| Reader::open_written(root, &node.path).ok());
     written
         .flatten()
@@ -125,6 +128,8 @@ pub struct Watch {
     /// Length and time of the configuration, and its text.
     configuration: (u64, i64),
     text: Option<Entry>,
+    /// It gives what was recorded.
+    is_replayed: bool,
     offset_ns: i64,
     /// When it began, by the clock of the machine.
     begin_ns: u64,
@@ -158,6 +163,7 @@ impl Watch {
             line: Vec::new(),
             configuration: (0, 0),
             text: None,
+            is_replayed: is_replayed(root),
             offset_ns: offset_ns(),
             begin_ns: u64::try_from(clock_ns(ClockId::CLOCK_MONOTONIC)).unwrap_or(0),
             missed: 0,
@@ -248,7 +254,7 @@ impl Watch {
             if !(self.wants)(&node.path) || self.watched.iter().any(is_known) {
                 continue;
             }
-            match ring(&self.root, &node) {
+            match ring(&self.root, &node, self.is_replayed) {
                 Some(ring) => {
                     self.numbers += 1;
                     let watched = Watched::new(self.numbers, node, ring);
@@ -294,7 +300,7 @@ impl Watch {
             if watched.ring.is_current() {
                 continue;
             }
-            let Some(ring) = ring(&self.root, &watched.known.node) else {
+            let Some(ring) = ring(&self.root, &watched.known.node, self.is_replayed) else {
                 continue;
             };
             let mut node = watched.known.node.clone();
@@ -350,6 +356,12 @@ impl Watch {
             }
         }
     }
+}
+
+fn is_replayed(root: &Path) -> bool {
+    let mut begin = [0; REPLAYED.len()];
+    let file = File::open(root.join("config"));
+    file.is_ok_and(|mut file| file.read_exact(&mut begin).is_ok()) && begin == *REPLAYED.as_bytes()
 }
 
 /// Lines from now on: those that are kept have no time.

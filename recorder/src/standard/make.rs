@@ -17,7 +17,10 @@ const PICTURES: [(&str, &[u8], &[u8]); 2] = [
 ];
 
 /// The messages have 32 bits.
-#[allow(clippy::cast_possible_truncation, reason = "digits are lost, and no more")]
+#[allow(
+    clippy::cast_possible_truncation,
+    reason = "digits are lost, and no more"
+)]
 fn short(number: f64) -> f32 {
     number as f32
 }
@@ -53,7 +56,10 @@ pub(super) fn scan(path: &str, distances_m: &[f64]) -> LaserScan {
     };
     let (first, others) = distances_m.split_at(distances_m.len().min(1));
     let ranges = first.iter().chain(others.iter().rev()).map(one).collect();
-    #[allow(clippy::cast_precision_loss, reason = "a tuple has at most 1024 numbers")]
+    #[allow(
+        clippy::cast_precision_loss,
+        reason = "a tuple has at most 1024 numbers"
+    )]
     let (count, last) = (distances_m.len() as f64, others.len() as f64);
     LaserScan {
         frame: path.to_owned(),
@@ -105,10 +111,13 @@ pub(super) fn joints<'a>(
 
 /// Whether a gamepad gives these.
 pub(super) fn are_of_a_gamepad(buttons: &[bool], numbers: &[f64]) -> bool {
-    let are_fine = buttons.iter().zip(numbers).all(|(is_button, number)| match is_button {
-        true => *number == 0.0 || *number == 1.0,
-        false => number.abs() <= AXIS_END,
-    });
+    let are_fine = buttons
+        .iter()
+        .zip(numbers)
+        .all(|(is_button, number)| match is_button {
+            true => *number == 0.0 || *number == 1.0,
+            false => number.abs() <= AXIS_END,
+        });
     are_fine && buttons.len() == numbers.len()
 }
 

@@ -57,14 +57,16 @@ impl Way {
             translation: [place.x, place.y, 0.0],
             rotation,
         };
-        let odometry = self.speed(unix_ns, place).map(|(ahead, left, turn)| Odometry {
-            frame: WORLD.to_owned(),
-            child_frame: child_frame.to_owned(),
-            position: transform.translation,
-            orientation: rotation,
-            linear: [ahead, left, 0.0],
-            angular: [0.0, 0.0, turn],
-        });
+        let odometry = self
+            .speed(unix_ns, place)
+            .map(|(ahead, left, turn)| Odometry {
+                frame: WORLD.to_owned(),
+                child_frame: child_frame.to_owned(),
+                position: transform.translation,
+                orientation: rotation,
+                linear: [ahead, left, 0.0],
+                angular: [0.0, 0.0, turn],
+            });
         self.last = Some((unix_ns, place));
         (odometry, transform)
     }

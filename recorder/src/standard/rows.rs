@@ -144,7 +144,10 @@ fn pad(shape: &Shape<'_>) -> Option<Role> {
         *name == "touched" || matches!(number, Some(Ok(_)))
     };
     let is_axis = |name: &&str| ["x", "y", "wheel"].contains(name);
-    let is_known = shape.names.iter().all(|name| is_button(name) || is_axis(name));
+    let is_known = shape
+        .names
+        .iter()
+        .all(|name| is_button(name) || is_axis(name));
     (is_gamepad && is_plain && is_known)
         .then(|| Role::Pad(shape.names.iter().map(is_button).collect()))
 }
@@ -152,7 +155,8 @@ fn pad(shape: &Shape<'_>) -> Option<Role> {
 /// Distances in so many directions, of which the first is ahead, and the others follow clockwise: `d0`, `d1` and so on.
 fn scan(shape: &Shape<'_>) -> Option<Role> {
     let all = &shape.names;
-    let is_row = (all.iter().enumerate()).all(|(at, name)| name.strip_prefix('d') == Some(&at.to_string()));
+    let is_row =
+        (all.iter().enumerate()).all(|(at, name)| name.strip_prefix('d') == Some(&at.to_string()));
     (is_row && all.len() >= SCAN_NUMBERS_MIN)
         .then(|| factor(Quantity::Length, &shape.node.units))?
         .map(Role::Scan)

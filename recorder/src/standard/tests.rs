@@ -4,9 +4,10 @@
 
 use crate::entry::{Entry, Known};
 use crate::pen::Pen;
+use crate::standard::rows::ROWS;
 use journal::node::Node;
 use journal::write::{Out, Writer};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 const BEGIN: u64 = 1_700_000_000_000_000_000;
@@ -86,7 +87,9 @@ impl Scene {
             let topic = message.channel.topic.clone();
             if topic.starts_with("/ros/") || topic == "/tf" {
                 let at_ms = (message.log_time - BEGIN) / MS;
-                had.entry(topic).or_default().push((at_ms, message.data.to_vec()));
+                had.entry(topic)
+                    .or_default()
+                    .push((at_ms, message.data.to_vec()));
             }
         }
         had
@@ -156,7 +159,10 @@ fn a_turn_is_an_imu_with_the_last_acceleration_while_that_is_there() {
     let message = &imus[0].1;
     assert_eq!(f64s::<1>(message, 16 + 32), [-1.0], "no orientation");
     let rates = f64s::<3>(message, 16 + 32 + 72);
-    assert!(near(&rates, &[0.0, 0.0, std::f64::consts::FRAC_PI_2]), "{rates:?}");
+    assert!(
+        near(&rates, &[0.0, 0.0, std::f64::consts::FRAC_PI_2]),
+        "{rates:?}"
+    );
     let forces = f64s::<3>(message, 16 + 32 + 72 + 24 + 72);
     assert!(near(&forces, &[0.0, 0.0, 9.806_65]), "{forces:?}");
 }
@@ -216,7 +222,10 @@ fn joints_of_one_look_are_one_message_and_those_without_a_value_are_left_out() {
     let pi = std::f64::consts::PI;
     assert!(near(&positions, &[pi, 2.0 * pi, pi / 2.0]), "{positions:?}");
     let text = String::from_utf8_lossy(&states[1].1);
-    assert!(text.contains("E4") && !text.contains("E3") && !text.contains("S1"), "{text}");
+    assert!(
+        text.contains("E4") && !text.contains("E3") && !text.contains("S1"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -239,7 +248,10 @@ fn a_gamepad_is_a_joy_when_all_of_it_has_a_value() {
     // Time, 4 bytes of length, "gamepad" with its end; a count before each list.
     let message = &joys[0].1;
     assert_eq!(f32s::<2>(message, 20 + 4), [-0.5, 1.0]);
-    assert_eq!(message[4 + 20 + 12..], [3, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0]);
+    assert_eq!(
+        message[4 + 20 + 12..],
+        [3, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0]
+    );
 }
 
 #[test]
@@ -282,14 +294,20 @@ fn a_place_is_a_transform_and_from_the_second_on_an_odometry_with_its_speed() {
     let message = &places[0].1;
     let place = f64s::<7>(message, 40);
     let half = std::f64::consts::FRAC_1_SQRT_2;
-    assert!(near(&place, &[0.0, 0.05, 0.0, 0.0, 0.0, half, half]), "{place:?}");
+    assert!(
+        near(&place, &[0.0, 0.05, 0.0, 0.0, 0.0, half, half]),
+        "{place:?}"
+    );
     let speed = f64s::<6>(message, 40 + 56 + 288);
     assert!(near(&speed, &[0.5, 0.0, 0.0, 0.0, 0.0, 0.0]), "{speed:?}");
 }
 
 #[test]
 fn a_voltage_is_a_battery_and_a_picture_is_its_file() {
-    let mut scene = Scene::new(&[("battery", "f64 voltage", "V"), ("camera/picture", "u8 x 12", "")]);
+    let mut scene = Scene::new(&[
+        ("battery", "f64 voltage", "V"),
+        ("camera/picture", "u8 x 12", ""),
+    ]);
     scene.tuple(0, 0, &7.5_f64.to_le_bytes());
     scene.tuple(0, 10, &f64::NAN.to_le_bytes());
     scene.tuple(0, 20, &(-1.0_f64).to_le_bytes());
@@ -301,7 +319,11 @@ fn a_voltage_is_a_battery_and_a_picture_is_its_file() {
     assert_eq!(f32s::<1>(&had["/ros/battery"][0].1, 20), [7.5]);
     let pictures = &had["/ros/camera/picture"];
     assert_eq!(pictures.len(), 1);
-    assert!(pictures[0].1.ends_with(b"\x07\0\0\0\xff\xd8\xff\x01\x02\xff\xd9"));
+    assert!(
+        pictures[0]
+            .1
+            .ends_with(b"\x07\0\0\0\xff\xd8\xff\x01\x02\xff\xd9")
+    );
 }
 
 #[test]
@@ -331,4 +353,21 @@ fn a_recording_without_them_has_the_messages_of_the_nodes_alone() {
     let bytes = scene.out.take();
     let has = |text: &[u8]| bytes.windows(text.len()).any(|part| part == text);
     assert!(has(b"SensorsD1") && !has(b"sensor_msgs"));
+}
+
+#[test]
+fn the_document_has_every_row_and_no_other() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/user/journal.md");
+    let document = std::fs::read_to_string(path).unwrap();
+    let told = document.lines().filter_map(|line| {
+        let mut cells = line.strip_prefix("| `/")?.split(" | ");
+        let topic = cells.next()?.trim_matches('`');
+        let kind = cells.next()?.trim_matches('`').rsplit('/').next()?;
+        Some((format!("/{topic}"), kind.to_owned()))
+    });
+    let told: BTreeSet<(String, String)> = told.collect();
+    let rows = ROWS.iter().map(|row| (row.topic, row.message));
+    let with_transforms = rows.chain([("/tf", "TFMessage")]);
+    let known = with_transforms.map(|(topic, kind)| (topic.to_owned(), kind.to_owned()));
+    assert_eq!(told, known.collect());
 }
