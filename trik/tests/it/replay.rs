@@ -51,7 +51,7 @@ fn samples(home: &Home) -> BTreeMap<String, Vec<String>> {
 }
 
 /// Records a robot that drives to some encoder reading and back to rest.
-pub fn drive_and_record(home: &Arc<Home>) {
+fn drive_and_record(home: &Arc<Home>) {
     let mut robot = Robot::start(home.clone(), &[]);
     let recorder = Recorder::start(home, &[]);
     eventually("a recording", || home.0.path("run.mcap").exists());
