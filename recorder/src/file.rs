@@ -34,6 +34,18 @@ impl Disk {
     /// # Errors
     /// It is there, or cannot be made.
     pub fn create(path: &Path, library: &str, most: usize) -> Result<Self, Error> {
+        Self::begin(path, library, most, false)
+    }
+
+    /// The same with standard messages beside those of the nodes themselves, for tools that know no others.
+    ///
+    /// # Errors
+    /// As `create`.
+    pub fn create_with_standard(path: &Path, library: &str, most: usize) -> Result<Self, Error> {
+        Self::begin(path, library, most, true)
+    }
+
+    fn begin(path: &Path, library: &str, most: usize, has_standard: bool) -> Result<Self, Error> {
         let file = File::create_new(path).map_err(|error| Error::io(path, error))?;
         let synced = file.try_clone().map_err(|error| Error::io(path, error))?;
         let writer = Writer::new(BufWriter::new(file), library);
@@ -44,7 +56,8 @@ impl Disk {
         let thread = std::thread::Builder::new()
             .name("disk".to_owned())
             .spawn(move || {
-                let end = write(Pen::new(writer), &synced, &entries, &left);
+                let pen = Pen::new(writer).with_standard(has_standard);
+                let end = write(pen, &synced, &entries, &left);
                 failed.store(end.is_err(), Ordering::Relaxed);
                 end.map_err(|error| Error::Broken(name, error))
             })
@@ -115,6 +128,8 @@ fn write(
 ) -> Result<(), journal::error::Error> {
     let period = Duration::from_millis(limits::FLUSH_MS.into());
     let mut flush_at = Instant::now() + period;
+    // A file that was begun is a recording, whenever it ends.
+    pen.file.flush()?;
     loop {
         let left = flush_at.saturating_duration_since(Instant::now());
         match entries.recv_timeout(left) {
@@ -122,6 +137,7 @@ fn write(
                 for entry in &*batch {
                     pen.put(entry)?;
                 }
+                pen.settle(false)?;
                 waiting.fetch_sub(size(&batch), Ordering::Relaxed);
             }
             Err(RecvTimeoutError::Timeout) => {}
@@ -134,6 +150,7 @@ fn write(
             flush_at = Instant::now() + period;
         }
     }
+    pen.settle(true)?;
     pen.file.finish()?;
     Ok(synced.sync_all()?)
 }

@@ -6,6 +6,7 @@
 //! - `entry`: something for a recording
 //! - `nodes`, `watch`: what a tree has, and what happens in it
 //! - `pen`: entries as messages of one recording
+//! - `standard`: nodes as messages that other people's tools know
 //! - `file`: the thread that writes them to a disk
 //! - `kept`: the last minutes, as a ring of files
 //! - `stream`: entries as bytes for one client, with its patterns and its rate
@@ -25,5 +26,6 @@ pub mod limits;
 pub mod nodes;
 pub mod pattern;
 mod pen;
+mod standard;
 pub mod stream;
 pub mod watch;

@@ -46,3 +46,11 @@ pub const STREAMS: usize = 32;
 pub const LISTENERS: usize = 32;
 /// Lines of others that wait until the next look.
 pub const LINES: usize = 1_024;
+/// Least time between two standard messages that are made of several nodes.
+pub const STANDARD_PERIOD_NS: u64 = 10_000_000;
+/// What was sampled so long ago is in no message of several nodes, and tells no speed.
+pub const STANDARD_OLD_NS: u64 = 1_000_000_000;
+/// Most time between the halves of one `Imu`: some samples of the slower one.
+pub const IMU_APART_NS: u64 = 100_000_000;
+/// Distances that are a scan; fewer are so many sensors.
+pub const SCAN_NUMBERS_MIN: usize = 8;

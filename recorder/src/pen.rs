@@ -3,6 +3,7 @@
 //! Owns which nodes the recording knows by now: one that is new is added before its first message.
 
 use crate::entry::{Entry, Known};
+use crate::standard::Standard;
 use journal::error::Error;
 use journal::write::{Id, Writer};
 use std::collections::{BTreeMap, HashMap};
@@ -12,6 +13,8 @@ use std::io::{Seek, Write};
 pub(crate) struct Pen<W: Write + Seek> {
     pub(crate) file: Writer<W>,
     ids: HashMap<u32, Id>,
+    /// None if there are messages of the nodes themselves alone.
+    standard: Option<Standard>,
 }
 
 impl<W: Write + Seek> Pen<W> {
@@ -19,6 +22,15 @@ impl<W: Write + Seek> Pen<W> {
         Self {
             file,
             ids: HashMap::new(),
+            standard: None,
+        }
+    }
+
+    /// With standard messages too, if they are wanted.
+    pub(crate) fn with_standard(self, is_wanted: bool) -> Self {
+        Self {
+            standard: is_wanted.then(Standard::default),
+            ..self
         }
     }
 
@@ -28,6 +40,9 @@ impl<W: Write + Seek> Pen<W> {
         }
         let id = self.file.add(&known.node)?;
         self.ids.insert(known.number, id);
+        if let Some(standard) = &mut self.standard {
+            standard.meet(known);
+        }
         Ok(id)
     }
 
@@ -40,10 +55,17 @@ impl<W: Write + Seek> Pen<W> {
             Entry::Node(known) => self.id(known).map(drop),
             Entry::Sample(known, unix_ns, tuple) => {
                 let id = self.id(known)?;
-                self.file.sample(id, *unix_ns, tuple)
+                self.file.sample(id, *unix_ns, tuple)?;
+                match &mut self.standard {
+                    Some(standard) => standard.sample(&mut self.file, known, *unix_ns, tuple),
+                    None => Ok(()),
+                }
             }
             Entry::Fault(known, unix_ns, errno, reason) => {
                 let id = self.id(known)?;
+                if let Some(standard) = &mut self.standard {
+                    standard.fault(known);
+                }
                 self.file.fault(id, *unix_ns, *errno, reason)
             }
             Entry::Line(story, unix_ns, line) => self.file.line(*story, *unix_ns, line),
@@ -51,6 +73,17 @@ impl<W: Write + Seek> Pen<W> {
                 self.file.attach(*unix_ns, name, media_type, bytes)
             }
             Entry::Facts(name, facts) => self.file.facts(name, BTreeMap::clone(facts)),
+        }
+    }
+
+    /// All entries of one look were put, or with `is_end` all that there are: writes messages that are made of several.
+    ///
+    /// # Errors
+    /// The file takes nothing more.
+    pub(crate) fn settle(&mut self, is_end: bool) -> Result<(), Error> {
+        match &mut self.standard {
+            Some(standard) => standard.settle(&mut self.file, is_end),
+            None => Ok(()),
         }
     }
 }

@@ -32,9 +32,12 @@ struct Watched {
     newest: Option<Entry>,
 }
 
-/// Its samples; of an actuator, what is written to it.
-fn ring(root: &Path, node: &Node, wish: Wish) -> Option<Reader> {
-    let is_actuator = !node.rest.is_empty();
+/// How the configuration of a tree begins that gives what was recorded.
+pub const REPLAYED: &str = "-- Made for a replay";
+
+/// Its samples; of an actuator, what is written to it, which in a replayed tree is a sample as well.
+fn ring(root: &Path, node: &Node, wish: Wish, is_replayed: bool) -> Option<Reader> {
+    let is_actuator = !node.rest.is_empty() && !is_replayed;
     let written = is_actuator.then(|| Reader::open_written(root, &node.path).ok());
     if let Some(written) = written.flatten() {
         return Some(written);
@@ -150,6 +153,8 @@ pub struct Watch {
     /// Length and time of the configuration, and its text.
     configuration: (u64, i64),
     text: Option<Entry>,
+    /// It gives what was recorded.
+    is_replayed: bool,
     offset_ns: i64,
     /// When it began, by the clock of the machine.
     begin_ns: u64,
@@ -183,6 +188,7 @@ impl Watch {
             line: Vec::new(),
             configuration: (0, 0),
             text: None,
+            is_replayed: is_replayed(root),
             offset_ns: offset_ns(),
             begin_ns: u64::try_from(clock_ns(ClockId::CLOCK_MONOTONIC)).unwrap_or(0),
             missed: 0,
@@ -277,7 +283,7 @@ impl Watch {
             if self.watched.iter().any(is_known) {
                 continue;
             }
-            match ring(&self.root, &node, wish) {
+            match ring(&self.root, &node, wish, self.is_replayed) {
                 Some(ring) => {
                     self.numbers += 1;
                     let watched = Watched::new(self.numbers, node, ring, wish);
@@ -323,7 +329,8 @@ impl Watch {
             if watched.ring.is_current() {
                 continue;
             }
-            let Some(ring) = ring(&self.root, &watched.known.node, watched.wish) else {
+            let (node, wish) = (&watched.known.node, watched.wish);
+            let Some(ring) = ring(&self.root, node, wish, self.is_replayed) else {
                 continue;
             };
             let mut node = watched.known.node.clone();
@@ -379,6 +386,12 @@ impl Watch {
             }
         }
     }
+}
+
+fn is_replayed(root: &Path) -> bool {
+    let mut begin = [0; REPLAYED.len()];
+    let file = File::open(root.join("config"));
+    file.is_ok_and(|mut file| file.read_exact(&mut begin).is_ok()) && begin == *REPLAYED.as_bytes()
 }
 
 /// Lines from now on: those that are kept have no time.

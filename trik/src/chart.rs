@@ -128,7 +128,7 @@ pub(crate) fn range(numbers: impl Iterator<Item = f64>, air: f64) -> (f64, f64) 
 }
 
 /// Round numbers within a range, about five.
-fn ticks((from, to): (f64, f64)) -> Vec<f64> {
+pub(crate) fn ticks((from, to): (f64, f64)) -> Vec<f64> {
     let rough = (to - from) / 5.0;
     let power = 10.0_f64.powf(rough.log10().floor());
     let step = [1.0, 2.0, 5.0, 10.0]
@@ -142,7 +142,7 @@ fn ticks((from, to): (f64, f64)) -> Vec<f64> {
 }
 
 /// A number of an axis.
-fn short(number: f64) -> String {
+pub(crate) fn short(number: f64) -> String {
     if number != 0.0 && (number.abs() >= 1e6 || number.abs() < 1e-4) {
         return format!("{number:.2e}");
     }

@@ -191,6 +191,8 @@ pub const REPLAY_SPEED_MAX: f64 = 1000.0;
 pub const REPLAY_BATCH: usize = 1_000;
 /// Connections to a player: each node that is read and each that is written has one, and a guardian may have more.
 pub const REPLAY_PEERS_MAX: usize = 2 * 4096 + 64;
+/// Time in which one of them says what it wants, before the clock goes on without it.
+pub const REPLAY_HELLO_MS: u64 = 100;
 /// Bytes of what one connection says at once: the greatest tuple of a `played` source.
 pub const REPLAY_MESSAGE_BYTES: usize = 128 << 10;
 /// Keys that wait for the player.

@@ -38,7 +38,11 @@ pub(crate) fn run(args: &RecordArgs) -> Result<u8, Refusal> {
     let wanted = args.clone();
     let wants = Box::new(move |path: &str| wanted.wants(path).then_some(Wish::Samples));
     let watch = Watch::begin(&root, LIBRARY, wants).map_err(refused)?;
-    let disk = Disk::create(&args.output, LIBRARY, recorder::limits::WAITING_BYTES);
+    let create = match args.no_standard {
+        false => Disk::create_with_standard,
+        true => Disk::create,
+    };
+    let disk = create(&args.output, LIBRARY, recorder::limits::WAITING_BYTES);
     let disk = disk.map_err(refused)?;
     let mut tape = Tape::begin(watch, disk);
     say(&begun(&tape.watch, args))?;

@@ -8,6 +8,7 @@ mod clock;
 mod file;
 mod order;
 mod outputs;
+mod peer;
 mod player;
 mod recording;
 mod tree;

@@ -3,7 +3,7 @@
 use super::{none, sources};
 
 /// Tests that pause for a time, how often, and why that is no waiting for something else to be done.
-const PAUSES: [(&str, usize, &str); 17] = [
+const PAUSES: [(&str, usize, &str); 18] = [
     ("tests/harness/i2c_bus.rs", 1, "a slow bus is slow"),
     ("tests/harness/mount.rs", 1, "between two looks"),
     ("tests/harness/wait.rs", 1, "between two looks"),
@@ -17,6 +17,11 @@ const PAUSES: [(&str, usize, &str); 17] = [
         "trik/tests/it/programs.rs",
         2,
         "a program that drives for a second, and a slow one",
+    ),
+    (
+        "trik/tests/it/rerecord.rs",
+        2,
+        "between two looks, and until a recorder is killed",
     ),
     ("trik/tests/it/rig.rs", 1, "between two looks"),
     ("trikd/tests/it/crash.rs", 1, "between two looks"),

@@ -26,6 +26,9 @@ pub(crate) struct RecordArgs {
     /// With --robot: at most so many samples a second of each node, the newest ones [default: all].
     #[arg(long, value_name = "NUMBER", requires = "robot", value_parser = rate)]
     pub hz: Option<f64>,
+    /// Leave out the messages of standard types, which other tools show at once: a smaller file.
+    #[arg(long)]
+    pub no_standard: bool,
     /// The mounted tree [default: the virtual robot that runs, or else /trikfs].
     pub mountpoint: Option<PathBuf>,
 }

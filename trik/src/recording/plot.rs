@@ -3,6 +3,8 @@
 //! Owns which numbers are drawn, and what is left of them: of each step of time the first, least, greatest and last number,
 //! so that a long recording makes no larger picture and no peak is lost. Axes and lines are the business of `chart`.
 
+mod png;
+
 use super::shared::{Opened, Progress, moment, open};
 use crate::chart::{self, Panel};
 use crate::error::Error;
@@ -23,6 +25,8 @@ const LEFT: f64 = 80.0;
 const TOP: f64 = 30.0;
 const RIGHT: f64 = 20.0;
 const BOTTOM: f64 = 36.0;
+/// Height of the mark of a failure.
+const MARK: f64 = 8.0;
 
 /// The options of `trik plot`.
 #[derive(Args, Clone, Debug)]
@@ -39,7 +43,7 @@ pub(crate) struct PlotArgs {
     #[arg(long, value_name = "SECONDS", value_parser = moment)]
     pub to: Option<u64>,
     /// The picture, a new file; - is standard output.
-    #[arg(long, short, value_name = "OUT.svg")]
+    #[arg(long, short, value_name = "OUT.svg|OUT.png")]
     pub output: PathBuf,
     /// Overwrite the picture if it exists.
     #[arg(long)]
@@ -79,9 +83,12 @@ pub(crate) fn run(args: &PlotArgs) -> Result<u8, Refusal> {
         source: &args.file,
         locale: Locale::English,
     };
-    let is_svg = (args.output.extension()).is_some_and(|end| end.eq_ignore_ascii_case("svg"));
-    if !is_svg && !output.is_standard() {
-        return Err(Refusal::new("the picture is SVG: its name ends with .svg"));
+    let ends =
+        |with: &str| (args.output.extension()).is_some_and(|end| end.eq_ignore_ascii_case(with));
+    let is_png = ends("png");
+    if !ends("svg") && !is_png && !output.is_standard() {
+        let why = "the picture is SVG or PNG: its name ends with .svg or .png";
+        return Err(Refusal::new(why));
     }
     output.refuse_present()?;
     let mut opened = open(&args.file)?;
@@ -101,8 +108,11 @@ pub(crate) fn run(args: &PlotArgs) -> Result<u8, Refusal> {
     }
     let second = |at: u64| (at - begin) as f64 / 1e9;
     let across = chart::range([second(first), second(last)].into_iter(), 1.0);
-    let picture = picture(&named(&args.file), &lines, across);
-    output.write(picture.as_bytes())?;
+    let picture = match is_png {
+        true => png::picture(&lines, across),
+        false => picture(&named(&args.file), &lines, across).into_bytes(),
+    };
+    output.write(&picture)?;
     Ok(0)
 }
 
@@ -291,26 +301,37 @@ impl Line {
     }
 }
 
-fn picture(name: &str, lines: &[Line], across: (f64, f64)) -> String {
+/// Width and height of the picture, in px.
+fn size(lines: &[Line]) -> (f64, f64) {
     let each = PANEL.1 + BOTTOM + TOP;
-    let (width, height) = (LEFT + PANEL.0 + RIGHT, 10.0 + each * lines.len() as f64);
+    (LEFT + PANEL.0 + RIGHT, 10.0 + each * lines.len() as f64)
+}
+
+/// The panel with this number.
+fn panel(at: usize, points: &[(f64, f64)], across: (f64, f64)) -> Panel {
+    let each = PANEL.1 + BOTTOM + TOP;
+    Panel {
+        left: LEFT,
+        top: 10.0 + TOP + each * at as f64 - 8.0,
+        size: PANEL,
+        across,
+        upwards: chart::range(points.iter().map(|point| point.1), 1.05),
+    }
+}
+
+fn picture(name: &str, lines: &[Line], across: (f64, f64)) -> String {
+    let (width, height) = size(lines);
     let mut svg = chart::sheet(name, width, height);
     for (at, line) in lines.iter().enumerate() {
         let points = line.points(across.1);
-        let panel = Panel {
-            left: LEFT,
-            top: 10.0 + TOP + each * at as f64 - 8.0,
-            size: PANEL,
-            across,
-            upwards: chart::range(points.iter().map(|point| point.1), 1.05),
-        };
+        let panel = panel(at, &points, across);
         let is_last = at + 1 == lines.len();
         panel.frame(&mut svg, if is_last { "t, s" } else { "" }, &line.title);
         panel.line(&mut svg, points.into_iter(), false);
         let low = panel.top + PANEL.1;
         let marks = line.faults.iter().flat_map(|fault| {
             let (at, _) = panel.point(*fault, 0.0);
-            [('M', (at, low)), ('L', (at, low - 8.0))]
+            [('M', (at, low)), ('L', (at, low - MARK))]
         });
         if !line.faults.is_empty() {
             svg.tag("path")

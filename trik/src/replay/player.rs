@@ -7,6 +7,7 @@
 use super::clock::Clock;
 use super::order::{BadOrder, Order, Seek};
 use super::outputs::Output;
+use super::peer::{Peer, Wish, wish};
 use super::recording::{Event, Recording, What};
 use crate::error::Error;
 use crate::limits;
@@ -174,24 +175,6 @@ fn lock(shared: &Mutex<Shared>) -> MutexGuard<'_, Shared> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What somebody who is connected wants.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Wish {
-    /// It has not said anything yet.
-    Unknown,
-    /// Reads this channel.
-    Read(usize),
-    /// Writes it.
-    Write(usize),
-    /// It has left, or said something else.
-    Gone,
-}
-
-struct Peer {
-    socket: OwnedFd,
-    wish: Wish,
-}
-
 /// Everything that the thread has.
 struct Scene {
     recording: Box<dyn Recording + Send>,
@@ -253,8 +236,17 @@ impl Scene {
         Ok(())
     }
 
+    /// Until when somebody is waited for who has come and has not said yet what it reads.
+    fn shy_until(&self, now: Instant) -> Option<Instant> {
+        let peers = self.peers.iter();
+        peers.filter_map(|peer| peer.shy_until(now)).max()
+    }
+
     /// Gives out all that is due, a bounded number at once.
     fn play(&mut self) -> Result<(), Error> {
+        if self.shy_until(Instant::now()).is_some() {
+            return Ok(());
+        }
         for _ in 0..limits::REPLAY_BATCH {
             let Some(next) = &self.next else {
                 return self.end();
@@ -350,6 +342,7 @@ impl Scene {
     /// When there is something to do without anybody asking.
     fn due(&self, now: Instant) -> Option<Instant> {
         match &self.next {
+            _ if self.shy_until(now).is_some() => self.shy_until(now),
             Some(_) if self.steps > 0 => Some(now),
             Some(next) => self.clock.due(next.at),
             // Its end, once.
@@ -421,10 +414,7 @@ impl Scene {
         let flags = SocketFlags::CLOEXEC | SocketFlags::NONBLOCK;
         while let Ok(socket) = accept_with(&self.listener, flags) {
             if self.peers.len() < limits::REPLAY_PEERS_MAX {
-                self.peers.push(Peer {
-                    socket,
-                    wish: Wish::Unknown,
-                });
+                self.peers.push(Peer::new(socket, Instant::now()));
             }
         }
     }
@@ -568,19 +558,4 @@ fn message(what: &What) -> Vec<u8> {
     let mut message = errno.to_le_bytes().to_vec();
     message.extend_from_slice(body);
     message
-}
-
-/// What a first message asks for.
-fn wish(recording: &dyn Recording, said: &[u8]) -> Wish {
-    let said = std::str::from_utf8(said).ok();
-    let Some((direction, name)) = said.and_then(|said| said.split_once(' ')) else {
-        return Wish::Gone;
-    };
-    let mut channels = recording.channels().iter();
-    let found = channels.position(|channel| channel.path == name);
-    match (direction, found) {
-        ("read", Some(channel)) => Wish::Read(channel),
-        ("write", Some(channel)) => Wish::Write(channel),
-        _ => Wish::Gone,
-    }
 }

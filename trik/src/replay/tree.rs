@@ -3,6 +3,7 @@
 //! Owns the text. There are no converters in it: what is played is what readers got, so it needs none of them.
 
 use super::recording::Channel;
+use recorder::watch::REPLAYED;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
@@ -29,7 +30,7 @@ pub(super) fn configuration(channels: &[Channel], player: &Path) -> String {
             }
         }
     }
-    let mut text = String::from("-- Made for a replay: every node gives what was recorded.\n");
+    let mut text = format!("{REPLAYED}: every node gives what was recorded.\n");
     let player = quoted(&player.to_string_lossy());
     let _ = writeln!(text, "local player = {player}\ntrikfs = {{");
     write_below(&root, 1, &mut text);

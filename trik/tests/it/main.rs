@@ -42,6 +42,8 @@ mod raw;
 /// Recordings cut, and made into tables and pictures.
 mod recording;
 mod replay;
+/// Recordings of robots and of replays, compared, and recorders that are killed.
+mod rerecord;
 mod rig;
 /// Programs with text as solutions.
 mod scripts;

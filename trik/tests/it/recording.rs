@@ -198,8 +198,8 @@ fn a_picture_has_a_panel_for_each_number_and_marks_failures() {
             "no node with numbers is code",
         ),
         (
-            ["plot", "run.mcap", "motors", "-o", "x.png"],
-            "its name ends with .svg",
+            ["plot", "run.mcap", "motors", "-o", "x.jpeg"],
+            "its name ends with .svg or .png",
         ),
         (
             ["plot", "run.mcap", "motors", "-o", "run.svg"],
@@ -209,6 +209,33 @@ fn a_picture_has_a_panel_for_each_number_and_marks_failures() {
         let refused = why_not(&board, &words);
         assert!(refused.contains(why), "{refused}");
     }
+}
+
+#[test]
+fn a_picture_of_pixels_has_the_same_panels_lines_and_marks() {
+    let board = recorded();
+    let words = [
+        "plot",
+        "run.mcap",
+        "sensors/D1.distance",
+        "motors",
+        "-o",
+        "run.png",
+    ];
+    assert_eq!(trik(&board, &words).good(), "");
+    let file = fs::read(board.dir().join("run.png")).expect("a picture");
+    let pixels = screen::picture::decode(&file).expect("a picture");
+    assert_eq!((pixels.width(), pixels.height()), (2 * 660, 2 * 362));
+    let count = |colour: u32, rows: std::ops::Range<i32>| {
+        rows.flat_map(|y| (0..1320).map(move |x| (x, y)))
+            .filter(|(x, y)| pixels.at(*x, *y).map(|one| one.number()) == Some(colour))
+            .count()
+    };
+    let (first, second) = (0..362, 362..724);
+    let (line, mark) = (0x0057b8, 0xc0392b);
+    assert!(count(line, first.clone()) > 1500 && count(line, second.clone()) > 1500);
+    assert_eq!(count(mark, first), 4 * 17);
+    assert_eq!(count(mark, second), 0);
 }
 
 #[test]

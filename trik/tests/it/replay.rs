@@ -11,11 +11,16 @@ use std::process::{Child, Stdio};
 use std::sync::Arc;
 
 /// A recorder that has begun, and is asked to end by SIGINT.
-struct Recorder(Child);
+pub struct Recorder(pub Child);
 
 impl Recorder {
     fn start(home: &Home, words: &[&str]) -> Self {
-        let mut command = home.command(&["record", "-o", "run.mcap"]);
+        Self::start_to(home, "run.mcap", words)
+    }
+
+    /// Records into this file of the home.
+    pub fn start_to(home: &Home, file: &str, words: &[&str]) -> Self {
+        let mut command = home.command(&["record", "-o", file]);
         command
             .args(words)
             .stdout(Stdio::null())
@@ -23,7 +28,7 @@ impl Recorder {
         Self(command.spawn().expect("trik record"))
     }
 
-    fn end(mut self) {
+    pub fn end(mut self) {
         let pid = Pid::from_raw(i32::try_from(self.0.id()).expect("a pid"));
         kill(pid, Signal::SIGINT).expect("SIGINT");
         assert!(self.0.wait().expect("an end").success());
