@@ -265,13 +265,8 @@ impl<W: Write + Seek> Target<W> {
                         channel_id: *id,
                         ..header
                     };
-                    out.write_to_known_channel(&header, &data).map_err(disk)?;
+                    write(out, &header, &data, &mut self.flushed_ns).map_err(disk)?;
                     saved.messages += 1;
-                    let is_due = |before: u64| header.log_time.abs_diff(before) >= FLUSH_NS;
-                    if self.flushed_ns.is_some_and(is_due) {
-                        self.flushed_ns = Some(header.log_time);
-                        out.flush().map_err(disk)?;
-                    }
                 }
             }
             Record::Attachment { header, data, .. } => {
@@ -282,10 +277,8 @@ impl<W: Write + Seek> Target<W> {
                     media_type: header.media_type,
                     data,
                 };
-                let checksum = crc32fast::hash(&attachment.data);
-                let last = self.attached.insert(attachment.name.clone(), checksum);
                 // One that is there is there in each part.
-                if !self.joins || last != Some(checksum) {
+                if !self.joins || is_new(&mut self.attached, &attachment) {
                     out.attach(&attachment).map_err(disk)?;
                     saved.attachments += 1;
                 }
@@ -306,6 +299,29 @@ impl<W: Write + Seek> Target<W> {
         }
         Ok(true)
     }
+}
+
+/// Writes a message, and hands all to the file if it is time.
+fn write<W: Write + Seek>(
+    out: &mut mcap::Writer<W>,
+    header: &MessageHeader,
+    data: &[u8],
+    flushed_ns: &mut Option<u64>,
+) -> mcap::McapResult<()> {
+    out.write_to_known_channel(header, data)?;
+    if let Some(before) = flushed_ns
+        && header.log_time.abs_diff(*before) >= FLUSH_NS
+    {
+        *before = header.log_time;
+        out.flush()?;
+    }
+    Ok(())
+}
+
+/// Whether the last file of this name was another one.
+fn is_new(attached: &mut HashMap<String, u32>, attachment: &Attachment<'_>) -> bool {
+    let checksum = crc32fast::hash(&attachment.data);
+    attached.insert(attachment.name.clone(), checksum) != Some(checksum)
 }
 
 /// Whether all parts of an attachment are there: two times, name, media type, length, bytes, checksum.
