@@ -248,21 +248,16 @@ impl<W: Write + Seek> Target<W> {
                     0 => 0,
                     id => *(self.schemas.get(&id)).ok_or_else(|| unknown("schema"))?,
                 };
-                let id = out.add_channel(
-                    schema,
-                    &channel.topic,
-                    &channel.message_encoding,
-                    &channel.metadata,
-                );
-                let named = (id.map_err(disk)?, channel.topic);
-                self.channels.insert(channel.id, named);
+                let id = declare(out, schema, &channel).map_err(disk)?;
+                self.channels.insert(channel.id, (id, channel.topic));
             }
             Record::Message { header, data } => {
                 let channel = self.channels.get(&header.channel_id);
                 let (id, topic) = channel.ok_or_else(|| unknown("channel"))?;
                 if is_wanted(topic, header.log_time) {
+                    let channel_id = *id;
                     let header = MessageHeader {
-                        channel_id: *id,
+                        channel_id,
                         ..header
                     };
                     write(out, &header, &data, &mut self.flushed_ns).map_err(disk)?;
@@ -299,6 +294,16 @@ impl<W: Write + Seek> Target<W> {
         }
         Ok(true)
     }
+}
+
+/// The same channel in the new file.
+fn declare<W: Write + Seek>(
+    out: &mut mcap::Writer<W>,
+    schema: u16,
+    channel: &mcap::records::Channel,
+) -> mcap::McapResult<u16> {
+    let encoding = &channel.message_encoding;
+    out.add_channel(schema, &channel.topic, encoding, &channel.metadata)
 }
 
 /// Writes a message, and hands all to the file if it is time.
