@@ -11,7 +11,8 @@ mod prose;
 /// Rules of waiting.
 mod waits;
 
-const CRATES: [&str; 21] = [
+const CRATES: [&str; 22] = [
+    "bridge",
     "config",
     "converter",
     "ev3dev",
