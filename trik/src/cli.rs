@@ -7,7 +7,7 @@ use crate::check::{self, of_misuse, original};
 use crate::dcml::{self, Dcml};
 use crate::output::standard;
 use crate::refusal::{Refusal, end};
-use crate::{dap, debug, diagrams, fault, record, recording, remote, replay, task, up};
+use crate::{bridges, dap, debug, diagrams, fault, record, recording, remote, replay, task, up};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -182,6 +182,12 @@ enum Command {
     /// Exit status: 0 drawn; 1 the recording cannot be read, has no such numbers, or the picture cannot be written; 2 the
     /// command line was not understood.
     Plot(recording::plot::PlotArgs),
+    /// Serve a mounted tree for tools of other people.
+    Bridge {
+        /// For which tool.
+        #[command(subcommand)]
+        which: bridges::args::Bridge,
+    },
     /// Break a device of a running virtual robot, or repair it.
     ///
     /// Programs see what they would see with a real device that fails in this way. Without a MOUNTPOINT it is the only robot
@@ -352,6 +358,7 @@ fn run(command: Command) -> Result<u8, Refusal> {
         Command::Plot(args) => recording::plot::run(&args),
         Command::Record(args) => record::run(&args),
         Command::BlackBox(BoxCommand::Save(args)) => remote::recorded::save(&args),
+        Command::Bridge { which } => bridges::run(&which),
         Command::Replay(args) => replay::run(&args),
         Command::Break(args) => remote::step::stop_at(&args),
         Command::Step(args) => remote::step::step(&args),

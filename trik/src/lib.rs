@@ -4,11 +4,13 @@
 //! `place` knows where the robots of a user are, `remote` brings programs to robots, `diagrams` shows, checks and translates
 //! diagrams without a robot, `dcml` does the same with models of robots, `check` runs and judges solutions of tasks,
 //! `script` runs programs with text for it, `debug` stops diagrams and goes back in them, `dap` does so for editors,
-//! `record` writes what a tree gives into a file, `replay` makes a tree of it, `recording` looks into such files. All of them stand on `error`, `refusal`, `input`, `output`,
+//! `record` writes what a tree gives into a file, `replay` makes a tree of it, `recording` looks into such files,
+//! `bridges` serves a tree for tools of other people. All of them stand on `error`, `refusal`, `input`, `output`,
 //! `terminal`, `language`, `pattern` and `chart`, which know no command. Nothing of this runs on the controller.
 
 #![deny(clippy::wildcard_enum_match_arm)]
 
+mod bridges;
 mod chart;
 mod check;
 pub mod cli;

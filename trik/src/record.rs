@@ -212,7 +212,10 @@ fn counted(counts: Counts, elapsed: Duration, bytes: u64) -> String {
 }
 
 /// The tree that is meant.
-fn tree(named: Option<&Path>) -> Result<PathBuf, Error> {
+///
+/// # Errors
+/// There is none, or there are several.
+pub(crate) fn tree(named: Option<&Path>) -> Result<PathBuf, Error> {
     let root = match named {
         Some(path) => path.to_owned(),
         None => {

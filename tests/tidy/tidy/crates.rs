@@ -187,7 +187,14 @@ fn nothing_for_the_controller_links_what_is_for_a_pc() {
             }
         }
     }
-    for name in ["sim", "trik", "lang-constraint", "lang-plan", "lang-editor"] {
+    for name in [
+        "bridge",
+        "sim",
+        "trik",
+        "lang-constraint",
+        "lang-plan",
+        "lang-editor",
+    ] {
         assert!(!linked.contains(&name), "the controller links {name}");
     }
 }

@@ -37,8 +37,8 @@ const ON_NAMED_PAGES: [(&str, &str, &str); 16] = [
 ];
 
 /// Languages of examples that are only shown, though a test may read some of them.
-const SHOWN: [&str; 12] = [
-    "", "c", "dcml", "java", "js", "json", "lua", "python", "sh", "text", "toml", "xml",
+const SHOWN: [&str; 13] = [
+    "", "c", "dcml", "java", "js", "json", "lua", "python", "sh", "text", "toml", "xml", "yaml",
 ];
 
 /// Whether the words of a fence are those of a mark, with names behind them.

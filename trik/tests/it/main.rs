@@ -4,6 +4,7 @@
 
 /// Solutions of tasks, judged.
 mod black_box;
+mod bridge;
 mod check;
 /// Models of robots: what their document shows, files and exit codes.
 mod dcml;

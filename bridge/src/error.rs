@@ -1,0 +1,57 @@
+//! Why a bridge cannot be begun, and who can mend it.
+//!
+//! Owns the errors of this crate. Knows no command.
+
+use std::fmt;
+use std::net::SocketAddr;
+
+/// The person or the part that can mend it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Blame {
+    /// The person who asked: another address, another tree.
+    Caller,
+    /// The machine.
+    Machine,
+}
+
+/// What is wrong. Shown, it is a sentence for the person.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Error {
+    /// Nobody can listen there.
+    Address(SocketAddr, String),
+    /// The tree cannot be looked at.
+    Tree(recorder::error::Error),
+    /// There are no more threads.
+    Thread(String),
+}
+
+impl Error {
+    /// The person or the part that can mend it.
+    pub fn blame(&self) -> Blame {
+        match self {
+            Self::Address(..) => Blame::Caller,
+            Self::Tree(why) => match why.blame() {
+                recorder::error::Blame::Caller => Blame::Caller,
+                recorder::error::Blame::Machine => Blame::Machine,
+            },
+            Self::Thread(_) => Blame::Machine,
+        }
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Address(address, why) => {
+                write!(
+                    f,
+                    "{address}: {why}; --port and --address choose another one"
+                )
+            }
+            Self::Tree(why) => write!(f, "{why}"),
+            Self::Thread(why) => write!(f, "a thread: {why}"),
+        }
+    }
+}
+
+impl std::error::Error for Error {}
