@@ -255,9 +255,14 @@ impl Hub {
     }
 
     /// Whether the source has given nothing since it was opened, and nothing is on its way. For a reader that came after
-    /// something was said, this counts from `since`, when it came.
-    fn is_silent(&self, since: Instant, patience: Patience) -> bool {
+    /// something was said, this counts from when it came.
+    fn is_silent(&self, reader: &Subscription, patience: Patience) -> bool {
+        // With the lock under which tuples are passed on: one that was just read is in the queue, or still to be read.
         let inner = lock(&self.inner);
+        if !lock(&reader.queue).bytes.is_empty() {
+            return false;
+        }
+        let since = reader.since;
         let begin = if inner.has_spoken {
             since
         } else {
@@ -388,8 +393,7 @@ impl Subscription {
 
     /// See [`Stream::is_silent`]; asked of the opening that all readers share, by a reader that has heard nothing yet.
     pub fn is_silent(&self, patience: Patience) -> bool {
-        let has_some = !lock(&self.queue).bytes.is_empty();
-        !has_some && self.hub.is_silent(self.since, patience)
+        self.hub.is_silent(self, patience)
     }
 
     fn push(&self, tuples: &[u8]) {
