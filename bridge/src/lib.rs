@@ -14,8 +14,4 @@ pub mod error;
 pub mod follow;
 pub mod http;
 pub mod limits;
-#[allow(
-    clippy::disallowed_types,
-    reason = "for a PC; the library keeps numbers in no other type"
-)]
 pub mod prometheus;

@@ -5,23 +5,24 @@
 
 use crate::limits::{ERRNOS_MAX, FIELDS_MAX, STATUS_BYTES_MAX};
 use journal::layout::Layout;
+use prometheus_client::collector::Collector;
 use prometheus_client::encoding::text::encode;
-use prometheus_client::metrics::counter::Counter;
-use prometheus_client::metrics::family::Family;
-use prometheus_client::metrics::gauge::Gauge;
+use prometheus_client::encoding::{DescriptorEncoder, EncodeMetric, MetricEncoder};
+use prometheus_client::metrics::MetricType;
+use prometheus_client::metrics::counter::ConstCounter;
+use prometheus_client::metrics::gauge::ConstGauge;
 use prometheus_client::registry::Registry;
 use recorder::entry::{Entry, Known};
 use std::collections::BTreeMap;
+use std::fmt;
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
-use std::sync::atomic::AtomicU64;
 
 /// The media type of the text.
 pub const MEDIA_TYPE: &str = "application/openmetrics-text; version=1.0.0; charset=utf-8";
 
 type Labels = Vec<(&'static str, String)>;
-type Number = Gauge<f64, AtomicU64>;
 
 /// What is known of one node.
 #[derive(Default)]
@@ -113,65 +114,138 @@ impl Numbers {
 
     /// The text, with what the file `status` of the tree says.
     pub fn text(&self, root: &Path) -> String {
-        let mut registry = Registry::with_prefix("trikfs");
-        self.values(&mut registry);
-        self.counts(&mut registry);
+        let mut all = self.series();
         if self.is_there {
-            status(&mut registry, root);
+            all.extend(status(root));
         }
+        let mut registry = Registry::with_prefix("trikfs");
+        registry.register_collector(Box::new(Scrape(all)));
         let mut text = String::new();
         // Writing to a string cannot fail.
         let _ = encode(&mut text, &registry);
         text
     }
 
-    fn values(&self, registry: &mut Registry) {
-        let values = Family::<Labels, Number>::default();
-        let errnos = Family::<Labels, Gauge>::default();
-        let times = Family::<Labels, Number>::default();
+    fn series(&self) -> Vec<Series> {
+        let mut values = Series::new(VALUE);
+        let mut errnos = Series::new(ERRNO);
+        let mut times = Series::new(LAST_SECONDS);
+        let mut samples = Series::new(SAMPLES);
+        let mut failures = Series::new(FAILURES);
         for (path, seen) in &self.nodes {
+            let node = || vec![("node", path.clone())];
             for (field, value) in seen.fields.iter().zip(&seen.values) {
-                let labels = vec![
-                    ("node", path.clone()),
-                    ("field", field.clone()),
-                    ("unit", seen.units.clone()),
-                ];
-                values.get_or_create(&labels).set(*value);
+                let mut labels = node();
+                labels.push(("field", field.clone()));
+                labels.push(("unit", seen.units.clone()));
+                values.add(labels, Number::Real(*value));
             }
-            let node = vec![("node", path.clone())];
-            errnos.get_or_create(&node).set(seen.errno.into());
+            errnos.add(node(), Number::Whole(seen.errno.into()));
             if seen.at_ns > 0 {
-                times.get_or_create(&node).set(seconds(seen.at_ns));
+                times.add(node(), Number::Real(seconds(seen.at_ns)));
+            }
+            samples.add(node(), Number::Count(seen.samples));
+            for (errno, count) in &seen.failures {
+                let mut labels = node();
+                labels.push(("errno", errno.to_string()));
+                failures.add(labels, Number::Count(*count));
             }
         }
-        let about = "The last value of a field of a node; none while the node fails";
-        registry.register("value", about, values);
-        let about = "The errno with which a node fails; 0 if it has a value";
-        registry.register("errno", about, errnos);
-        let about = "When the last sample or failure of a node was, in seconds since 1970";
-        registry.register("last_seconds", about, times);
+        let mut missed = Series::new(MISSED);
+        missed.add(Vec::new(), Number::Count(self.missed));
+        let mut up = Series::new(UP);
+        up.add(Vec::new(), Number::Whole(self.is_there.into()));
+        vec![values, errnos, times, samples, failures, missed, up]
+    }
+}
+
+/// What a series is called, and what it is.
+type About = (&'static str, &'static str);
+
+const VALUE: About = (
+    "value",
+    "The last value of a field of a node; none while the node fails",
+);
+const ERRNO: About = (
+    "errno",
+    "The errno with which a node fails; 0 if it has a value",
+);
+const LAST_SECONDS: About = (
+    "last_seconds",
+    "When the last sample or failure of a node was, in seconds since 1970",
+);
+const SAMPLES: About = ("samples", "Samples of a node");
+const FAILURES: About = ("failures", "Failures of a node, by errno");
+const MISSED: About = (
+    "missed_samples",
+    "Samples that were overwritten before they were seen",
+);
+const UP: About = ("up", "1 if the tree is mounted");
+const STATE: About = ("state", "1 for the state that a node or an attribute has");
+const RATE: About = ("rate_hertz", "Samples per second of a node or an attribute");
+
+/// A number of a series.
+#[derive(Clone, Copy, Debug)]
+enum Number {
+    Real(f64),
+    Whole(i64),
+    /// It only grows.
+    Count(u64),
+}
+
+impl Number {
+    fn encode(self, out: MetricEncoder<'_>) -> fmt::Result {
+        match self {
+            Self::Real(number) => ConstGauge::new(number).encode(out),
+            Self::Whole(number) => ConstGauge::new(number).encode(out),
+            Self::Count(number) => ConstCounter::new(number).encode(out),
+        }
+    }
+}
+
+/// Numbers of one kind, as they are at the moment.
+#[derive(Debug)]
+struct Series {
+    about: About,
+    rows: Vec<(Labels, Number)>,
+}
+
+impl Series {
+    fn new(about: About) -> Self {
+        let rows = Vec::new();
+        Self { about, rows }
     }
 
-    fn counts(&self, registry: &mut Registry) {
-        let samples = Family::<Labels, Counter>::default();
-        let failures = Family::<Labels, Counter>::default();
-        for (path, seen) in &self.nodes {
-            let node = vec![("node", path.clone())];
-            samples.get_or_create(&node).inc_by(seen.samples);
-            for (errno, count) in &seen.failures {
-                let labels = vec![("node", path.clone()), ("errno", errno.to_string())];
-                failures.get_or_create(&labels).inc_by(*count);
+    fn add(&mut self, labels: Labels, number: Number) {
+        self.rows.push((labels, number));
+    }
+}
+
+/// All of one text.
+#[derive(Debug)]
+struct Scrape(Vec<Series>);
+
+impl Collector for Scrape {
+    fn encode(&self, mut encoder: DescriptorEncoder<'_>) -> fmt::Result {
+        for Series { about, rows } in &self.0 {
+            let kind = match rows.first() {
+                None => continue,
+                Some((_, Number::Count(_))) => MetricType::Counter,
+                Some((_, Number::Real(_) | Number::Whole(_))) => MetricType::Gauge,
+            };
+            let (name, help) = about;
+            let mut metric = encoder.encode_descriptor(name, help, None, kind)?;
+            if let [(labels, number)] = &rows[..]
+                && labels.is_empty()
+            {
+                number.encode(metric)?;
+                continue;
+            }
+            for (labels, number) in rows {
+                number.encode(metric.encode_family(&labels.as_slice())?)?;
             }
         }
-        registry.register("samples", "Samples of a node", samples);
-        registry.register("failures", "Failures of a node, by errno", failures);
-        let missed = Counter::<u64, AtomicU64>::default();
-        missed.inc_by(self.missed);
-        let about = "Samples that were overwritten before they were seen";
-        registry.register("missed_samples", about, missed);
-        let up = Gauge::<i64>::default();
-        up.set(self.is_there.into());
-        registry.register("up", "1 if the tree is mounted", up);
+        Ok(())
     }
 }
 
@@ -181,16 +255,16 @@ fn seconds(at_ns: u64) -> f64 {
     at_ns as f64 / 1e9
 }
 
-/// Lines of `status` after the first one: name, state, samples per second, fault.
-fn status(registry: &mut Registry, root: &Path) {
+/// Lines of `status` after the first one: name, state, samples per second, fault. Nothing if it cannot be read.
+fn status(root: &Path) -> Vec<Series> {
     let mut text = String::new();
     let read = File::open(root.join("status"))
         .and_then(|file| file.take(STATUS_BYTES_MAX).read_to_string(&mut text));
     if read.is_err() {
-        return;
+        return Vec::new();
     }
-    let states = Family::<Labels, Gauge>::default();
-    let rates = Family::<Labels, Number>::default();
+    let mut states = Series::new(STATE);
+    let mut rates = Series::new(RATE);
     for line in text.lines().skip(1) {
         let mut words = line.split(' ');
         let (Some(name), Some(state), Some(rate)) = (words.next(), words.next(), words.next())
@@ -200,15 +274,11 @@ fn status(registry: &mut Registry, root: &Path) {
         let Some(rate) = rate.strip_suffix("Hz").and_then(|rate| rate.parse().ok()) else {
             continue;
         };
-        let labels = vec![("name", name.to_owned()), ("state", state.to_owned())];
-        states.get_or_create(&labels).set(1);
-        let labels = vec![("name", name.to_owned())];
-        rates.get_or_create(&labels).set(rate);
+        let name = || ("name", name.to_owned());
+        states.add(vec![name(), ("state", state.to_owned())], Number::Whole(1));
+        rates.add(vec![name()], Number::Real(rate));
     }
-    let about = "1 for the state that a node or an attribute has";
-    registry.register("state", about, states);
-    let about = "Samples per second of a node or an attribute";
-    registry.register("rate_hertz", about, rates);
+    vec![states, rates]
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The thread that looks at a tree for all who take what it sees: the black box and live streams.
 //!
 //! Owns who takes it. Looks at nothing while nobody does; a tree that is not there yet is waited for. Lines about programs and
-//! messages come from the one who has the desk.
+//! messages come from the owner of the desk.
 
 use crate::entry::{Batch, Entry};
 use crate::error::Error;
@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// What the thread is told.
@@ -36,12 +37,23 @@ pub trait Listener: Send {
     fn put(&mut self, entries: &[Entry], now_ns: u64) -> bool;
 }
 
-/// The way to the thread. It ends when the last of these is gone.
-#[derive(Clone)]
+/// The way to the thread. Dropping it ends that, and waits for what is being saved.
 pub struct Desk {
-    orders: SyncSender<Order>,
+    /// None at the end.
+    orders: Option<SyncSender<Order>>,
+    thread: Option<JoinHandle<()>>,
     keeps: bool,
     is_heard: Arc<AtomicBool>,
+}
+
+impl Drop for Desk {
+    fn drop(&mut self) {
+        self.orders = None;
+        if let Some(thread) = self.thread.take() {
+            // It has failed: there is nothing to wait for.
+            let _ = thread.join();
+        }
+    }
 }
 
 /// What a desk is for.
@@ -75,6 +87,7 @@ impl Desk {
             root: settings.root,
             library: settings.library,
             watch: None,
+            numbers: 0,
             looks_at: Instant::now(),
             kept,
             listeners: Vec::new(),
@@ -83,7 +96,7 @@ impl Desk {
             values: Values::default(),
             is_heard: is_heard.clone(),
         };
-        std::thread::Builder::new()
+        let thread = std::thread::Builder::new()
             .name("recorder".to_owned())
             .spawn(move || {
                 work.run(&come);
@@ -93,7 +106,8 @@ impl Desk {
             })
             .map_err(|error| Error::Thread(error.to_string()))?;
         Ok(Self {
-            orders,
+            orders: Some(orders),
+            thread: Some(thread),
             keeps,
             is_heard,
         })
@@ -117,8 +131,7 @@ impl Desk {
             text: text.to_owned(),
             errno: 0,
         };
-        let entry = Entry::Line(story, now_ns(), Arc::new(line));
-        let _ = self.orders.try_send(Order::Line(entry));
+        self.give(Order::Line(Entry::Line(story, now_ns(), Arc::new(line))));
     }
 
     /// Saves the last minutes; `told` hears the file, or why there is none.
@@ -132,7 +145,8 @@ impl Desk {
     }
 
     fn give(&self, order: Order) {
-        match self.orders.try_send(order) {
+        let Some(orders) = &self.orders else { return };
+        match orders.try_send(order) {
             Ok(()) => {}
             Err(TrySendError::Full(order) | TrySendError::Disconnected(order)) => match order {
                 Order::Save(_, told) => told(Err(Error::TooMany("orders at once"))),
@@ -148,6 +162,8 @@ struct Work {
     library: String,
     /// None while nobody wants anything, or there is no tree.
     watch: Option<Watch>,
+    /// The greatest number of a node that anybody has heard of.
+    numbers: u32,
     /// When a tree that is not there is looked for again.
     looks_at: Instant,
     kept: Option<Kept>,
@@ -191,7 +207,7 @@ impl Work {
     fn save(&mut self, why: Why, told: Told) {
         let Some(kept) = &mut self.kept else {
             told(Err(Error::Request(
-                "no black box is kept here: start trikd with --box".to_owned(),
+                "no black box is kept here: start trikd with --box-minutes".to_owned(),
             )));
             return;
         };
@@ -238,11 +254,16 @@ impl Work {
         }
     }
 
+    fn leave(&mut self) {
+        if let Some(watch) = self.watch.take() {
+            self.numbers = watch.numbers();
+        }
+    }
+
     /// Looks for the tree if it is not there.
     fn ensure(&mut self) {
-        let is_gone = self.watch.as_ref().is_some_and(Watch::is_gone);
-        if is_gone {
-            self.watch = None;
+        if self.watch.as_ref().is_some_and(Watch::is_gone) {
+            self.leave();
         }
         if self.watch.is_some() || Instant::now() < self.looks_at {
             return;
@@ -251,7 +272,8 @@ impl Work {
         if !is_tree(&self.root) {
             return;
         }
-        if let Ok(watch) = Watch::begin(&self.root, &self.library, self.wants()) {
+        let wants = self.wants();
+        if let Ok(watch) = Watch::begin_after(self.numbers, &self.root, &self.library, wants) {
             self.batch.extend(watch.beginning());
             self.watch = Some(watch);
         }
@@ -260,7 +282,7 @@ impl Work {
     fn look(&mut self) {
         if self.kept.is_none() && self.listeners.is_empty() {
             // Rings that nobody reads are not filled.
-            self.watch = None;
+            self.leave();
             self.batch.clear();
             return;
         }

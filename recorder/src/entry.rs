@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// A node that is looked at. One whose format changes becomes another one.
 #[derive(Debug)]
 pub struct Known {
-    /// No other one of the same process has this number.
+    /// No other one has it that the same files or clients hear of.
     pub number: u32,
     /// What is known of it.
     pub node: Node,

@@ -28,6 +28,8 @@ pub enum Error {
     Thread(String),
     /// A pattern or a rate that means nothing.
     Request(String),
+    /// The black box is being saved.
+    Saving,
     /// There are too many of these.
     TooMany(&'static str),
 }
@@ -36,9 +38,11 @@ impl Error {
     /// The person or the part that can mend it.
     pub fn blame(&self) -> Blame {
         match self {
-            Self::Nothing(_) | Self::File(..) | Self::Request(_) | Self::TooMany(_) => {
-                Blame::Caller
-            }
+            Self::Nothing(_)
+            | Self::File(..)
+            | Self::Request(_)
+            | Self::Saving
+            | Self::TooMany(_) => Blame::Caller,
             Self::Broken(..) | Self::Thread(_) => Blame::Machine,
         }
     }
@@ -66,6 +70,7 @@ impl fmt::Display for Error {
             }
             Self::Thread(why) => write!(f, "a thread: {why}"),
             Self::Request(why) => f.write_str(why),
+            Self::Saving => f.write_str("the black box is being saved already: try again"),
             Self::TooMany(what) => write!(f, "too many {what}"),
         }
     }

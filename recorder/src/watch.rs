@@ -178,6 +178,19 @@ impl Watch {
     /// # Errors
     /// There are none.
     pub fn begin(root: &Path, program: &str, wants: Wants) -> Result<Self, Error> {
+        Self::begin_after(0, root, program, wants)
+    }
+
+    /// The same for one who has looked at another tree before: nodes have numbers after `numbers`.
+    ///
+    /// # Errors
+    /// As of [`Watch::begin`].
+    pub fn begin_after(
+        numbers: u32,
+        root: &Path,
+        program: &str,
+        wants: Wants,
+    ) -> Result<Self, Error> {
         let mut watch = Self {
             root: root.to_owned(),
             wants,
@@ -193,7 +206,7 @@ impl Watch {
             begin_ns: u64::try_from(clock_ns(ClockId::CLOCK_MONOTONIC)).unwrap_or(0),
             missed: 0,
             is_told: true,
-            numbers: 0,
+            numbers,
             looks_at: Instant::now(),
             is_gone: false,
             tuple: Vec::new(),
@@ -203,6 +216,11 @@ impl Watch {
             return Err(Error::Nothing(root.to_owned()));
         }
         Ok(watch)
+    }
+
+    /// The greatest number of a node.
+    pub fn numbers(&self) -> u32 {
+        self.numbers
     }
 
     /// Where the tree is mounted.

@@ -193,6 +193,8 @@ pub const REPLAY_BATCH: usize = 1_000;
 pub const REPLAY_PEERS_MAX: usize = 2 * 4096 + 64;
 /// Time in which one of them says what it wants, before the clock goes on without it.
 pub const REPLAY_HELLO_MS: u64 = 100;
+/// How late an event may be given before the clock waits for it.
+pub const REPLAY_LATE_MS: u64 = 20;
 /// Bytes of what one connection says at once: the greatest tuple of a `played` source.
 pub const REPLAY_MESSAGE_BYTES: usize = 128 << 10;
 /// Keys that wait for the player.

@@ -18,7 +18,7 @@ use tokio::sync::oneshot;
 /// What records, with its version.
 pub const LIBRARY: &str = concat!("trikd/", env!("CARGO_PKG_VERSION"));
 
-/// Who looks at the tree for all who want to see it.
+/// Looks at the tree for everything that wants to see it.
 pub struct Record {
     desk: Desk,
 }

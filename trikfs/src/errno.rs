@@ -75,6 +75,8 @@ pub enum Error {
     Malformed(String),
     /// The device answers, and what it says is no measurement: a converter has seen that.
     Measurement(String),
+    /// What a recording has instead of a sample: this errno. The source itself is well, and goes on.
+    Recorded(i32, String),
     /// The converter failed.
     Converter(String),
     /// The open file belongs to a node that a reload changed or removed.
@@ -200,15 +202,6 @@ impl Error {
         }
     }
 
-    /// What a recorded device failed with, so that a reader gets the same errno again.
-    pub fn of_recording(reason: String, errno: i32) -> Self {
-        match errno {
-            libc::ETIMEDOUT => Self::TimedOut(reason),
-            libc::EIO => Self::Measurement(reason),
-            errno => Self::of_number(reason, errno),
-        }
-    }
-
     /// Nobody acknowledges at an address of a bus.
     pub fn no_answer(what: String) -> Self {
         Self::Device(libc::EREMOTEIO, what)
@@ -244,6 +237,7 @@ impl Error {
             Self::Crowded(_) => libc::EBUSY,
             Self::Malformed(_) => libc::EIO,
             Self::Measurement(_) => libc::EIO,
+            Self::Recorded(errno, _) => *errno,
             Self::Converter(_) => libc::EIO,
             Self::Stale => libc::ESTALE,
             Self::TooManyOpen => libc::EMFILE,
@@ -269,7 +263,7 @@ impl Error {
 
     /// The device is not there, as the program sees it: it may come back.
     pub fn is_gone(&self) -> bool {
-        self.errno() == libc::ENODEV
+        self.errno() == libc::ENODEV && !matches!(self, Self::Recorded(..))
     }
 
     /// The person or the part that can mend it.
@@ -305,7 +299,8 @@ impl Error {
             | Self::Quarantined { .. }
             | Self::Crowded(_)
             | Self::Malformed(_)
-            | Self::Measurement(_) => Blame::Device,
+            | Self::Measurement(_)
+            | Self::Recorded(..) => Blame::Device,
             Self::Converter(_) => Blame::Converter,
             Self::Internal(_) => Blame::Ours,
         }
@@ -346,6 +341,7 @@ impl fmt::Display for Error {
             | Self::Busy(what)
             | Self::NotRunning(what)
             | Self::Measurement(what)
+            | Self::Recorded(_, what)
             | Self::Converter(what)
             | Self::Internal(what) => f.write_str(what),
             Self::WouldBlock => f.write_str("no sample yet"),

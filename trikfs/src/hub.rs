@@ -225,23 +225,16 @@ impl Hub {
                 None
             }
             Ok(Got::End) => {
-                let again = stream.begins_anew();
-                if std::mem::take(raw_len) > 0 {
-                    let what = "the source ended inside a tuple".to_owned();
-                    node.report(&Error::Malformed(what));
-                }
-                inner.last.clear();
-                inner.is_over = !again;
-                self.each(|subscription| subscription.end(!again));
-                if again {
-                    // The old opening stays until the new one is there: what the next writer of a FIFO sends
-                    // would be lost while nobody has it open.
-                    self.reopen(node, &mut inner);
-                } else {
-                    inner.watch = None;
-                    inner.stream = None;
-                }
+                self.end(node, &mut inner);
                 Some(false)
+            }
+            Err(error @ Error::Recorded(..)) => {
+                *raw_len = 0;
+                last.clear();
+                *has_spoken = true;
+                node.report(&error);
+                self.each(|subscription| subscription.lose(&error));
+                Some(true)
             }
             Err(error) => {
                 inner.raw_len = 0;
@@ -251,6 +244,26 @@ impl Hub {
                 self.lose(node, &error);
                 Some(false)
             }
+        }
+    }
+
+    /// The source has ended, for good or until it begins anew.
+    fn end(&self, node: &Arc<Node>, inner: &mut Inner) {
+        let again = (inner.stream.as_ref()).is_some_and(|stream| stream.begins_anew());
+        if std::mem::take(&mut inner.raw_len) > 0 {
+            let what = "the source ended inside a tuple".to_owned();
+            node.report(&Error::Malformed(what));
+        }
+        inner.last.clear();
+        inner.is_over = !again;
+        self.each(|subscription| subscription.end(!again));
+        if again {
+            // The old opening stays until the new one is there: what the next writer of a FIFO sends
+            // would be lost while nobody has it open.
+            self.reopen(node, inner);
+        } else {
+            inner.watch = None;
+            inner.stream = None;
         }
     }
 
@@ -401,6 +414,7 @@ impl Subscription {
         let limit = most * self.tuple_size;
         let mut queue = lock(&self.queue);
         queue.ended = false;
+        queue.lost = None;
         queue.bytes.extend(tuples);
         let excess = queue.bytes.len().saturating_sub(limit);
         if excess > 0 {

@@ -21,8 +21,8 @@ const PAUSES: [(&str, usize, &str); 19] = [
     ),
     (
         "trik/tests/it/rerecord.rs",
-        2,
-        "between two looks, and until a recorder is killed",
+        3,
+        "between two looks, until a recorder is killed, and a stall",
     ),
     ("trik/tests/it/rig.rs", 1, "between two looks"),
     ("trikd/tests/it/crash.rs", 1, "between two looks"),

@@ -42,7 +42,9 @@ pub(crate) fn record(args: &RecordArgs, robot: &Target) -> Result<u8, Refusal> {
     let seconds = args
         .seconds
         .map(|seconds| Duration::from_secs(seconds.into()));
-    let pieces = Pieces::of(robot, &[b"stream:", wanted.as_bytes()], seconds)?;
+    let mut pieces = Pieces::of(robot, &[b"stream:", wanted.as_bytes()], seconds)?;
+    // A robot that refuses leaves no empty file.
+    pieces.wait()?;
     say(&format!(
         "recording what {robot} sends into {}; Ctrl-C ends it\n",
         args.output.display()
@@ -59,18 +61,18 @@ pub(crate) fn save(args: &SaveArgs) -> Result<u8, Refusal> {
         Some(robot) => robot.clone(),
         None => the_one()?,
     };
-    keep(Pieces::of(&robot, &[b"box"], None)?, &args.output)
+    let mut pieces = Pieces::of(&robot, &[b"box"], None)?;
+    pieces.wait()?;
+    keep(pieces, &args.output)
 }
 
 fn say(text: &str) -> Result<(), Refusal> {
     crate::output::standard(text.as_bytes())
 }
 
-/// Puts all pieces into a file.
+/// Puts all pieces into a file; the first is there.
 fn keep(mut pieces: Pieces, path: &Path) -> Result<u8, Refusal> {
     let begin = Instant::now();
-    // A robot that refuses leaves no empty file.
-    pieces.wait()?;
     let file = File::create_new(path).map_err(|error| Error::file(path, error))?;
     let saved = journal::mend::follow(&mut pieces, BufWriter::new(file));
     if pieces.is_watched {

@@ -78,6 +78,15 @@ impl Clock {
         self.speed = speed;
     }
 
+    /// Goes back to a moment that has gone by for longer than `late`, in real time: it waits for what is late.
+    pub(crate) fn hold(&mut self, now: Instant, position: Duration, late: Duration) {
+        let is_late = |due: Instant| now.saturating_duration_since(due) > late;
+        // A moment before the last jump is late since that jump.
+        if self.due(position).is_some_and(is_late) {
+            self.jump(now, position);
+        }
+    }
+
     /// Is at another position, the end at most, and runs or stands as before.
     pub(crate) fn jump(&mut self, now: Instant, position: Duration) {
         self.at = position.min(self.length);
@@ -108,6 +117,25 @@ mod tests {
         assert_eq!(clock.position(zero + S * 14), S * 51);
         // What has gone by is due at once.
         assert_eq!(clock.due(S), Some(zero + S * 12));
+    }
+
+    #[test]
+    fn it_waits_for_what_is_too_late() {
+        let zero = Instant::now();
+        let mut clock = Clock::new(zero, S * 60, 2.0, true);
+        let late = S / 10;
+        clock.hold(zero + S, S * 2 - S / 10, late);
+        assert_eq!(clock.position(zero + S), S * 2, "50 ms are not too late");
+        clock.hold(zero + S * 3, S * 2, late);
+        assert_eq!(clock.position(zero + S * 3), S * 2);
+        assert_eq!(clock.position(zero + S * 4), S * 4, "and goes on");
+        clock.run(zero + S * 4, false);
+        clock.hold(zero + S * 9, S, late);
+        assert_eq!(
+            clock.position(zero + S * 9),
+            S * 4,
+            "one that stands waits for nothing"
+        );
     }
 
     #[test]

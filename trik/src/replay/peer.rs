@@ -1,4 +1,4 @@
-//! Who is connected to a player, and what it wants.
+//! A program that is connected to a player, and what it wants.
 //!
 //! Owns the first message. What is sent to it is known to the player.
 

@@ -252,6 +252,8 @@ impl Scene {
                 return self.end();
             };
             let now = Instant::now();
+            // What has waited for a machine that stalled would come at once, and overrun the rings of nodes.
+            self.clock.hold(now, next.at, LATE);
             if self.steps > 0 {
                 self.steps -= 1;
                 let at = next.at;
@@ -546,6 +548,9 @@ impl Scene {
         state.is_at_end = self.next.is_none() && !state.runs && !self.is_loop;
     }
 }
+
+/// How late an event may come before the clock waits for it.
+const LATE: Duration = Duration::from_millis(limits::REPLAY_LATE_MS);
 
 const QUIET: MsgFlags = MsgFlags::MSG_NOSIGNAL;
 

@@ -127,6 +127,10 @@ fn what_was_recorded_is_given_again_and_stays_where_the_clock_stands() {
     eventually("a complaint", || {
         std::fs::read_to_string(&complaint).is_ok_and(|text| text.contains("unknown word 'dance'"))
     });
+    // The nodes hear of the jump a moment after the player.
+    eventually("the beginning again", || {
+        replay.number("encoders/E3/value") < way / 2.0
+    });
     order("go");
     eventually("the end in its own time", || {
         replay.number("encoders/E3/value") == way

@@ -22,7 +22,7 @@ use tokio::task::{AbortHandle, spawn_local};
 /// What recordings are made of.
 #[derive(Debug)]
 pub struct Recordings {
-    /// Who is paired.
+    /// Which computers are paired.
     pub access: Rc<Access>,
     /// What has happened, and what happens.
     pub record: Rc<Record>,

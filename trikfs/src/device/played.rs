@@ -123,7 +123,7 @@ impl Played {
                     .chars()
                     .filter(|c| !c.is_control())
                     .collect();
-                Err(Error::of_recording(reason, errno))
+                Err(Error::Recorded(errno, reason))
             }
             other => Err(self.malformed(&format!("the player sent the errno {other}"))),
         }
@@ -231,7 +231,10 @@ mod tests {
         assert_eq!(buf[..2], [1, 2]);
         assert_eq!(
             scene.source.read(&mut buf),
-            Err(Error::Measurement("the bus does not answer".to_owned()))
+            Err(Error::Recorded(
+                libc::EIO,
+                "the bus does not answer".to_owned()
+            ))
         );
         assert_eq!(scene.source.read(&mut buf), Ok(Got::Bytes(2)));
         assert_eq!(buf[..2], [3, 4]);

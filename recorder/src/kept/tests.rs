@@ -1,0 +1,168 @@
+//! Tests of the black box: parts, savings, what a killed process leaves.
+
+use super::*;
+use crate::entry::Known;
+use journal::node::Node;
+use journal::read::{Reader, What};
+use std::sync::Arc;
+use std::sync::mpsc::channel;
+use tempfile::tempdir;
+
+fn settings(directory: &Path) -> Settings {
+    Settings {
+        directory: directory.to_owned(),
+        span: Duration::from_secs(3600),
+        bytes: 1 << 20,
+    }
+}
+
+fn nothing() -> Told {
+    Box::new(|told| panic!("nothing was left, but {told:?}"))
+}
+
+fn known(number: u32, path: &str) -> Arc<Known> {
+    let node = Node::sensor(path, "u32 x");
+    Arc::new(Known { number, node })
+}
+
+fn sample(known: &Arc<Known>, at: u32) -> Entry {
+    let unix_ns = 1_700_000_000_000_000_000 + u64::from(at);
+    Entry::Sample(known.clone(), unix_ns, Arc::new(at.to_ne_bytes()))
+}
+
+/// All values, in their order in time; that of the node that speaks once is the last.
+fn values(path: &Path) -> Vec<u32> {
+    let mut reader = Reader::open(File::open(path).unwrap()).unwrap();
+    let mut all = Vec::new();
+    while let Some(event) = reader.next().unwrap() {
+        if let What::Sample { tuple, .. } = event.what {
+            all.push(u32::from_ne_bytes(tuple.try_into().unwrap()));
+        }
+    }
+    all
+}
+
+/// Keeps one sample after the other, and begins a new part before each number that is named.
+fn fill(kept: &mut Kept, all: std::ops::Range<u32>, parts: &[u32]) {
+    let (known, still) = (known(1, "a"), known(2, "still"));
+    for at in all {
+        if parts.contains(&at) {
+            kept.end_part();
+        }
+        // One node speaks once and each part begins with it; the other all the time.
+        let mut batch = vec![sample(&known, at)];
+        if at == 0 {
+            batch.push(sample(&still, 1000));
+        }
+        kept.put(&batch.into(), || {
+            let before = at.checked_sub(1).map(|before| sample(&known, before));
+            let nodes = [Entry::Node(known.clone()), sample(&still, 1000)];
+            nodes.into_iter().chain(before).collect()
+        });
+    }
+}
+
+fn saved_now(kept: &mut Kept, why: Why) -> PathBuf {
+    let (tell, told) = channel();
+    kept.save(why, Box::new(move |path| tell.send(path).unwrap()));
+    told.recv().unwrap().unwrap()
+}
+
+#[test]
+fn parts_are_saved_as_one_file_without_what_they_repeat() {
+    let folder = tempdir().unwrap();
+    let mut kept = Kept::open(settings(folder.path()), "test", nothing()).unwrap();
+    assert!(kept.is_due(Why::Stop));
+    fill(&mut kept, 0..100, &[30, 60]);
+    let path = saved_now(&mut kept, Why::Stop);
+    assert!(path.to_string_lossy().ends_with("-stop.mcap"));
+    assert_eq!(values(&path), (0..100).chain([1000]).collect::<Vec<_>>());
+    assert!(!kept.is_due(Why::Stop), "not again and again");
+    // It goes on meanwhile.
+    fill(&mut kept, 100..150, &[]);
+    let path = saved_now(&mut kept, Why::Asked);
+    assert_eq!(values(&path), (0..150).chain([1000]).collect::<Vec<_>>());
+    kept.close();
+    assert_eq!(named(folder.path(), PART).unwrap(), [] as [PathBuf; 0]);
+    assert_eq!(saved(folder.path()).unwrap().len(), 2);
+}
+
+#[test]
+fn what_is_too_much_or_too_old_goes() {
+    let folder = tempdir().unwrap();
+    let mut kept = Kept::open(settings(folder.path()), "test", nothing()).unwrap();
+    fill(&mut kept, 0..30, &[10, 20]);
+    kept.end_part();
+    for part in &mut kept.parts {
+        part.bytes = 400 << 10;
+    }
+    kept.forget(Instant::now());
+    assert_eq!(kept.parts.len(), 2, "of three parts with 1200 KiB");
+    assert_eq!(values(&saved_now(&mut kept, Why::Asked))[0], 10);
+    kept.forget(Instant::now() + Duration::from_secs(3601));
+    assert_eq!(kept.parts.len(), 0);
+    let (tell, told) = channel();
+    kept.save(Why::Asked, Box::new(move |path| tell.send(path).unwrap()));
+    let told = told.recv().unwrap().unwrap_err().to_string();
+    assert!(told.contains("yet"), "{told}");
+}
+
+#[test]
+fn what_a_killed_process_has_left_is_saved_by_the_next() {
+    let folder = tempdir().unwrap();
+    let mut kept = Kept::open(settings(folder.path()), "test", nothing()).unwrap();
+    fill(&mut kept, 0..100, &[50]);
+    kept.end_part();
+    for part in &mut kept.parts {
+        part.writing.take().unwrap().join().unwrap().unwrap();
+    }
+    // The last part has no end, as after a kill.
+    let last = kept.parts.back().unwrap().path.clone();
+    let bytes = fs::read(&last).unwrap();
+    fs::write(&last, &bytes[..bytes.len() - 8]).unwrap();
+    drop(kept);
+    fs::write(folder.path().join("part-9999999999999999.mcap"), "").unwrap();
+    let (tell, told) = channel();
+    let tell = Box::new(move |path| tell.send(path).unwrap());
+    let _kept = Kept::open(settings(folder.path()), "test", tell).unwrap();
+    let path = told.recv().unwrap().unwrap();
+    assert_eq!(values(&path), (0..100).chain([1000]).collect::<Vec<_>>());
+    assert_eq!(named(folder.path(), PART).unwrap(), [] as [PathBuf; 0]);
+}
+
+#[test]
+fn one_is_saved_at_a_time_and_the_end_waits_for_it() {
+    let folder = tempdir().unwrap();
+    let mut kept = Kept::open(settings(folder.path()), "test", nothing()).unwrap();
+    fill(&mut kept, 0..100, &[50]);
+    let (tell, told) = channel();
+    let (go, wait) = channel();
+    kept.save(
+        Why::Stop,
+        Box::new(move |path| {
+            wait.recv().unwrap();
+            tell.send(path).unwrap();
+        }),
+    );
+    // As while parts are put together.
+    kept.is_saving.store(true, Ordering::Relaxed);
+    let (refuse, refused) = channel();
+    kept.save(Why::Asked, Box::new(move |path| refuse.send(path).unwrap()));
+    assert_eq!(refused.recv().unwrap(), Err(Error::Saving));
+    go.send(()).unwrap();
+    kept.close();
+    let path = told.try_recv().unwrap().unwrap();
+    assert_eq!(values(&path).len(), 101);
+}
+
+#[test]
+fn only_so_many_saved_files_are_kept() {
+    let folder = tempdir().unwrap();
+    for at in 0..limits::BOX_SAVED + 3 {
+        fs::write(folder.path().join(format!("{SAVED}{at:02}-stop.mcap")), "").unwrap();
+    }
+    prune(folder.path()).unwrap();
+    let left = saved(folder.path()).unwrap();
+    assert_eq!(left.len(), limits::BOX_SAVED);
+    assert!(left[0].ends_with("saved-03-stop.mcap"));
+}
