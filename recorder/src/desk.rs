@@ -228,6 +228,7 @@ impl Work {
         // Until now it is for the others.
         self.hand_over();
         self.listeners.push(listener);
+        self.is_heard.store(true, Ordering::Relaxed);
         self.want();
         self.ensure();
         let beginning = self.watch.as_ref().map(Watch::beginning);
@@ -340,3 +341,6 @@ impl Values {
 fn is_tree(root: &Path) -> bool {
     root.join("config").exists() && root.join("status").exists()
 }
+
+#[cfg(test)]
+mod tests;

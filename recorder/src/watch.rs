@@ -15,7 +15,7 @@ use nix::time::{ClockId, clock_gettime};
 use sample_bus::{Event, Reader, Step};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{File, OpenOptions};
-use std::io::Read;
+use std::io::{self, Read};
 use std::os::unix::fs::{MetadataExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -151,7 +151,7 @@ pub struct Watch {
     /// What of a line of the log has come.
     line: Vec<u8>,
     /// Length and time of the configuration, and its text.
-    configuration: (u64, i64),
+    configuration: (u64, (i64, i64)),
     text: Option<Entry>,
     /// It gives what was recorded.
     is_replayed: bool,
@@ -167,6 +167,8 @@ pub struct Watch {
     tuple: Vec<u8>,
 }
 
+/// No configuration has been seen.
+const NONE: (u64, (i64, i64)) = (0, (0, 0));
 /// How often it is looked whether nodes, configuration and clock are still the same.
 const CARE: Duration = Duration::from_secs(1);
 /// A clock that is off by more has been set.
@@ -199,7 +201,7 @@ impl Watch {
             left_out: BTreeSet::new(),
             log: log(root),
             line: Vec::new(),
-            configuration: (0, 0),
+            configuration: NONE,
             text: None,
             is_replayed: is_replayed(root),
             offset_ns: offset_ns(),
@@ -277,7 +279,7 @@ impl Watch {
 
     /// The next look tells once more what is told only when it changes: it was lost.
     pub fn tell_again(&mut self) {
-        self.configuration = (0, 0);
+        self.configuration = NONE;
         self.is_told = false;
     }
 
@@ -318,6 +320,9 @@ impl Watch {
     /// Looks after nodes whose rings have ended, the configuration and the clock.
     fn care(&mut self, out: &mut Vec<Entry>) {
         self.is_gone = !self.root.join("status").exists();
+        if self.log.is_none() {
+            self.log = log(&self.root);
+        }
         let offset_ns = offset_ns();
         let is_set = (offset_ns - self.offset_ns).abs() > CLOCK_NS;
         if is_set || !self.is_told {
@@ -326,7 +331,8 @@ impl Watch {
             out.push(Entry::Facts(ABOUT, Arc::new(self.facts())));
         }
         let path = self.root.join("config");
-        let found = path.metadata().map(|file| (file.len(), file.mtime()));
+        let found = path.metadata();
+        let found = found.map(|file| (file.len(), (file.mtime(), file.mtime_nsec())));
         if let Ok(found) = found
             && found != self.configuration
         {
@@ -385,7 +391,15 @@ impl Watch {
         let Some(log) = &mut self.log else { return };
         let mut bytes = [0; 4096];
         // A log that is read to its end has nothing; what is too much for one look comes with the next.
-        let count = log.read(&mut bytes).unwrap_or(0);
+        let count = match log.read(&mut bytes) {
+            Ok(count) => count,
+            Err(error) if error.kind() == io::ErrorKind::WouldBlock => 0,
+            Err(_) => {
+                // Its daemon is over; the next one has another.
+                self.log = None;
+                return;
+            }
+        };
         for &byte in &bytes[..count] {
             match byte {
                 b'\n' => {

@@ -1,0 +1,170 @@
+//! Tests of the desk over a tree of plain files with rings of their own: it may go and come back as another one.
+
+use super::*;
+use crate::entry::Known;
+use journal::node::Node;
+use sample_bus::{Rights, Writer, place};
+use std::fs;
+use std::os::unix::fs::PermissionsExt;
+use std::sync::mpsc::{Sender, channel};
+use tempfile::{TempDir, tempdir};
+
+/// Files and rings of a tree. Dropping it takes both away.
+struct Tree {
+    root: TempDir,
+    rings: PathBuf,
+    writers: Vec<Writer>,
+}
+
+impl Tree {
+    fn new() -> Self {
+        let root = tempdir().unwrap();
+        let rings = place::directory(Path::new(place::SHARED_MEMORY), root.path()).unwrap();
+        fs::create_dir(&rings).unwrap();
+        Self {
+            root,
+            rings,
+            writers: Vec::new(),
+        }
+    }
+
+    fn file(&self, name: &str, text: &str) {
+        let path = self.root.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(&path, text).unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o444)).unwrap();
+    }
+
+    /// One node of one byte, and the files by which a tree is known.
+    fn mount(&mut self, node: &str) {
+        for (file, text) in [
+            ("format", "u8 x"),
+            ("bin_data", ""),
+            ("value", ""),
+            ("poll_ms", "10\n"),
+        ] {
+            self.file(&format!("{node}/{file}"), text);
+        }
+        let ring = self.rings.join(place::file_name(node).unwrap());
+        let rights = Rights {
+            mode: 0o600,
+            group: None,
+        };
+        self.writers.push(Writer::create(&ring, 1, rights).unwrap());
+        self.file("config", node);
+        self.file("status", "");
+    }
+
+    fn unmount(&mut self) {
+        self.writers.clear();
+        for entry in fs::read_dir(self.root.path()).unwrap().flatten() {
+            let path = entry.path();
+            let removed = match path.is_dir() {
+                true => fs::remove_dir_all(path),
+                false => fs::remove_file(path),
+            };
+            removed.unwrap();
+        }
+    }
+
+    fn publish(&mut self, value: u8) {
+        // Later than anything that looks has begun.
+        self.writers[0].publish(u64::MAX / 4, &[value]);
+    }
+}
+
+impl Drop for Tree {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.rings);
+    }
+}
+
+struct Ear(Sender<Entry>);
+
+impl Listener for Ear {
+    fn wants(&self) -> Wants {
+        Box::new(|_| Some(Wish::ByTheClock))
+    }
+
+    fn put(&mut self, entries: &[Entry], _now_ns: u64) -> bool {
+        (entries.iter()).all(|entry| self.0.send(entry.clone()).is_ok())
+    }
+}
+
+/// The next sample, whatever else comes.
+fn sample(heard: &Receiver<Entry>) -> (Arc<Known>, u8) {
+    loop {
+        let entry = heard.recv_timeout(Duration::from_secs(30)).unwrap();
+        if let Entry::Sample(known, _, tuple) = entry {
+            return (known, tuple[0]);
+        }
+    }
+}
+
+fn desk(tree: &Tree) -> Desk {
+    let settings = Settings {
+        root: tree.root.path().to_owned(),
+        library: "test".to_owned(),
+        kept: None,
+    };
+    Desk::start(settings, |told| panic!("nothing is kept, but {told:?}")).unwrap()
+}
+
+#[test]
+fn a_tree_that_comes_back_has_nodes_with_other_numbers() {
+    let mut tree = Tree::new();
+    tree.mount("a");
+    let desk = desk(&tree);
+    assert!(!desk.is_heard() && !desk.keeps());
+    let (tell, heard) = channel();
+    desk.listen(Box::new(Ear(tell)));
+    tree.publish(5);
+    let (first, value) = sample(&heard);
+    assert_eq!((first.node.path.as_str(), value), ("a", 5));
+    assert!(desk.is_heard());
+    tree.unmount();
+    tree.mount("b");
+    tree.publish(7);
+    let (second, value) = sample(&heard);
+    assert_eq!((second.node.path.as_str(), value), ("b", 7));
+    assert_ne!(first.number, second.number, "a file would take it for a");
+}
+
+#[test]
+fn lines_reach_who_listens_and_nobody_is_waited_for_at_the_end() {
+    let tree = Tree::new();
+    let desk = desk(&tree);
+    let (tell, heard) = channel();
+    desk.listen(Box::new(Ear(tell)));
+    desk.line(Story::Output, "a.js", Level::Info, "print: x");
+    let Entry::Line(Story::Output, _, line) = heard.recv().unwrap() else {
+        panic!("another entry");
+    };
+    assert_eq!(
+        (line.name.as_str(), line.text.as_str()),
+        ("a.js", "print: x")
+    );
+    let (answer, answered) = channel();
+    desk.save(
+        Why::Asked,
+        Box::new(move |saved| answer.send(saved).unwrap()),
+    );
+    let why = answered.recv().unwrap().unwrap_err().to_string();
+    assert!(why.contains("--box-minutes"), "{why}");
+    drop(desk);
+    assert!(heard.recv().is_err(), "its thread is over");
+}
+
+#[test]
+fn only_a_node_that_had_a_value_can_lose_it() {
+    let node = Node::sensor("a", "u8 x");
+    let known = Arc::new(Known { number: 1, node });
+    let fault = || Entry::Fault(known.clone(), 1, 5, "".into());
+    let sample = || Entry::Sample(known.clone(), 1, Arc::new([1]));
+    let mut values = Values::default();
+    assert!(!values.have_gone(&[fault(), fault()]));
+    assert!(!values.have_gone(&[sample()]));
+    assert!(values.have_gone(&[fault()]));
+    assert!(!values.have_gone(&[fault()]), "it has gone already");
+    assert!(values.have_gone(&[sample(), fault()]));
+}
