@@ -18,6 +18,7 @@ use crate::error::Error;
 use crate::place::{self, Place};
 use crate::refusal::Refusal;
 use crate::up::args::absolute;
+use crate::up::page::Served;
 use crate::up::session::{Beneath, Over, Session, signals};
 use crate::up::trikd::Trikd;
 use args::ReplayArgs;
@@ -82,7 +83,14 @@ fn replay(args: &ReplayArgs) -> Result<bool, Error> {
         "--".into(),
         place.mountpoint.clone().into(),
     ];
-    let over = Over::of(trikd, !args.no_view);
+    let page = Served::start(
+        &args.serving,
+        &place,
+        trikd.as_ref(),
+        beneath.name.clone(),
+        None,
+    )?;
+    let over = Over::of(trikd, page, !args.no_view);
     let mut session = Session::start(&arguments, &beneath, &place, signals, over)?;
     let end = session.run();
     drop(session);

@@ -9,6 +9,7 @@ mod companion;
 mod ev3dev;
 mod hints;
 mod model;
+pub(crate) mod page;
 mod screen;
 pub(crate) mod session;
 pub(crate) mod tree;
@@ -20,6 +21,7 @@ use crate::error::Error;
 use crate::place::{self, Place};
 use crate::refusal::Refusal;
 use args::{UpArgs, absolute};
+use page::Served;
 use session::{Beneath, Over, Session, signals};
 use sim::board::{Board, Options};
 use sim::body::Body;
@@ -90,9 +92,12 @@ fn simulate(args: UpArgs) -> Result<(), Error> {
         place: &place,
         board: &board,
     };
+    let name = virtual_robot.robot.to_owned();
+    let page = Served::start(&args.serving, &place, trikd.as_ref(), name, None)?;
     let over = Over {
         ev3dev,
         trikd,
+        page,
         has_view: !args.no_view,
     };
     let mut session = Session::start(&arguments, &virtual_robot, &place, signals, over)?;

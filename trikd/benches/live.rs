@@ -3,6 +3,7 @@
 //!
 //! Prints each figure beside its goal. A machine that does other things says more about those.
 
+use frame::encode;
 use lang_diagram::sketch::Sketch;
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -11,7 +12,6 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::tempdir;
-use trikd::protocol::frame::encode;
 
 const PATCHES: u32 = 300;
 const MANY: u32 = 10_000;

@@ -3,6 +3,7 @@
 //! Frames against memcpy, answers to many clients against the processor's time, a stop against the way of the bytes
 //! alone, memory. Needs no tree: a plain directory stands for it.
 
+use frame::{Decoder, encode};
 use harness::put;
 use std::fs;
 use std::hint::black_box;
@@ -12,7 +13,6 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::{TempDir, tempdir};
-use trikd::protocol::frame::{Decoder, encode};
 
 const CLIENTS: usize = 100;
 const PERIOD: Duration = Duration::from_millis(20);

@@ -4,6 +4,7 @@
 //! The board is `trik up` of the same build, which must be there: `cargo build --profile bench -p trik`. At rest is when the
 //! register of the coprocessor is zero, as the tree reads it.
 
+use frame::encode;
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
@@ -11,7 +12,6 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::tempdir;
-use trikd::protocol::frame::encode;
 
 const STOPS: usize = 40;
 const START: &str = "brick.motor(M3).setPower(60)\nbrick.motor(M4).setPower(60)\n";

@@ -5,7 +5,7 @@
 pub mod debugging;
 
 use crate::outbox::{Latest, Outbox};
-use crate::protocol::frame::encode;
+use frame::encode;
 use std::cell::{Cell, RefCell};
 use std::fmt::Write;
 use std::net::SocketAddr;

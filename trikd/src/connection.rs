@@ -4,8 +4,8 @@
 
 use crate::limits;
 use crate::outbox::Outbox;
-use crate::protocol::frame::{Decoder, encode};
 use crate::protocol::news::SLOW_READER;
+use frame::{Decoder, encode};
 use std::cell::Cell;
 use std::io;
 use std::rc::Rc;

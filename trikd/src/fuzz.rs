@@ -2,11 +2,11 @@
 //!
 //! Run by the integration tests of the project with a printed seed, and by anybody's fuzzer.
 
-use crate::protocol::frame::{Decoder, encode};
 use crate::protocol::program::mailbox::Question;
 use crate::protocol::program::{FromProgram, ToProgram};
 use crate::protocol::{control, dns, gamepad, http, mail, telemetry};
 use crate::{limits, program::output, scripts};
+use frame::{Decoder, encode};
 use std::path::Path;
 
 /// All frames of a stream in pieces of `step` bytes, and whether it can be followed.
@@ -22,7 +22,7 @@ fn frames(bytes: &[u8], step: usize) -> (Vec<Vec<u8>>, bool) {
                 Err(_) => return (found, false),
             }
         }
-        assert!(decoder.buffered() <= limits::SMALL_FRAME_BYTES + limits::FRAME_HEADER_BYTES);
+        assert!(decoder.buffered() <= limits::SMALL_FRAME_BYTES + frame::limits::HEADER_BYTES);
     }
     (found, true)
 }

@@ -6,9 +6,9 @@
 
 use crate::engine::Start;
 use crate::limits;
-use crate::protocol::frame::{Decoder, encode};
 use crate::protocol::program::mailbox::Question;
 use crate::protocol::program::{FromProgram, ToProgram, WhenGone};
+use frame::{Decoder, encode};
 use nix::errno::Errno;
 use nix::sys::socket::MsgFlags;
 use std::cell::RefCell;

@@ -38,16 +38,10 @@ pub const JS_FRAMES: usize = 16;
 pub const JS_ERROR_CHARACTERS: usize = 2000;
 /// Milliseconds that threads have to end when the program is over.
 pub const JS_END_MS: u64 = 100;
-/// Bytes of the count in front of a frame, with what stands before its colon.
-pub const FRAME_HEADER_BYTES: usize = 1024;
-/// Bytes of one frame on the control port: the greatest upload.
-pub const CONTROL_FRAME_BYTES: usize = 16 << 20;
 /// Bytes of one frame on the telemetry and mailbox ports.
 pub const SMALL_FRAME_BYTES: usize = 64 << 10;
 /// Bytes of one frame between the daemon and a program.
 pub const CHANNEL_FRAME_BYTES: usize = 16 << 20;
-/// Bytes of a buffer of frames that are kept when it is empty.
-pub const FRAME_BUFFER_KEPT_BYTES: usize = 64 << 10;
 /// Lines of the log about one matter that may come at once.
 pub const LOG_BURST: f32 = 100.0;
 /// Lines about one matter in a minute in the long run: some 3 MB a day, whatever a client does.

@@ -95,7 +95,7 @@ impl Outbox {
 
     /// Adds the frame of a payload.
     pub fn send(&self, payload: &[u8]) {
-        self.push(crate::protocol::frame::encode(payload).into());
+        self.push(frame::encode(payload).into());
     }
 
     /// Ends the connection when all before is sent.

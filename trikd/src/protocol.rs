@@ -2,7 +2,6 @@
 
 pub mod control;
 pub mod dns;
-pub mod frame;
 pub mod gamepad;
 pub mod http;
 pub mod mail;

@@ -6,9 +6,9 @@
 use crate::brick::sensors::{Gamepad, KEYS, Keys, NO_ECHO, NOT_PRESSED, Sensor, Vector};
 use crate::brick::{Brick, Group};
 use crate::limits;
-use crate::protocol::frame::encode;
 use crate::protocol::telemetry::{self, Port, Snapshot};
 use crate::tree::{Access, Node};
+use frame::encode;
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;

@@ -18,9 +18,9 @@ pub mod video;
 
 use crate::access::Access;
 use crate::error::Error;
-use crate::protocol::frame::encode;
 use crate::protocol::mail::plain;
 use crate::{limits, log};
+use frame::encode;
 use socket2::{Domain, Protocol, SockRef, Socket, Type};
 use std::cell::RefCell;
 use std::fmt;

@@ -4,12 +4,12 @@
 
 use crate::error::Error;
 use crate::limits;
+use frame::{Decoder, encode};
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use std::io::{self, Read, Write};
 use std::net::{SocketAddr, TcpStream};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::time::{Duration, Instant};
-use trikd::protocol::frame::{Decoder, encode};
 
 /// A duration of `limits`.
 pub(super) fn ms(ms: u32) -> Duration {

@@ -11,6 +11,7 @@ use super::tree::Tree;
 use super::{START_MS, drawing, problem};
 use crate::error::Error;
 use crate::limits;
+use frame::{Decoder, encode};
 use lang_diagram::brick::{Answer, Brick, Command, Question};
 use lang_diagram::machine::Status;
 use lang_text::problem::{Locale, Problem};
@@ -24,7 +25,6 @@ use std::process::{Child, Command as Process, Stdio};
 use std::time::{Duration, Instant};
 use trikd::js::events::Record;
 use trikd::program::python::MODULE;
-use trikd::protocol::frame::{Decoder, encode};
 use trikd::protocol::program::FromProgram;
 
 const BOOT: &str = include_str!("virtual.py");

@@ -75,7 +75,7 @@ pub(crate) struct UpArgs {
 #[derive(Args, Clone, Debug, PartialEq)]
 pub(crate) struct ServingArgs {
     /// Do not start trikd: no TRIK Studio, no gamepad and no `trik run` reaches the robot.
-    #[arg(long, conflicts_with_all = ["trikd_address", "trikd_ports", "scripts", "box_dir", "udp_telemetry"])]
+    #[arg(long, conflicts_with_all = ["trikd_address", "trikd_ports", "scripts", "box_dir", "udp_telemetry", "page_port", "open"])]
     pub no_trikd: bool,
     /// Address at which trikd serves; may be given several times. If others can reach it (0.0.0.0 for all), they can run
     /// programs with your rights [default: 127.0.0.1; for robot-2 127.0.0.2 and so on].
@@ -94,6 +94,15 @@ pub(crate) struct ServingArgs {
     /// Send the values of all nodes to this address, as JSON in datagrams; PlotJuggler listens at port 9870.
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub udp_telemetry: Option<SocketAddr>,
+    /// Port of the page for browsers, at the first address of trikd [default: 8000, or any free one if that is taken].
+    #[arg(long, value_name = "PORT", conflicts_with = "no_page")]
+    pub page_port: Option<u16>,
+    /// Open the page in a browser.
+    #[arg(long, conflicts_with = "no_page")]
+    pub open: bool,
+    /// Serve no page for browsers.
+    #[arg(long)]
+    pub no_page: bool,
     /// Where uploaded programs are kept [default: a directory that is removed with the robot].
     #[arg(long, value_name = "DIR")]
     pub scripts: Option<PathBuf>,

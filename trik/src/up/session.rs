@@ -5,6 +5,7 @@
 //! player of a recording, it knows as [`Beneath`] alone.
 
 use super::companion::{Companion, after};
+use super::page::Served;
 use super::screen::Screen;
 use super::tree::Tree;
 use super::trikd::{self, Trikd};
@@ -77,16 +78,19 @@ pub(crate) struct Over {
     pub(super) ev3dev: Option<(Companion, PathBuf)>,
     /// Takes programs.
     pub(super) trikd: Option<Trikd>,
+    /// In browsers.
+    pub(crate) page: Option<Served>,
     /// A person sees how it is, if there is a terminal.
     pub(crate) has_view: bool,
 }
 
 impl Over {
     /// Without a view of ev3dev.
-    pub(crate) fn of(trikd: Option<Trikd>, has_view: bool) -> Self {
+    pub(crate) fn of(trikd: Option<Trikd>, page: Option<Served>, has_view: bool) -> Self {
         Self {
             ev3dev: None,
             trikd,
+            page,
             has_view,
         }
     }
@@ -115,6 +119,7 @@ pub(crate) struct Session<'a> {
     /// Before the tree, so that it ends before that.
     ev3dev: Option<(Companion, PathBuf)>,
     trikd: Option<Trikd>,
+    page: Option<Served>,
     tree: Tree,
     /// Where trikd takes programs, as other commands were told.
     address: Option<SocketAddr>,
@@ -153,6 +158,7 @@ impl<'a> Session<'a> {
             signals,
             ev3dev: over.ev3dev,
             trikd: over.trikd,
+            page: over.page,
             tree: start(arguments)?,
             address: None,
             failure: None,
@@ -314,6 +320,9 @@ impl<'a> Session<'a> {
             return;
         }
         self.address = address;
+        if let (Some(page), Some(address)) = (&self.page, address) {
+            page.robot_is_at(address);
+        }
         if let Err(error) = self.place.announce(address) {
             self.note(&format!("trik: other commands do not find trikd: {error}"));
         }
@@ -340,6 +349,9 @@ impl<'a> Session<'a> {
                 }
                 self.announce();
                 self.welcome(rest);
+                if let Some(complaint) = self.page.as_mut().and_then(Served::open) {
+                    self.note(&complaint);
+                }
             }
         }
         for line in self.tree.complaints.hear() {
@@ -450,6 +462,9 @@ impl<'a> Session<'a> {
             let path = std::env::var_os("PATH");
             let trik = trikd::own_command(program.as_deref(), path.as_deref());
             text.push_str(&trikd::welcome(at, &trikd.scripts, &trik));
+        }
+        if let Some(page) = &self.page {
+            text.push_str(&page.welcome());
         }
         if let Some((_, at)) = &self.ev3dev {
             let at = at.display();

@@ -26,8 +26,8 @@ pub(crate) struct Trikd {
     pub(super) process: Companion,
     /// Where uploaded programs are.
     pub(super) scripts: PathBuf,
-    /// Where clients on this machine find it.
-    ip: IpAddr,
+    /// The first address at which it serves.
+    bound: IpAddr,
 }
 
 impl Trikd {
@@ -90,8 +90,13 @@ impl Trikd {
         Ok(Self {
             process: Companion::new("trikd", "trikd", READY, list),
             scripts,
-            ip: reachable(addresses[0]),
+            bound: addresses[0],
         })
+    }
+
+    /// The first address at which it serves.
+    pub(super) fn bound(&self) -> IpAddr {
+        self.bound
     }
 
     /// Starts it and waits until it serves.
@@ -117,7 +122,7 @@ impl Trikd {
             let (name, number) = word.split_once(' ')?;
             (name == "control").then(|| number.parse().ok())?
         })?;
-        Some(SocketAddr::new(self.ip, port))
+        Some(SocketAddr::new(reachable(self.bound), port))
     }
 }
 
@@ -128,7 +133,7 @@ fn own_address(number: usize) -> IpAddr {
 }
 
 /// Where this machine reaches what serves there.
-fn reachable(ip: IpAddr) -> IpAddr {
+pub(super) fn reachable(ip: IpAddr) -> IpAddr {
     if ip.is_unspecified() {
         Ipv4Addr::LOCALHOST.into()
     } else {

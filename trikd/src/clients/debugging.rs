@@ -5,7 +5,7 @@
 use super::{Client, Clients};
 use crate::limits;
 use crate::outbox::Latest;
-use crate::protocol::frame::encode;
+use frame::encode;
 use lang_text::json::Object;
 use std::net::SocketAddr;
 use std::rc::Rc;

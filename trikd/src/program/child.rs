@@ -5,9 +5,9 @@
 use super::output::Lines;
 use super::reaper::{Ended, Reaper};
 use crate::limits;
-use crate::protocol::frame::{Decoder, encode};
 use crate::protocol::program::ToProgram;
 use crate::settings::Settings;
+use frame::{Decoder, encode};
 use nix::unistd::{Pid, User};
 use std::ffi::{OsStr, OsString};
 use std::io;

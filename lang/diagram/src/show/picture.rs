@@ -197,6 +197,7 @@ fn draw_block(block: &Block, label: &Label, svg: &mut Svg) {
         None => "#888888",
     };
     svg.tag("g")
+        .with("data-id", &block.id)
         .with("transform", format_args!("translate({x:.1} {y:.1})"))
         .open();
     svg.tag("title").text(&label.whole);

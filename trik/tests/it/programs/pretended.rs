@@ -1,11 +1,11 @@
 //! What is no virtual robot: nothing at all, something strange, and robots in a state that a virtual one does not reach.
 
 use crate::rig::{Home, loopback};
+use frame::{Decoder, encode};
 use harness::tools;
 use std::io::{Read, Write};
 use std::net::TcpListener;
 use std::sync::{Mutex, PoisonError};
-use trikd::protocol::frame::{Decoder, encode};
 
 /// Something that listens where a robot does, and answers each frame with these bytes.
 fn pretend(ip: &str, answer: impl Fn(&str) -> String + Send + 'static) {

@@ -3,7 +3,10 @@
 //! Owns how a stream that is torn anywhere becomes frames again and how it finds its way back after nonsense. What is
 //! in a frame is not known here.
 
-use crate::limits;
+#![forbid(unsafe_code)]
+
+pub mod limits;
+
 use std::fmt;
 
 /// Beginning of a frame that no buffer will be kept for.
@@ -26,7 +29,7 @@ impl fmt::Display for Violation {
             Self::NoColon => write!(
                 out,
                 "no colon in {} bytes: a message is its length in bytes, a colon and its bytes",
-                limits::FRAME_HEADER_BYTES
+                limits::HEADER_BYTES
             ),
             Self::TooLong { announced, limit } => {
                 write!(
@@ -96,7 +99,7 @@ impl Decoder {
             self.buffer.clear();
             self.done = 0;
             // What one large frame needed is not kept for all small ones behind it.
-            if self.buffer.capacity() > limits::FRAME_BUFFER_KEPT_BYTES {
+            if self.buffer.capacity() > limits::BUFFER_KEPT_BYTES {
                 self.buffer = Vec::new();
             }
         } else if self.done > self.buffer.len() / 2 {
@@ -125,9 +128,9 @@ impl Decoder {
                 self.done = from + size;
                 return Ok(Some(&self.buffer[from..from + size]));
             }
-            let head = &rest[..rest.len().min(limits::FRAME_HEADER_BYTES)];
+            let head = &rest[..rest.len().min(limits::HEADER_BYTES)];
             let Some(colon) = head.iter().position(|byte| *byte == b':') else {
-                return if head.len() == limits::FRAME_HEADER_BYTES {
+                return if head.len() == limits::HEADER_BYTES {
                     Err(Violation::NoColon)
                 } else {
                     Ok(None)

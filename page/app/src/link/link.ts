@@ -1,0 +1,76 @@
+// The connection of this page to its server: it comes back by itself.
+//
+// Owns the socket. What is said over it is known to those who take it: words to `robot`, messages of the control port likewise.
+
+import type { News, Order } from './words';
+
+/** Who takes what comes. */
+export interface Taker {
+  /** The server is there, or not: then the next attempt follows. */
+  connected(is: boolean): void;
+  news(news: News): void;
+  /** A message of the robot's control port. */
+  message(bytes: Uint8Array): void;
+}
+
+const SOONEST_MS = 250;
+const LATEST_MS = 4000;
+
+export class Link {
+  #socket: WebSocket | undefined;
+  #wait = SOONEST_MS;
+  #timer: ReturnType<typeof setTimeout> | undefined;
+  readonly #encoder = new TextEncoder();
+
+  constructor(
+    private readonly address: string,
+    private readonly taker: Taker,
+  ) {
+    this.#connect();
+  }
+
+  /** Says something to the server. False: it is not there. */
+  order(order: Order): boolean {
+    return this.#send(JSON.stringify(order));
+  }
+
+  /** Asks the robot's control port something. */
+  request(request: string | Uint8Array<ArrayBuffer>): boolean {
+    return this.#send(typeof request === 'string' ? this.#encoder.encode(request) : request);
+  }
+
+  /** Ends it for good. */
+  close(): void {
+    clearTimeout(this.#timer);
+    const socket = this.#socket;
+    this.#socket = undefined;
+    socket?.close();
+  }
+
+  #send(data: string | Uint8Array<ArrayBuffer>): boolean {
+    if (this.#socket?.readyState !== WebSocket.OPEN) return false;
+    this.#socket.send(data);
+    return true;
+  }
+
+  #connect(): void {
+    const socket = new WebSocket(this.address);
+    socket.binaryType = 'arraybuffer';
+    this.#socket = socket;
+    socket.onopen = () => {
+      this.#wait = SOONEST_MS;
+      this.taker.connected(true);
+    };
+    socket.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) => {
+      if (typeof data === 'string') this.taker.news(JSON.parse(data) as News);
+      else this.taker.message(new Uint8Array(data));
+    };
+    socket.onclose = () => {
+      // It was ended here, or replaced.
+      if (this.#socket !== socket) return;
+      this.taker.connected(false);
+      this.#timer = setTimeout(() => this.#connect(), this.#wait);
+      this.#wait = Math.min(this.#wait * 2, LATEST_MS);
+    };
+  }
+}

@@ -1,0 +1,22 @@
+// What this page and its server say to each other beside the control port; `page/src/word.rs` has the other end.
+
+import type { Scene, WorldState } from '../world/types';
+
+/** What the page wants. */
+export type Order =
+  | { do: 'write'; path: string; value: string }
+  | { do: 'world'; order: string }
+  | { do: 'look'; world: boolean }
+  | { do: 'take' }
+  | { do: 'leave' }
+  | { do: 'stop' };
+
+/** What it is told. */
+export type News =
+  | { is: 'hello'; name: string; version: string; world: boolean; drives: boolean }
+  | { is: 'control'; mine: boolean; who: string | null }
+  | { is: 'robot'; there: boolean; why: string | null }
+  | { is: 'written'; path: string; value: string; why: string | null }
+  | { is: 'refused'; why: string }
+  | { is: 'scene'; scene: Scene }
+  | { is: 'world'; state: WorldState };

@@ -1,0 +1,209 @@
+// The robot as this page knows it: its nodes and their last minutes, its program, who is in control.
+//
+// Owns what was heard of it. Values come thousands of times in a second, so they are in plain objects, and `tick` says, once for
+// each picture, that something has changed.
+
+import { Link } from '../link/link';
+import type { News } from '../link/words';
+import type { Scene, WorldState } from '../world/types';
+import { History } from './history';
+import { type Fields, type Line, type Node, Recording } from './recording';
+
+/** A node and what it gave. */
+export interface Known {
+  readonly node: Node;
+  /** Its newest sample; undefined before the first one. */
+  fields: Fields | undefined;
+  /** When that was, in seconds since 1970 of the robot's clock. */
+  time: number;
+  /** Why it has no value; empty if it has one. */
+  fault: string;
+  /** The last minutes of each of its numbers. */
+  readonly histories: Map<string, History>;
+}
+
+/** How many values in a second come to this page at most, of each node. */
+const RATE_HZ = 30;
+/** Lines that are kept. */
+const LINES = 500;
+
+export class Robot {
+  /** Something has changed since the last picture; only reading it makes a component look again. */
+  tick = $state(0);
+  /** The server of the page is there. */
+  isConnected = $state(false);
+  /** Why the robot's control port is not reached; empty if it is. */
+  absence = $state('');
+  name = $state('');
+  version = $state('');
+  hasWorld = $state(false);
+  mayDrive = $state(true);
+  isInControl = $state(false);
+  /** The address of the browser that is in control; empty if none is. */
+  holder = $state('');
+  /** The newest refusal, for a person. */
+  refusal = $state('');
+  /** The paths of all nodes, in order. */
+  paths = $state.raw<string[]>([]);
+  /** Lines of the log, of programs and their output; the newest last. */
+  lines = $state.raw<Line[]>([]);
+  scene = $state.raw<Scene | undefined>(undefined);
+  /** What moves in the world; drawn at each picture, so not a state of components. */
+  world: WorldState | undefined;
+
+  readonly nodes = new Map<string, Known>();
+  /** Refusals of values, by the path of their node. */
+  readonly refused = new Map<string, string>();
+  readonly link: Link;
+  #recording = new Recording(this);
+  #isDirty = false;
+  readonly #listeners = new Set<(message: string) => void>();
+  readonly #decoder = new TextDecoder();
+  /** The robot's clock, in seconds, less that of this page. */
+  #ahead = 0;
+  #hasClock = false;
+
+  constructor(address: string) {
+    this.link = new Link(address, this);
+    const show = () => {
+      if (this.#isDirty) {
+        this.#isDirty = false;
+        this.tick++;
+      }
+      requestAnimationFrame(show);
+    };
+    requestAnimationFrame(show);
+  }
+
+  /** The robot's clock now, in seconds since 1970. */
+  get now(): number {
+    return Date.now() / 1000 + this.#ahead;
+  }
+
+  /** Calls back for each message of the control port that is no recording; returns what ends that. */
+  listen(callback: (message: string) => void): () => void {
+    this.#listeners.add(callback);
+    return () => this.#listeners.delete(callback);
+  }
+
+  /** Everything to rest, and the program to its end. */
+  stop(): void {
+    this.link.order({ do: 'stop' });
+  }
+
+  write(path: string, value: string): void {
+    this.link.order({ do: 'write', path, value });
+  }
+
+  // What the link says.
+
+  connected(is: boolean): void {
+    this.isConnected = is;
+    if (!is) this.absence = '';
+  }
+
+  news(news: News): void {
+    switch (news.is) {
+      case 'hello':
+        this.name = news.name;
+        this.version = news.version;
+        this.hasWorld = news.world;
+        this.mayDrive = news.drives;
+        break;
+      case 'control':
+        this.isInControl = news.mine;
+        this.holder = news.who ?? '';
+        break;
+      case 'robot':
+        this.absence = news.there ? '' : (news.why ?? '?');
+        if (news.there) this.#begin();
+        break;
+      case 'written':
+        if (news.why === null) this.refused.delete(news.path);
+        else this.refused.set(news.path, news.why);
+        this.#isDirty = true;
+        break;
+      case 'refused':
+        this.refusal = news.why;
+        break;
+      case 'scene':
+        this.scene = news.scene;
+        break;
+      case 'world':
+        this.world = news.state;
+        this.#isDirty = true;
+        break;
+      default:
+        news satisfies never;
+    }
+  }
+
+  message(bytes: Uint8Array): void {
+    // `stream:` and a piece of the recording.
+    if (bytes.length >= 7 && bytes[6] === 0x3a && this.#decoder.decode(bytes.subarray(0, 6)) === 'stream') {
+      this.#recording.put(bytes.subarray(7));
+      return;
+    }
+    const message = this.#decoder.decode(bytes);
+    for (const listener of this.#listeners) listener(message);
+  }
+
+  /** The robot is there: everything is told from now on. */
+  #begin(): void {
+    this.#recording = new Recording(this);
+    this.link.request(`stream:;hz=${RATE_HZ}`);
+    for (const listener of this.#listeners) listener('');
+  }
+
+  // What the recording says.
+
+  node(node: Node): void {
+    const old = this.nodes.get(node.path);
+    if (old?.node.format === node.format) return;
+    this.nodes.set(node.path, { node, fields: undefined, time: 0, fault: '', histories: new Map() });
+    this.paths = [...this.nodes.keys()].sort();
+  }
+
+  sample(path: string, time: number, fields: Fields): void {
+    const known = this.nodes.get(path);
+    if (!known) return;
+    this.#hear(time);
+    known.fields = fields;
+    known.time = time;
+    known.fault = '';
+    for (const [name, value] of Object.entries(fields)) {
+      if (typeof value === 'number' || typeof value === 'bigint' || typeof value === 'boolean') {
+        let history = known.histories.get(name);
+        if (!history) known.histories.set(name, (history = new History()));
+        history.put(time, Number(value));
+      }
+    }
+    this.#isDirty = true;
+  }
+
+  line(line: Line): void {
+    this.#hear(line.time);
+    if (line.topic === '/faults') {
+      const known = this.nodes.get(line.name.replace(/^\//, ''));
+      if (known) {
+        known.fault = line.text;
+        known.time = line.time;
+        for (const history of known.histories.values()) history.put(line.time, NaN);
+      }
+      this.#isDirty = true;
+    } else {
+      this.lines = [...this.lines.slice(1 - LINES), line];
+    }
+  }
+
+  facts(): void {
+    // Of the recording as a whole: nothing is shown of it.
+  }
+
+  /** The clocks differ by less than what a message is on its way, or by what was seen at the fastest one. */
+  #hear(time: number): void {
+    const ahead = time - Date.now() / 1000;
+    if (!this.#hasClock || ahead > this.#ahead) this.#ahead = ahead;
+    this.#hasClock = true;
+  }
+}

@@ -1,0 +1,170 @@
+//! Builds the page by npm, and makes a list of its files for `src/files.rs`.
+//!
+//! Owns where that happens: a copy of `app` in the target directory, so that nothing is written beside the sources, and what npm
+//! fetches is fetched once for all profiles. Without npm the list is empty, and says why.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// What of `app` the page is made of.
+const SOURCES: [&str; 9] = [
+    "src",
+    "public",
+    "index.html",
+    "pack.js",
+    "package.json",
+    "package-lock.json",
+    "svelte.config.js",
+    "tsconfig.json",
+    "vite.config.js",
+];
+
+fn main() {
+    println!("cargo::rerun-if-changed=build.rs");
+    for name in SOURCES {
+        println!("cargo::rerun-if-changed=app/{name}");
+    }
+    println!("cargo::rerun-if-env-changed=TRIK_WITHOUT_PAGE");
+    let out = PathBuf::from(std::env::var_os("OUT_DIR").expect("cargo sets it"));
+    let list = match build(&out) {
+        Ok(list) => list,
+        Err(why) => {
+            println!(
+                "cargo::warning=the page for browsers is left out, and a table is shown: {why}"
+            );
+            format!(
+                "/// All files of the page.\npub const FILES: &[File] = &[];\n/// Why there are none.\npub const WHY_NOT: &str = {why:?};\n"
+            )
+        }
+    };
+    fs::write(out.join("files.rs"), list).expect("the directory of cargo can be written");
+}
+
+/// The list of files as Rust.
+fn build(out: &Path) -> Result<String, String> {
+    if std::env::var_os("TRIK_WITHOUT_PAGE").is_some() {
+        return Err("TRIK_WITHOUT_PAGE is set".to_owned());
+    }
+    let work = target(out).join("page");
+    let file = |error: io::Error| format!("{}: {error}", work.display());
+    fs::create_dir_all(&work).map_err(file)?;
+    let lock = fs::File::create(work.join("lock")).map_err(file)?;
+    lock.lock().map_err(file)?;
+    let stamp = work.join("fetched");
+    let wanted = fs::read("app/package-lock.json").map_err(file)?;
+    for name in SOURCES {
+        let (from, to) = (Path::new("app").join(name), work.join(name));
+        if to.is_dir() {
+            fs::remove_dir_all(&to).map_err(file)?;
+        }
+        copy(&from, &to).map_err(|error| format!("{}: {error}", from.display()))?;
+    }
+    if fs::read(&stamp).ok().as_ref() != Some(&wanted) {
+        let _ = fs::remove_file(&stamp);
+        let mut npm = Command::new("npm");
+        npm.args([
+            "ci",
+            "--omit=dev",
+            "--no-audit",
+            "--no-fund",
+            "--loglevel=error",
+        ]);
+        run(npm.current_dir(&work), "npm")?;
+        fs::write(&stamp, &wanted).map_err(file)?;
+    }
+    let made = out.join("page");
+    let mut vite = Command::new("node");
+    vite.args([
+        "node_modules/vite/bin/vite.js",
+        "build",
+        "--logLevel=error",
+        "--emptyOutDir",
+        "--outDir",
+    ]);
+    run(vite.arg(&made).current_dir(&work), "node")?;
+    let mut pack = Command::new("node");
+    run(pack.arg("pack.js").arg(&made).current_dir(&work), "node")?;
+    list(&made).map_err(|error| format!("{}: {error}", made.display()))
+}
+
+/// The directory of all profiles, which has a mark of cargo.
+fn target(out: &Path) -> &Path {
+    let is_target = |path: &&Path| path.join("CACHEDIR.TAG").is_file();
+    out.ancestors().find(is_target).unwrap_or(out)
+}
+
+fn run(command: &mut Command, name: &str) -> Result<(), String> {
+    let done = command.output().map_err(|error| match error.kind() {
+        io::ErrorKind::NotFound => {
+            format!("there is no {name}; install nodejs and npm and build again")
+        }
+        _ => format!("{name}: {error}"),
+    })?;
+    if done.status.success() {
+        return Ok(());
+    }
+    let said = [done.stdout, done.stderr].concat();
+    let said = String::from_utf8_lossy(&said);
+    let lines: Vec<&str> = said
+        .lines()
+        .filter(|line| !line.trim().is_empty())
+        .take(12)
+        .collect();
+    Err(format!("{name}: {}", lines.join(" / ")))
+}
+
+fn copy(from: &Path, to: &Path) -> io::Result<()> {
+    if !from.is_dir() {
+        fs::copy(from, to)?;
+        return Ok(());
+    }
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from)? {
+        let entry = entry?;
+        copy(&entry.path(), &to.join(entry.file_name()))?;
+    }
+    Ok(())
+}
+
+fn list(made: &Path) -> io::Result<String> {
+    let mut found = Vec::new();
+    let mut folders = vec![made.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder)? {
+            let path = entry?.path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|end| end == "gz") {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    let mut text = "/// All files of the page.\npub const FILES: &[File] = &[\n".to_owned();
+    for path in found {
+        let name = path.strip_prefix(made).unwrap_or(&path).with_extension("");
+        let name = name.to_string_lossy();
+        let kind = kind(&name);
+        let _ = writeln!(
+            text,
+            "    File {{ path: {name:?}, kind: {kind:?}, bytes: include_bytes!({path:?}) }},"
+        );
+    }
+    text += "];\n/// Why there are none.\npub const WHY_NOT: &str = \"\";\n";
+    Ok(text)
+}
+
+fn kind(name: &str) -> &'static str {
+    match name.rsplit('.').next().unwrap_or_default() {
+        "html" => "text/html; charset=utf-8",
+        "js" => "text/javascript; charset=utf-8",
+        "css" => "text/css; charset=utf-8",
+        "svg" => "image/svg+xml",
+        "png" => "image/png",
+        "webmanifest" => "application/manifest+json",
+        _ => "application/octet-stream",
+    }
+}

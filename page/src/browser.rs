@@ -1,0 +1,256 @@
+//! One browser that looks: what it says is carried out or refused, and it is told what happens.
+//!
+//! Owns the two halves of its connection. Only what comes from the robot may wait for a slow browser; orders of the browser,
+//! a stop first of all, wait for nothing that is sent to it.
+
+use crate::control::Who;
+use crate::drive::{self, Move};
+use crate::error::Error;
+use crate::limits;
+use crate::relay::{self, Came};
+use crate::server::Shared;
+use crate::word::{News, Order, only_looks};
+use axum::body::Bytes;
+use axum::extract::ws::{Message, WebSocket};
+use futures_util::stream::{SplitSink, SplitStream};
+use futures_util::{SinkExt, StreamExt};
+use std::sync::Arc;
+use tokio::sync::{mpsc, watch};
+use tokio::time::{Instant, MissedTickBehavior, interval, timeout, timeout_at};
+
+/// Serves one browser until it is gone.
+pub async fn serve(shared: Arc<Shared>, socket: WebSocket, who: Who) {
+    let (sink, stream) = socket.split();
+    let (news, told) = mpsc::channel(limits::NEWS);
+    let (moves, to_move) = mpsc::channel(limits::ORDERS);
+    let (requests, to_send) = mpsc::channel(limits::ORDERS);
+    // What the robot says waits in the robot, which leaves out what is old.
+    let (came, from_robot) = mpsc::channel(1);
+    let (looks, is_looked_at) = watch::channel(false);
+    let relay = tokio::spawn(relay::run(shared.robot.subscribe(), to_send, came));
+    // It goes on when all else has ended: it has to bring actuators to rest.
+    tokio::spawn(drive::run(
+        shared.settings.tree.clone(),
+        to_move,
+        news.clone(),
+    ));
+    let listener = Listener {
+        shared: shared.clone(),
+        who,
+        news,
+        moves,
+        requests,
+        looks,
+    };
+    let teller = Teller {
+        shared: shared.clone(),
+        who,
+        sink,
+        told,
+        from_robot,
+        is_looked_at,
+    };
+    tokio::select! {
+        () = listener.run(stream) => {}
+        () = teller.run() => {}
+    }
+    relay.abort();
+    shared.control.leave(who);
+}
+
+/// What the browser says.
+struct Listener {
+    shared: Arc<Shared>,
+    who: Who,
+    news: mpsc::Sender<News>,
+    moves: mpsc::Sender<Move>,
+    requests: mpsc::Sender<Vec<u8>>,
+    looks: watch::Sender<bool>,
+}
+
+impl Listener {
+    async fn run(self, mut stream: SplitStream<WebSocket>) {
+        let mut heard = Instant::now();
+        let mut is_silent = false;
+        loop {
+            let patience = if is_silent {
+                limits::SEND_TIME
+            } else {
+                limits::SILENCE_TIME
+            };
+            let message = match timeout_at(heard + patience, stream.next()).await {
+                Ok(Some(Ok(message))) => message,
+                Ok(None | Some(Err(_))) => return,
+                // A network that has broken off says nothing: what was driven must not go on.
+                Err(_) if !is_silent => {
+                    is_silent = true;
+                    let _ = self.moves.try_send(Move::Rest);
+                    continue;
+                }
+                Err(_) => return,
+            };
+            (heard, is_silent) = (Instant::now(), false);
+            let refused = match message {
+                Message::Text(text) => Order::parse(&text).and_then(|order| self.obey(order)),
+                Message::Binary(request) => self.ask(request),
+                Message::Ping(_) | Message::Pong(_) => Ok(()),
+                Message::Close(_) => return,
+            };
+            if let Err(error) = refused {
+                let _ = self.news.try_send(News::Refused(error.to_string()));
+            }
+        }
+    }
+
+    /// It may do something, and is in control.
+    fn need(&self) -> Result<(), Error> {
+        if !self.shared.settings.guests.may_drive(self.who.address.ip()) {
+            return Err(Error::Unpaired);
+        }
+        self.shared.control.need(self.who)
+    }
+
+    fn obey(&self, order: Order) -> Result<(), Error> {
+        match order {
+            Order::Write(path, value) => {
+                self.need()?;
+                self.step(Move::Write(path, value))
+            }
+            Order::World(words) => {
+                self.need()?;
+                let world = self.shared.settings.world.as_ref().ok_or(Error::NoWorld)?;
+                world.order(&words).map_err(|why| Error::World(why.0))
+            }
+            Order::Look(looks) => {
+                self.looks.send_replace(looks);
+                Ok(())
+            }
+            Order::Take => {
+                if !self.shared.settings.guests.may_drive(self.who.address.ip()) {
+                    return Err(Error::Unpaired);
+                }
+                self.shared.control.take(self.who);
+                Ok(())
+            }
+            Order::Leave => {
+                self.shared.control.leave(self.who);
+                self.step(Move::Rest)
+            }
+            Order::Stop => {
+                // The programs by the robot itself, what moves by the tree, should the robot's daemon not be there.
+                let _ = self.requests.try_send(b"stop".to_vec());
+                self.step(Move::Stop)
+            }
+        }
+    }
+
+    fn step(&self, one: Move) -> Result<(), Error> {
+        let full = |_| Error::Robot("too many orders wait: the robot does not answer".to_owned());
+        self.moves.try_send(one).map_err(full)
+    }
+
+    /// A request of the control port.
+    fn ask(&self, request: Bytes) -> Result<(), Error> {
+        if !only_looks(&request) {
+            self.need()?;
+        }
+        let full = |_| Error::Robot("the robot does not take programs now".to_owned());
+        self.requests.try_send(request.into()).map_err(full)
+    }
+}
+
+/// What the browser is told.
+struct Teller {
+    shared: Arc<Shared>,
+    who: Who,
+    sink: SplitSink<WebSocket, Message>,
+    told: mpsc::Receiver<News>,
+    from_robot: mpsc::Receiver<Came>,
+    is_looked_at: watch::Receiver<bool>,
+}
+
+impl Teller {
+    async fn run(mut self) {
+        let mut holder = self.shared.control.watch();
+        let settings = &self.shared.settings;
+        let first = [
+            News::Hello {
+                name: settings.name.clone(),
+                version: env!("CARGO_PKG_VERSION").to_owned(),
+                has_world: settings.world.is_some(),
+                may_drive: settings.guests.may_drive(self.who.address.ip()),
+            },
+            News::control(*holder.borrow_and_update(), self.who),
+        ];
+        for news in first {
+            if !self.say(news).await {
+                return;
+            }
+        }
+        let mut pings = interval(limits::PING_TIME);
+        pings.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        let mut pictures = interval(limits::PICTURE_TIME);
+        pictures.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        let mut shown = Shown::default();
+        loop {
+            let looks = *self.is_looked_at.borrow();
+            let is_sent = tokio::select! {
+                Some(news) = self.told.recv() => self.say(news).await,
+                came = self.from_robot.recv() => match came {
+                    Some(Came::There) => self.say(News::Robot(None)).await,
+                    Some(Came::Gone(why)) => self.say(News::Robot(Some(why))).await,
+                    Some(Came::Frame(frame)) => self.send(Message::Binary(frame.into())).await,
+                    None => false,
+                },
+                Ok(()) = holder.changed() => {
+                    let now = *holder.borrow_and_update();
+                    self.say(News::control(now, self.who)).await
+                }
+                Ok(()) = self.is_looked_at.changed() => true,
+                _ = pings.tick() => self.send(Message::Ping(Bytes::new())).await,
+                _ = pictures.tick(), if looks => self.show(&mut shown).await,
+            };
+            if !is_sent {
+                return;
+            }
+        }
+    }
+
+    async fn say(&mut self, news: News) -> bool {
+        self.send(Message::Text(news.text().into())).await
+    }
+
+    async fn send(&mut self, message: Message) -> bool {
+        matches!(
+            timeout(limits::SEND_TIME, self.sink.send(message)).await,
+            Ok(Ok(()))
+        )
+    }
+
+    /// The world, as far as it has changed.
+    async fn show(&mut self, shown: &mut Shown) -> bool {
+        let Some(world) = self.shared.settings.world.clone() else {
+            return true;
+        };
+        if shown.version != Some(world.version()) {
+            let (version, scene) = world.scene();
+            shown.version = Some(version);
+            if !self.say(News::Scene(scene)).await {
+                return false;
+            }
+        }
+        let state = world.state();
+        if state == shown.state {
+            return true;
+        }
+        shown.state.clone_from(&state);
+        self.say(News::World(state)).await
+    }
+}
+
+/// What this browser was shown last of the world.
+#[derive(Default)]
+struct Shown {
+    version: Option<u64>,
+    state: String,
+}

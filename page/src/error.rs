@@ -1,0 +1,94 @@
+//! Why the page is not served or does not do something, and who can mend it.
+//!
+//! Owns the errors of this crate. Knows no command.
+
+use std::fmt;
+use std::io;
+use std::net::SocketAddr;
+
+/// The person or the part that can mend it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Blame {
+    /// The person who asked: another address, another order.
+    Caller,
+    /// The machine.
+    Machine,
+}
+
+/// What is wrong. Shown, it is a sentence for the person.
+#[derive(Debug)]
+pub enum Error {
+    /// Nobody can listen there.
+    Address(SocketAddr, io::Error),
+    /// There are no more threads.
+    Thread(io::Error),
+    /// The text is no path of a node.
+    Path(String),
+    /// The file of the tree says no.
+    File(String, io::Error),
+    /// The words are no order.
+    Words(String),
+    /// There is no world to be ordered: the robot is a real one.
+    NoWorld,
+    /// The world says no.
+    World(String),
+    /// Somebody else is in control.
+    Taken(String),
+    /// This computer may look only.
+    Unpaired,
+    /// The robot's control port cannot be reached.
+    Robot(String),
+    /// The name is none of a program.
+    Name(String),
+    /// A diagram that cannot be drawn.
+    Diagram(String),
+}
+
+impl Error {
+    /// The person or the part that can mend it.
+    pub fn blame(&self) -> Blame {
+        match self {
+            Self::Address(..)
+            | Self::Path(_)
+            | Self::File(..)
+            | Self::Words(_)
+            | Self::NoWorld
+            | Self::World(_)
+            | Self::Taken(_)
+            | Self::Unpaired
+            | Self::Name(_)
+            | Self::Diagram(_) => Blame::Caller,
+            Self::Thread(_) | Self::Robot(_) => Blame::Machine,
+        }
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Address(address, why) => write!(f, "the page at {address}: {why}"),
+            Self::Thread(why) => write!(f, "a thread for the page: {why}"),
+            Self::Path(path) => write!(f, "'{path}' is no actuator of this robot"),
+            Self::File(path, why) => write!(f, "{path}: {}", plain(why)),
+            Self::Words(words) => write!(f, "'{words}' is no order"),
+            Self::NoWorld => f.write_str("a real robot has no world that takes orders"),
+            Self::World(why) | Self::Robot(why) | Self::Diagram(why) => f.write_str(why),
+            Self::Taken(who) => write!(f, "{who} is in control; take control first"),
+            Self::Unpaired => f.write_str(
+                "this computer may only look: pair it by Enter on the robot, after you have started a program",
+            ),
+            Self::Name(name) => write!(f, "there is no program '{name}'"),
+        }
+    }
+}
+
+/// What the system says, without the number.
+fn plain(error: &io::Error) -> String {
+    let text = error.to_string();
+    text.split(" (os error")
+        .next()
+        .unwrap_or_default()
+        .to_owned()
+}
+
+impl std::error::Error for Error {}

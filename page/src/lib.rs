@@ -1,0 +1,34 @@
+//! A page in the browser for one robot: its sensors, its programs and the world around it.
+//!
+//! The page itself is in `page/app`, in TypeScript; here is what serves it. It knows a robot by three things only: the files of
+//! its tree, its control port, and, for a virtual one, the [`World`] around it. What goes over the control port is passed on and
+//! hardly looked at: the page speaks it as every other client does.
+//!
+//! - `server`, `route`: the thread, and which address gives what
+//! - `guard`: Host, Origin and the cookie
+//! - `files`: the page as it was built, in the program; `plain`: a table where there is none
+//! - `browser`, `word`, `relay`: one browser that looks, what it says, and its connection to the robot
+//! - `control`: one of all browsers drives
+//! - `drive`: what it writes to the tree, and rest when it leaves
+//! - `store`: programs of the robot, and diagrams as pictures
+//! - `error`, `limits`
+
+#![forbid(unsafe_code)]
+#![deny(clippy::wildcard_enum_match_arm)]
+
+mod browser;
+mod control;
+mod drive;
+pub mod error;
+mod files;
+mod guard;
+pub mod limits;
+mod plain;
+mod relay;
+mod route;
+mod server;
+mod store;
+mod word;
+pub mod world;
+
+pub use server::{Everybody, Guests, Page, Settings};

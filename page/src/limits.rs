@@ -1,0 +1,49 @@
+//! Every limit of the page's server.
+//!
+//! Owns the numbers only; the code that enforces each one names it from here.
+
+use std::time::Duration;
+
+/// Browsers that look at once.
+pub const BROWSERS_MAX: usize = 40;
+/// Connections at once, with those that only fetch a file.
+pub const CONNECTIONS_MAX: usize = 128;
+/// From the first byte of a request to the last one of its head.
+pub const HEAD_TIME: Duration = Duration::from_secs(10);
+/// Bytes of one message of a browser: the greatest upload, as the control port takes it.
+pub const MESSAGE_BYTES_MAX: usize = frame::limits::CONTROL_BYTES;
+/// Bytes of an order in words: a value for an actuator, an order to the world.
+pub const WORDS_BYTES_MAX: usize = 64 << 10;
+/// Bytes of a path of the tree.
+pub const PATH_BYTES_MAX: usize = 1024;
+/// Orders to actuators that wait; of each actuator only the newest is carried out.
+pub const ORDERS: usize = 64;
+/// Messages that wait for one browser, beside what comes from the robot.
+pub const NEWS: usize = 256;
+/// How long one message may take to a browser. A robot closes a connection that says nothing for five seconds, so keepalives do
+/// not wait for this.
+pub const SEND_TIME: Duration = Duration::from_secs(20);
+/// How often a browser is asked whether it is there.
+pub const PING_TIME: Duration = Duration::from_secs(1);
+/// A browser that has not answered for so long is gone: what it drives comes to rest.
+pub const SILENCE_TIME: Duration = Duration::from_secs(4);
+/// The control port of a robot is told so often that somebody is there.
+pub const KEEPALIVE_TIME: Duration = Duration::from_secs(2);
+/// Until a robot that is not there is looked for again.
+pub const RETURN_TIME: Duration = Duration::from_secs(1);
+/// How often the world is shown, in the best case.
+pub const PICTURE_TIME: Duration = Duration::from_millis(16);
+/// Threads for files of the tree, which may make them wait.
+pub const FILE_THREADS: usize = 4;
+/// Programs that are listed.
+pub const PROGRAMS_MAX: usize = 1000;
+/// Depth of folders of programs that are listed.
+pub const FOLDERS_MAX: usize = 4;
+/// Bytes of a program that is shown.
+pub const PROGRAM_BYTES_MAX: u64 = 16 << 20;
+/// Rows of the plain table.
+pub const ROWS_MAX: usize = 500;
+/// Letters of one of its cells.
+pub const CELL_LETTERS: usize = 200;
+/// Bytes of a tuple that it shows.
+pub const CELL_BYTES_MAX: u64 = 1024;

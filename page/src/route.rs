@@ -1,0 +1,217 @@
+//! Which address gives what: the page, the socket of a browser, programs, and a plain table for browsers without scripts.
+//!
+//! Owns the addresses, and that nothing is given before `guard` has agreed.
+
+use crate::browser;
+use crate::control::Who;
+use crate::error::Error;
+use crate::server::{Peer, Shared};
+use crate::{files, guard, limits, plain, store};
+use axum::Router;
+use axum::extract::{ConnectInfo, Path, Query, Request, State, WebSocketUpgrade};
+use axum::http::header::{
+    CACHE_CONTROL, CONTENT_ENCODING, CONTENT_TYPE, COOKIE, HOST, ORIGIN, SET_COOKIE,
+};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, Uri};
+use axum::middleware::{Next, from_fn_with_state};
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use std::collections::HashMap;
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+/// All addresses.
+pub fn router(shared: Arc<Shared>) -> Router {
+    Router::new()
+        .route("/socket", get(socket))
+        .route("/programs", get(programs))
+        .route("/program/{*name}", get(program))
+        .route("/diagram/{*name}", get(diagram))
+        .route("/plain", get(table))
+        .fallback(file)
+        .layer(from_fn_with_state(shared.clone(), enter))
+        .with_state(shared)
+}
+
+fn text(status: StatusCode, text: impl Into<String>) -> Response {
+    let mut text: String = text.into();
+    text.push('\n');
+    (status, [(CONTENT_TYPE, "text/plain; charset=utf-8")], text).into_response()
+}
+
+/// Lets a request in, or says why not.
+async fn enter(
+    State(shared): State<Arc<Shared>>,
+    ConnectInfo(Peer(peer)): ConnectInfo<Peer>,
+    request: Request,
+    next: Next,
+) -> Response {
+    let is_page = ["/", "/plain"].contains(&request.uri().path());
+    let refused = refusal(&shared, peer, request.uri(), request.headers());
+    let mut answer = match refused {
+        Some(why) => text(StatusCode::FORBIDDEN, why),
+        None => next.run(request).await,
+    };
+    let headers = answer.headers_mut();
+    for (name, value) in guard::HEADERS {
+        headers.insert(name, HeaderValue::from_static(value));
+    }
+    if is_page && refused.is_none() {
+        let cookie = guard::cookie(&shared.token, shared.port);
+        if let Ok(cookie) = HeaderValue::from_str(&cookie) {
+            headers.insert(SET_COOKIE, cookie);
+        }
+    }
+    answer
+}
+
+/// Why a request may not come in; None if it may.
+fn refusal(
+    shared: &Shared,
+    peer: SocketAddr,
+    uri: &Uri,
+    headers: &HeaderMap,
+) -> Option<&'static str> {
+    let header = |name: HeaderName| headers.get(name).and_then(|value| value.to_str().ok());
+    let host = header(HOST).unwrap_or_default();
+    if !shared.settings.guests.may_look(peer.ip()) {
+        Some("this computer is not among those that may use the robot")
+    } else if !guard::is_ours(host, &shared.host_name) {
+        Some("open the page by the address of the robot: this name could be anybody's")
+    } else if !guard::is_same_origin(header(ORIGIN), host) {
+        Some("another page in this browser has asked")
+    } else if is_data(uri) && !guard::has_cookie(header(COOKIE), &shared.token) {
+        Some("open the page first: the cookie that it sets is missing")
+    } else {
+        None
+    }
+}
+
+/// What is of this robot, and not of every page.
+fn is_data(uri: &Uri) -> bool {
+    let first = uri.path().split('/').nth(1).unwrap_or_default();
+    ["socket", "programs", "program", "diagram"].contains(&first)
+}
+
+async fn file(uri: Uri) -> Response {
+    match files::find(uri.path()) {
+        Some(file) => {
+            let age = if files::is_kept(file.path) {
+                "public, max-age=31536000, immutable"
+            } else {
+                "no-cache"
+            };
+            let headers = [
+                (CONTENT_TYPE, file.kind),
+                (CONTENT_ENCODING, "gzip"),
+                (CACHE_CONTROL, age),
+            ];
+            (headers, file.bytes).into_response()
+        }
+        None if uri.path() == "/" => {
+            (StatusCode::TEMPORARY_REDIRECT, [("location", "/plain")]).into_response()
+        }
+        None => text(StatusCode::NOT_FOUND, "there is no such file"),
+    }
+}
+
+async fn socket(
+    State(shared): State<Arc<Shared>>,
+    ConnectInfo(Peer(address)): ConnectInfo<Peer>,
+    upgrade: WebSocketUpgrade,
+) -> Response {
+    let Ok(seat) = shared.browsers.clone().try_acquire_owned() else {
+        let most = limits::BROWSERS_MAX;
+        let why = format!("{most} browsers look already: close some, or wait");
+        return text(StatusCode::SERVICE_UNAVAILABLE, why);
+    };
+    let number = shared.number.fetch_add(1, Ordering::Relaxed);
+    let who = Who { number, address };
+    upgrade
+        .max_message_size(limits::MESSAGE_BYTES_MAX)
+        .max_frame_size(limits::MESSAGE_BYTES_MAX)
+        .on_upgrade(move |socket| async move {
+            browser::serve(shared, socket, who).await;
+            drop(seat);
+        })
+}
+
+/// Does something with files on another thread, and answers with what came out.
+async fn with_files<T: Send + 'static>(
+    work: impl FnOnce() -> Result<T, Error> + Send + 'static,
+    answer: impl FnOnce(T) -> Response,
+) -> Response {
+    match tokio::task::spawn_blocking(work).await {
+        Ok(Ok(done)) => answer(done),
+        Ok(Err(error @ (Error::Name(_) | Error::File(..)))) => {
+            text(StatusCode::NOT_FOUND, error.to_string())
+        }
+        Ok(Err(error)) => text(StatusCode::UNPROCESSABLE_ENTITY, error.to_string()),
+        Err(_) => text(
+            StatusCode::INTERNAL_SERVER_ERROR,
+            "the page could not be made",
+        ),
+    }
+}
+
+fn json(value: serde_json::Value) -> Response {
+    let kind = [
+        (CONTENT_TYPE, "application/json"),
+        (CACHE_CONTROL, "no-store"),
+    ];
+    (kind, value.to_string()).into_response()
+}
+
+async fn programs(State(shared): State<Arc<Shared>>) -> Response {
+    let work = move || {
+        let folder = shared.settings.programs.as_deref();
+        Ok(folder.map_or_else(|| serde_json::json!([]), store::list))
+    };
+    with_files(work, json).await
+}
+
+async fn program(State(shared): State<Arc<Shared>>, Path(name): Path<String>) -> Response {
+    let work = move || {
+        let none = || Error::Name(name.clone());
+        let folder = shared.settings.programs.as_deref().ok_or_else(none)?;
+        store::read(folder, &name)
+    };
+    let kind = [
+        // Never anything that a browser would run.
+        (CONTENT_TYPE, "application/octet-stream"),
+        (CACHE_CONTROL, "no-store"),
+    ];
+    with_files(work, |bytes| (kind, bytes).into_response()).await
+}
+
+async fn diagram(
+    State(shared): State<Arc<Shared>>,
+    Path(name): Path<String>,
+    Query(query): Query<HashMap<String, String>>,
+) -> Response {
+    let work = move || {
+        let none = || Error::Name(name.clone());
+        let folder = shared.settings.programs.as_deref().ok_or_else(none)?;
+        let is_russian = query
+            .get("language")
+            .is_some_and(|language| language == "ru");
+        store::diagram(folder, &name, is_russian)
+    };
+    with_files(work, json).await
+}
+
+async fn table(State(shared): State<Arc<Shared>>) -> Response {
+    let work = move || {
+        Ok(plain::table(
+            &shared.settings.name,
+            &shared.settings.tree,
+            files::WHY_NOT,
+        ))
+    };
+    let kind = [
+        (CONTENT_TYPE, "text/html; charset=utf-8"),
+        (CACHE_CONTROL, "no-store"),
+    ];
+    with_files(work, |page| (kind, page).into_response()).await
+}

@@ -1,0 +1,140 @@
+//! Programs of the robot: which there are, what is in them, and diagrams as pictures.
+//!
+//! Owns the folder of programs as far as it is read. What is written there goes over the control port.
+
+use crate::error::Error;
+use crate::limits;
+use lang_diagram::project::Project;
+use lang_diagram::show::picture::picture;
+use lang_text::problem::Locale;
+use serde_json::{Value, json};
+use std::fs;
+use std::io::Read;
+use std::path::{Component, Path, PathBuf};
+use std::time::UNIX_EPOCH;
+
+/// All programs, as JSON: `name`, `bytes`, `changed_s` since 1970; the names in order.
+pub fn list(folder: &Path) -> Value {
+    let mut found = Vec::new();
+    let mut folders = vec![(folder.to_owned(), 0)];
+    while let Some((at, depth)) = folders.pop() {
+        for entry in fs::read_dir(&at).into_iter().flatten().flatten() {
+            let path = entry.path();
+            // A link may lead anywhere.
+            let Ok(facts) = entry.metadata() else {
+                continue;
+            };
+            let Some(name) = path.strip_prefix(folder).ok().and_then(Path::to_str) else {
+                continue;
+            };
+            let is_hidden = entry.file_name().as_encoded_bytes().first() == Some(&b'.');
+            if facts.is_dir() && depth < limits::FOLDERS_MAX && !is_hidden {
+                folders.push((path, depth + 1));
+            } else if facts.is_file() && !is_hidden && found.len() < limits::PROGRAMS_MAX {
+                let changed = facts.modified().ok();
+                let since = changed.and_then(|at| at.duration_since(UNIX_EPOCH).ok());
+                let changed_s = since.map(|since| since.as_secs());
+                found.push((name.to_owned(), facts.len(), changed_s));
+            }
+        }
+    }
+    found.sort();
+    let row =
+        |(name, bytes, changed_s)| json!({"name": name, "bytes": bytes, "changed_s": changed_s});
+    found.into_iter().map(row).collect()
+}
+
+/// The bytes of a program.
+///
+/// # Errors
+/// There is no such program, or it is none.
+pub fn read(folder: &Path, name: &str) -> Result<Vec<u8>, Error> {
+    let path = inside(folder, name).ok_or_else(|| Error::Name(name.to_owned()))?;
+    let file = fs::File::open(path).map_err(|error| Error::File(name.to_owned(), error))?;
+    let mut bytes = Vec::new();
+    file.take(limits::PROGRAM_BYTES_MAX)
+        .read_to_end(&mut bytes)
+        .map_err(|error| Error::File(name.to_owned(), error))?;
+    Ok(bytes)
+}
+
+/// The file of a program, if it is a file in this folder when all links are followed.
+fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
+    let is_plain = |part: Component| matches!(part, Component::Normal(_));
+    if name.is_empty() || !Path::new(name).components().all(is_plain) {
+        return None;
+    }
+    let path = folder.join(name).canonicalize().ok()?;
+    let folder = folder.canonicalize().ok()?;
+    (path.starts_with(folder) && path.is_file()).then_some(path)
+}
+
+/// A diagram as JSON: for each sheet its `name`, whether it is the `main` one, and its `picture` in SVG, in which every block is a
+/// group with its `data-id`.
+///
+/// # Errors
+/// There is no such program, or it is no diagram that can be read.
+pub fn diagram(folder: &Path, name: &str, is_russian: bool) -> Result<Value, Error> {
+    let locale = if is_russian {
+        Locale::Russian
+    } else {
+        Locale::English
+    };
+    let bytes = read(folder, name)?;
+    let opened = lang_diagram::read::read(&bytes).map_err(|problems| {
+        let lines: Vec<String> = problems
+            .iter()
+            .take(5)
+            .map(|problem| problem.to_string())
+            .collect();
+        Error::Diagram(format!("{name}: {}", lines.join("; ")))
+    })?;
+    Ok(sheets(&opened.project, locale))
+}
+
+fn sheets(project: &Project, locale: Locale) -> Value {
+    let sheet = |(at, diagram)| {
+        let diagram: &lang_diagram::project::Diagram = diagram;
+        json!({"name": diagram.name, "main": project.main == Some(at), "picture": picture(diagram, locale)})
+    };
+    project.diagrams.iter().enumerate().map(sheet).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn programs_are_listed_and_none_is_outside() {
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path().join("programs");
+        fs::create_dir_all(folder.join("sub")).unwrap();
+        fs::write(folder.join("b.js"), "print(1)").unwrap();
+        fs::write(folder.join("sub/a.py"), "").unwrap();
+        fs::write(folder.join(".hidden"), "").unwrap();
+        fs::write(home.path().join("secret"), "x").unwrap();
+        std::os::unix::fs::symlink(home.path().join("secret"), folder.join("link")).unwrap();
+        let list = list(&folder);
+        let names: Vec<_> = list
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|one| &one["name"])
+            .collect();
+        assert_eq!(names, ["b.js", "sub/a.py"]);
+        assert_eq!(read(&folder, "b.js").unwrap(), b"print(1)");
+        for bad in [
+            "",
+            "link",
+            "../secret",
+            "sub",
+            "sub/../b.js",
+            "/etc/passwd",
+            "none",
+            "b.js\0",
+        ] {
+            assert!(read(&folder, bad).is_err(), "{bad}");
+        }
+        assert!(diagram(&folder, "b.js", false).is_err());
+    }
+}

@@ -1,0 +1,281 @@
+//! What a browser and this server say to each other beside the control port: JSON objects.
+//!
+//! Owns their forms; `page/app/src/link/words.ts` has the other end. Pure.
+
+use crate::control::Who;
+use crate::error::Error;
+use crate::limits;
+use serde_json::{Map, Value};
+
+/// What a browser wants.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// A value for an actuator, as text.
+    Write(String, String),
+    /// An order to the world, in words.
+    World(String),
+    /// To see the world, or not any more: it costs time at every picture.
+    Look(bool),
+    /// To be in control, whoever is.
+    Take,
+    /// Not to be in control any more.
+    Leave,
+    /// Everything to rest. Everybody may.
+    Stop,
+}
+
+impl Order {
+    /// Reads one.
+    ///
+    /// # Errors
+    /// It is none.
+    pub fn parse(text: &str) -> Result<Self, Error> {
+        let why = || Error::Words(text.chars().take(80).collect());
+        if text.len() > limits::WORDS_BYTES_MAX {
+            return Err(why());
+        }
+        let value: Value = serde_json::from_str(text).map_err(|_| why())?;
+        let text = |name: &str| value.get(name).and_then(Value::as_str).map(str::to_owned);
+        let order = match text("do").ok_or_else(why)?.as_str() {
+            "write" => Self::Write(
+                text("path").ok_or_else(why)?,
+                text("value").ok_or_else(why)?,
+            ),
+            "world" => Self::World(text("order").ok_or_else(why)?),
+            "look" => Self::Look(
+                value
+                    .get("world")
+                    .and_then(Value::as_bool)
+                    .ok_or_else(why)?,
+            ),
+            "take" => Self::Take,
+            "leave" => Self::Leave,
+            "stop" => Self::Stop,
+            _ => return Err(why()),
+        };
+        Ok(order)
+    }
+}
+
+/// What a browser is told.
+#[derive(Clone, Debug, PartialEq)]
+pub enum News {
+    /// Who it talks to.
+    Hello {
+        /// The robot.
+        name: String,
+        /// Of this server.
+        version: String,
+        /// There is a world around the robot.
+        has_world: bool,
+        /// This computer may do things.
+        may_drive: bool,
+    },
+    /// Who is in control.
+    Control {
+        /// This browser.
+        mine: bool,
+        /// The address of the one who is; None if nobody is.
+        who: Option<String>,
+    },
+    /// Whether the control port of the robot is reached; None if it is, else why not.
+    Robot(Option<String>),
+    /// A value was written, or not.
+    Written {
+        /// The node.
+        path: String,
+        /// What should have been written.
+        value: String,
+        /// Why it was not.
+        why: Option<String>,
+    },
+    /// Something was not done.
+    Refused(String),
+    /// What stands still in the world.
+    Scene(String),
+    /// What moves.
+    World(String),
+}
+
+impl News {
+    /// About who is in control, for this browser.
+    pub fn control(holder: Option<Who>, me: Who) -> Self {
+        Self::Control {
+            mine: holder == Some(me),
+            who: holder.map(|who| who.address.ip().to_string()),
+        }
+    }
+
+    /// As JSON.
+    pub fn text(&self) -> String {
+        let object = |is: &str, members: Vec<(&str, Value)>| {
+            let mut all = Map::new();
+            all.insert("is".to_owned(), is.into());
+            all.extend(
+                members
+                    .into_iter()
+                    .map(|(name, value)| (name.to_owned(), value)),
+            );
+            Value::Object(all).to_string()
+        };
+        match self {
+            Self::Hello {
+                name,
+                version,
+                has_world,
+                may_drive,
+            } => object(
+                "hello",
+                vec![
+                    ("name", name.as_str().into()),
+                    ("version", version.as_str().into()),
+                    ("world", (*has_world).into()),
+                    ("drives", (*may_drive).into()),
+                ],
+            ),
+            Self::Control { mine, who } => object(
+                "control",
+                vec![("mine", (*mine).into()), ("who", who.clone().into())],
+            ),
+            Self::Robot(why) => object(
+                "robot",
+                vec![("there", why.is_none().into()), ("why", why.clone().into())],
+            ),
+            Self::Written { path, value, why } => object(
+                "written",
+                vec![
+                    ("path", path.as_str().into()),
+                    ("value", value.as_str().into()),
+                    ("why", why.clone().into()),
+                ],
+            ),
+            Self::Refused(why) => object("refused", vec![("why", why.as_str().into())]),
+            // These are JSON already.
+            Self::Scene(scene) => format!("{{\"is\":\"scene\",\"scene\":{scene}}}"),
+            Self::World(state) => format!("{{\"is\":\"world\",\"state\":{state}}}"),
+        }
+    }
+}
+
+/// Whether a request of the control port only looks, so that every browser may send it; the port has many more that change
+/// something, and what is not known here does.
+pub fn only_looks(request: &[u8]) -> bool {
+    let plain = [
+        "version",
+        "configVersion",
+        "watch",
+        "unwatch",
+        "status",
+        "keepalive",
+        "stop",
+    ];
+    if plain.iter().any(|word| request == word.as_bytes()) || request.starts_with(b"stream:") {
+        return true;
+    }
+    let Some(order) = request.strip_prefix(b"debug:") else {
+        return false;
+    };
+    let order = order
+        .splitn(2, |&byte| byte == b' ')
+        .nth(1)
+        .unwrap_or_default();
+    let first = order.split(|&byte| byte == b' ').next().unwrap_or_default();
+    let looks: [&[u8]; 4] = [b"look", b"evaluate", b"breakpoints", b"leave"];
+    looks.contains(&first)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn orders_are_read_and_rubbish_is_none() {
+        let write = Order::Write("motors/M1".to_owned(), "30".to_owned());
+        assert_eq!(
+            Order::parse(r#"{"do":"write","path":"motors/M1","value":"30"}"#).unwrap(),
+            write
+        );
+        assert_eq!(
+            Order::parse(r#"{"do":"look","world":true}"#).unwrap(),
+            Order::Look(true)
+        );
+        assert_eq!(Order::parse(r#"{"do":"stop"}"#).unwrap(), Order::Stop);
+        for bad in [
+            "",
+            "{}",
+            "[]",
+            "null",
+            r#"{"do":"write","path":"a"}"#,
+            r#"{"do":"write","path":"a","value":30}"#,
+            r#"{"do":"look","world":1}"#,
+            r#"{"do":"fly"}"#,
+            &format!(
+                r#"{{"do":"world","order":"{}"}}"#,
+                "x".repeat(limits::WORDS_BYTES_MAX)
+            ),
+        ] {
+            assert!(Order::parse(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn what_changes_something_needs_control() {
+        for looks in [
+            "version",
+            "stop",
+            "stream:;hz=30",
+            "debug:1 look",
+            "debug:2 evaluate n + 1",
+            "debug:3 breakpoints after 4",
+        ] {
+            assert!(only_looks(looks.as_bytes()), "{looks}");
+        }
+        for acts in [
+            "run:a.js",
+            "file:a.js:x",
+            "direct:x",
+            "set:n=5",
+            "patch:end:a.qrs",
+            "debug:1 continue",
+            "debug:1 lookout",
+            "debug:look",
+            "stopp",
+            "answer:1:x",
+            "box",
+            "",
+            "versionx",
+        ] {
+            assert!(!only_looks(acts.as_bytes()), "{acts}");
+        }
+    }
+
+    #[test]
+    fn news_are_json() {
+        let all = [
+            News::Hello {
+                name: "a\"b".to_owned(),
+                version: "1".to_owned(),
+                has_world: true,
+                may_drive: false,
+            },
+            News::Control {
+                mine: false,
+                who: None,
+            },
+            News::Robot(Some("gone".to_owned())),
+            News::Written {
+                path: "m".to_owned(),
+                value: "1".to_owned(),
+                why: None,
+            },
+            News::Refused("no".to_owned()),
+            News::Scene("{\"walls\":[]}".to_owned()),
+            News::World("{\"t\":1}".to_owned()),
+        ];
+        for news in all {
+            let text = news.text();
+            let value: Value = serde_json::from_str(&text).unwrap();
+            assert!(value["is"].is_string(), "{text}");
+        }
+    }
+}
