@@ -75,7 +75,7 @@ fn build(out: &Path) -> Result<String, String> {
         run(npm.current_dir(&work), "npm")?;
         fs::write(&stamp, &wanted).map_err(file)?;
     }
-    let made = out.join("page");
+    let made = out.join("dist");
     let mut vite = Command::new("node");
     vite.args([
         "node_modules/vite/bin/vite.js",
