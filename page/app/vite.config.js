@@ -4,11 +4,11 @@ import { defineConfig } from 'vite';
 
 export default defineConfig({
   plugins: [svelte()],
-  build: { target: 'es2022', assetsInlineLimit: 0, modulePreload: { polyfill: false } },
+  build: { target: 'es2023', assetsInlineLimit: 0, modulePreload: { polyfill: false } },
   // During work on the page: `npx vite` beside a running `trik up`.
   server: {
     proxy: Object.fromEntries(
-      ['/socket', '/programs', '/program', '/diagram'].map((path) => [
+      ['/socket', '/programs', '/program', '/diagram', '/plain'].map((path) => [
         path,
         { target: process.env.TRIK_PAGE ?? 'http://127.0.0.1:8000', ws: true },
       ]),
