@@ -8,7 +8,7 @@ use crate::drive::{self, Move};
 use crate::error::Error;
 use crate::limits;
 use crate::relay::{self, Came};
-use crate::server::Shared;
+use crate::shared::Shared;
 use crate::word::{News, Order, only_looks};
 use axum::body::Bytes;
 use axum::extract::ws::{Message, WebSocket};

@@ -6,7 +6,7 @@ use crate::browser;
 use crate::control::Who;
 use crate::door::Peer;
 use crate::error::Error;
-use crate::server::Shared;
+use crate::shared::Shared;
 use crate::{files, guard, limits, plain, store};
 use axum::Router;
 use axum::extract::{ConnectInfo, Path, Query, Request, State, WebSocketUpgrade};

@@ -1,6 +1,7 @@
 // Programs and diagrams: sent, run, watched, stopped, changed.
 
 import { afterAll, beforeAll, expect, test } from 'vitest';
+import { ru } from '../src/words/ru';
 import { barriers, eventually, Look, Robot } from './robot';
 
 const DIAGRAM = '../../editors/vscode/test/texts/count.qrs';
@@ -89,7 +90,7 @@ test('everybody can use every view', async () => {
 
 test('a Russian browser has a Russian page', async () => {
   const page = await look.open(`${robot.url}#program`, { locale: 'ru-RU' });
-  await page.getByRole('heading', { name: 'Программы' }).waitFor();
+  await page.getByRole('heading', { name: ru.programs }).waitFor();
   expect(await page.locator('html').getAttribute('lang')).toBe('ru');
   await page.context().close();
 });

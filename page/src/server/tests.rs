@@ -2,9 +2,10 @@
 
 use super::*;
 use crate::limits;
+use crate::shared::Guests;
 use std::fs;
 use std::io::{Read, Write};
-use std::net::TcpStream;
+use std::net::{IpAddr, TcpStream};
 use std::time::{Duration, Instant};
 
 /// A page over a tree of files, and the listener of its robot.
