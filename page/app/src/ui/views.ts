@@ -4,6 +4,7 @@ import type { Component } from 'svelte';
 import Instruments from '../instruments/Instruments.svelte';
 import type { Robot } from '../robot/robot.svelte';
 import { words } from '../words';
+import World from '../world/World.svelte';
 
 export interface View {
   /** In the address of the page, after `#`. */
@@ -15,5 +16,6 @@ export interface View {
 }
 
 export const views: View[] = [
+  { name: 'world', title: words.world, component: World, isThere: (robot) => robot.hasWorld },
   { name: 'instruments', title: words.instruments, component: Instruments, isThere: () => true },
 ];
