@@ -1,6 +1,6 @@
 import { expect, test } from 'vitest';
 import { scene, state } from './example';
-import { carry, holdAt, shift, turn, within } from './hold';
+import { carry, holdAt, putRobot, putThing, within } from './hold';
 
 test('a finger takes what is below it and carries it by the same place', () => {
   const held = holdAt(scene(), state(), [1.05, 1], 200);
@@ -36,6 +36,6 @@ test('headings are within half a turn, and orders have no long numbers', () => {
   expect(within(370)).toBe(10);
   expect(within(-725)).toBe(-5);
   expect(within(190)).toBe(-170);
-  expect(turn([0.1 + 0.2, 0, 175], 15)).toBe('robot 0.3 0 -170');
-  expect(shift([1, 1, 0], 0.05, -0.05)).toBe('robot 1.05 0.95 0');
+  expect(putRobot([0.1 + 0.2, 0, 190])).toBe('robot 0.3 0 -170');
+  expect(putThing(3, [1 / 3, -1e-9, 0])).toBe('thing 3 0.3333 0');
 });

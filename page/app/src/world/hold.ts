@@ -49,28 +49,24 @@ function digits(value: number): string {
   return String(Number(value.toFixed(4)));
 }
 
-/** The order that carries what is held to a finger. */
-export function carry(held: Held, [x, y]: readonly [number, number]): string {
-  const at = `${digits(x + held.offset[0])} ${digits(y + held.offset[1])}`;
-  return held.is === 'robot' ? robotOrder(at, held.degrees) : `thing ${held.number} ${at}`;
+/** The order that puts the robot somewhere. */
+export function putRobot([x, y, degrees]: Place): string {
+  // Within half a turn: a robot that has turned often has great angles.
+  return `robot ${digits(x)} ${digits(y)} ${digits(within(degrees))}`;
 }
 
-function robotOrder(at: string, degrees: number): string {
-  // Within half a turn: a robot that has turned often has great angles.
-  return `robot ${at} ${digits(within(degrees))}`;
+/** The order that puts a thing somewhere. */
+export function putThing(number: number, [x, y]: Place): string {
+  return `thing ${number} ${digits(x)} ${digits(y)}`;
+}
+
+/** The order that carries what is held to a finger. */
+export function carry(held: Held, [x, y]: readonly [number, number]): string {
+  const at: Place = [x + held.offset[0], y + held.offset[1], held.degrees];
+  return held.is === 'robot' ? putRobot(at) : putThing(held.number, at);
 }
 
 /** A heading within half a turn to each side. */
 export function within(degrees: number): number {
   return ((((degrees + 180) % 360) + 360) % 360) - 180;
-}
-
-/** The order that turns a robot where it is. */
-export function turn([x, y, degrees]: Place, by: number): string {
-  return robotOrder(`${digits(x)} ${digits(y)}`, degrees + by);
-}
-
-/** The order that moves a robot by so many metres. */
-export function shift([x, y, degrees]: Place, right: number, up: number): string {
-  return robotOrder(`${digits(x + right)} ${digits(y + up)}`, degrees);
 }

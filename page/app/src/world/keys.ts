@@ -2,8 +2,9 @@
 //
 // Owns which key does what. Carrying robots and things goes through orders, as with a finger.
 
-import { carry, shift, turn } from './hold';
 import type { Robot } from '../robot/robot.svelte';
+import { putRobot, putThing } from './hold';
+import type { Place } from './types';
 import type { View } from './view';
 
 /** Pixels of one step over the picture. */
@@ -20,48 +21,54 @@ const ARROWS: Record<string, [right: number, up: number]> = {
   ArrowDown: [0, -1],
 };
 
-/** Does what a key says; false: it says nothing here. */
-export function press(
-  event: KeyboardEvent,
-  view: View,
-  robot: Robot,
-  order: (order: string) => void,
-): boolean {
-  if (event.ctrlKey || event.metaKey || event.altKey) return false;
-  const arrow = ARROWS[event.key];
-  if (arrow && event.shiftKey) return move(view, robot, arrow, order);
-  if (arrow) view.camera.pan(-arrow[0] * PAN, arrow[1] * PAN);
-  else if (event.key === '+' || event.key === '=') view.camera.zoom(ZOOM);
-  else if (event.key === '-') view.camera.zoom(1 / ZOOM);
-  else if (event.key === '0') view.fit();
-  else if (event.key === '[' || event.key === ']') pick(view, robot, event.key === ']' ? 1 : -1);
-  else if (event.key === ',' || event.key === '.') {
-    const at = robot.world?.robots[0]?.at;
-    if (at) order(turn(at, event.key === ',' ? TURN : -TURN));
-  } else return false;
-  view.touch();
-  return true;
-}
+/** How long a key goes on from where the one before has put something: its order may still be on the way. */
+const FRESH_MS = 400;
 
-function pick(view: View, robot: Robot, by: number): void {
-  const count = 1 + (robot.scene?.things.length ?? 0);
-  view.picked = (view.picked + by + count) % count;
-}
+/** Carries the robot and things by keys. */
+export class Keys {
+  /** Where the last key has put what is picked. */
+  #put: { picked: number; at: Place; when: number } | undefined;
 
-function move(
-  view: View,
-  robot: Robot,
-  [right, up]: [number, number],
-  order: (order: string) => void,
-): boolean {
-  const [x, y] = [right * STEP, up * STEP];
-  if (view.picked === 0) {
-    const at = robot.world?.robots[0]?.at;
-    if (at) order(shift(at, x, y));
-  } else {
-    const at = robot.world?.things[view.picked - 1];
-    const held = { is: 'thing' as const, number: view.picked - 1, degrees: 0 };
-    if (at) order(carry({ ...held, offset: [x, y] }, [at[0], at[1]]));
+  constructor(
+    private readonly view: View,
+    private readonly robot: Robot,
+    private readonly order: (order: string) => void,
+  ) {}
+
+  /** Does what a key says; false: it says nothing here. */
+  press(event: KeyboardEvent): boolean {
+    if (event.ctrlKey || event.metaKey || event.altKey) return false;
+    const { camera } = this.view;
+    const arrow = ARROWS[event.key];
+    if (arrow && event.shiftKey) this.#move(arrow[0] * STEP, arrow[1] * STEP, 0);
+    else if (arrow) camera.pan(-arrow[0] * PAN, arrow[1] * PAN);
+    else if (event.key === '+' || event.key === '=') camera.zoom(ZOOM);
+    else if (event.key === '-') camera.zoom(1 / ZOOM);
+    else if (event.key === '0') this.view.fit();
+    else if (event.key === '[') this.#pick(-1);
+    else if (event.key === ']') this.#pick(1);
+    else if (event.key === ',') this.#move(0, 0, TURN);
+    else if (event.key === '.') this.#move(0, 0, -TURN);
+    else return false;
+    this.view.touch();
+    return true;
   }
-  return true;
+
+  #pick(by: number): void {
+    const count = 1 + (this.robot.scene?.things.length ?? 0);
+    this.view.picked = (this.view.picked + by + count) % count;
+  }
+
+  #move(right: number, up: number, degrees: number): void {
+    const { picked } = this.view;
+    const world = this.robot.world;
+    const now = performance.now();
+    const isFresh = this.#put?.picked === picked && now - this.#put.when < FRESH_MS;
+    const told = picked === 0 ? world?.robots[0]?.at : world?.things[picked - 1];
+    const from = isFresh ? this.#put?.at : told;
+    if (!from) return;
+    const at: Place = [from[0] + right, from[1] + up, from[2] + degrees];
+    this.#put = { picked, at, when: now };
+    this.order(picked === 0 ? putRobot(at) : putThing(picked - 1, at));
+  }
 }

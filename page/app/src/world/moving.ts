@@ -121,8 +121,8 @@ function drawRays(context: Context, shape: Shape, rays: (number | null)[], thin:
     if (far === null) return;
     const angle = (lidar.degrees + (index * 360) / rays.length) * RADIANS;
     const [x, y] = [lidar.at[0] + far * Math.cos(angle), lidar.at[1] + far * Math.sin(angle)];
-    context.moveTo(x + 3 * thin, y);
-    context.arc(x, y, 3 * thin, 0, 2 * Math.PI);
+    context.moveTo(x + 2 * thin, y);
+    context.arc(x, y, 2 * thin, 0, 2 * Math.PI);
   });
   context.fillStyle = RAY;
   context.globalAlpha = 0.65;

@@ -19,8 +19,6 @@ export class View {
   /** What keys move: 0 is the robot, then things from 1; shown while the picture has the focus. */
   picked = 0;
   showsPicked = false;
-  /** How long the last drawings took, in milliseconds; for measurements. */
-  readonly costs: number[] = [];
   readonly #floor = new Floor(() => (this.#isDirty = true));
   #isDirty = true;
   #scene: Scene | undefined;
@@ -86,9 +84,7 @@ export class View {
     }
     if (!this.#isDirty) return;
     this.#isDirty = false;
-    const begun = performance.now();
     this.#draw(scene, world);
-    if (this.costs.push(performance.now() - begun) > 600) this.costs.shift();
   }
 
   #draw(scene: Scene, world: WorldState): void {
