@@ -55,11 +55,10 @@ impl Order {
             _ => return Err(why()),
         };
         // Only a world may be long.
-        match order {
-            Self::World(_) => Ok(order),
-            _ if is_long => Err(why()),
-            order => Ok(order),
+        if is_long && !matches!(order, Self::World(_)) {
+            return Err(why());
         }
+        Ok(order)
     }
 }
 

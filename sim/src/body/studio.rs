@@ -139,8 +139,11 @@ impl Studio {
             start: Pose::default(),
             version: 0,
         };
-        studio.start = studio.pose();
-        studio.senses.pose = studio.start;
+        studio.senses.pose = studio.pose();
+        studio.start = studio.senses.pose;
+        if let Some(start) = field.robot().and_then(start_of) {
+            studio.start = start;
+        }
         studio.read_sensors();
         studio
     }
@@ -314,6 +317,13 @@ impl Studio {
     }
 }
 
+/// Where the author of a world has a robot put back to, if that is said.
+fn start_of(robot: &crate::field::Robot) -> Option<Pose> {
+    let start = robot.start.as_ref()?;
+    let at = place(start.at);
+    Some(Pose::new(at.x, at.y, -start.direction.to_radians()))
+}
+
 /// A world model in a file.
 fn read(file: &str) -> Result<Field, BadOrder> {
     let unread = |error: std::io::Error| BadOrder::Unread(file.to_owned(), error.to_string());
@@ -402,9 +412,10 @@ impl Body for Studio {
             let half = point(robot.size.x / 2.0, robot.size.y / 2.0);
             let centre = point(robot.position.x + half.x, robot.position.y + half.y);
             let at = place(centre);
-            self.start = Pose::new(at.x, at.y, -robot.direction.to_radians());
+            let there = Pose::new(at.x, at.y, -robot.direction.to_radians());
+            self.start = start_of(robot).unwrap_or(there);
+            self.put(there);
         }
-        self.put(self.start);
         Ok(())
     }
 

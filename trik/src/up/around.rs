@@ -32,7 +32,8 @@ impl Around {
     /// `load BASE64`: the bytes of a world model or a project.
     fn load(&self, base64: &str) -> Result<(), Refused> {
         let bytes = picture::base64(base64).map_err(refused)?;
-        let found = world::of(bytes).map_err(refused)?;
+        let found = world::of(bytes)
+            .map_err(|why| refused(format!("no world can be read from this file: {why}")))?;
         let entered = self.watcher.enter(&found.field, found.locks);
         entered.map_err(refused)
     }
