@@ -34,7 +34,7 @@ export const en = {
   zoomFit: 'Fit',
   loadWorld: 'Load world',
   loadHint: 'A world or a project of TRIK Studio, .xml or .qrs; or drop it on the picture',
-  loadTooLong: (file: string, most: number) => `${file} is longer than ${most} MiB`,
+  loadTooLong: (file: string, most: number) => `${file} is longer than ${most} MB`,
   worldPose: (x: string, y: string, degrees: number) =>
     `The robot is at x ${x} m, y ${y} m and looks to ${degrees} degrees.`,
   worldStuck: 'It touches something.',

@@ -36,7 +36,7 @@ export const ru: Words = {
   zoomFit: 'Целиком',
   loadWorld: 'Загрузить мир',
   loadHint: 'Мир или проект TRIK Studio, .xml или .qrs; можно бросить файл на картину',
-  loadTooLong: (file, most) => `Файл ${file} больше ${most} МиБ`,
+  loadTooLong: (file, most) => `Файл ${file} больше ${most} МБ`,
   worldPose: (x, y, degrees) => `Робот в точке x ${x} м, y ${y} м, смотрит на ${degrees} градусов.`,
   worldStuck: 'Он во что-то упёрся.',
   worldDistance: (port, cm) =>

@@ -2,8 +2,8 @@
 //
 // Owns how large it may be. What is in it is checked by the simulator.
 
-/** The server takes 6 MiB of an order, and Base64 has four letters for three bytes. */
-export const FILE_BYTES_MAX = 4 << 20;
+/** In megabytes. The server takes 6 MiB of an order, and Base64 has four letters for three bytes. */
+export const FILE_MB_MAX = 4;
 
 /** The order that loads a world of these bytes. */
 export function loadOrder(bytes: Uint8Array): string {
