@@ -126,11 +126,21 @@ impl Listener {
             }
             Order::World(words) => {
                 self.need()?;
-                let world = self.shared.settings.world.as_ref().ok_or(Error::NoWorld)?;
-                world.order(&words).map_err(|why| Error::World(why.0))
+                let world = self.shared.settings.world.clone().ok_or(Error::NoWorld)?;
+                if words.len() <= limits::WORLD_QUICK_BYTES {
+                    return world.order(&words).map_err(|why| Error::World(why.0));
+                }
+                let news = self.news.clone();
+                tokio::task::spawn_blocking(move || {
+                    if let Err(why) = world.order(&words) {
+                        let _ = news.try_send(News::Refused(Error::World(why.0).to_string()));
+                    }
+                });
+                Ok(())
             }
             Order::Look(looks) => {
-                self.looks.send_replace(looks);
+                let changed = |now: &mut bool| std::mem::replace(now, looks) != looks;
+                self.looks.send_if_modified(changed);
                 Ok(())
             }
             Order::Take => {
@@ -212,7 +222,11 @@ impl Teller {
                     let now = *holder.borrow_and_update();
                     self.say(News::control(now, self.who)).await
                 }
-                Ok(()) = self.is_looked_at.changed() => true,
+                Ok(()) = self.is_looked_at.changed() => {
+                    // What a marker drew meanwhile was not seen here: the scene has it.
+                    shown = Shown::default();
+                    true
+                }
                 _ = pings.tick() => self.send(Message::Ping(Bytes::new())).await,
                 _ = pictures.tick(), if looks => self.show(&mut shown).await,
             };

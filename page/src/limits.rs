@@ -14,8 +14,12 @@ pub const CONNECTIONS_OF_ONE_MAX: usize = 96;
 pub const IDLE_TIME: Duration = Duration::from_secs(30);
 /// Bytes of one message of a browser: the greatest upload, as the control port takes it.
 pub const MESSAGE_BYTES_MAX: usize = frame::limits::CONTROL_BYTES;
-/// Bytes of an order in words: a value for an actuator, an order to the world.
+/// Bytes of an order in words: a value for an actuator.
 pub const WORDS_BYTES_MAX: usize = 64 << 10;
+/// Bytes of an order to the world: a world that a person drops on the page comes in it.
+pub const WORLD_BYTES_MAX: usize = 6 << 20;
+/// An order to the world that is longer takes time, so a thread of its own carries it out.
+pub const WORLD_QUICK_BYTES: usize = 4 << 10;
 /// Bytes of a path of the tree.
 pub const PATH_BYTES_MAX: usize = 1024;
 /// Orders to actuators that wait; of each actuator only the newest is carried out.

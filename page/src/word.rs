@@ -31,9 +31,10 @@ impl Order {
     /// It is none.
     pub fn parse(text: &str) -> Result<Self, Error> {
         let why = || Error::Words(text.chars().take(80).collect());
-        if text.len() > limits::WORDS_BYTES_MAX {
+        if text.len() > limits::WORLD_BYTES_MAX {
             return Err(why());
         }
+        let is_long = text.len() > limits::WORDS_BYTES_MAX;
         let value: Value = serde_json::from_str(text).map_err(|_| why())?;
         let text = |name: &str| value.get(name).and_then(Value::as_str).map(str::to_owned);
         let order = match text("do").ok_or_else(why)?.as_str() {
@@ -53,6 +54,10 @@ impl Order {
             "stop" => Self::Stop,
             _ => return Err(why()),
         };
+        // Only a world may be long.
+        if is_long && !matches!(order, Self::World(_)) {
+            return Err(why());
+        }
         Ok(order)
     }
 }
@@ -211,11 +216,18 @@ mod tests {
             r#"{"do":"fly"}"#,
             &format!(
                 r#"{{"do":"world","order":"{}"}}"#,
+                "x".repeat(limits::WORLD_BYTES_MAX)
+            ),
+            &format!(
+                r#"{{"do":"write","path":"a","value":"{}"}}"#,
                 "x".repeat(limits::WORDS_BYTES_MAX)
             ),
         ] {
-            assert!(Order::parse(bad).is_err(), "{bad}");
+            assert!(Order::parse(bad).is_err(), "{:.80}", bad);
         }
+        let world = "x".repeat(limits::WORDS_BYTES_MAX);
+        let long = format!(r#"{{"do":"world","order":"{world}"}}"#);
+        assert_eq!(Order::parse(&long).unwrap(), Order::World(world));
     }
 
     #[test]

@@ -13,7 +13,7 @@ pub trait World: Send + Sync {
     /// What moves, as JSON, at this moment.
     fn state(&self) -> String;
 
-    /// Does what a person orders, in words.
+    /// Does what a person orders, in words. Words that are long may take time.
     ///
     /// # Errors
     /// What is wrong with the words, for this person.

@@ -38,6 +38,7 @@ use lang_diagram::program::Program;
 use lang_diagram::stand_in::{Motion, motion};
 
 use crate::field::{self, Field, SensorKind};
+use crate::geometry::Point;
 use crate::limits;
 
 /// How a field is set going.
@@ -252,6 +253,34 @@ impl Arena {
             for stroke in old.trace() {
                 floor.mark(*stroke);
             }
+        }
+    }
+
+    /// A hand puts a thing elsewhere: `index` is that of [`Field::solids`]. False: there is no such thing.
+    pub fn put_solid(&mut self, index: usize, at: Point) -> bool {
+        let Some(solid) = self.field.solids.get_mut(index) else {
+            return false;
+        };
+        solid.at = at;
+        self.solids.moved(index, solid);
+        // Its body is made anew where it stands now.
+        self.dynamics = None;
+        true
+    }
+
+    /// All things go to where another field has them, robots stay.
+    pub fn put_solids_of(&mut self, other: &Field) {
+        self.field.solids.clone_from(&other.solids);
+        for (index, solid) in self.field.solids.iter().enumerate() {
+            self.solids.moved(index, solid);
+        }
+        self.dynamics = None;
+    }
+
+    /// Takes away what markers have left.
+    pub fn wipe(&mut self) {
+        if let Some(floor) = &mut self.floor {
+            floor.wipe();
         }
     }
 

@@ -10,6 +10,7 @@ use crate::limits::{MAX_SPEED, MIN_SPEED};
 use crate::machine::{BusCount, Machine};
 use crate::root::Root;
 use crate::shared::Shared;
+use crate::show::Watcher;
 use std::io;
 use std::path::Path;
 use std::sync::Arc;
@@ -118,6 +119,11 @@ impl Board {
     /// What was said since the last call, in order; of a great many only the newest.
     pub fn take_said(&self) -> Vec<String> {
         self.shared.machine().sayings.drain(..).collect()
+    }
+
+    /// For people who look at the world around it; nothing if there is none.
+    pub fn watcher(&self) -> Option<Watcher> {
+        Watcher::of(&self.shared)
     }
 
     /// How everything stands now.

@@ -6,14 +6,18 @@
 pub mod battery;
 pub mod bench;
 pub mod motor;
+mod order;
+mod pace;
 pub mod rolling;
 pub mod studio;
 pub mod two_wheels;
 
+pub use order::{BadOrder, Order};
+
+use crate::field::{Field, Locks};
 use crate::geometry::Pose;
-use crate::limits;
+use crate::show::{Moving, Scene};
 use crate::world::Colour;
-use std::fmt;
 
 /// What one power motor gets.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,51 +71,23 @@ pub struct Senses {
     pub bumps: u32,
 }
 
-/// Why an order to the world is not done.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum BadOrder {
-    /// The world takes none: the person who started it chose this one.
-    NoOrders,
-    /// The words are no order.
-    Unknown(String),
-    /// A count of ticks that cannot be.
-    Ticks,
-    /// A speed that cannot be.
-    Speed(String),
-    /// The author of the project locks its world.
-    Locked,
-    /// A file of a world that cannot be read, and what the system says.
-    Unread(String, String),
-    /// A file that is no world, and the first thing that is wrong in it.
-    Field(String, String),
-}
+/// What lies still feels that.
+const GRAVITY_MPS2: f64 = 9.81;
 
-impl fmt::Display for BadOrder {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        const ORDERS: &str = "pause, go, step, step NUMBER, speed NUMBER or field FILE";
-        match self {
-            Self::NoOrders => {
-                out.write_str("this world takes no orders; one of `trik up --world` does")
-            }
-            Self::Unknown(words) => write!(out, "'{words}' is no order: there are {ORDERS}"),
-            Self::Ticks => {
-                write!(
-                    out,
-                    "step takes 1 to {} ticks of 10 ms",
-                    limits::STEPS_ORDERED
-                )
-            }
-            Self::Speed(word) => {
-                let (least, most) = (limits::MIN_SPEED, limits::MAX_SPEED);
-                write!(out, "speed takes {least} to {most}, not '{word}'")
-            }
-            Self::Locked => out.write_str("the project of this world locks it: its walls stay"),
-            Self::Unread(file, why) | Self::Field(file, why) => write!(out, "{file}: {why}"),
+impl Senses {
+    /// While time stands still nothing turns and nothing is pushed.
+    #[must_use]
+    pub fn paused(self, is_paused: bool) -> Self {
+        if !is_paused {
+            return self;
+        }
+        Self {
+            acceleration_mps2: [0.0, 0.0, GRAVITY_MPS2],
+            rate_dps: [0.0; 3],
+            ..self
         }
     }
 }
-
-impl std::error::Error for BadOrder {}
 
 /// A robot in its world.
 pub trait Body: Send {
@@ -136,12 +112,35 @@ pub trait Body: Send {
     /// Whether there is an infrared camera on bus 1; it looks where the other one looks.
     fn has_infrared_camera(&self) -> bool;
 
-    /// Does what a person orders the world itself, in words.
+    /// Does what a person orders the world itself, in words that [`Order`] reads.
     ///
     /// # Errors
     /// What is wrong with the words, for this person.
     fn order(&mut self, _words: &str) -> Result<(), BadOrder> {
         Err(BadOrder::NoOrders)
+    }
+
+    /// Puts another world of TRIK Studio around the robot, and the robot to where that has it.
+    ///
+    /// # Errors
+    /// This world stays as it is.
+    fn enter(&mut self, _field: &Field, _locks: Locks) -> Result<(), BadOrder> {
+        Err(BadOrder::NoOrders)
+    }
+
+    /// What stands still around it, for people; nothing without a world.
+    fn scene(&self) -> Option<Scene> {
+        None
+    }
+
+    /// Changes whenever what stands still does.
+    fn version(&self) -> u32 {
+        0
+    }
+
+    /// What moves, for people. Looking changes nothing.
+    fn moving(&self) -> Moving {
+        Moving::default()
     }
 
     /// What a camera sees: `right` and `down` from -1 to 1 across its picture. Nothing without a camera.

@@ -193,6 +193,29 @@ impl Fault {
     }
 }
 
+impl fmt::Display for Fault {
+    /// As a person would tell it, its parts with commas between them; nothing is wrong: nothing.
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut words: Vec<String> = Vec::new();
+        let flags = [
+            (self.unplug, "unplug"),
+            (self.stuck, "stuck"),
+            (self.garbage, "garbage"),
+        ];
+        words.extend(flags.iter().filter(|one| one.0).map(|one| one.1.to_owned()));
+        let numbers = [
+            ("nack", self.nack),
+            ("slow", f64::from(self.slow_ms)),
+            ("noise", self.noise),
+            ("drop", self.drop),
+            ("sag", self.sag_v),
+        ];
+        let told = numbers.iter().filter(|one| one.1 != 0.0);
+        words.extend(told.map(|(kind, number)| format!("{kind} {number}")));
+        out.write_str(&words.join(", "))
+    }
+}
+
 /// The faults of all devices.
 #[derive(Debug, Clone, Copy)]
 pub struct Faults([Fault; COUNT]);
@@ -219,6 +242,13 @@ impl Faults {
         };
         self.0[index] = Fault::parse(text, kinds(index))?;
         Ok(())
+    }
+
+    /// Devices that are not whole, and what is wrong with each.
+    pub fn in_force(&self) -> impl Iterator<Item = (&'static str, String)> {
+        let all = NAMES.iter().zip(&self.0);
+        all.filter(|(_, fault)| **fault != Fault::default())
+            .map(|(name, fault)| (*name, fault.to_string()))
     }
 }
 

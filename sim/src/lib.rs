@@ -36,5 +36,6 @@ pub mod robots;
 mod root;
 mod sensors;
 mod shared;
+pub mod show;
 mod sysfs;
 pub mod world;

@@ -10,6 +10,16 @@ pub const MAX_CATCH_UP_S: f64 = 2.0;
 pub const MAX_SPEED: f64 = 100.0;
 /// See [`MAX_SPEED`].
 pub const MIN_SPEED: f64 = 0.01;
+/// Steps of a room that one step of its board does at most, beside those that its speed asks for.
+pub const PACE_STEPS: u32 = 100;
+/// Farthest place where a hand puts something, in metres either way, and the greatest number of degrees.
+pub const PLACE_M: f64 = 1000.0;
+/// How long a text of what moves serves everybody who looks, in milliseconds.
+pub const SHOWN_MS: u64 = 8;
+/// Rays of a lidar that people are shown.
+pub const RAYS_SHOWN: u32 = 36;
+/// Strokes of markers that a scene has; of more the newest.
+pub const STROKES_SHOWN: usize = 20_000;
 /// The board looks after its files at least so often.
 pub const TICK_MS: u16 = 20;
 /// Clients of one bus; more are accepted and closed at once.

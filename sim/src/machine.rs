@@ -5,6 +5,7 @@
 
 use crate::body::{BadOrder, Body, Drive, Power, Senses};
 use crate::faults::{self, Faults};
+use crate::field::{Field, Locks};
 use crate::limits::{MAX_CATCH_UP_S, SAYINGS_MAX, STEP_S};
 use crate::mlx90640::{self, Mlx90640};
 use crate::msp430::{self, Msp430};
@@ -132,6 +133,11 @@ impl Machine {
     /// Orders the world something, see [`Body::order`].
     pub fn order(&mut self, words: &str) -> Result<(), BadOrder> {
         self.body.order(words)
+    }
+
+    /// Puts another world around the robot, see [`Body::enter`].
+    pub fn enter(&mut self, field: &Field, locks: Locks) -> Result<(), BadOrder> {
+        self.body.enter(field, locks)
     }
 
     /// Makes the steps that are due by now.

@@ -3,6 +3,7 @@
 //! Owns what stands where and what a ray meets; knows no robot and no sensor.
 
 use crate::geometry::{Point, Segment, circle_met_by, point};
+use crate::show::{Item, Kind, Thing};
 
 /// Red, green and blue, 0 to 255 each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,14 +16,24 @@ pub struct Colour {
     pub blue: u8,
 }
 
+impl Colour {
+    /// As `#rrggbb`.
+    pub fn text(self) -> String {
+        format!("#{:02x}{:02x}{:02x}", self.red, self.green, self.blue)
+    }
+}
+
 /// A colour from its parts.
 pub const fn colour(red: u8, green: u8, blue: u8) -> Colour {
     Colour { red, green, blue }
 }
 
-const FLOOR: Colour = colour(235, 235, 230);
+/// The colour of the floor where no line is.
+pub const FLOOR: Colour = colour(235, 235, 230);
 const LINE: Colour = colour(12, 12, 12);
 const WALL: Colour = colour(120, 150, 190);
+/// Walls have no width; people see this one.
+const WALL_SHOWN_M: f64 = 0.012;
 
 /// A painted line on the floor.
 #[derive(Debug, Clone)]
@@ -122,6 +133,55 @@ impl World {
     /// The balls.
     pub fn balls(&self) -> &[Ball] {
         &self.balls
+    }
+
+    /// A hand puts a ball elsewhere. False: there is no such ball.
+    pub fn put_ball(&mut self, index: usize, at: Point) -> bool {
+        let ball = self.balls.get_mut(index);
+        ball.map(|ball| ball.at = at).is_some()
+    }
+
+    /// All balls go to where another world has them.
+    pub fn put_balls_of(&mut self, other: &Self) {
+        self.balls.clone_from(&other.balls);
+    }
+
+    /// Left, bottom, right and top of its walls; nothing without any.
+    pub fn bounds(&self) -> Option<[f64; 4]> {
+        let ends = || self.walls.iter().flat_map(|wall| [wall.from, wall.to]);
+        let first = ends().next()?;
+        let begin = [first.x, first.y, first.x, first.y];
+        let grown = |[left, bottom, right, top]: [f64; 4], at: Point| {
+            [
+                left.min(at.x),
+                bottom.min(at.y),
+                right.max(at.x),
+                top.max(at.y),
+            ]
+        };
+        Some(ends().fold(begin, grown))
+    }
+
+    /// What stands and lies there, for people: lines, then walls.
+    pub fn items(&self) -> Vec<Item> {
+        let line =
+            |line: &Line| Item::line(Kind::Line, line.corners.clone(), &LINE.text(), line.width_m);
+        let wall = |wall: &Segment| {
+            let points = vec![wall.from, wall.to];
+            Item::line(Kind::Wall, points, &WALL.text(), WALL_SHOWN_M)
+        };
+        let lines = self.lines.iter().map(line);
+        lines.chain(self.walls.iter().map(wall)).collect()
+    }
+
+    /// Its balls, for people.
+    pub fn things(&self) -> Vec<Thing> {
+        let thing = |ball: &Ball| Thing {
+            kind: "ball",
+            size_m: 2.0 * ball.radius_m,
+            colour: ball.colour.text(),
+        };
+        self.balls.iter().map(thing).collect()
     }
 
     /// How dark the floor is under a spot of this radius: 0 is white, 1 is a black line.

@@ -57,12 +57,25 @@ fn fault(args: &FaultArgs) -> Result<String, Error> {
         true => String::new(),
         false => args.kind.join(" "),
     };
-    Faults::default()
-        .set(device, &text)
-        .map_err(|why| Error::Refused(why.to_string()))?;
-    let faults = robot?.board.join("faults");
-    put(&faults, device, &text).map_err(|error| Error::file(&faults.join(device), error))?;
+    check(device, &text)?;
+    set(&robot?.board, device, &text)?;
     Ok(String::new())
+}
+
+/// There is such a device, and it can have such faults.
+fn check(device: &str, text: &str) -> Result<(), Error> {
+    let checked = Faults::default().set(device, text);
+    checked.map_err(|why| Error::Refused(why.to_string()))
+}
+
+/// Makes the text the fault of a device of the board there; an empty one makes it whole.
+///
+/// # Errors
+/// No such device or kind, or the file cannot be written.
+pub(crate) fn set(board: &Path, device: &str, text: &str) -> Result<(), Error> {
+    check(device, text)?;
+    let faults = board.join("faults");
+    put(&faults, device, text).map_err(|error| Error::file(&faults.join(device), error))
 }
 
 /// The robot that is meant.

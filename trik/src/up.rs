@@ -1,10 +1,11 @@
 //! `trik up`: a virtual board in this process, the tree over it in child processes, and the person in front of them.
 //!
 //! Owns the order of place and board, and what the board is for a `session`, which is the run over it. `tree` is the child,
-//! `companion` others beside it, of which there are `trikd` and `ev3dev`, `world` reads worlds of TRIK Studio, `model` makes
+//! `companion` others beside it, of which there are `trikd` and `ev3dev`, `world` reads worlds of TRIK Studio, `around` is the world for the page, `model` makes
 //! a robot of a model, `view` says how the robot is, `screen` draws it, `hints` says what to try.
 
 pub(crate) mod args;
+mod around;
 mod companion;
 mod ev3dev;
 mod hints;
@@ -21,6 +22,7 @@ use crate::error::Error;
 use crate::place::{self, Place};
 use crate::refusal::Refusal;
 use args::{UpArgs, absolute};
+use around::Around;
 use page::Served;
 use session::{Beneath, Over, Session, signals};
 use sim::board::{Board, Options};
@@ -29,6 +31,7 @@ use sim::body::studio::{self, Studio};
 use sim::field::{Field, Locks};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use trikd::Trikd;
 
 /// Runs a virtual robot until somebody stops it.
@@ -93,7 +96,10 @@ fn simulate(args: UpArgs) -> Result<(), Error> {
         board: &board,
     };
     let name = virtual_robot.robot.to_owned();
-    let page = Served::start(&args.serving, &place, trikd.as_ref(), name, None)?;
+    let seen = board.watcher().map(|watcher| -> Arc<dyn page::World> {
+        Arc::new(Around::new(watcher, place.board.clone()))
+    });
+    let page = Served::start(&args.serving, &place, trikd.as_ref(), name, seen)?;
     let over = Over {
         ev3dev,
         trikd,

@@ -167,13 +167,8 @@ impl Rolling {
         {
             return Err(Refusal::NoPlaceToStart);
         }
-        let turned = Pose {
-            at: Point::default(),
-            heading_rad: start.heading_rad - begin.heading_rad,
-        };
-        let at = start.at.from(turned.place(begin.at.x, begin.at.y));
-        rolling.plane = Pose { at, ..turned };
         rolling.pose = start;
+        rolling.put(start);
         Ok(rolling)
     }
 
@@ -246,6 +241,25 @@ impl Rolling {
             y: self.plane.at.y + way.y,
         };
         self.pose.at = to;
+    }
+
+    /// A hand puts it there: the plane of the model moves, its states stay.
+    pub fn put(&mut self, to: Pose) {
+        let found = self.found();
+        let heading_rad = nearest(to.heading_rad, self.pose.heading_rad);
+        let turned = Pose {
+            at: Point::default(),
+            heading_rad: heading_rad - found.heading_rad,
+        };
+        let at = to.at.from(turned.place(found.at.x, found.at.y));
+        let is_finite = at.x.is_finite() && at.y.is_finite() && turned.heading_rad.is_finite();
+        if is_finite {
+            self.plane = Pose { at, ..turned };
+            self.pose = Pose {
+                at: to.at,
+                heading_rad,
+            };
+        }
     }
 
     /// The place as the model has it.

@@ -9,28 +9,28 @@ use std::io::Read;
 
 use lang_diagram::brick::{Brick, Command};
 use lang_diagram::ports::Port;
-use lang_diagram::stand_in::PIXELS_IN_CM;
+use lang_diagram::stand_in;
 
 use super::battery::Battery;
 use super::two_wheels::sharp_gp2_raw;
-use super::{BadOrder, Body, Drive, Power, Senses};
+use super::{BadOrder, Body, Drive, GRAVITY_MPS2, Order, Power, Senses};
 use crate::arena::floor::{Window, sensors};
-use crate::arena::{Arena, Setup, Timeline, ranges};
-use crate::field::{Field, Locks, SensorKind};
+use crate::arena::{Arena, Setup, Timeline, ranges, screen};
+use crate::field::{Field, Locks, Sensor, SensorKind};
 use crate::geometry::{Point, Pose, point};
 use crate::limits;
+use crate::show::field::{PIXELS_IN_M, pixels, place};
+use crate::show::{self, Moving, Placed, Scene};
 use crate::world::{Colour, colour};
 
-/// Pixels in a metre.
-const PIXELS_IN_M: f64 = PIXELS_IN_CM * 100.0;
 /// A tick of the arena in seconds.
 const TICK_S: f64 = 0.01;
-/// What lies on a table.
-const GRAVITY_MPS2: f64 = 9.81;
 /// What the converter gives for a touch sensor that is pressed, and one that is not.
 const TOUCH_RAW: [f64; 2] = [20.0, 1000.0];
 /// What it gives for white, and how much more for black.
 const LIGHT_RAW: [f64; 2] = [30.0, 993.0];
+/// What a light sensor of the original says of black; of white it says 0.
+const LIGHT_WHOLE: f64 = 99.0;
 /// How much of its picture the camera shows: as much as the line sensor of the original sees.
 const CAMERA_PART: f64 = 2.0;
 
@@ -108,8 +108,13 @@ pub struct Studio {
     seen: Window,
     /// Whether anybody has looked since.
     is_looked_at: Cell<bool>,
-    /// Whether a teacher has locked its walls.
-    is_locked: bool,
+    /// What a teacher has locked.
+    locks: Locks,
+    /// The field as it was before anything moved, and where the robot begins.
+    begun: Field,
+    start: Pose,
+    /// Of what stands still.
+    version: u32,
 }
 
 impl Studio {
@@ -129,16 +134,23 @@ impl Studio {
             was_stuck: false,
             seen: Window::default(),
             is_looked_at: Cell::new(true),
-            is_locked: false,
+            locks: Locks::default(),
+            begun: field.clone(),
+            start: Pose::default(),
+            version: 0,
         };
         studio.senses.pose = studio.pose();
+        studio.start = studio.senses.pose;
+        if let Some(start) = field.robot().and_then(start_of) {
+            studio.start = start;
+        }
         studio.read_sensors();
         studio
     }
 
     /// The same, with what a teacher has locked: nobody puts other walls around the robot.
     pub fn locked(mut self, locks: Locks) -> Self {
-        self.is_locked = locks.world;
+        self.locks = locks;
         self
     }
 
@@ -220,7 +232,76 @@ impl Studio {
                 .background
                 .clone_from(&to.settings.background);
         });
+        self.begun.solids.clone_from(&to.solids);
+        self.version = self.version.wrapping_add(1);
         self.read_sensors();
+    }
+
+    /// A hand puts the robot there. It feels no push.
+    fn put(&mut self, to: Pose) {
+        let at = pixels(to.at);
+        if let Some(robot) = self.arena.robot_mut(0) {
+            let size = robot.description().size;
+            robot.put(stand_in::Pose {
+                x: at.x - size.x / 2.0,
+                y: at.y - size.y / 2.0,
+                degrees: -to.heading_rad.to_degrees(),
+            });
+        }
+        self.senses.pose = self.pose();
+        self.velocity_mps = Point::default();
+        self.read_sensors();
+    }
+
+    /// Does what a person orders time and things.
+    fn obey(&mut self, order: Order<'_>) -> Result<(), BadOrder> {
+        match order {
+            Order::Pause => self.timeline.pause(true),
+            Order::Go => self.timeline.pause(false),
+            Order::Step(ticks) => {
+                self.timeline.pause(true);
+                (0..ticks).for_each(|_| self.timeline.step());
+            }
+            Order::Speed(speed) => self.timeline.set_speed(speed),
+            Order::Field(_) if self.locks.world => return Err(BadOrder::Locked),
+            Order::Field(file) => self.change(&read(file)?),
+            Order::Reset => {
+                self.arena.put_solids_of(&self.begun);
+                if !self.arena.trace().is_empty() {
+                    self.arena.wipe();
+                    self.version = self.version.wrapping_add(1);
+                }
+                self.put(self.start);
+            }
+            Order::Robot(_) if self.locks.robot_position => return Err(BadOrder::RobotLocked),
+            Order::Robot(pose) => self.put(pose),
+            Order::Thing(..) if self.locks.world => return Err(BadOrder::Locked),
+            Order::Thing(number, at) => {
+                if !self.arena.put_solid(number, pixels(at)) {
+                    return Err(BadOrder::NoThing(number));
+                }
+                self.read_sensors();
+            }
+        }
+        Ok(())
+    }
+
+    /// What a sensor that people see has said last.
+    fn reading(&self, sensor: &Sensor) -> Option<f64> {
+        let port = sensor.port?;
+        let robot = &self.arena.robots()[0];
+        let said = f64::from(robot.readings.last(port));
+        let within = |beam: ranges::Beam| {
+            let is_near = said < f64::from(beam.reach_cm);
+            is_near.then_some(said / 100.0)
+        };
+        match sensor.kind {
+            SensorKind::Infrared => within(ranges::INFRARED),
+            SensorKind::Sonar => within(ranges::SONAR),
+            SensorKind::Light => Some(said / LIGHT_WHOLE),
+            SensorKind::Touch => Some(said),
+            SensorKind::Camera | SensorKind::Lidar | SensorKind::Other => None,
+        }
     }
 
     fn analog(&mut self, index: usize) -> Option<f64> {
@@ -230,10 +311,17 @@ impl Studio {
         match kind {
             SensorKind::Infrared => Some(sharp_gp2_raw(reading)),
             SensorKind::Touch => Some(TOUCH_RAW[usize::from(reading == 0.0)]),
-            SensorKind::Light => Some(LIGHT_RAW[0] + LIGHT_RAW[1] * reading / 99.0),
+            SensorKind::Light => Some(LIGHT_RAW[0] + LIGHT_RAW[1] * reading / LIGHT_WHOLE),
             SensorKind::Sonar | SensorKind::Camera | SensorKind::Lidar | SensorKind::Other => None,
         }
     }
+}
+
+/// Where the author of a world has a robot put back to, if that is said.
+fn start_of(robot: &crate::field::Robot) -> Option<Pose> {
+    let start = robot.start.as_ref()?;
+    let at = place(start.at);
+    Some(Pose::new(at.x, at.y, -start.direction.to_radians()))
 }
 
 /// A world model in a file.
@@ -277,10 +365,11 @@ impl Body for Studio {
     }
 
     fn senses(&self) -> Senses {
-        Senses {
+        let senses = Senses {
             battery_v: self.battery.voltage_v(),
             ..self.senses
-        }
+        };
+        senses.paused(self.timeline.is_paused())
     }
 
     fn shafts_deg(&self) -> [f64; 4] {
@@ -310,37 +399,75 @@ impl Body for Studio {
     }
 
     fn order(&mut self, words: &str) -> Result<(), BadOrder> {
-        let words = words.trim();
-        let (order, rest) = words.split_once(' ').unwrap_or((words, ""));
-        let rest = rest.trim();
-        match (order, rest) {
-            ("pause", "") => self.timeline.pause(true),
-            ("go", "") => self.timeline.pause(false),
-            ("step", _) => {
-                let ticks: u32 = if rest.is_empty() {
-                    1
-                } else {
-                    rest.parse().unwrap_or(0)
-                };
-                if !(1..=limits::STEPS_ORDERED).contains(&ticks) {
-                    return Err(BadOrder::Ticks);
-                }
-                self.timeline.pause(true);
-                (0..ticks).for_each(|_| self.timeline.step());
-            }
-            ("speed", _) => {
-                let (least, most) = (limits::MIN_SPEED, limits::MAX_SPEED);
-                let speed: f64 = rest.parse().unwrap_or(f64::NAN);
-                if !(least..=most).contains(&speed) {
-                    return Err(BadOrder::Speed(rest.to_owned()));
-                }
-                self.timeline.set_speed(speed);
-            }
-            ("field", _) if self.is_locked => return Err(BadOrder::Locked),
-            ("field", file) if !file.is_empty() => self.change(&read(file)?),
-            _ => return Err(BadOrder::Unknown(words.to_owned())),
+        self.obey(Order::parse(words)?)
+    }
+
+    fn enter(&mut self, field: &Field, locks: Locks) -> Result<(), BadOrder> {
+        if self.locks.world {
+            return Err(BadOrder::Locked);
+        }
+        self.arena.wipe();
+        self.arena
+            .edit(|now| now.settings.clone_from(&field.settings));
+        self.change(field);
+        self.locks = locks;
+        if let Some(robot) = field.robot().or(field.robots.first()) {
+            let half = point(robot.size.x / 2.0, robot.size.y / 2.0);
+            let centre = point(robot.position.x + half.x, robot.position.y + half.y);
+            let at = place(centre);
+            let there = Pose::new(at.x, at.y, -robot.direction.to_radians());
+            self.start = start_of(robot).unwrap_or(there);
+            self.put(there);
         }
         Ok(())
+    }
+
+    fn scene(&self) -> Option<Scene> {
+        Some(Scene {
+            locks: self.locks,
+            takes_fields: !self.locks.world,
+            ..show::field::scene(&self.arena, self.start)
+        })
+    }
+
+    fn version(&self) -> u32 {
+        self.version
+    }
+
+    fn moving(&self) -> Moving {
+        let robot = &self.arena.robots()[0];
+        let readings = |sensor: &Sensor| {
+            show::field::sensor(robot.description(), sensor).map(|_| self.reading(sensor))
+        };
+        let thing = |solid: &crate::field::Solid| {
+            let at = place(solid.at);
+            Pose::new(at.x, at.y, -solid.rotation.to_radians())
+        };
+        let marker = robot.marker();
+        Moving {
+            time_s: f64::from(self.arena.now()) / 1000.0,
+            is_paused: self.timeline.is_paused(),
+            speed: self.timeline.speed(),
+            robots: vec![Placed {
+                pose: self.senses.pose,
+                readings: robot
+                    .description()
+                    .sensors
+                    .iter()
+                    .filter_map(readings)
+                    .collect(),
+                rays_m: match self.has_lidar() {
+                    true => show::rays(|angle| self.range_m(angle)),
+                    false => Vec::new(),
+                },
+                is_stuck: robot.is_stuck(),
+                marker: match marker.is_down {
+                    true => screen::hex(screen::named(&marker.colour)),
+                    false => String::new(),
+                },
+            }],
+            things: self.arena.field().solids.iter().map(thing).collect(),
+        }
     }
 
     /// Of the picture of the last tick.
@@ -358,143 +485,4 @@ impl Body for Studio {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::field::{Robot, Sensor, Wall};
-
-    fn field() -> Field {
-        let mut robot = Robot::default();
-        for (port, kind) in [("A1", SensorKind::Infrared), ("D1", SensorKind::Sonar)] {
-            let mut sensor = Sensor::new(Port::named(port).unwrap(), kind);
-            sensor.at = point(62.0, 25.0);
-            robot.sensors.push(sensor);
-        }
-        let mut field = Field::default();
-        field.robots.push(robot);
-        field
-            .walls
-            .push(Wall::new(point(200.0, -100.0), point(200.0, 100.0)));
-        field
-    }
-
-    fn full(percent: f64) -> Drive {
-        let mut drive = Drive::default();
-        drive.motors[2] = Power::Duty(percent);
-        drive.motors[3] = Power::Duty(percent);
-        drive
-    }
-
-    #[test]
-    fn a_second_straight_is_27_centimetres_and_the_wheels_say_so() {
-        let mut body = Studio::new(&Field::default(), 1);
-        let before = body.senses().pose;
-        for _ in 0..1000 {
-            body.step(0.001, &full(100.0));
-        }
-        let after = body.senses();
-        // 76.79 px in a second; the first tick only takes the speed.
-        let way = after.pose.at.x - before.at.x;
-        assert!((way - 0.2688).abs() < 0.004, "{way}");
-        assert_eq!(after.pose.at.y, before.at.y);
-        assert!((after.encoders_deg[2] - 550.0).abs() < 6.0);
-        assert_eq!(after.encoders_deg[0], 0.0);
-    }
-
-    #[test]
-    fn sensors_are_what_the_connectors_would_carry() {
-        let body = Studio::new(&field(), 1);
-        let senses = body.senses();
-        assert_eq!(senses.analog[0], Some(sharp_gp2_raw(47.0)));
-        assert_eq!(senses.analog[1], None);
-        assert_eq!(senses.ultrasonic_m, [Some(0.47), None, None]);
-        assert!(!body.has_lidar() && body.range_m(0.0).is_none());
-        assert!(senses.battery_v > 11.0);
-    }
-
-    #[test]
-    fn the_camera_sees_the_floor_before_it() {
-        let mut field = field();
-        let mut camera = Sensor::new(Port::named("A2").unwrap(), SensorKind::Camera);
-        camera.at = point(62.0, 25.0);
-        field.robots[0].sensors.push(camera);
-        let text = "<root version=\"20251219\"><settings/><world><colorFields><line begin=\"62:-50\" end=\"62:100\" \
-                    stroke=\"#ff000000\" stroke-width=\"6\"/></colorFields></world></root>";
-        let painted = Field::read(text).unwrap().field;
-        field.drawn = painted.drawn;
-        let body = Studio::new(&field, 1);
-        // The line lies across, in the middle of the picture.
-        assert_eq!(body.pixel(0.0, 0.0), Some(colour(0, 0, 0)));
-        assert_eq!(body.pixel(-0.9, 0.0), Some(colour(0, 0, 0)));
-        assert_eq!(body.pixel(0.0, -0.9), Some(colour(255, 255, 255)));
-        let blind = Studio::new(&Field::default(), 1);
-        assert_eq!(blind.pixel(0.0, 0.0), None);
-    }
-
-    #[test]
-    fn a_person_orders_time_and_walls() {
-        let mut body = Studio::new(&field(), 1);
-        let run = |body: &mut Studio| {
-            let before = body.senses().pose.at.x;
-            for _ in 0..500 {
-                body.step(0.001, &full(100.0));
-            }
-            body.senses().pose.at.x - before
-        };
-        let usual = run(&mut body);
-        assert!((usual - 0.134).abs() < 0.004, "{usual}");
-        body.order("pause").unwrap();
-        assert_eq!(run(&mut body), 0.0);
-        body.order("step 25").unwrap();
-        let stepped = run(&mut body);
-        assert!((stepped - usual / 2.0).abs() < 0.004, "{stepped}");
-        assert_eq!(run(&mut body), 0.0);
-        body.order("speed 0.5").unwrap();
-        body.order("go").unwrap();
-        let slow = run(&mut body);
-        assert!((slow - usual / 2.0).abs() < 0.004, "{slow}");
-        for words in [
-            "",
-            "fly",
-            "step 0",
-            "step 1e9",
-            "speed nan",
-            "speed 0",
-            "field",
-            "field /nowhere",
-        ] {
-            assert!(body.order(words).is_err(), "{words}");
-        }
-        let mut locked = Studio::new(&field(), 1).locked(Locks {
-            world: true,
-            ..Locks::default()
-        });
-        let refused = locked.order("field x.xml").unwrap_err();
-        assert_eq!(refused, BadOrder::Locked);
-        locked.order("pause").unwrap();
-        // The wall is gone in another field.
-        let before = body.senses().analog[0];
-        assert!(before > Some(sharp_gp2_raw(47.0)));
-        let file = std::env::temp_dir().join(format!("trik-field-{}.xml", std::process::id()));
-        std::fs::write(
-            &file,
-            "<root version=\"20251219\"><settings/><world/></root>",
-        )
-        .unwrap();
-        body.order(&format!("field {}", file.display())).unwrap();
-        std::fs::remove_file(&file).unwrap();
-        assert_eq!(body.senses().analog[0], Some(sharp_gp2_raw(80.0)));
-    }
-
-    #[test]
-    fn the_configuration_has_what_the_world_has() {
-        let text = configuration(&field());
-        for line in [
-            "{ port = 'M4', type = 'powerMotor', name = 'left', encoder = 'E4' },",
-            "{ port = 'A1', type = 'sharpGP2', name = 'infrared1' },",
-            "{ port = 'D1', type = 'ultrasonic', name = 'sonar1' },",
-        ] {
-            assert!(text.contains(line), "{line} in {text}");
-        }
-        assert!(!text.contains("A2") && !text.contains("lidar"));
-    }
-}
+mod tests;

@@ -5,12 +5,16 @@
 
 use super::battery::Battery;
 use super::motor::Motor;
+use super::pace::Pace;
 use super::rolling::refusal::Refusal;
 use super::rolling::{Actuator, Port, Rolling, Said};
-use super::{Body, Drive, Senses};
+use super::{BadOrder, Body, Drive, GRAVITY_MPS2, Order, Senses};
+use crate::field::{Field, Locks};
 use crate::geometry::{Point, Pose, point};
-use crate::world::{Colour, World, colour};
+use crate::show::{self, Moving, Placed, Scene, Sensor, Shape, Wheel};
+use crate::world::{self, Colour, World, colour};
 use lang_dcml::models;
+use lang_diagram::machine::STEP_MS;
 use std::f64::consts::FRAC_PI_2;
 
 const WHEEL_RADIUS_M: f64 = 0.028;
@@ -18,7 +22,6 @@ const TRACK_M: f64 = 0.155;
 /// The shipped model that moves it.
 const MODEL: &str = "differential-drive";
 const RADIUS_M: f64 = 0.11;
-const GRAVITY_MPS2: f64 = 9.81;
 /// Indices of the ports: M3 and E3 left, M4 and E4 right.
 const LEFT: usize = 2;
 const RIGHT: usize = 3;
@@ -38,6 +41,11 @@ const CAMERA_PITCH_RAD: f64 = 0.44;
 const CAMERA_HALF_WIDTH_RAD: f64 = 0.49;
 const CAMERA_HALF_HEIGHT_RAD: f64 = 0.37;
 const WALL_HEIGHT_M: f64 = 0.3;
+/// How far people see the infrared sensor look, as the original's.
+const SHARP_MAX_M: f64 = 0.8;
+/// What people see around the walls, and of a floor without any.
+const ROOM_M: f64 = 0.1;
+const EMPTY_M: f64 = 2.0;
 const SKY: Colour = colour(200, 210, 220);
 /// The chip's own filter of accelerations.
 const ACCELERATION_LAG_S: f64 = 0.01;
@@ -45,6 +53,10 @@ const ACCELERATION_LAG_S: f64 = 0.01;
 /// The robot, its world, and how it moves.
 pub struct TwoWheels {
     world: World,
+    /// The world before anything was moved, and where the robot began.
+    begun: (World, Pose),
+    pace: Pace,
+    time_s: f64,
     rolling: Rolling,
     motors: [Motor; 4],
     battery: Battery,
@@ -91,6 +103,9 @@ impl TwoWheels {
     /// Other wheels below the same body.
     pub fn on(world: World, rolling: Rolling) -> Self {
         Self {
+            begun: (world.clone(), rolling.pose()),
+            pace: Pace::default(),
+            time_s: 0.0,
             world,
             rolling,
             motors: [Motor::default(); 4],
@@ -175,8 +190,10 @@ fn light_raw(darkness: f64) -> f64 {
     30.0 + 993.0 * (0.05 + 0.85 * darkness)
 }
 
-impl Body for TwoWheels {
-    fn step(&mut self, dt_s: f64, drive: &Drive) {
+impl TwoWheels {
+    /// One step of the room.
+    fn go_on(&mut self, dt_s: f64, drive: &Drive) {
+        self.time_s += dt_s;
         let battery_v = self.battery.voltage_v();
         let mut turned_rad = [0.0; 4];
         let mut taken_a = 0.0;
@@ -191,13 +208,98 @@ impl Body for TwoWheels {
         self.roll(dt_s, turned_rad, drive.servos_ns);
     }
 
+    /// A hand puts it there, and out of walls. It feels no push.
+    fn put(&mut self, to: Pose) -> Result<(), BadOrder> {
+        let is_within = |[left, bottom, right, top]: [f64; 4]| {
+            (left..=right).contains(&to.at.x) && (bottom..=top).contains(&to.at.y)
+        };
+        if !self.world.bounds().is_none_or(is_within) {
+            return Err(BadOrder::Outside);
+        }
+        let (at, _) = self.world.pushed_out(to.at, RADIUS_M);
+        self.rolling.put(Pose { at, ..to });
+        self.velocity_mps = [0.0; 2];
+        Ok(())
+    }
+
+    /// What people see of it, in the order of [`Self::readings`].
+    fn shape(&self) -> Shape {
+        let sensor = |kind, port: &str, at, degrees, reach_m| Sensor {
+            kind,
+            port: port.to_owned(),
+            at,
+            degrees,
+            reach_m,
+            beam_degrees: if kind == "sonar" {
+                2.0 * BEAM_RAD.to_degrees()
+            } else {
+                0.0
+            },
+        };
+        let light = |port, left| sensor("light", port, point(LIGHT_AHEAD_M, left), 0.0, 0.0);
+        let front = point(RADIUS_M, 0.0);
+        let wheel = |port: &str, side: f64| Wheel {
+            port: port.to_owned(),
+            at: point(0.0, side * TRACK_M / 2.0),
+            radius_m: WHEEL_RADIUS_M,
+        };
+        Shape {
+            size_m: [2.0 * RADIUS_M; 2],
+            is_round: true,
+            // A model may have none there.
+            wheels: [(LEFT, "M3", 1.0), (RIGHT, "M4", -1.0)]
+                .into_iter()
+                .filter(|(index, ..)| self.rolling.has_motor(*index))
+                .map(|(_, port, side)| wheel(port, side))
+                .collect(),
+            sensors: vec![
+                sensor("infrared", "A1", front, 0.0, SHARP_MAX_M),
+                sensor("touch", "A3", front, 0.0, 0.0),
+                light("A5", LIGHT_BESIDE_M),
+                light("A6", -LIGHT_BESIDE_M),
+                sensor("sonar", "D1", front, 0.0, ULTRASONIC_MAX_M),
+                sensor("sonar", "D2", point(0.0, RADIUS_M), 90.0, ULTRASONIC_MAX_M),
+                sensor("camera", "camera", point(CAMERA_AHEAD_M, 0.0), 0.0, 0.0),
+                sensor("lidar", "lidar", Point::default(), 0.0, LIDAR_MAX_M),
+            ],
+        }
+    }
+
+    /// What its sensors see now, as people see it.
+    fn readings(&self) -> Vec<Option<f64>> {
+        let pose = self.rolling.pose();
+        let dark = |left| {
+            let at = pose.place(LIGHT_AHEAD_M, left);
+            Some(self.world.darkness(at, LIGHT_SPOT_M))
+        };
+        let ahead = Point::towards(pose.heading_rad);
+        let sharp_m = self.world.ray(pose.place(RADIUS_M, 0.0), ahead);
+        vec![
+            sharp_m.filter(|far| *far <= SHARP_MAX_M),
+            Some(f64::from(u8::from(self.touches))),
+            dark(LIGHT_BESIDE_M),
+            dark(-LIGHT_BESIDE_M),
+            self.echo(RADIUS_M, 0.0, 0.0),
+            self.echo(0.0, RADIUS_M, FRAC_PI_2),
+            None,
+            None,
+        ]
+    }
+}
+
+impl Body for TwoWheels {
+    fn step(&mut self, dt_s: f64, drive: &Drive) {
+        let (steps, dt_s) = self.pace.due(dt_s);
+        (0..steps).for_each(|_| self.go_on(dt_s, drive));
+    }
+
     fn weaken_battery(&mut self, volts: f64) {
         self.battery.sag_v = volts;
     }
 
     fn senses(&self) -> Senses {
         let touch = if self.touches { 20.0 } else { 1000.0 };
-        Senses {
+        let senses = Senses {
             pose: self.rolling.pose(),
             encoders_deg: self.shafts_deg(),
             analog: [
@@ -221,7 +323,8 @@ impl Body for TwoWheels {
             ],
             rate_dps: [0.0, 0.0, self.rate_rad_s.to_degrees()],
             bumps: self.bumps,
-        }
+        };
+        senses.paused(self.pace.is_paused)
     }
 
     fn shafts_deg(&self) -> [f64; 4] {
@@ -240,6 +343,76 @@ impl Body for TwoWheels {
         let towards = Point::towards(self.rolling.pose().heading_rad - clockwise_rad);
         let distance = self.world.ray(self.rolling.pose().at, towards)?;
         (distance <= LIDAR_MAX_M).then_some(distance)
+    }
+
+    fn order(&mut self, words: &str) -> Result<(), BadOrder> {
+        match Order::parse(words)? {
+            Order::Pause => self.pace.is_paused = true,
+            Order::Go => self.pace.is_paused = false,
+            Order::Step(ticks) => self
+                .pace
+                .order(f64::from(ticks) * f64::from(STEP_MS) / 1000.0),
+            Order::Speed(speed) => self.pace.speed = speed,
+            Order::Field(_) => return Err(BadOrder::OwnRoom),
+            Order::Reset => {
+                self.world.put_balls_of(&self.begun.0);
+                self.put(self.begun.1)?;
+            }
+            Order::Robot(pose) => self.put(pose)?,
+            Order::Thing(number, at) => {
+                if !self.world.put_ball(number, at) {
+                    return Err(BadOrder::NoThing(number));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn enter(&mut self, _field: &Field, _locks: Locks) -> Result<(), BadOrder> {
+        Err(BadOrder::OwnRoom)
+    }
+
+    fn scene(&self) -> Option<Scene> {
+        let begin = self.begun.1;
+        let [left, bottom, right, top] = self.world.bounds().unwrap_or([
+            begin.at.x - EMPTY_M,
+            begin.at.y - EMPTY_M,
+            begin.at.x + EMPTY_M,
+            begin.at.y + EMPTY_M,
+        ]);
+        Some(Scene {
+            bounds: [left - ROOM_M, bottom - ROOM_M, right + ROOM_M, top + ROOM_M],
+            floor: world::FLOOR.text(),
+            items: self.world.items(),
+            things: self.world.things(),
+            start: begin,
+            robots: vec![self.shape()],
+            ..Scene::default()
+        })
+    }
+
+    fn moving(&self) -> Moving {
+        Moving {
+            time_s: self.time_s,
+            is_paused: self.pace.is_paused,
+            speed: self.pace.speed,
+            robots: vec![Placed {
+                pose: self.rolling.pose(),
+                readings: self.readings(),
+                rays_m: show::rays(|angle| self.range_m(angle)),
+                is_stuck: self.is_at_wall,
+                marker: String::new(),
+            }],
+            things: self
+                .world
+                .balls()
+                .iter()
+                .map(|ball| Pose {
+                    at: ball.at,
+                    heading_rad: 0.0,
+                })
+                .collect(),
+        }
     }
 
     fn pixel(&self, right: f64, down: f64) -> Option<Colour> {
@@ -298,103 +471,4 @@ fn sees_ball(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::body::Power;
-
-    fn run(robot: &mut TwoWheels, seconds: f64, left: f64, right: f64) {
-        let mut drive = Drive::default();
-        drive.motors[LEFT] = Power::Duty(left);
-        drive.motors[RIGHT] = Power::Duty(right);
-        for _ in 0..(seconds * 1000.0) as u32 {
-            robot.step(0.001, &drive);
-        }
-    }
-
-    /// A quarter of a circle of radius 1 m around (0, 1): each wheel runs on a circle of its own.
-    #[test]
-    fn constant_wheel_speeds_make_an_arc() {
-        let quarter = FRAC_PI_2;
-        let mut turned_rad = [0.0; 4];
-        turned_rad[LEFT] = (1.0 - TRACK_M / 2.0) * quarter / WHEEL_RADIUS_M / 1000.0;
-        turned_rad[RIGHT] = (1.0 + TRACK_M / 2.0) * quarter / WHEEL_RADIUS_M / 1000.0;
-        let mut rolling = two_wheels(Pose::default()).unwrap();
-        for _ in 0..1000 {
-            rolling.roll(0.001, turned_rad, [0; 6]);
-        }
-        let end = rolling.pose();
-        assert!((end.at.x - 1.0).abs() < 1e-9 && (end.at.y - 1.0).abs() < 1e-9);
-        assert!((end.heading_rad - quarter).abs() < 1e-9);
-    }
-
-    #[test]
-    fn forward_is_forward_and_the_encoders_count_up() {
-        let mut robot = TwoWheels::new(World::empty(), Pose::default());
-        run(&mut robot, 2.0, 100.0, 100.0);
-        let senses = robot.senses();
-        assert!(senses.pose.at.x > 0.9, "{:?}", senses.pose);
-        assert!(senses.pose.at.y.abs() < 1e-9);
-        assert!(senses.encoders_deg[LEFT] > 1900.0);
-        // 0.028 m of radius: the way is the angle times the radius.
-        let way = senses.encoders_deg[RIGHT].to_radians() * WHEEL_RADIUS_M;
-        assert!((way - senses.pose.at.x).abs() < 1e-9);
-        assert!(senses.battery_v < 12.21, "the load sags the battery");
-    }
-
-    #[test]
-    fn a_faster_right_wheel_turns_to_the_left() {
-        let mut robot = TwoWheels::new(World::empty(), Pose::default());
-        run(&mut robot, 0.5, 10.0, 20.0);
-        let senses = robot.senses();
-        assert!(senses.pose.heading_rad > 0.1 && senses.rate_dps[2] > 1.0);
-        assert!(senses.acceleration_mps2[1] > 0.0, "the centre is left");
-    }
-
-    #[test]
-    fn a_wall_stops_it_presses_the_bumper_and_is_seen() {
-        let mut world = World::empty();
-        world.add_wall(point(1.0, -5.0), point(1.0, 5.0));
-        let mut robot = TwoWheels::new(world, Pose::default());
-        let before = robot.senses();
-        assert!((before.ultrasonic_m[0].unwrap() - 0.89).abs() < 1e-9);
-        assert_eq!(before.ultrasonic_m[1], None, "there is no wall on the left");
-        assert!((before.analog[0].unwrap() - 8697.0 / 91.0).abs() < 1e-9);
-        assert!((robot.range_m(0.0).unwrap() - 1.0).abs() < 1e-9);
-        assert_eq!(before.analog[2], Some(1000.0));
-        assert_eq!(before.bumps, 0);
-        run(&mut robot, 5.0, 100.0, 100.0);
-        let after = robot.senses();
-        assert!((after.pose.at.x - 0.89).abs() < 1e-6, "{:?}", after.pose);
-        assert_eq!(after.analog[2], Some(20.0));
-        assert_eq!(after.bumps, 1, "it stays there");
-        assert!(
-            after.encoders_deg[LEFT] > 4000.0,
-            "the wheels slip on at the wall"
-        );
-    }
-
-    /// Three points of the sensor's table: 511 at 15 cm, 322 at 25 cm, 235 at 35 cm.
-    #[test]
-    fn the_sharp_sensor_has_the_three_points_of_its_table() {
-        for (cm, raw) in [(15.0, 511.0), (25.0, 322.0), (35.0, 235.0)] {
-            assert!((sharp_gp2_raw(cm) - raw).abs() < 1.0, "{cm}");
-        }
-        assert!(sharp_gp2_raw(3.0) < sharp_gp2_raw(8.0));
-    }
-
-    #[test]
-    fn the_camera_sees_floor_line_wall_and_ball() {
-        let robot = TwoWheels::new(World::room(), Pose::new(1.0, 0.4, 0.0));
-        let line = robot.pixel(0.0, 0.5).unwrap();
-        assert!(line.red < 30, "{line:?}");
-        assert!(robot.pixel(0.9, 0.9).unwrap().red > 200);
-        let robot = TwoWheels::new(World::room(), Pose::new(2.2, 1.0, 0.0));
-        let any_red = (-40..40).any(|row| {
-            robot
-                .pixel(0.0, f64::from(row) / 40.0)
-                .is_some_and(|seen| seen.red > 200 && seen.green < 50)
-        });
-        assert!(any_red, "the ball is ahead");
-        assert_eq!(robot.pixel(0.9, -0.9), Some(colour(120, 150, 190)));
-    }
-}
+mod tests;

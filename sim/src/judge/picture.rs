@@ -4,7 +4,7 @@
 //! no simulation: it draws a field and a trajectory.
 
 mod page;
-mod shapes;
+pub(crate) mod shapes;
 
 pub use page::{Caption, page};
 
@@ -224,7 +224,7 @@ fn body(robot: usize, svg: &mut Svg) {
 }
 
 /// Whether a point can be drawn.
-fn is_near(at: Point) -> bool {
+pub(crate) fn is_near(at: Point) -> bool {
     at.x.abs() < crate::limits::FAR_PX && at.y.abs() < crate::limits::FAR_PX
 }
 

@@ -7,7 +7,7 @@ use super::args::ServingArgs;
 use super::trikd::{Trikd, reachable};
 use crate::error::Error;
 use crate::place::Place;
-use page::world::World;
+pub(super) use page::world::World;
 use page::{Everybody, Page, Settings};
 use std::net::{IpAddr, SocketAddr};
 use std::process::{Command, Stdio};

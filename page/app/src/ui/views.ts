@@ -7,6 +7,7 @@ import Log from '../log/Log.svelte';
 import Program from '../program/Program.svelte';
 import type { Robot } from '../robot/robot.svelte';
 import { words } from '../words';
+import World from '../world/World.svelte';
 
 export interface View {
   /** In the address of the page, after `#`; what comes after a colon there is for the view. */
@@ -18,6 +19,7 @@ export interface View {
 }
 
 export const views: View[] = [
+  { name: 'world', title: words.world, component: World, isThere: (robot) => robot.hasWorld },
   { name: 'instruments', title: words.instruments, component: Instruments, isThere: () => true },
   { name: 'program', title: words.program, component: Program, isThere: () => true },
   { name: 'diagram', title: words.diagram, component: Diagram, isThere: () => true },

@@ -271,7 +271,10 @@ fn affine(from: skia::Transform) -> Affine {
 }
 
 /// The bytes behind Base64; white space is left out.
-fn base64(text: &str) -> Result<Vec<u8>, Refusal> {
+///
+/// # Errors
+/// It is too long, empty or none.
+pub fn base64(text: &str) -> Result<Vec<u8>, Refusal> {
     if text.len() > limits::PICTURE_BYTES / 3 * 4 {
         return Err(Refusal::TooLong);
     }

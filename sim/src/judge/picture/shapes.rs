@@ -9,9 +9,21 @@ use crate::geometry::Point;
 use crate::limits;
 use lang_text::svg::{Svg, Tag};
 
+/// Colour of walls.
+pub(crate) const WALL: &str = "#6d4c41";
+
+/// Colour of things of a kind.
+pub(crate) fn ink(kind: SolidKind) -> &'static str {
+    match kind {
+        SolidKind::Skittle => "#ef6c00",
+        SolidKind::Ball => "#fdd835",
+        SolidKind::Cube => "#78909c",
+    }
+}
+
 /// A rectangle around points.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Bounds(Option<[f64; 4]>);
+pub(crate) struct Bounds(Option<[f64; 4]>);
 
 impl Bounds {
     pub fn add(&mut self, x: f64, y: f64) {
@@ -36,7 +48,7 @@ impl Bounds {
 }
 
 /// A colour of a file as one of a page: `#aarrggbb` has its first part last there. What is none becomes `other`.
-pub(super) fn colour(text: &str, other: &str) -> String {
+pub(crate) fn colour(text: &str, other: &str) -> String {
     let text = text.trim();
     // The same names as for sensors, so that nothing is seen by the one and not by the other.
     if Tint::named(text).is_none() {
@@ -49,7 +61,7 @@ pub(super) fn colour(text: &str, other: &str) -> String {
 }
 
 /// How far a field reaches.
-pub(super) fn bounds(field: &Field, bounds: &mut Bounds) {
+pub(crate) fn bounds(field: &Field, bounds: &mut Bounds) {
     let mut add = |at: Point| bounds.add(at.x, at.y);
     for wall in &field.walls {
         add(wall.begin);
@@ -99,7 +111,7 @@ fn points(shape: &Shape) -> Box<dyn Iterator<Item = Point> + '_> {
 }
 
 /// Left, top, width and height with no negative size.
-fn upright(at: Point, size: Point) -> [f64; 4] {
+pub(crate) fn upright(at: Point, size: Point) -> [f64; 4] {
     let left = at.x.min(at.x + size.x);
     let top = at.y.min(at.y + size.y);
     [left, top, size.x.abs(), size.y.abs()]
@@ -140,12 +152,7 @@ pub(super) fn field(field: &Field, letters: f64, svg: &mut Svg) {
         region(one, letters, svg);
     }
     for wall in &field.walls {
-        line(
-            wall.begin,
-            wall.end,
-            &Style::line("#6d4c41", wall.width),
-            svg,
-        );
+        line(wall.begin, wall.end, &Style::line(WALL, wall.width), svg);
     }
     for one in &field.solids {
         solid(one, svg);
@@ -168,7 +175,7 @@ pub(super) fn whole_rect(place: [f64; 4], svg: &mut Svg) -> Tag<'_> {
 }
 
 /// A picture as an address that holds it.
-fn data(blob: &Blob) -> Option<String> {
+pub(crate) fn data(blob: &Blob) -> Option<String> {
     let ending = blob
         .path
         .rsplit('.')
@@ -190,12 +197,17 @@ fn data(blob: &Blob) -> Option<String> {
 }
 
 /// How a line and its inside look.
-struct Style {
-    stroke: String,
-    width: f64,
-    fill: Option<String>,
-    dashes: String,
-    fill_opacity: Option<&'static str>,
+pub(crate) struct Style {
+    /// Colour of the line, or `none`.
+    pub stroke: String,
+    /// Across the line.
+    pub width: f64,
+    /// Colour inside, or `none`.
+    pub fill: Option<String>,
+    /// Lengths of dashes and gaps.
+    pub dashes: Vec<f64>,
+    /// Of the colour inside.
+    pub fill_opacity: Option<&'static str>,
 }
 
 impl Style {
@@ -205,12 +217,13 @@ impl Style {
             stroke: stroke.to_owned(),
             width,
             fill: None,
-            dashes: String::new(),
+            dashes: Vec::new(),
             fill_opacity: None,
         }
     }
 
-    fn of(pen: &Pen) -> Self {
+    /// That of a pen of a file.
+    pub fn of(pen: &Pen) -> Self {
         let width = pen.width.max(1.0);
         let stroke = match &*pen.style {
             "none" => "none".to_owned(),
@@ -227,14 +240,20 @@ impl Style {
             "solid" => colour(&pen.fill, "#000000"),
             _ => "none".to_owned(),
         };
-        let lengths: Vec<String> = dashes
-            .iter()
-            .map(|length| format!("{:.1}", length * width))
-            .collect();
         Self {
             fill: Some(fill),
-            dashes: lengths.join(" "),
+            dashes: dashes.iter().map(|length| length * width).collect(),
             ..Self::line(&stroke, width)
+        }
+    }
+
+    /// The border of a region and what it is filled with.
+    pub fn region(region: &Region, ink: &str) -> Self {
+        Self {
+            fill: Some(ink.to_owned()),
+            dashes: vec![6.0, 4.0],
+            fill_opacity: Some(if region.filled { "0.18" } else { "0" }),
+            ..Self::line(ink, 1.5)
         }
     }
 
@@ -243,7 +262,8 @@ impl Style {
             .with("stroke", &self.stroke)
             .numbers(1, [("stroke-width", self.width)]);
         if !self.dashes.is_empty() {
-            tag = tag.with("stroke-dasharray", &self.dashes);
+            let lengths = self.dashes.iter().map(|length| format!("{length:.1}"));
+            tag = tag.with("stroke-dasharray", lengths.collect::<Vec<_>>().join(" "));
         }
         if let Some(fill) = &self.fill {
             tag = tag.with("fill", fill);
@@ -311,12 +331,7 @@ fn region(region: &Region, letters: f64, svg: &mut Svg) {
     }
     let place = upright(region.at, region.size);
     let ink = colour(&region.colour, "#87cefa");
-    let style = Style {
-        fill: Some(ink.clone()),
-        dashes: "6 4".to_owned(),
-        fill_opacity: Some(if region.filled { "0.18" } else { "0" }),
-        ..Style::line(&ink, 1.5)
-    };
+    let style = Style::region(region, &ink);
     match &*region.kind {
         "ellipse" => ellipse(place, &style, svg),
         "rectangle" => style.put(rect(place, svg)).close(),
@@ -342,11 +357,7 @@ fn solid(solid: &Solid, svg: &mut Svg) {
     }
     let Point { x, y } = solid.at;
     let half = solid.size / 2.0;
-    let ink = match solid.kind {
-        SolidKind::Skittle => "#ef6c00",
-        SolidKind::Ball => "#fdd835",
-        SolidKind::Cube => "#78909c",
-    };
+    let ink = ink(solid.kind);
     let tag = match solid.kind {
         SolidKind::Cube => {
             let turn = format_args!("rotate({:.1} {x:.1} {y:.1})", solid.rotation);
