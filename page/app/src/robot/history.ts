@@ -29,18 +29,22 @@ export class History {
     return this.#count === 0 ? -Infinity : (this.#times[(this.#next + KEPT - 1) % KEPT] ?? -Infinity);
   }
 
-  /** All samples since a time, the oldest first. */
+  /**
+   * The samples since a time, the oldest first, and before them the one that was there at that time. A clock that was set back
+   * begins anew.
+   */
   since(time: number): { times: number[]; values: number[] } {
     const times: number[] = [];
     const values: number[] = [];
-    for (let at = 0; at < this.#count; at++) {
-      const index = (this.#next + KEPT - this.#count + at) % KEPT;
+    let last = Infinity;
+    for (let back = 1; back <= this.#count && last > time; back++) {
+      const index = (this.#next + KEPT - back) % KEPT;
       const when = this.#times[index] ?? 0;
-      if (when >= time) {
-        times.push(when);
-        values.push(this.#values[index] ?? NaN);
-      }
+      if (when > last) break;
+      last = when;
+      times.push(when);
+      values.push(this.#values[index] ?? NaN);
     }
-    return { times, values };
+    return { times: times.reverse(), values: values.reverse() };
   }
 }

@@ -8,6 +8,7 @@ import type { News } from '../link/words';
 import type { Scene, WorldState } from '../world/types';
 import { History } from './history';
 import { type Fields, type Line, type Node, Recording } from './recording';
+import { Wanted } from './wanted';
 
 /** A node and what it gave. */
 export interface Known {
@@ -55,6 +56,8 @@ export class Robot {
   /** Refusals of values, by the path of their node. */
   readonly refused = new Map<string, string>();
   readonly link: Link;
+  readonly #wanted: Wanted;
+  readonly #stops = new Set<() => void>();
   #recording = new Recording(this);
   #isDirty = false;
   readonly #listeners = new Set<(message: string) => void>();
@@ -65,6 +68,7 @@ export class Robot {
 
   constructor(address: string) {
     this.link = new Link(address, this);
+    this.#wanted = new Wanted(address, this);
     const show = () => {
       if (this.#isDirty) {
         this.#isDirty = false;
@@ -86,8 +90,20 @@ export class Robot {
     return () => this.#listeners.delete(callback);
   }
 
+  /** Calls back at each stop, before it is sent: nothing older may follow it. Returns what ends that. */
+  onStop(callback: () => void): () => void {
+    this.#stops.add(callback);
+    return () => this.#stops.delete(callback);
+  }
+
+  /** A node that is sampled only while somebody needs it, such as a picture: it is shown now. Returns what ends that. */
+  want(path: string): () => void {
+    return this.#wanted.add(path);
+  }
+
   /** Everything to rest, and the program to its end. */
   stop(): void {
+    for (const callback of this.#stops) callback();
     this.link.order({ do: 'stop' });
   }
 
