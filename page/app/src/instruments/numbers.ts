@@ -21,11 +21,12 @@ export function numberText(value: number | bigint, isWhole = Number.isInteger(va
 
 /** A number beside an axis: as short as it can be. */
 export function axisText(value: number): string {
-  return signed(String(Number(value.toPrecision(6))));
+  const isLong = Math.abs(value) >= 1e6;
+  return signed(isLong ? value.toExponential(2) : String(Number(value.toPrecision(6))));
 }
 
 function signed(text: string): string {
-  return text.replace('-', '−');
+  return text.replaceAll('-', '−');
 }
 
 /** Steps of size of bytes. */
@@ -39,7 +40,7 @@ export function bytesText(count: number): string {
     size /= 1024;
     at++;
   }
-  return `${at === 0 ? size : numberText(size, false)} ${SIZES[at] ?? ''}`;
+  return `${Number(size.toPrecision(3))} ${SIZES[at] ?? ''}`;
 }
 
 /** What a value of a sample says, except bytes. */

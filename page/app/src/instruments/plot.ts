@@ -34,6 +34,9 @@ function scales(traces: readonly Trace[]): string[] {
   return [...new Set(traces.map((trace) => trace.unit))];
 }
 
+/** Between two times of the axis. */
+const STEPS_S = [1, 2, 5, 10, 20, 30, 60];
+
 /** Seconds of a clock of a day: the last part alone says enough. */
 function clock(_: uPlot, splits: number[]): string[] {
   return splits.map((time) => {
@@ -57,7 +60,7 @@ export class Plot {
     const ink = () => colour('--dim');
     const grid = { stroke: () => colour('--line'), width: 1 };
     const units = scales(traces);
-    const axes: uPlot.Axis[] = [{ stroke: ink, grid, ticks: grid, values: clock, space: 90 }];
+    const axes: uPlot.Axis[] = [{ stroke: ink, grid, ticks: grid, values: clock, space: 90, incrs: STEPS_S }];
     for (const [at, unit] of units.slice(0, 2).entries()) {
       axes.push({
         scale: `y${at}`,

@@ -4,6 +4,7 @@
 
 import type { Known } from '../robot/robot.svelte';
 import { type Field, fieldsOf, isInteger, isNumber, named, unitsOf } from './format';
+import type { Samples } from './series';
 import { bytesText, valueText } from './numbers';
 
 export interface Reading {
@@ -41,9 +42,25 @@ export function numberOf(reading: Reading): number {
   return typeof value === 'number' || typeof value === 'bigint' ? Number(value) : NaN;
 }
 
-/** Whether an actuator has what brings it to rest, and that is no place on its scale, such as a servo that is off. */
+/** A rest that is no place on the scale of an actuator, such as a servo that is off; undefined if its rest is an ordinary value. */
+export function offValue(rest: string): number | undefined {
+  return rest
+    .trim()
+    .split(/\s+/)
+    .map(Number)
+    .find((one) => Math.abs(one) >= 2 ** 31);
+}
+
+/** Whether an actuator is off. */
 export function isOff(known: Known, all: readonly Reading[]): boolean {
-  const rests = known.node.rest.trim().split(/\s+/).map(Number);
-  const isAtRest = all.length === rests.length && all.every((one, at) => numberOf(one) === rests[at]);
-  return isAtRest && rests.some((rest) => Math.abs(rest) >= 2 ** 31);
+  const off = offValue(known.node.rest);
+  return off !== undefined && all.some((one) => numberOf(one) === off);
+}
+
+/** The samples of a number since a time; it has no value while it is off. */
+export function samplesOf(known: Known | undefined, field: string, since: number): Samples {
+  const samples = known?.histories.get(field)?.since(since) ?? { times: [], values: [] };
+  const off = offValue(known?.node.rest ?? '');
+  if (off === undefined) return samples;
+  return { ...samples, values: samples.values.map((value) => (value === off ? NaN : value)) };
 }
