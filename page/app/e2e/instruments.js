@@ -159,6 +159,48 @@ async function pads(page) {
   await until('a key that was let go', isMoving, false);
 }
 
+/** Until the browser has drawn so many pictures: a gamepad is looked at once for each. */
+async function pictures(page, count) {
+  for (let at = 0; at < count; at++) await page.evaluate(() => new Promise(globalThis.requestAnimationFrame));
+}
+
+async function gamepad(page) {
+  const isMoving = async () => value('motors/M3') !== '0';
+  const held = (axes) =>
+    page.evaluate((now) => {
+      globalThis.navigator.getGamepads = () =>
+        now ? [{ connected: true, id: 'test', axes: now, buttons: [] }] : [];
+    }, axes);
+  const rests = async (what) => {
+    await page.waitForTimeout(300);
+    assert.equal(value('motors/M3'), '0', what);
+  };
+  const [middle, ahead] = [
+    [0, 0],
+    [0, -1],
+  ];
+  const moves = async (what) => {
+    await held(middle);
+    await pictures(page, 3);
+    await held(ahead);
+    await until(what, isMoving, true);
+  };
+  await held(ahead);
+  await page.getByRole('button', { name: 'Use a gamepad of this computer' }).click();
+  await rests('a stick that was held before moves nothing');
+  await moves('a stick');
+  await held(middle);
+  await until('a stick in the middle', isMoving, false);
+  await moves('a stick again');
+  await page.keyboard.press('Space');
+  await until('a stick after a stop', isMoving, false);
+  await rests('a stick that is held on after a stop moves nothing');
+  await moves('a stick after it was let go');
+  await held(undefined);
+  await until('a gamepad that is unplugged', isMoving, false);
+  await page.getByRole('button', { name: 'Use a gamepad of this computer' }).click();
+}
+
 async function graphs(page) {
   await page.getByRole('button', { name: 'sensors/A5, darkness: show it in the graph' }).click();
   await page.getByRole('button', { name: 'encoders/E3, position: show it in the graph' }).click();
@@ -218,6 +260,7 @@ try {
   await sliders(page);
   await refusals(page);
   await pads(page);
+  await gamepad(page);
   await graphs(page);
   await page.locator('summary', { hasText: 'Drive by hand' }).click();
   await page.locator('summary', { hasText: 'What pads' }).click();

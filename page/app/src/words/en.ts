@@ -21,7 +21,7 @@ export const en = {
   gauge: {
     nodes: 'Nodes',
     search: 'Find a node',
-    found: (found: number, all: number) => (found === all ? `${all} nodes` : `${found} of ${all} nodes`),
+    found: (found: number, all: number) => (found === all ? `Nodes: ${all}` : `Nodes: ${found} of ${all}`),
     top: 'top of the tree',
     spark: (seconds: number) => `The last ${seconds} s`,
     inGraph: (path: string, field: string) => `${path}, ${field}: show it in the graph`,
