@@ -152,11 +152,43 @@ async function pads(page) {
   await page.evaluate(() => globalThis.dispatchEvent(new Event('blur')));
   await until('the pad of a window without focus', isMoving, false);
   await page.mouse.up();
+  await touch();
+  await page.evaluate(() => {
+    Object.defineProperty(document, 'hidden', { value: true, configurable: true });
+    document.dispatchEvent(new Event('visibilitychange'));
+    delete document.hidden;
+  });
+  await until('the pad of a hidden page', isMoving, false);
+  await page.mouse.up();
   await pad.focus();
   await page.keyboard.down('ArrowUp');
   await until('a key', isMoving, true);
   await page.keyboard.up('ArrowUp');
   await until('a key that was let go', isMoving, false);
+}
+
+/** The second pad and a button, after somebody has said what they move. */
+async function choices(page) {
+  await page.locator('summary', { hasText: 'What pads' }).click();
+  await page.getByLabel('Second pad, across').selectOption('motors/M1');
+  await page.getByLabel('Button 1', { exact: true }).selectOption('servos/S6');
+  const much = page.getByLabel('value while button 1 is held');
+  await much.fill('40');
+  await much.press('Enter');
+  const second = page.getByRole('button', { name: 'Second pad: across motors/M1, up nothing' });
+  await second.focus();
+  await page.keyboard.down('ArrowLeft');
+  await until('the second pad', () => value('motors/M1'), '-36');
+  await page.keyboard.up('ArrowLeft');
+  await until('the second pad that was let go', () => value('motors/M1'), '0');
+  const button = page.getByRole('button', { name: 'Button 1: servos/S6 to 40 while it is held' });
+  await button.focus();
+  await page.keyboard.down('Enter');
+  await until('a button', () => value('servos/S6'), '40');
+  await page.keyboard.up('Enter');
+  const gripper = page.getByRole('slider', { name: 'servos/S6, position' });
+  await until('a button that was let go', () => gripper.getAttribute('aria-valuetext'), 'off');
+  await page.locator('summary', { hasText: 'What pads' }).click();
 }
 
 /** Until the browser has drawn so many pictures: a gamepad is looked at once for each. */
@@ -260,6 +292,7 @@ try {
   await sliders(page);
   await refusals(page);
   await pads(page);
+  await choices(page);
   await gamepad(page);
   await graphs(page);
   await page.locator('summary', { hasText: 'Drive by hand' }).click();
