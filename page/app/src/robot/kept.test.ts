@@ -14,7 +14,9 @@ it('a history gives what is since a time, and what held before', () => {
 it('a history forgets the oldest, and what a clock said that was set back', () => {
   const history = new History();
   for (let at = 0; at < KEPT + 10; at++) history.put(at, at);
-  expect(history.since(0).times[0]).toBe(10);
+  expect(history.count).toBe(KEPT);
+  expect(history.newest).toBe(KEPT + 9);
+  expect(history.since(0).times).toEqual(Array.from({ length: KEPT }, (_, at) => at + 10));
   history.put(5, 1);
   history.put(6, 2);
   expect(history.since(0)).toEqual({ times: [5, 6], values: [1, 2] });
