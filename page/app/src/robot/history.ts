@@ -4,10 +4,12 @@
 
 /** Samples of one number that are kept: two minutes at 30 in a second. */
 export const KEPT = 3600;
+/** Room to begin with: most numbers of a robot come seldom, and a lidar has hundreds. */
+const FIRST = 64;
 
 export class History {
-  readonly #times = new Float64Array(KEPT);
-  readonly #values = new Float64Array(KEPT);
+  #times = new Float64Array(FIRST);
+  #values = new Float64Array(FIRST);
   #next = 0;
   #count = 0;
 
@@ -18,29 +20,48 @@ export class History {
 
   /** NaN is a gap: the number had no value then. */
   put(time: number, value: number): void {
+    if (this.#count === this.#times.length && this.#count < KEPT) this.#grow();
+    const size = this.#times.length;
     this.#times[this.#next] = time;
     this.#values[this.#next] = value;
-    this.#next = (this.#next + 1) % KEPT;
-    this.#count = Math.min(this.#count + 1, KEPT);
+    this.#next = (this.#next + 1) % size;
+    this.#count = Math.min(this.#count + 1, size);
+  }
+
+  /** It has never gone round: the oldest is the first. */
+  #grow(): void {
+    const size = Math.min(this.#times.length * 2, KEPT);
+    const [times, values] = [this.#times, this.#values];
+    this.#times = new Float64Array(size);
+    this.#values = new Float64Array(size);
+    this.#times.set(times);
+    this.#values.set(values);
+    this.#next = this.#count;
   }
 
   /** Time of the newest sample; -Infinity without one. */
   get newest(): number {
-    return this.#count === 0 ? -Infinity : (this.#times[(this.#next + KEPT - 1) % KEPT] ?? -Infinity);
+    const size = this.#times.length;
+    return this.#count === 0 ? -Infinity : (this.#times[(this.#next + size - 1) % size] ?? -Infinity);
   }
 
-  /** All samples since a time, the oldest first. */
+  /**
+   * The samples since a time, the oldest first, and before them the one that was there at that time. A clock that was set back
+   * begins anew.
+   */
   since(time: number): { times: number[]; values: number[] } {
     const times: number[] = [];
     const values: number[] = [];
-    for (let at = 0; at < this.#count; at++) {
-      const index = (this.#next + KEPT - this.#count + at) % KEPT;
+    const size = this.#times.length;
+    let last = Infinity;
+    for (let back = 1; back <= this.#count && last > time; back++) {
+      const index = (this.#next + size - back) % size;
       const when = this.#times[index] ?? 0;
-      if (when >= time) {
-        times.push(when);
-        values.push(this.#values[index] ?? NaN);
-      }
+      if (when > last) break;
+      last = when;
+      times.push(when);
+      values.push(this.#values[index] ?? NaN);
     }
-    return { times, values };
+    return { times: times.reverse(), values: values.reverse() };
   }
 }

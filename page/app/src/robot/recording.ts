@@ -14,6 +14,8 @@ export interface Node {
   format: string;
   units: string;
   about: string;
+  /** Its other paths, such as the name of what is plugged in. */
+  aliases: string[];
   isWritten: boolean;
   /** What brings it to rest; empty if it needs nothing. */
   rest: string;
@@ -98,6 +100,7 @@ export class Recording {
             format,
             units: words.get('units') ?? '',
             about: words.get('about') ?? '',
+            aliases: (words.get('aliases') ?? '').split('\n').filter((alias) => alias !== ''),
             isWritten: (words.get('access') ?? '').includes('w'),
             rest: words.get('rest') ?? '',
           };

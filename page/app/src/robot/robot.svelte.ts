@@ -10,6 +10,7 @@ import { Debugger } from './debugger.svelte';
 import { History } from './history';
 import { Programs } from './program.svelte';
 import { type Fields, type Line, type Node, Recording } from './recording';
+import { Wanted } from './wanted';
 
 /** A node and what it gave. */
 export interface Known {
@@ -59,6 +60,8 @@ export class Robot {
   readonly link: Link;
   readonly programs: Programs;
   readonly debugger: Debugger;
+  readonly #wanted: Wanted;
+  readonly #stops = new Set<() => void>();
   #recording = new Recording(this);
   #isDirty = false;
   readonly #decoder = new TextDecoder();
@@ -70,6 +73,7 @@ export class Robot {
     this.link = new Link(address, this);
     this.programs = new Programs(this.link);
     this.debugger = new Debugger(this.link);
+    this.#wanted = new Wanted(address, this);
     const show = () => {
       if (this.#isDirty) {
         this.#isDirty = false;
@@ -85,8 +89,20 @@ export class Robot {
     return Date.now() / 1000 + this.#ahead;
   }
 
+  /** Calls back at each stop, before it is sent: nothing older may follow it. Returns what ends that. */
+  onStop(callback: () => void): () => void {
+    this.#stops.add(callback);
+    return () => this.#stops.delete(callback);
+  }
+
+  /** A node that is sampled only while somebody needs it, such as a picture: it is shown now. Returns what ends that. */
+  want(path: string): () => void {
+    return this.#wanted.add(path);
+  }
+
   /** Everything to rest, and the program to its end. */
   stop(): void {
+    for (const callback of this.#stops) callback();
     this.link.order({ do: 'stop' });
   }
 

@@ -1,0 +1,312 @@
+// The instruments in a real browser, on a robot of `trik up`.
+//
+//   TRIK=target/debug/trik node e2e/instruments.js [DIST]
+//
+// With DIST the page is the one in this folder instead of the one in the program; it is given with the headers of the server, so
+// that its policy for scripts and styles counts. CHROMIUM is the browser. Gives 0 if all is as it should be.
+import assert from 'node:assert/strict';
+import { spawn } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+import { chromium } from 'playwright-core';
+
+const program = process.env.TRIK ?? resolve(import.meta.dirname, '../../../target/debug/trik');
+const dist = process.argv[2];
+const axe = createRequire(import.meta.url).resolve('axe-core/axe.min.js');
+const folder = mkdtempSync(join(tmpdir(), 'trik-page-'));
+const tree = join(folder, 'robot');
+const TYPES = { html: 'text/html', js: 'text/javascript', css: 'text/css', svg: 'image/svg+xml' };
+const faults = [];
+
+function value(node) {
+  return readFileSync(join(tree, node, 'value'), 'utf8').trim();
+}
+
+/** Waits until something is as it should be, and says what it was. */
+async function until(what, read, wanted) {
+  let last;
+  for (let left = 100; left > 0; left--) {
+    last = await read();
+    if (last === wanted) return;
+    await new Promise((done) => setTimeout(done, 50));
+  }
+  assert.fail(`${what}: ${last} instead of ${wanted}`);
+}
+
+/** Starts a robot; gives the address of its page. */
+async function robot() {
+  const options = ['up', '--no-view', '--page-port', '0', '--trikd-ports', '0', tree];
+  const child = spawn(program, options, { env: { ...process.env, XDG_RUNTIME_DIR: folder } });
+  const address = await new Promise((done, fail) => {
+    let said = '';
+    const hear = (bytes) => {
+      said += bytes;
+      const found = /In a browser: (\S+)/.exec(said);
+      if (found) done(found[1].replace(/\/$/, ''));
+    };
+    child.stdout.on('data', hear);
+    child.stderr.on('data', hear);
+    child.on('exit', () => fail(new Error(said)));
+  });
+  return { child, address };
+}
+
+/** A browser of its own that looks at the page. */
+async function look(browser, address, scheme = 'light') {
+  const context = await browser.newContext({
+    viewport: { width: 1400, height: 900 },
+    colorScheme: scheme,
+    locale: 'en',
+  });
+  const page = await context.newPage();
+  page.on('pageerror', (error) => faults.push(error.stack));
+  page.on('console', (said) => {
+    if (said.type() === 'error') faults.push(said.text());
+  });
+  if (dist !== undefined) await replace(page, address);
+  await page.goto(`${address}/#instruments`);
+  await page.getByRole('article', { name: 'motors/M3', exact: true }).waitFor();
+  return page;
+}
+
+async function replace(page, address) {
+  const { headers } = await page.request.get(`${address}/`).then((answer) => ({ headers: answer.headers() }));
+  delete headers['content-encoding'];
+  delete headers['content-length'];
+  await page.route(/\/(assets\/.*|icon\.svg)?$/, (route) => {
+    const path = new URL(route.request().url()).pathname;
+    const name = path === '/' ? 'index.html' : path.slice(1);
+    const type = TYPES[name.split('.').at(-1)] ?? 'application/octet-stream';
+    return route.fulfill({ path: join(dist, name), headers: { ...headers, 'content-type': type } });
+  });
+}
+
+async function accessible(page, what) {
+  // By the protocol of the browser, not by a script of the page, which its policy would forbid.
+  await page.evaluate(readFileSync(axe, 'utf8'));
+  const { violations } = await page.evaluate(() => globalThis.axe.run());
+  const found = violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join('\n  ')}`);
+  assert.deepEqual(found, [], what);
+}
+
+async function sliders(page) {
+  const slider = page.getByRole('slider', { name: 'motors/M3, duty_cycle' });
+  await slider.focus();
+  for (let at = 0; at < 30; at++) await page.keyboard.press('ArrowRight');
+  await until('the motor', () => value('motors/M3'), '30');
+  await until('what is said of it', () => slider.getAttribute('aria-valuetext'), '30 %');
+  await page.keyboard.press('End');
+  await until('the motor at the end', () => value('motors/M3'), '100');
+  await page.keyboard.press('0');
+  await until('the motor at zero', () => value('motors/M3'), '0');
+  await page.keyboard.press('Home');
+  await until('the motor at the beginning', () => value('motors/M3'), '-100');
+  await page.keyboard.press('Space');
+  await until('the motor after a stop', () => value('motors/M3'), '0');
+  const text = page.getByRole('textbox', { name: 'New value of motors/M3, duty_cycle' });
+  await text.fill('25');
+  await text.press('Enter');
+  await until('a number', () => value('motors/M3'), '25');
+  await page.getByRole('button', { name: 'Bring motors/M3 to rest' }).click();
+  await until('rest', () => value('motors/M3'), '0');
+}
+
+async function refusals(page) {
+  const text = page.getByRole('textbox', { name: 'New value of servos/S6, position' });
+  await text.fill('101');
+  await text.press('Enter');
+  await page.getByText(/It was refused: .*Numerical result out of range/).waitFor();
+  for (const wrong of ['1e99', 'NaN', '1.5']) {
+    await text.fill(wrong);
+    await text.press('Enter');
+    await page.getByText(/A number from .* is needed/).waitFor();
+  }
+}
+
+async function pads(page) {
+  await page.locator('summary', { hasText: 'Drive by hand' }).click();
+  const pad = page.getByRole('button', { name: 'Pad for motors/M3 and motors/M4' });
+  await pad.scrollIntoViewIfNeeded();
+  const box = await pad.boundingBox();
+  const at = (x, y) => page.mouse.move(box.x + box.width * x, box.y + box.height * y);
+  const isMoving = async () => value('motors/M3') !== '0';
+  const touch = async () => {
+    await at(0.5, 0.1);
+    await page.mouse.down();
+    await at(0.5, 0.06);
+    await until('the pad', isMoving, true);
+  };
+  await touch();
+  await page.mouse.up();
+  await until('the pad that was let go', isMoving, false);
+  await touch();
+  await page.keyboard.press('Space');
+  await until('the pad after a stop', isMoving, false);
+  await at(0.5, 0.2);
+  await page.waitForTimeout(300);
+  assert.equal(value('motors/M3'), '0', 'a pad that is held on after a stop moves nothing');
+  await page.mouse.up();
+  await touch();
+  await page.evaluate(() => globalThis.dispatchEvent(new Event('blur')));
+  await until('the pad of a window without focus', isMoving, false);
+  await page.mouse.up();
+  await touch();
+  await page.evaluate(() => {
+    Object.defineProperty(document, 'hidden', { value: true, configurable: true });
+    document.dispatchEvent(new Event('visibilitychange'));
+    delete document.hidden;
+  });
+  await until('the pad of a hidden page', isMoving, false);
+  await page.mouse.up();
+  await pad.focus();
+  await page.keyboard.down('ArrowUp');
+  await until('a key', isMoving, true);
+  await page.keyboard.up('ArrowUp');
+  await until('a key that was let go', isMoving, false);
+}
+
+/** The second pad and a button, after somebody has said what they move. */
+async function choices(page) {
+  await page.locator('summary', { hasText: 'What pads' }).click();
+  await page.getByLabel('Second pad, across').selectOption('motors/M1');
+  await page.getByLabel('Button 1', { exact: true }).selectOption('servos/S6');
+  const much = page.getByLabel('value while button 1 is held');
+  await much.fill('40');
+  await much.press('Enter');
+  const second = page.getByRole('button', { name: 'Second pad: across motors/M1, up nothing' });
+  await second.focus();
+  await page.keyboard.down('ArrowLeft');
+  await until('the second pad', () => value('motors/M1'), '-36');
+  await page.keyboard.up('ArrowLeft');
+  await until('the second pad that was let go', () => value('motors/M1'), '0');
+  const button = page.getByRole('button', { name: 'Button 1: servos/S6 to 40 while it is held' });
+  await button.focus();
+  await page.keyboard.down('Enter');
+  await until('a button', () => value('servos/S6'), '40');
+  await page.keyboard.up('Enter');
+  const gripper = page.getByRole('slider', { name: 'servos/S6, position' });
+  await until('a button that was let go', () => gripper.getAttribute('aria-valuetext'), 'off');
+  await page.locator('summary', { hasText: 'What pads' }).click();
+}
+
+/** Until the browser has drawn so many pictures: a gamepad is looked at once for each. */
+async function pictures(page, count) {
+  for (let at = 0; at < count; at++) await page.evaluate(() => new Promise(globalThis.requestAnimationFrame));
+}
+
+async function gamepad(page) {
+  const isMoving = async () => value('motors/M3') !== '0';
+  const held = (axes) =>
+    page.evaluate((now) => {
+      globalThis.navigator.getGamepads = () =>
+        now ? [{ connected: true, id: 'test', axes: now, buttons: [] }] : [];
+    }, axes);
+  const rests = async (what) => {
+    await page.waitForTimeout(300);
+    assert.equal(value('motors/M3'), '0', what);
+  };
+  const [middle, ahead] = [
+    [0, 0],
+    [0, -1],
+  ];
+  const moves = async (what) => {
+    await held(middle);
+    await pictures(page, 3);
+    await held(ahead);
+    await until(what, isMoving, true);
+  };
+  await held(ahead);
+  await page.getByRole('button', { name: 'Use a gamepad of this computer' }).click();
+  await rests('a stick that was held before moves nothing');
+  await moves('a stick');
+  await held(middle);
+  await until('a stick in the middle', isMoving, false);
+  await moves('a stick again');
+  await page.keyboard.press('Space');
+  await until('a stick after a stop', isMoving, false);
+  await rests('a stick that is held on after a stop moves nothing');
+  await moves('a stick after it was let go');
+  await held(undefined);
+  await until('a gamepad that is unplugged', isMoving, false);
+  await page.getByRole('button', { name: 'Use a gamepad of this computer' }).click();
+}
+
+async function graphs(page) {
+  await page.getByRole('button', { name: 'sensors/A5, darkness: show it in the graph' }).click();
+  await page.getByRole('button', { name: 'encoders/E3, position: show it in the graph' }).click();
+  const table = page.getByRole('table');
+  await table.getByText('%', { exact: true }).waitFor();
+  assert.equal(await table.getByRole('row').count(), 3);
+  const file = page.waitForEvent('download');
+  await page.getByRole('button', { name: 'Save CSV' }).click();
+  const text = readFileSync(await (await file).path(), 'utf8');
+  assert.match(text, /^time_s,sensors\/A5.darkness \(%\),encoders\/E3.position \(deg\)\n0\.000000,/);
+  const picture = page.waitForEvent('download');
+  await page.getByRole('button', { name: 'Save PNG' }).click();
+  assert.match((await picture).suggestedFilename(), /^two-wheels-sensors-A5.*\.png$/);
+  await page.getByRole('button', { name: 'Pin the graph' }).click();
+  await page.getByRole('button', { name: 'Pin battery to the dashboard' }).click();
+  await page.getByRole('button', { name: 'battery: further up' }).click();
+  await page.reload();
+  const pinned = page.getByRole('region', { name: 'Dashboard' }).getByRole('listitem');
+  await until('what is pinned', () => pinned.count(), 2);
+  await pinned.first().getByRole('article', { name: 'battery' }).waitFor();
+}
+
+async function control(page, other) {
+  const slider = other.getByRole('slider', { name: 'motors/M3, duty_cycle' });
+  await page.getByRole('button', { name: 'Take control' }).click();
+  await until('the slider of a browser that looks', () => slider.isDisabled(), true);
+  await other
+    .getByText(/is in control/)
+    .first()
+    .waitFor();
+  await other.getByRole('button', { name: 'Take control' }).click();
+  await until('the slider of the one in control', () => slider.isDisabled(), false);
+  const mine = page.getByRole('slider', { name: 'motors/M3, duty_cycle' });
+  await until('the slider of the one before', () => mine.isDisabled(), true);
+  await slider.focus();
+  await other.keyboard.press('ArrowRight');
+  await until('the motor', () => value('motors/M3'), '1');
+  await other.context().close();
+  await until('the motor of a browser that is gone', () => value('motors/M3'), '0');
+}
+
+const { child, address } = await robot();
+const browser = await chromium.launch({
+  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+  // A page that is given by this script is in no network, so its robot would be in another one.
+  args: [
+    '--disable-features=LocalNetworkAccessChecks',
+    '--no-sandbox',
+    '--disable-gpu',
+    '--disable-quic',
+    '--no-first-run',
+    '--disable-background-networking',
+  ],
+});
+try {
+  const page = await look(browser, address);
+  await sliders(page);
+  await refusals(page);
+  await pads(page);
+  await choices(page);
+  await gamepad(page);
+  await graphs(page);
+  await page.locator('summary', { hasText: 'Drive by hand' }).click();
+  await page.locator('summary', { hasText: 'What pads' }).click();
+  await accessible(page, 'light');
+  const other = await look(browser, address, 'dark');
+  await other.getByRole('button', { name: 'heading, heading: show it in the graph' }).click();
+  await accessible(other, 'dark');
+  await control(page, other);
+} finally {
+  for (const fault of faults) process.stderr.write(`${fault}\n`);
+  await browser.close();
+  child.kill('SIGINT');
+  await new Promise((done) => child.once('exit', done));
+  rmSync(folder, { recursive: true, force: true });
+}
+assert.deepEqual(faults, []);
