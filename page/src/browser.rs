@@ -138,6 +138,12 @@ impl Listener {
                 });
                 Ok(())
             }
+            Order::Playback(words) => {
+                self.need()?;
+                let playback = self.shared.settings.playback.as_ref();
+                let playback = playback.ok_or(Error::NoPlayback)?;
+                playback.order(&words).map_err(|why| Error::World(why.0))
+            }
             Order::Look(looks) => {
                 let changed = |now: &mut bool| std::mem::replace(now, looks) != looks;
                 self.looks.send_if_modified(changed);
@@ -188,6 +194,7 @@ struct Teller {
 impl Teller {
     async fn run(mut self) {
         let mut holder = self.shared.control.watch();
+        let playback = self.shared.settings.playback.clone();
         let settings = &self.shared.settings;
         let first = [
             News::Hello {
@@ -207,6 +214,9 @@ impl Teller {
         pings.set_missed_tick_behavior(MissedTickBehavior::Delay);
         let mut pictures = interval(limits::PICTURE_TIME);
         pictures.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        let mut places = interval(limits::PLAYBACK_TIME);
+        places.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        let mut place = None;
         let mut shown = Shown::default();
         loop {
             let looks = *self.is_looked_at.borrow();
@@ -228,6 +238,15 @@ impl Teller {
                     true
                 }
                 _ = pings.tick() => self.send(Message::Ping(Bytes::new())).await,
+                _ = places.tick(), if playback.is_some() => {
+                    let now = playback.as_ref().map(|playback| playback.state());
+                    let has_changed = now != place;
+                    place = now;
+                    match now.filter(|_| has_changed) {
+                        Some(state) => self.say(News::Playback(state.json())).await,
+                        None => true,
+                    }
+                }
                 _ = pictures.tick(), if looks => self.show(&mut shown).await,
             };
             if !is_sent {

@@ -30,7 +30,9 @@ pub enum Error {
     Words(String),
     /// There is no world to be ordered: the robot is a real one.
     NoWorld,
-    /// The world says no.
+    /// No recording is played.
+    NoPlayback,
+    /// The world or the player says no.
     World(String),
     /// Somebody else is in control.
     Taken(String),
@@ -53,6 +55,7 @@ impl Error {
             | Self::File(..)
             | Self::Words(_)
             | Self::NoWorld
+            | Self::NoPlayback
             | Self::World(_)
             | Self::Taken(_)
             | Self::Unpaired
@@ -72,6 +75,7 @@ impl fmt::Display for Error {
             Self::File(path, why) => write!(f, "{path}: {}", plain(why)),
             Self::Words(words) => write!(f, "'{words}' is no order"),
             Self::NoWorld => f.write_str("a real robot has no world that takes orders"),
+            Self::NoPlayback => f.write_str("no recording is played here"),
             Self::World(why) | Self::Robot(why) | Self::Diagram(why) => f.write_str(why),
             Self::Taken(who) => write!(f, "{who} is in control; take control first"),
             Self::Unpaired => f.write_str(

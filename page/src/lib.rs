@@ -11,6 +11,7 @@
 //! - `shared`, `control`: what all requests share; one of all browsers drives
 //! - `drive`: what it writes to the tree, and rest when it leaves
 //! - `store`: programs of the robot, and diagrams as pictures
+//! - `world`, `playback`: borders to a simulator and to a player of recordings
 //! - `error`, `limits`
 
 #![forbid(unsafe_code)]
@@ -25,6 +26,7 @@ mod files;
 mod guard;
 pub mod limits;
 mod plain;
+pub mod playback;
 mod relay;
 mod route;
 mod server;

@@ -39,6 +39,8 @@ pub const KEEPALIVE_TIME: Duration = Duration::from_secs(2);
 pub const RETURN_TIME: Duration = Duration::from_secs(1);
 /// How often the world is shown, in the best case.
 pub const PICTURE_TIME: Duration = Duration::from_millis(16);
+/// How often it is looked where a recording is.
+pub const PLAYBACK_TIME: Duration = Duration::from_millis(100);
 /// Threads for files of the tree, which may make them wait.
 pub const FILE_THREADS: usize = 4;
 /// Programs that are listed.

@@ -3,6 +3,7 @@
 //! Owns nothing that happens. The robot is where the server was told last.
 
 use crate::control::Control;
+use crate::playback::Playback;
 use crate::world::World;
 use std::net::{IpAddr, SocketAddr};
 use std::path::PathBuf;
@@ -50,6 +51,8 @@ pub struct Settings {
     pub programs: Option<PathBuf>,
     /// What is around the robot, if that is virtual.
     pub world: Option<Arc<dyn World>>,
+    /// What is played below the tree, if that is a recording.
+    pub playback: Option<Arc<dyn Playback>>,
     /// Which computers may do what.
     pub guests: Arc<dyn Guests>,
 }

@@ -14,6 +14,8 @@ pub enum Order {
     Write(String, String),
     /// An order to the world, in words.
     World(String),
+    /// An order to the recording that is played, in words.
+    Playback(String),
     /// To see the world, or not any more: it costs time at every picture.
     Look(bool),
     /// To be in control, whoever is.
@@ -43,6 +45,7 @@ impl Order {
                 text("value").ok_or_else(why)?,
             ),
             "world" => Self::World(text("order").ok_or_else(why)?),
+            "playback" => Self::Playback(text("order").ok_or_else(why)?),
             "look" => Self::Look(
                 value
                     .get("world")
@@ -100,6 +103,8 @@ pub enum News {
     Scene(String),
     /// What moves.
     World(String),
+    /// Where the recording is that is played.
+    Playback(String),
 }
 
 impl News {
@@ -157,6 +162,7 @@ impl News {
             Self::Refused(why) => object("refused", vec![("why", why.as_str().into())]),
             // These are JSON already.
             Self::Scene(scene) => format!("{{\"is\":\"scene\",\"scene\":{scene}}}"),
+            Self::Playback(state) => format!("{{\"is\":\"playback\",\"state\":{state}}}"),
             Self::World(state) => format!("{{\"is\":\"world\",\"state\":{state}}}"),
         }
     }
@@ -283,6 +289,7 @@ mod tests {
             News::Refused("no".to_owned()),
             News::Scene("{\"walls\":[]}".to_owned()),
             News::World("{\"t\":1}".to_owned()),
+            News::Playback("{\"at_s\":1}".to_owned()),
         ];
         for news in all {
             let text = news.text();

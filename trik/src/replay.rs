@@ -18,9 +18,11 @@ use crate::error::Error;
 use crate::place::{self, Place};
 use crate::refusal::Refusal;
 use crate::up::args::absolute;
-use crate::up::page::Served;
+use crate::up::page::{self, Served};
 use crate::up::session::{Beneath, Over, Session, signals};
 use crate::up::trikd::Trikd;
+use ::page::playback::{Playback, State};
+use ::page::world::Refused;
 use args::ReplayArgs;
 use file::FileRecording;
 use order::Order;
@@ -28,6 +30,7 @@ use player::{Begin, CONTROL, Player, SOCKET};
 use recording::Recording;
 use std::ffi::OsString;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Replays until somebody stops it.
 ///
@@ -64,7 +67,7 @@ fn replay(args: &ReplayArgs) -> Result<bool, Error> {
     std::fs::write(&place.world, text).map_err(|why| Error::file(&place.world, why))?;
     let hints = hints(recording.channels());
     let name = args.file.file_name().unwrap_or_default().to_string_lossy();
-    let player = Player::start(Box::new(recording), &place.board, begin)?;
+    let player = Arc::new(Player::start(Box::new(recording), &place.board, begin)?);
     let beneath = Replay {
         name: name.into_owned(),
         hints,
@@ -83,12 +86,16 @@ fn replay(args: &ReplayArgs) -> Result<bool, Error> {
         "--".into(),
         place.mountpoint.clone().into(),
     ];
+    let shown = page::Beneath {
+        playback: Some(player.clone()),
+        ..page::Beneath::default()
+    };
     let page = Served::start(
         &args.serving,
         &place,
         trikd.as_ref(),
         beneath.name.clone(),
-        None,
+        shown,
     )?;
     let over = Over::of(trikd, page, !args.no_view);
     let mut session = Session::start(&arguments, &beneath, &place, signals, over)?;
@@ -163,6 +170,25 @@ impl Beneath for Replay<'_> {
 
     fn is_over(&self) -> bool {
         self.ends && self.player.state().is_at_end
+    }
+}
+
+impl Playback for Player {
+    fn state(&self) -> State {
+        let state = Player::state(self);
+        State {
+            position: state.position,
+            length: state.length,
+            speed: state.speed,
+            runs: state.runs,
+            is_loop: state.is_loop,
+        }
+    }
+
+    fn order(&self, words: &str) -> Result<(), Refused> {
+        let order = Order::read(words).map_err(|why| Refused(why.to_string()))?;
+        Player::order(self, order);
+        Ok(())
     }
 }
 

@@ -96,10 +96,14 @@ fn simulate(args: UpArgs) -> Result<(), Error> {
         board: &board,
     };
     let name = virtual_robot.robot.to_owned();
-    let seen = board.watcher().map(|watcher| -> Arc<dyn page::World> {
+    let seen = board.watcher().map(|watcher| -> Arc<dyn ::page::world::World> {
         Arc::new(Around::new(watcher, place.board.clone()))
     });
-    let page = Served::start(&args.serving, &place, trikd.as_ref(), name, seen)?;
+    let beneath = page::Beneath {
+        world: seen,
+        ..page::Beneath::default()
+    };
+    let page = Served::start(&args.serving, &place, trikd.as_ref(), name, beneath)?;
     let over = Over {
         ev3dev,
         trikd,

@@ -55,6 +55,7 @@ fn scene(look: bool, drive: bool) -> Scene {
         tree: home.path().join("tree"),
         programs: Some(home.path().join("programs")),
         world: None,
+        playback: None,
         guests: Arc::new(ByWord { look, drive }),
     })
     .unwrap();

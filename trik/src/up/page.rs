@@ -7,7 +7,8 @@ use super::args::ServingArgs;
 use super::trikd::{Trikd, reachable};
 use crate::error::Error;
 use crate::place::Place;
-pub(super) use page::world::World;
+pub(super) use page::playback::Playback;
+use page::world::World;
 use page::{Everybody, Page, Settings};
 use std::net::{IpAddr, SocketAddr};
 use std::process::{Command, Stdio};
@@ -15,6 +16,15 @@ use std::sync::Arc;
 
 /// The port of the page, unless another one is wanted or it is taken.
 const PORT: u16 = 8000;
+
+/// What is below the tree, as far as the page shows it.
+#[derive(Default)]
+pub(crate) struct Beneath {
+    /// The world around a virtual robot.
+    pub(crate) world: Option<Arc<dyn World>>,
+    /// A recording that is played.
+    pub(crate) playback: Option<Arc<dyn Playback>>,
+}
 
 /// A page that is served.
 pub(crate) struct Served {
@@ -33,7 +43,7 @@ impl Served {
         place: &Place,
         trikd: Option<&Trikd>,
         name: String,
-        world: Option<Arc<dyn World>>,
+        beneath: Beneath,
     ) -> Result<Option<Self>, Error> {
         let Some(trikd) = trikd.filter(|_| !args.no_page) else {
             return Ok(None);
@@ -43,7 +53,8 @@ impl Served {
             name: name.clone(),
             tree: place.mountpoint.clone(),
             programs: Some(trikd.scripts.clone()),
-            world: world.clone(),
+            world: beneath.world.clone(),
+            playback: beneath.playback.clone(),
             guests: Arc::new(Everybody),
         };
         let wanted = args.page_port.unwrap_or(PORT);

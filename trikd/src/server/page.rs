@@ -45,6 +45,7 @@ pub fn start(
             tree: settings.tree.clone(),
             programs: Some(settings.scripts.clone()),
             world: None,
+            playback: None,
             guests: access.clone(),
         })
     };

@@ -6,6 +6,7 @@ import type { Scene, WorldState } from '../world/types';
 export type Order =
   | { do: 'write'; path: string; value: string }
   | { do: 'world'; order: string }
+  | { do: 'playback'; order: string }
   | { do: 'look'; world: boolean }
   | { do: 'take' }
   | { do: 'leave' }
@@ -19,4 +20,14 @@ export type News =
   | { is: 'written'; path: string; value: string; why: string | null }
   | { is: 'refused'; why: string }
   | { is: 'scene'; scene: Scene }
-  | { is: 'world'; state: WorldState };
+  | { is: 'world'; state: WorldState }
+  | { is: 'playback'; state: Playback };
+
+/** Where the recording is that is played; times are seconds. */
+export interface Playback {
+  at_s: number;
+  length_s: number;
+  speed: number;
+  runs: boolean;
+  loop: boolean;
+}

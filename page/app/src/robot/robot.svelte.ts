@@ -4,7 +4,7 @@
 // each picture, that something has changed.
 
 import { Link } from '../link/link';
-import type { News } from '../link/words';
+import type { News, Playback } from '../link/words';
 import type { Scene, WorldState } from '../world/types';
 import { Debugger } from './debugger.svelte';
 import { History } from './history';
@@ -50,6 +50,8 @@ export class Robot {
   paths = $state.raw<string[]>([]);
   /** Lines of the log, of programs and their output; the newest last. */
   lines = $state.raw<Line[]>([]);
+  /** Where the recording is that is played; undefined over a robot. */
+  playback = $state.raw<Playback | undefined>(undefined);
   scene = $state.raw<Scene | undefined>(undefined);
   /** What moves in the world; drawn at each picture, so not a state of components. */
   world: WorldState | undefined;
@@ -147,6 +149,9 @@ export class Robot {
       case 'world':
         this.world = news.state;
         this.#isDirty = true;
+        break;
+      case 'playback':
+        this.playback = news.state;
         break;
       default:
         news satisfies never;

@@ -19,6 +19,15 @@ export const en = {
   onlyLook: 'This computer may only look',
   dismiss: 'Dismiss',
 
+  timeOf: 'Time of the recording',
+  timeAt: (at: string, length: string) => `${at} of ${length}`,
+  timePlay: 'Play',
+  timePause: 'Pause the recording',
+  timeBack: 'Back by 5 seconds',
+  timeForward: 'Forward by 5 seconds',
+  timeSpeed: 'Speed of the recording',
+  timeLoop: 'Again and again',
+
   programs: 'Programs',
   runs: (name: string) => `${name} runs`,
   nothingRuns: 'No program runs.',

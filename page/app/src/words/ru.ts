@@ -21,6 +21,15 @@ export const ru: Words = {
   onlyLook: 'Этот компьютер может только смотреть',
   dismiss: 'Закрыть',
 
+  timeOf: 'Время записи',
+  timeAt: (at, length) => `${at} из ${length}`,
+  timePlay: 'Воспроизвести',
+  timePause: 'Остановить запись',
+  timeBack: 'Назад на 5 секунд',
+  timeForward: 'Вперёд на 5 секунд',
+  timeSpeed: 'Скорость записи',
+  timeLoop: 'По кругу',
+
   programs: 'Программы',
   runs: (name) => `${name} выполняется`,
   nothingRuns: 'Программа не выполняется.',
