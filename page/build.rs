@@ -10,10 +10,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What of `app` the page is made of.
-const SOURCES: [&str; 9] = [
+const SOURCES: [&str; 10] = [
     "src",
     "public",
     "index.html",
+    "licences.js",
     "pack.js",
     "package.json",
     "package-lock.json",
@@ -75,7 +76,7 @@ fn build(out: &Path) -> Result<String, String> {
         run(npm.current_dir(&work), "npm")?;
         fs::write(&stamp, &wanted).map_err(file)?;
     }
-    let made = out.join("page");
+    let made = out.join("dist");
     let mut vite = Command::new("node");
     vite.args([
         "node_modules/vite/bin/vite.js",
@@ -164,6 +165,7 @@ fn kind(name: &str) -> &'static str {
         "css" => "text/css; charset=utf-8",
         "svg" => "image/svg+xml",
         "png" => "image/png",
+        "txt" => "text/plain; charset=utf-8",
         "webmanifest" => "application/manifest+json",
         _ => "application/octet-stream",
     }

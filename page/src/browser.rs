@@ -8,7 +8,7 @@ use crate::drive::{self, Move};
 use crate::error::Error;
 use crate::limits;
 use crate::relay::{self, Came};
-use crate::server::Shared;
+use crate::shared::Shared;
 use crate::word::{News, Order, only_looks};
 use axum::body::Bytes;
 use axum::extract::ws::{Message, WebSocket};
@@ -102,11 +102,19 @@ impl Listener {
         }
     }
 
+    /// This computer may do something.
+    fn may(&self) -> Result<(), Error> {
+        let (guests, ip) = (&self.shared.settings.guests, self.who.address.ip());
+        if guests.may_drive(ip) {
+            return Ok(());
+        }
+        guests.asks(ip);
+        Err(Error::Unpaired)
+    }
+
     /// It may do something, and is in control.
     fn need(&self) -> Result<(), Error> {
-        if !self.shared.settings.guests.may_drive(self.who.address.ip()) {
-            return Err(Error::Unpaired);
-        }
+        self.may()?;
         self.shared.control.need(self.who)
     }
 
@@ -136,9 +144,7 @@ impl Listener {
                 Ok(())
             }
             Order::Take => {
-                if !self.shared.settings.guests.may_drive(self.who.address.ip()) {
-                    return Err(Error::Unpaired);
-                }
+                self.may()?;
                 self.shared.control.take(self.who);
                 Ok(())
             }

@@ -75,7 +75,7 @@ impl fmt::Display for Error {
             Self::World(why) | Self::Robot(why) | Self::Diagram(why) => f.write_str(why),
             Self::Taken(who) => write!(f, "{who} is in control; take control first"),
             Self::Unpaired => f.write_str(
-                "this computer may only look: pair it by Enter on the robot, after you have started a program",
+                "this computer may only look: press Enter on the robot within 30 s to pair it, and try again",
             ),
             Self::Name(name) => write!(f, "there is no program '{name}'"),
         }

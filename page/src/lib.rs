@@ -4,11 +4,11 @@
 //! its tree, its control port, and, for a virtual one, the [`World`] around it. What goes over the control port is passed on and
 //! hardly looked at: the page speaks it as every other client does.
 //!
-//! - `server`, `route`: the thread, and which address gives what
+//! - `server`, `door`, `route`: the thread, connections, and which address gives what
 //! - `guard`: Host, Origin and the cookie
 //! - `files`: the page as it was built, in the program; `plain`: a table where there is none
 //! - `browser`, `word`, `relay`: one browser that looks, what it says, and its connection to the robot
-//! - `control`: one of all browsers drives
+//! - `shared`, `control`: what all requests share; one of all browsers drives
 //! - `drive`: what it writes to the tree, and rest when it leaves
 //! - `store`: programs of the robot, and diagrams as pictures
 //! - `error`, `limits`
@@ -18,6 +18,7 @@
 
 mod browser;
 mod control;
+mod door;
 mod drive;
 pub mod error;
 mod files;
@@ -27,8 +28,10 @@ mod plain;
 mod relay;
 mod route;
 mod server;
+mod shared;
 mod store;
 mod word;
 pub mod world;
 
-pub use server::{Everybody, Guests, Page, Settings};
+pub use server::Page;
+pub use shared::{Everybody, Guests, Settings};

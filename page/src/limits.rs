@@ -8,8 +8,10 @@ use std::time::Duration;
 pub const BROWSERS_MAX: usize = 40;
 /// Connections at once, with those that only fetch a file.
 pub const CONNECTIONS_MAX: usize = 128;
-/// From the first byte of a request to the last one of its head.
-pub const HEAD_TIME: Duration = Duration::from_secs(10);
+/// Those of them that one computer may have.
+pub const CONNECTIONS_OF_ONE_MAX: usize = 96;
+/// A connection on which nothing comes for so long is closed; a browser that looks is heard every second.
+pub const IDLE_TIME: Duration = Duration::from_secs(30);
 /// Bytes of one message of a browser: the greatest upload, as the control port takes it.
 pub const MESSAGE_BYTES_MAX: usize = frame::limits::CONTROL_BYTES;
 /// Bytes of an order in words: a value for an actuator.

@@ -4,8 +4,9 @@
 
 use crate::browser;
 use crate::control::Who;
+use crate::door::Peer;
 use crate::error::Error;
-use crate::server::{Peer, Shared};
+use crate::shared::Shared;
 use crate::{files, guard, limits, plain, store};
 use axum::Router;
 use axum::extract::{ConnectInfo, Path, Query, Request, State, WebSocketUpgrade};

@@ -14,12 +14,13 @@ mod prose;
 mod waits;
 
 /// Folders of our crates, those that the workspace has as members.
-pub(crate) const CRATES: [&str; 22] = [
+pub(crate) const CRATES: [&str; 24] = [
     "bridge",
     "config",
     "converter",
     "ev3dev",
     "filters",
+    "frame",
     "journal",
     "lang/constraint",
     "lang/dcml",
@@ -28,6 +29,7 @@ pub(crate) const CRATES: [&str; 22] = [
     "lang/expr",
     "lang/plan",
     "lang/text",
+    "page",
     "recorder",
     "sample-bus",
     "screen",
@@ -99,7 +101,9 @@ pub(crate) fn files(folder: &Path, ending: &str, found: &mut Vec<PathBuf>) {
             .file_name()
             .and_then(|name| name.to_str())
             .unwrap_or_default();
-        if path.is_dir() && name != "target" && !name.starts_with('.') {
+        // What others have made, and what is made of the sources.
+        let is_ours = !["target", "node_modules", "dist"].contains(&name) && !name.starts_with('.');
+        if path.is_dir() && is_ours {
             files(&path, ending, found);
         } else if path.extension().is_some_and(|other| other == ending) {
             found.push(path);
@@ -211,7 +215,9 @@ fn nothing_is_left_to_be_done() {
 fn sources_and_documents_are_ascii() {
     let mut found = Vec::new();
     for name in CRATES.iter().chain(&["docs", "examples"]) {
-        for ending in ["rs", "md", "lua", "h", "c", "toml", "py", "js", "sh"] {
+        for ending in [
+            "rs", "md", "lua", "h", "c", "toml", "py", "js", "sh", "ts", "svelte", "css", "html",
+        ] {
             files(&root().join(name), ending, &mut found);
         }
     }
@@ -235,9 +241,12 @@ fn sources_and_documents_are_ascii() {
     let readings = root().join("lang/diagram/src/generate/readings.rs");
     // What a new task tells pupils.
     let task = root().join("trik/src/task/README.ru.md");
+    // What the page says in Russian.
+    let page = root().join("page/app/src/words/ru.ts");
     let is_words = |path: &Path| {
         path.starts_with(&blocks)
             || path == task
+            || path == page
             || path == readings
             || path.ends_with("words.rs")
                 && speaks_russian.iter().any(|part| path.starts_with(part))
@@ -443,6 +452,7 @@ const EXHAUSTIVE: &[&str] = &[
     "lang/constraint/src/lib.rs",
     "lang/diagram/src/lib.rs",
     "lang/expr/src/lib.rs",
+    "page/src/lib.rs",
     "recorder/src/lib.rs",
     "sim/src/arena/brick.rs",
     "sim/src/arena/screen.rs",

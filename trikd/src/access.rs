@@ -5,13 +5,13 @@
 
 use crate::limits;
 use crate::protocol::mail::plain;
-use std::cell::{Cell, RefCell};
 use std::collections::BTreeSet;
 use std::fmt;
 use std::io;
 use std::net::IpAddr;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Addresses that begin with the same bits.
@@ -91,10 +91,17 @@ fn is_fresh(when: Instant) -> bool {
 pub struct Access {
     allowed: Vec<Network>,
     /// None: pairing is off.
-    paired: Option<RefCell<BTreeSet<IpAddr>>>,
+    paired: Option<Mutex<BTreeSet<IpAddr>>>,
     file: PathBuf,
     /// Who asked last: a key that is pressed soon after that pairs it.
-    asked: Cell<Option<Asked>>,
+    asked: Mutex<Option<Asked>>,
+    /// The page on this machine asks for its browsers, after it has asked here about each of them.
+    has_page: bool,
+}
+
+/// What is in a lock, also after a thread that held it has failed: these are plain values.
+fn held<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
+    lock.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Access {
@@ -104,7 +111,7 @@ impl Access {
     /// The file exists and cannot be read.
     pub fn new(allowed: Vec<Network>, pairs: bool, file: &Path) -> io::Result<Self> {
         let paired = if pairs {
-            Some(RefCell::new(read(file)?))
+            Some(Mutex::new(read(file)?))
         } else {
             None
         };
@@ -112,38 +119,65 @@ impl Access {
             allowed,
             paired,
             file: file.to_owned(),
-            asked: Cell::new(None),
+            asked: Mutex::default(),
+            has_page: false,
         })
+    }
+
+    /// The same, with a page on this machine, which then has all rights: it looks after those of its browsers itself.
+    pub fn with_page(self) -> Self {
+        Self {
+            has_page: true,
+            ..self
+        }
     }
 
     /// Whether a connection from there is served at all.
     pub fn admits(&self, ip: IpAddr) -> bool {
+        self.is_page(ip) || self.lists(ip)
+    }
+
+    fn is_page(&self, ip: IpAddr) -> bool {
+        self.has_page && plain(ip).is_loopback()
+    }
+
+    /// Whether the allow-list has it.
+    pub fn lists(&self, ip: IpAddr) -> bool {
         self.allowed.is_empty() || self.allowed.iter().any(|network| network.contains(ip))
     }
 
-    /// Whether programs from there are run. Who is refused is remembered for [`Access::pair_last`].
+    /// Whether programs from there are run. A computer that is refused is remembered for [`Access::pair_last`].
     pub fn may_control(&self, ip: IpAddr) -> bool {
-        let ip = plain(ip);
-        let may = self
-            .paired
-            .as_ref()
-            .is_none_or(|paired| paired.borrow().contains(&ip));
+        let may = self.is_page(ip) || self.is_paired(ip);
         if !may {
-            let before = self.asked.get().filter(|asked| is_fresh(asked.when));
-            let rival = before.and_then(|asked| {
-                if asked.ip == ip {
-                    asked.rival
-                } else {
-                    Some(asked.when)
-                }
-            });
-            self.asked.set(Some(Asked {
-                ip,
-                when: Instant::now(),
-                rival,
-            }));
+            self.remember(ip);
         }
         may
+    }
+
+    /// Whether it is paired, or pairing is off.
+    pub fn is_paired(&self, ip: IpAddr) -> bool {
+        let paired = self.paired.as_ref();
+        paired.is_none_or(|paired| held(paired).contains(&plain(ip)))
+    }
+
+    /// This computer has asked: a key that is pressed soon pairs it.
+    pub fn remember(&self, ip: IpAddr) {
+        let ip = plain(ip);
+        let mut last = held(&self.asked);
+        let before = last.filter(|asked| is_fresh(asked.when));
+        let rival = before.and_then(|asked| {
+            if asked.ip == ip {
+                asked.rival
+            } else {
+                Some(asked.when)
+            }
+        });
+        *last = Some(Asked {
+            ip,
+            when: Instant::now(),
+            rival,
+        });
     }
 
     /// Whether pairing is on.
@@ -157,7 +191,8 @@ impl Access {
     /// It is paired, but cannot be remembered for the next start; or several computers have asked in that time, of which
     /// none is paired.
     pub fn pair_last(&self) -> io::Result<Option<IpAddr>> {
-        match self.asked.take().filter(|asked| is_fresh(asked.when)) {
+        let asked = held(&self.asked).take();
+        match asked.filter(|asked| is_fresh(asked.when)) {
             Some(Asked {
                 ip,
                 rival: Some(at),
@@ -180,7 +215,7 @@ impl Access {
         let Some(paired) = &self.paired else {
             return refused("pairing is off: everybody may run programs");
         };
-        let mut paired = paired.borrow_mut();
+        let mut paired = held(paired);
         if paired.len() >= limits::PAIRED && !paired.contains(&plain(ip)) {
             return refused(
                 "too many computers are paired: remove some from the file 'paired' and start again",
@@ -206,7 +241,7 @@ impl Access {
         match &self.paired {
             None => format!("{allowed}; pairing is off"),
             Some(paired) => {
-                let paired: Vec<_> = paired.borrow().iter().map(IpAddr::to_string).collect();
+                let paired: Vec<_> = held(paired).iter().map(IpAddr::to_string).collect();
                 format!(
                     "{allowed}; programs only from paired computers: {}",
                     paired.join(", ")
@@ -276,6 +311,21 @@ mod tests {
         assert!(!access.may_control(owner) && !access.may_control(owner));
         assert_eq!(access.pair_last().unwrap(), Some(owner));
         assert!(!access.may_control(thief));
+    }
+
+    #[test]
+    fn the_page_of_this_machine_has_all_rights_and_no_other_does() {
+        let scratch = tempdir().unwrap();
+        let file = scratch.path().join("paired");
+        let allowed = vec!["10.0.0.0/8".parse().unwrap()];
+        let here: IpAddr = "127.0.0.1".parse().unwrap();
+        let access = Access::new(allowed.clone(), true, &file).unwrap();
+        assert!(!access.admits(here) && !access.may_control(here));
+        let access = Access::new(allowed, true, &file).unwrap().with_page();
+        assert!(access.admits(here) && access.may_control(here));
+        // A browser on this machine has the rights of any other computer.
+        assert!(!access.lists(here) && !access.is_paired(here));
+        assert!(!access.may_control("10.0.0.1".parse().unwrap()));
     }
 
     #[test]

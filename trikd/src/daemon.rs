@@ -35,10 +35,12 @@ use crate::{heartbeat, keys, status};
 use crate::{limits, log};
 use nix::unistd::{User, chown, geteuid};
 use recorder::kept::Why;
+use std::fmt::Write as _;
 use std::io::Write;
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::Path;
 use std::rc::Rc;
+use std::sync::Arc;
 use std::time::Instant;
 use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::{mpsc, oneshot};
@@ -146,7 +148,7 @@ fn owner(settings: &Settings) -> Result<Option<Owner>, Error> {
 struct Parts {
     settings: Rc<Settings>,
     owner: Option<Owner>,
-    access: Rc<Access>,
+    access: Arc<Access>,
     clients: Rc<Clients>,
     seats: Rc<Seats>,
     held: Rc<Held>,
@@ -185,7 +187,11 @@ impl Parts {
             true => Feedback::start(&settings.tree).map_err(Error::thread)?,
             false => Feedback::default(),
         };
-        let access = Rc::new(access.map_err(|error| Error::Os(error.into()))?);
+        let access = access.map_err(|error| Error::Os(error.into()))?;
+        let access = Arc::new(match settings.page_port {
+            Some(_) => access.with_page(),
+            None => access,
+        });
         Ok(Self {
             owner,
             gamepads: Rc::new(Gamepads {
@@ -399,8 +405,13 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), Error> {
     let mut interrupt = listen(SignalKind::interrupt())?;
     let mut hang_up = listen(SignalKind::hangup())?;
     let pressed = keys::watch(&settings.tree).map_err(Error::thread)?;
-    let words = ports.describe();
+    let mut words = ports.describe();
+    let control_port = ports.control.number();
     let parts = Parts::new(settings, owner)?;
+    let page = server::page::start(&parts.settings, &parts.access, control_port)?;
+    if let Some(page) = &page {
+        let _ = write!(words, ", page {}", page.address().port());
+    }
     // Who has named root knows it.
     if parts.settings.user.is_none() && geteuid().is_root() {
         tracing::warn!(
@@ -439,6 +450,8 @@ async fn serve(mut settings: Settings, restarts: u32) -> Result<(), Error> {
         _ = reaper => std::process::abort(),
     }
     tracing::info!(target: log::DAEMON, "ends");
+    // Browsers go before what they look at.
+    drop(page);
     let (done, ended) = oneshot::channel();
     parts.programs.send(Command::Quit(done)).await;
     let _ = ended.await;
@@ -451,7 +464,7 @@ struct Keys {
     stop_key: StopKey,
     box_key: BoxKey,
     record: Rc<Record>,
-    access: Rc<Access>,
+    access: Arc<Access>,
     programs: Rc<Programs>,
 }
 

@@ -44,6 +44,8 @@ pub enum Error {
     Signals(Os),
     /// A port cannot be served: its name and number.
     Port(&'static str, u16, Os),
+    /// The page for browsers cannot be served.
+    Page(String),
     /// The user of programs.
     User(String, BadUser),
     /// Orphans of programs cannot be adopted.
@@ -90,6 +92,7 @@ impl Error {
         match self {
             Self::Directory(..)
             | Self::Port(..)
+            | Self::Page(_)
             | Self::User(..)
             | Self::KillUserAsRoot
             | Self::NoProgram
@@ -146,6 +149,7 @@ impl fmt::Display for Error {
             Self::EventLoop(os) => write!(out, "no event loop: {os}"),
             Self::Signals(os) => write!(out, "signals: {os}"),
             Self::Port(name, port, os) => port_text(out, name, *port, os),
+            Self::Page(why) => out.write_str(why),
             Self::User(name, why) => user_text(out, name, why),
             Self::Subreaper(os) => write!(out, "no subreaper: {os}"),
             Self::KillUserAsRoot => {

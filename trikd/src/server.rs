@@ -1,7 +1,7 @@
 //! Sockets: all listeners or none, who gets in, and which task serves whom.
 //!
 //! `control`, `telemetry`, `mailbox`, `gamepad`, `video` and `variables` are one port each; `datagrams` and `discovery`
-//! are UDP. What is said on a port is in `protocol`.
+//! are UDP, `page` is for browsers. What is said on a port is in `protocol`.
 
 // A request, a message or a command that is forgotten must not pass in silence.
 #![deny(clippy::wildcard_enum_match_arm)]
@@ -11,6 +11,7 @@ pub mod datagrams;
 pub mod discovery;
 pub mod gamepad;
 pub mod mailbox;
+pub mod page;
 pub mod recordings;
 pub mod telemetry;
 pub mod variables;
@@ -27,6 +28,7 @@ use std::fmt;
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 use std::rc::Rc;
+use std::sync::Arc;
 use std::time::Duration;
 use tokio::net::{TcpListener, TcpStream};
 
@@ -120,7 +122,7 @@ impl Port {
 #[derive(Debug)]
 pub struct Admission {
     /// The allow-list.
-    pub access: Rc<Access>,
+    pub access: Arc<Access>,
     /// The connections that there are.
     pub seats: Rc<Seats>,
 }

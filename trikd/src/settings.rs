@@ -108,6 +108,10 @@ pub struct Settings {
     /// Port of variables of the program, served only to this machine.
     #[arg(long, value_name = "PORT", default_value_t = 10000)]
     pub variables_port: u16,
+    /// Serve a page for browsers at this port, at the first address of --address [default: none]. Programs of the robot may
+    /// then use the other ports without being paired.
+    #[arg(long, value_name = "PORT")]
+    pub page_port: Option<u16>,
     /// Turn this off; may be given several times.
     #[arg(long, value_name = "SERVICE", value_enum)]
     pub without: Vec<Service>,

@@ -16,6 +16,7 @@ use std::net::IpAddr;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{UnixListener, UnixStream};
@@ -45,7 +46,7 @@ pub struct Status {
     /// Where the tree is mounted.
     pub tree: PathBuf,
     /// Who may do what.
-    pub access: Rc<Access>,
+    pub access: Arc<Access>,
     /// Whose rights programs have; None: those of trikd.
     pub owner: Option<Owner>,
     /// Memory of one program.

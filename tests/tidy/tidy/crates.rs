@@ -7,7 +7,8 @@ use super::{CRATES, files, none, root};
 use crate::circles::LARGEST;
 
 /// Libraries that stand behind a border, and the only crates that may link them.
-const BEHIND_A_BORDER: [(&str, &[&str]); 9] = [
+const BEHIND_A_BORDER: [(&str, &[&str]); 10] = [
+    ("axum", &["page"]),
     ("box2d-rust", &["sim"]),
     ("clap", &["trik", "trikd", "trikfs", "trikfs-ev3dev"]),
     ("flate2", &["lang-diagram"]),
@@ -15,7 +16,7 @@ const BEHIND_A_BORDER: [(&str, &[&str]); 9] = [
     ("libloading", &["trikfs"]),
     ("mlua-sys", &["config"]),
     ("rquickjs", &["trikd"]),
-    ("tokio", &["trikd"]),
+    ("tokio", &["page", "trikd"]),
     ("zip", &["lang-diagram"]),
 ];
 

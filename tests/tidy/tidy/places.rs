@@ -6,15 +6,17 @@ use super::{Source, none, sources};
 
 /// Crates whose limits all stand in their `limits.rs`. Those of `filters` are ranges of parameters, which stand with them;
 /// `ev3dev`, `sim`, `lang/dcml` and `lang/diagram` have facts of devices and of picture and text beside theirs.
-const LIMITED: [&str; 14] = [
+const LIMITED: [&str; 16] = [
     "config",
     "converter",
+    "frame",
     "journal",
     "lang/constraint",
     "lang/editor",
     "lang/expr",
     "lang/plan",
     "lang/text",
+    "page",
     "recorder",
     "sample-bus",
     "screen",
@@ -23,7 +25,7 @@ const LIMITED: [&str; 14] = [
     "trikfs",
 ];
 /// Crates in which numbers of errors stand in one place, and no function gives a text as an error.
-const BLAMING: [&str; 14] = [
+const BLAMING: [&str; 15] = [
     "config",
     "converter",
     "journal",
@@ -34,6 +36,7 @@ const BLAMING: [&str; 14] = [
     "lang/expr",
     "lang/plan",
     "lang/text",
+    "page",
     "recorder",
     "sample-bus",
     "screen",

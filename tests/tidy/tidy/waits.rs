@@ -3,8 +3,9 @@
 use super::{none, sources};
 
 /// Tests that pause for a time, how often, and why that is no waiting for something else to be done.
-const PAUSES: [(&str, usize, &str); 19] = [
+const PAUSES: [(&str, usize, &str); 20] = [
     ("bridge/src/http.rs", 1, "between two looks"),
+    ("page/src/server/tests.rs", 1, "between two looks"),
     ("tests/harness/i2c_bus.rs", 1, "a slow bus is slow"),
     ("tests/harness/mount.rs", 1, "between two looks"),
     ("tests/harness/wait.rs", 1, "between two looks"),

@@ -17,13 +17,14 @@ use crate::protocol::program::WhenGone;
 use crate::{limits, log, scripts};
 use std::path::PathBuf;
 use std::rc::Rc;
+use std::sync::Arc;
 use tokio::sync::oneshot;
 
 /// What this port works with.
 #[derive(Debug)]
 pub struct Control {
     /// Who is paired.
-    pub access: Rc<Access>,
+    pub access: Arc<Access>,
     /// The register of connections.
     pub clients: Rc<Clients>,
     /// Bytes of half frames.

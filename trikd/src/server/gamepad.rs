@@ -15,6 +15,7 @@ use std::io::{self, Write};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::sync::Arc;
 use std::time::Duration;
 use tokio::io::AsyncReadExt;
 use tokio::time::{Instant, sleep_until};
@@ -69,7 +70,7 @@ impl Pipe {
 #[derive(Debug)]
 pub struct Gamepads {
     /// Who is paired.
-    pub access: Rc<Access>,
+    pub access: Arc<Access>,
     /// The register of connections.
     pub clients: Rc<Clients>,
     /// Where the lines go.

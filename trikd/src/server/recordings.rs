@@ -23,7 +23,7 @@ use tokio::task::{AbortHandle, spawn_local};
 #[derive(Debug)]
 pub struct Recordings {
     /// Which computers are paired.
-    pub access: Rc<Access>,
+    pub access: Arc<Access>,
     /// What has happened, and what happens.
     pub record: Rc<Record>,
 }

@@ -53,6 +53,16 @@ export class Link {
     return true;
   }
 
+  /** A server that was started again has another cookie, which comes with the page. */
+  async #again(): Promise<void> {
+    try {
+      await fetch('/', { cache: 'no-store' });
+    } catch {
+      // It is not there yet; the socket says so, and the next attempt follows.
+    }
+    if (this.#socket) this.#connect();
+  }
+
   #connect(): void {
     const socket = new WebSocket(this.address);
     socket.binaryType = 'arraybuffer';
@@ -69,7 +79,7 @@ export class Link {
       // It was ended here, or replaced.
       if (this.#socket !== socket) return;
       this.taker.connected(false);
-      this.#timer = setTimeout(() => this.#connect(), this.#wait);
+      this.#timer = setTimeout(() => void this.#again(), this.#wait);
       this.#wait = Math.min(this.#wait * 2, LATEST_MS);
     };
   }

@@ -6,7 +6,9 @@
 import { Link } from '../link/link';
 import type { News } from '../link/words';
 import type { Scene, WorldState } from '../world/types';
+import { Debugger } from './debugger.svelte';
 import { History } from './history';
+import { Programs } from './program.svelte';
 import { type Fields, type Line, type Node, Recording } from './recording';
 
 /** A node and what it gave. */
@@ -55,9 +57,10 @@ export class Robot {
   /** Refusals of values, by the path of their node. */
   readonly refused = new Map<string, string>();
   readonly link: Link;
+  readonly programs: Programs;
+  readonly debugger: Debugger;
   #recording = new Recording(this);
   #isDirty = false;
-  readonly #listeners = new Set<(message: string) => void>();
   readonly #decoder = new TextDecoder();
   /** The robot's clock, in seconds, less that of this page. */
   #ahead = 0;
@@ -65,6 +68,8 @@ export class Robot {
 
   constructor(address: string) {
     this.link = new Link(address, this);
+    this.programs = new Programs(this.link);
+    this.debugger = new Debugger(this.link);
     const show = () => {
       if (this.#isDirty) {
         this.#isDirty = false;
@@ -78,12 +83,6 @@ export class Robot {
   /** The robot's clock now, in seconds since 1970. */
   get now(): number {
     return Date.now() / 1000 + this.#ahead;
-  }
-
-  /** Calls back for each message of the control port that is no recording; returns what ends that. */
-  listen(callback: (message: string) => void): () => void {
-    this.#listeners.add(callback);
-    return () => this.#listeners.delete(callback);
   }
 
   /** Everything to rest, and the program to its end. */
@@ -145,14 +144,16 @@ export class Robot {
       return;
     }
     const message = this.#decoder.decode(bytes);
-    for (const listener of this.#listeners) listener(message);
+    this.programs.message(message);
+    this.debugger.message(message);
   }
 
   /** The robot is there: everything is told from now on. */
   #begin(): void {
     this.#recording = new Recording(this);
     this.link.request(`stream:;hz=${RATE_HZ}`);
-    for (const listener of this.#listeners) listener('');
+    this.programs.begin();
+    this.debugger.begin();
   }
 
   // What the recording says.

@@ -1,16 +1,19 @@
 // The views of the page: a new one is a row here.
 
 import type { Component } from 'svelte';
+import Diagram from '../diagram/Diagram.svelte';
 import Instruments from '../instruments/Instruments.svelte';
+import Log from '../log/Log.svelte';
+import Program from '../program/Program.svelte';
 import type { Robot } from '../robot/robot.svelte';
 import { words } from '../words';
 import World from '../world/World.svelte';
 
 export interface View {
-  /** In the address of the page, after `#`. */
+  /** In the address of the page, after `#`; what comes after a colon there is for the view. */
   name: string;
   title: string;
-  component: Component<{ robot: Robot }>;
+  component: Component<{ robot: Robot; argument: string }>;
   /** Whether this robot has anything to show in it. */
   isThere(robot: Robot): boolean;
 }
@@ -18,4 +21,7 @@ export interface View {
 export const views: View[] = [
   { name: 'world', title: words.world, component: World, isThere: (robot) => robot.hasWorld },
   { name: 'instruments', title: words.instruments, component: Instruments, isThere: () => true },
+  { name: 'program', title: words.program, component: Program, isThere: () => true },
+  { name: 'diagram', title: words.diagram, component: Diagram, isThere: () => true },
+  { name: 'log', title: words.log, component: Log, isThere: () => true },
 ];

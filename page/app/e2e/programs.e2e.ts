@@ -1,0 +1,100 @@
+// Programs and diagrams: sent, run, watched, stopped, changed.
+
+import { afterAll, beforeAll, expect, test } from 'vitest';
+import { ru } from '../src/words/ru';
+import { barriers, eventually, Look, Robot } from './robot';
+
+const DIAGRAM = '../../editors/vscode/test/texts/count.qrs';
+
+let robot: Robot;
+let look: Look;
+
+beforeAll(async () => {
+  robot = await Robot.start();
+  look = await Look.start();
+});
+
+afterAll(async () => {
+  await look.end();
+  await robot.end();
+});
+
+test('a program is sent, runs, says something and is stopped by the space bar', async () => {
+  const page = await look.open(`${robot.url}#program`);
+  const buffer = Buffer.from("print('here I am')\nbrick.motor('M3').setPower(40)\nscript.wait(60000)\n");
+  await page.setInputFiles('input[type=file]', { name: 'go.py', mimeType: 'text/x-python', buffer });
+  await page.getByRole('button', { name: 'Run go.py' }).click();
+  await page.getByText('here I am').waitFor();
+  await page.getByText('go.py runs').waitFor();
+  await eventually('the motor turns', () => robot.read('motors/M3/value') === '40');
+  await page.keyboard.press('Space');
+  await eventually('the motor rests', () => robot.read('motors/M3/value') === '0');
+  await page.getByText('No program runs.').waitFor();
+  await page.context().close();
+});
+
+test('names and output of programs are text, whatever is in them', async () => {
+  const page = await look.open(`${robot.url}#program`);
+  const name = '<img src=x onerror=alert(1)>.py';
+  const buffer = Buffer.from("print('<script>document.title = 1</script>')\n");
+  await page.setInputFiles('input[type=file]', { name, mimeType: 'text/x-python', buffer });
+  await page.getByRole('button', { name: `Run ${name}` }).click();
+  await page.getByText('<script>document.title = 1</script>').waitFor();
+  expect(await page.locator('img').count()).toBe(0);
+  expect(await page.title()).toContain('two-wheels');
+  const refused = { name: 'a:b.py', mimeType: 'text/x-python', buffer };
+  await page.setInputFiles('input[type=file]', refused);
+  await page.getByText('cannot be a program').waitFor();
+  await page.context().close();
+});
+
+test('a diagram stops at a breakpoint, goes on step by step, back, and takes a new number', async () => {
+  const page = await look.open(`${robot.url}#program`);
+  await page.setInputFiles('input[type=file]', DIAGRAM);
+  await page.getByRole('link', { name: 'Show the diagram count.qrs' }).click();
+  await page.getByRole('button', { name: 'Run, stopped at the first block' }).click();
+  await page.locator('g.stopped[data-id*=InitialNode]').waitFor();
+  await page.locator('g[data-id*=Timer] rect').first().click();
+  await page.locator('g.break[data-id*=Timer]').waitFor();
+  await page.getByRole('button', { name: 'Continue' }).click();
+  await page.locator('g.stopped[data-id*=Timer]').waitFor();
+  await page.getByText('at a breakpoint').waitFor();
+  const value = page.locator('aside table button.number').first();
+  const before = await value.textContent();
+  await value.click();
+  await page.locator('aside table input').fill('77');
+  await page.locator('aside table').getByRole('button', { name: 'Set' }).click();
+  await expect.poll(() => value.textContent()).toBe('77');
+  expect(before).not.toBe('77');
+  await page.getByRole('button', { name: 'Step over' }).click();
+  await page.locator('g.stopped:not([data-id*=Timer])').waitFor();
+  await page.getByRole('button', { name: 'Step back' }).click();
+  await page.getByText('shows the past').waitFor();
+  await page.getByRole('button', { name: 'To the present' }).click();
+  await page.getByRole('button', { name: 'Stop', exact: true }).click();
+  await page.getByText('is stopped').waitFor({ state: 'detached' });
+  await page.context().close();
+});
+
+test('everybody can use every view', async () => {
+  for (const colorScheme of ['light', 'dark'] as const) {
+    for (const view of ['program', 'diagram', 'log']) {
+      const page = await look.open(`${robot.url}#${view}`, { colorScheme });
+      await page.getByRole('button', { name: 'Stop', exact: true }).waitFor();
+      await page.locator('main > *').first().waitFor();
+      expect(await barriers(page), `${view}, ${colorScheme}`).toEqual([]);
+      await page.context().close();
+    }
+  }
+});
+
+test('a Russian browser has a Russian page', async () => {
+  const page = await look.open(`${robot.url}#program`, { locale: 'ru-RU' });
+  await page.getByRole('heading', { name: ru.programs }).waitFor();
+  expect(await page.locator('html').getAttribute('lang')).toBe('ru');
+  await page.context().close();
+});
+
+test('no page has complained', () => {
+  expect(look.complaints).toEqual([]);
+});

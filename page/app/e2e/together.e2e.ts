@@ -1,0 +1,80 @@
+// Several people, a robot that goes and comes back, and pages of others.
+
+import { createServer, type Server } from 'node:http';
+import type { AddressInfo } from 'node:net';
+import { afterAll, beforeAll, expect, test } from 'vitest';
+import { eventually, Look, Robot } from './robot';
+
+let robot: Robot;
+let look: Look;
+
+beforeAll(async () => {
+  robot = await Robot.start();
+  look = await Look.start();
+});
+
+afterAll(async () => {
+  await look.end();
+  await robot.end();
+});
+
+test('one is in control, the other one takes it', async () => {
+  const [first, second] = [await look.open(robot.url), await look.open(robot.url)];
+  await first.getByRole('button', { name: 'Take control' }).click();
+  await first.getByText('You are in control').waitFor();
+  await second.getByText('127.0.0.1 is in control').waitFor();
+  await second.getByRole('button', { name: 'Take control' }).click();
+  await second.getByText('You are in control').waitFor();
+  await first.getByText('127.0.0.1 is in control').waitFor();
+  await second.context().close();
+  await first.getByText('Nobody is in control').waitFor();
+  await first.context().close();
+});
+
+test('a robot that was started again is there again without a reload', async () => {
+  const page = await look.open(`${robot.url}#log`);
+  await page.getByText('Nobody is in control').waitFor();
+  const restarted = robot.restart();
+  await page.getByText('The page is not connected').waitFor();
+  await restarted;
+  await page.getByText('The page is not connected').waitFor({ state: 'detached' });
+  await page.getByRole('button', { name: 'Take control' }).click();
+  await page.getByText('You are in control').waitFor();
+  await page.context().close();
+});
+
+test('a page of somebody else in the same browser gets at nothing', async () => {
+  const other: Server = createServer((_, answer) => answer.end('<p>other</p>'));
+  await new Promise<void>((listens) => other.listen(0, '127.0.0.1', listens));
+  const port = (other.address() as AddressInfo).port;
+  // The browser has the cookie of the robot.
+  const page = await look.open(robot.url);
+  await page.getByText('Nobody is in control').waitFor();
+  await page.goto(`http://127.0.0.1:${port}/`);
+  const opened = await page.evaluate(
+    (url) =>
+      new Promise<string>((done) => {
+        const socket = new WebSocket(url);
+        socket.onopen = () => done('open');
+        socket.onerror = () => done('refused');
+      }),
+    `${robot.url.replace('http', 'ws')}socket`,
+  );
+  expect(opened).toBe('refused');
+  const read = await page.evaluate(async (url) => {
+    try {
+      return await (await fetch(url, { credentials: 'include' })).text();
+    } catch {
+      return 'refused';
+    }
+  }, `${robot.url}programs`);
+  expect(read).toBe('refused');
+  await page.setContent(`<iframe src="${robot.url}"></iframe>`);
+  await eventually('the frame is refused', async () => {
+    const frame = page.frames()[1];
+    return frame !== undefined && !(await frame.content()).includes('id="page"');
+  });
+  await page.context().close();
+  other.close();
+  look.complaints.length = 0;
+});

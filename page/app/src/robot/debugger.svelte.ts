@@ -1,0 +1,139 @@
+// The diagram that runs, as the robot's debugger tells it.
+//
+// Owns tags of orders and the newest state. What an order means is known to the robot; docs/protocol.md has the table.
+
+import type { Link } from '../link/link';
+
+/** A block of a diagram. */
+export interface Place {
+  diagram: string;
+  id: string;
+  block: string;
+}
+
+export interface Thread {
+  number: number;
+  name: string;
+  at?: Place;
+  does: 'enters' | 'gives way' | 'waits' | 'held' | 'failed';
+  for?: string;
+  left_ms?: number;
+  port?: string;
+  calls?: Place[];
+}
+
+export interface Variable {
+  name: string;
+  type: string;
+  value: string;
+}
+
+/** Where the program is. */
+export interface Told {
+  state: 'running' | 'stopped' | 'past' | 'searching' | 'ended' | 'gone';
+  ms?: number;
+  attached?: boolean;
+  stop?: { reason: string; text?: string; variable?: string; at?: Place };
+  threads?: Thread[];
+  variables?: Variable[];
+  kept?: { from_ms: number; bytes: number };
+}
+
+export interface Answer {
+  done: boolean;
+  why?: string;
+  program?: Told;
+  number?: number;
+  type?: string;
+  value?: string;
+  breakpoints?: Breakpoint[];
+}
+
+export interface Breakpoint {
+  number: number;
+  block?: Place | string;
+  variable?: string;
+  hits: number;
+}
+
+/** Orders that wait for their answers; the robot takes 256. */
+const WAITING_MAX = 100;
+const TAG_MAX = 4294967295;
+
+export class Debugger {
+  /** Undefined while no diagram runs. */
+  told = $state.raw<Told | undefined>(undefined);
+  /** Breakpoints by the id of their block. */
+  breakpoints = $state.raw<ReadonlyMap<string, number>>(new Map());
+  /** Why the last order was not carried out. */
+  why = $state('');
+  #tag = 0;
+  #waiting = new Map<number, (answer: Answer) => void>();
+
+  constructor(private readonly link: Link) {}
+
+  /** Asks for something; the answer says whether it was done. Undefined: there is none, because the robot is gone. */
+  async ask(order: string): Promise<Answer | undefined> {
+    if (this.#waiting.size >= WAITING_MAX) return undefined;
+    this.#tag = (this.#tag + 1) % TAG_MAX;
+    const tag = this.#tag;
+    if (!this.link.request(`debug:${tag} ${order}`)) return undefined;
+    return new Promise((answered) => this.#waiting.set(tag, answered));
+  }
+
+  /** Looks where the program is. */
+  async look(): Promise<void> {
+    const answer = await this.ask('look');
+    if (answer) this.told = answer.done ? answer.program : undefined;
+  }
+
+  /** Gives an order, and keeps the reason if it is not carried out. */
+  async order(order: string): Promise<Answer | undefined> {
+    const answer = await this.ask(order);
+    this.why = answer?.done === false ? (answer.why ?? '') : '';
+    if (answer?.program) this.told = answer.program;
+    return answer;
+  }
+
+  /** Puts a breakpoint at a block, or takes it away. */
+  async toggle(id: string): Promise<void> {
+    const number = this.breakpoints.get(id);
+    const all = new Map(this.breakpoints);
+    if (number === undefined) {
+      if (!this.told?.attached) await this.order('attach');
+      const answer = await this.order(`break ${id}`);
+      if (answer?.number !== undefined) all.set(id, answer.number);
+    } else {
+      await this.order(`clear ${number}`);
+      all.delete(id);
+    }
+    this.breakpoints = all;
+  }
+
+  /** A message of the control port. */
+  message(message: string): void {
+    if (!message.startsWith('debug: ')) return;
+    const value = JSON.parse(message.slice('debug: '.length)) as Answer &
+      Told & { to?: number | null; control?: string | null };
+    if (typeof value.to === 'number') {
+      this.#waiting.get(value.to)?.(value);
+      this.#waiting.delete(value.to);
+    } else if (value.state === 'gone') {
+      this.#gone();
+    } else if (value.state !== undefined) {
+      this.told = value;
+    }
+  }
+
+  /** The connection was lost: what was asked has no answer. */
+  begin(): void {
+    for (const answered of this.#waiting.values()) answered({ done: false, why: '' });
+    this.#waiting.clear();
+    this.#gone();
+  }
+
+  #gone(): void {
+    this.told = undefined;
+    this.breakpoints = new Map();
+  }
+}

@@ -1,0 +1,132 @@
+// Programs of the robot: which there are, which one runs, what it says and asks.
+//
+// Owns what was heard of them over the control port and of their folder. Knows no sensors and no diagrams.
+
+import type { Link } from '../link/link';
+
+/** A program in the robot's folder. */
+export interface Stored {
+  name: string;
+  bytes: number;
+  changed_s: number | null;
+}
+
+/** A line of a program, or about one. */
+export interface Said {
+  kind: 'print' | 'error' | 'info' | 'mail';
+  text: string;
+  /** No other line has it. */
+  number: number;
+}
+
+/** What a diagram wants to know from a person. */
+export interface Question {
+  number: number;
+  variable: string;
+  question: string;
+  default?: string;
+}
+
+/** Lines of output that are kept, and letters of one of them. */
+const LINES = 1000;
+const LETTERS = 4000;
+/** Bytes of a program that the control port takes, less its name. */
+const BYTES_MAX = (16 << 20) - 1024;
+const KINDS = ['print', 'error', 'info', 'mail'] as const;
+
+/** Whether a name can be one of a program; the robot decides. */
+export function isName(name: string): boolean {
+  return name.length > 0 && name.length <= 200 && !/[:\\\u0000-\u001f\u007f]/.test(name);
+}
+
+/** What the robot's `status` says about a program: its name, or nothing if none runs. */
+export function runningOf(status: string): string {
+  const line = /^status: program (.*)$/m.exec(status)?.[1] ?? 'none';
+  return line === 'none' ? '' : line.replace(/ \([^()]*\)( for .*)?$/, '');
+}
+
+export class Programs {
+  list = $state.raw<Stored[]>([]);
+  /** The name of what runs; empty if nothing does. */
+  running = $state('');
+  said = $state.raw<Said[]>([]);
+  question = $state.raw<Question | undefined>(undefined);
+  /** Why the last upload was not sent. */
+  refusal = $state<'' | 'name' | 'size' | 'offline'>('');
+  #number = 0;
+
+  constructor(private readonly link: Link) {}
+
+  /** The robot is there. */
+  begin(): void {
+    this.link.request('status');
+    void this.refresh();
+  }
+
+  /** Reads the folder anew. */
+  async refresh(): Promise<void> {
+    try {
+      const answer = await fetch('/programs');
+      if (answer.ok) this.list = (await answer.json()) as Stored[];
+    } catch {
+      // The server is gone; the link says so, and the list is read again when it is back.
+    }
+  }
+
+  /** Sends a file to the robot. */
+  async upload(file: File): Promise<boolean> {
+    if (!isName(file.name)) this.refusal = 'name';
+    else if (file.size > BYTES_MAX) this.refusal = 'size';
+    else {
+      const head = new TextEncoder().encode(`file:${file.name}:`);
+      const content = new Uint8Array(await file.arrayBuffer());
+      const request = new Uint8Array(head.length + content.length);
+      request.set(head);
+      request.set(content, head.length);
+      this.refusal = this.link.request(request) ? '' : 'offline';
+      // Requests are answered in their order, so this comes when the file is there.
+      this.link.request('status');
+    }
+    return this.refusal === '';
+  }
+
+  run(name: string): void {
+    // The person at this page answers questions of the program.
+    this.link.request('questions');
+    this.link.request(`run:${name}`);
+  }
+
+  answer(text: string | undefined): void {
+    const question = this.question;
+    if (!question) return;
+    this.link.request(text === undefined ? `answer:${question.number}` : `answer:${question.number}:${text}`);
+    this.question = undefined;
+  }
+
+  clear(): void {
+    this.said = [];
+  }
+
+  /** A message of the control port. */
+  message(message: string): void {
+    if (message.startsWith('status: ')) {
+      this.running = runningOf(message);
+      void this.refresh();
+    } else if (message.startsWith('question: ')) {
+      this.question = JSON.parse(message.slice('question: '.length)) as Question;
+    } else {
+      const kind = KINDS.find((one) => message.startsWith(`${one}: `));
+      if (kind) this.#say(kind, message.slice(kind.length + 2));
+    }
+  }
+
+  #say(kind: Said['kind'], text: string): void {
+    const cut = text.length > LETTERS ? `${text.slice(0, LETTERS)}...` : text;
+    const line = { kind, text: cut.replace(/\n+$/, ''), number: this.#number++ };
+    this.said = [...this.said.slice(1 - LINES), line];
+    if (kind !== 'info') return;
+    // A start, an end, a change: the robot says which in full.
+    this.link.request('status');
+    if (!/ has started$/.test(text)) this.question = undefined;
+  }
+}

@@ -1,0 +1,13 @@
+// Tests of the whole page: in Chromium, over a virtual robot of the `trik` that TRIK names. One after the other, because each has a
+// robot of its own, and two cores are few.
+import { defineConfig } from 'vitest/config';
+
+export default defineConfig({
+  test: {
+    include: ['e2e/*.e2e.ts'],
+    testTimeout: 60_000,
+    hookTimeout: 60_000,
+    fileParallelism: false,
+    retry: 0,
+  },
+});

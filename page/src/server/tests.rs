@@ -1,0 +1,411 @@
+//! The server as clients see it, good ones and others: a tree of plain files, and a robot that is a socket of this test.
+
+use super::*;
+use crate::limits;
+use crate::shared::Guests;
+use std::fs;
+use std::io::{Read, Write};
+use std::net::{IpAddr, TcpStream};
+use std::time::{Duration, Instant};
+
+/// A page over a tree of files, and the listener of its robot.
+struct Scene {
+    page: Page,
+    robot: TcpListener,
+    home: tempfile::TempDir,
+}
+
+/// Which computers may do what: those of this machine, as the test says.
+struct ByWord {
+    look: bool,
+    drive: bool,
+}
+
+impl Guests for ByWord {
+    fn may_look(&self, _: IpAddr) -> bool {
+        self.look
+    }
+
+    fn may_drive(&self, _: IpAddr) -> bool {
+        self.drive
+    }
+
+    fn asks(&self, _: IpAddr) {}
+}
+
+fn scene(look: bool, drive: bool) -> Scene {
+    let home = tempfile::tempdir().unwrap();
+    let motor = home.path().join("tree/motors/M1");
+    fs::create_dir_all(&motor).unwrap();
+    fs::create_dir_all(home.path().join("programs")).unwrap();
+    for (file, text) in [
+        ("value", "0\n"),
+        ("format", "i8 power"),
+        ("bin_data", "\0"),
+        ("units", "%"),
+    ] {
+        fs::write(motor.join(file), text).unwrap();
+    }
+    fs::write(home.path().join("tree/stop"), "").unwrap();
+    fs::write(home.path().join("programs/a.js"), "print(1)").unwrap();
+    let robot = TcpListener::bind("127.0.0.1:0").unwrap();
+    let page = Page::start(Settings {
+        address: "127.0.0.1:0".parse().unwrap(),
+        name: "test".to_owned(),
+        tree: home.path().join("tree"),
+        programs: Some(home.path().join("programs")),
+        world: None,
+        guests: Arc::new(ByWord { look, drive }),
+    })
+    .unwrap();
+    page.robot_is_at(robot.local_addr().unwrap());
+    Scene { page, robot, home }
+}
+
+impl Scene {
+    fn connect(&self) -> TcpStream {
+        let stream = TcpStream::connect(self.page.address()).unwrap();
+        stream
+            .set_read_timeout(Some(Duration::from_secs(10)))
+            .unwrap();
+        stream
+    }
+
+    /// The answer to a request with these headers beside `Host`, until the server closes.
+    fn get(&self, path: &str, host: &str, headers: &str) -> String {
+        let mut stream = self.connect();
+        let request =
+            format!("GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n{headers}\r\n");
+        stream.write_all(request.as_bytes()).unwrap();
+        let mut answer = Vec::new();
+        stream.read_to_end(&mut answer).unwrap();
+        String::from_utf8_lossy(&answer).into_owned()
+    }
+
+    fn host(&self) -> String {
+        self.page.address().to_string()
+    }
+
+    /// The header with our cookie.
+    fn cookie(&self) -> String {
+        let answer = self.get("/plain", &self.host(), "");
+        let line = answer
+            .lines()
+            .find_map(|line| line.strip_prefix("set-cookie: "))
+            .unwrap();
+        format!("Cookie: {}\r\n", line.split(';').next().unwrap())
+    }
+
+    /// A browser that looks, and the robot's end of its connection.
+    fn browser(&self) -> (Socket, TcpStream) {
+        let mut stream = self.connect();
+        let request = format!(
+            "GET /socket HTTP/1.1\r\nHost: {}\r\n{}Connection: Upgrade\r\nUpgrade: websocket\r\n\
+             Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: AAAAAAAAAAAAAAAAAAAAAA==\r\n\r\n",
+            self.host(),
+            self.cookie()
+        );
+        stream.write_all(request.as_bytes()).unwrap();
+        let mut socket = Socket { stream };
+        let head = socket.head();
+        assert!(head.starts_with("HTTP/1.1 101 "), "{head}");
+        let (robot, _) = self.robot.accept().unwrap();
+        robot
+            .set_read_timeout(Some(Duration::from_secs(10)))
+            .unwrap();
+        (socket, robot)
+    }
+
+    fn motor(&self) -> String {
+        fs::read_to_string(self.home.path().join("tree/motors/M1/value")).unwrap()
+    }
+}
+
+/// A WebSocket as a client has it, as far as these tests need one.
+struct Socket {
+    stream: TcpStream,
+}
+
+impl Socket {
+    fn head(&mut self) -> String {
+        let mut head = Vec::new();
+        while !head.ends_with(b"\r\n\r\n") {
+            let mut byte = [0];
+            self.stream.read_exact(&mut byte).unwrap();
+            head.push(byte[0]);
+        }
+        String::from_utf8(head).unwrap()
+    }
+
+    /// A text (1) or bytes (2), masked by zeros.
+    fn send(&mut self, kind: u8, payload: &[u8]) {
+        let mut frame = vec![0x80 | kind];
+        match payload.len() {
+            size @ 0..126 => frame.push(0x80 | size as u8),
+            size => {
+                frame.push(0x80 | 126);
+                frame.extend(u16::try_from(size).unwrap().to_be_bytes());
+            }
+        }
+        frame.extend([0; 4]);
+        frame.extend(payload);
+        self.stream.write_all(&frame).unwrap();
+    }
+
+    fn order(&mut self, text: &str) {
+        self.send(1, text.as_bytes());
+    }
+
+    /// The next message that is none of the protocol itself; None at the end.
+    fn next(&mut self) -> Option<(u8, String)> {
+        loop {
+            let mut head = [0; 2];
+            self.stream.read_exact(&mut head).ok()?;
+            let size = match head[1] {
+                126 => {
+                    let mut size = [0; 2];
+                    self.stream.read_exact(&mut size).ok()?;
+                    usize::from(u16::from_be_bytes(size))
+                }
+                size => usize::from(size),
+            };
+            let mut payload = vec![0; size];
+            self.stream.read_exact(&mut payload).ok()?;
+            match head[0] & 0x0f {
+                // A ping has a pong.
+                9 => self.send(10, &payload),
+                8 => return None,
+                kind => return Some((kind, String::from_utf8_lossy(&payload).into_owned())),
+            }
+        }
+    }
+
+    /// Reads until a message has this in it.
+    fn until(&mut self, text: &str) -> String {
+        loop {
+            let (_, message) = self.next().unwrap_or_else(|| panic!("no '{text}' came"));
+            if message.contains(text) {
+                return message;
+            }
+        }
+    }
+}
+
+/// Waits until something holds.
+fn eventually(what: &str, holds: impl Fn() -> bool) {
+    let end = Instant::now() + Duration::from_secs(10);
+    while !holds() {
+        assert!(Instant::now() < end, "{what}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Reads frames of the robot until one is this.
+fn robot_hears(robot: &mut TcpStream, wanted: &str) {
+    let mut decoder = frame::Decoder::new(limits::MESSAGE_BYTES_MAX);
+    let mut buffer = [0; 4096];
+    loop {
+        let size = robot.read(&mut buffer).unwrap();
+        assert!(size > 0, "the connection ended before '{wanted}'");
+        decoder.feed(&buffer[..size]);
+        while let Some(frame) = decoder.next().unwrap() {
+            if frame == wanted.as_bytes() {
+                return;
+            }
+        }
+    }
+}
+
+#[test]
+fn only_the_page_itself_gets_at_the_robot() {
+    let scene = scene(true, true);
+    let host = scene.host();
+    let cookie = scene.cookie();
+    let status = |path: &str, host: &str, headers: &str| {
+        let answer = scene.get(path, host, headers);
+        answer.split(' ').nth(1).unwrap().to_owned()
+    };
+    assert_eq!(status("/programs", &host, &cookie), "200");
+    assert_eq!(status("/programs", &host, ""), "403");
+    assert_eq!(status("/programs", &host, "Cookie: trik-1=00\r\n"), "403");
+    assert_eq!(status("/socket", &host, ""), "403");
+    assert_eq!(status("/plain", "evil.example", ""), "403");
+    assert_eq!(status("/plain", "", ""), "403");
+    let evil = format!("{cookie}Origin: http://evil.example\r\n");
+    assert_eq!(status("/programs", &host, &evil), "403");
+    let own = format!("{cookie}Origin: http://{host}\r\n");
+    assert_eq!(status("/programs", &host, &own), "200");
+    assert_eq!(status("/program/a.js", &host, &cookie), "200");
+    for path in [
+        "/program/../secret",
+        "/program/%2e%2e/secret",
+        "/program//etc/passwd",
+        "/program/b.js",
+    ] {
+        assert_eq!(status(path, &host, &cookie), "404", "{path}");
+    }
+    assert_eq!(status("/diagram/a.js", &host, &cookie), "422");
+    let answer = scene.get("/none", &host, "");
+    assert!(answer.starts_with("HTTP/1.1 404 "), "{answer}");
+    for header in [
+        "content-security-policy: default-src 'none'",
+        "x-frame-options: DENY",
+    ] {
+        assert!(answer.contains(header), "{answer}");
+    }
+}
+
+#[test]
+fn a_computer_that_is_not_admitted_sees_nothing() {
+    let scene = scene(false, true);
+    let answer = scene.get("/plain", &scene.host(), "");
+    assert!(answer.starts_with("HTTP/1.1 403 "), "{answer}");
+    assert!(!answer.contains("set-cookie"), "{answer}");
+}
+
+#[test]
+fn a_browser_drives_and_what_it_drives_rests_when_it_is_gone() {
+    let scene = scene(true, true);
+    let motor = scene.home.path().join("tree/motors/M1/value");
+    // Not every filesystem of tests has attributes of users.
+    let has_rest = rustix::fs::setxattr(
+        &motor,
+        "user.trik.rest",
+        b"0",
+        rustix::fs::XattrFlags::empty(),
+    )
+    .is_ok();
+    let (mut browser, mut robot) = scene.browser();
+    browser.until("\"is\":\"hello\"");
+    browser.order(r#"{"do":"write","path":"motors/M1","value":"30"}"#);
+    browser.until("\"mine\":true");
+    browser.until("\"is\":\"written\"");
+    assert_eq!(scene.motor(), "30\n");
+    browser.send(2, b"version");
+    robot_hears(&mut robot, "version");
+    robot.write_all(b"3:one15:stream:\x00\x01bytes.").unwrap();
+    let (kind, first) = loop {
+        let message = browser.next().unwrap();
+        if message.0 == 2 {
+            break message;
+        }
+    };
+    assert_eq!((kind, first.as_str()), (2, "one"));
+    browser.until("stream:");
+    drop(browser);
+    if has_rest {
+        eventually("rest after the browser", || scene.motor() == "0\n");
+    }
+}
+
+#[test]
+fn one_is_in_control_and_everybody_may_stop() {
+    let scene = scene(true, true);
+    let (mut first, _robot) = scene.browser();
+    let (mut second, mut robot) = scene.browser();
+    first.order(r#"{"do":"write","path":"motors/M1","value":"30"}"#);
+    first.until("\"mine\":true");
+    second.until("\"who\":\"127.0.0.1\"");
+    second.order(r#"{"do":"write","path":"motors/M1","value":"99"}"#);
+    second.until("is in control");
+    second.send(2, b"run:a.js");
+    second.until("is in control");
+    second.send(2, b"status");
+    robot_hears(&mut robot, "status");
+    second.order(r#"{"do":"stop"}"#);
+    robot_hears(&mut robot, "stop");
+    let stop = scene.home.path().join("tree/stop");
+    eventually("the tree is told", || {
+        fs::read_to_string(&stop).unwrap() == "1"
+    });
+    assert_eq!(scene.motor(), "30\n");
+    second.order(r#"{"do":"take"}"#);
+    first.until("\"mine\":false");
+    second.send(2, b"run:a.js");
+    robot_hears(&mut robot, "run:a.js");
+    drop(second);
+    first.until("\"who\":null");
+}
+
+#[test]
+fn a_computer_that_may_only_look_changes_nothing() {
+    let scene = scene(true, false);
+    let (mut browser, mut robot) = scene.browser();
+    browser.until("\"drives\":false");
+    for order in [
+        r#"{"do":"write","path":"motors/M1","value":"30"}"#,
+        r#"{"do":"take"}"#,
+        r#"{"do":"world","order":"pause"}"#,
+    ] {
+        browser.order(order);
+        browser.until("this computer may only look");
+    }
+    browser.send(2, b"run:a.js");
+    browser.until("this computer may only look");
+    browser.send(2, b"status");
+    robot_hears(&mut robot, "status");
+    assert_eq!(scene.motor(), "0\n");
+}
+
+#[test]
+fn rubbish_is_refused_in_words_and_the_connection_lives() {
+    let scene = scene(true, true);
+    let (mut browser, _robot) = scene.browser();
+    for rubbish in ["", "{", "[]", "{\"do\":\"fly\"}", "\u{0}"] {
+        browser.order(rubbish);
+        browser.until("is no order");
+    }
+    browser.order(r#"{"do":"write","path":"../../x","value":"1"}"#);
+    browser.until("is no actuator");
+    browser.order(r#"{"do":"world","order":"pause"}"#);
+    browser.until("a real robot has no world");
+    // More than there is room for, which is more than any robot answers.
+    for _ in 0..10_000 {
+        browser.send(1, b"x");
+    }
+    browser.order(r#"{"do":"write","path":"motors/M1","value":"5"}"#);
+    browser.until("\"is\":\"written\"");
+    assert_eq!(scene.motor(), "5\n");
+}
+
+#[test]
+fn a_robot_that_goes_and_comes_back_is_found_again() {
+    let scene = scene(true, true);
+    let (mut browser, robot) = scene.browser();
+    browser.until("\"there\":true");
+    drop(robot);
+    browser.until("\"there\":false");
+    let (_robot, _) = scene.robot.accept().unwrap();
+    browser.until("\"there\":true");
+}
+
+#[test]
+fn too_many_connections_do_not_keep_the_others_from_working() {
+    let scene = scene(true, true);
+    let (mut browser, _robot) = scene.browser();
+    let idle: Vec<TcpStream> = (0..300)
+        .filter_map(|_| TcpStream::connect(scene.page.address()).ok())
+        .collect();
+    browser.order(r#"{"do":"write","path":"motors/M1","value":"7"}"#);
+    browser.until("\"is\":\"written\"");
+    drop(idle);
+    eventually("others come in again", || {
+        let mut stream = TcpStream::connect(scene.page.address()).unwrap();
+        let request = format!("GET /none HTTP/1.0\r\nHost: {}\r\n\r\n", scene.host());
+        let mut answer = String::new();
+        stream.write_all(request.as_bytes()).is_ok()
+            && stream.read_to_string(&mut answer).is_ok()
+            && answer.contains("404")
+    });
+}
+
+#[test]
+fn the_end_is_soon_also_while_browsers_look() {
+    let scene = scene(true, true);
+    let (mut browser, _robot) = scene.browser();
+    browser.until("\"is\":\"hello\"");
+    let begin = Instant::now();
+    drop(scene.page);
+    assert!(begin.elapsed() < Duration::from_secs(5));
+    while browser.next().is_some() {}
+}

@@ -1,0 +1,78 @@
+//! The page for browsers: served by the crate `page` on a thread of its own, which talks to the control port as every client does.
+//!
+//! Owns where it is served, and which computers may use it: those that may use the other ports.
+
+use crate::access::Access;
+use crate::blame::Os;
+use crate::error::Error;
+use crate::protocol::mail::plain;
+use crate::settings::Settings;
+use page::{Guests, Page};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
+use std::sync::Arc;
+
+impl Guests for Access {
+    fn may_look(&self, ip: IpAddr) -> bool {
+        self.lists(plain(ip))
+    }
+
+    fn may_drive(&self, ip: IpAddr) -> bool {
+        self.is_paired(ip)
+    }
+
+    fn asks(&self, ip: IpAddr) {
+        self.remember(ip);
+    }
+}
+
+/// Serves it, if it is wanted; the robot itself is at this control port.
+///
+/// # Errors
+/// The port is taken, or there are no more threads.
+pub fn start(
+    settings: &Settings,
+    access: &Arc<Access>,
+    control_port: u16,
+) -> Result<Option<Page>, Error> {
+    let Some(port) = settings.page_port else {
+        return Ok(None);
+    };
+    let own = settings.address.first();
+    let serve = |ip: IpAddr| {
+        Page::start(page::Settings {
+            address: SocketAddr::new(ip, port),
+            name: settings.name.clone().unwrap_or_else(host_name),
+            tree: settings.tree.clone(),
+            programs: Some(settings.scripts.clone()),
+            world: None,
+            guests: access.clone(),
+        })
+    };
+    let page = match (
+        own,
+        serve(own.copied().unwrap_or(Ipv6Addr::UNSPECIFIED.into())),
+    ) {
+        // A kernel without IPv6.
+        (None, Err(page::error::Error::Address(_, why)))
+            if why.raw_os_error() == Some(libc::EAFNOSUPPORT) =>
+        {
+            serve(Ipv4Addr::UNSPECIFIED.into())
+        }
+        (_, page) => page,
+    };
+    let page = page.map_err(|error| match error {
+        page::error::Error::Address(_, why) => Error::Port("page", port, Os::from(why)),
+        other => Error::Page(other.to_string()),
+    })?;
+    let robot = match own {
+        Some(ip) if !ip.is_unspecified() => *ip,
+        _ => Ipv4Addr::LOCALHOST.into(),
+    };
+    page.robot_is_at(SocketAddr::new(robot, control_port));
+    Ok(Some(page))
+}
+
+fn host_name() -> String {
+    let name = rustix::system::uname();
+    name.nodename().to_string_lossy().into_owned()
+}
