@@ -148,7 +148,7 @@ function drive({ home }, left, right) {
 
 /** Two fingers that go apart make the robot larger, and one carries it. */
 async function pinch(page) {
-  await page.getByLabel('След', { exact: true }).uncheck();
+  await page.getByRole('checkbox').uncheck();
   const fingers = await page.context().newCDPSession(page);
   const box = await page.locator('.stage canvas').boundingBox();
   const touch = (type, ...points) =>

@@ -107,6 +107,7 @@ export const en = {
   from: 'From',
   text: 'Text',
   nothingYet: 'Nothing has happened yet.',
+
   worldPicture: 'The world from above',
   worldControls: 'Time and picture of the world',
   worldPause: 'Pause',
@@ -115,7 +116,7 @@ export const en = {
   worldReset: 'Reset',
   worldResetHint: 'The robot and all things go back to where they began',
   worldSpeed: 'Speed',
-  seconds: (time: string) => `${time} s`,
+  worldTime: (time: string) => `${time} s`,
   trail: 'Trail',
   trailClear: 'Clear trail',
   zoomIn: 'Larger',

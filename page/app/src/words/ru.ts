@@ -109,6 +109,7 @@ export const ru: Words = {
   from: 'Откуда',
   text: 'Текст',
   nothingYet: 'Пока ничего не произошло.',
+
   worldPicture: 'Мир сверху',
   worldControls: 'Время и картина мира',
   worldPause: 'Пауза',
@@ -117,7 +118,7 @@ export const ru: Words = {
   worldReset: 'Сначала',
   worldResetHint: 'Робот и все предметы вернутся на начальные места',
   worldSpeed: 'Скорость',
-  seconds: (time) => `${time} с`,
+  worldTime: (time) => `${time} с`,
   trail: 'След',
   trailClear: 'Стереть след',
   zoomIn: 'Крупнее',
