@@ -184,6 +184,7 @@ async function control(page, other) {
   await page.keyboard.up('ArrowUp');
   const mine = page.getByRole('slider', { name: 'motors/M3, duty_cycle' });
   await until('the slider of the one before', () => mine.isDisabled(), true);
+  await until('what is said of it', () => slider.getAttribute('aria-valuetext'), '0 %');
   await slider.focus();
   await other.keyboard.press('ArrowRight');
   await until('the motor', () => value('motors/M3'), '1');
