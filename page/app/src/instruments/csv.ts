@@ -3,7 +3,7 @@
 // Owns the quotes. A text that a spreadsheet program would take for a formula begins with an apostrophe.
 
 /** What formulas begin with, in narrow and in wide letters. */
-const FORMULA = /^ *[=+\-@\t\r＝＋－＠]/;
+const FORMULA = /^ *[=+\-@\t\r\uff1d\uff0b\uff0d\uff20]/;
 
 /** A text as a cell. */
 export function cell(text: string): string {

@@ -51,7 +51,9 @@ export class Driver {
     const held = this.#held.get(hand);
     if (!held) return;
     this.#held.delete(hand);
-    for (const path of held.keys()) this.desk.rest(path);
+    // Without control there is no order but the stop, and what was held must not go on.
+    if (this.desk.why !== '' && held.size > 0) this.desk.robot.stop();
+    else for (const path of held.keys()) this.desk.rest(path);
     this.#show(hand, undefined);
   }
 

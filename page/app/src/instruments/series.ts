@@ -57,6 +57,12 @@ export function joined(all: readonly Samples[]): Joined {
       const value = one.values[at] ?? NaN;
       column[places.get(time) ?? 0] = Number.isFinite(value) ? value : null;
     }
+    // A gap lasts until the next value, at the times of the others too.
+    let isGap = false;
+    for (const [at, value] of column.entries()) {
+      if (value === undefined && isGap) column[at] = null;
+      else if (value !== undefined) isGap = value === null;
+    }
     return column;
   });
   return { times, columns };

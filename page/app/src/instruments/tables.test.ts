@@ -29,13 +29,13 @@ describe('a table', () => {
 describe('series', () => {
   it('are joined with gaps only where a number failed', () => {
     const both = joined([
-      { times: [1, 3], values: [10, NaN] },
-      { times: [2, 3], values: [20, 30] },
+      { times: [1, 3, 6], values: [10, NaN, 15] },
+      { times: [2, 3, 4, 5], values: [20, 30, 40, 50] },
     ]);
-    expect(both.times).toEqual([1, 2, 3]);
+    expect(both.times).toEqual([1, 2, 3, 4, 5, 6]);
     expect(both.columns).toEqual([
-      [10, undefined, null],
-      [undefined, 20, 30],
+      [10, undefined, null, null, null, 15],
+      [undefined, 20, 30, 40, 50, undefined],
     ]);
   });
 

@@ -178,6 +178,7 @@ export const en = {
     notInRange: (min: string, max: string) => `A number from ${min} to ${max} is needed.`,
     graph: 'Graph',
     graphOf: (what: string) => `Graph of ${what}`,
+    full: (count: number) => `The graph is full: it has ${count} numbers at most.`,
     pinGraph: 'Pin the graph',
     close: 'Close',
     window: 'What the graph shows',

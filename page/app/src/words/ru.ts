@@ -179,6 +179,7 @@ export const ru: Words = {
     notInRange: (min, max) => `Нужно число от ${min} до ${max}.`,
     graph: 'График',
     graphOf: (what) => `График: ${what}`,
+    full: (count) => `На графике нет места: чисел не больше ${count}.`,
     pinGraph: 'Закрепить график',
     close: 'Закрыть',
     window: 'Что показывает график',
