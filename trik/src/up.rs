@@ -96,9 +96,11 @@ fn simulate(args: UpArgs) -> Result<(), Error> {
         board: &board,
     };
     let name = virtual_robot.robot.to_owned();
-    let seen = board.watcher().map(|watcher| -> Arc<dyn ::page::world::World> {
-        Arc::new(Around::new(watcher, place.board.clone()))
-    });
+    let seen = board
+        .watcher()
+        .map(|watcher| -> Arc<dyn ::page::world::World> {
+            Arc::new(Around::new(watcher, place.board.clone()))
+        });
     let beneath = page::Beneath {
         world: seen,
         ..page::Beneath::default()
