@@ -297,8 +297,12 @@ async function crowded(browser) {
   writeFileSync(empty, '<root version="20251219"><settings/><world/></root>');
   const one = await robot('--world', empty);
   const { page, seen } = await look(browser, one.address);
-  const file = { mimeType: 'text/xml', buffer: Buffer.from(crowd()) };
-  await page.locator('input[type=file]').setInputFiles({ name: 'crowd.xml', ...file });
+  const dropped = await page.evaluateHandle((text) => {
+    const transfer = new DataTransfer();
+    transfer.items.add(new File([text], 'crowd.xml', { type: 'text/xml' }));
+    return transfer;
+  }, crowd());
+  await page.locator('main section').dispatchEvent('drop', { dataTransfer: dropped });
   await until(
     'another world',
     () => seen.scene.things.length,
