@@ -38,13 +38,14 @@ pub async fn serve(shared: Arc<Shared>, socket: WebSocket, who: Who) {
         shared: shared.clone(),
         who,
         news,
-        moves,
+        moves: moves.clone(),
         requests,
         looks,
     };
     let teller = Teller {
         shared: shared.clone(),
         who,
+        moves,
         sink,
         told,
         from_robot,
@@ -185,6 +186,7 @@ impl Listener {
 struct Teller {
     shared: Arc<Shared>,
     who: Who,
+    moves: mpsc::Sender<Move>,
     sink: SplitSink<WebSocket, Message>,
     told: mpsc::Receiver<News>,
     from_robot: mpsc::Receiver<Came>,
@@ -217,6 +219,7 @@ impl Teller {
         let mut places = interval(limits::PLAYBACK_TIME);
         places.set_missed_tick_behavior(MissedTickBehavior::Delay);
         let mut place = None;
+        let mut was_mine = false;
         let mut shown = Shown::default();
         loop {
             let looks = *self.is_looked_at.borrow();
@@ -230,6 +233,11 @@ impl Teller {
                 },
                 Ok(()) = holder.changed() => {
                     let now = *holder.borrow_and_update();
+                    let is_mine = now == Some(self.who);
+                    if std::mem::replace(&mut was_mine, is_mine) && !is_mine {
+                        // Another one drives now, and what this one has left on would be nobody's.
+                        let _ = self.moves.try_send(Move::Rest);
+                    }
                     self.say(News::control(now, self.who)).await
                 }
                 Ok(()) = self.is_looked_at.changed() => {

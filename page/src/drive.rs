@@ -12,6 +12,9 @@ use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Component, Path, PathBuf};
 use tokio::sync::mpsc;
 
+/// Nothing here waits for a device.
+const NONBLOCK: i32 = rustix::fs::OFlags::NONBLOCK.bits().cast_signed();
+
 /// What the thread of the files is told.
 #[derive(Debug)]
 pub enum Move {
@@ -108,12 +111,15 @@ fn write(tree: &Path, driven: &mut Driven, path: &str, value: &str) -> Result<()
     let mut options = OpenOptions::new();
     let wrote = options
         .write(true)
-        .custom_flags(rustix::fs::OFlags::NONBLOCK.bits().cast_signed())
+        .custom_flags(NONBLOCK)
         .open(&file)
         .and_then(|mut opened| opened.write_all(line.as_bytes()));
-    wrote.map_err(|error| match error.kind() {
-        io::ErrorKind::NotFound => Error::Path(path.to_owned()),
-        _ => Error::File(path.to_owned(), error),
+    wrote.map_err(|error| {
+        if error.kind() == io::ErrorKind::NotFound {
+            Error::Path(path.to_owned())
+        } else {
+            Error::File(path.to_owned(), error)
+        }
     })?;
     if let Ok(text) = read(&file) {
         driven.insert(path.to_owned(), text);
@@ -121,9 +127,11 @@ fn write(tree: &Path, driven: &mut Driven, path: &str, value: &str) -> Result<()
     Ok(())
 }
 
-fn read(file: &Path) -> io::Result<String> {
+/// What the file of a value says now. One that would have to be waited for is an error.
+pub fn read(file: &Path) -> io::Result<String> {
     let mut text = String::new();
-    let opened = fs::File::open(file)?;
+    let mut options = OpenOptions::new();
+    let opened = options.read(true).custom_flags(NONBLOCK).open(file)?;
     opened
         .take(limits::WORDS_BYTES_MAX as u64)
         .read_to_string(&mut text)?;

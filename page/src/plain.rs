@@ -2,7 +2,7 @@
 //!
 //! Owns the table. It is read anew every two seconds by the browser itself.
 
-use crate::limits;
+use crate::{drive, limits};
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
@@ -44,11 +44,8 @@ fn escaped(text: &str) -> String {
 
 /// A file of a node, shortened; a failure in words.
 fn text(path: &Path) -> String {
-    match fs::read(path) {
-        Ok(bytes) => {
-            let text = String::from_utf8_lossy(&bytes);
-            text.trim_end().chars().take(limits::CELL_LETTERS).collect()
-        }
+    match drive::read(path) {
+        Ok(text) => text.trim_end().chars().take(limits::CELL_LETTERS).collect(),
         Err(error) => {
             let text = error.to_string();
             text.split(" (os error")

@@ -21,6 +21,7 @@ pub(crate) mod world;
 use crate::error::Error;
 use crate::place::{self, Place};
 use crate::refusal::Refusal;
+use ::page::world::World;
 use args::{UpArgs, absolute};
 use around::Around;
 use page::Served;
@@ -96,15 +97,7 @@ fn simulate(args: UpArgs) -> Result<(), Error> {
         board: &board,
     };
     let name = virtual_robot.robot.to_owned();
-    let seen = board
-        .watcher()
-        .map(|watcher| -> Arc<dyn ::page::world::World> {
-            Arc::new(Around::new(watcher, place.board.clone()))
-        });
-    let beneath = page::Beneath {
-        world: seen,
-        ..page::Beneath::default()
-    };
+    let beneath = seen(&board, &place);
     let page = Served::start(&args.serving, &place, trikd.as_ref(), name, beneath)?;
     let over = Over {
         ev3dev,
@@ -119,6 +112,17 @@ fn simulate(args: UpArgs) -> Result<(), Error> {
     drop(board);
     drop(place);
     end
+}
+
+/// What the page shows of a board: the world around it, if it has one.
+fn seen(board: &Board, place: &Place) -> page::Beneath {
+    let around = board
+        .watcher()
+        .map(|watcher| -> Arc<dyn World> { Arc::new(Around::new(watcher, place.board.clone())) });
+    page::Beneath {
+        world: around,
+        ..page::Beneath::default()
+    }
 }
 
 /// A virtual board as what is beneath a tree.

@@ -117,6 +117,13 @@ impl Scene {
         (socket, robot)
     }
 
+    /// The motor has a value for its rest; false: the filesystem of the test has no attributes.
+    fn gives_rest(&self) -> bool {
+        let motor = self.home.path().join("tree/motors/M1/value");
+        let flags = rustix::fs::XattrFlags::empty();
+        rustix::fs::setxattr(&motor, "user.trik.rest", b"0", flags).is_ok()
+    }
+
     fn motor(&self) -> String {
         fs::read_to_string(self.home.path().join("tree/motors/M1/value")).unwrap()
     }
@@ -267,15 +274,7 @@ fn a_computer_that_is_not_admitted_sees_nothing() {
 #[test]
 fn a_browser_drives_and_what_it_drives_rests_when_it_is_gone() {
     let scene = scene(true, true);
-    let motor = scene.home.path().join("tree/motors/M1/value");
-    // Not every filesystem of tests has attributes of users.
-    let has_rest = rustix::fs::setxattr(
-        &motor,
-        "user.trik.rest",
-        b"0",
-        rustix::fs::XattrFlags::empty(),
-    )
-    .is_ok();
+    let has_rest = scene.gives_rest();
     let (mut browser, mut robot) = scene.browser();
     browser.until("\"is\":\"hello\"");
     browser.order(r#"{"do":"write","path":"motors/M1","value":"30"}"#);
@@ -302,6 +301,7 @@ fn a_browser_drives_and_what_it_drives_rests_when_it_is_gone() {
 #[test]
 fn one_is_in_control_and_everybody_may_stop() {
     let scene = scene(true, true);
+    let has_rest = scene.gives_rest();
     let (mut first, _robot) = scene.browser();
     let (mut second, mut robot) = scene.browser();
     first.order(r#"{"do":"write","path":"motors/M1","value":"30"}"#);
@@ -320,8 +320,14 @@ fn one_is_in_control_and_everybody_may_stop() {
         fs::read_to_string(&stop).unwrap() == "1"
     });
     assert_eq!(scene.motor(), "30\n");
+    // The stop has made a new beginning: what is moved now rests when another one takes control.
+    first.order(r#"{"do":"write","path":"motors/M1","value":"40"}"#);
+    first.until("\"value\":\"40\"");
     second.order(r#"{"do":"take"}"#);
     first.until("\"mine\":false");
+    if has_rest {
+        eventually("rest after a change of control", || scene.motor() == "0\n");
+    }
     second.send(2, b"run:a.js");
     robot_hears(&mut robot, "run:a.js");
     drop(second);

@@ -61,9 +61,12 @@ pub fn start(
         }
         (_, page) => page,
     };
-    let page = page.map_err(|error| match error {
-        page::error::Error::Address(_, why) => Error::Port("page", port, Os::from(why)),
-        other => Error::Page(other.to_string()),
+    let page = page.map_err(|error| {
+        if let page::error::Error::Address(_, why) = error {
+            Error::Port("page", port, Os::from(why))
+        } else {
+            Error::Page(error.to_string())
+        }
     })?;
     let robot = match own {
         Some(ip) if !ip.is_unspecified() => *ip,
