@@ -9,7 +9,7 @@ const DIGITS = 4;
 export function numberText(value: number | bigint, isWhole = Number.isInteger(value)): string {
   if (typeof value === 'bigint') return signed(String(value));
   if (Number.isNaN(value)) return 'NaN';
-  if (!Number.isFinite(value)) return value > 0 ? '∞' : '−∞';
+  if (!Number.isFinite(value)) return value > 0 ? '\u221e' : '\u2212\u221e';
   if (isWhole && Number.isInteger(value) && Math.abs(value) < 1e15) return signed(String(value));
   const size = Math.abs(value);
   if (size !== 0 && (size < 1e-4 || size >= 1e7)) return signed(value.toExponential(DIGITS - 1));
@@ -26,7 +26,7 @@ export function axisText(value: number): string {
 }
 
 function signed(text: string): string {
-  return text.replaceAll('-', '−');
+  return text.replaceAll('-', '\u2212');
 }
 
 /** Steps of size of bytes. */

@@ -17,7 +17,7 @@ export interface Reading {
 }
 
 /** What is shown where there is no value. */
-export const NONE = '–';
+export const NONE = '\u2013';
 
 /** Each field of a node, with or without a value. */
 export function readings(known: Known): Reading[] {
