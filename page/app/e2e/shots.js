@@ -1,0 +1,65 @@
+// The pictures of the page in the documents, made of a robot that runs.
+//
+//   TRIK=target/debug/trik node e2e/shots.js
+//
+// They are written to docs/user/pictures; look at them before they are committed.
+import { mkdirSync, readFileSync } from 'node:fs';
+import { join, resolve } from 'node:path';
+import { look, tried } from './stand.js';
+
+const folder = resolve(import.meta.dirname, '../../../docs/user/pictures');
+const diagram = resolve(import.meta.dirname, '../../../editors/vscode/test/texts/count.qrs');
+const DRIVE = `brick.motor('M3').setPower(45)
+brick.motor('M4').setPower(60)
+script.wait(60000)
+`;
+
+mkdirSync(folder, { recursive: true });
+
+await tried(async (browser, address) => {
+  const page = await look(browser, address);
+  const shot = async (name) => {
+    await page.screenshot({
+      path: join(folder, `page-${name}.png`),
+      clip: { x: 0, y: 0, width: 1200, height: 760 },
+    });
+  };
+  const open = async (view) => {
+    await page.goto(`${address}/#${view}`);
+    await page.locator('main > *').first().waitFor();
+  };
+  await page.setViewportSize({ width: 1200, height: 760 });
+  await open('program');
+  const file = { name: 'drive.py', mimeType: 'text/x-python', buffer: Buffer.from(DRIVE) };
+  await page.setInputFiles('input[type=file]', [file]);
+  await page.setInputFiles('input[type=file]', {
+    name: 'count.qrs',
+    mimeType: 'application/octet-stream',
+    buffer: readFileSync(diagram),
+  });
+  await page.getByRole('button', { name: 'Run drive.py' }).click();
+  await page.getByText('drive.py runs').waitFor();
+  await open('world');
+  await page.waitForTimeout(6000);
+  await shot('world');
+  await open('instruments');
+  for (const name of ['sensors/D1', 'heading']) {
+    const node = page.getByRole('article', { name, exact: true });
+    await node.scrollIntoViewIfNeeded();
+    await node
+      .getByRole('button', { name: /show it in the graph/ })
+      .first()
+      .click();
+  }
+  await page.evaluate(() => window.scrollTo(0, 0));
+  await page.waitForTimeout(6000);
+  await shot('instruments');
+  await page.keyboard.press('Space');
+  await open('diagram:count.qrs');
+  await page.getByRole('button', { name: 'Run, stopped at the first block' }).click();
+  await page.locator('g.stopped').waitFor();
+  await page.locator('g[data-id*=Timer] rect').first().click();
+  await page.getByRole('button', { name: 'Continue' }).click();
+  await page.locator('g.stopped[data-id*=Timer]').waitFor();
+  await shot('diagram');
+});
