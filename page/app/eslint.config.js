@@ -19,7 +19,7 @@ export default ts.config(
     rules: {
       '@typescript-eslint/switch-exhaustiveness-check': 'off',
       'svelte/no-at-html-tags': 'error',
-      'no-console': 'error',
+      'no-console': ['error', { allow: ['info'] }],
       // What changes thousands of times in a second is no state of components: `tick` says that it has changed.
       'svelte/prefer-svelte-reactivity': 'off',
     },

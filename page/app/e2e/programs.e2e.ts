@@ -2,7 +2,7 @@
 
 import { afterAll, beforeAll, expect, test } from 'vitest';
 import { ru } from '../src/words/ru';
-import { barriers, eventually, Look, Robot } from './robot';
+import { barriers, eventually, Look, Robot } from './robot.js';
 
 const DIAGRAM = '../../editors/vscode/test/texts/count.qrs';
 

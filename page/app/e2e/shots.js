@@ -5,7 +5,7 @@
 // They are written to docs/user/pictures; look at them before they are committed.
 import { mkdirSync, readFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { look, tried } from './stand.js';
+import { Look, Robot } from './robot.js';
 
 const folder = resolve(import.meta.dirname, '../../../docs/user/pictures');
 const diagram = resolve(import.meta.dirname, '../../../editors/vscode/test/texts/count.qrs');
@@ -16,8 +16,10 @@ script.wait(60000)
 
 mkdirSync(folder, { recursive: true });
 
-await tried(async (browser, address) => {
-  const page = await look(browser, address);
+const robot = await Robot.start();
+const eyes = await Look.start();
+try {
+  const page = await eyes.open(robot.url);
   const shot = async (name) => {
     await page.screenshot({
       path: join(folder, `page-${name}.png`),
@@ -25,7 +27,7 @@ await tried(async (browser, address) => {
     });
   };
   const open = async (view) => {
-    await page.goto(`${address}/#${view}`);
+    await page.goto(`${robot.url}#${view}`);
     await page.locator('main > *').first().waitFor();
   };
   await page.setViewportSize({ width: 1200, height: 760 });
@@ -62,4 +64,7 @@ await tried(async (browser, address) => {
   await page.getByRole('button', { name: 'Continue' }).click();
   await page.locator('g.stopped[data-id*=Timer]').waitFor();
   await shot('diagram');
-});
+} finally {
+  await eyes.end();
+  await robot.end();
+}

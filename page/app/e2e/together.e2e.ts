@@ -3,7 +3,7 @@
 import { createServer, type Server } from 'node:http';
 import type { AddressInfo } from 'node:net';
 import { afterAll, beforeAll, expect, test } from 'vitest';
-import { eventually, Look, Robot } from './robot';
+import { eventually, Look, Robot } from './robot.js';
 
 let robot: Robot;
 let look: Look;

@@ -1,22 +1,20 @@
-// The world in a real browser, around a robot of `trik up`.
-//
-//   TRIK=target/debug/trik node e2e/world.js
-//
-// CHROMIUM is the browser, SHOTS a folder for pictures. Gives 0 if all is as it should be.
-import assert from 'node:assert/strict';
-import { spawn } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { createRequire } from 'node:module';
-import { tmpdir } from 'node:os';
-import { join, resolve } from 'node:path';
-import { chromium } from 'playwright-core';
+// The world in a browser, around robots of `trik up`. SHOTS is a folder for pictures.
 
-const program = process.env.TRIK ?? resolve(import.meta.dirname, '../../../target/debug/trik');
-const axe = createRequire(import.meta.url).resolve('axe-core/axe.min.js');
-const folder = mkdtempSync(join(tmpdir(), 'trik-world-'));
-const faults = [];
-const running = new Set();
-let robots = 0;
+import assert from 'node:assert/strict';
+import { join } from 'node:path';
+import { afterAll, beforeAll, test } from 'vitest';
+import { barriers, eventually, Look, Robot } from './robot.js';
+
+/** @type {Look} */
+let eyes;
+
+beforeAll(async () => {
+  eyes = await Look.start();
+});
+
+afterAll(async () => {
+  await eyes.end();
+});
 
 /** A world with many things, for measurements: 100 walls, 100 balls, lines and a region. */
 function crowd() {
@@ -38,76 +36,30 @@ function crowd() {
   );
 }
 
-function say(line) {
-  process.stdout.write(`${line}\n`);
-}
-
 /** Waits until something holds, and says what it was. */
 async function until(what, read, holds) {
   let last;
-  for (let left = 200; left > 0; left--) {
-    last = await read();
-    if (holds(last)) return last;
-    await new Promise((done) => setTimeout(done, 50));
-  }
-  return assert.fail(`${what}: ${JSON.stringify(last)}`);
-}
-
-/** Starts a robot. */
-async function robot(...args) {
-  const home = join(folder, `robot-${(robots += 1)}`);
-  const options = ['up', '--no-view', '--page-port', '0', '--trikd-ports', '0', ...args, home];
-  const child = spawn(program, options, { env: { ...process.env, XDG_RUNTIME_DIR: folder } });
-  const address = await new Promise((done, fail) => {
-    let said = '';
-    const hear = (bytes) => {
-      said += bytes;
-      const found = /In a browser: (\S+)/.exec(said);
-      if (found) done(found[1].replace(/\/$/, ''));
-    };
-    child.stdout.on('data', hear);
-    child.stderr.on('data', hear);
-    child.once('exit', () => fail(new Error(said)));
-  });
-  const one = { child, address, home };
-  running.add(one);
-  return one;
-}
-
-/** Ends a robot as a person does. */
-async function end(one) {
-  running.delete(one);
-  const over = new Promise((done) => one.child.once('exit', done));
-  one.child.kill('SIGINT');
-  await over;
+  await eventually(what, async () => holds((last = await read())));
+  return last;
 }
 
 /** A browser of its own that looks at the world. `state` is the newest message of the server about it. */
-async function look(browser, address, options = {}) {
-  const context = await browser.newContext({
-    viewport: { width: 1400, height: 900 },
-    locale: 'en',
-    ...options,
-  });
-  const page = await context.newPage();
+async function look(robot, options = {}) {
   const seen = { scene: undefined, state: undefined, scenes: 0, states: 0, refused: [] };
-  page.on('websocket', (socket) =>
-    socket.on('framereceived', ({ payload }) => {
-      if (typeof payload !== 'string') return;
-      const news = JSON.parse(payload);
-      if (news.is === 'scene') [seen.scene, seen.scenes] = [news.scene, seen.scenes + 1];
-      if (news.is === 'world') [seen.state, seen.states] = [news.state, seen.states + 1];
-      if (news.is === 'refused') seen.refused.push(news.why);
-    }),
-  );
-  page.on('pageerror', (error) => faults.push(error.stack));
-  page.on('console', (said) => {
-    if (said.type() === 'error') faults.push(said.text());
-  });
-  await page.goto(`${address}/#world`);
+  const hear = (page) =>
+    page.on('websocket', (socket) =>
+      socket.on('framereceived', ({ payload }) => {
+        if (typeof payload !== 'string') return;
+        const news = JSON.parse(payload);
+        if (news.is === 'scene') [seen.scene, seen.scenes] = [news.scene, seen.scenes + 1];
+        if (news.is === 'world') [seen.state, seen.states] = [news.state, seen.states + 1];
+        if (news.is === 'refused') seen.refused.push(news.why);
+      }),
+    );
+  const page = await eyes.open(`${robot.url}#world`, options, hear);
   await page.locator('.stage canvas').waitFor();
   await until('the world', () => seen.state, Boolean);
-  return { page, seen, context };
+  return { page, seen, context: page.context() };
 }
 
 /** The middle of all pixels of the robot's colour, in pixels of the page; null if there are none. */
@@ -131,19 +83,16 @@ function whereIsIt(page) {
 }
 
 async function accessible(page, what) {
-  await page.evaluate(readFileSync(axe, 'utf8'));
-  const { violations } = await page.evaluate(() => globalThis.axe.run());
-  const found = violations.map(({ id, nodes }) => `${id}: ${nodes.map((node) => node.html).join('\n  ')}`);
-  assert.deepEqual(found, [], what);
+  assert.deepEqual(await barriers(page), [], what);
 }
 
 async function shot(page, name) {
   if (process.env.SHOTS) await page.screenshot({ path: join(process.env.SHOTS, `${name}.png`) });
 }
 
-function drive({ home }, left, right) {
-  writeFileSync(join(home, 'motors/M3/value'), `${left}`);
-  writeFileSync(join(home, 'motors/M4/value'), `${right}`);
+function drive(robot, left, right) {
+  robot.write('motors/M3/value', left);
+  robot.write('motors/M4/value', right);
 }
 
 /** Two fingers that go apart make the robot larger, and one carries it. */
@@ -178,9 +127,8 @@ async function pinch(page) {
 }
 
 /** The shipped robot in its room. */
-async function room(browser) {
-  const one = await robot();
-  const { page, seen, context } = await look(browser, one.address);
+async function room(one) {
+  const { page, seen, context } = await look(one);
   // The way of the robot has its colour too.
   await page.getByLabel('Trail', { exact: true }).uncheck();
   const first = await until('the robot on the picture', () => whereIsIt(page), Boolean);
@@ -277,7 +225,7 @@ async function room(browser) {
     ['dark', { colorScheme: 'dark' }],
     ['narrow', { viewport: { width: 400, height: 800 }, hasTouch: true, isMobile: true, locale: 'ru' }],
   ]) {
-    const other = await look(browser, one.address, options);
+    const other = await look(one, options);
     drive(one, 30, 50);
     await new Promise((done) => setTimeout(done, 1500));
     drive(one, 0, 0);
@@ -288,15 +236,11 @@ async function room(browser) {
     await accessible(other.page, name);
     await other.context.close();
   }
-  await end(one);
 }
 
 /** A world of TRIK Studio: another one is dropped, and how long a picture takes. */
-async function crowded(browser) {
-  const empty = join(folder, 'empty.xml');
-  writeFileSync(empty, '<root version="20251219"><settings/><world/></root>');
-  const one = await robot('--world', empty);
-  const { page, seen } = await look(browser, one.address);
+async function crowded(one) {
+  const { page, seen } = await look(one);
   const dropped = await page.evaluateHandle((text) => {
     const transfer = new DataTransfer();
     transfer.items.add(new File([text], 'crowd.xml', { type: 'text/xml' }));
@@ -350,27 +294,32 @@ async function crowded(browser) {
     const share = ((await scripts()) - before) / sorted.length;
     return `median ${sorted[90].toFixed(1)} ms, slowest of 180 ${sorted[179].toFixed(1)} ms, scripts ${share.toFixed(1)} ms each`;
   };
-  say(`pictures with 300 things while it drives: ${await measure(async () => {})}`);
+  console.info(`pictures with 300 things while it drives: ${await measure(async () => {})}`);
   await page.locator('.stage').focus();
   const pan = async () => {
     for (let at = 0; at < 60; at++) await page.keyboard.press(at % 2 ? 'ArrowLeft' : 'ArrowRight');
   };
-  say(`and while it is panned: ${await measure(pan)}`);
+  console.info(`and while it is panned: ${await measure(pan)}`);
   await shot(page, 'crowd');
-  await end(one);
 }
 
-const browser = await chromium.launch({
-  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
-  args: ['--no-sandbox', '--disable-gpu', '--disable-quic'],
-});
-try {
-  await room(browser);
-  await crowded(browser);
-  assert.deepEqual(faults, []);
-  say('the world is as it should be');
-} finally {
-  await browser.close();
-  for (const one of running) await end(one);
-  rmSync(folder, { recursive: true, force: true });
+/** A robot for one test. */
+async function around(args, body) {
+  const one = await Robot.start(...args);
+  try {
+    await body(one);
+  } finally {
+    await one.end();
+  }
 }
+
+test('the robot in its room is seen, carried, held and broken', () => around([], room), 180_000);
+
+test('a world of TRIK Studio is replaced by one that is dropped', async () => {
+  const empty = join(import.meta.dirname, 'empty.xml');
+  await around(['--world', empty], crowded);
+}, 180_000);
+
+test('no page has complained', () => {
+  assert.deepEqual(eyes.complaints, []);
+});

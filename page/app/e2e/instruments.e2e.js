@@ -1,7 +1,43 @@
-// The instruments in a real browser, on a robot of `trik up`; `stand.js` says how it is started.
-import assert from 'node:assert/strict';
+// The instruments in a browser: values, graphs, and what moves.
+
 import { readFileSync } from 'node:fs';
-import { accessible, look, tried, until, value } from './stand.js';
+import assert from 'node:assert/strict';
+import { afterAll, beforeAll, test } from 'vitest';
+import { barriers, Look, Robot, until } from './robot.js';
+
+/** @type {Robot} */
+let robot;
+/** @type {Look} */
+let eyes;
+
+beforeAll(async () => {
+  robot = await Robot.start();
+  eyes = await Look.start();
+});
+
+afterAll(async () => {
+  await eyes.end();
+  await robot.end();
+});
+
+/**
+ * What a node says; a servo that is off says nothing.
+ * @param {string} node
+ */
+function value(node) {
+  try {
+    return robot.read(`${node}/value`);
+  } catch (error) {
+    return error.code;
+  }
+}
+
+/** Another person who looks at the instruments. */
+async function look(colorScheme = 'light') {
+  const page = await eyes.open(`${robot.url}#instruments`, { colorScheme });
+  await page.getByRole('article', { name: 'motors/M3', exact: true }).waitFor();
+  return page;
+}
 
 async function sliders(page) {
   const slider = page.getByRole('slider', { name: 'motors/M3, duty_cycle' });
@@ -150,7 +186,7 @@ async function graphs(page) {
   await page.getByRole('button', { name: 'encoders/E3, position: show it in the graph' }).click();
   const table = page.getByRole('table');
   await table.getByText('%', { exact: true }).waitFor();
-  assert.equal(await table.getByRole('row').count(), 3);
+  await until('rows of the table', () => table.getByRole('row').count(), 3);
   const file = page.waitForEvent('download');
   await page.getByRole('button', { name: 'Save CSV' }).click();
   const text = readFileSync(await (await file).path(), 'utf8');
@@ -192,19 +228,28 @@ async function control(page, other) {
   await until('the motor of a browser that is gone', () => value('motors/M3'), '0');
 }
 
-await tried(async (browser, address) => {
-  const page = await look(browser, address);
+test('what moves is moved by sliders, numbers, pads, keys and gamepads, and rests', async () => {
+  const page = await look();
   await sliders(page);
   await refusals(page);
   await pads(page);
   await choices(page);
   await gamepad(page);
+  await page.context().close();
+}, 180_000);
+
+test('numbers are drawn and saved, everybody can use them, and one is in control', async () => {
+  const page = await look();
   await graphs(page);
   await page.locator('summary', { hasText: 'Drive by hand' }).click();
   await page.locator('summary', { hasText: 'What pads' }).click();
-  await accessible(page, 'light');
-  const other = await look(browser, address, 'dark');
+  assert.deepEqual(await barriers(page), [], 'light');
+  const other = await look('dark');
   await other.getByRole('button', { name: 'heading, heading: show it in the graph' }).click();
-  await accessible(other, 'dark');
+  assert.deepEqual(await barriers(other), [], 'dark');
   await control(page, other);
+}, 180_000);
+
+test('no page has complained', () => {
+  assert.deepEqual(eyes.complaints, []);
 });

@@ -1,0 +1,196 @@
+// A virtual robot with its page, and browsers that look at it: what all tests in a browser share.
+//
+// Owns the processes and their end. What is looked at is known to the tests. TRIK is the program under test, CHROMIUM the browser.
+
+import axe from 'axe-core';
+import { chromium } from 'playwright-core';
+import { spawn } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+
+const TRIK = process.env.TRIK ?? resolve(import.meta.dirname, '../../../target/debug/trik');
+const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
+const START_MS = 20_000;
+const END_MS = 15_000;
+
+/** A virtual robot that runs. */
+export class Robot {
+  home = mkdtempSync(join(tmpdir(), 'trik-page-'));
+  tree = join(this.home, 'robot');
+  #said = '';
+  /** @type {import('node:child_process').ChildProcess} */
+  #child;
+  /** @type {string[]} */
+  #args;
+
+  /** @param {string[]} args */
+  constructor(args) {
+    this.#args = args;
+    this.#child = this.#start();
+  }
+
+  /**
+   * Starts one, with further options of `trik up`.
+   * @param {string[]} args
+   */
+  static async start(...args) {
+    const robot = new Robot(args);
+    await robot.#ready();
+    return robot;
+  }
+
+  /** Where its page is; it ends with a slash. */
+  get url() {
+    return /In a browser: (\S+)/.exec(this.#said)?.[1] ?? '';
+  }
+
+  /**
+   * What a file of its tree says.
+   * @param {string} file
+   */
+  read(file) {
+    return readFileSync(join(this.tree, file), 'utf8').trim();
+  }
+
+  /**
+   * Writes a file of its tree.
+   * @param {string} file
+   * @param {string | number} value
+   */
+  write(file, value) {
+    writeFileSync(join(this.tree, file), String(value));
+  }
+
+  /** Ends it as a person does. */
+  async end() {
+    await this.#end();
+    rmSync(this.home, { recursive: true, force: true });
+  }
+
+  /** Ends it and starts it again at the same port. */
+  async restart() {
+    const port = new URL(this.url).port;
+    await this.#end();
+    this.#said = '';
+    this.#args.push('--page-port', port);
+    this.#child = this.#start();
+    await this.#ready();
+  }
+
+  #start() {
+    const ports = this.#args.includes('--page-port') ? [] : ['--page-port', '0'];
+    const args = ['up', '--no-view', '--trikd-ports', '0', ...ports, ...this.#args, this.tree];
+    const env = { ...process.env, XDG_RUNTIME_DIR: this.home };
+    const child = spawn(TRIK, args, { env, stdio: ['ignore', 'pipe', 'pipe'] });
+    for (const stream of [child.stdout, child.stderr]) {
+      stream.on('data', (/** @type {Buffer} */ text) => (this.#said += text.toString()));
+    }
+    return child;
+  }
+
+  async #ready() {
+    await eventually('the robot is ready', () => this.url !== '' || this.#child.exitCode !== null, START_MS);
+    if (this.url === '') throw new Error(`there is no robot: ${this.#said}`);
+  }
+
+  async #end() {
+    if (this.#child.exitCode !== null) return;
+    const ended = new Promise((end) => this.#child.once('exit', end));
+    this.#child.kill('SIGINT');
+    await ended;
+  }
+}
+
+/**
+ * Waits until something holds, and gives what that was.
+ * @template T
+ * @param {string} what
+ * @param {() => T | Promise<T>} holds
+ * @returns {Promise<T>}
+ */
+export async function eventually(what, holds, patience_ms = END_MS) {
+  const end = Date.now() + patience_ms;
+  for (;;) {
+    const now = await holds();
+    if (now) return now;
+    if (Date.now() > end) throw new Error(`not in ${patience_ms} ms: ${what}`);
+    await new Promise((again) => setTimeout(again, 20));
+  }
+}
+
+/**
+ * Waits until something has this value; the error says what it had.
+ * @template T
+ * @param {string} what
+ * @param {() => T | Promise<T>} read
+ * @param {T} wanted
+ */
+export async function until(what, read, wanted) {
+  /** @type {T | undefined} */
+  let last;
+  try {
+    await eventually(what, async () => (last = await read()) === wanted);
+  } catch (error) {
+    throw new Error(`${what}: ${last} instead of ${wanted}`, { cause: error });
+  }
+}
+
+/** A browser; what its pages complain of is kept. */
+export class Look {
+  /** @type {string[]} */
+  complaints = [];
+  #browser;
+
+  /** @param {import('playwright-core').Browser} browser */
+  constructor(browser) {
+    this.#browser = browser;
+  }
+
+  static async start() {
+    const quiet = ['gpu', 'quic', 'background-networking', 'component-update', 'sync'];
+    const args = ['--no-sandbox', '--no-first-run', ...quiet.map((what) => `--disable-${what}`)];
+    return new Look(await chromium.launch({ executablePath: CHROMIUM, args }));
+  }
+
+  /**
+   * Another person: no cookies and nothing stored is shared with the others. `prepare` sees the page before it goes anywhere.
+   * @param {string} url
+   * @param {import('playwright-core').BrowserContextOptions} options
+   * @param {(page: import('playwright-core').Page) => void} prepare
+   */
+  async open(url, options = {}, prepare = () => undefined) {
+    const viewport = { width: 1400, height: 900 };
+    const context = await this.#browser.newContext({ locale: 'en-US', viewport, ...options });
+    const page = await context.newPage();
+    page.on('pageerror', (error) => this.complaints.push(error.stack ?? error.message));
+    page.on('console', (message) => {
+      // A connection that is lost on purpose is said here by the browser itself.
+      const isOurs =
+        message.type() === 'error' && !/WebSocket connection|ERR_CONNECTION/.test(message.text());
+      if (isOurs) this.complaints.push(message.text());
+    });
+    prepare(page);
+    await page.goto(url);
+    return page;
+  }
+
+  async end() {
+    await this.#browser.close();
+  }
+}
+
+/**
+ * What axe finds wrong, each with its elements.
+ * @param {import('playwright-core').Page} page
+ * @returns {Promise<string[]>}
+ */
+export async function barriers(page) {
+  // By the protocol of the browser, not by a script of the page, which its policy would forbid.
+  await page.evaluate(axe.source);
+  const { violations } = await page.evaluate('axe.run()');
+  return violations.map(
+    (/** @type {import('axe-core').Result} */ { id, nodes }) =>
+      `${id}: ${nodes.map((node) => node.html).join(' | ')}`,
+  );
+}
