@@ -62,6 +62,19 @@ export class Robot {
     writeFileSync(join(this.tree, file), String(value));
   }
 
+  /** Its processes: `trik`, and all that it has started. */
+  get pids() {
+    /** @type {(pid: number) => number[]} */
+    const children = (pid) => {
+      const all = readFileSync(`/proc/${pid}/task/${pid}/children`, 'utf8')
+        .split(' ')
+        .filter(Boolean)
+        .map(Number);
+      return [pid, ...all.flatMap(children)];
+    };
+    return children(this.#child.pid ?? 0);
+  }
+
   /** Ends it as a person does. */
   async end() {
     await this.#end();
