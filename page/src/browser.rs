@@ -4,7 +4,7 @@
 //! a stop first of all, wait for nothing that is sent to it.
 
 use crate::control::Who;
-use crate::drive::{self, Move};
+use crate::drive::{self, Moves};
 use crate::error::Error;
 use crate::limits;
 use crate::relay::{self, Came};
@@ -22,7 +22,7 @@ use tokio::time::{Instant, MissedTickBehavior, interval, timeout, timeout_at};
 pub async fn serve(shared: Arc<Shared>, socket: WebSocket, who: Who) {
     let (sink, stream) = socket.split();
     let (news, told) = mpsc::channel(limits::NEWS);
-    let (moves, to_move) = mpsc::channel(limits::ORDERS);
+    let moves = Arc::<Moves>::default();
     let (requests, to_send) = mpsc::channel(limits::ORDERS);
     // What the robot says waits in the robot, which leaves out what is old.
     let (came, from_robot) = mpsc::channel(1);
@@ -31,21 +31,23 @@ pub async fn serve(shared: Arc<Shared>, socket: WebSocket, who: Who) {
     // It goes on when all else has ended: it has to bring actuators to rest.
     tokio::spawn(drive::run(
         shared.settings.tree.clone(),
-        to_move,
+        moves.clone(),
         news.clone(),
+        shared.control.watch(),
+        who,
     ));
+    let ending = moves.clone();
     let listener = Listener {
         shared: shared.clone(),
         who,
         news,
-        moves: moves.clone(),
+        moves,
         requests,
         looks,
     };
     let teller = Teller {
         shared: shared.clone(),
         who,
-        moves,
         sink,
         told,
         from_robot,
@@ -57,6 +59,7 @@ pub async fn serve(shared: Arc<Shared>, socket: WebSocket, who: Who) {
     }
     relay.abort();
     shared.control.leave(who);
+    ending.end();
 }
 
 /// What the browser says.
@@ -64,7 +67,7 @@ struct Listener {
     shared: Arc<Shared>,
     who: Who,
     news: mpsc::Sender<News>,
-    moves: mpsc::Sender<Move>,
+    moves: Arc<Moves>,
     requests: mpsc::Sender<Vec<u8>>,
     looks: watch::Sender<bool>,
 }
@@ -85,7 +88,7 @@ impl Listener {
                 // A network that has broken off says nothing: what was driven must not go on.
                 Err(_) if !is_silent => {
                     is_silent = true;
-                    let _ = self.moves.try_send(Move::Rest);
+                    self.moves.rest();
                     continue;
                 }
                 Err(_) => return,
@@ -123,7 +126,7 @@ impl Listener {
         match order {
             Order::Write(path, value) => {
                 self.need()?;
-                self.step(Move::Write(path, value))
+                self.moves.write(path, value)
             }
             Order::World(words) => {
                 self.need()?;
@@ -157,19 +160,16 @@ impl Listener {
             }
             Order::Leave => {
                 self.shared.control.leave(self.who);
-                self.step(Move::Rest)
+                self.moves.rest();
+                Ok(())
             }
             Order::Stop => {
                 // The programs by the robot itself, what moves by the tree, should the robot's daemon not be there.
                 let _ = self.requests.try_send(b"stop".to_vec());
-                self.step(Move::Stop)
+                self.moves.stop();
+                Ok(())
             }
         }
-    }
-
-    fn step(&self, one: Move) -> Result<(), Error> {
-        let full = |_| Error::Robot("too many orders wait: the robot does not answer".to_owned());
-        self.moves.try_send(one).map_err(full)
     }
 
     /// A request of the control port.
@@ -186,7 +186,6 @@ impl Listener {
 struct Teller {
     shared: Arc<Shared>,
     who: Who,
-    moves: mpsc::Sender<Move>,
     sink: SplitSink<WebSocket, Message>,
     told: mpsc::Receiver<News>,
     from_robot: mpsc::Receiver<Came>,
@@ -219,7 +218,6 @@ impl Teller {
         let mut places = interval(limits::PLAYBACK_TIME);
         places.set_missed_tick_behavior(MissedTickBehavior::Delay);
         let mut place = None;
-        let mut was_mine = false;
         let mut shown = Shown::default();
         loop {
             let looks = *self.is_looked_at.borrow();
@@ -233,11 +231,6 @@ impl Teller {
                 },
                 Ok(()) = holder.changed() => {
                     let now = *holder.borrow_and_update();
-                    let is_mine = now == Some(self.who);
-                    if std::mem::replace(&mut was_mine, is_mine) && !is_mine {
-                        // Another one drives now, and what this one has left on would be nobody's.
-                        let _ = self.moves.try_send(Move::Rest);
-                    }
                     self.say(News::control(now, self.who)).await
                 }
                 Ok(()) = self.is_looked_at.changed() => {
@@ -245,7 +238,9 @@ impl Teller {
                     shown = Shown::default();
                     true
                 }
-                _ = pings.tick() => self.send(Message::Ping(Bytes::new())).await,
+                _ = pings.tick() => {
+                    self.say(News::Beat).await && self.send(Message::Ping(Bytes::new())).await
+                }
                 _ = places.tick(), if playback.is_some() => {
                     let now = playback.as_ref().map(|playback| playback.state());
                     let has_changed = now != place;

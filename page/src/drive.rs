@@ -2,6 +2,7 @@
 //!
 //! Owns which actuators it has moved. The filesystem checks every value, and knows leases: a program that has one keeps it.
 
+use crate::control::Who;
 use crate::error::Error;
 use crate::limits;
 use crate::word::News;
@@ -10,37 +11,118 @@ use std::fs::{self, OpenOptions};
 use std::io::{self, Read, Write};
 use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Component, Path, PathBuf};
-use tokio::sync::mpsc;
+use std::sync::{Arc, Mutex, PoisonError};
+use tokio::sync::{Notify, mpsc, watch};
 
 /// Nothing here waits for a device.
 const NONBLOCK: i32 = rustix::fs::OFlags::NONBLOCK.bits().cast_signed();
 
-/// What the thread of the files is told.
-#[derive(Debug)]
-pub enum Move {
-    /// A value for an actuator.
-    Write(String, String),
-    /// What this browser has moved comes to rest, unless somebody else has moved it since.
-    Rest,
-    /// Everything comes to rest.
-    Stop,
+/// What a browser wants moved and what was not carried out yet. Nothing in it is ever refused for want of room but new
+/// actuators: the newest value of each counts, and a rest or a stop drops what is older.
+#[derive(Debug, Default)]
+pub struct Moves {
+    waiting: Mutex<Waiting>,
+    news: Notify,
 }
 
-/// Carries out moves until there are no more, and brings to rest what is left then. Of several values that wait for one
-/// actuator the newest is written.
-pub async fn run(tree: PathBuf, mut moves: mpsc::Receiver<Move>, news: mpsc::Sender<News>) {
+#[derive(Debug, Default)]
+struct Waiting {
+    values: Vec<(String, String)>,
+    rest: bool,
+    stop: bool,
+    is_over: bool,
+}
+
+impl Moves {
+    fn tell(&self, change: impl FnOnce(&mut Waiting) -> bool) -> bool {
+        let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
+        let done = change(&mut waiting);
+        drop(waiting);
+        self.news.notify_one();
+        done
+    }
+
+    /// A value for an actuator.
+    ///
+    /// # Errors
+    /// So many other actuators wait already.
+    pub fn write(&self, path: String, value: String) -> Result<(), Error> {
+        let fits = self.tell(|waiting| {
+            waiting.values.retain(|(other, _)| *other != path);
+            let fits = waiting.values.len() < limits::ORDERS;
+            if fits {
+                waiting.values.push((path, value));
+            }
+            fits
+        });
+        let full = || Error::Robot("too many orders wait: the robot does not answer".to_owned());
+        fits.then_some(()).ok_or_else(full)
+    }
+
+    /// What this browser has moved comes to rest, unless somebody else has moved it since.
+    pub fn rest(&self) {
+        self.tell(|waiting| {
+            waiting.values.clear();
+            waiting.rest = true;
+            true
+        });
+    }
+
+    /// Everything comes to rest.
+    pub fn stop(&self) {
+        self.tell(|waiting| {
+            waiting.values.clear();
+            waiting.stop = true;
+            true
+        });
+    }
+
+    /// The browser is gone: what it has moved comes to rest, and nothing follows.
+    pub fn end(&self) {
+        self.tell(|waiting| {
+            waiting.is_over = true;
+            true
+        });
+        self.rest();
+    }
+
+    fn take(&self) -> Waiting {
+        let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_over = waiting.is_over;
+        let taken = std::mem::take(&mut *waiting);
+        waiting.is_over = is_over;
+        taken
+    }
+}
+
+/// Carries out moves until the browser is gone. When another one is in control, what this one has moved comes to rest, whatever
+/// its connection does.
+pub async fn run(
+    tree: PathBuf,
+    moves: Arc<Moves>,
+    news: mpsc::Sender<News>,
+    mut holder: watch::Receiver<Option<Who>>,
+    who: Who,
+) {
     let mut driven = HashMap::new();
-    while let Some(first) = moves.recv().await {
-        let mut batch = vec![first];
-        while let Ok(more) = moves.try_recv() {
-            batch.push(more);
+    loop {
+        tokio::select! {
+            () = moves.news.notified() => {}
+            changed = holder.changed() => if changed.is_err() { return },
         }
+        let mut work = moves.take();
+        let is_others = holder.borrow_and_update().is_some_and(|now| now != who);
+        if is_others {
+            work.values.clear();
+            work.rest = true;
+        }
+        let is_over = work.is_over;
         let at = tree.clone();
-        let work = move || {
-            let said = carry_out(&at, &mut driven, batch);
+        let carry = move || {
+            let said = carry_out(&at, &mut driven, work);
             (driven, said)
         };
-        let Ok((kept, said)) = tokio::task::spawn_blocking(work).await else {
+        let Ok((kept, said)) = tokio::task::spawn_blocking(carry).await else {
             return;
         };
         driven = kept;
@@ -48,39 +130,29 @@ pub async fn run(tree: PathBuf, mut moves: mpsc::Receiver<Move>, news: mpsc::Sen
             // A browser that does not read is told nothing; the value is on its way anyway.
             let _ = news.try_send(one);
         }
+        if is_over {
+            return;
+        }
     }
-    let _ = tokio::task::spawn_blocking(move || rest(&tree, &mut driven)).await;
 }
 
 /// By the path of an actuator: what its file said after this browser had written it.
 type Driven = HashMap<String, String>;
 
-fn carry_out(tree: &Path, driven: &mut Driven, batch: Vec<Move>) -> Vec<News> {
+fn carry_out(tree: &Path, driven: &mut Driven, work: Waiting) -> Vec<News> {
     let mut said = Vec::new();
-    let mut newest: Vec<(String, String)> = Vec::new();
-    for one in batch {
-        match one {
-            Move::Write(path, value) => {
-                newest.retain(|(other, _)| *other != path);
-                newest.push((path, value));
-            }
-            // What waits is older than this.
-            Move::Rest => {
-                newest.clear();
-                rest(tree, driven);
-            }
-            Move::Stop => {
-                newest.clear();
-                driven.clear();
-                if let Err(error) = fs::write(tree.join("stop"), "1") {
-                    said.push(News::Refused(
-                        Error::File("stop".to_owned(), error).to_string(),
-                    ));
-                }
-            }
+    if work.stop {
+        driven.clear();
+        if let Err(error) = fs::write(tree.join("stop"), "1") {
+            said.push(News::Refused(
+                Error::File("stop".to_owned(), error).to_string(),
+            ));
         }
     }
-    for (path, value) in newest {
+    if work.rest {
+        rest(tree, driven);
+    }
+    for (path, value) in work.values {
         let why = write(tree, driven, &path, &value).err();
         said.push(News::Written {
             path,
@@ -168,22 +240,31 @@ mod tests {
         tree
     }
 
-    fn order(path: &str, value: &str) -> Move {
-        Move::Write(path.to_owned(), value.to_owned())
-    }
-
     #[test]
     fn the_newest_value_of_each_actuator_is_written_and_a_stop_drops_those_before_it() {
         let tree = tree();
         let mut driven = Driven::new();
-        let moves = vec![order("motors/M1", "10"), order("motors/M1", "20")];
-        let said = carry_out(tree.path(), &mut driven, moves);
+        let moves = Moves::default();
+        let write = |value: i32| moves.write("motors/M1".to_owned(), value.to_string());
+        for value in 0..=300 {
+            write(value).unwrap();
+        }
+        write(20).unwrap();
+        let said = carry_out(tree.path(), &mut driven, moves.take());
         assert_eq!(said.len(), 1);
         assert_eq!(read(&tree.path().join("motors/M1/value")).unwrap(), "20\n");
-        let moves = vec![order("motors/M1", "30"), Move::Stop];
-        assert_eq!(carry_out(tree.path(), &mut driven, moves), []);
+        write(30).unwrap();
+        moves.stop();
+        assert_eq!(carry_out(tree.path(), &mut driven, moves.take()), []);
         assert_eq!(read(&tree.path().join("motors/M1/value")).unwrap(), "20\n");
         assert_eq!(read(&tree.path().join("stop")).unwrap(), "1");
+        for at in 0..limits::ORDERS {
+            moves.write(at.to_string(), "1".to_owned()).unwrap();
+        }
+        assert!(moves.write("one more".to_owned(), "1".to_owned()).is_err());
+        moves.end();
+        let last = moves.take();
+        assert!(last.values.is_empty() && last.rest && last.is_over);
     }
 
     #[test]
@@ -201,7 +282,11 @@ mod tests {
             "none",
             &"a/".repeat(2000),
         ] {
-            let said = carry_out(tree.path(), &mut Driven::new(), vec![order(path, "5")]);
+            let said = {
+                let moves = Moves::default();
+                moves.write(path.to_owned(), "5".to_owned()).unwrap();
+                carry_out(tree.path(), &mut Driven::new(), moves.take())
+            };
             assert!(
                 matches!(&said[..], [News::Written { why: Some(_), .. }]),
                 "{path}: {said:?}"

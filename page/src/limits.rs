@@ -14,6 +14,8 @@ pub const CONNECTIONS_OF_ONE_MAX: usize = 96;
 pub const IDLE_TIME: Duration = Duration::from_secs(30);
 /// Bytes of one message of a browser: the greatest upload, as the control port takes it.
 pub const MESSAGE_BYTES_MAX: usize = frame::limits::CONTROL_BYTES;
+/// Bytes that wait for one browser, answers to its pings too: a little more than one message.
+pub const UNSENT_BYTES_MAX: usize = MESSAGE_BYTES_MAX + (1 << 20);
 /// Bytes of an order in words: a value for an actuator.
 pub const WORDS_BYTES_MAX: usize = 64 << 10;
 /// Bytes of an order to the world: a world that a person drops on the page comes in it.

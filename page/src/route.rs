@@ -132,6 +132,7 @@ async fn socket(
     upgrade
         .max_message_size(limits::MESSAGE_BYTES_MAX)
         .max_frame_size(limits::MESSAGE_BYTES_MAX)
+        .max_write_buffer_size(limits::UNSENT_BYTES_MAX)
         .on_upgrade(move |socket| async move {
             browser::serve(shared, socket, who).await;
             drop(seat);

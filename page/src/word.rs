@@ -105,6 +105,8 @@ pub enum News {
     World(String),
     /// Where the recording is that is played.
     Playback(String),
+    /// The server is there: a page cannot see pings.
+    Beat,
 }
 
 impl News {
@@ -160,6 +162,7 @@ impl News {
                 ],
             ),
             Self::Refused(why) => object("refused", vec![("why", why.as_str().into())]),
+            Self::Beat => object("beat", Vec::new()),
             // These are JSON already.
             Self::Scene(scene) => format!("{{\"is\":\"scene\",\"scene\":{scene}}}"),
             Self::Playback(state) => format!("{{\"is\":\"playback\",\"state\":{state}}}"),
@@ -290,6 +293,7 @@ mod tests {
             News::Scene("{\"walls\":[]}".to_owned()),
             News::World("{\"t\":1}".to_owned()),
             News::Playback("{\"at_s\":1}".to_owned()),
+            News::Beat,
         ];
         for news in all {
             let text = news.text();

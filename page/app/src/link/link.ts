@@ -15,11 +15,15 @@ export interface Taker {
 
 const SOONEST_MS = 250;
 const LATEST_MS = 4000;
+/** The server says something every second; after so long it is gone, and has brought to rest what was driven here. */
+const SILENCE_MS = 4000;
 
 export class Link {
   #socket: WebSocket | undefined;
+  #lostOne: WebSocket | undefined;
   #wait = SOONEST_MS;
   #timer: ReturnType<typeof setTimeout> | undefined;
+  #watch: ReturnType<typeof setTimeout> | undefined;
   readonly #encoder = new TextEncoder();
 
   constructor(
@@ -42,6 +46,7 @@ export class Link {
   /** Ends it for good. */
   close(): void {
     clearTimeout(this.#timer);
+    clearTimeout(this.#watch);
     const socket = this.#socket;
     this.#socket = undefined;
     socket?.close();
@@ -70,17 +75,32 @@ export class Link {
     socket.onopen = () => {
       this.#wait = SOONEST_MS;
       this.taker.connected(true);
+      this.#heard(socket);
     };
     socket.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) => {
+      this.#heard(socket);
       if (typeof data === 'string') this.taker.news(JSON.parse(data) as News);
       else this.taker.message(new Uint8Array(data));
     };
-    socket.onclose = () => {
-      // It was ended here, or replaced.
-      if (this.#socket !== socket) return;
-      this.taker.connected(false);
-      this.#timer = setTimeout(() => void this.#again(), this.#wait);
-      this.#wait = Math.min(this.#wait * 2, LATEST_MS);
-    };
+    socket.onclose = () => this.#lost(socket);
+  }
+
+  /** A connection that says nothing is none: its close may take minutes, so it is not waited for. */
+  #heard(socket: WebSocket): void {
+    clearTimeout(this.#watch);
+    this.#watch = setTimeout(() => {
+      this.#lost(socket);
+      socket.close();
+    }, SILENCE_MS);
+  }
+
+  #lost(socket: WebSocket): void {
+    // It was ended here, replaced, or is known to be lost.
+    if (this.#socket !== socket || this.#lostOne === socket) return;
+    this.#lostOne = socket;
+    clearTimeout(this.#watch);
+    this.taker.connected(false);
+    this.#timer = setTimeout(() => void this.#again(), this.#wait);
+    this.#wait = Math.min(this.#wait * 2, LATEST_MS);
   }
 }

@@ -21,7 +21,8 @@ export type News =
   | { is: 'refused'; why: string }
   | { is: 'scene'; scene: Scene }
   | { is: 'world'; state: WorldState }
-  | { is: 'playback'; state: Playback };
+  | { is: 'playback'; state: Playback }
+  | { is: 'beat' };
 
 /** Where the recording is that is played; times are seconds. */
 export interface Playback {

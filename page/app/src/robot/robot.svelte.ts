@@ -153,6 +153,8 @@ export class Robot {
       case 'playback':
         this.playback = news.state;
         break;
+      case 'beat':
+        break;
       default:
         news satisfies never;
     }
