@@ -134,8 +134,16 @@ impl Listener {
                 if words.len() <= limits::WORLD_QUICK_BYTES {
                     return world.order(&words).map_err(|why| Error::World(why.0));
                 }
+                let busy = |_| Error::World("other worlds are being read: try again".to_owned());
+                let turn = self
+                    .shared
+                    .large
+                    .clone()
+                    .try_acquire_owned()
+                    .map_err(busy)?;
                 let news = self.news.clone();
                 tokio::task::spawn_blocking(move || {
+                    let _turn = turn;
                     if let Err(why) = world.order(&words) {
                         let _ = news.try_send(News::Refused(Error::World(why.0).to_string()));
                     }

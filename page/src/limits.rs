@@ -45,6 +45,8 @@ pub const PICTURE_TIME: Duration = Duration::from_millis(16);
 pub const PLAYBACK_TIME: Duration = Duration::from_millis(100);
 /// Threads for files of the tree, which may make them wait.
 pub const FILE_THREADS: usize = 4;
+/// Of these, for programs, diagrams and worlds at once.
+pub const LARGE_MAX: usize = FILE_THREADS / 2;
 /// Programs that are listed.
 pub const PROGRAMS_MAX: usize = 1000;
 /// Depth of folders of programs that are listed.

@@ -141,9 +141,12 @@ async fn socket(
 
 /// Does something with files on another thread, and answers with what came out.
 async fn with_files<T: Send + 'static>(
+    shared: &Shared,
     work: impl FnOnce() -> Result<T, Error> + Send + 'static,
     answer: impl FnOnce(T) -> Response,
 ) -> Response {
+    // Nobody closes the semaphore.
+    let _turn = shared.large.acquire().await;
     match tokio::task::spawn_blocking(work).await {
         Ok(Ok(done)) => answer(done),
         Ok(Err(error @ (Error::Name(_) | Error::File(..)))) => {
@@ -166,17 +169,19 @@ fn json(value: serde_json::Value) -> Response {
 }
 
 async fn programs(State(shared): State<Arc<Shared>>) -> Response {
+    let seen = shared.clone();
     let work = move || {
-        let folder = shared.settings.programs.as_deref();
+        let folder = seen.settings.programs.as_deref();
         Ok(folder.map_or_else(|| serde_json::json!([]), store::list))
     };
-    with_files(work, json).await
+    with_files(&shared, work, json).await
 }
 
 async fn program(State(shared): State<Arc<Shared>>, Path(name): Path<String>) -> Response {
+    let seen = shared.clone();
     let work = move || {
         let none = || Error::Name(name.clone());
-        let folder = shared.settings.programs.as_deref().ok_or_else(none)?;
+        let folder = seen.settings.programs.as_deref().ok_or_else(none)?;
         store::read(folder, &name)
     };
     let kind = [
@@ -184,7 +189,7 @@ async fn program(State(shared): State<Arc<Shared>>, Path(name): Path<String>) ->
         (CONTENT_TYPE, "application/octet-stream"),
         (CACHE_CONTROL, "no-store"),
     ];
-    with_files(work, |bytes| (kind, bytes).into_response()).await
+    with_files(&shared, work, |bytes| (kind, bytes).into_response()).await
 }
 
 async fn diagram(
@@ -192,22 +197,24 @@ async fn diagram(
     Path(name): Path<String>,
     Query(query): Query<HashMap<String, String>>,
 ) -> Response {
+    let seen = shared.clone();
     let work = move || {
         let none = || Error::Name(name.clone());
-        let folder = shared.settings.programs.as_deref().ok_or_else(none)?;
+        let folder = seen.settings.programs.as_deref().ok_or_else(none)?;
         let is_russian = query
             .get("language")
             .is_some_and(|language| language == "ru");
         store::diagram(folder, &name, is_russian)
     };
-    with_files(work, json).await
+    with_files(&shared, work, json).await
 }
 
 async fn table(State(shared): State<Arc<Shared>>) -> Response {
+    let seen = shared.clone();
     let work = move || {
         Ok(plain::table(
-            &shared.settings.name,
-            &shared.settings.tree,
+            &seen.settings.name,
+            &seen.settings.tree,
             files::WHY_NOT,
         ))
     };
@@ -215,5 +222,5 @@ async fn table(State(shared): State<Arc<Shared>>) -> Response {
         (CONTENT_TYPE, "text/html; charset=utf-8"),
         (CACHE_CONTROL, "no-store"),
     ];
-    with_files(work, |page| (kind, page).into_response()).await
+    with_files(&shared, work, |page| (kind, page).into_response()).await
 }
