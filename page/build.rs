@@ -3,7 +3,7 @@
 //! Owns where that happens: a copy of `app` in the target directory, so that nothing is written beside the sources, and what npm
 //! fetches is fetched once for all profiles. Without npm the list is empty, and says why.
 
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -23,6 +23,32 @@ const SOURCES: [&str; 10] = [
     "vite.config.js",
 ];
 
+/// Why there is no page. The person who builds can mend each.
+enum Why {
+    /// Nobody wants it.
+    Unwanted,
+    /// A program that is not installed.
+    Missing(&'static str),
+    /// A program has failed, and what it has said.
+    Failed(&'static str, String),
+    /// A file that cannot be read or written.
+    File(PathBuf, io::Error),
+}
+
+impl fmt::Display for Why {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unwanted => f.write_str("TRIK_WITHOUT_PAGE is set"),
+            Self::Missing(name) => write!(
+                f,
+                "there is no {name}: install nodejs and npm, and build again"
+            ),
+            Self::Failed(name, said) => write!(f, "{name}: {said}"),
+            Self::File(path, error) => write!(f, "{}: {error}", path.display()),
+        }
+    }
+}
+
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     for name in SOURCES {
@@ -36,6 +62,7 @@ fn main() {
             println!(
                 "cargo::warning=the page for browsers is left out, and a table is shown: {why}"
             );
+            let why = why.to_string();
             format!(
                 "/// All files of the page.\npub const FILES: &[File] = &[];\n/// Why there are none.\npub const WHY_NOT: &str = {why:?};\n"
             )
@@ -45,12 +72,12 @@ fn main() {
 }
 
 /// The list of files as Rust.
-fn build(out: &Path) -> Result<String, String> {
+fn build(out: &Path) -> Result<String, Why> {
     if std::env::var_os("TRIK_WITHOUT_PAGE").is_some() {
-        return Err("TRIK_WITHOUT_PAGE is set".to_owned());
+        return Err(Why::Unwanted);
     }
     let work = target(out).join("page");
-    let file = |error: io::Error| format!("{}: {error}", work.display());
+    let file = |error: io::Error| Why::File(work.clone(), error);
     fs::create_dir_all(&work).map_err(file)?;
     let lock = fs::File::create(work.join("lock")).map_err(file)?;
     lock.lock().map_err(file)?;
@@ -61,7 +88,7 @@ fn build(out: &Path) -> Result<String, String> {
         if to.is_dir() {
             fs::remove_dir_all(&to).map_err(file)?;
         }
-        copy(&from, &to).map_err(|error| format!("{}: {error}", from.display()))?;
+        copy(&from, &to).map_err(|error| Why::File(from.clone(), error))?;
     }
     if fs::read(&stamp).ok().as_ref() != Some(&wanted) {
         let _ = fs::remove_file(&stamp);
@@ -72,6 +99,9 @@ fn build(out: &Path) -> Result<String, String> {
             "--no-audit",
             "--no-fund",
             "--loglevel=error",
+            // Where there is no network, that is known soon.
+            "--fetch-retries=1",
+            "--fetch-timeout=20000",
         ]);
         run(npm.current_dir(&work), "npm")?;
         fs::write(&stamp, &wanted).map_err(file)?;
@@ -88,7 +118,7 @@ fn build(out: &Path) -> Result<String, String> {
     run(vite.arg(&made).current_dir(&work), "node")?;
     let mut pack = Command::new("node");
     run(pack.arg("pack.js").arg(&made).current_dir(&work), "node")?;
-    list(&made).map_err(|error| format!("{}: {error}", made.display()))
+    list(&made).map_err(|error| Why::File(made.clone(), error))
 }
 
 /// The directory of all profiles, which has a mark of cargo.
@@ -97,24 +127,24 @@ fn target(out: &Path) -> &Path {
     out.ancestors().find(is_target).unwrap_or(out)
 }
 
-fn run(command: &mut Command, name: &str) -> Result<(), String> {
-    let done = command.output().map_err(|error| match error.kind() {
-        io::ErrorKind::NotFound => {
-            format!("there is no {name}; install nodejs and npm and build again")
+fn run(command: &mut Command, name: &'static str) -> Result<(), Why> {
+    let done = command.output().map_err(|error| {
+        if error.kind() == io::ErrorKind::NotFound {
+            Why::Missing(name)
+        } else {
+            Why::File(PathBuf::from(name), error)
         }
-        _ => format!("{name}: {error}"),
     })?;
     if done.status.success() {
         return Ok(());
     }
     let said = [done.stdout, done.stderr].concat();
     let said = String::from_utf8_lossy(&said);
-    let lines: Vec<&str> = said
-        .lines()
-        .filter(|line| !line.trim().is_empty())
-        .take(12)
-        .collect();
-    Err(format!("{name}: {}", lines.join(" / ")))
+    let lines = said.lines().filter(|line| !line.trim().is_empty());
+    Err(Why::Failed(
+        name,
+        lines.take(12).collect::<Vec<_>>().join(" / "),
+    ))
 }
 
 fn copy(from: &Path, to: &Path) -> io::Result<()> {

@@ -7,7 +7,7 @@ use crate::control::Who;
 use crate::drive::{self, Moves};
 use crate::error::Error;
 use crate::limits;
-use crate::relay::{self, Came};
+use crate::relay::{self, Came, Outgoing, Request};
 use crate::shared::Shared;
 use crate::word::{News, Order, only_looks};
 use axum::body::Bytes;
@@ -15,7 +15,7 @@ use axum::extract::ws::{Message, WebSocket};
 use futures_util::stream::{SplitSink, SplitStream};
 use futures_util::{SinkExt, StreamExt};
 use std::sync::Arc;
-use tokio::sync::{mpsc, watch};
+use tokio::sync::{Notify, OwnedSemaphorePermit, mpsc, watch};
 use tokio::time::{Instant, MissedTickBehavior, interval, timeout, timeout_at};
 
 /// Serves one browser until it is gone.
@@ -27,7 +27,12 @@ pub async fn serve(shared: Arc<Shared>, socket: WebSocket, who: Who) {
     // What the robot says waits in the robot, which leaves out what is old.
     let (came, from_robot) = mpsc::channel(1);
     let (looks, is_looked_at) = watch::channel(false);
-    let relay = tokio::spawn(relay::run(shared.robot.subscribe(), to_send, came));
+    let stop = Arc::<Notify>::default();
+    let outgoing = Outgoing {
+        requests: to_send,
+        stop: stop.clone(),
+    };
+    let relay = tokio::spawn(relay::run(shared.robot.subscribe(), outgoing, came));
     // It goes on when all else has ended: it has to bring actuators to rest.
     tokio::spawn(drive::run(
         shared.settings.tree.clone(),
@@ -43,6 +48,7 @@ pub async fn serve(shared: Arc<Shared>, socket: WebSocket, who: Who) {
         news,
         moves,
         requests,
+        stop,
         looks,
     };
     let teller = Teller {
@@ -68,7 +74,8 @@ struct Listener {
     who: Who,
     news: mpsc::Sender<News>,
     moves: Arc<Moves>,
-    requests: mpsc::Sender<Vec<u8>>,
+    requests: mpsc::Sender<Request>,
+    stop: Arc<Notify>,
     looks: watch::Sender<bool>,
 }
 
@@ -173,7 +180,7 @@ impl Listener {
             }
             Order::Stop => {
                 // The programs by the robot itself, what moves by the tree, should the robot's daemon not be there.
-                let _ = self.requests.try_send(b"stop".to_vec());
+                self.stop.notify_one();
                 self.moves.stop();
                 Ok(())
             }
@@ -185,8 +192,28 @@ impl Listener {
         if !only_looks(&request) {
             self.need()?;
         }
+        let room = self.room(&request)?;
         let full = |_| Error::Robot("the robot does not take programs now".to_owned());
-        self.requests.try_send(request.into()).map_err(full)
+        let request = Request {
+            bytes: request,
+            room,
+        };
+        self.requests.try_send(request).map_err(full)
+    }
+
+    /// The share of an upload in the room for all of them; others are small.
+    fn room(&self, request: &Bytes) -> Result<Option<OwnedSemaphorePermit>, Error> {
+        if request.len() <= limits::REQUEST_BYTES_MAX {
+            return Ok(None);
+        }
+        if !request.starts_with(b"file:") {
+            return Err(Error::Long(request.len(), limits::REQUEST_BYTES_MAX));
+        }
+        let full = || Error::Robot("other uploads wait for the robot: try again".to_owned());
+        let bytes = u32::try_from(request.len()).map_err(|_| full())?;
+        let uploads = self.shared.uploads.clone();
+        let room = uploads.try_acquire_many_owned(bytes);
+        room.map(Some).map_err(|_| full())
     }
 }
 

@@ -15,7 +15,7 @@ pub struct Who {
     pub address: SocketAddr,
 }
 
-/// Who is in control.
+/// The browser that is in control, if one is.
 #[derive(Debug)]
 pub struct Control {
     holder: watch::Sender<Option<Who>>,

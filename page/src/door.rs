@@ -116,7 +116,7 @@ impl Listener for Door {
 /// A connection, with its place among all.
 pub struct Guest {
     stream: TcpStream,
-    /// When it has said nothing for too long.
+    /// When nothing could be sent to it for too long: it asks nothing, or reads nothing, or asks for ever.
     idle: Pin<Box<Sleep>>,
     _seat: Seat,
 }
@@ -131,6 +131,14 @@ impl Guest {
     }
 }
 
+impl Guest {
+    /// Whether the time is up, as an error.
+    fn patience<T>(&mut self, cx: &mut Context<'_>) -> Poll<io::Result<T>> {
+        let is_over = self.idle.as_mut().poll(cx);
+        is_over.map(|()| Err(io::ErrorKind::TimedOut.into()))
+    }
+}
+
 impl AsyncRead for Guest {
     fn poll_read(
         mut self: Pin<&mut Self>,
@@ -138,14 +146,8 @@ impl AsyncRead for Guest {
         buf: &mut ReadBuf<'_>,
     ) -> Poll<io::Result<()>> {
         match Pin::new(&mut self.stream).poll_read(cx, buf) {
-            Poll::Ready(done) => {
-                self.idle.as_mut().reset(Instant::now() + limits::IDLE_TIME);
-                Poll::Ready(done)
-            }
-            Poll::Pending => match self.idle.as_mut().poll(cx) {
-                Poll::Ready(()) => Poll::Ready(Err(io::ErrorKind::TimedOut.into())),
-                Poll::Pending => Poll::Pending,
-            },
+            Poll::Ready(done) => Poll::Ready(done),
+            Poll::Pending => self.patience(cx),
         }
     }
 }
@@ -156,7 +158,13 @@ impl AsyncWrite for Guest {
         cx: &mut Context<'_>,
         buf: &[u8],
     ) -> Poll<io::Result<usize>> {
-        Pin::new(&mut self.stream).poll_write(cx, buf)
+        match Pin::new(&mut self.stream).poll_write(cx, buf) {
+            Poll::Ready(done) => {
+                self.idle.as_mut().reset(Instant::now() + limits::IDLE_TIME);
+                Poll::Ready(done)
+            }
+            Poll::Pending => self.patience(cx),
+        }
     }
 
     fn poll_flush(mut self: Pin<&mut Self>, cx: &mut Context<'_>) -> Poll<io::Result<()>> {

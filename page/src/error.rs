@@ -28,6 +28,8 @@ pub enum Error {
     File(String, io::Error),
     /// The words are no order.
     Words(String),
+    /// A request of so many bytes; at most so many are taken.
+    Long(usize, usize),
     /// There is no world to be ordered: the robot is a real one.
     NoWorld,
     /// No recording is played.
@@ -54,6 +56,7 @@ impl Error {
             | Self::Path(_)
             | Self::File(..)
             | Self::Words(_)
+            | Self::Long(..)
             | Self::NoWorld
             | Self::NoPlayback
             | Self::World(_)
@@ -74,6 +77,9 @@ impl fmt::Display for Error {
             Self::Path(path) => write!(f, "'{path}' is no actuator of this robot"),
             Self::File(path, why) => write!(f, "{path}: {}", plain(why)),
             Self::Words(words) => write!(f, "'{words}' is no order"),
+            Self::Long(bytes, most) => {
+                write!(f, "a request of {bytes} bytes: at most {most} are taken")
+            }
             Self::NoWorld => f.write_str("a real robot has no world that takes orders"),
             Self::NoPlayback => f.write_str("no recording is played here"),
             Self::World(why) | Self::Robot(why) | Self::Diagram(why) => f.write_str(why),

@@ -10,10 +10,14 @@ pub const BROWSERS_MAX: usize = 40;
 pub const CONNECTIONS_MAX: usize = 128;
 /// Those of them that one computer may have.
 pub const CONNECTIONS_OF_ONE_MAX: usize = 96;
-/// A connection on which nothing comes for so long is closed; a browser that looks is heard every second.
+/// A connection to which nothing could be sent for so long is closed; a browser that looks is told something every second.
 pub const IDLE_TIME: Duration = Duration::from_secs(30);
 /// Bytes of one message of a browser: the greatest upload, as the control port takes it.
 pub const MESSAGE_BYTES_MAX: usize = frame::limits::CONTROL_BYTES;
+/// Bytes of a request that is no upload.
+pub const REQUEST_BYTES_MAX: usize = 64 << 10;
+/// Bytes of uploads that wait for the robot, of all browsers together.
+pub const UPLOADS_BYTES_MAX: usize = 2 * MESSAGE_BYTES_MAX;
 /// Bytes that wait for one browser, answers to its pings too: a little more than one message.
 pub const UNSENT_BYTES_MAX: usize = MESSAGE_BYTES_MAX + (1 << 20);
 /// Bytes of an order in words: a value for an actuator.

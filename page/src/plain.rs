@@ -46,6 +46,8 @@ fn escaped(text: &str) -> String {
 fn text(path: &Path) -> String {
     match drive::read(path) {
         Ok(text) => text.trim_end().chars().take(limits::CELL_LETTERS).collect(),
+        // Nobody has asked for it yet, or it has nothing to say.
+        Err(error) if error.kind() == std::io::ErrorKind::WouldBlock => "no value yet".to_owned(),
         Err(error) => {
             let text = error.to_string();
             text.split(" (os error")

@@ -4,13 +4,15 @@
 //! its own connection only: the robot leaves out what it cannot send.
 
 use crate::limits;
+use axum::body::Bytes;
 use frame::{Decoder, encode};
 use std::io;
 use std::net::SocketAddr;
+use std::sync::Arc;
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
 use tokio::net::tcp::{OwnedReadHalf, OwnedWriteHalf};
-use tokio::sync::{mpsc, watch};
+use tokio::sync::{Notify, OwnedSemaphorePermit, mpsc, watch};
 use tokio::time::{sleep, timeout};
 
 /// What comes from the robot.
@@ -24,11 +26,29 @@ pub enum Came {
     Frame(Vec<u8>),
 }
 
-/// Connects until `came` is closed, and sends what `requests` gives while the robot is there; requests that come while it is not
+/// What a browser asks, with its share of the room for uploads.
+#[derive(Debug)]
+pub struct Request {
+    /// As the control port takes it.
+    pub bytes: Bytes,
+    /// Given back when it is sent.
+    pub room: Option<OwnedSemaphorePermit>,
+}
+
+/// What goes to the robot.
+#[derive(Debug)]
+pub struct Outgoing {
+    /// In their order.
+    pub requests: mpsc::Receiver<Request>,
+    /// A stop, which overtakes what waits.
+    pub stop: Arc<Notify>,
+}
+
+/// Connects until `came` is closed, and sends what comes while the robot is there; requests that come while it is not
 /// are lost, and the browser knows of that by [`Came::Gone`].
 pub async fn run(
     mut address: watch::Receiver<Option<SocketAddr>>,
-    mut requests: mpsc::Receiver<Vec<u8>>,
+    mut outgoing: Outgoing,
     came: mpsc::Sender<Came>,
 ) {
     loop {
@@ -37,14 +57,14 @@ pub async fn run(
             None => "the robot does not take programs yet".to_owned(),
             Some(at) => match connect(at).await {
                 Ok(stream) => {
-                    while requests.try_recv().is_ok() {}
+                    while outgoing.requests.try_recv().is_ok() {}
                     if came.send(Came::There).await.is_err() {
                         return;
                     }
                     let (read, write) = stream.into_split();
                     let why = tokio::select! {
                         why = receive(read, &came) => why,
-                        why = send(write, &mut requests) => why,
+                        why = send(write, &mut outgoing) => why,
                         _ = address.changed() => Ok(()),
                         () = came.closed() => return,
                     };
@@ -93,12 +113,21 @@ async fn receive(mut read: OwnedReadHalf, came: &mpsc::Sender<Came>) -> io::Resu
     }
 }
 
-async fn send(mut write: OwnedWriteHalf, requests: &mut mpsc::Receiver<Vec<u8>>) -> io::Result<()> {
+async fn send(mut write: OwnedWriteHalf, outgoing: &mut Outgoing) -> io::Result<()> {
     loop {
-        match timeout(limits::KEEPALIVE_TIME, requests.recv()).await {
-            Ok(Some(request)) => write.write_all(&encode(&request)).await?,
-            Ok(None) => return Ok(()),
-            Err(_) => write.write_all(&encode(b"keepalive")).await?,
-        }
+        let message = tokio::select! {
+            biased;
+            () = outgoing.stop.notified() => encode(b"stop"),
+            next = timeout(limits::KEEPALIVE_TIME, outgoing.requests.recv()) => match next {
+                Ok(Some(request)) => {
+                    write.write_all(&encode(&request.bytes)).await?;
+                    drop(request.room);
+                    continue;
+                }
+                Ok(None) => return Ok(()),
+                Err(_) => encode(b"keepalive"),
+            },
+        };
+        write.write_all(&message).await?;
     }
 }

@@ -27,7 +27,6 @@ pub fn router(shared: Arc<Shared>) -> Router {
     Router::new()
         .route("/socket", get(socket))
         .route("/programs", get(programs))
-        .route("/program/{*name}", get(program))
         .route("/diagram/{*name}", get(diagram))
         .route("/plain", get(table))
         .fallback(file)
@@ -92,7 +91,7 @@ fn refusal(
 /// What is of this robot, and not of every page.
 fn is_data(uri: &Uri) -> bool {
     let first = uri.path().split('/').nth(1).unwrap_or_default();
-    ["socket", "programs", "program", "diagram"].contains(&first)
+    ["socket", "programs", "diagram"].contains(&first)
 }
 
 async fn file(uri: Uri) -> Response {
@@ -129,9 +128,14 @@ async fn socket(
     };
     let number = shared.number.fetch_add(1, Ordering::Relaxed);
     let who = Who { number, address };
+    // A computer that may only look sends nothing large.
+    let most = match shared.settings.guests.may_drive(address.ip()) {
+        true => limits::MESSAGE_BYTES_MAX,
+        false => limits::WORDS_BYTES_MAX,
+    };
     upgrade
-        .max_message_size(limits::MESSAGE_BYTES_MAX)
-        .max_frame_size(limits::MESSAGE_BYTES_MAX)
+        .max_message_size(most)
+        .max_frame_size(most)
         .max_write_buffer_size(limits::UNSENT_BYTES_MAX)
         .on_upgrade(move |socket| async move {
             browser::serve(shared, socket, who).await;
@@ -175,21 +179,6 @@ async fn programs(State(shared): State<Arc<Shared>>) -> Response {
         Ok(folder.map_or_else(|| serde_json::json!([]), store::list))
     };
     with_files(&shared, work, json).await
-}
-
-async fn program(State(shared): State<Arc<Shared>>, Path(name): Path<String>) -> Response {
-    let seen = shared.clone();
-    let work = move || {
-        let none = || Error::Name(name.clone());
-        let folder = seen.settings.programs.as_deref().ok_or_else(none)?;
-        store::read(folder, &name)
-    };
-    let kind = [
-        // Never anything that a browser would run.
-        (CONTENT_TYPE, "application/octet-stream"),
-        (CACHE_CONTROL, "no-store"),
-    ];
-    with_files(&shared, work, |bytes| (kind, bytes).into_response()).await
 }
 
 async fn diagram(

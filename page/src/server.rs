@@ -50,6 +50,7 @@ impl Page {
             robot: robot.clone(),
             control: Control::default(),
             browsers: Arc::new(Semaphore::new(limits::BROWSERS_MAX)),
+            uploads: Arc::new(Semaphore::new(limits::UPLOADS_BYTES_MAX)),
             large: Arc::new(Semaphore::new(limits::LARGE_MAX)),
             number: AtomicUsize::new(0),
         });

@@ -70,6 +70,8 @@ pub struct Shared {
     pub robot: watch::Sender<Option<SocketAddr>>,
     pub control: Control,
     pub browsers: Arc<Semaphore>,
+    /// Bytes of uploads that may wait for the robot.
+    pub uploads: Arc<Semaphore>,
     /// Large things that are read or made at once: they leave threads for what moves.
     pub large: Arc<Semaphore>,
     /// Of the newest browser.

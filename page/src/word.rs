@@ -79,7 +79,7 @@ pub enum News {
         /// This computer may do things.
         may_drive: bool,
     },
-    /// Who is in control.
+    /// The browser that is in control.
     Control {
         /// This browser.
         mine: bool,

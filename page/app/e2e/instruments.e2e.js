@@ -2,23 +2,11 @@
 
 import { readFileSync } from 'node:fs';
 import assert from 'node:assert/strict';
-import { afterAll, beforeAll, test } from 'vitest';
-import { barriers, Look, Robot, until } from './robot.js';
+import { test } from 'vitest';
+import { barriers, until } from './robot.js';
+import { scene } from './scene.js';
 
-/** @type {Robot} */
-let robot;
-/** @type {Look} */
-let eyes;
-
-beforeAll(async () => {
-  robot = await Robot.start();
-  eyes = await Look.start();
-});
-
-afterAll(async () => {
-  await eyes.end();
-  await robot.end();
-});
+const there = scene();
 
 /**
  * What a node says; a servo that is off says nothing.
@@ -26,7 +14,7 @@ afterAll(async () => {
  */
 function value(node) {
   try {
-    return robot.read(`${node}/value`);
+    return there.robot.read(`${node}/value`);
   } catch (error) {
     return error.code;
   }
@@ -34,7 +22,7 @@ function value(node) {
 
 /** Another person who looks at the instruments. */
 async function look(colorScheme = 'light') {
-  const page = await eyes.open(`${robot.url}#instruments`, { colorScheme });
+  const page = await there.look.open(`${there.robot.url}#instruments`, { colorScheme });
   await page.getByRole('article', { name: 'motors/M3', exact: true }).waitFor();
   return page;
 }
@@ -57,6 +45,12 @@ async function sliders(page) {
   await text.fill('25');
   await text.press('Enter');
   await until('a number', () => value('motors/M3'), '25');
+  // The focus is in the field still.
+  await page.keyboard.press('Space');
+  await until('the motor after a stop from its field', () => value('motors/M3'), '0');
+  await text.fill('25');
+  await text.press('Enter');
+  await until('a number again', () => value('motors/M3'), '25');
   await page.getByRole('button', { name: 'Bring motors/M3 to rest' }).click();
   await until('rest', () => value('motors/M3'), '0');
 }
@@ -95,6 +89,16 @@ async function pads(page) {
   await at(0.5, 0.2);
   await page.waitForTimeout(300);
   assert.equal(value('motors/M3'), '0', 'a pad that is held on after a stop moves nothing');
+  await page.mouse.up();
+  await touch();
+  // Somebody else stops: what is held here must be let go first.
+  await page.waitForTimeout(600);
+  there.robot.write('stop', 1);
+  await until('the pad after a stop from elsewhere', isMoving, false);
+  await page.waitForTimeout(300);
+  await at(0.5, 0.2);
+  await page.waitForTimeout(300);
+  assert.equal(value('motors/M3'), '0', 'a pad that is held on after a stop from elsewhere moves nothing');
   await page.mouse.up();
   await touch();
   await page.evaluate(() => globalThis.dispatchEvent(new Event('blur')));
@@ -251,5 +255,5 @@ test('numbers are drawn and saved, everybody can use them, and one is in control
 }, 180_000);
 
 test('no page has complained', () => {
-  assert.deepEqual(eyes.complaints, []);
+  assert.deepEqual(there.look.complaints, []);
 });

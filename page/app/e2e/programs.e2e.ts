@@ -1,40 +1,30 @@
 // Programs and diagrams: sent, run, watched, stopped, changed.
 
-import { afterAll, beforeAll, expect, test } from 'vitest';
+import { expect, test } from 'vitest';
 import { ru } from '../src/words/ru';
-import { barriers, eventually, Look, Robot } from './robot.js';
+import { barriers, eventually } from './robot.js';
+import { scene } from './scene.js';
 
 const DIAGRAM = '../../editors/vscode/test/texts/count.qrs';
 
-let robot: Robot;
-let look: Look;
-
-beforeAll(async () => {
-  robot = await Robot.start();
-  look = await Look.start();
-});
-
-afterAll(async () => {
-  await look.end();
-  await robot.end();
-});
+const there = scene();
 
 test('a program is sent, runs, says something and is stopped by the space bar', async () => {
-  const page = await look.open(`${robot.url}#program`);
+  const page = await there.look.open(`${there.robot.url}#program`);
   const buffer = Buffer.from("print('here I am')\nbrick.motor('M3').setPower(40)\nscript.wait(60000)\n");
   await page.setInputFiles('input[type=file]', { name: 'go.py', mimeType: 'text/x-python', buffer });
   await page.getByRole('button', { name: 'Run go.py' }).click();
   await page.getByText('here I am').waitFor();
   await page.getByText('go.py runs').waitFor();
-  await eventually('the motor turns', () => robot.read('motors/M3/value') === '40');
+  await eventually('the motor turns', () => there.robot.read('motors/M3/value') === '40');
   await page.keyboard.press('Space');
-  await eventually('the motor rests', () => robot.read('motors/M3/value') === '0');
+  await eventually('the motor rests', () => there.robot.read('motors/M3/value') === '0');
   await page.getByText('No program runs.').waitFor();
   await page.context().close();
 });
 
 test('names and output of programs are text, whatever is in them', async () => {
-  const page = await look.open(`${robot.url}#program`);
+  const page = await there.look.open(`${there.robot.url}#program`);
   const name = '<img src=x onerror=alert(1)>.py';
   const buffer = Buffer.from("print('<script>document.title = 1</script>')\n");
   await page.setInputFiles('input[type=file]', { name, mimeType: 'text/x-python', buffer });
@@ -49,7 +39,7 @@ test('names and output of programs are text, whatever is in them', async () => {
 });
 
 test('a diagram stops at a breakpoint, goes on step by step, back, and takes a new number', async () => {
-  const page = await look.open(`${robot.url}#program`);
+  const page = await there.look.open(`${there.robot.url}#program`);
   await page.setInputFiles('input[type=file]', DIAGRAM);
   await page.getByRole('link', { name: 'Show the diagram count.qrs' }).click();
   await page.getByRole('button', { name: 'Run, stopped at the first block' }).click();
@@ -69,17 +59,17 @@ test('a diagram stops at a breakpoint, goes on step by step, back, and takes a n
   await page.getByRole('button', { name: 'Step over' }).click();
   await page.locator('g.stopped:not([data-id*=Timer])').waitFor();
   await page.getByRole('button', { name: 'Step back' }).click();
-  await page.getByText('shows the past').waitFor();
+  await page.getByText('In the past').waitFor();
   await page.getByRole('button', { name: 'To the present' }).click();
   await page.getByRole('button', { name: 'Stop', exact: true }).click();
-  await page.getByText('is stopped').waitFor({ state: 'detached' });
+  await page.getByText('Stopped, motors').waitFor({ state: 'detached' });
   await page.context().close();
 });
 
 test('everybody can use every view', async () => {
   for (const colorScheme of ['light', 'dark'] as const) {
     for (const view of ['program', 'diagram', 'log']) {
-      const page = await look.open(`${robot.url}#${view}`, { colorScheme });
+      const page = await there.look.open(`${there.robot.url}#${view}`, { colorScheme });
       await page.getByRole('button', { name: 'Stop', exact: true }).waitFor();
       await page.locator('main > *').first().waitFor();
       expect(await barriers(page), `${view}, ${colorScheme}`).toEqual([]);
@@ -89,12 +79,12 @@ test('everybody can use every view', async () => {
 });
 
 test('a Russian browser has a Russian page', async () => {
-  const page = await look.open(`${robot.url}#program`, { locale: 'ru-RU' });
+  const page = await there.look.open(`${there.robot.url}#program`, { locale: 'ru-RU' });
   await page.getByRole('heading', { name: ru.programs }).waitFor();
   expect(await page.locator('html').getAttribute('lang')).toBe('ru');
   await page.context().close();
 });
 
 test('no page has complained', () => {
-  expect(look.complaints).toEqual([]);
+  expect(there.look.complaints).toEqual([]);
 });

@@ -4,10 +4,11 @@
 
 import axe from 'axe-core';
 import { chromium } from 'playwright-core';
-import { spawn } from 'node:child_process';
+import { execFile, spawn } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
+import { promisify } from 'node:util';
 
 const TRIK = process.env.TRIK ?? resolve(import.meta.dirname, '../../../target/debug/trik');
 const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
@@ -23,9 +24,14 @@ export class Robot {
   #child;
   /** @type {string[]} */
   #args;
+  #command;
 
-  /** @param {string[]} args */
-  constructor(args) {
+  /**
+   * @param {string[]} args
+   * @param {'up' | 'replay'} command
+   */
+  constructor(args, command = 'up') {
+    this.#command = command;
     this.#args = args;
     this.#child = this.#start();
   }
@@ -38,6 +44,25 @@ export class Robot {
     const robot = new Robot(args);
     await robot.#ready();
     return robot;
+  }
+
+  /**
+   * Plays a recording, standing still at its beginning.
+   * @param {string} file
+   */
+  static async replay(file) {
+    const robot = new Robot(['--paused', file], 'replay');
+    await robot.#ready();
+    return robot;
+  }
+
+  /**
+   * Records everything for some seconds.
+   * @param {string} file
+   * @param {number} seconds
+   */
+  async record(file, seconds) {
+    await promisify(execFile)(TRIK, ['record', '-o', file, '--seconds', String(seconds), this.tree]);
   }
 
   /** Where its page is; it ends with a slash. */
@@ -93,7 +118,7 @@ export class Robot {
 
   #start() {
     const ports = this.#args.includes('--page-port') ? [] : ['--page-port', '0'];
-    const args = ['up', '--no-view', '--trikd-ports', '0', ...ports, ...this.#args, this.tree];
+    const args = [this.#command, '--no-view', '--trikd-ports', '0', ...ports, ...this.#args, this.tree];
     const env = { ...process.env, XDG_RUNTIME_DIR: this.home };
     const child = spawn(TRIK, args, { env, stdio: ['ignore', 'pipe', 'pipe'] });
     for (const stream of [child.stdout, child.stderr]) {

@@ -2,24 +2,14 @@
 
 import { createServer, type Server } from 'node:http';
 import type { AddressInfo } from 'node:net';
-import { afterAll, beforeAll, expect, test } from 'vitest';
-import { eventually, Look, Robot } from './robot.js';
+import { expect, test } from 'vitest';
+import { eventually } from './robot.js';
+import { scene } from './scene.js';
 
-let robot: Robot;
-let look: Look;
-
-beforeAll(async () => {
-  robot = await Robot.start();
-  look = await Look.start();
-});
-
-afterAll(async () => {
-  await look.end();
-  await robot.end();
-});
+const there = scene();
 
 test('one is in control, the other one takes it', async () => {
-  const [first, second] = [await look.open(robot.url), await look.open(robot.url)];
+  const [first, second] = [await there.look.open(there.robot.url), await there.look.open(there.robot.url)];
   await first.getByRole('button', { name: 'Take control' }).click();
   await first.getByText('You are in control').waitFor();
   await second.getByText('127.0.0.1 is in control').waitFor();
@@ -32,9 +22,9 @@ test('one is in control, the other one takes it', async () => {
 });
 
 test('a robot that was started again is there again without a reload', async () => {
-  const page = await look.open(`${robot.url}#log`);
+  const page = await there.look.open(`${there.robot.url}#log`);
   await page.getByText('Nobody is in control').waitFor();
-  const restarted = robot.restart();
+  const restarted = there.robot.restart();
   await page.getByText('The page is not connected').waitFor();
   await restarted;
   await page.getByText('The page is not connected').waitFor({ state: 'detached' });
@@ -48,7 +38,7 @@ test('a page of somebody else in the same browser gets at nothing', async () => 
   await new Promise<void>((listens) => other.listen(0, '127.0.0.1', listens));
   const port = (other.address() as AddressInfo).port;
   // The browser has the cookie of the robot.
-  const page = await look.open(robot.url);
+  const page = await there.look.open(there.robot.url);
   await page.getByText('Nobody is in control').waitFor();
   await page.goto(`http://127.0.0.1:${port}/`);
   const opened = await page.evaluate(
@@ -58,7 +48,7 @@ test('a page of somebody else in the same browser gets at nothing', async () => 
         socket.onopen = () => done('open');
         socket.onerror = () => done('refused');
       }),
-    `${robot.url.replace('http', 'ws')}socket`,
+    `${there.robot.url.replace('http', 'ws')}socket`,
   );
   expect(opened).toBe('refused');
   const read = await page.evaluate(async (url) => {
@@ -67,14 +57,14 @@ test('a page of somebody else in the same browser gets at nothing', async () => 
     } catch {
       return 'refused';
     }
-  }, `${robot.url}programs`);
+  }, `${there.robot.url}programs`);
   expect(read).toBe('refused');
-  await page.setContent(`<iframe src="${robot.url}"></iframe>`);
+  await page.setContent(`<iframe src="${there.robot.url}"></iframe>`);
   await eventually('the frame is refused', async () => {
     const frame = page.frames()[1];
     return frame !== undefined && !(await frame.content()).includes('id="page"');
   });
   await page.context().close();
   other.close();
-  look.complaints.length = 0;
+  there.look.complaints.length = 0;
 });

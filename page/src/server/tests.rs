@@ -151,8 +151,8 @@ impl Socket {
         match payload.len() {
             size @ 0..126 => frame.push(0x80 | size as u8),
             size => {
-                frame.push(0x80 | 126);
-                frame.extend(u16::try_from(size).unwrap().to_be_bytes());
+                frame.push(0x80 | 127);
+                frame.extend((size as u64).to_be_bytes());
             }
         }
         frame.extend([0; 4]);
@@ -243,12 +243,11 @@ fn only_the_page_itself_gets_at_the_robot() {
     assert_eq!(status("/programs", &host, &evil), "403");
     let own = format!("{cookie}Origin: http://{host}\r\n");
     assert_eq!(status("/programs", &host, &own), "200");
-    assert_eq!(status("/program/a.js", &host, &cookie), "200");
     for path in [
-        "/program/../secret",
-        "/program/%2e%2e/secret",
-        "/program//etc/passwd",
-        "/program/b.js",
+        "/diagram/../secret",
+        "/diagram/%2e%2e/secret",
+        "/diagram//etc/passwd",
+        "/diagram/b.js",
     ] {
         assert_eq!(status(path, &host, &cookie), "404", "{path}");
     }
@@ -373,6 +372,37 @@ fn rubbish_is_refused_in_words_and_the_connection_lives() {
     browser.order(r#"{"do":"write","path":"motors/M1","value":"5"}"#);
     browser.until("\"is\":\"written\"");
     assert_eq!(scene.motor(), "5\n");
+}
+
+#[test]
+fn only_an_upload_may_be_long_and_all_that_wait_have_one_room() {
+    let scene = scene(true, true);
+    let (mut browser, mut robot) = scene.browser();
+    browser.until("\"there\":true");
+    browser.send(2, &[b'x'; 70_000]);
+    browser.until("a request of 70000 bytes: at most 65536");
+    // A robot that does not read: what fits nowhere waits here, and no more than there is room for.
+    let upload = [&b"file:a.js:"[..], &vec![b'x'; 12 << 20]].concat();
+    for _ in 0..4 {
+        browser.send(2, &upload);
+    }
+    browser.until("other uploads wait for the robot");
+    // The tree is told at once, and the robot before what waits.
+    browser.order(r#"{"do":"stop"}"#);
+    let stop = scene.home.path().join("tree/stop");
+    eventually("the tree is told", || {
+        fs::read_to_string(&stop).unwrap() == "1"
+    });
+    robot_hears(&mut robot, "stop");
+}
+
+#[test]
+fn a_computer_that_may_only_look_sends_nothing_large() {
+    let scene = scene(true, false);
+    let (mut browser, _robot) = scene.browser();
+    browser.until("\"drives\":false");
+    browser.send(2, &[b'x'; 70_000]);
+    while browser.next().is_some() {}
 }
 
 #[test]

@@ -51,3 +51,12 @@ export function blocks(root: SVGSVGElement): Map<string, SVGGElement> {
   }
   return found;
 }
+
+/** What is written at each block of a picture, by its id. */
+export function titlesOf(text: string): Map<string, string> {
+  const root = picture(text);
+  const all = root ? [...blocks(root)] : [];
+  return new Map(
+    all.map(([id, block]) => [id, (block.querySelector('title')?.textContent ?? '').replace(/: $/, '')]),
+  );
+}

@@ -2,6 +2,7 @@
 //
 // Owns whether something may be moved at all, and says why not. Values themselves are in `robot`.
 
+import { untrack } from 'svelte';
 import type { Robot } from '../robot/robot.svelte';
 import { words } from '../words';
 import {
@@ -26,6 +27,8 @@ const BEAT_MS = 125;
 export class Desk {
   /** It is time to look again; only reading it makes a component look. */
   beat = $state(0);
+  /** Something may have changed: once for each picture of the screen, and at least as often as `beat`. */
+  glance = $state(0);
   /** The numbers of the graph that is open. */
   chosen = $state.raw<Source[]>([]);
   window_s = $state<number>(WINDOWS_S[1]);
@@ -47,11 +50,20 @@ export class Desk {
   /** Begins to look; returns what ends that. */
   start(): () => void {
     const timer = setInterval(() => {
-      if (!document.hidden) this.beat++;
+      if (document.hidden) return;
+      this.beat++;
+      this.glance++;
     }, BEAT_MS);
+    const end = $effect.root(() => {
+      $effect(() => {
+        void this.robot.tick;
+        untrack(() => this.glance++);
+      });
+    });
     const ignore = this.robot.onStop(() => this.orders.drop());
     return () => {
       clearInterval(timer);
+      end();
       ignore();
       this.orders.drop();
     };

@@ -4,7 +4,9 @@
 // something then has to let it go first. Knows no gamepad and no pointer.
 
 import { untrack } from 'svelte';
+import type { Fields } from '../robot/recording';
 import type { Desk } from './desk.svelte';
+import { Elsewhere } from './elsewhere';
 import { fieldsOf, type Range, sliderOf, textOf, unitsOf } from './format';
 import { mixed, type Place, scaled } from './mix';
 import { isMovable, type Setup } from './setup';
@@ -19,6 +21,7 @@ export class Driver {
   shown = $state.raw<Partial<Record<Hand, string>>>({});
   /** Texts that actuators were given, by the hand that holds them. */
   readonly #held = new Map<Hand, Map<string, string>>();
+  readonly #elsewhere = new Elsewhere();
 
   constructor(
     private readonly desk: Desk,
@@ -51,6 +54,7 @@ export class Driver {
     const held = this.#held.get(hand);
     if (!held) return;
     this.#held.delete(hand);
+    for (const path of held.keys()) this.#elsewhere.released(path);
     // Without control there is no order but the stop, and what was held must not go on.
     if (this.desk.why !== '' && held.size > 0) this.desk.robot.stop();
     else for (const path of held.keys()) this.desk.rest(path);
@@ -65,9 +69,22 @@ export class Driver {
 
   /** After a stop everything rests already. */
   forget(): void {
+    for (const path of [...this.#held.values()].flatMap((held) => [...held.keys()]))
+      this.#elsewhere.released(path);
     this.#held.clear();
     this.shown = {};
     this.#count();
+  }
+
+  /** The robot reports a sample: a stop from elsewhere ends all holding here. */
+  hear(path: string, fields: Fields): void {
+    const isRest = this.#isRest(path, Object.values(fields).join(' '));
+    if (this.#elsewhere.reported(path, isRest, performance.now())) this.cancel();
+  }
+
+  #isRest(path: string, text: string): boolean {
+    const rest = this.desk.robot.nodes.get(path)?.node.rest ?? '';
+    return text.split(' ').map(Number).join(' ') === rest.trim().split(/\s+/).map(Number).join(' ');
   }
 
   /** What cancels does not look at this number. */
@@ -108,6 +125,7 @@ export class Driver {
       const [path, text] = order;
       if (held.get(path) === text) continue;
       held.set(path, text);
+      this.#elsewhere.ordered(path, this.#isRest(path, text), performance.now());
       this.desk.orders.put(path, text);
     }
     this.#show(hand, [...held].map(([path, text]) => `${path} ${text}`).join(', '));

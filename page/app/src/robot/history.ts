@@ -2,8 +2,10 @@
 //
 // Owns how much is kept. Times are seconds of the robot's clock.
 
-/** Samples of one number that are kept: two minutes at 30 in a second. */
-export const KEPT = 3600;
+/** How long samples are kept, in seconds: what a graph shows at most, and a little more. */
+export const KEPT_S = 125;
+/** Samples of one number that are kept: so long at 60 in a second. */
+export const KEPT = 7500;
 /** Room to begin with: most numbers of a robot come seldom, and a lidar has hundreds. */
 const FIRST = 64;
 
@@ -20,7 +22,10 @@ export class History {
 
   /** NaN is a gap: the number had no value then. */
   put(time: number, value: number): void {
-    if (this.#count === this.#times.length && this.#count < KEPT) this.#grow();
+    const isFull = this.#count === this.#times.length;
+    // Slow numbers need little room: what is older goes.
+    const oldest = this.#times[this.#next] ?? 0;
+    if (isFull && this.#count < KEPT && time - oldest < KEPT_S) this.#grow();
     const size = this.#times.length;
     this.#times[this.#next] = time;
     this.#values[this.#next] = value;
@@ -28,14 +33,19 @@ export class History {
     this.#count = Math.min(this.#count + 1, size);
   }
 
-  /** It has never gone round: the oldest is the first. */
   #grow(): void {
     const size = Math.min(this.#times.length * 2, KEPT);
     const [times, values] = [this.#times, this.#values];
     this.#times = new Float64Array(size);
     this.#values = new Float64Array(size);
-    this.#times.set(times);
-    this.#values.set(values);
+    // The oldest first.
+    for (const [from, to] of [
+      [times, this.#times],
+      [values, this.#values],
+    ] as const) {
+      to.set(from.subarray(this.#next));
+      to.set(from.subarray(0, this.#next), from.length - this.#next);
+    }
     this.#next = this.#count;
   }
 

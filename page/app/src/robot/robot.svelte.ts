@@ -17,6 +17,8 @@ export interface Known {
   readonly node: Node;
   /** Its newest sample; undefined before the first one. */
   fields: Fields | undefined;
+  /** How many samples and failures there were. */
+  count: number;
   /** When that was, in seconds since 1970 of the robot's clock. */
   time: number;
   /** Why it has no value; empty if it has one. */
@@ -26,9 +28,11 @@ export interface Known {
 }
 
 /** How many values in a second come to this page at most, of each node. */
-const RATE_HZ = 30;
+const RATE_HZ = 60;
 /** Lines that are kept. */
 const LINES = 500;
+/** A line of the log is about the order that was refused so shortly before or after it. */
+const MISTAKE_MS = 1000;
 
 export class Robot {
   /** Something has changed since the last picture; only reading it makes a component look again. */
@@ -59,11 +63,13 @@ export class Robot {
   readonly nodes = new Map<string, Known>();
   /** Refusals of values, by the path of their node. */
   readonly refused = new Map<string, string>();
+  readonly #mistakes = new Map<string, { text: string; at_ms: number }>();
   readonly link: Link;
   readonly programs: Programs;
   readonly debugger: Debugger;
   readonly #wanted: Wanted;
   readonly #stops = new Set<() => void>();
+  readonly #watchers = new Set<(path: string, fields: Fields) => void>();
   #recording = new Recording(this);
   #isDirty = false;
   readonly #decoder = new TextDecoder();
@@ -89,6 +95,12 @@ export class Robot {
   /** The robot's clock now, in seconds since 1970. */
   get now(): number {
     return Date.now() / 1000 + this.#ahead;
+  }
+
+  /** Calls back for each sample. Returns what ends that. */
+  onSample(callback: (path: string, fields: Fields) => void): () => void {
+    this.#watchers.add(callback);
+    return () => this.#watchers.delete(callback);
   }
 
   /** Calls back at each stop, before it is sent: nothing older may follow it. Returns what ends that. */
@@ -137,7 +149,7 @@ export class Robot {
         break;
       case 'written':
         if (news.why === null) this.refused.delete(news.path);
-        else this.refused.set(news.path, news.why);
+        else this.refused.set(news.path, this.#mistakeOf(news.path) ?? news.why);
         this.#isDirty = true;
         break;
       case 'refused':
@@ -184,7 +196,14 @@ export class Robot {
   node(node: Node): void {
     const old = this.nodes.get(node.path);
     if (old?.node.format === node.format) return;
-    this.nodes.set(node.path, { node, fields: undefined, time: 0, fault: '', histories: new Map() });
+    this.nodes.set(node.path, {
+      node,
+      fields: undefined,
+      count: 0,
+      time: 0,
+      fault: '',
+      histories: new Map(),
+    });
     this.paths = [...this.nodes.keys()].sort();
   }
 
@@ -193,8 +212,10 @@ export class Robot {
     if (!known) return;
     this.#hear(time);
     known.fields = fields;
+    known.count++;
     known.time = time;
     known.fault = '';
+    for (const callback of this.#watchers) callback(path, fields);
     for (const [name, value] of Object.entries(fields)) {
       if (typeof value === 'number' || typeof value === 'bigint' || typeof value === 'boolean') {
         let history = known.histories.get(name);
@@ -211,13 +232,29 @@ export class Robot {
       const known = this.nodes.get(line.name.replace(/^\//, ''));
       if (known) {
         known.fault = line.text;
+        known.count++;
         known.time = line.time;
         for (const history of known.histories.values()) history.put(line.time, NaN);
       }
       this.#isDirty = true;
     } else {
+      this.#explain(line);
       this.lines = [...this.lines.slice(1 - LINES), line];
     }
+  }
+
+  /** The log says in a sentence what the number of an error only hints at; it may come before or after that. */
+  #explain(line: Line): void {
+    const text = /^caller: (.*)/s.exec(line.text)?.[1];
+    if (text === undefined || !this.nodes.has(line.name)) return;
+    this.#mistakes.set(line.name, { text, at_ms: performance.now() });
+    if (this.refused.has(line.name)) this.refused.set(line.name, text);
+    this.#isDirty = true;
+  }
+
+  #mistakeOf(path: string): string | undefined {
+    const mistake = this.#mistakes.get(path);
+    return mistake && performance.now() - mistake.at_ms < MISTAKE_MS ? mistake.text : undefined;
   }
 
   facts(): void {
