@@ -195,6 +195,8 @@ pub const REPLAY_PEERS_MAX: usize = 2 * 4096 + 64;
 pub const REPLAY_HELLO_MS: u64 = 100;
 /// How late an event may be given before the clock waits for it.
 pub const REPLAY_LATE_MS: u64 = 20;
+/// How long after its beginning a recording may have the first of what its recorder found when it began.
+pub const REPLAY_BEGINNING_MS: u64 = 100;
 /// Bytes of what one connection says at once: the greatest tuple of a `played` source.
 pub const REPLAY_MESSAGE_BYTES: usize = 128 << 10;
 /// Keys that wait for the player.

@@ -105,6 +105,7 @@ impl Player {
                 !begin.is_paused,
             ),
             newest: vec![None; recording.channels().len()],
+            is_told: vec![false; recording.channels().len()],
             outputs: vec![Output::new(); recording.channels().len()],
             recording,
             listener,
@@ -181,6 +182,8 @@ struct Scene {
     clock: Clock,
     /// What each channel has at the position.
     newest: Vec<Option<What>>,
+    /// Which channels have had their next event already, at the beginning.
+    is_told: Vec<bool>,
     outputs: Vec<Output>,
     listener: OwnedFd,
     control: In,
@@ -264,8 +267,10 @@ impl Scene {
             let Some(event) = self.next.take() else {
                 return Ok(());
             };
-            self.newest[event.channel] = Some(event.what);
-            self.give(event.channel);
+            if !std::mem::take(&mut self.is_told[event.channel]) {
+                self.newest[event.channel] = Some(event.what);
+                self.give(event.channel);
+            }
             lock(&self.shared).state.given += 1;
             self.next = self.recording.next()?;
         }
@@ -280,7 +285,8 @@ impl Scene {
         if is_at_end && self.is_loop && self.clock.length() > Duration::ZERO {
             // What each node had at the end stays until its next sample: nobody went anywhere.
             let newest = self.newest.clone();
-            return self.turn_to(Duration::ZERO, newest);
+            self.is_told.fill(false);
+            return self.turn_to(Duration::ZERO, Duration::ZERO, newest);
         }
         if is_at_end && !std::mem::replace(&mut self.was_at_end, true) {
             self.news("the recording is at its end".to_owned());
@@ -310,7 +316,13 @@ impl Scene {
     /// Goes to a position: every reader gets what its node had there.
     fn seek(&mut self, position: Duration) -> Result<(), Error> {
         let position = position.min(self.clock.length());
-        let mut newest = self.recording.newest(position)?;
+        // With what happened at this very moment: at the beginning there is nothing before it.
+        let after = position.saturating_add(Duration::from_nanos(1));
+        let mut newest = self.recording.newest(after)?;
+        self.is_told.fill(false);
+        if position < BEGINNING {
+            self.learn_first(after, &mut newest)?;
+        }
         for (newest, before) in newest.iter_mut().zip(&self.newest) {
             if newest.is_none() && before.is_some() {
                 // Readers have a value that is not of this moment.
@@ -320,18 +332,37 @@ impl Scene {
                 ));
             }
         }
-        self.turn_to(position, newest)?;
+        self.turn_to(position, after, newest)?;
         for channel in 0..self.newest.len() {
             self.give(channel);
         }
         Ok(())
     }
 
-    /// Goes on from a position, at which nodes have this.
-    fn turn_to(&mut self, position: Duration, newest: Vec<Option<What>>) -> Result<(), Error> {
+    /// A node of which nothing was recorded yet has what the recorder found of it when it began.
+    fn learn_first(&mut self, after: Duration, found: &mut [Option<What>]) -> Result<(), Error> {
+        self.recording.seek(after)?;
+        while let Some(event) = self.recording.next()?
+            && event.at <= BEGINNING
+        {
+            if found[event.channel].is_none() {
+                found[event.channel] = Some(event.what);
+                self.is_told[event.channel] = true;
+            }
+        }
+        Ok(())
+    }
+
+    /// Goes to a position at which nodes have this, and gives what happened from `next` on.
+    fn turn_to(
+        &mut self,
+        position: Duration,
+        next: Duration,
+        newest: Vec<Option<What>>,
+    ) -> Result<(), Error> {
         self.clock.jump(Instant::now(), position);
         self.newest = newest;
-        self.recording.seek(position)?;
+        self.recording.seek(next)?;
         self.next = self.recording.next()?;
         self.was_at_end = false;
         for output in &mut self.outputs {
@@ -548,6 +579,9 @@ impl Scene {
         state.is_at_end = self.next.is_none() && !state.runs && !self.is_loop;
     }
 }
+
+/// A recorder looks at all nodes one after another when it begins; this is longer than it takes.
+const BEGINNING: Duration = Duration::from_millis(limits::REPLAY_BEGINNING_MS);
 
 /// How late an event may come before the clock waits for it.
 const LATE: Duration = Duration::from_millis(limits::REPLAY_LATE_MS);
