@@ -125,7 +125,9 @@ fn again(home: &Arc<Home>, first: &BTreeMap<String, Events>, speed: u32, stalls:
     fs::write(replay.devices.join("replay"), "go\n").expect("an order");
     if stalls {
         // The stall is what is tried here: more than any ring holds.
-        eventually("a way", || replay.number("encoders/E3/value") > 50.0);
+        eventually("a way", || {
+            replay.errno("encoders/E3/value") == 0 && replay.number("encoders/E3/value") > 50.0
+        });
         processes::signal(replay.pid(), Signal::SIGSTOP);
         std::thread::sleep(Duration::from_millis(1_500));
         processes::signal(replay.pid(), Signal::SIGCONT);
