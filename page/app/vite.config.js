@@ -9,7 +9,7 @@ export default defineConfig({
   // During work on the page: `npx vite` beside a running `trik up`.
   server: {
     proxy: Object.fromEntries(
-      ['/socket', '/programs', '/program', '/diagram', '/plain'].map((path) => [
+      ['/socket', '/programs', '/program', '/configuration', '/diagram', '/plain'].map((path) => [
         path,
         { target: process.env.TRIK_PAGE ?? 'http://127.0.0.1:8000', ws: true },
       ]),

@@ -3,6 +3,7 @@
 //! Owns the two halves of its connection. Only what comes from the robot may wait for a slow browser; orders of the browser,
 //! a stop first of all, wait for nothing that is sent to it.
 
+use crate::configuration;
 use crate::control::Who;
 use crate::drive::{self, Moves};
 use crate::error::Error;
@@ -107,7 +108,10 @@ impl Listener {
                 Message::Ping(_) | Message::Pong(_) => Ok(()),
                 Message::Close(_) => return,
             };
-            if let Err(error) = refused {
+            // A browser that says nothing but rubbish leaves room for what came of its values.
+            if let Err(error) = refused
+                && self.news.capacity() > limits::NEWS / 2
+            {
                 let _ = self.news.try_send(News::Refused(error.to_string()));
             }
         }
@@ -157,6 +161,7 @@ impl Listener {
                 });
                 Ok(())
             }
+            Order::Configure(text) => self.configure(text),
             Order::Playback(words) => {
                 self.need()?;
                 let playback = self.shared.settings.playback.as_ref();
@@ -185,6 +190,24 @@ impl Listener {
                 Ok(())
             }
         }
+    }
+
+    /// Another configuration of the tree. What comes of it is told later: its converters are compiled meanwhile.
+    fn configure(&self, text: String) -> Result<(), Error> {
+        if !self.shared.settings.configures {
+            return Err(Error::Fixed);
+        }
+        self.need()?;
+        let busy =
+            |_| Error::Configuration("another configuration is tried: wait for it".to_owned());
+        let turn = (self.shared.large.clone().try_acquire_owned()).map_err(busy)?;
+        let (news, shared) = (self.news.clone(), self.shared.clone());
+        tokio::task::spawn_blocking(move || {
+            let _turn = turn;
+            let done = configuration::replace(&shared.settings.tree, &text);
+            let _ = news.try_send(News::Configured(done.err().map(|why| why.to_string())));
+        });
+        Ok(())
     }
 
     /// A request of the control port.
@@ -237,6 +260,7 @@ impl Teller {
                 name: settings.name.clone(),
                 version: env!("CARGO_PKG_VERSION").to_owned(),
                 has_world: settings.world.is_some(),
+                configures: settings.configures,
                 may_drive: settings.guests.may_drive(self.who.address.ip()),
             },
             News::control(*holder.borrow_and_update(), self.who),

@@ -46,6 +46,14 @@ pub enum Error {
     Name(String),
     /// A diagram that cannot be drawn.
     Diagram(String),
+    /// A file of so many bytes is no text for an editor; at most so many are shown.
+    Large(String, u64, usize),
+    /// The file is no text in UTF-8.
+    Text(String),
+    /// The configuration may not be replaced from here.
+    Fixed,
+    /// The filesystem refuses the configuration, and why.
+    Configuration(String),
 }
 
 impl Error {
@@ -63,7 +71,11 @@ impl Error {
             | Self::Taken(_)
             | Self::Unpaired
             | Self::Name(_)
-            | Self::Diagram(_) => Blame::Caller,
+            | Self::Diagram(_)
+            | Self::Large(..)
+            | Self::Text(_)
+            | Self::Fixed
+            | Self::Configuration(_) => Blame::Caller,
             Self::Thread(_) | Self::Robot(_) => Blame::Machine,
         }
     }
@@ -82,7 +94,17 @@ impl fmt::Display for Error {
             }
             Self::NoWorld => f.write_str("a real robot has no world that takes orders"),
             Self::NoPlayback => f.write_str("no recording is played here"),
-            Self::World(why) | Self::Robot(why) | Self::Diagram(why) => f.write_str(why),
+            Self::World(why)
+            | Self::Robot(why)
+            | Self::Diagram(why)
+            | Self::Configuration(why) => f.write_str(why),
+            Self::Large(name, bytes, most) => {
+                write!(f, "{name} has {bytes} bytes: at most {most} can be edited here")
+            }
+            Self::Text(name) => write!(f, "{name} is no text in UTF-8"),
+            Self::Fixed => f.write_str(
+                "the configuration cannot be replaced from this page; on a robot trikd --page-configures allows it",
+            ),
             Self::Taken(who) => write!(f, "{who} is in control; take control first"),
             Self::Unpaired => f.write_str(
                 "this computer may only look: press Enter on the robot within 30 s to pair it, and try again",

@@ -18,6 +18,7 @@
 #![deny(clippy::wildcard_enum_match_arm)]
 
 mod browser;
+mod configuration;
 mod control;
 mod door;
 mod drive;

@@ -57,6 +57,12 @@ pub const PROGRAMS_MAX: usize = 1000;
 pub const FOLDERS_MAX: usize = 4;
 /// Bytes of a program that is shown.
 pub const PROGRAM_BYTES_MAX: u64 = 16 << 20;
+/// Bytes of a program that is edited: a connection that reads nothing holds so many.
+pub const EDITED_BYTES_MAX: usize = 128 << 10;
+/// Bytes of a configuration, as the filesystem takes them.
+pub const CONFIGURATION_BYTES_MAX: usize = 1 << 20;
+/// Bytes of the `status` of a tree, whose first line is about its configuration.
+pub const STATUS_BYTES_MAX: usize = 4 << 10;
 /// Rows of the plain table.
 pub const ROWS_MAX: usize = 500;
 /// Letters of one of its cells.

@@ -7,7 +7,7 @@ use crate::control::Who;
 use crate::door::Peer;
 use crate::error::Error;
 use crate::shared::Shared;
-use crate::{files, guard, limits, plain, store};
+use crate::{configuration, files, guard, limits, plain, store};
 use axum::Router;
 use axum::extract::{ConnectInfo, Path, Query, Request, State, WebSocketUpgrade};
 use axum::http::header::{
@@ -27,7 +27,9 @@ pub fn router(shared: Arc<Shared>) -> Router {
     Router::new()
         .route("/socket", get(socket))
         .route("/programs", get(programs))
+        .route("/program/{*name}", get(program))
         .route("/diagram/{*name}", get(diagram))
+        .route("/configuration", get(configured))
         .route("/plain", get(table))
         .fallback(file)
         .layer(from_fn_with_state(shared.clone(), enter))
@@ -91,7 +93,7 @@ fn refusal(
 /// What is of this robot, and not of every page.
 fn is_data(uri: &Uri) -> bool {
     let first = uri.path().split('/').nth(1).unwrap_or_default();
-    ["socket", "programs", "diagram"].contains(&first)
+    ["socket", "programs", "program", "diagram", "configuration"].contains(&first)
 }
 
 async fn file(uri: Uri) -> Response {
@@ -178,6 +180,25 @@ async fn programs(State(shared): State<Arc<Shared>>) -> Response {
         let folder = seen.settings.programs.as_deref();
         Ok(folder.map_or_else(|| serde_json::json!([]), store::list))
     };
+    with_files(&shared, work, json).await
+}
+
+async fn program(State(shared): State<Arc<Shared>>, Path(name): Path<String>) -> Response {
+    let seen = shared.clone();
+    let work = move || {
+        let folder = seen.settings.programs.as_deref();
+        store::text(folder.ok_or_else(|| Error::Name(name.clone()))?, &name)
+    };
+    let kind = [
+        (CONTENT_TYPE, "text/plain; charset=utf-8"),
+        (CACHE_CONTROL, "no-store"),
+    ];
+    with_files(&shared, work, |text| (kind, text).into_response()).await
+}
+
+async fn configured(State(shared): State<Arc<Shared>>) -> Response {
+    let seen = shared.clone();
+    let work = move || configuration::read(&seen.settings.tree);
     with_files(&shared, work, json).await
 }
 

@@ -53,6 +53,8 @@ pub struct Settings {
     pub world: Option<Arc<dyn World>>,
     /// What is played below the tree, if that is a recording.
     pub playback: Option<Arc<dyn Playback>>,
+    /// A browser that is in control may replace the configuration of the tree, and so run any code as its filesystem does.
+    pub configures: bool,
     /// Which computers may do what.
     pub guests: Arc<dyn Guests>,
 }

@@ -58,6 +58,28 @@ pub fn read(folder: &Path, name: &str) -> Result<Vec<u8>, Error> {
     Ok(bytes)
 }
 
+/// A program as a text.
+///
+/// # Errors
+/// There is no such program, it is no text, or it is too long to be edited.
+pub fn text(folder: &Path, name: &str) -> Result<String, Error> {
+    let path = inside(folder, name).ok_or_else(|| Error::Name(name.to_owned()))?;
+    let failed = |error| Error::File(name.to_owned(), error);
+    let mut file = fs::File::open(path).map_err(failed)?;
+    let size = file.metadata().map_err(failed)?.len();
+    let most = limits::EDITED_BYTES_MAX;
+    let mut bytes = Vec::new();
+    let limit = most as u64 + 1;
+    (&mut file)
+        .take(limit)
+        .read_to_end(&mut bytes)
+        .map_err(failed)?;
+    if bytes.len() > most {
+        return Err(Error::Large(name.to_owned(), size.max(limit), most));
+    }
+    String::from_utf8(bytes).map_err(|_| Error::Text(name.to_owned()))
+}
+
 /// The file of a program, if it is a file in this folder when all links are followed.
 fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
     let is_plain = |part: Component| matches!(part, Component::Normal(_));
@@ -136,5 +158,19 @@ mod tests {
             assert!(read(&folder, bad).is_err(), "{bad}");
         }
         assert!(diagram(&folder, "b.js", false).is_err());
+    }
+
+    #[test]
+    fn what_is_edited_is_a_text_that_is_not_too_long() {
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path();
+        let most = limits::EDITED_BYTES_MAX;
+        fs::write(folder.join("whole.py"), "x".repeat(most)).unwrap();
+        fs::write(folder.join("long.py"), "x".repeat(most + 1)).unwrap();
+        fs::write(folder.join("bytes.py"), [0xff, 0xfe]).unwrap();
+        assert_eq!(text(folder, "whole.py").unwrap().len(), most);
+        assert!(matches!(text(folder, "long.py"), Err(Error::Large(..))));
+        assert!(matches!(text(folder, "bytes.py"), Err(Error::Text(_))));
+        assert!(matches!(text(folder, "../x"), Err(Error::Name(_))));
     }
 }

@@ -16,6 +16,8 @@ pub enum Order {
     World(String),
     /// An order to the recording that is played, in words.
     Playback(String),
+    /// Another configuration of the tree.
+    Configure(String),
     /// To see the world, or not any more: it costs time at every picture.
     Look(bool),
     /// To be in control, whoever is.
@@ -46,6 +48,7 @@ impl Order {
             ),
             "world" => Self::World(text("order").ok_or_else(why)?),
             "playback" => Self::Playback(text("order").ok_or_else(why)?),
+            "configure" => Self::Configure(text("text").ok_or_else(why)?),
             "look" => Self::Look(
                 value
                     .get("world")
@@ -57,8 +60,8 @@ impl Order {
             "stop" => Self::Stop,
             _ => return Err(why()),
         };
-        // Only a world may be long.
-        if is_long && !matches!(order, Self::World(_)) {
+        // Only what a person has in a file may be long.
+        if is_long && !matches!(order, Self::World(_) | Self::Configure(_)) {
             return Err(why());
         }
         Ok(order)
@@ -78,6 +81,8 @@ pub enum News {
         has_world: bool,
         /// This computer may do things.
         may_drive: bool,
+        /// The configuration may be replaced from here.
+        configures: bool,
     },
     /// The browser that is in control.
     Control {
@@ -97,6 +102,8 @@ pub enum News {
         /// Why it was not.
         why: Option<String>,
     },
+    /// The configuration was replaced, or not and why.
+    Configured(Option<String>),
     /// Something was not done.
     Refused(String),
     /// What stands still in the world.
@@ -136,6 +143,7 @@ impl News {
                 version,
                 has_world,
                 may_drive,
+                configures,
             } => object(
                 "hello",
                 vec![
@@ -143,6 +151,7 @@ impl News {
                     ("version", version.as_str().into()),
                     ("world", (*has_world).into()),
                     ("drives", (*may_drive).into()),
+                    ("configures", (*configures).into()),
                 ],
             ),
             Self::Control { mine, who } => object(
@@ -161,6 +170,7 @@ impl News {
                     ("why", why.clone().into()),
                 ],
             ),
+            Self::Configured(why) => object("configured", vec![("why", why.clone().into())]),
             Self::Refused(why) => object("refused", vec![("why", why.as_str().into())]),
             Self::Beat => object("beat", Vec::new()),
             // These are JSON already.
@@ -278,6 +288,7 @@ mod tests {
                 version: "1".to_owned(),
                 has_world: true,
                 may_drive: false,
+                configures: false,
             },
             News::Control {
                 mine: false,
@@ -289,6 +300,7 @@ mod tests {
                 value: "1".to_owned(),
                 why: None,
             },
+            News::Configured(None),
             News::Refused("no".to_owned()),
             News::Scene("{\"walls\":[]}".to_owned()),
             News::World("{\"t\":1}".to_owned()),

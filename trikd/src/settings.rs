@@ -112,6 +112,9 @@ pub struct Settings {
     /// then use the other ports without being paired.
     #[arg(long, value_name = "PORT")]
     pub page_port: Option<u16>,
+    /// Let the page replace the configuration of the tree: a converter runs as the filesystem does, as root if that is root.
+    #[arg(long, requires = "page_port")]
+    pub page_configures: bool,
     /// Turn this off; may be given several times.
     #[arg(long, value_name = "SERVICE", value_enum)]
     pub without: Vec<Service>,

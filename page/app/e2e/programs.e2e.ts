@@ -68,7 +68,7 @@ test('a diagram stops at a breakpoint, goes on step by step, back, and takes a n
 
 test('everybody can use every view', async () => {
   for (const colorScheme of ['light', 'dark'] as const) {
-    for (const view of ['program', 'diagram', 'log']) {
+    for (const view of ['program', 'program:new.py', 'diagram', 'configuration', 'log']) {
       const page = await there.look.open(`${there.robot.url}#${view}`, { colorScheme });
       await page.getByRole('button', { name: 'Stop', exact: true }).waitFor();
       await page.locator('main > *').first().waitFor();

@@ -34,6 +34,10 @@ impl Guests for ByWord {
 }
 
 fn scene(look: bool, drive: bool) -> Scene {
+    scene_with(look, drive, true)
+}
+
+fn scene_with(look: bool, drive: bool, configures: bool) -> Scene {
     let home = tempfile::tempdir().unwrap();
     let motor = home.path().join("tree/motors/M1");
     fs::create_dir_all(&motor).unwrap();
@@ -47,6 +51,8 @@ fn scene(look: bool, drive: bool) -> Scene {
         fs::write(motor.join(file), text).unwrap();
     }
     fs::write(home.path().join("tree/stop"), "").unwrap();
+    fs::write(home.path().join("tree/config"), "trikfs = {}").unwrap();
+    fs::write(home.path().join("tree/status"), "config ok: 0 nodes\n").unwrap();
     fs::write(home.path().join("programs/a.js"), "print(1)").unwrap();
     let robot = TcpListener::bind("127.0.0.1:0").unwrap();
     let page = Page::start(Settings {
@@ -56,6 +62,7 @@ fn scene(look: bool, drive: bool) -> Scene {
         programs: Some(home.path().join("programs")),
         world: None,
         playback: None,
+        configures,
         guests: Arc::new(ByWord { look, drive }),
     })
     .unwrap();
@@ -342,6 +349,7 @@ fn a_computer_that_may_only_look_changes_nothing() {
         r#"{"do":"write","path":"motors/M1","value":"30"}"#,
         r#"{"do":"take"}"#,
         r#"{"do":"world","order":"pause"}"#,
+        r#"{"do":"configure","text":"x"}"#,
     ] {
         browser.order(order);
         browser.until("this computer may only look");
@@ -351,6 +359,61 @@ fn a_computer_that_may_only_look_changes_nothing() {
     browser.send(2, b"status");
     robot_hears(&mut robot, "status");
     assert_eq!(scene.motor(), "0\n");
+}
+
+#[test]
+fn one_in_control_replaces_the_configuration_if_the_page_may() {
+    let scene = scene(true, true);
+    let config = || fs::read_to_string(scene.home.path().join("tree/config")).unwrap();
+    let (mut browser, _robot) = scene.browser();
+    browser.until("\"configures\":true");
+    let (mut other, _robot) = scene.browser();
+    other.order(r#"{"do":"take"}"#);
+    other.until("\"mine\":true");
+    browser.order(r#"{"do":"configure","text":"mine"}"#);
+    browser.until("is in control");
+    assert_eq!(config(), "trikfs = {}");
+    drop(other);
+    browser.until("\"who\":null");
+    // Longer than words of an order may be.
+    let long = "-".repeat(limits::WORDS_BYTES_MAX + 1);
+    browser.order(&format!(r#"{{"do":"configure","text":"{long}"}}"#));
+    browser.until("\"is\":\"configured\",\"why\":null");
+    assert_eq!(config(), long);
+    let cookie = scene.cookie();
+    let answer = scene.get("/configuration", &scene.host(), &cookie);
+    assert!(
+        answer.contains("\"status\":\"config ok: 0 nodes\""),
+        "{answer}"
+    );
+    let answer = scene.get("/configuration", &scene.host(), "");
+    assert!(answer.starts_with("HTTP/1.1 403"), "{answer}");
+}
+
+#[test]
+fn a_page_that_may_not_configure_says_what_allows_it() {
+    let scene = scene_with(true, true, false);
+    let (mut browser, _robot) = scene.browser();
+    browser.until("\"configures\":false");
+    browser.order(r#"{"do":"configure","text":"x"}"#);
+    browser.until("trikd --page-configures allows it");
+}
+
+#[test]
+fn a_program_is_a_text_that_can_be_read() {
+    let scene = scene(true, true);
+    let cookie = scene.cookie();
+    let answer = scene.get("/program/a.js", &scene.host(), &cookie);
+    assert!(answer.ends_with("\r\n\r\nprint(1)"), "{answer}");
+    for (path, why) in [
+        ("/program/none.py", "404"),
+        ("/program/..%2ftree%2fstop", "404"),
+    ] {
+        let answer = scene.get(path, &scene.host(), &cookie);
+        assert!(answer.starts_with(&format!("HTTP/1.1 {why}")), "{answer}");
+    }
+    let answer = scene.get("/program/a.js", &scene.host(), "");
+    assert!(answer.starts_with("HTTP/1.1 403"), "{answer}");
 }
 
 #[test]

@@ -55,6 +55,8 @@ impl Served {
             programs: Some(trikd.scripts.clone()),
             world: beneath.world.clone(),
             playback: beneath.playback.clone(),
+            // That of a recording is made from its nodes.
+            configures: beneath.playback.is_none(),
             guests: Arc::new(Everybody),
         };
         let wanted = args.page_port.unwrap_or(PORT);

@@ -46,6 +46,7 @@ pub fn start(
             programs: Some(settings.scripts.clone()),
             world: None,
             playback: None,
+            configures: settings.page_configures,
             guests: access.clone(),
         })
     };

@@ -7,6 +7,7 @@ export type Order =
   | { do: 'write'; path: string; value: string }
   | { do: 'world'; order: string }
   | { do: 'playback'; order: string }
+  | { do: 'configure'; text: string }
   | { do: 'look'; world: boolean }
   | { do: 'take' }
   | { do: 'leave' }
@@ -14,10 +15,11 @@ export type Order =
 
 /** What it is told. */
 export type News =
-  | { is: 'hello'; name: string; version: string; world: boolean; drives: boolean }
+  | { is: 'hello'; name: string; version: string; world: boolean; drives: boolean; configures: boolean }
   | { is: 'control'; mine: boolean; who: string | null }
   | { is: 'robot'; there: boolean; why: string | null }
   | { is: 'written'; path: string; value: string; why: string | null }
+  | { is: 'configured'; why: string | null }
   | { is: 'refused'; why: string }
   | { is: 'scene'; scene: Scene }
   | { is: 'world'; state: WorldState }

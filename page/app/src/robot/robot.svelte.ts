@@ -6,6 +6,7 @@
 import { Link } from '../link/link';
 import type { News, Playback } from '../link/words';
 import type { Scene, WorldState } from '../world/types';
+import { Configuration } from './configuration.svelte';
 import { Debugger } from './debugger.svelte';
 import { History } from './history';
 import { Programs } from './program.svelte';
@@ -67,6 +68,7 @@ export class Robot {
   readonly link: Link;
   readonly programs: Programs;
   readonly debugger: Debugger;
+  readonly configuration: Configuration;
   readonly #wanted: Wanted;
   readonly #stops = new Set<() => void>();
   readonly #watchers = new Set<(path: string, fields: Fields) => void>();
@@ -81,6 +83,7 @@ export class Robot {
     this.link = new Link(address, this);
     this.programs = new Programs(this.link);
     this.debugger = new Debugger(this.link);
+    this.configuration = new Configuration(this.link);
     this.#wanted = new Wanted(address, this);
     const show = () => {
       if (this.#isDirty) {
@@ -95,6 +98,11 @@ export class Robot {
   /** The robot's clock now, in seconds since 1970. */
   get now(): number {
     return Date.now() / 1000 + this.#ahead;
+  }
+
+  /** This page may do something now: it is in control, or nobody is. */
+  get mayAct(): boolean {
+    return this.mayDrive && (this.isInControl || !this.holder) && !this.absence;
   }
 
   /** Calls back for each sample. Returns what ends that. */
@@ -128,7 +136,10 @@ export class Robot {
 
   connected(is: boolean): void {
     this.isConnected = is;
-    if (!is) this.absence = '';
+    if (!is) {
+      this.absence = '';
+      this.configuration.forget();
+    }
   }
 
   news(news: News): void {
@@ -138,6 +149,7 @@ export class Robot {
         this.version = news.version;
         this.hasWorld = news.world;
         this.mayDrive = news.drives;
+        this.configuration.mayReplace = news.configures;
         break;
       case 'control':
         this.isInControl = news.mine;
@@ -154,6 +166,10 @@ export class Robot {
         break;
       case 'refused':
         this.refusal = news.why;
+        this.configuration.forget();
+        break;
+      case 'configured':
+        this.configuration.configured(news.why);
         break;
       case 'scene':
         this.scene = news.scene;

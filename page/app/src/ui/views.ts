@@ -1,6 +1,7 @@
 // The views of the page: a new one is a row here.
 
 import type { Component } from 'svelte';
+import Configuration from '../configuration/Configuration.svelte';
 import Diagram from '../diagram/Diagram.svelte';
 import Instruments from '../instruments/Instruments.svelte';
 import Log from '../log/Log.svelte';
@@ -23,5 +24,6 @@ export const views: View[] = [
   { name: 'instruments', title: words.instruments, component: Instruments, isThere: () => true },
   { name: 'program', title: words.program, component: Program, isThere: () => true },
   { name: 'diagram', title: words.diagram, component: Diagram, isThere: () => true },
+  { name: 'configuration', title: words.configuration, component: Configuration, isThere: () => true },
   { name: 'log', title: words.log, component: Log, isThere: () => true },
 ];

@@ -1,0 +1,107 @@
+// Texts that are edited in the page: programs of the robot and its configuration.
+
+import { readFileSync } from 'node:fs';
+import type { Page } from 'playwright-core';
+import { expect, test } from 'vitest';
+import { barriers, eventually } from './robot.js';
+import { scene } from './scene.js';
+
+const there = scene();
+
+/** The editor, once it is loaded; the plain field before it has no such attribute. */
+const editor = (page: Page, label: string) => page.locator(`[contenteditable=true][aria-label="${label}"]`);
+
+test('a program is written, fails at its line, is mended and runs', async () => {
+  const page = await there.look.open(`${there.robot.url}#program`);
+  await page.getByLabel('New program').fill('first.exe');
+  await page.getByRole('button', { name: 'Write' }).click();
+  await page.getByText('A name that ends in').waitFor();
+  await page.getByLabel('New program').fill('first.py');
+  await page.keyboard.press('Enter');
+  const text = editor(page, 'Text of first.py');
+  await text.click();
+  await page.keyboard.press('Control+A');
+  await page.keyboard.press('Delete');
+  // A space in a text stops nothing, and is there.
+  there.robot.write('motors/M3/value', 20);
+  await page.keyboard.type("print('first  line')\nprint(1 / 0)\n");
+  expect(there.robot.read('motors/M3/value')).toBe('20');
+  await page.getByRole('button', { name: 'Save and run' }).click();
+  await page.getByText('first  line', { exact: true }).waitFor();
+  await page.getByRole('list', { name: 'Errors' }).getByText('ZeroDivisionError').waitFor();
+  expect(await barriers(page)).toEqual([]);
+  await page.getByRole('button', { name: 'Line 2' }).click();
+  await page.keyboard.press('Control+End');
+  await page.keyboard.press('Shift+ArrowUp');
+  await page.keyboard.type("print('mended')\n");
+  await page.keyboard.press('Control+S');
+  await page.getByText('as on the robot').waitFor();
+  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  await page.getByText('mended', { exact: true }).waitFor();
+  await expect.poll(() => page.getByRole('list', { name: 'Errors' }).count()).toBe(0);
+  await page.getByRole('link', { name: 'Close' }).click();
+  await page.getByRole('link', { name: 'Edit first.py' }).click();
+  await expect.poll(() => text.textContent()).toContain("print('mended')");
+  await page.context().close();
+});
+
+test('a configuration is refused at its line, replaced, and comes back by undo', async () => {
+  const page = await there.look.open(`${there.robot.url}#configuration`);
+  const before = there.robot.read('config');
+  const text = editor(page, 'Configuration');
+  await text.click();
+  await page.keyboard.press('Control+End');
+  await page.keyboard.type('trikfs.lamp = = 1\n');
+  await page.getByRole('button', { name: 'Apply' }).click();
+  await page.getByText('Refused, the robot goes on').waitFor();
+  await page.getByRole('button', { name: /^Line \d+$/ }).click();
+  expect(there.robot.read('config')).toBe(before);
+  expect(await barriers(page)).toEqual([]);
+  await page.getByRole('button', { name: 'Discard changes' }).click();
+  await page.keyboard.press('Tab');
+  await text.click();
+  await page.keyboard.press('Control+End');
+  await page.keyboard.type(
+    "trikfs.lamp = { src = fake { data = '123', period_ms = 50, loop = true }, input_tuple_size = 1, output_tuple_size = 1, on_event = true, " +
+      'converter = function(x) return x.none.such end }\n',
+  );
+  await page.keyboard.press('Control+S');
+  await page.getByText(/^config ok: \d+ nodes$/).waitFor();
+  await eventually('it is in force', () => there.robot.read('config').includes('trikfs.lamp'));
+  // Its converter fails as soon as the page shows the node, and the line is marked.
+  await page.getByRole('list', { name: 'Errors' }).getByText('attempt to index').waitFor();
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await eventually('the one before is in force', () => there.robot.read('config') === before);
+  await expect.poll(() => text.textContent()).not.toContain('trikfs.lamp');
+  await page.getByRole('button', { name: 'Redo' }).click();
+  await eventually('the new one is in force again', () => there.robot.read('config').includes('lamp'));
+  await page.getByRole('button', { name: 'Undo' }).click();
+  await eventually('all is as it was', () => there.robot.read('config') === before);
+  const [download] = await Promise.all([
+    page.waitForEvent('download'),
+    page.getByRole('button', { name: 'Save as a file' }).click(),
+  ]);
+  expect(readFileSync(await download.path(), 'utf8').trim()).toBe(before);
+  await page.context().close();
+});
+
+test('what somebody else has put in force meanwhile is not overwritten without a question', async () => {
+  const page = await there.look.open(`${there.robot.url}#configuration`);
+  const before = there.robot.read('config');
+  const text = editor(page, 'Configuration');
+  await text.click();
+  await page.keyboard.press('Control+Home');
+  await page.keyboard.type('-- mine\n');
+  there.robot.write('config', `-- theirs\n${before}\n`);
+  await page.getByRole('button', { name: 'Apply' }).click();
+  await page.getByText('Somebody else has replaced the configuration').waitFor();
+  expect(there.robot.read('config')).toContain('theirs');
+  await page.getByRole('button', { name: 'Apply' }).click();
+  await eventually('mine is in force', () => there.robot.read('config').startsWith('-- mine'));
+  there.robot.write('config', `${before}\n`);
+  await page.context().close();
+});
+
+test('no page has complained', () => {
+  expect(there.look.complaints).toEqual([]);
+});

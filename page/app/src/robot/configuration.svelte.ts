@@ -1,0 +1,98 @@
+// The configuration of the robot's tree: what is in force, what was in force before, and what the filesystem says of it.
+//
+// Owns what was heard of it and the versions that were in force while this page was open. Knows no editor and no Lua.
+
+import type { Link } from '../link/link';
+
+/** Versions that are kept. */
+const VERSIONS = 30;
+
+export class Configuration {
+  /** What is in force; undefined before it was read. */
+  text = $state.raw<string | undefined>(undefined);
+  /** What the filesystem says of the last one that it was given. */
+  status = $state('');
+  /** Why it cannot be read; empty if it can. */
+  absence = $state('');
+  /** It may be replaced from this page. */
+  mayReplace = $state(false);
+  /** The filesystem has one that it has not answered yet. */
+  isApplying = $state(false);
+  /** What was in force, the oldest first, with what is now. */
+  versions = $state.raw<string[]>([]);
+  /** Which of them is in force. */
+  at = $state(-1);
+  /** The one that the filesystem was given, and which version that is; undefined for a new one. */
+  #given: { text: string; at: number | undefined } | undefined;
+
+  constructor(private readonly link: Link) {}
+
+  /** Reads what is in force. True: it is another one than was known. */
+  async read(): Promise<boolean> {
+    try {
+      const answer = await fetch('/configuration');
+      if (!answer.ok) {
+        this.absence = (await answer.text()).trim();
+        return false;
+      }
+      const said = (await answer.json()) as { text: string; status: string };
+      const isOther = said.text !== this.text;
+      this.absence = '';
+      this.status = said.status;
+      if (isOther) this.#add(said.text);
+      return isOther;
+    } catch {
+      // The server is gone; the link says so.
+      return false;
+    }
+  }
+
+  /** Gives another one to the filesystem. What comes of it is told later. */
+  apply(text: string, at?: number): void {
+    this.#given = { text, at };
+    this.isApplying = this.link.order({ do: 'configure', text });
+  }
+
+  undo(): void {
+    this.#again(this.at - 1);
+  }
+
+  redo(): void {
+    this.#again(this.at + 1);
+  }
+
+  /** The filesystem has answered. */
+  configured(why: string | null): void {
+    const given = this.#given;
+    this.#given = undefined;
+    this.isApplying = false;
+    this.status = why ?? '';
+    if (why === null && given) {
+      if (given.at === undefined) this.#add(given.text);
+      else {
+        this.at = given.at;
+        this.text = given.text;
+      }
+      // What it says of the new one.
+      void this.read();
+    }
+  }
+
+  /** Nothing is known of what was given: the server is gone, or refused the order. */
+  forget(): void {
+    this.isApplying = false;
+    this.#given = undefined;
+  }
+
+  #again(at: number): void {
+    const text = this.versions[at];
+    if (text !== undefined && !this.isApplying) this.apply(text, at);
+  }
+
+  /** What was undone before is no version any more. */
+  #add(text: string): void {
+    this.text = text;
+    this.versions = [...this.versions.slice(0, this.at + 1), text].slice(-VERSIONS);
+    this.at = this.versions.length - 1;
+  }
+}
