@@ -10,6 +10,8 @@ mod fences;
 mod places;
 /// Rules of the documents.
 mod prose;
+/// Pages in Russian beside those that they translate.
+mod russian;
 /// Rules of waiting.
 mod waits;
 
@@ -243,8 +245,11 @@ fn sources_and_documents_are_ascii() {
     let task = root().join("trik/src/task/README.ru.md");
     // What the page says in Russian.
     let page = root().join("page/app/src/words/ru.ts");
+    // Pages that pupils and teachers read, in Russian.
+    let documents = root().join("docs/ru");
     let is_words = |path: &Path| {
         path.starts_with(&blocks)
+            || path.starts_with(&documents)
             || path == task
             || path == page
             || path == readings

@@ -105,15 +105,18 @@ fn whatever_stands_in_constraints_is_read_and_checked_within_limits() {
 }
 
 #[test]
-fn examples_of_the_document_are_right() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/teacher/rules.md");
-    let document = std::fs::read_to_string(path).unwrap();
-    let mut count = 0;
-    for part in document.split("```xml rules\n").skip(1) {
-        let example = part.split("```").next().unwrap();
-        let rules = read(&xml::parse(example).unwrap()).unwrap();
-        assert!(rules.warnings().is_empty(), "{:?}", rules.warnings());
-        count += 1;
+fn examples_of_the_documents_are_right() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    for page in ["docs/teacher/rules.md", "docs/ru/rules.md"] {
+        let document = std::fs::read_to_string(root.join(page)).expect(page);
+        let mut count = 0;
+        for part in document.split("```xml rules\n").skip(1) {
+            let example = part.split("```").next().unwrap();
+            let rules = read(&xml::parse(example).unwrap()).unwrap();
+            let warnings = rules.warnings();
+            assert!(warnings.is_empty(), "{page}: {warnings:?}");
+            count += 1;
+        }
+        assert_eq!(count, 3, "{page}");
     }
-    assert_eq!(count, 3);
 }

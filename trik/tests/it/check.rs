@@ -121,6 +121,7 @@ fn what_documents_say_of_checking_is_what_really_happens() {
     for document in [
         "README.md",
         "docs/teacher/checking.md",
+        "docs/ru/checking.md",
         "docs/teacher/class.md",
         "docs/teacher/grading.md",
         "docs/teacher/platforms.md",

@@ -56,10 +56,12 @@ fn every_transcript_of_a_robot_is_what_really_happens() {
     for document in [
         "README.md",
         "docs/user/start.md",
+        "docs/ru/start.md",
         "docs/user/simulator.md",
         "docs/user/trik.md",
         "docs/user/ev3dev.md",
         "docs/user/run.md",
+        "docs/ru/run.md",
         "docs/user/drive.md",
     ] {
         let Ok(text) = std::fs::read_to_string(root.join(document)) else {
