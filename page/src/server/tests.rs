@@ -312,6 +312,9 @@ fn one_is_in_control_and_everybody_may_stop() {
     second.until("is in control");
     second.send(2, b"status");
     robot_hears(&mut robot, "status");
+    // The past is for all that may act, also while another one does.
+    second.send(2, b"box");
+    robot_hears(&mut robot, "box");
     second.order(r#"{"do":"stop"}"#);
     robot_hears(&mut robot, "stop");
     let stop = scene.home.path().join("tree/stop");

@@ -8,6 +8,10 @@ import { Wrong } from './wrong';
 
 const PIECE = 'stream:';
 const ERROR = 'error: ';
+/** What a refusal ends with that is none for long. */
+const AGAIN = 'try again';
+const AGAIN_MS = 500;
+const TRIES = 10;
 
 /** The robot has said in words why there are no minutes; empty: it said nothing. */
 export class Refused extends Error {}
@@ -19,6 +23,7 @@ export function lastMinutes(
 ): Promise<Uint8Array<ArrayBuffer> | undefined> {
   const pieces: Uint8Array[] = [];
   let count = 0;
+  let tries = TRIES;
   const decoder = new TextDecoder();
   return new Promise((done, fail) => {
     const watch = () => setTimeout(() => end(() => fail(new Refused(''))), SILENCE_MS);
@@ -37,6 +42,11 @@ export function lastMinutes(
       else if (bytes.length === 0) end(() => done(joined(pieces, count)));
       else pieces.push(bytes);
     };
+    // It may be saving them already, because a program has failed.
+    const refused = (why: string): void => {
+      if (!why.includes(AGAIN) || --tries < 0) end(() => fail(new Refused(why)));
+      else setTimeout(() => link.request('box'), AGAIN_MS);
+    };
     const link: Link = new Link(address, {
       connected: (is) => {
         if (!is) end(() => fail(new Refused('')));
@@ -49,7 +59,7 @@ export function lastMinutes(
       message: (bytes) => {
         const head = decoder.decode(bytes.subarray(0, PIECE.length));
         if (head === PIECE) piece(bytes.subarray(PIECE.length));
-        else if (head === ERROR) end(() => fail(new Refused(decoder.decode(bytes.subarray(ERROR.length)))));
+        else if (head === ERROR) refused(decoder.decode(bytes.subarray(ERROR.length)));
       },
     });
   });

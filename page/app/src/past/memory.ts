@@ -10,12 +10,15 @@ import { Track } from './track';
 import { Wrong } from './wrong';
 
 const FAULTS = '/faults';
+const DIAGRAM = '/diagram';
 
 export class Memory implements Sink {
   /** By their paths. */
   readonly tracks = new Map<string, Track>();
-  /** Without failures, in the order of their times. */
+  /** Without failures and diagrams, in the order of their times. */
   readonly lines: Line[] = [];
+  /** Where diagrams were. */
+  readonly steps: Line[] = [];
   /** Messages that are not as their type says. */
   strange = 0;
   readonly #room = { numbers: NUMBERS_MAX, textBytes: TEXT_BYTES_MAX };
@@ -73,7 +76,7 @@ export class Memory implements Sink {
 
   /** Lines come in their order, apart from some that waited for each other. */
   sort(): void {
-    this.lines.sort((one, other) => one.time - other.time);
+    for (const lines of [this.lines, this.steps]) lines.sort((one, other) => one.time - other.time);
   }
 
   #count(time: number): void {
@@ -101,7 +104,7 @@ export class Memory implements Sink {
       this.tracks.get(name.replace(/^\//, ''))?.fault(time, text);
       this.#count(time);
     } else {
-      this.lines.push({ topic, time, level, name, text, errno });
+      (topic === DIAGRAM ? this.steps : this.lines).push({ topic, time, level, name, text, errno });
       this.#spend(name.length + text.length + TEXT_COST);
     }
   }

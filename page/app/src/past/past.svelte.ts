@@ -3,11 +3,13 @@
 // Owns where that clock is. What a recording has is known to `memory`; how it looks, to the views.
 
 import type { Timeline } from '../robot/history';
+import type { Told } from '../robot/debugger.svelte';
 import type { Said } from '../robot/program.svelte';
 import type { Fields, Line, Node } from '../robot/recording';
 import type { Known } from '../robot/robot.svelte';
 import type { Beside } from './beside.svelte';
 import type { Memory } from './memory';
+import { countUntil, runningAt, Steps } from './steps';
 import type { Track } from './track';
 
 /** Where a recording is from. */
@@ -40,7 +42,13 @@ export class Past {
   #now: number;
   /** The newest lines that were there by then. */
   lines = $state.raw<Line[]>([]);
+  /** The program that ran; empty if none did. */
+  running = $state('');
+  /** Where a diagram was. */
+  told = $state.raw<Told | undefined>(undefined);
   #lineCount = 0;
+  #stepCount = 0;
+  readonly #steps: Steps;
 
   constructor(
     readonly memory: Memory,
@@ -52,6 +60,7 @@ export class Past {
     this.length_s = Math.ceil((memory.end - memory.begin) * 10) / 10;
     this.paths = [...memory.tracks.keys()].sort();
     this.#now = this.begin;
+    this.#steps = new Steps(memory.steps);
     const now = () => this.#now;
     this.nodes = nodesAt(memory, now);
   }
@@ -65,23 +74,19 @@ export class Past {
   seek(at: number): void {
     this.at = Math.max(0, Math.min(at, this.length_s));
     this.#now = this.begin + this.at;
-    const count = this.#linesUntil(this.#now);
+    const count = countUntil(this.memory.lines, this.#now);
     if (count !== this.#lineCount) {
       this.#lineCount = count;
       this.lines = this.memory.lines.slice(Math.max(0, count - LINES), count);
     }
-    this.changed();
-  }
-
-  #linesUntil(time: number): number {
-    const { lines } = this.memory;
-    let [low, high] = [0, lines.length];
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if ((lines[middle]?.time ?? 0) <= time) low = middle + 1;
-      else high = middle;
+    const running = runningAt(this.memory.lines, this.#now);
+    this.running = running?.name ?? '';
+    const stepCount = countUntil(this.memory.steps, this.#now);
+    if (stepCount !== this.#stepCount || !running) {
+      this.#stepCount = stepCount;
+      this.told = running && this.#steps.at(this.#now, running.since);
     }
-    return low;
+    this.changed();
   }
 
   /** Its clock runs for so long. */
@@ -100,12 +105,13 @@ export class Past {
   get said(): Said[] {
     return this.lines
       .filter(({ topic }) => SAID.includes(topic))
-      .map(({ topic, name, text, level }, number) => ({
-        kind:
-          topic === '/mail' ? 'mail' : topic === '/programs' ? 'info' : level >= ERROR ? 'error' : 'print',
-        text: topic === '/programs' && name ? `${name}: ${text}` : text,
-        number,
-      }));
+      .map(({ topic, text, level }, number) => {
+        const kind =
+          topic === '/mail' ? 'mail' : topic === '/programs' ? 'info' : level >= ERROR ? 'error' : 'print';
+        // Output says what it is, as the control port does.
+        const words = topic === '/output' ? text.replace(/^(print|error): /, '') : text;
+        return { kind, text: words.replace(/\n+$/, ''), number };
+      });
   }
 }
 

@@ -71,7 +71,7 @@ describe('a recording of trik record', () => {
       }
     }
     expect(last).toBeGreaterThan(all / 2);
-  });
+  }, 60_000);
 
   it('with a damaged byte is never read as another one', () => {
     const whole = example();

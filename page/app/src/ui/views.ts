@@ -30,6 +30,6 @@ export const views: View[] = [
     hasPast: true,
   },
   { name: 'program', title: words.program, component: Program, isThere: () => true, hasPast: true },
-  { name: 'diagram', title: words.diagram, component: Diagram, isThere: () => true },
+  { name: 'diagram', title: words.diagram, component: Diagram, isThere: () => true, hasPast: true },
   { name: 'log', title: words.log, component: Log, isThere: () => true, hasPast: true },
 ];

@@ -45,7 +45,8 @@ export const en = {
       seconds < 120 ? `${seconds} s ago` : `${Math.floor(seconds / 60)} min ${seconds % 60} s ago`,
     onlyLook: 'This is the past: only Stop reaches the robot.',
     notRecorded: (view: string) =>
-      `A recording does not have what "${view}" shows. "Now" goes back to the robot; Instruments, Program and Log show the past.`,
+      `A recording does not have what "${view}" shows. "Now" goes back to the robot; the other views show the past.`,
+    noDiagram: 'No diagram ran at that moment.',
     listIsNow: 'The output is that of the past, the list that of now.',
     compare: 'Compare',
     compareWith: 'Compare with',
