@@ -27,9 +27,14 @@ export class Memory implements Sink {
   #first = Infinity;
   #last = -Infinity;
 
-  /** When it begins, in seconds since 1970. */
+  /**
+   * When it begins, in seconds since 1970. The first that a node gave may be what it had long before, so that does not count
+   * if there is anything else.
+   */
   get begin(): number {
-    return Number.isFinite(this.#first) ? this.#first : (this.lines[0]?.time ?? 0);
+    const seconds = [...this.tracks.values()].map(({ times }) => (times.length > 1 ? times.at(1) : Infinity));
+    const begin = [this.lines[0]?.time ?? Infinity, ...seconds].reduce((one, other) => Math.min(one, other));
+    return Number.isFinite(begin) ? begin : this.#first;
   }
 
   get end(): number {
