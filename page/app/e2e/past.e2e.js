@@ -20,6 +20,14 @@ function shown(page) {
 
 const slider = (page) => page.getByRole('slider', { name: 'Time of the recording' });
 const button = (page, name) => page.getByRole('button', { name, exact: true });
+
+/** Chooses a file as a person does. */
+async function give(page, name, file) {
+  const asked = page.waitForEvent('filechooser');
+  await button(page, name).click();
+  await (await asked).setFiles(file);
+}
+
 const wait = (ms) => new Promise((done) => setTimeout(done, ms));
 
 /** Nobody is kept from it. */
@@ -110,7 +118,7 @@ test('a recording that was saved is opened, and compared with the robot', async 
   const file = join(there.robot.home, 'saved.mcap');
   await (await saved).saveAs(file);
   await button(page, 'Now').click();
-  await page.locator('input[type=file][accept=".mcap"]').first().setInputFiles(file);
+  await give(page, 'Open a recording', file);
   await page.getByText('saved.mcap').waitFor();
   await page.keyboard.press('End');
   await until('its end', shown(page), '30');
@@ -129,20 +137,20 @@ test('a recording that was saved is opened, and compared with the robot', async 
   await until('the offset by a second', () => offset.inputValue(), '-0.9');
   await isUsable(page, 'two runs');
   await button(page, 'Compare no more').click();
-  await page.getByRole('group', { name: 'Compare with' }).locator('input[type=file]').setInputFiles(file);
+  await give(page, 'Another recording', file);
   await page.getByText('Nodes that differ: 0').waitFor();
   await page.context().close();
 }, 120_000);
 
 test('what is no recording is refused with its place', async () => {
   const page = await there.look.open(`${there.robot.url}#instruments`);
-  const give = (buffer) =>
-    page
-      .locator('input[type=file][accept=".mcap"]')
-      .setInputFiles({ name: 'bad.mcap', mimeType: 'application/octet-stream', buffer });
-  await give(Buffer.from('no recording'));
+  const bad = (bytes) => {
+    const buffer = Buffer.from(bytes);
+    return give(page, 'Open a recording', { name: 'bad.mcap', mimeType: 'application/octet-stream', buffer });
+  };
+  await bad([1, 2, 3]);
   await page.getByText('This is no recording').waitFor();
-  await give(Buffer.from([0x89, 0x4d, 0x43, 0x41, 0x50, 0x30, 0x0d, 0x0a, 1]));
+  await bad([0x89, 0x4d, 0x43, 0x41, 0x50, 0x30, 0x0d, 0x0a, 1]);
   await page.getByText('cut off or damaged at byte 8').waitFor();
   await isUsable(page, 'what is wrong');
   await page.context().close();
