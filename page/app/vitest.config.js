@@ -4,5 +4,7 @@ import { defineConfig } from 'vitest/config';
 
 export default defineConfig({
   plugins: [svelte()],
+  // A recording that tests read.
+  assetsInclude: ['**/*.mcap'],
   test: { include: ['src/**/*.test.ts'] },
 });

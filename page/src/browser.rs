@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::limits;
 use crate::relay::{self, Came, Outgoing, Request};
 use crate::shared::Shared;
-use crate::word::{News, Order, only_looks};
+use crate::word::{News, Order, looks_back, only_looks};
 use axum::body::Bytes;
 use axum::extract::ws::{Message, WebSocket};
 use futures_util::stream::{SplitSink, SplitStream};
@@ -212,7 +212,9 @@ impl Listener {
 
     /// A request of the control port.
     fn ask(&self, request: Bytes) -> Result<(), Error> {
-        if !only_looks(&request) {
+        if looks_back(&request) {
+            self.may()?;
+        } else if !only_looks(&request) {
             self.need()?;
         }
         let room = self.room(&request)?;

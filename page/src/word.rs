@@ -208,6 +208,12 @@ pub fn only_looks(request: &[u8]) -> bool {
     looks.contains(&first)
 }
 
+/// Whether a request asks for the past of the robot. It changes nothing that moves, so it needs no control, but the robot sends
+/// it to paired computers only.
+pub fn looks_back(request: &[u8]) -> bool {
+    request == b"box"
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -278,6 +284,7 @@ mod tests {
         ] {
             assert!(!only_looks(acts.as_bytes()), "{acts}");
         }
+        assert!(looks_back(b"box") && !looks_back(b"boxes"));
     }
 
     #[test]

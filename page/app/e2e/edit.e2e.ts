@@ -57,6 +57,10 @@ test('a configuration is refused at its line, replaced, and comes back by undo',
   await page.getByRole('button', { name: /^Line \d+$/ }).click();
   expect(there.robot.read('config')).toBe(before);
   expect(await barriers(page)).toEqual([]);
+  // What was written stays while another view is open.
+  await page.getByRole('link', { name: 'Log' }).click();
+  await page.getByRole('link', { name: 'Configuration' }).click();
+  await expect.poll(() => text.textContent()).toContain('trikfs.lamp = = 1');
   await page.getByRole('button', { name: 'Discard changes' }).click();
   await page.keyboard.press('Tab');
   await text.click();

@@ -319,6 +319,9 @@ fn one_is_in_control_and_everybody_may_stop() {
     second.until("is in control");
     second.send(2, b"status");
     robot_hears(&mut robot, "status");
+    // The past is for all that may act, also while another one does.
+    second.send(2, b"box");
+    robot_hears(&mut robot, "box");
     second.order(r#"{"do":"stop"}"#);
     robot_hears(&mut robot, "stop");
     let stop = scene.home.path().join("tree/stop");
@@ -354,8 +357,10 @@ fn a_computer_that_may_only_look_changes_nothing() {
         browser.order(order);
         browser.until("this computer may only look");
     }
-    browser.send(2, b"run:a.js");
-    browser.until("this computer may only look");
+    for request in [&b"run:a.js"[..], b"box"] {
+        browser.send(2, request);
+        browser.until("this computer may only look");
+    }
     browser.send(2, b"status");
     robot_hears(&mut robot, "status");
     assert_eq!(scene.motor(), "0\n");

@@ -72,6 +72,7 @@ export class Desk {
   /** Why nothing can be moved from here; empty if it can. */
   get why(): string {
     const { robot } = this;
+    if (robot.past) return words.past.onlyLook;
     if (!robot.isConnected) return words.connecting;
     if (robot.absence !== '') return words.robotAbsent(robot.absence);
     if (!robot.mayDrive) return words.onlyLook;

@@ -12,6 +12,10 @@ import type { Joined } from './series';
 export interface Trace {
   label: string;
   unit: string;
+  /** Its place among the colours. */
+  line: number;
+  /** It is of what is compared: the same colour, other dashes. */
+  isOther: boolean;
 }
 
 /** A variable of the page's colours. */
@@ -21,6 +25,16 @@ export function colour(name: string): string {
 
 /** Lines differ by their dashes as well as by their colours. */
 const DASHES = [[], [], [], [], [8, 4], [8, 4], [2, 3], [2, 3]];
+const OTHER_DASHES = [
+  [5, 5],
+  [5, 5],
+  [5, 5],
+  [5, 5],
+  [12, 3, 2, 3],
+  [12, 3, 2, 3],
+  [1, 5],
+  [1, 5],
+];
 
 /** The variable with the colour of a line. */
 export function lineColour(at: number): string {
@@ -53,7 +67,7 @@ export class Plot {
 
   constructor(
     private readonly element: HTMLElement,
-    traces: readonly Trace[],
+    private readonly traces: readonly Trace[],
     /** The time below the cursor; undefined without one. */
     point: (time: number | undefined) => void,
   ) {
@@ -84,12 +98,12 @@ export class Plot {
       axes,
       series: [
         {},
-        ...traces.map((trace, at) => ({
+        ...traces.map((trace) => ({
           label: trace.label,
           scale: `y${units.indexOf(trace.unit)}`,
-          stroke: () => colour(lineColour(at)),
+          stroke: () => colour(lineColour(trace.line)),
           width: 1.5,
-          dash: DASHES[at % DASHES.length] ?? [],
+          dash: (trace.isOther ? OTHER_DASHES : DASHES)[trace.line % DASHES.length] ?? [],
           points: { show: false },
           ...(stepped ? { paths: stepped } : {}),
         })),
@@ -140,8 +154,15 @@ export class Plot {
     pen.font = `${13 * ratio}px sans-serif`;
     for (const [at, caption] of captions.entries()) {
       const y = from.height + line * (at + 0.7);
-      pen.fillStyle = colour(lineColour(at));
-      pen.fillRect(10 * ratio, y - 6 * ratio, 16 * ratio, 4 * ratio);
+      const { line: place, isOther } = this.traces[at] ?? { line: at, isOther: false };
+      pen.fillStyle = colour(lineColour(place));
+      for (const [from, to] of isOther
+        ? ([
+            [10, 16],
+            [20, 26],
+          ] as const)
+        : ([[10, 26]] as const))
+        pen.fillRect(from * ratio, y - 6 * ratio, (to - from) * ratio, 4 * ratio);
       pen.fillStyle = colour('--ink');
       pen.fillText(caption, 34 * ratio, y);
     }

@@ -14,6 +14,10 @@ export class Configuration {
   status = $state('');
   /** Why it cannot be read; empty if it can. */
   absence = $state('');
+  /** What a person has made of it here; it stays when another view is opened. */
+  draft = $state('');
+  /** What was in force when that was begun. */
+  base = $state<string | undefined>(undefined);
   /** It may be replaced from this page. */
   mayReplace = $state(false);
   /** The filesystem has one that it has not answered yet. */
@@ -71,7 +75,7 @@ export class Configuration {
       if (given.at === undefined) this.#add(given.text);
       else {
         this.at = given.at;
-        this.text = given.text;
+        this.#comesIntoForce(given.text);
       }
       // What it says of the new one.
       void this.read();
@@ -89,9 +93,16 @@ export class Configuration {
     if (text !== undefined && !this.isApplying) this.apply(text, at);
   }
 
+  #comesIntoForce(text: string): void {
+    this.text = text;
+    // What a person has written stays.
+    if (this.draft === (this.base ?? '')) this.draft = text;
+    this.base = text;
+  }
+
   /** What was undone before is no version any more. */
   #add(text: string): void {
-    this.text = text;
+    this.#comesIntoForce(text);
     this.versions = [...this.versions.slice(0, this.at + 1), text].slice(-VERSIONS);
     this.at = this.versions.length - 1;
   }

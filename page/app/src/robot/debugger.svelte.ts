@@ -15,7 +15,8 @@ export interface Thread {
   number: number;
   name: string;
   at?: Place;
-  does: 'enters' | 'gives way' | 'waits' | 'held' | 'failed';
+  /** Unknown of the past. */
+  does?: 'enters' | 'gives way' | 'waits' | 'held' | 'failed';
   for?: string;
   left_ms?: number;
   port?: string;

@@ -9,7 +9,13 @@ export const KEPT = 7500;
 /** Room to begin with: most numbers of a robot come seldom, and a lidar has hundreds. */
 const FIRST = 64;
 
-export class History {
+/** What is known of one number until now, or until the moment that is shown. */
+export interface Timeline {
+  /** The samples since a time, the oldest first, and before them the one that was there at that time. */
+  since(time: number): { times: number[]; values: number[] };
+}
+
+export class History implements Timeline {
   #times = new Float64Array(FIRST);
   #values = new Float64Array(FIRST);
   #next = 0;

@@ -51,6 +51,8 @@ export class Programs {
   running = $state('');
   said = $state.raw<Said[]>([]);
   question = $state.raw<Question | undefined>(undefined);
+  /** Texts of programs that a person has changed here and not saved, by their names. */
+  readonly drafts = new Map<string, string>();
   /** Why the last upload was not sent. */
   refusal = $state<'' | 'name' | 'size' | 'offline'>('');
   #number = 0;

@@ -1,7 +1,7 @@
 // A recording as it comes: bytes in pieces, nodes, samples, failures and lines out.
 //
-// Owns the format, which is that of files too: MCAP with messages in CDR, each channel with the words of its node. What is made
-// of it is known to `robot`.
+// Owns the live form, and the words of a channel, which files have too: MCAP with messages in CDR. What is made of it is known
+// to `robot`; whole files are read in `past`.
 
 import { parse } from '@foxglove/rosmsg';
 import { MessageReader } from '@foxglove/rosmsg2-serialization';
@@ -59,6 +59,26 @@ interface Channel {
 const BESIDE = new Set(['header', 'sequence']);
 const LINES = new Set(['/log', '/faults', '/programs', '/output', '/mail', '/diagram']);
 
+/** Whether a topic has lines. */
+export function isLines(topic: string): boolean {
+  return LINES.has(topic);
+}
+
+/** The node of a channel, by the words beside it; undefined if it is none. */
+export function nodeOf(topic: string, words: ReadonlyMap<string, string>): Node | undefined {
+  const format = words.get('format');
+  if (format === undefined) return undefined;
+  return {
+    path: topic.slice(1),
+    format,
+    units: words.get('units') ?? '',
+    about: words.get('about') ?? '',
+    aliases: (words.get('aliases') ?? '').split('\n').filter((alias) => alias !== ''),
+    isWritten: (words.get('access') ?? '').includes('w'),
+    rest: words.get('rest') ?? '',
+  };
+}
+
 export class Recording {
   #reader = new McapStreamReader();
   readonly #schemas = new Map<number, string>();
@@ -91,20 +111,8 @@ export class Recording {
   #open(id: number, schema: number, topic: string, words: ReadonlyMap<string, string>): void {
     const text = this.#schemas.get(schema);
     if (text === undefined || this.#channels.has(id)) return;
-    const format = words.get('format');
-    const node =
-      format === undefined
-        ? undefined
-        : {
-            path: topic.slice(1),
-            format,
-            units: words.get('units') ?? '',
-            about: words.get('about') ?? '',
-            aliases: (words.get('aliases') ?? '').split('\n').filter((alias) => alias !== ''),
-            isWritten: (words.get('access') ?? '').includes('w'),
-            rest: words.get('rest') ?? '',
-          };
-    if (!node && !LINES.has(topic)) return;
+    const node = nodeOf(topic, words);
+    if (!node && !isLines(topic)) return;
     this.#channels.set(id, { topic, node, reader: new MessageReader(parse(text, { ros2: true })) });
     if (node) this.taker.node(node);
   }

@@ -8,7 +8,8 @@ import type { News, Playback } from '../link/words';
 import type { Scene, WorldState } from '../world/types';
 import { Configuration } from './configuration.svelte';
 import { Debugger } from './debugger.svelte';
-import { History } from './history';
+import type { Past } from '../past/past.svelte';
+import { History, type Timeline } from './history';
 import { Programs } from './program.svelte';
 import { type Fields, type Line, type Node, Recording } from './recording';
 import { Wanted } from './wanted';
@@ -25,6 +26,11 @@ export interface Known {
   /** Why it has no value; empty if it has one. */
   fault: string;
   /** The last minutes of each of its numbers. */
+  readonly histories: ReadonlyMap<string, Timeline>;
+}
+
+/** A node of the robot as it is now. */
+interface Live extends Known {
   readonly histories: Map<string, History>;
 }
 
@@ -51,17 +57,17 @@ export class Robot {
   holder = $state('');
   /** The newest refusal, for a person. */
   refusal = $state('');
-  /** The paths of all nodes, in order. */
-  paths = $state.raw<string[]>([]);
-  /** Lines of the log, of programs and their output; the newest last. */
-  lines = $state.raw<Line[]>([]);
+  /** What all views show while it is there: a moment of a recording. Then nothing but a stop goes to the robot. */
+  past = $state.raw<Past | undefined>(undefined);
   /** Where the recording is that is played; undefined over a robot. */
   playback = $state.raw<Playback | undefined>(undefined);
   scene = $state.raw<Scene | undefined>(undefined);
   /** What moves in the world; drawn at each picture, so not a state of components. */
   world: WorldState | undefined;
 
-  readonly nodes = new Map<string, Known>();
+  readonly #nodes = new Map<string, Live>();
+  #paths = $state.raw<string[]>([]);
+  #lines = $state.raw<Line[]>([]);
   /** Refusals of values, by the path of their node. */
   readonly refused = new Map<string, string>();
   readonly #mistakes = new Map<string, { text: string; at_ms: number }>();
@@ -79,7 +85,7 @@ export class Robot {
   #ahead = 0;
   #hasClock = false;
 
-  constructor(address: string) {
+  constructor(readonly address: string) {
     this.link = new Link(address, this);
     this.programs = new Programs(this.link);
     this.debugger = new Debugger(this.link);
@@ -95,14 +101,50 @@ export class Robot {
     requestAnimationFrame(show);
   }
 
-  /** The robot's clock now, in seconds since 1970. */
-  get now(): number {
+  /** The robot's clock, in seconds since 1970. */
+  get clock(): number {
     return Date.now() / 1000 + this.#ahead;
   }
 
-  /** This page may do something now: it is in control, or nobody is. */
+  /** The moment that is shown. */
+  get now(): number {
+    return this.past?.now ?? this.clock;
+  }
+
+  /** Nodes by their paths, as they are at the moment that is shown. */
+  get nodes(): ReadonlyMap<string, Known> {
+    return this.past?.nodes ?? this.#nodes;
+  }
+
+  /** The paths of all nodes, in order. */
+  get paths(): string[] {
+    return this.past?.paths ?? this.#paths;
+  }
+
+  /** Lines of the log, of programs and their output; the newest last. */
+  get lines(): Line[] {
+    return this.past?.lines ?? this.#lines;
+  }
+
+  /** The nodes of the robot as it is now, whatever is shown. */
+  get present(): ReadonlyMap<string, Known> {
+    return this.#nodes;
+  }
+
+  /** Something goes to the robot that needs control. */
   get mayAct(): boolean {
-    return this.mayDrive && (this.isInControl || !this.holder) && !this.absence;
+    return this.mayDrive && (this.isInControl || !this.holder) && !this.absence && !this.past;
+  }
+
+  /** All views show this moment; undefined: the robot as it is now. */
+  show(past: Past | undefined): void {
+    this.past = past;
+    this.changed();
+  }
+
+  /** The moment that is shown is another one. */
+  changed(): void {
+    this.#isDirty = true;
   }
 
   /** Calls back for each sample. Returns what ends that. */
@@ -119,7 +161,7 @@ export class Robot {
 
   /** A node that is sampled only while somebody needs it, such as a picture: it is shown now. Returns what ends that. */
   want(path: string): () => void {
-    return this.#wanted.add(path);
+    return this.past ? () => undefined : this.#wanted.add(path);
   }
 
   /** Everything to rest, and the program to its end. */
@@ -129,6 +171,7 @@ export class Robot {
   }
 
   write(path: string, value: string): void {
+    if (this.past) return;
     this.link.order({ do: 'write', path, value });
   }
 
@@ -210,9 +253,9 @@ export class Robot {
   // What the recording says.
 
   node(node: Node): void {
-    const old = this.nodes.get(node.path);
+    const old = this.#nodes.get(node.path);
     if (old?.node.format === node.format) return;
-    this.nodes.set(node.path, {
+    this.#nodes.set(node.path, {
       node,
       fields: undefined,
       count: 0,
@@ -220,11 +263,11 @@ export class Robot {
       fault: '',
       histories: new Map(),
     });
-    this.paths = [...this.nodes.keys()].sort();
+    this.#paths = [...this.#nodes.keys()].sort();
   }
 
   sample(path: string, time: number, fields: Fields): void {
-    const known = this.nodes.get(path);
+    const known = this.#nodes.get(path);
     if (!known) return;
     this.#hear(time);
     known.fields = fields;
@@ -245,7 +288,7 @@ export class Robot {
   line(line: Line): void {
     this.#hear(line.time);
     if (line.topic === '/faults') {
-      const known = this.nodes.get(line.name.replace(/^\//, ''));
+      const known = this.#nodes.get(line.name.replace(/^\//, ''));
       if (known) {
         known.fault = line.text;
         known.count++;
@@ -255,14 +298,14 @@ export class Robot {
       this.#isDirty = true;
     } else {
       this.#explain(line);
-      this.lines = [...this.lines.slice(1 - LINES), line];
+      this.#lines = [...this.#lines.slice(1 - LINES), line];
     }
   }
 
   /** The log says in a sentence what the number of an error only hints at; it may come before or after that. */
   #explain(line: Line): void {
     const text = /^caller: (.*)/s.exec(line.text)?.[1];
-    if (text === undefined || !this.nodes.has(line.name)) return;
+    if (text === undefined || !this.#nodes.has(line.name)) return;
     this.#mistakes.set(line.name, { text, at_ms: performance.now() });
     if (this.refused.has(line.name)) this.refused.set(line.name, text);
     this.#isDirty = true;

@@ -17,13 +17,21 @@ export interface View {
   component: Component<{ robot: Robot; argument: string }>;
   /** Whether this robot has anything to show in it. */
   isThere(robot: Robot): boolean;
+  /** It can show a moment of a recording, and then nothing in it reaches the robot. */
+  hasPast?: boolean;
 }
 
 export const views: View[] = [
   { name: 'world', title: words.world, component: World, isThere: (robot) => robot.hasWorld },
-  { name: 'instruments', title: words.instruments, component: Instruments, isThere: () => true },
-  { name: 'program', title: words.program, component: Program, isThere: () => true },
-  { name: 'diagram', title: words.diagram, component: Diagram, isThere: () => true },
+  {
+    name: 'instruments',
+    title: words.instruments,
+    component: Instruments,
+    isThere: () => true,
+    hasPast: true,
+  },
+  { name: 'program', title: words.program, component: Program, isThere: () => true, hasPast: true },
+  { name: 'diagram', title: words.diagram, component: Diagram, isThere: () => true, hasPast: true },
   { name: 'configuration', title: words.configuration, component: Configuration, isThere: () => true },
-  { name: 'log', title: words.log, component: Log, isThere: () => true },
+  { name: 'log', title: words.log, component: Log, isThere: () => true, hasPast: true },
 ];

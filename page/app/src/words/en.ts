@@ -1,5 +1,7 @@
 // What the page says, in English. `ru.ts` has the same in Russian; a text that is missing there does not compile.
 
+import type { What } from '../past/wrong';
+
 export const en = {
   title: (robot: string) => (robot ? `${robot} - TRIK` : 'TRIK'),
   stop: 'Stop',
@@ -28,6 +30,70 @@ export const en = {
   timeForward: 'Forward by 5 seconds',
   timeSpeed: 'Speed of the recording',
   timeLoop: 'Again and again',
+
+  past: {
+    recordings: 'Recordings',
+    title: 'The past',
+    box: 'The last minutes',
+    boxHint: 'What the black box of the robot has kept, with a slider of time',
+    open: 'Open a recording',
+    openHint: 'A recording from this computer, .mcap; or drop it anywhere on the page',
+    reading: 'The recording is being read.',
+    cancel: 'Cancel',
+    now: 'Now',
+    save: 'Save the recording',
+    ago: (seconds: number) =>
+      seconds < 120 ? `${seconds} s ago` : `${Math.floor(seconds / 60)} min ${seconds % 60} s ago`,
+    onlyLook: 'This is the past: only Stop reaches the robot.',
+    notRecorded: (view: string) =>
+      `A recording does not have what "${view}" shows. "Now" goes back to the robot; the other views show the past.`,
+    noDiagram: 'No diagram ran at that moment.',
+    listIsNow: 'The output is that of the past, the list that of now.',
+    compare: 'Compare',
+    compareWith: 'Compare with',
+    otherFile: 'Another recording',
+    live: 'The robot now',
+    comparedWith: (what: string) => `Compared with: ${what}`,
+    offset: 'Shown later by',
+    dashed: 'It is dashed in graphs.',
+    endCompare: 'Compare no more',
+    comparing: 'Looking for differences.',
+    nothingCommon: 'They have no time in common: choose another offset.',
+    compared: (from: string, to: string) => `Compared from ${from} to ${to}.`,
+    counts: (different: number, same: number) =>
+      `Nodes that differ: ${different}; that are the same: ${same}.`,
+    onlyHere: (paths: string) => `Only in the first: ${paths}.`,
+    onlyThere: (paths: string) => `Only in the second: ${paths}.`,
+    differences: 'Where they begin to differ',
+    differsAt: 'First at',
+    node: 'Number',
+    here: 'First',
+    there: 'Second',
+    goTo: (time: string, path: string) => `Go to ${time}, where ${path} begins to differ`,
+    noRecording: 'What was dropped is no recording: its name does not end with .mcap.',
+    refused: (why: string) => `The robot has not sent its last minutes: ${why}`,
+    silent: 'it says nothing',
+    onlyPart: (why: string) => `Only what stands before that place is shown. ${why}`,
+    wrong: {
+      magic: () => 'This is no recording: it does not begin as one.',
+      cut: (at: string) =>
+        `The recording is cut off or damaged at byte ${at}: more should follow than there is. "trik mend" may make it whole.`,
+      record: (at: string) => `The recording is damaged at byte ${at}: this is no record.`,
+      giant: (at: string) =>
+        `The recording is damaged at byte ${at}: a record says that it is larger than 16 MiB, which is the most.`,
+      compression: (at: string, name: string) =>
+        `The page cannot read the compression "${name}" at byte ${at}: only lz4, which "trik" writes, or none.`,
+      packed: (at: string, why: string) =>
+        `The recording is damaged in the chunk at byte ${at}: what is compressed ${why}.`,
+      checksum: (at: string) =>
+        `The recording is damaged at byte ${at} or before it: its checksum is another.`,
+      large: () =>
+        'The recording is larger than 64 MiB, which is the most here. "trik cut" makes a piece of it.',
+      much: (at: string) =>
+        `The recording has more values than the page keeps, from byte ${at} on. "trik cut" makes a piece of it.`,
+      empty: () => 'The recording has no values of a robot.',
+    } as Record<What, (at: string, detail: string) => string>,
+  },
 
   programs: 'Programs',
   runs: (name: string) => `${name} runs`,
