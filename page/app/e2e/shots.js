@@ -5,7 +5,7 @@
 // They are written to docs/user/pictures; look at them before they are committed.
 import { mkdirSync, readFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
-import { Look, Robot } from './robot.js';
+import { Look, Robot, eventually } from './robot.js';
 
 const folder = resolve(import.meta.dirname, '../../../docs/user/pictures');
 const diagram = resolve(import.meta.dirname, '../../../editors/vscode/test/texts/count.qrs');
@@ -39,6 +39,11 @@ try {
     mimeType: 'application/octet-stream',
     buffer: readFileSync(diagram),
   });
+  // The gyroscope is calibrated while the robot stands still.
+  await eventually(
+    'a heading',
+    () => robot.read('heading/fault') === '' && robot.read('heading/value') !== '',
+  );
   await page.getByRole('button', { name: 'Run drive.py' }).click();
   await page.getByText('drive.py runs').waitFor();
   await open('world');
@@ -64,6 +69,14 @@ try {
   await page.getByRole('button', { name: 'Continue' }).click();
   await page.locator('g.stopped[data-id*=Timer]').waitFor();
   await shot('diagram');
+  await open('configuration');
+  const text = page.locator('[contenteditable=true]');
+  await text.click();
+  await page.keyboard.press('Control+End');
+  await page.keyboard.type("trikfs.lamp = { src = gpio { chip = 'gpiochip0' line = 5 } }\n");
+  await page.keyboard.press('Control+S');
+  await page.getByText('Refused').waitFor();
+  await shot('configuration');
 } finally {
   await eyes.end();
   await robot.end();
