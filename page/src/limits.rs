@@ -61,8 +61,8 @@ pub const PROGRAM_BYTES_MAX: u64 = 16 << 20;
 pub const EDITED_BYTES_MAX: usize = 128 << 10;
 /// Bytes of a configuration, as the filesystem takes them.
 pub const CONFIGURATION_BYTES_MAX: usize = 1 << 20;
-/// Bytes of the `status` of a tree, whose first line is about its configuration.
-pub const STATUS_BYTES_MAX: usize = 4 << 10;
+/// Bytes of the `status` of a tree: a line about its configuration and one for each node.
+pub const STATUS_BYTES_MAX: usize = 1 << 20;
 /// Rows of the plain table.
 pub const ROWS_MAX: usize = 500;
 /// Letters of one of its cells.

@@ -15,7 +15,10 @@ test('a program is written, fails at its line, is mended and runs', async () => 
   const page = await there.look.open(`${there.robot.url}#program`);
   await page.getByLabel('New program').fill('first.exe');
   await page.getByRole('button', { name: 'Write' }).click();
-  await page.getByText('A name that ends in').waitFor();
+  await page.getByText('A name of at most').waitFor();
+  await page.getByLabel('New program').fill('../first.py');
+  await page.getByRole('button', { name: 'Write' }).click();
+  await page.getByText('A name of at most').waitFor();
   await page.getByLabel('New program').fill('first.py');
   await page.keyboard.press('Enter');
   const text = editor(page, 'Text of first.py');
@@ -39,6 +42,20 @@ test('a program is written, fails at its line, is mended and runs', async () => 
   await page.getByRole('button', { name: 'Run', exact: true }).click();
   await page.getByText('mended', { exact: true }).waitFor();
   await expect.poll(() => page.getByRole('list', { name: 'Errors' }).count()).toBe(0);
+  // Somebody else replaces it: that is said before it is overwritten.
+  await text.click();
+  await page.keyboard.press('Control+End');
+  await page.keyboard.type("print('mine')\n");
+  const theirs = { name: 'first.py', mimeType: 'text/x-python', buffer: Buffer.from("print('theirs')\n") };
+  await page.setInputFiles('input[type=file]', theirs);
+  const onRobot = () => page.evaluate(async () => (await fetch('/program/first.py')).text());
+  await expect.poll(onRobot).toBe("print('theirs')\n");
+  await page.keyboard.press('Control+S');
+  await page.getByText('Somebody else has replaced this program').waitFor();
+  expect(await onRobot()).toBe("print('theirs')\n");
+  await page.keyboard.press('Control+S');
+  await page.getByText('as on the robot').waitFor();
+  expect(await onRobot()).toContain("print('mine')");
   await page.getByRole('link', { name: 'Close' }).click();
   await page.getByRole('link', { name: 'Edit first.py' }).click();
   await expect.poll(() => text.textContent()).toContain("print('mended')");
@@ -77,6 +94,8 @@ test('a configuration is refused at its line, replaced, and comes back by undo',
   await page.getByRole('button', { name: 'Undo' }).click();
   await eventually('the one before is in force', () => there.robot.read('config') === before);
   await expect.poll(() => text.textContent()).not.toContain('trikfs.lamp');
+  // What failed is not there any more.
+  await expect.poll(() => page.getByRole('list', { name: 'Errors' }).count(), { timeout: 10_000 }).toBe(0);
   await page.getByRole('button', { name: 'Redo' }).click();
   await eventually('the new one is in force again', () => there.robot.read('config').includes('lamp'));
   await page.getByRole('button', { name: 'Undo' }).click();

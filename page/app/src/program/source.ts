@@ -23,7 +23,7 @@ const BEGINNINGS: Record<string, string> = {
 };
 
 /** The end of a name, without its dot. */
-export const endOf = (name: string): string => /\.([^./]+)$/.exec(name)?.[1]?.toLowerCase() ?? '';
+export const endOf = (name: string): string => /\.([^./]+)$/.exec(name)?.[1] ?? '';
 
 /** Whether a program is a text that can be edited. */
 export const isSource = (name: string): boolean => endOf(name) in BEGINNINGS;

@@ -7,11 +7,20 @@ import type { Link } from '../link/link';
 /** Versions that are kept. */
 const VERSIONS = 30;
 
+/** What the server says of it. */
+interface Said {
+  text: string;
+  status: string;
+  faults: [path: string, fault: string][];
+}
+
 export class Configuration {
   /** What is in force; undefined before it was read. */
   text = $state.raw<string | undefined>(undefined);
   /** What the filesystem says of the last one that it was given. */
   status = $state('');
+  /** Nodes that fail, each with what is wrong. */
+  faults = $state.raw<[path: string, fault: string][]>([]);
   /** Why it cannot be read; empty if it can. */
   absence = $state('');
   /** What a person has made of it here; it stays when another view is opened. */
@@ -33,21 +42,33 @@ export class Configuration {
 
   /** Reads what is in force. True: it is another one than was known. */
   async read(): Promise<boolean> {
+    const said = await this.#fetch();
+    if (!said) return false;
+    const isOther = said.text !== this.text;
+    this.status = said.status;
+    if (isOther) this.#add(said.text);
+    return isOther;
+  }
+
+  /** Reads which nodes fail. */
+  async look(): Promise<void> {
+    await this.#fetch();
+  }
+
+  async #fetch(): Promise<Said | undefined> {
     try {
       const answer = await fetch('/configuration');
       if (!answer.ok) {
         this.absence = (await answer.text()).trim();
-        return false;
+        return undefined;
       }
-      const said = (await answer.json()) as { text: string; status: string };
-      const isOther = said.text !== this.text;
+      const said = (await answer.json()) as Said;
       this.absence = '';
-      this.status = said.status;
-      if (isOther) this.#add(said.text);
-      return isOther;
+      if (String(said.faults) !== String(this.faults)) this.faults = said.faults;
+      return said;
     } catch {
       // The server is gone; the link says so.
-      return false;
+      return undefined;
     }
   }
 

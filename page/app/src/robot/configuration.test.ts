@@ -3,11 +3,11 @@ import type { Link } from '../link/link';
 import { Configuration } from './configuration.svelte';
 
 const sent: string[] = [];
-let inForce = { text: 'a', status: 'config ok: 1 node' };
+let inForce = { text: 'a', status: 'config ok: 1 node', faults: [] };
 
 beforeEach(() => {
   sent.length = 0;
-  inForce = { text: 'a', status: 'config ok: 1 node' };
+  inForce = { text: 'a', status: 'config ok: 1 node', faults: [] };
   vi.stubGlobal('fetch', () => Promise.resolve({ ok: true, json: () => Promise.resolve(inForce) }));
 });
 afterEach(() => vi.unstubAllGlobals());
@@ -24,7 +24,7 @@ test('what was in force comes back by undo, and goes again by redo', async () =>
   for (const text of ['b', 'c']) {
     one.apply(text);
     expect(one.isApplying).toBe(true);
-    inForce = { text, status: 'config ok: 2 nodes' };
+    inForce = { text, status: 'config ok: 2 nodes', faults: [] };
     one.configured(null);
     await vi.waitFor(() => expect(one.status).toBe('config ok: 2 nodes'));
   }

@@ -36,7 +36,9 @@ const KINDS = ['print', 'error', 'info', 'mail'] as const;
 
 /** Whether a name can be one of a program; the robot decides. */
 export function isName(name: string): boolean {
-  return name.length > 0 && name.length <= 200 && !/[:\\\u0000-\u001f\u007f]/.test(name);
+  const isPart = (part: string) => part.trim() !== '' && !part.startsWith('.');
+  const isPlain = name.length <= 200 && !/[:\\\u0000-\u001f\u007f]/.test(name);
+  return isPlain && name.split('/').every(isPart);
 }
 
 /** What the robot's `status` says about a program: its name, or nothing if none runs. */

@@ -112,7 +112,8 @@ export const en = {
   },
   newProgram: 'New program',
   newBegin: 'Write',
-  newName: 'A name that ends in .py, .js or .lua, without colons and backslashes.',
+  newName:
+    'A name of at most 200 letters that ends in .py, .js or .lua, without colons and backslashes; no part begins with a dot.',
   newTaken: (name: string) => `${name} is on the robot already.`,
   edit: 'Edit',
   editName: (name: string) => `Edit ${name}`,
@@ -121,6 +122,10 @@ export const en = {
   editSaveAndRun: 'Save and run',
   editSaved: 'as on the robot',
   editChanged: 'changed',
+  editLarge: 'A program of more than 128 KiB cannot be edited here; send it as a file.',
+  editOther:
+    'Somebody else has replaced this program meanwhile. Save once more to put yours there, or close and open it again.',
+  editNotSaved: 'The robot has not taken it; the output says why.',
   editClose: 'Close',
   editErrors: 'Errors',
   editLine: (line: number) => `Line ${line}`,
