@@ -256,7 +256,6 @@ impl Hub {
         }
         inner.last.clear();
         inner.is_over = !again;
-        self.each(|subscription| subscription.end(!again));
         if again {
             // The old opening stays until the new one is there: what the next writer of a FIFO sends
             // would be lost while nobody has it open.
@@ -265,6 +264,8 @@ impl Hub {
             inner.watch = None;
             inner.stream = None;
         }
+        // Not before: a program that has seen the end may let the next writer come at once, whose end is that of the new opening.
+        self.each(|subscription| subscription.end(!again));
     }
 
     /// Whether the source has given nothing since it was opened, and nothing is on its way. For a reader that came after

@@ -35,6 +35,8 @@ pub struct Fifo {
     path: PathBuf,
     /// The last read found that somebody has it open for writing.
     has_writer: bool,
+    /// A read of this opening has found that: the kernel tells of no hang-up of a writer that was there before the opening.
+    has_had_writer: bool,
 }
 
 impl Fifo {
@@ -59,11 +61,15 @@ impl Fifo {
             file,
             path: path.to_owned(),
             has_writer: false,
+            has_had_writer: false,
         })
     }
 
     /// The kernel reports a hang-up only for a writer that came and left since this opening.
     fn had_a_writer(&self) -> bool {
+        if self.has_had_writer {
+            return true;
+        }
         let mut fds = [PollFd::new(self.file.as_fd(), PollFlags::POLLIN)];
         let asked = poll(&mut fds, PollTimeout::ZERO);
         asked.is_ok()
@@ -78,6 +84,7 @@ impl Stream for Fifo {
         loop {
             let got = self.file.read(buf);
             self.has_writer = !matches!(got, Ok(0));
+            self.has_had_writer |= self.has_writer;
             match got {
                 Ok(0) if self.had_a_writer() => return Ok(Got::End),
                 Ok(0) => return Ok(Got::Nothing),
@@ -128,5 +135,20 @@ mod tests {
         assert_eq!(fifo.read(&mut buf), Ok(Got::End));
         std::fs::remove_file(&path).unwrap();
         assert!(Fifo::open(Path::new("/dev/null")).is_err());
+    }
+
+    #[test]
+    fn a_writer_that_was_there_before_the_opening_ends_the_file_too() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("in");
+        nix::unistd::mkfifo(&path, nix::sys::stat::Mode::S_IRWXU).unwrap();
+        let _before = Fifo::open(&path).unwrap();
+        let mut writer = OpenOptions::new().write(true).open(&path).unwrap();
+        let mut fifo = Fifo::open(&path).unwrap();
+        writer.write_all(b"ab").unwrap();
+        drop(writer);
+        let mut buf = [0; 8];
+        assert_eq!(fifo.read(&mut buf), Ok(Got::Bytes(2)));
+        assert_eq!(fifo.read(&mut buf), Ok(Got::End));
     }
 }
