@@ -161,7 +161,13 @@ impl Listener {
                 });
                 Ok(())
             }
-            Order::Configure(text) => self.configure(text),
+            Order::Configure(text) => {
+                if let Err(why) = self.configure(text) {
+                    // Not among other refusals: the page waits for this answer.
+                    let _ = (self.news).try_send(News::Configured(Some(why.to_string())));
+                }
+                Ok(())
+            }
             Order::Playback(words) => {
                 self.need()?;
                 let playback = self.shared.settings.playback.as_ref();

@@ -61,8 +61,8 @@ const REFUSED: &str = "config refused: ";
 /// The node of a line of `status`, and what is wrong with it: `m fault 0.0Hz converter: config:4: reason`.
 fn fault(line: &str) -> Option<(&str, &str)> {
     let mut words = line.splitn(4, ' ');
-    let (path, state, _rate) = (words.next()?, words.next()?, words.next()?);
-    (state == "fault").then(|| words.next().map(|fault| (path, fault)))?
+    let (path, state, _rate, fault) = (words.next()?, words.next()?, words.next()?, words.next()?);
+    (state == "fault").then_some((path, fault))
 }
 
 /// What `status` says; empty if the tree is not there.

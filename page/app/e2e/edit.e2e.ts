@@ -62,6 +62,25 @@ test('a program is written, fails at its line, is mended and runs', async () => 
   await page.context().close();
 });
 
+test('a program from Windows is as it came, and keeps its ends of lines', async () => {
+  const page = await there.look.open(`${there.robot.url}#program`);
+  const buffer = Buffer.from("print('a')\r\nprint('b')\r\n");
+  await page.setInputFiles('input[type=file]', { name: 'windows.py', mimeType: 'text/x-python', buffer });
+  await page.getByRole('link', { name: 'Edit windows.py' }).click();
+  const text = editor(page, 'Text of windows.py');
+  await text.click();
+  await page.getByText('as on the robot').waitFor();
+  await page.keyboard.press('Control+End');
+  await page.keyboard.type("print('c')");
+  await page.keyboard.press('Enter');
+  await page.getByText('changed', { exact: true }).waitFor();
+  await page.keyboard.press('Control+S');
+  await page.getByText('as on the robot').waitFor();
+  const onRobot = await page.evaluate(async () => (await fetch('/program/windows.py')).text());
+  expect(onRobot).toBe("print('a')\r\nprint('b')\r\nprint('c')\r\n");
+  await page.context().close();
+});
+
 test('a configuration is refused at its line, replaced, and comes back by undo', async () => {
   const page = await there.look.open(`${there.robot.url}#configuration`);
   const before = there.robot.read('config');

@@ -13,13 +13,13 @@ const MARKS = 50;
 
 const escaped = (name: string): string => name.replace(/[.*+?^${}()|[\]\\]/g, '\\$&');
 
-/** Errors of the configuration, in what the filesystem says about it and in the faults of its nodes: `config:4: reason`. */
+/** Errors of the configuration, in why the filesystem has refused it and in the faults of its nodes: `config:4: reason`. */
 export function marksOfConfiguration(
-  status: string,
+  refusal: string,
   faults: Iterable<[path: string, fault: string]>,
 ): Mark[] {
   const all: [string, string][] = [];
-  if (status.startsWith('config refused: ')) all.push(['', status.slice('config refused: '.length)]);
+  if (refusal) all.push(['', refusal]);
   all.push(...faults);
   const marks = new Map<string, Mark>();
   for (const [path, said] of all) {

@@ -118,19 +118,21 @@ export class Mirror {
           syntaxHighlighting(colours),
           language ? language() : [],
           look,
+          EditorState.lineSeparator.of(endOfLines(options.text)),
           EditorState.phrases.of(options.phrases),
           EditorView.contentAttributes.of({ 'aria-label': options.label }),
           this.#fixed.of(EditorState.readOnly.of(options.isFixed)),
           EditorView.updateListener.of((update) => {
-            if (update.docChanged) options.changed(update.state.doc.toString());
+            if (update.docChanged) options.changed(update.state.sliceDoc());
           }),
         ],
       }),
     });
   }
 
+  /** With the ends of lines that it came with. */
   get text(): string {
-    return this.#view.state.doc.toString();
+    return this.#view.state.sliceDoc();
   }
 
   /** Another text, as a change that can be undone. */
@@ -169,6 +171,10 @@ export class Mirror {
     this.#view.destroy();
   }
 }
+
+/** That of Windows only if all lines have it: others are kept as they are, as letters. */
+const endOfLines = (text: string): string =>
+  text.includes('\r\n') && !/(^|[^\r])\n/.test(text) ? '\r\n' : '\n';
 
 const within = (doc: Text, line: number): number => Math.min(Math.max(line, 1), doc.lines);
 

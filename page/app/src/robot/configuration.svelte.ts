@@ -19,6 +19,8 @@ export class Configuration {
   text = $state.raw<string | undefined>(undefined);
   /** What the filesystem says of the last one that it was given. */
   status = $state('');
+  /** Why what was given last is not in force; empty if it is. */
+  refusal = $state('');
   /** Nodes that fail, each with what is wrong. */
   faults = $state.raw<[path: string, fault: string][]>([]);
   /** Why it cannot be read; empty if it can. */
@@ -91,7 +93,7 @@ export class Configuration {
     const given = this.#given;
     this.#given = undefined;
     this.isApplying = false;
-    this.status = why ?? '';
+    this.refusal = why ?? '';
     if (why === null && given) {
       if (given.at === undefined) this.#add(given.text);
       else {
@@ -103,7 +105,7 @@ export class Configuration {
     }
   }
 
-  /** Nothing is known of what was given: the server is gone, or refused the order. */
+  /** The server is gone, and nothing is known of what it was given. */
   forget(): void {
     this.isApplying = false;
     this.#given = undefined;

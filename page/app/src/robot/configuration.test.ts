@@ -47,7 +47,7 @@ test('what was refused is no version', async () => {
   const one = await fresh();
   one.apply('bad');
   one.configured('config refused: config:1: no');
-  expect([one.text, one.versions, one.status]).toEqual(['a', ['a'], 'config refused: config:1: no']);
+  expect([one.text, one.versions, one.refusal]).toEqual(['a', ['a'], 'config refused: config:1: no']);
 });
 
 test('what another program has put in force is a version', async () => {

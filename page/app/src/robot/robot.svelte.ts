@@ -209,7 +209,6 @@ export class Robot {
         break;
       case 'refused':
         this.refusal = news.why;
-        this.configuration.forget();
         break;
       case 'configured':
         this.configuration.configured(news.why);
