@@ -47,6 +47,7 @@ pub fn copy<R: Read, W: Write + Seek>(
 ) -> Result<Saved, Error> {
     let mut target = Target::new(to);
     let mut saved = Saved::default();
+    let is_wanted = |topic: &str, message: &MessageHeader| is_wanted(topic, message.log_time);
     target.pour(from, &mut saved, &is_wanted)?;
     target.finish()?;
     Ok(saved)
@@ -81,7 +82,9 @@ pub fn join<R: Read, W: Write + Seek>(
     let last: RefCell<HashMap<String, u64>> = RefCell::default();
     for from in all {
         let before = last.borrow().clone();
-        let is_new = |topic: &str, unix_ns: u64| {
+        let is_new = |topic: &str, message: &MessageHeader| {
+            // In a further recording it stands at the beginning, and this is when it was so first.
+            let unix_ns = message.publish_time;
             // Lines are never repeated.
             let is_of_a_node = Story::of(topic).is_none();
             let repeats = before.get(topic).is_some_and(|last| unix_ns <= *last);
@@ -144,7 +147,7 @@ impl<W: Write + Seek> Target<W> {
         &mut self,
         mut from: R,
         saved: &mut Saved,
-        is_wanted: &impl Fn(&str, u64) -> bool,
+        is_wanted: &impl Fn(&str, &MessageHeader) -> bool,
     ) -> Result<(), Error> {
         let options = LinearReaderOptions::default()
             .with_skip_end_magic(true)
@@ -221,7 +224,7 @@ impl<W: Write + Seek> Target<W> {
         opcode: u8,
         data: &[u8],
         saved: &mut Saved,
-        is_wanted: &impl Fn(&str, u64) -> bool,
+        is_wanted: &impl Fn(&str, &MessageHeader) -> bool,
     ) -> Result<bool, Stop> {
         let damage = |error| Stop::Damage(Error::reading(error));
         let disk = |error| Stop::Disk(Error::writing(error));
@@ -254,7 +257,7 @@ impl<W: Write + Seek> Target<W> {
             Record::Message { header, data } => {
                 let channel = self.channels.get(&header.channel_id);
                 let (id, topic) = channel.ok_or_else(|| unknown("channel"))?;
-                if is_wanted(topic, header.log_time) {
+                if is_wanted(topic, &header) {
                     let channel_id = *id;
                     let header = MessageHeader {
                         channel_id,

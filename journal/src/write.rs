@@ -73,6 +73,8 @@ pub struct Writer<W: Write + Seek> {
     faults: u16,
     /// The channels of lines; None before the first line.
     stories: [Option<u16>; Story::ALL.len()],
+    /// When the recording begins, in ns since 1970.
+    begin_ns: u64,
 }
 
 struct Channel {
@@ -170,7 +172,14 @@ impl<W: Write + Seek> Writer<W> {
             names: Names::default(),
             faults,
             stories,
+            begin_ns: 0,
         })
+    }
+
+    /// The recording begins at this moment. What is older was still so then: it stands at the beginning, and keeps its own time
+    /// as the time of publication.
+    pub fn begin_at(&mut self, unix_ns: u64) {
+        self.begin_ns = unix_ns;
     }
 
     /// A node from now on. One whose format changes is added once more: same topic, another type.
@@ -288,7 +297,7 @@ impl<W: Write + Seek> Writer<W> {
         let header = MessageHeader {
             channel_id: id,
             sequence,
-            log_time: unix_ns,
+            log_time: unix_ns.max(self.begin_ns),
             publish_time: unix_ns,
         };
         (self.file)

@@ -48,9 +48,16 @@ impl Entry {
 
     /// Whether something has happened.
     pub fn is_event(&self) -> bool {
+        self.unix_ns().is_some()
+    }
+
+    /// When it has happened; None for what only says what there is.
+    pub fn unix_ns(&self) -> Option<u64> {
         match self {
-            Self::Sample(..) | Self::Fault(..) | Self::Line(..) => true,
-            Self::Node(_) | Self::Attachment(..) | Self::Facts(..) => false,
+            Self::Sample(_, unix_ns, _)
+            | Self::Fault(_, unix_ns, ..)
+            | Self::Line(_, unix_ns, _) => Some(*unix_ns),
+            Self::Node(_) | Self::Attachment(..) | Self::Facts(..) => None,
         }
     }
 

@@ -34,7 +34,7 @@ impl Disk {
     /// # Errors
     /// It is there, or cannot be made.
     pub fn create(path: &Path, library: &str, most: usize) -> Result<Self, Error> {
-        Self::begin(path, library, most, false)
+        Self::begin(path, library, most, false, 0)
     }
 
     /// The same with standard messages beside those of the nodes themselves, for tools that know no others.
@@ -42,14 +42,34 @@ impl Disk {
     /// # Errors
     /// As `create`.
     pub fn create_with_standard(path: &Path, library: &str, most: usize) -> Result<Self, Error> {
-        Self::begin(path, library, most, true)
+        Self::begin(path, library, most, true, 0)
     }
 
-    fn begin(path: &Path, library: &str, most: usize, has_standard: bool) -> Result<Self, Error> {
+    /// One that begins at this moment, in ns since 1970, with what is older.
+    ///
+    /// # Errors
+    /// As `create`.
+    pub fn create_at(
+        begin_ns: u64,
+        path: &Path,
+        library: &str,
+        most: usize,
+    ) -> Result<Self, Error> {
+        Self::begin(path, library, most, false, begin_ns)
+    }
+
+    fn begin(
+        path: &Path,
+        library: &str,
+        most: usize,
+        has_standard: bool,
+        begin_ns: u64,
+    ) -> Result<Self, Error> {
         let file = File::create_new(path).map_err(|error| Error::io(path, error))?;
         let synced = file.try_clone().map_err(|error| Error::io(path, error))?;
         let writer = Writer::new(BufWriter::new(file), library);
-        let writer = writer.map_err(|error| Error::File(path.to_owned(), error))?;
+        let mut writer = writer.map_err(|error| Error::File(path.to_owned(), error))?;
+        writer.begin_at(begin_ns);
         let (queue, entries) = sync_channel(limits::BATCHES);
         let (waiting, has_failed) = (Arc::<AtomicUsize>::default(), Arc::<AtomicBool>::default());
         let (left, failed, name) = (waiting.clone(), has_failed.clone(), path.to_owned());

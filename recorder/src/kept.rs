@@ -148,7 +148,12 @@ impl Kept {
         if self.disk.is_none() {
             let path = (self.settings.directory).join(format!("{PART}{:016}.mcap", self.next));
             self.next += 1;
-            let Ok(disk) = Disk::create(&path, &self.library, limits::BOX_WAITING_BYTES) else {
+            // It may be the oldest that is left: what a node has had for long must not make the minutes longer.
+            let times = batch.iter().filter_map(Entry::unix_ns);
+            let begin_ns = times.min().unwrap_or_else(now_ns);
+            let library = &self.library;
+            let disk = Disk::create_at(begin_ns, &path, library, limits::BOX_WAITING_BYTES);
+            let Ok(disk) = disk else {
                 // The disk is full or read-only; the next second may be better.
                 return;
             };

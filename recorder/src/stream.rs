@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::limits::{PATTERN_BYTES_MAX, PATTERNS_MAX};
 use crate::pattern::matches;
 use crate::pen::Pen;
-use crate::watch::{Wants, Wish};
+use crate::watch::{Wants, Wish, now_ns};
 use journal::write::{Out, Writer};
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
@@ -120,10 +120,13 @@ impl Stream {
         client: Box<dyn Client>,
     ) -> Result<Self, journal::error::Error> {
         let out = Out::default();
+        let mut writer = Writer::live(out.clone(), library)?;
+        // It is told first what each node has had, maybe for long.
+        writer.begin_at(now_ns());
         Ok(Self {
             request,
             client,
-            pen: Pen::new(Writer::live(out.clone(), library)?),
+            pen: Pen::new(writer),
             out,
             paces: HashMap::new(),
             lost: 0,

@@ -26,9 +26,12 @@ fn known(number: u32, path: &str) -> Arc<Known> {
 }
 
 fn sample(known: &Arc<Known>, at: u32) -> Entry {
-    let unix_ns = 1_700_000_000_000_000_000 + u64::from(at);
+    let unix_ns = BEGIN_NS + u64::from(at);
     Entry::Sample(known.clone(), unix_ns, Arc::new(at.to_ne_bytes()))
 }
+
+/// The moment 0.
+const BEGIN_NS: u64 = 1_700_000_000_000_000_000;
 
 /// All values, in their order in time; that of the node that speaks once is the last.
 fn values(path: &Path) -> Vec<u32> {
@@ -85,6 +88,22 @@ fn parts_are_saved_as_one_file_without_what_they_repeat() {
     kept.close();
     assert_eq!(named(folder.path(), PART).unwrap(), [] as [PathBuf; 0]);
     assert_eq!(saved(folder.path()).unwrap().len(), 2);
+}
+
+#[test]
+fn the_oldest_part_begins_when_it_was_begun_and_not_with_what_was_long_before() {
+    let folder = tempdir().unwrap();
+    let mut kept = Kept::open(settings(folder.path()), "test", nothing()).unwrap();
+    let (moving, still) = (known(1, "a"), known(2, "still"));
+    for at in [5000, 6000] {
+        kept.end_part();
+        let first = || vec![sample(&still, 10)];
+        kept.put(&[sample(&moving, at)].into(), first);
+    }
+    let path = saved_now(&mut kept, Why::Asked);
+    let reader = Reader::open(File::open(&path).unwrap()).unwrap();
+    assert_eq!(reader.begin_ns(), BEGIN_NS + 5000);
+    assert_eq!(values(&path), [10, 5000, 6000], "and not once more");
 }
 
 #[test]

@@ -56,6 +56,28 @@ eventually(lambda: wrote[-2:] == [bytes([226]), bytes([0])], 'what was written')
 }
 
 #[test]
+fn what_comes_right_after_a_failure_is_there_while_others_have_the_channel_open() {
+    let Some(m) = mount_on(Board::new(), TREE) else {
+        return;
+    };
+    m.python(&format!(
+        "{PLAYER}
+def value():
+    return error_of(lambda: text(M + '/a/value')) or text(M + '/a/value')
+eventually(lambda: 'read x y' in peers, 'the sampler')
+sample('x y', 7)
+other = os.open(M + '/a/bin_data', os.O_RDONLY | os.O_NONBLOCK)
+eventually(lambda: error_of(lambda: os.read(other, 1)) is None, 'another reader')
+for number in range(8, 12):
+    fail('x y', errno.ETIMEDOUT, b'no echo')
+    eventually(lambda: value() == 'ETIMEDOUT', 'a failure')
+    sample('x y', number)
+    eventually(lambda: value() == '%d\\n' % number, 'the value after it')
+"
+    ));
+}
+
+#[test]
 fn rubbish_of_a_player_is_a_failure_and_a_late_one_is_found() {
     let Some(m) = mount_on(Board::new(), TREE) else {
         return;

@@ -2,6 +2,7 @@
 //!
 //! Owns the position. Real time is an argument; what happens at a position is not known here.
 
+use crate::limits;
 use std::time::{Duration, Instant};
 
 /// A position in a recording of some length.
@@ -76,6 +77,15 @@ impl Clock {
     pub(crate) fn set_speed(&mut self, now: Instant, speed: f64) {
         self.settle(now);
         self.speed = speed;
+    }
+
+    /// Twice as fast from here on, or half.
+    pub(crate) fn double(&mut self, now: Instant, up: bool) {
+        let speed = self.speed * if up { 2.0 } else { 0.5 };
+        self.set_speed(
+            now,
+            speed.clamp(limits::REPLAY_SPEED_MIN, limits::REPLAY_SPEED_MAX),
+        );
     }
 
     /// Goes back to a moment that has gone by for longer than `late`, in real time: it waits for what is late.

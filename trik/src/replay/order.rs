@@ -11,7 +11,7 @@ use std::time::Duration;
 pub(crate) enum Order {
     /// Stands.
     Pause,
-    /// Runs.
+    /// Runs; at the end, from the beginning.
     Go,
     /// The other of both.
     Toggle,
@@ -36,6 +36,17 @@ pub(crate) enum Seek {
     Forward(Duration),
     /// From here back.
     Back(Duration),
+}
+
+impl Seek {
+    /// The position, for one who is here.
+    pub(crate) fn from(self, here: Duration) -> Duration {
+        match self {
+            Self::To(position) => position,
+            Self::Forward(by) => here.saturating_add(by),
+            Self::Back(by) => here.saturating_sub(by),
+        }
+    }
 }
 
 /// A line that is no order.

@@ -5,7 +5,7 @@
 //! the event, and is told the newest value again when the recording is turned. Knows no file format: see `recording`.
 
 use super::clock::Clock;
-use super::order::{BadOrder, Order, Seek};
+use super::order::{BadOrder, Order};
 use super::outputs::Output;
 use super::peer::{Peer, Wish, wish};
 use super::recording::{Event, Recording, What};
@@ -531,31 +531,30 @@ impl Scene {
         let now = Instant::now();
         match order {
             Order::Pause => self.clock.run(now, false),
-            Order::Go => self.clock.run(now, true),
-            Order::Toggle => self.clock.run(now, !self.clock.runs(now)),
+            Order::Toggle if self.clock.runs(now) => self.clock.run(now, false),
+            Order::Go | Order::Toggle => self.go(now),
             Order::Step(count) => {
                 self.clock.run(now, false);
                 self.steps = count;
             }
             Order::Speed(speed) => self.clock.set_speed(now, speed),
-            Order::Double(up) => {
-                let factor = if up { 2.0 } else { 0.5 };
-                let speed = (self.clock.speed() * factor)
-                    .clamp(limits::REPLAY_SPEED_MIN, limits::REPLAY_SPEED_MAX);
-                self.clock.set_speed(now, speed);
-            }
+            Order::Double(up) => self.clock.double(now, up),
             Order::Loop(is_loop) => self.is_loop = is_loop,
-            Order::Seek(seek) => {
-                let here = self.clock.position(now);
-                let position = match seek {
-                    Seek::To(position) => position,
-                    Seek::Forward(by) => here.saturating_add(by),
-                    Seek::Back(by) => here.saturating_sub(by),
-                };
-                if let Err(error) = self.seek(position) {
-                    self.news(format!("no way to that position: {error}"));
-                }
-            }
+            Order::Seek(seek) => self.go_to(seek.from(self.clock.position(now))),
+        }
+    }
+
+    /// Runs; at the end, where nothing follows, from the beginning.
+    fn go(&mut self, now: Instant) {
+        if self.next.is_none() && self.clock.position(now) >= self.clock.length() {
+            self.go_to(Duration::ZERO);
+        }
+        self.clock.run(Instant::now(), true);
+    }
+
+    fn go_to(&mut self, position: Duration) {
+        if let Err(error) = self.seek(position) {
+            self.news(format!("no way to that position: {error}"));
         }
     }
 

@@ -137,6 +137,12 @@ fn what_was_recorded_is_given_again_and_stays_where_the_clock_stands() {
         replay.number("encoders/E3/value") == way
     });
     assert!(!complaint.exists());
+    // At the end nothing follows: it begins again.
+    order("speed 0.01");
+    order("go");
+    eventually("the beginning after the end", || {
+        replay.number("encoders/E3/value") < way / 2.0
+    });
     assert!(replay.end(Signal::SIGINT).success());
     assert!(!control.exists());
 }

@@ -151,6 +151,11 @@ impl Stream for Played {
     fn is_silent(&self, open: Duration, _patience: Patience) -> bool {
         open >= Patience::WITH_NOBODY
     }
+
+    /// A sampler that failed comes back while others have the channel open, and must not wait for the next change.
+    fn tells_changes_only(&self) -> bool {
+        true
+    }
 }
 
 /// A channel that is written: the player hears what a program would have told an actuator.

@@ -27,14 +27,10 @@ export class Memory implements Sink {
   #first = Infinity;
   #last = -Infinity;
 
-  /**
-   * When it begins, in seconds since 1970. The first that a node gave may be what it had long before, so that does not count
-   * if there is anything else.
-   */
+  /** When it begins, in seconds since 1970. */
   get begin(): number {
-    const seconds = [...this.tracks.values()].map(({ times }) => (times.length > 1 ? times.at(1) : Infinity));
-    const begin = [this.lines[0]?.time ?? Infinity, ...seconds].reduce((one, other) => Math.min(one, other));
-    return Number.isFinite(begin) ? begin : this.#first;
+    const begin = Math.min(this.#first, this.lines[0]?.time ?? Infinity);
+    return Number.isFinite(begin) ? begin : 0;
   }
 
   get end(): number {

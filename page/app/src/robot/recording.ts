@@ -98,7 +98,7 @@ export class Recording {
           this.#open(record.id, record.schemaId, record.topic, record.metadata);
           break;
         case 'Message':
-          this.#message(record.channelId, Number(record.logTime) / 1e9, record.data);
+          this.#message(record.channelId, Number(record.publishTime) / 1e9, record.data);
           break;
         case 'Metadata':
           this.taker.facts(record.name, record.metadata);
