@@ -323,10 +323,15 @@ fn join(parts: Vec<Source>, path: &Path) -> Result<(), Error> {
     is_saved
 }
 
-/// Throws away the oldest saved files.
+/// Throws away the oldest saved files. Those that a person has asked for and fetched do not push out what was saved by itself.
 fn prune(directory: &Path) -> Result<(), Error> {
-    let saved = named(directory, SAVED)?;
-    for path in saved.iter().rev().skip(limits::BOX_SAVED) {
+    let mut saved = named(directory, SAVED)?;
+    let asked = format!("-{}.mcap", Why::Asked.name());
+    let is_asked = |path: &PathBuf| path.to_string_lossy().ends_with(&asked);
+    let (asked, other): (Vec<_>, Vec<_>) = saved.drain(..).partition(is_asked);
+    let old_asked = asked.iter().rev().skip(limits::BOX_ASKED);
+    let others = limits::BOX_SAVED - limits::BOX_ASKED;
+    for path in old_asked.chain(other.iter().rev().skip(others)) {
         // The next saving tries it again.
         let _ = fs::remove_file(path);
     }

@@ -32,6 +32,8 @@ pub const BOX_PARTS: u64 = 8;
 pub const BOX_PART_BYTES_MIN: u64 = 64 << 10;
 /// Saved black boxes that are kept; the oldest goes first.
 pub const BOX_SAVED: usize = 8;
+/// Of these, for those that a person has asked for and has, so that they push out none that was saved by itself.
+pub const BOX_ASKED: usize = 2;
 /// Time between two savings that no person has asked for.
 pub const BOX_AGAIN_MS: u64 = 30_000;
 /// The same after a failure: a loose plug fails all the time.

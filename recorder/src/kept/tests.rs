@@ -177,11 +177,17 @@ fn one_is_saved_at_a_time_and_the_end_waits_for_it() {
 #[test]
 fn only_so_many_saved_files_are_kept() {
     let folder = tempdir().unwrap();
+    let save = |at: usize, why: &str| {
+        fs::write(folder.path().join(format!("{SAVED}{at:02}-{why}.mcap")), "").unwrap();
+    };
     for at in 0..limits::BOX_SAVED + 3 {
-        fs::write(folder.path().join(format!("{SAVED}{at:02}-stop.mcap")), "").unwrap();
+        save(at, "stop");
+        save(at, "asked");
     }
     prune(folder.path()).unwrap();
     let left = saved(folder.path()).unwrap();
+    let is_asked = |path: &&PathBuf| path.to_string_lossy().ends_with("asked.mcap");
     assert_eq!(left.len(), limits::BOX_SAVED);
-    assert!(left[0].ends_with("saved-03-stop.mcap"));
+    assert_eq!(left.iter().filter(is_asked).count(), limits::BOX_ASKED);
+    assert!(left[0].ends_with("saved-05-stop.mcap"), "{left:?}");
 }
