@@ -10,11 +10,13 @@ use crate::error::Error;
 use crate::limits;
 use crate::relay::{self, Came, Outgoing, Request};
 use crate::shared::Shared;
+use crate::store;
 use crate::word::{News, Order, looks_back, only_looks};
 use axum::body::Bytes;
 use axum::extract::ws::{Message, WebSocket};
 use futures_util::stream::{SplitSink, SplitStream};
 use futures_util::{SinkExt, StreamExt};
+use std::path::Path;
 use std::sync::Arc;
 use tokio::sync::{Notify, OwnedSemaphorePermit, mpsc, watch};
 use tokio::time::{Instant, MissedTickBehavior, interval, timeout, timeout_at};
@@ -174,6 +176,10 @@ impl Listener {
                 let playback = playback.ok_or(Error::NoPlayback)?;
                 playback.order(&words).map_err(|why| Error::World(why.0))
             }
+            Order::Remove(name) => self.change(move |programs| store::remove(programs, &name)),
+            Order::Rename(name, to) => {
+                self.change(move |programs| store::rename(programs, &name, &to))
+            }
             Order::Look(looks) => {
                 let changed = |now: &mut bool| std::mem::replace(now, looks) != looks;
                 self.looks.send_if_modified(changed);
@@ -212,6 +218,23 @@ impl Listener {
             let _turn = turn;
             let done = configuration::replace(&shared.settings.tree, &text);
             let _ = news.try_send(News::Configured(done.err().map(|why| why.to_string())));
+        });
+        Ok(())
+    }
+
+    /// Something about the folder of programs. Nothing of it takes long.
+    fn change(
+        &self,
+        change: impl FnOnce(&Path) -> Result<(), Error> + Send + 'static,
+    ) -> Result<(), Error> {
+        self.need()?;
+        let (news, shared) = (self.news.clone(), self.shared.clone());
+        tokio::task::spawn_blocking(move || {
+            let folder = shared.settings.programs.as_deref();
+            let done = folder.ok_or(Error::NoFolder).and_then(change);
+            let told = done.map_or_else(|why| News::Refused(why.to_string()), |()| News::Programs);
+            // A browser that does not read is told nothing.
+            let _ = news.try_send(told);
         });
         Ok(())
     }

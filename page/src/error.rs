@@ -44,8 +44,14 @@ pub enum Error {
     Robot(String),
     /// The name is none of a program.
     Name(String),
+    /// No program can have this name, or be in this folder.
+    NewName(String),
+    /// Programs are on another machine.
+    NoFolder,
     /// A diagram that cannot be drawn.
     Diagram(String),
+    /// A block of a diagram does not take this value.
+    Change(String),
     /// A file of so many bytes is no text for an editor; at most so many are shown.
     Large(String, u64, usize),
     /// The file is no text in UTF-8.
@@ -71,7 +77,10 @@ impl Error {
             | Self::Taken(_)
             | Self::Unpaired
             | Self::Name(_)
+            | Self::NewName(_)
+            | Self::NoFolder
             | Self::Diagram(_)
+            | Self::Change(_)
             | Self::Large(..)
             | Self::Text(_)
             | Self::Fixed
@@ -97,6 +106,7 @@ impl fmt::Display for Error {
             Self::World(why)
             | Self::Robot(why)
             | Self::Diagram(why)
+            | Self::Change(why)
             | Self::Configuration(why) => f.write_str(why),
             Self::Large(name, bytes, most) => {
                 write!(f, "{name} has {bytes} bytes: at most {most} can be edited here")
@@ -110,6 +120,11 @@ impl fmt::Display for Error {
                 "this computer may only look: press Enter on the robot within 30 s to pair it, and try again",
             ),
             Self::Name(name) => write!(f, "there is no program '{name}'"),
+            Self::NewName(name) => write!(
+                f,
+                "'{name}' is no name for a program: it has a colon, a backslash or control characters, a part of it begins with a dot, or its folder is not there"
+            ),
+            Self::NoFolder => f.write_str("the programs of this robot are on another machine"),
         }
     }
 }

@@ -10,7 +10,7 @@
 //! - `browser`, `word`, `relay`: one browser that looks, what it says, and its connection to the robot
 //! - `shared`, `control`: what all requests share; one of all browsers drives
 //! - `drive`: what it writes to the tree, and rest when it leaves
-//! - `store`: programs of the robot, and diagrams as pictures
+//! - `store`, `diagrams`: programs of the robot; diagrams as pictures, and what stands in their blocks
 //! - `world`, `playback`: borders to a simulator and to a player of recordings
 //! - `error`, `limits`
 
@@ -20,6 +20,7 @@
 mod browser;
 mod configuration;
 mod control;
+mod diagrams;
 mod door;
 mod drive;
 pub mod error;

@@ -53,12 +53,18 @@ pub const FILE_THREADS: usize = 4;
 pub const LARGE_MAX: usize = FILE_THREADS / 2;
 /// Programs that are listed.
 pub const PROGRAMS_MAX: usize = 1000;
+/// Bytes of the name of a program, folders with it.
+pub const NAME_BYTES_MAX: usize = 200;
 /// Depth of folders of programs that are listed.
 pub const FOLDERS_MAX: usize = 4;
 /// Bytes of a program that is shown.
 pub const PROGRAM_BYTES_MAX: u64 = 16 << 20;
 /// Bytes of a program that is edited: a connection that reads nothing holds so many.
 pub const EDITED_BYTES_MAX: usize = 128 << 10;
+/// Bytes of a property of a block.
+pub const PROPERTY_BYTES_MAX: usize = 4 << 10;
+/// Mistakes of a diagram that are told.
+pub const MISTAKES_MAX: usize = 5;
 /// Bytes of a configuration, as the filesystem takes them.
 pub const CONFIGURATION_BYTES_MAX: usize = 1 << 20;
 /// Bytes of the `status` of a tree: a line about its configuration and one for each node.

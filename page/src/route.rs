@@ -4,6 +4,7 @@
 
 use crate::browser;
 use crate::control::Who;
+use crate::diagrams::{self, Change};
 use crate::door::Peer;
 use crate::error::Error;
 use crate::shared::Shared;
@@ -17,6 +18,7 @@ use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, Uri};
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
+use lang_text::problem::Locale;
 use std::collections::HashMap;
 use std::net::SocketAddr;
 use std::sync::Arc;
@@ -29,6 +31,7 @@ pub fn router(shared: Arc<Shared>) -> Router {
         .route("/programs", get(programs))
         .route("/program/{*name}", get(program))
         .route("/diagram/{*name}", get(diagram))
+        .route("/changed/{*name}", get(changed))
         .route("/configuration", get(configured))
         .route("/plain", get(table))
         .fallback(file)
@@ -93,7 +96,15 @@ fn refusal(
 /// What is of this robot, and not of every page.
 fn is_data(uri: &Uri) -> bool {
     let first = uri.path().split('/').nth(1).unwrap_or_default();
-    ["socket", "programs", "program", "diagram", "configuration"].contains(&first)
+    [
+        "socket",
+        "programs",
+        "program",
+        "diagram",
+        "changed",
+        "configuration",
+    ]
+    .contains(&first)
 }
 
 async fn file(uri: Uri) -> Response {
@@ -185,10 +196,7 @@ async fn programs(State(shared): State<Arc<Shared>>) -> Response {
 
 async fn program(State(shared): State<Arc<Shared>>, Path(name): Path<String>) -> Response {
     let seen = shared.clone();
-    let work = move || {
-        let folder = seen.settings.programs.as_deref();
-        store::text(folder.ok_or_else(|| Error::Name(name.clone()))?, &name)
-    };
+    let work = move || store::text(folder(&seen, &name)?, &name);
     let kind = [
         (CONTENT_TYPE, "text/plain; charset=utf-8"),
         (CACHE_CONTROL, "no-store"),
@@ -208,15 +216,44 @@ async fn diagram(
     Query(query): Query<HashMap<String, String>>,
 ) -> Response {
     let seen = shared.clone();
-    let work = move || {
-        let none = || Error::Name(name.clone());
-        let folder = seen.settings.programs.as_deref().ok_or_else(none)?;
-        let is_russian = query
-            .get("language")
-            .is_some_and(|language| language == "ru");
-        store::diagram(folder, &name, is_russian)
-    };
+    let work = move || diagrams::sheets(folder(&seen, &name)?, &name, locale(&query));
     with_files(&shared, work, json).await
+}
+
+/// A diagram with another value in one of its blocks; nothing is written.
+async fn changed(
+    State(shared): State<Arc<Shared>>,
+    Path(name): Path<String>,
+    Query(mut query): Query<HashMap<String, String>>,
+) -> Response {
+    let seen = shared.clone();
+    let work = move || {
+        let mut take = |key: &str| query.remove(key).unwrap_or_default();
+        let change = Change {
+            block: take("block"),
+            property: take("property"),
+            value: take("value"),
+        };
+        diagrams::changed(folder(&seen, &name)?, &name, &change, locale(&query))
+    };
+    let kind = [
+        (CONTENT_TYPE, "application/octet-stream"),
+        (CACHE_CONTROL, "no-store"),
+    ];
+    with_files(&shared, work, |bytes| (kind, bytes).into_response()).await
+}
+
+/// The folder of programs; without one there is no program of this name.
+fn folder<'a>(shared: &'a Shared, name: &str) -> Result<&'a std::path::Path, Error> {
+    let folder = shared.settings.programs.as_deref();
+    folder.ok_or_else(|| Error::Name(name.to_owned()))
+}
+
+fn locale(query: &HashMap<String, String>) -> Locale {
+    match query.get("language").map(String::as_str) {
+        Some("ru") => Locale::Russian,
+        Some(_) | None => Locale::English,
+    }
 }
 
 async fn table(State(shared): State<Arc<Shared>>) -> Response {

@@ -1,12 +1,10 @@
-//! Programs of the robot: which there are, what is in them, and diagrams as pictures.
+//! Programs of the robot: which there are, what is in them, their names and their end.
 //!
-//! Owns the folder of programs as far as it is read. What is written there goes over the control port.
+//! Owns the folder of programs, but for what is written there: that goes over the control port.
 
 use crate::error::Error;
 use crate::limits;
-use lang_diagram::project::Project;
-use lang_diagram::show::picture::picture;
-use lang_text::problem::Locale;
+use rustix::fs::{CWD, RenameFlags, renameat_with};
 use serde_json::{Value, json};
 use std::fs;
 use std::io::Read;
@@ -80,6 +78,55 @@ pub fn text(folder: &Path, name: &str) -> Result<String, Error> {
     String::from_utf8(bytes).map_err(|_| Error::Text(name.to_owned()))
 }
 
+/// Takes a program away, and the folder that it was alone in. One that runs goes on: it has been read.
+///
+/// # Errors
+/// There is no such program, or the folder cannot be changed.
+pub fn remove(folder: &Path, name: &str) -> Result<(), Error> {
+    inside(folder, name).ok_or_else(|| Error::Name(name.to_owned()))?;
+    // Not what a link leads to.
+    let path = folder.join(name);
+    fs::remove_file(&path).map_err(|error| Error::File(name.to_owned(), error))?;
+    tidy(folder, &path);
+    Ok(())
+}
+
+/// Gives a program another name, in any folder that there is. Nothing is replaced.
+///
+/// # Errors
+/// There is no such program, the new name is taken or none for a program, or the folder cannot be changed.
+pub fn rename(folder: &Path, name: &str, to: &str) -> Result<(), Error> {
+    inside(folder, name).ok_or_else(|| Error::Name(name.to_owned()))?;
+    let target = place(folder, to).ok_or_else(|| Error::NewName(to.to_owned()))?;
+    let path = folder.join(name);
+    renameat_with(CWD, &path, CWD, &target, RenameFlags::NOREPLACE)
+        .map_err(|error| Error::File(to.to_owned(), error.into()))?;
+    tidy(folder, &path);
+    Ok(())
+}
+
+/// Where a program of a new name is, if its folder is there and inside this one.
+fn place(folder: &Path, name: &str) -> Option<PathBuf> {
+    let is_strange = |c: char| c.is_control() || matches!(c, ':' | '\\');
+    let is_plain = |part: &str| !part.trim().is_empty() && !part.starts_with('.');
+    let is_name = name.len() <= limits::NAME_BYTES_MAX && !name.contains(is_strange);
+    if !is_name || !name.split('/').all(is_plain) {
+        return None;
+    }
+    let path = folder.join(name);
+    let at = path.parent()?.canonicalize().ok()?;
+    let is_inside = at.starts_with(folder.canonicalize().ok()?);
+    is_inside.then(|| at.join(path.file_name().unwrap_or_default()))
+}
+
+/// A folder without programs is seen by nobody.
+fn tidy(folder: &Path, removed: &Path) {
+    if let Some(parent) = removed.parent().filter(|parent| *parent != folder) {
+        // One that has something in it stays.
+        let _ = fs::remove_dir(parent);
+    }
+}
+
 /// The file of a program, if it is a file in this folder when all links are followed.
 fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
     let is_plain = |part: Component| matches!(part, Component::Normal(_));
@@ -89,37 +136,6 @@ fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
     let path = folder.join(name).canonicalize().ok()?;
     let folder = folder.canonicalize().ok()?;
     (path.starts_with(folder) && path.is_file()).then_some(path)
-}
-
-/// A diagram as JSON: for each sheet its `name`, whether it is the `main` one, and its `picture` in SVG, in which every block is a
-/// group with its `data-id`.
-///
-/// # Errors
-/// There is no such program, or it is no diagram that can be read.
-pub fn diagram(folder: &Path, name: &str, is_russian: bool) -> Result<Value, Error> {
-    let locale = if is_russian {
-        Locale::Russian
-    } else {
-        Locale::English
-    };
-    let bytes = read(folder, name)?;
-    let opened = lang_diagram::read::read(&bytes).map_err(|problems| {
-        let lines: Vec<String> = problems
-            .iter()
-            .take(5)
-            .map(|problem| problem.to_string())
-            .collect();
-        Error::Diagram(format!("{name}: {}", lines.join("; ")))
-    })?;
-    Ok(sheets(&opened.project, locale))
-}
-
-fn sheets(project: &Project, locale: Locale) -> Value {
-    let sheet = |(at, diagram)| {
-        let diagram: &lang_diagram::project::Diagram = diagram;
-        json!({"name": diagram.name, "main": project.main == Some(at), "picture": picture(diagram, locale)})
-    };
-    project.diagrams.iter().enumerate().map(sheet).collect()
 }
 
 #[cfg(test)]
@@ -157,7 +173,57 @@ mod tests {
         ] {
             assert!(read(&folder, bad).is_err(), "{bad}");
         }
-        assert!(diagram(&folder, "b.js", false).is_err());
+    }
+
+    #[test]
+    fn programs_are_renamed_and_removed_and_nothing_else_is() {
+        let home = tempfile::tempdir().unwrap();
+        let folder = home.path().join("programs");
+        fs::create_dir_all(folder.join("sub")).unwrap();
+        fs::write(folder.join("a.js"), "a").unwrap();
+        fs::write(folder.join("sub/b.py"), "b").unwrap();
+        fs::write(home.path().join("secret"), "x").unwrap();
+        std::os::unix::fs::symlink(home.path(), folder.join("out")).unwrap();
+        rename(&folder, "a.js", "sub/c.js").unwrap();
+        assert!(matches!(
+            rename(&folder, "sub/c.js", "sub/b.py"),
+            Err(Error::File(..))
+        ));
+        assert_eq!(read(&folder, "sub/b.py").unwrap(), b"b");
+        for to in [
+            "../x",
+            ".x",
+            "sub/.x",
+            "none/x",
+            "out/x",
+            "a:b",
+            "a\\b",
+            "a\nb",
+            "",
+            "/x",
+            "sub/",
+            &"x".repeat(300),
+        ] {
+            assert!(
+                matches!(rename(&folder, "sub/c.js", to), Err(Error::NewName(_))),
+                "{to}"
+            );
+        }
+        for name in ["../secret", "out/secret", "sub", "none", ""] {
+            assert!(
+                matches!(rename(&folder, name, "x"), Err(Error::Name(_))),
+                "{name}"
+            );
+            assert!(
+                matches!(remove(&folder, name), Err(Error::Name(_))),
+                "{name}"
+            );
+        }
+        remove(&folder, "sub/b.py").unwrap();
+        assert!(folder.join("sub/c.js").exists());
+        remove(&folder, "sub/c.js").unwrap();
+        assert!(!folder.join("sub").exists(), "an empty folder goes");
+        assert!(home.path().join("secret").exists());
     }
 
     #[test]

@@ -18,6 +18,10 @@ pub enum Order {
     Playback(String),
     /// Another configuration of the tree.
     Configure(String),
+    /// A program goes.
+    Remove(String),
+    /// A program has another name.
+    Rename(String, String),
     /// To see the world, or not any more: it costs time at every picture.
     Look(bool),
     /// To be in control, whoever is.
@@ -49,6 +53,8 @@ impl Order {
             "world" => Self::World(text("order").ok_or_else(why)?),
             "playback" => Self::Playback(text("order").ok_or_else(why)?),
             "configure" => Self::Configure(text("text").ok_or_else(why)?),
+            "remove" => Self::Remove(text("name").ok_or_else(why)?),
+            "rename" => Self::Rename(text("name").ok_or_else(why)?, text("to").ok_or_else(why)?),
             "look" => Self::Look(
                 value
                     .get("world")
@@ -104,6 +110,8 @@ pub enum News {
     },
     /// The configuration was replaced, or not and why.
     Configured(Option<String>),
+    /// Programs were renamed or removed: the list is another one.
+    Programs,
     /// Something was not done.
     Refused(String),
     /// What stands still in the world.
@@ -172,6 +180,7 @@ impl News {
             ),
             Self::Configured(why) => object("configured", vec![("why", why.clone().into())]),
             Self::Refused(why) => object("refused", vec![("why", why.as_str().into())]),
+            Self::Programs => object("programs", Vec::new()),
             Self::Beat => object("beat", Vec::new()),
             // These are JSON already.
             Self::Scene(scene) => format!("{{\"is\":\"scene\",\"scene\":{scene}}}"),

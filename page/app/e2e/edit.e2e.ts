@@ -81,6 +81,83 @@ test('a program from Windows is as it came, and keeps its ends of lines', async 
   await page.context().close();
 });
 
+test('a program that was never saved is in the list, and is renamed and deleted when it is', async () => {
+  const page = await there.look.open(`${there.robot.url}#program`);
+  await page.getByLabel('New program').fill('draft.py');
+  await page.keyboard.press('Enter');
+  await editor(page, 'Text of draft.py').waitFor();
+  await page.getByRole('link', { name: 'Close' }).click();
+  await page.getByText('not on the robot').waitFor();
+  await page.getByRole('button', { name: 'Discard draft.py' }).click();
+  await page.getByText('not on the robot').waitFor({ state: 'detached' });
+  for (const name of ['one.py', 'two.py']) {
+    const file = { name, mimeType: 'text/x-python', buffer: Buffer.from(`print('${name}')\n`) };
+    await page.setInputFiles('input[type=file]', file);
+  }
+  await page.getByRole('link', { name: 'Edit one.py' }).click();
+  const text = editor(page, 'Text of one.py');
+  await text.click();
+  await page.keyboard.press('Control+End');
+  await page.keyboard.type('# mine\n');
+  await page.getByRole('button', { name: 'Rename or delete one.py' }).click();
+  const name = page.getByLabel('New name');
+  const rename = page.getByRole('button', { name: 'Rename', exact: true });
+  for (const bad of ['two.py', 'a:b.py', '../one.py', '.py']) {
+    await name.fill(bad);
+    expect(await rename.isDisabled(), bad).toBe(true);
+  }
+  expect(await barriers(page)).toEqual([]);
+  // The robot has the last word.
+  await name.fill('none/one.py');
+  await rename.click();
+  await page.getByText("'none/one.py' is no name for a program").waitFor();
+  await page.getByRole('button', { name: 'Dismiss' }).click();
+  await page.getByRole('button', { name: 'Rename or delete one.py' }).click();
+  await name.fill('best.py');
+  await page.keyboard.press('Enter');
+  // What was changed in it goes along.
+  await expect.poll(() => editor(page, 'Text of best.py').textContent()).toContain('# mine');
+  const list = () =>
+    page.evaluate(async () => {
+      const programs = (await (await fetch('/programs')).json()) as { name: string }[];
+      return programs.map(({ name }) => name).filter((name) => /^(one|two|best)/.test(name));
+    });
+  expect(await list()).toEqual(['best.py', 'two.py']);
+  await page.getByRole('button', { name: 'Rename or delete best.py' }).click();
+  await page.getByRole('button', { name: 'Delete', exact: true }).click();
+  expect(await list()).toContain('best.py');
+  await page.getByRole('button', { name: 'Delete best.py for good' }).click();
+  await page.getByRole('button', { name: 'Run best.py' }).waitFor({ state: 'detached' });
+  expect(await list()).toEqual(['two.py']);
+  await page.context().close();
+});
+
+test('what cannot be done is said, and not offered', async () => {
+  const page = await there.look.open(`${there.robot.url}#configuration`);
+  const other = await there.look.open(`${there.robot.url}#program`);
+  await other.getByRole('button', { name: 'Take control' }).click();
+  await page.getByText('is in control: take control first').waitFor();
+  expect(await page.getByRole('button', { name: 'Apply' }).isDisabled()).toBe(true);
+  await page.getByRole('link', { name: 'Program' }).click();
+  await page.getByText('is in control: take control first').waitFor();
+  expect(await page.getByLabel(/^Send a program/).isDisabled()).toBe(true);
+  await other.context().close();
+  await page.getByText('is in control: take control first').waitFor({ state: 'detached' });
+  await page.getByRole('link', { name: 'Configuration' }).click();
+  const open = page.getByLabel('Open a file:');
+  const before = await editor(page, 'Configuration').textContent();
+  const file = (name: string, buffer: Buffer) => ({ name, mimeType: 'text/plain', buffer });
+  await open.setInputFiles(file('disk.img', Buffer.alloc((1 << 20) + 1, 'x')));
+  await page.getByText('disk.img is larger than 1 MiB').waitFor();
+  await open.setInputFiles(file('photo.lua', Buffer.from([0xff, 0xd8, 0, 1])));
+  await page.getByText('photo.lua is no text').waitFor();
+  expect(await editor(page, 'Configuration').textContent()).toBe(before);
+  await open.setInputFiles(file('robot.lua', Buffer.from('-- from a file\n')));
+  await expect.poll(() => editor(page, 'Configuration').textContent()).toContain('-- from a file');
+  await page.getByRole('button', { name: 'Discard changes' }).click();
+  await page.context().close();
+});
+
 test('a configuration is refused at its line, replaced, and comes back by undo', async () => {
   const page = await there.look.open(`${there.robot.url}#configuration`);
   const before = there.robot.read('config');

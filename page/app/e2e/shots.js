@@ -66,6 +66,7 @@ try {
   await page.getByRole('button', { name: 'Run, stopped at the first block' }).click();
   await page.locator('g.stopped').waitFor();
   await page.locator('g[data-id*=Timer] rect').first().click();
+  await page.keyboard.press('b');
   await page.getByRole('button', { name: 'Continue' }).click();
   await page.locator('g.stopped[data-id*=Timer]').waitFor();
   await shot('diagram');

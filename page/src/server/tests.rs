@@ -197,12 +197,24 @@ impl Socket {
 
     /// Reads until a message has this in it.
     fn until(&mut self, text: &str) -> String {
-        loop {
-            let (_, message) = self.next().unwrap_or_else(|| panic!("no '{text}' came"));
-            if message.contains(text) {
-                return message;
+        self.until_all(&[text]).remove(0)
+    }
+
+    /// Reads until each of these was in a message, in any order: what is told of control and of values has none.
+    fn until_all(&mut self, texts: &[&str]) -> Vec<String> {
+        // The server never falls silent: it says every second that it is there.
+        let end = Instant::now() + Duration::from_secs(60);
+        let mut found = vec![None; texts.len()];
+        while found.iter().any(Option::is_none) {
+            assert!(Instant::now() < end, "{texts:?}: came {found:?}");
+            let (_, message) = self.next().unwrap_or_else(|| panic!("no {texts:?} came"));
+            for (text, found) in texts.iter().zip(&mut found) {
+                if found.is_none() && message.contains(text) {
+                    *found = Some(message.clone());
+                }
             }
         }
+        found.into_iter().flatten().collect()
     }
 }
 
@@ -284,8 +296,7 @@ fn a_browser_drives_and_what_it_drives_rests_when_it_is_gone() {
     let (mut browser, mut robot) = scene.browser();
     browser.until("\"is\":\"hello\"");
     browser.order(r#"{"do":"write","path":"motors/M1","value":"30"}"#);
-    browser.until("\"mine\":true");
-    browser.until("\"is\":\"written\"");
+    browser.until_all(&["\"mine\":true", "\"is\":\"written\""]);
     assert_eq!(scene.motor(), "30\n");
     browser.send(2, b"version");
     robot_hears(&mut robot, "version");

@@ -66,6 +66,7 @@ def value():
     return error_of(lambda: text(M + '/a/value')) or text(M + '/a/value')
 eventually(lambda: 'read x y' in peers, 'the sampler')
 sample('x y', 7)
+eventually(lambda: value() == '7\\n', 'a value')
 other = os.open(M + '/a/bin_data', os.O_RDONLY | os.O_NONBLOCK)
 eventually(lambda: error_of(lambda: os.read(other, 1)) is None, 'another reader')
 for number in range(8, 12):

@@ -7,6 +7,33 @@ export interface SheetPicture {
   main: boolean;
   /** SVG, in which each block is a group with its `data-id`. */
   picture: string;
+  /** What stands in its blocks, by those ids; blocks of other kits are not there. */
+  blocks: Record<string, BlockFacts>;
+}
+
+/** A block, and what stands in it. */
+export interface BlockFacts {
+  title: string;
+  properties: Property[];
+}
+
+export interface Property {
+  /** In the save. */
+  name: string;
+  title: string;
+  value: string;
+  /** What can stand there; null if it is any text. */
+  choices: string[] | null;
+}
+
+/** What stands in a property of a block, in whichever sheet it is. */
+export function valueOf(
+  sheets: readonly SheetPicture[],
+  block: string,
+  property: string,
+): string | undefined {
+  const facts = sheets.map((sheet) => sheet.blocks[block]).find((one) => one);
+  return facts?.properties.find(({ name }) => name === property)?.value;
 }
 
 const TAGS = new Set([

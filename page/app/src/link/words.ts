@@ -8,6 +8,8 @@ export type Order =
   | { do: 'world'; order: string }
   | { do: 'playback'; order: string }
   | { do: 'configure'; text: string }
+  | { do: 'remove'; name: string }
+  | { do: 'rename'; name: string; to: string }
   | { do: 'look'; world: boolean }
   | { do: 'take' }
   | { do: 'leave' }
@@ -20,6 +22,7 @@ export type News =
   | { is: 'robot'; there: boolean; why: string | null }
   | { is: 'written'; path: string; value: string; why: string | null }
   | { is: 'configured'; why: string | null }
+  | { is: 'programs' }
   | { is: 'refused'; why: string }
   | { is: 'scene'; scene: Scene }
   | { is: 'world'; state: WorldState }

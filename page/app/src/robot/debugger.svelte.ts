@@ -2,6 +2,7 @@
 //
 // Owns tags of orders and the newest state. What an order means is known to the robot; docs/protocol.md has the table.
 
+import { SvelteMap } from 'svelte/reactivity';
 import type { Link } from '../link/link';
 
 /** A block of a diagram. */
@@ -66,6 +67,8 @@ export class Debugger {
   told = $state.raw<Told | undefined>(undefined);
   /** Breakpoints by the id of their block. */
   breakpoints = $state.raw<ReadonlyMap<string, number>>(new Map());
+  /** Blocks at which a diagram stops when it is run from here, by its name; they are kept when it has ended. */
+  readonly plans = new SvelteMap<string, readonly string[]>();
   /** Why the last order was not carried out. */
   why = $state('');
   #tag = 0;
@@ -96,19 +99,56 @@ export class Debugger {
     return answer;
   }
 
-  /** Puts a breakpoint at a block, or takes it away. */
-  async toggle(id: string): Promise<void> {
-    const number = this.breakpoints.get(id);
-    const all = new Map(this.breakpoints);
-    if (number === undefined) {
-      if (!this.told?.attached) await this.order('attach');
-      const answer = await this.order(`break ${id}`);
-      if (answer?.number !== undefined) all.set(id, answer.number);
-    } else {
-      await this.order(`clear ${number}`);
-      all.delete(id);
+  /** Blocks of a diagram that have a breakpoint. */
+  planned(name: string): readonly string[] {
+    return this.plans.get(name) ?? [];
+  }
+
+  /** Puts a breakpoint at a block of a diagram, or takes it away; one that does not run yet has it when it is run. */
+  async toggle(name: string, id: string, isRunning: boolean): Promise<void> {
+    const before = this.planned(name);
+    const isNew = !before.includes(id);
+    if (isRunning && !(await (isNew ? this.#set(id) : this.#clear(id)))) return;
+    this.plans.set(name, isNew ? [...before, id] : before.filter((one) => one !== id));
+  }
+
+  /** Runs a diagram with its breakpoints; it begins at once, or waits at its first block. */
+  async run(name: string, waits: boolean): Promise<void> {
+    // The person at this page answers questions of the program.
+    this.link.request('questions');
+    const answer = await this.order(`run ${name}`);
+    if (!answer?.done) return;
+    for (const id of this.planned(name)) {
+      // A block that the diagram has no more cannot be stopped at.
+      if (!(await this.#set(id)))
+        this.plans.set(
+          name,
+          this.planned(name).filter((one) => one !== id),
+        );
     }
-    this.breakpoints = all;
+    if (!waits) await this.order('continue');
+  }
+
+  /** Goes on without debugger, and without breakpoints. */
+  async detach(name: string): Promise<void> {
+    if (!(await this.order('detach'))?.done) return;
+    this.plans.delete(name);
+    this.breakpoints = new Map();
+  }
+
+  async #set(id: string): Promise<boolean> {
+    if (!this.told?.attached) await this.order('attach');
+    const answer = await this.order(`break ${id}`);
+    if (answer?.number === undefined) return false;
+    this.breakpoints = new Map([...this.breakpoints, [id, answer.number]]);
+    return true;
+  }
+
+  async #clear(id: string): Promise<boolean> {
+    const number = this.breakpoints.get(id);
+    if (number !== undefined) await this.order(`clear ${number}`);
+    this.breakpoints = new Map([...this.breakpoints].filter(([one]) => one !== id));
+    return true;
   }
 
   /** A message of the control port. */

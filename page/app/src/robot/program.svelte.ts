@@ -2,6 +2,7 @@
 //
 // Owns what was heard of them over the control port and of their folder. Knows no sensors and no diagrams.
 
+import { SvelteMap } from 'svelte/reactivity';
 import type { Link } from '../link/link';
 
 /** A program in the robot's folder. */
@@ -54,9 +55,14 @@ export class Programs {
   said = $state.raw<Said[]>([]);
   question = $state.raw<Question | undefined>(undefined);
   /** Texts of programs that a person has changed here and not saved, by their names. */
-  readonly drafts = new Map<string, string>();
+  readonly drafts = new SvelteMap<string, string>();
+  /** The program that was given another name last. */
+  renamed = $state.raw<{ from: string; to: string } | undefined>(undefined);
+  #renaming: { from: string; to: string } | undefined;
   /** Why the last upload was not sent. */
   refusal = $state<'' | 'name' | 'size' | 'offline'>('');
+  /** Why the last change of a running diagram was not made. */
+  unchanged = $state('');
   #number = 0;
 
   constructor(private readonly link: Link) {}
@@ -77,6 +83,30 @@ export class Programs {
     }
   }
 
+  /** Gives a program another name. */
+  rename(from: string, to: string): void {
+    this.#renaming = { from, to };
+    this.link.order({ do: 'rename', name: from, to });
+  }
+
+  /** Takes a program away, with what was changed in it here. */
+  remove(name: string): void {
+    this.drafts.delete(name);
+    this.link.order({ do: 'remove', name });
+  }
+
+  /** The robot has other programs than before. */
+  async changed(): Promise<void> {
+    const renaming = this.#renaming;
+    await this.refresh();
+    if (!renaming || !this.list.some(({ name }) => name === renaming.to)) return;
+    this.#renaming = undefined;
+    const draft = this.drafts.get(renaming.from);
+    this.drafts.delete(renaming.from);
+    if (draft !== undefined) this.drafts.set(renaming.to, draft);
+    this.renamed = renaming;
+  }
+
   /** Sends a file to the robot. */
   async upload(file: File): Promise<boolean> {
     if (!isName(file.name)) this.refusal = 'name';
@@ -92,6 +122,12 @@ export class Programs {
       this.link.request('status');
     }
     return this.refusal === '';
+  }
+
+  /** A diagram that runs becomes what its file says; what cannot go on so ends. */
+  patch(name: string): void {
+    this.unchanged = '';
+    this.link.request(`patch:end:${name}`);
   }
 
   run(name: string): void {
@@ -125,6 +161,7 @@ export class Programs {
   }
 
   #say(kind: Said['kind'], text: string): void {
+    if (kind === 'error' && / is not changed: /.test(text)) this.unchanged = text;
     const cut = text.length > LETTERS ? `${text.slice(0, LETTERS)}...` : text;
     const line = { kind, text: cut.replace(/\n+$/, ''), number: this.#number++ };
     this.said = [...this.said.slice(1 - LINES), line];

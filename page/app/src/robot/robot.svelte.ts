@@ -133,7 +133,8 @@ export class Robot {
 
   /** Something goes to the robot that needs control. */
   get mayAct(): boolean {
-    return this.mayDrive && (this.isInControl || !this.holder) && !this.absence && !this.past;
+    const isThere = this.isConnected && !this.absence;
+    return isThere && this.mayDrive && (this.isInControl || !this.holder) && !this.past;
   }
 
   /** All views show this moment; undefined: the robot as it is now. */
@@ -206,6 +207,9 @@ export class Robot {
         if (news.why === null) this.refused.delete(news.path);
         else this.refused.set(news.path, this.#mistakeOf(news.path) ?? news.why);
         this.#isDirty = true;
+        break;
+      case 'programs':
+        void this.programs.changed();
         break;
       case 'refused':
         this.refusal = news.why;

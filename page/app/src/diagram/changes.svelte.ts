@@ -1,0 +1,113 @@
+// Values in blocks of diagrams that a person changes: by a new save from the server, sent to the robot as every program is.
+//
+// Owns what can be taken back. A diagram that runs goes on with the new value; the robot says what it did.
+
+import type { Programs } from '../robot/program.svelte';
+import { language, words } from '../words';
+import { type SheetPicture, valueOf } from './sheet';
+
+/** A value that was replaced. */
+interface Change {
+  readonly block: string;
+  readonly property: string;
+  readonly before: string;
+}
+
+/** A save that was sent is there within two seconds. */
+const ATTEMPTS = 20;
+const ATTEMPT_MS = 100;
+/** Changes that can be taken back. */
+const KEPT = 100;
+
+export class Changes {
+  /** Why the last one was not made. */
+  why = $state('');
+  isBusy = $state(false);
+  #made = $state.raw<readonly Change[]>([]);
+
+  constructor(
+    private readonly programs: Programs,
+    private readonly name: string,
+  ) {}
+
+  get canUndo(): boolean {
+    return this.#made.length > 0 && !this.isBusy;
+  }
+
+  /** Gives a property of a block another value. Returns the diagram as it is then; undefined if it has not changed. */
+  async make(
+    block: string,
+    property: string,
+    value: string,
+    before: string,
+    isRunning: boolean,
+  ): Promise<SheetPicture[] | undefined> {
+    const sheets = await this.#send(block, property, value, isRunning);
+    if (sheets) this.#made = [...this.#made.slice(1 - KEPT), { block, property, before }];
+    return sheets;
+  }
+
+  /** Takes the last one back. */
+  async undo(isRunning: boolean): Promise<SheetPicture[] | undefined> {
+    const last = this.#made.at(-1);
+    if (!last) return undefined;
+    const sheets = await this.#send(last.block, last.property, last.before, isRunning);
+    if (sheets) this.#made = this.#made.slice(0, -1);
+    return sheets;
+  }
+
+  async #send(
+    block: string,
+    property: string,
+    value: string,
+    isRunning: boolean,
+  ): Promise<SheetPicture[] | undefined> {
+    if (this.isBusy) return undefined;
+    this.isBusy = true;
+    this.why = '';
+    try {
+      return await this.#try(block, property, value, isRunning);
+    } catch {
+      this.why = words.connecting;
+      return undefined;
+    } finally {
+      this.isBusy = false;
+    }
+  }
+
+  async #try(
+    block: string,
+    property: string,
+    value: string,
+    isRunning: boolean,
+  ): Promise<SheetPicture[] | undefined> {
+    const query = new URLSearchParams({ block, property, value, language });
+    const answer = await fetch(`/changed/${pathOf(this.name)}?${query.toString()}`);
+    if (!answer.ok) {
+      this.why = (await answer.text()).trim();
+      return undefined;
+    }
+    if (!(await this.programs.upload(new File([await answer.blob()], this.name)))) {
+      this.why = words.notChanged;
+      return undefined;
+    }
+    if (isRunning) this.programs.patch(this.name);
+    for (let attempt = 0; attempt < ATTEMPTS; attempt++) {
+      const sheets = await sheetsOf(this.name);
+      if (typeof sheets !== 'string' && valueOf(sheets, block, property) === value) return sheets;
+      await new Promise((done) => setTimeout(done, ATTEMPT_MS));
+    }
+    this.why = words.notChanged;
+    return undefined;
+  }
+}
+
+function pathOf(name: string): string {
+  return name.split('/').map(encodeURIComponent).join('/');
+}
+
+/** The sheets of a diagram as the robot has it now; else why there are none. */
+export async function sheetsOf(name: string): Promise<SheetPicture[] | string> {
+  const answer = await fetch(`/diagram/${pathOf(name)}?language=${language}`);
+  return answer.ok ? ((await answer.json()) as SheetPicture[]) : (await answer.text()).trim();
+}
