@@ -85,7 +85,7 @@ impl Client {
             while let Ok(Some(frame)) = frames.next() {
                 let read = match frame {
                     Frame::Body(body) => request(&body),
-                    Frame::Bad(why) => Heard::Bad(why),
+                    Frame::Bad(why) => Heard::Bad(why.to_string()),
                 };
                 if sender.send(read).is_err() {
                     return;
