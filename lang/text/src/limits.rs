@@ -10,3 +10,5 @@ pub const XML_ATTRIBUTES: usize = 64;
 pub const PROBLEMS: usize = 200;
 /// Problems that are counted.
 pub const PROBLEMS_KEPT: usize = 2_000;
+/// Bytes of a word that is compared with known ones; a longer one is near to none.
+pub const NEAR_BYTES: usize = 200;
