@@ -195,6 +195,15 @@ impl Socket {
         }
     }
 
+    /// Reads until each of these was in a message, in any order.
+    fn until_all(&mut self, texts: &[&str]) {
+        let mut missing = texts.to_vec();
+        while !missing.is_empty() {
+            let (_, message) = self.next().expect("the connection ended");
+            missing.retain(|text| !message.contains(text));
+        }
+    }
+
     /// Reads until a message has this in it.
     fn until(&mut self, text: &str) -> String {
         loop {
@@ -284,8 +293,8 @@ fn a_browser_drives_and_what_it_drives_rests_when_it_is_gone() {
     let (mut browser, mut robot) = scene.browser();
     browser.until("\"is\":\"hello\"");
     browser.order(r#"{"do":"write","path":"motors/M1","value":"30"}"#);
-    browser.until("\"mine\":true");
-    browser.until("\"is\":\"written\"");
+    // What was written and who is in control are two pieces of news: either may come first.
+    browser.until_all(&["\"mine\":true", "\"is\":\"written\""]);
     assert_eq!(scene.motor(), "30\n");
     browser.send(2, b"version");
     robot_hears(&mut robot, "version");
