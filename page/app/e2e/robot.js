@@ -73,7 +73,9 @@ export class Robot {
     });
     const recorded = new Promise((done, fail) => {
       child.once('error', fail);
-      child.once('exit', (status) => (status === 0 ? done(undefined) : fail(new Error(`trik record: ${said}`))));
+      child.once('exit', (status) =>
+        status === 0 ? done(undefined) : fail(new Error(`trik record: ${said}`)),
+      );
     });
     // A recorder that ends at once has not begun.
     return { begun: Promise.race([begun, recorded]), recorded };
