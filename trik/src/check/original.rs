@@ -135,7 +135,7 @@ fn whole(text: &str) -> Result<i32, String> {
     number.ok_or_else(|| "not a whole number from 0 on".to_owned())
 }
 
-/// Platforms of Qt, perhaps with parameters behind a colon.
+/// Platforms of Qt, perhaps with parameters after a colon.
 fn platform(name: &str) -> Result<String, String> {
     let known = PLATFORMS.contains(&name.split(':').next().unwrap_or_default());
     let names = PLATFORMS.join(", ");
