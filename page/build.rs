@@ -24,7 +24,7 @@ const SOURCES: [&str; 10] = [
 ];
 
 /// Why there is no page. The person who builds can mend each.
-enum Why {
+enum NoPage {
     /// Nobody wants it.
     Unwanted,
     /// A program that is not installed.
@@ -35,7 +35,7 @@ enum Why {
     File(PathBuf, io::Error),
 }
 
-impl fmt::Display for Why {
+impl fmt::Display for NoPage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Unwanted => f.write_str("TRIK_WITHOUT_PAGE is set"),
@@ -72,12 +72,12 @@ fn main() {
 }
 
 /// The list of files as Rust.
-fn build(out: &Path) -> Result<String, Why> {
+fn build(out: &Path) -> Result<String, NoPage> {
     if std::env::var_os("TRIK_WITHOUT_PAGE").is_some() {
-        return Err(Why::Unwanted);
+        return Err(NoPage::Unwanted);
     }
     let work = target(out).join("page");
-    let file = |error: io::Error| Why::File(work.clone(), error);
+    let file = |error: io::Error| NoPage::File(work.clone(), error);
     fs::create_dir_all(&work).map_err(file)?;
     let lock = fs::File::create(work.join("lock")).map_err(file)?;
     lock.lock().map_err(file)?;
@@ -88,7 +88,7 @@ fn build(out: &Path) -> Result<String, Why> {
         if to.is_dir() {
             fs::remove_dir_all(&to).map_err(file)?;
         }
-        copy(&from, &to).map_err(|error| Why::File(from.clone(), error))?;
+        copy(&from, &to).map_err(|error| NoPage::File(from.clone(), error))?;
     }
     if fs::read(&stamp).ok().as_ref() != Some(&wanted) {
         let _ = fs::remove_file(&stamp);
@@ -118,7 +118,7 @@ fn build(out: &Path) -> Result<String, Why> {
     run(vite.arg(&made).current_dir(&work), "node")?;
     let mut pack = Command::new("node");
     run(pack.arg("pack.js").arg(&made).current_dir(&work), "node")?;
-    list(&made).map_err(|error| Why::File(made.clone(), error))
+    list(&made).map_err(|error| NoPage::File(made.clone(), error))
 }
 
 /// The directory of all profiles, which has a mark of cargo.
@@ -127,12 +127,12 @@ fn target(out: &Path) -> &Path {
     out.ancestors().find(is_target).unwrap_or(out)
 }
 
-fn run(command: &mut Command, name: &'static str) -> Result<(), Why> {
+fn run(command: &mut Command, name: &'static str) -> Result<(), NoPage> {
     let done = command.output().map_err(|error| {
         if error.kind() == io::ErrorKind::NotFound {
-            Why::Missing(name)
+            NoPage::Missing(name)
         } else {
-            Why::File(PathBuf::from(name), error)
+            NoPage::File(PathBuf::from(name), error)
         }
     })?;
     if done.status.success() {
@@ -141,7 +141,7 @@ fn run(command: &mut Command, name: &'static str) -> Result<(), Why> {
     let said = [done.stdout, done.stderr].concat();
     let said = String::from_utf8_lossy(&said);
     let lines = said.lines().filter(|line| !line.trim().is_empty());
-    Err(Why::Failed(
+    Err(NoPage::Failed(
         name,
         lines.take(12).collect::<Vec<_>>().join(" / "),
     ))

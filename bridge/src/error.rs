@@ -2,17 +2,10 @@
 //!
 //! Owns the errors of this crate. Knows no command.
 
+pub use recorder::error::Blame;
+
 use std::fmt;
 use std::net::SocketAddr;
-
-/// The person or the part that can mend it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Blame {
-    /// The person who asked: another address, another tree.
-    Caller,
-    /// The machine.
-    Machine,
-}
 
 /// What is wrong. Shown, it is a sentence for the person.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -30,10 +23,7 @@ impl Error {
     pub fn blame(&self) -> Blame {
         match self {
             Self::Address(..) => Blame::Caller,
-            Self::Tree(why) => match why.blame() {
-                recorder::error::Blame::Caller => Blame::Caller,
-                recorder::error::Blame::Machine => Blame::Machine,
-            },
+            Self::Tree(why) => why.blame(),
             Self::Thread(_) => Blame::Machine,
         }
     }

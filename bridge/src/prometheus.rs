@@ -26,7 +26,7 @@ type Labels = Vec<(&'static str, String)>;
 
 /// What is known of one node.
 #[derive(Default)]
-struct Seen {
+struct NodeState {
     units: String,
     fields: Vec<String>,
     layout: Option<Layout>,
@@ -41,7 +41,7 @@ struct Seen {
 /// What has come of a tree.
 #[derive(Default)]
 pub struct Numbers {
-    nodes: BTreeMap<String, Seen>,
+    nodes: BTreeMap<String, NodeState>,
     missed: u64,
     is_there: bool,
 }
@@ -97,7 +97,7 @@ impl Numbers {
     fn know(&mut self, known: &Known) {
         let node = &known.node;
         if !self.nodes.contains_key(&node.path) {
-            self.nodes.insert(node.path.clone(), Seen::default());
+            self.nodes.insert(node.path.clone(), NodeState::default());
         }
         let Some(seen) = self.nodes.get_mut(&node.path) else {
             return;

@@ -98,7 +98,7 @@ impl Decoder {
         if self.done == self.buffer.len() {
             self.buffer.clear();
             self.done = 0;
-            // What one large frame needed is not kept for all small ones behind it.
+            // What one large frame needed is not kept for all small ones after it.
             if self.buffer.capacity() > limits::BUFFER_KEPT_BYTES {
                 self.buffer = Vec::new();
             }

@@ -8,7 +8,7 @@ use std::io;
 /// The person or the part that can mend it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Blame {
-    /// The file, and whoever brings it.
+    /// The file, and the person who brings it.
     File,
     /// The machine: its disk.
     Machine,

@@ -1,7 +1,7 @@
 //! Making a cut recording whole again.
 //!
 //! Owns what is kept: every whole record before the cut, in its order, with the summary that a recorder would have written. A
-//! recorder writes chunks whole, so what it lost is what it had not written yet. Knows no path; whoever has the file renames
+//! recorder writes chunks whole, so what it lost is what it had not written yet. Knows no path; the caller renames
 //! the new one over it.
 
 use crate::error::Error;

@@ -341,7 +341,7 @@ impl<W: Write + Seek> Writer<W> {
     }
 
     /// Ends the chunk and hands everything to the file, so that a kill loses nothing of it. What a power cut loses is the
-    /// business of whoever has the file: it must be synced.
+    /// business of the caller, who has the file: it must be synced.
     ///
     /// # Errors
     /// The file cannot be written.

@@ -4,7 +4,7 @@
 //! a stop first of all, wait for nothing that is sent to it.
 
 use crate::configuration;
-use crate::control::Who;
+use crate::control::Browser;
 use crate::drive::{self, Moves};
 use crate::error::Error;
 use crate::limits;
@@ -22,7 +22,7 @@ use tokio::sync::{Notify, OwnedSemaphorePermit, mpsc, watch};
 use tokio::time::{Instant, MissedTickBehavior, interval, timeout, timeout_at};
 
 /// Serves one browser until it is gone.
-pub async fn serve(shared: Arc<Shared>, socket: WebSocket, who: Who) {
+pub async fn serve(shared: Arc<Shared>, socket: WebSocket, who: Browser) {
     let (sink, stream) = socket.split();
     let (news, told) = mpsc::channel(limits::NEWS);
     let moves = Arc::<Moves>::default();
@@ -74,7 +74,7 @@ pub async fn serve(shared: Arc<Shared>, socket: WebSocket, who: Who) {
 /// What the browser says.
 struct Listener {
     shared: Arc<Shared>,
-    who: Who,
+    who: Browser,
     news: mpsc::Sender<News>,
     moves: Arc<Moves>,
     requests: mpsc::Sender<Request>,
@@ -274,7 +274,7 @@ impl Listener {
 /// What the browser is told.
 struct Teller {
     shared: Arc<Shared>,
-    who: Who,
+    who: Browser,
     sink: SplitSink<WebSocket, Message>,
     told: mpsc::Receiver<News>,
     from_robot: mpsc::Receiver<Came>,

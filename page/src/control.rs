@@ -8,7 +8,7 @@ use tokio::sync::watch;
 
 /// A browser, by a number of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Who {
+pub struct Browser {
     /// No other browser has it.
     pub number: usize,
     /// Where it is.
@@ -18,7 +18,7 @@ pub struct Who {
 /// The browser that is in control, if one is.
 #[derive(Debug)]
 pub struct Control {
-    holder: watch::Sender<Option<Who>>,
+    holder: watch::Sender<Option<Browser>>,
 }
 
 impl Default for Control {
@@ -31,7 +31,7 @@ impl Default for Control {
 
 impl Control {
     /// Hears of every change.
-    pub fn watch(&self) -> watch::Receiver<Option<Who>> {
+    pub fn watch(&self) -> watch::Receiver<Option<Browser>> {
         self.holder.subscribe()
     }
 
@@ -39,7 +39,7 @@ impl Control {
     ///
     /// # Errors
     /// Somebody else is in control.
-    pub fn need(&self, who: Who) -> Result<(), Error> {
+    pub fn need(&self, who: Browser) -> Result<(), Error> {
         let mut taken = None;
         self.holder.send_if_modified(|holder| match holder {
             None => {
@@ -59,13 +59,13 @@ impl Control {
         }
     }
 
-    /// This one is in control from now on, whoever was.
-    pub fn take(&self, who: Who) {
+    /// This one is in control from now on, also if another one was.
+    pub fn take(&self, who: Browser) {
         self.holder.send_replace(Some(who));
     }
 
     /// This one is not in control any more.
-    pub fn leave(&self, who: Who) {
+    pub fn leave(&self, who: Browser) {
         self.holder.send_if_modified(|holder| {
             let is_mine = *holder == Some(who);
             if is_mine {
@@ -80,8 +80,8 @@ impl Control {
 mod tests {
     use super::*;
 
-    fn who(number: usize) -> Who {
-        Who {
+    fn who(number: usize) -> Browser {
+        Browser {
             number,
             address: "127.0.0.1:1".parse().unwrap(),
         }

@@ -2,7 +2,7 @@
 //!
 //! Owns which actuators it has moved. The filesystem checks every value, and knows leases: a program that has one keeps it.
 
-use crate::control::Who;
+use crate::control::Browser;
 use crate::error::Error;
 use crate::limits;
 use crate::word::News;
@@ -101,8 +101,8 @@ pub async fn run(
     tree: PathBuf,
     moves: Arc<Moves>,
     news: mpsc::Sender<News>,
-    mut holder: watch::Receiver<Option<Who>>,
-    who: Who,
+    mut holder: watch::Receiver<Option<Browser>>,
+    who: Browser,
 ) {
     let mut driven = HashMap::new();
     loop {
@@ -221,7 +221,7 @@ fn rest(tree: &Path, driven: &mut Driven) {
         // Without such a value it is a display or a sound, which moves nothing.
         if size > 0 && read(&file).is_ok_and(|now| now == text) {
             bytes.push(b'\n');
-            // Whoever holds a lease has it now, and drives.
+            // The program that holds a lease has it now, and drives.
             let _ = fs::write(&file, &bytes);
         }
     }

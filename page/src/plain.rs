@@ -3,6 +3,7 @@
 //! Owns the table. It is read anew every two seconds by the browser itself.
 
 use crate::{drive, limits};
+use lang_text::escape::escaped;
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
@@ -26,20 +27,6 @@ pub fn table(name: &str, tree: &Path, why_not: &str) -> String {
         let _ = write!(page, "<tr>{}</tr>", cells.concat());
     }
     page + "</tbody></table></main></body></html>\n"
-}
-
-fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for letter in text.chars() {
-        match letter {
-            '<' => out += "&lt;",
-            '>' => out += "&gt;",
-            '&' => out += "&amp;",
-            '"' => out += "&quot;",
-            _ => out.push(letter),
-        }
-    }
-    out
 }
 
 /// A file of a node, shortened; a failure in words.

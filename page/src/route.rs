@@ -3,7 +3,7 @@
 //! Owns the addresses, and that nothing is given before `guard` has agreed.
 
 use crate::browser;
-use crate::control::Who;
+use crate::control::Browser;
 use crate::diagrams::{self, Change};
 use crate::door::Peer;
 use crate::error::Error;
@@ -140,7 +140,7 @@ async fn socket(
         return text(StatusCode::SERVICE_UNAVAILABLE, why);
     };
     let number = shared.number.fetch_add(1, Ordering::Relaxed);
-    let who = Who { number, address };
+    let who = Browser { number, address };
     // A computer that may only look sends nothing large.
     let most = match shared.settings.guests.may_drive(address.ip()) {
         true => limits::MESSAGE_BYTES_MAX,

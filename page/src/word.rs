@@ -2,7 +2,7 @@
 //!
 //! Owns their forms; `page/app/src/link/words.ts` has the other end. Pure.
 
-use crate::control::Who;
+use crate::control::Browser;
 use crate::error::Error;
 use crate::limits;
 use serde_json::{Map, Value};
@@ -24,7 +24,7 @@ pub enum Order {
     Rename(String, String),
     /// To see the world, or not any more: it costs time at every picture.
     Look(bool),
-    /// To be in control, whoever is.
+    /// To be in control, also if another browser is.
     Take,
     /// Not to be in control any more.
     Leave,
@@ -126,7 +126,7 @@ pub enum News {
 
 impl News {
     /// About who is in control, for this browser.
-    pub fn control(holder: Option<Who>, me: Who) -> Self {
+    pub fn control(holder: Option<Browser>, me: Browser) -> Self {
         Self::Control {
             mine: holder == Some(me),
             who: holder.map(|who| who.address.ip().to_string()),

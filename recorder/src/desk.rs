@@ -5,7 +5,7 @@
 
 use crate::entry::{Batch, Entry};
 use crate::error::Error;
-use crate::kept::{self, Kept, Told, Why};
+use crate::kept::{self, BlackBox, OnSaved, SaveReason};
 use crate::limits;
 use crate::watch::{Wants, Watch, Wish, now_ns};
 use journal::standard::{Level, Log};
@@ -23,7 +23,7 @@ enum Order {
     /// Something has happened beside the tree.
     Line(Entry),
     /// The last minutes shall be saved.
-    Save(Why, Told),
+    Save(SaveReason, OnSaved),
     /// Somebody who wants to hear comes.
     Listen(Box<dyn Listener>),
 }
@@ -75,10 +75,10 @@ impl Desk {
         settings: Settings,
         told: impl Fn(Result<PathBuf, Error>) + Clone + Send + 'static,
     ) -> Result<Self, Error> {
-        let left: Told = Box::new(told.clone());
+        let left: OnSaved = Box::new(told.clone());
         let kept = settings
             .kept
-            .map(|kept| Kept::open(kept, &settings.library, left))
+            .map(|kept| BlackBox::open(kept, &settings.library, left))
             .transpose()?;
         let (orders, come) = sync_channel(limits::LINES);
         let keeps = kept.is_some();
@@ -135,7 +135,7 @@ impl Desk {
     }
 
     /// Saves the last minutes; `told` hears the file, or why there is none.
-    pub fn save(&self, why: Why, told: Told) {
+    pub fn save(&self, why: SaveReason, told: OnSaved) {
         self.give(Order::Save(why, told));
     }
 
@@ -166,9 +166,9 @@ struct Work {
     numbers: u32,
     /// When a tree that is not there is looked for again.
     looks_at: Instant,
-    kept: Option<Kept>,
+    kept: Option<BlackBox>,
     listeners: Vec<Box<dyn Listener>>,
-    told: Box<dyn Fn() -> Told + Send>,
+    told: Box<dyn Fn() -> OnSaved + Send>,
     batch: Vec<Entry>,
     values: Values,
     is_heard: Arc<AtomicBool>,
@@ -204,7 +204,7 @@ impl Work {
         }
     }
 
-    fn save(&mut self, why: Why, told: Told) {
+    fn save(&mut self, why: SaveReason, told: OnSaved) {
         let Some(kept) = &mut self.kept else {
             told(Err(Error::Request(
                 "no black box is kept here: start trikd with --box-minutes".to_owned(),
@@ -312,8 +312,8 @@ impl Work {
             kept.put(&batch, || {
                 watch.as_ref().map(Watch::beginning).unwrap_or_default()
             });
-            if self.values.have_gone(&batch) && kept.is_due(Why::Fault) {
-                kept.save(Why::Fault, (self.told)());
+            if self.values.have_gone(&batch) && kept.is_due(SaveReason::Fault) {
+                kept.save(SaveReason::Fault, (self.told)());
             }
         }
     }

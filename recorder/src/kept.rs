@@ -20,7 +20,7 @@ use std::time::{Duration, Instant};
 
 /// What the minutes are kept for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Why {
+pub enum SaveReason {
     /// A person wants them.
     Asked,
     /// A key of the robot was pressed.
@@ -35,7 +35,7 @@ pub enum Why {
     Restart,
 }
 
-impl Why {
+impl SaveReason {
     /// All of them.
     pub const ALL: [Self; 6] = [
         Self::Asked,
@@ -85,7 +85,7 @@ const PART: &str = "part-";
 const SAVED: &str = "saved-";
 
 /// The last minutes.
-pub struct Kept {
+pub struct BlackBox {
     settings: Settings,
     library: String,
     parts: VecDeque<Part>,
@@ -100,15 +100,15 @@ pub struct Kept {
 }
 
 /// What is told when minutes are saved: the file, or why there is none.
-pub type Told = Box<dyn FnOnce(Result<PathBuf, Error>) + Send>;
+pub type OnSaved = Box<dyn FnOnce(Result<PathBuf, Error>) + Send>;
 
-impl Kept {
+impl BlackBox {
     /// Takes the folder. What a process that was killed has left there is saved first, and `told` hears of it; `library` is the
     /// program that records, with its version.
     ///
     /// # Errors
     /// The folder cannot be used.
-    pub fn open(settings: Settings, library: &str, told: Told) -> Result<Self, Error> {
+    pub fn open(settings: Settings, library: &str, told: OnSaved) -> Result<Self, Error> {
         let directory = &settings.directory;
         fs::create_dir_all(directory).map_err(|error| Error::io(directory, error))?;
         let left = named(directory, PART)?;
@@ -125,7 +125,7 @@ impl Kept {
         };
         let left: Vec<Source> = left.into_iter().filter_map(Source::left).collect();
         if !left.is_empty() {
-            kept.save_parts(left, Why::Restart, told);
+            kept.save_parts(left, SaveReason::Restart, told);
         }
         Ok(kept)
     }
@@ -201,11 +201,11 @@ impl Kept {
     }
 
     /// Whether it is time to save the minutes for this: what no person has asked for is not saved again and again.
-    pub fn is_due(&self, why: Why) -> bool {
+    pub fn is_due(&self, why: SaveReason) -> bool {
         let again_ms = match why {
-            Why::Asked | Why::Restart => return true,
-            Why::Key | Why::Stop | Why::Crash => limits::BOX_AGAIN_MS,
-            Why::Fault => limits::BOX_FAULT_AGAIN_MS,
+            SaveReason::Asked | SaveReason::Restart => return true,
+            SaveReason::Key | SaveReason::Stop | SaveReason::Crash => limits::BOX_AGAIN_MS,
+            SaveReason::Fault => limits::BOX_FAULT_AGAIN_MS,
         };
         let again = Duration::from_millis(again_ms);
         self.saved_at.is_none_or(|at| at.elapsed() >= again)
@@ -213,7 +213,7 @@ impl Kept {
 
     /// Saves the last minutes on a thread of its own, while the next ones are kept. `told` hears where, or why not; if there
     /// are no more threads, it is dropped.
-    pub fn save(&mut self, why: Why, told: Told) {
+    pub fn save(&mut self, why: SaveReason, told: OnSaved) {
         if self.is_saving.load(Ordering::Relaxed) {
             return told(Err(Error::Saving));
         }
@@ -236,7 +236,7 @@ impl Kept {
         self.save_parts(parts, why, told);
     }
 
-    fn save_parts(&mut self, parts: Vec<Source>, why: Why, told: Told) {
+    fn save_parts(&mut self, parts: Vec<Source>, why: SaveReason, told: OnSaved) {
         let directory = self.settings.directory.clone();
         let seconds = now_ns() / 1_000_000_000;
         let path = directory.join(format!("{SAVED}{seconds}-{}.mcap", why.name()));

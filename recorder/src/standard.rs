@@ -19,7 +19,7 @@ use journal::standard::robot::{
     Transforms,
 };
 use journal::write::{Topic, Writer};
-use pose::{Place, Way};
+use pose::{Place, Track};
 use rows::Role;
 use std::collections::HashMap;
 use std::io::{Seek, Write};
@@ -117,7 +117,7 @@ pub(crate) struct Standard {
     imus: Sinks<Imu>,
     joints: Sinks<JointState>,
     gamepads: Sinks<Joy>,
-    ways: HashMap<u32, Way>,
+    ways: HashMap<u32, Track>,
     /// By their groups.
     halves: HashMap<String, Halves>,
     positions: Gathered,

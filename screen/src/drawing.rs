@@ -117,7 +117,7 @@ impl Drawing {
         self.picture.as_ref()
     }
 
-    /// A picture at the bottom in place of the one before, as large as the display lets it be.
+    /// A picture at the bottom instead of the one before, as large as the display lets it be.
     pub fn show(&mut self, picture: &Pixels) {
         self.picture = Some(picture.fitted(self.size.0, self.size.1));
     }
@@ -181,7 +181,7 @@ impl Drawing {
         }
     }
 
-    /// A text whose upper left corner is at (x, y), in place of the one there. Without a height it is
+    /// A text whose upper left corner is at (x, y), instead of the one there. Without a height it is
     /// [`limits::LETTER`].
     ///
     /// # Errors

@@ -129,7 +129,7 @@ impl Drawing {
         Ok(Effect::Later)
     }
 
-    /// A round face in place of everything else, happy or not.
+    /// A round face instead of everything else, happy or not.
     fn smile(&mut self, is_happy: bool) {
         let (width, height) = self.size();
         let (width, height) = (i32::from(width), i32::from(height));

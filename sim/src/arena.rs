@@ -109,7 +109,7 @@ pub struct Arena {
     changes: Vec<(usize, Change)>,
     /// Laid when somebody looks at it or leaves something on it.
     floor: Option<Box<Floor>>,
-    /// In place of ideal physics, made at the first tick.
+    /// Instead of ideal physics, made at the first tick.
     dynamics: Option<Box<Dynamics>>,
     /// Room for windows of the floor.
     window: floor::Window,

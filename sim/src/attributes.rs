@@ -1,7 +1,7 @@
 //! Plain files instead of sysfs attributes, and the news when one is written.
 //!
 //! Owns files, their watches (inotify) and the reading of short texts; what a text means is for others.
-//! A file is no attribute: it keeps what was there behind a shorter text, so only the first line counts, and a writer
+//! A file is no attribute: it keeps what was there after a shorter text, so only the first line counts, and a writer
 //! that does not truncate has to end its line.
 
 use crate::limits::MAX_TEXT_BYTES;

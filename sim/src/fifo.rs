@@ -103,7 +103,7 @@ impl Out {
         let Ok(file) = opened else {
             return Reader::None;
         };
-        // A small buffer: who reads late wants new samples, not a long tail of old ones.
+        // A small buffer: a late reader wants new samples, not a long tail of old ones.
         let _ = fcntl(&file, FcntlArg::F_SETPIPE_SZ(self.size));
         self.file = Some(file);
         Reader::New

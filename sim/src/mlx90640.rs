@@ -2,7 +2,7 @@
 //!
 //! Registers and values have 16 bits, high byte first: a write is register and value, a read goes on from the register.
 //! 0x8000 status (bit 3 new data, bit 0 subpage), 0x800D control (bits 9-7 refresh rate: 0.5 Hz doubled for each step),
-//! 0x0400 picture (24 rows of 32 pixels, and what is behind them), 0x2400 calibration.
+//! 0x0400 picture (24 rows of 32 pixels, and what follows them), 0x2400 calibration.
 //! A pixel is its offset and its signal; offsets are made so that the calibration gives them exactly. Temperatures
 //! would need the maker's whole equation: here the floor is cool, walls are cooler, and a ball is warm.
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// One fenced block.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Example {
-    /// Words behind the opening fence, for example `lua config battery`.
+    /// Words after the opening fence, for example `lua config battery`.
     pub info: String,
     /// Line of the opening fence, from 1.
     pub line: usize,

@@ -370,7 +370,7 @@ impl Mount {
     pub fn kill_everything(&mut self) {
         let mut guardian = self.guardian.take().expect("a guardian");
         let daemons = processes::children(guardian.id());
-        // Stopped first, neither can clean up behind the other.
+        // Stopped first, neither can clean up after the other.
         for &pid in daemons.iter().chain([&guardian.id()]) {
             processes::signal(pid, Signal::SIGSTOP);
         }

@@ -6,7 +6,7 @@ use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use std::fs;
 
-/// State letter and parent of a process (proc(5), fields 3 and 4, counted behind the name, which may hold anything).
+/// State letter and parent of a process (proc(5), fields 3 and 4, counted after the name, which may hold anything).
 fn state(pid: u32) -> Option<(char, u32)> {
     let stat = fs::read_to_string(format!("/proc/{pid}/stat")).ok()?;
     let mut fields = stat.rsplit(')').next()?.split_whitespace();

@@ -1,6 +1,6 @@
 //! The documents: every marked example is run, every table that can be compared is.
 //!
-//! Marks are the words behind a fence: `lua config NAME` loads, `c converter NAME` and `rust converter NAME` compile
+//! Marks are the words after a fence: `lua config NAME` loads, `c converter NAME` and `rust converter NAME` compile
 //! without a warning and load, `python` is Python, `sh session` is a transcript: lines with `$ ` are run in a mounted
 //! hello.lua, the others are what they print; `sh convert NAME` is one without a mount, where robot.lua is the
 //! configuration NAME of the same page, and `sh mount NAME` one that mounts it by itself; all of a page share a folder.

@@ -1,6 +1,6 @@
 //! Panels of a picture with axes: a frame, round numbers at its edges, and lines in it.
 //!
-//! Owns how numbers become places. Where panels stand and what is in them is known to whoever draws.
+//! Owns how numbers become places. Where panels stand and what is in them is known to the callers.
 
 use lang_text::svg::{Svg, View};
 use std::fmt::{Arguments, Display};

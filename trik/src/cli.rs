@@ -430,7 +430,7 @@ mod tests {
             panic!("not understood")
         };
         assert_eq!(
-            (plain.robot.as_str(), plain.speed, plain.mountpoint),
+            (plain.body.as_str(), plain.speed, plain.mountpoint),
             ("two-wheels", 1.0, None)
         );
         let line = "up --robot two-wheels --speed 2 --seed 7 --config c.lua --no-view --include i --group g /m";
@@ -459,7 +459,7 @@ mod tests {
             let text = refusal(&["up", &format!("--speed={speed}")]);
             assert!(text.contains("not a number from 0.1 to 20"), "{text}");
         }
-        let text = refusal(&["up", "--robot=tank"]);
+        let text = refusal(&["up", "--body=tank"]);
         assert!(
             text.contains("there is no such robot; there are ") && text.contains("two-wheels"),
             "{text}"

@@ -6,11 +6,11 @@
 //! `lang_diagram::debug`.
 
 pub(crate) mod listing;
+pub(crate) mod report;
 pub(crate) mod stage;
 pub(crate) mod stops;
 pub(crate) mod target;
 mod terminal;
-pub(crate) mod told;
 mod words;
 
 use crate::check::{CheckArgs, Staged, Start, model_seconds, staged};
@@ -36,9 +36,10 @@ pub(crate) struct DebugArgs {
     pub file: PathBuf,
     #[command(flatten)]
     pub world: WorldArgs,
-    /// Debug it on this robot instead: its name or address, and its port if that is not 8888. It is sent there and stopped
-    /// before its first block; at the end it is stopped.
-    #[arg(long, value_name = "HOST[:PORT]", value_parser = remote::target::target, conflicts_with_all = ["field", "task", "inputs", "gamepad", "speed"])]
+    /// Debug it on this robot instead: its name or address, with its port if that is not 8888, or where the tree of a
+    /// virtual one is mounted, a path with a slash. It is sent there and stopped before its first block; at the end it is
+    /// stopped.
+    #[arg(long, value_name = "ROBOT", value_parser = remote::target::target, conflicts_with_all = ["field", "task", "inputs", "gamepad", "speed"])]
     pub robot: Option<remote::target::Target>,
     /// Join the diagram that runs on the robot already, instead of starting it; FILE is what runs there. It is stopped, with
     /// its motors at rest, and goes on at the end.

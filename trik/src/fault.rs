@@ -7,6 +7,7 @@ use crate::error::Error;
 use crate::output::standard;
 use crate::place::{self, Running};
 use crate::refusal::Refusal;
+use crate::remote::target::tree_of;
 use clap::Args;
 use sim::faults::{Faults, devices};
 use std::fs;
@@ -16,8 +17,8 @@ use std::path::{Path, PathBuf};
 /// What `trik fault` can be told.
 #[derive(Args, Clone, Debug, PartialEq, Eq)]
 pub(crate) struct FaultArgs {
-    /// The robot mounted there; needed if several run.
-    #[arg(long, alias = "at", value_name = "MOUNTPOINT")]
+    /// The virtual robot: where its tree is mounted, or its address; needed if several run.
+    #[arg(long, alias = "at", value_name = "ROBOT")]
     pub robot: Option<PathBuf>,
     /// Print the devices, the kinds of faults, and the faults in force.
     #[arg(long, conflicts_with_all = ["device", "kind", "clear"])]
@@ -48,7 +49,8 @@ fn fault(args: &FaultArgs) -> Result<String, Error> {
     let all = place::running(&base).map_err(|error| Error::file(&base, error));
     // Looking makes the directory; nobody needs it if no robot does.
     let _ = fs::remove_dir(&base);
-    let robot = choose(all?, args.robot.as_deref());
+    let named = args.robot.as_deref().map(tree_of).transpose()?;
+    let robot = choose(all?, named.as_deref());
     let Some(device) = &args.device else {
         // The table is good to know also when nothing runs.
         return Ok(table(robot.ok().as_ref()));

@@ -74,7 +74,7 @@ pub const SCRIPT_CALLS: u32 = 100;
 pub const SCRIPT_LOOK_CALLS: u32 = 50;
 /// Bytes of the files that a judged program has written; they are kept in memory.
 pub const SCRIPT_FILES_BYTES: usize = 16 << 20;
-/// Bytes that a judged program prints between two calls; what is more is lost.
+/// Bytes that a judged program prints between two calls; those beyond that are lost.
 pub const SCRIPT_PRINT_BYTES: usize = 1 << 20;
 /// Bytes of one message of a judged program in a process of its own.
 pub const SCRIPT_FRAME_BYTES: usize = 1 << 20;
@@ -179,7 +179,7 @@ pub const DEBUG_CALLS_SHOWN: usize = 100;
 pub const DEBUG_LINE_BYTES: usize = 16_384;
 /// Requests of an editor that debugs which wait for their turn.
 pub const DAP_WAITING: usize = 1000;
-/// Events of a robot that wait for whoever debugs; the oldest are lost.
+/// Events of a robot that wait for the debugger; the oldest are lost.
 pub const DEBUG_EVENTS_MAX: usize = 10_000;
 /// Threads, and variables, that `trik watch` shows.
 pub const WATCH_LINES_MAX: usize = 40;

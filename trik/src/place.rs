@@ -233,7 +233,7 @@ pub fn running(base: &Path) -> io::Result<Vec<Running>> {
     Ok(found)
 }
 
-/// Where the view of a tree is if nobody says another place: beside it, with an ending behind its whole name.
+/// Where the view of a tree is if nobody says another place: beside it, with an ending after its whole name.
 fn view_of(mountpoint: &Path) -> Option<PathBuf> {
     let mut name = mountpoint.file_name()?.to_owned();
     name.push(".");
@@ -274,7 +274,7 @@ fn take(path: &Path) -> io::Result<Option<File>> {
     }
 }
 
-/// Cleans up behind robots whose process is gone. Goes on whatever fails: the next start tries again.
+/// Cleans up after robots whose process is gone. Goes on whatever fails: the next start tries again.
 fn sweep(base: &Path) {
     for number in 1..=limits::ROBOTS_MAX {
         let name = name(number);

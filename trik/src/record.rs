@@ -9,7 +9,7 @@ use crate::place;
 use crate::refusal::Refusal;
 use crate::remote::recorded;
 use crate::up::session::signals;
-use args::RecordArgs;
+use args::{RecordArgs, Recorded};
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use recorder::entry::{Batch, Entry, events};
 use recorder::file::Disk;
@@ -30,10 +30,17 @@ const USUAL: &str = "/trikfs";
 /// # Errors
 /// There is no tree, or the file cannot be written.
 pub(crate) fn run(args: &RecordArgs) -> Result<u8, Refusal> {
-    if let Some(robot) = &args.robot {
-        return recorded::record(args, robot);
-    }
-    let root = tree(args.mountpoint.as_deref())?;
+    let named = match &args.robot {
+        Some(Recorded::Network(robot)) => return recorded::record(args, robot),
+        Some(Recorded::Tree(_)) if args.hz.is_some() => {
+            let why =
+                "--hz is for a robot in the network: of a mounted tree all samples are recorded";
+            return Err(Refusal::new(why));
+        }
+        Some(Recorded::Tree(path)) => Some(path),
+        None => args.mountpoint.as_ref(),
+    };
+    let root = tree(named.map(PathBuf::as_path))?;
     let signals = signals().map_err(|error| Error::system("signals", error))?;
     let wanted = args.clone();
     let wants = Box::new(move |path: &str| wanted.wants(path).then_some(Wish::Samples));

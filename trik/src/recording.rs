@@ -44,11 +44,11 @@ pub(crate) struct MendArgs {
 /// # Errors
 /// It is none, or it is cut.
 pub(crate) fn info(args: &InfoArgs) -> Result<u8, Refusal> {
-    standard(told(&args.file)?.as_bytes())?;
+    standard(summary(&args.file)?.as_bytes())?;
     Ok(0)
 }
 
-fn told(path: &Path) -> Result<String, Error> {
+fn summary(path: &Path) -> Result<String, Error> {
     let fail = |why| Error::file(path, why);
     let mut reader = Reader::open(open(path)?).map_err(fail)?;
     let facts = reader.facts(ABOUT).map_err(fail)?;

@@ -89,7 +89,7 @@ fn simulate(args: UpArgs) -> Result<(), Error> {
         robot: if world.is_some() {
             "in the world"
         } else {
-            &args.robot
+            &args.body
         },
         world: world.as_ref().map(|(field, _)| field),
         speed: args.speed,
@@ -180,11 +180,11 @@ impl Platform {
 
     /// The robot of a name.
     fn robot(args: &UpArgs) -> Result<Self, Error> {
-        if let Some(robot) = sim::robots::by_name(&args.robot) {
+        if let Some(robot) = sim::robots::by_name(&args.body) {
             if let Some(option) = model::stray(args) {
                 return Err(Error::Refused(format!(
-                    "{option} is for a model: --robot FILE.dcml; '{}' has its own",
-                    args.robot
+                    "{option} is for a model: --body FILE.dcml; '{}' has its own",
+                    args.body
                 )));
             }
             return Ok(Self {
@@ -212,7 +212,7 @@ fn configuration(args: &UpArgs) -> Result<PathBuf, Error> {
         Some(path) if path.is_file() => absolute(path),
         Some(path) => Err(Error::file(path, "no such configuration")),
         None => {
-            let name = PathBuf::from(format!("robots/{}.lua", args.robot));
+            let name = PathBuf::from(format!("robots/{}.lua", args.body));
             shipped(&name, args)
         }
     }

@@ -4,6 +4,7 @@
 
 use crate::limits;
 use serde_json::Value;
+use std::fmt;
 use std::io::{self, BufRead, Read, Write};
 
 /// What comes next.
@@ -12,8 +13,44 @@ pub enum Frame {
     /// The bytes of a message.
     Body(Vec<u8>),
     /// No message, and why. What follows is looked for.
-    Bad(String),
+    Bad(Bad),
 }
+
+/// Why bytes are no frame. The other side of the connection has to mend each of them. Shown, it is a sentence for it.
+#[derive(Debug, PartialEq, Eq)]
+pub enum Bad {
+    /// A message is announced with a length above the limit; the length as it was written.
+    Long(String),
+    /// The length is no number; what was written instead, shortened.
+    NoNumber(String),
+    /// Bytes stand before the header: the message before is longer than it said.
+    BytesBefore,
+    /// A line where a header has to be, and it is none.
+    NoHeader,
+}
+
+impl fmt::Display for Bad {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Long(length) => write!(
+                f,
+                "a message of {length} bytes is too long: at most {} are taken",
+                limits::LSP_MESSAGE_BYTES
+            ),
+            Self::NoNumber(text) => {
+                write!(f, "Content-Length is '{text}', which is no number")
+            }
+            Self::BytesBefore => f.write_str(
+                "there are bytes before Content-Length: the message before is longer than it said",
+            ),
+            Self::NoHeader => {
+                f.write_str("this is no header of a message: Content-Length is wanted")
+            }
+        }
+    }
+}
+
+impl std::error::Error for Bad {}
 
 /// The name of the one header that matters; others are passed over.
 const LENGTH: &[u8] = b"content-length:";
@@ -56,18 +93,16 @@ impl<R: BufRead> Frames<R> {
                     Err(why) => return Ok(Some(self.lost(why))),
                 }
                 if at > 0 && !had_lost {
-                    let why = "there are bytes before Content-Length: the message before is longer than it said";
-                    return Ok(Some(Frame::Bad(why.to_owned())));
+                    return Ok(Some(Frame::Bad(Bad::BytesBefore)));
                 }
             } else if !self.is_lost && !is_header(&line) {
-                let why = "this is no header of a message: Content-Length is wanted";
-                return Ok(Some(self.lost(why.to_owned())));
+                return Ok(Some(self.lost(Bad::NoHeader)));
             }
         }
         Ok(None)
     }
 
-    fn lost(&mut self, why: String) -> Frame {
+    fn lost(&mut self, why: Bad) -> Frame {
         (self.length, self.is_lost) = (None, true);
         Frame::Bad(why)
     }
@@ -121,17 +156,14 @@ fn is_header(line: &[u8]) -> bool {
         && name.iter().all(is_name)
 }
 
-fn number(digits: &[u8]) -> Result<u64, String> {
+fn number(digits: &[u8]) -> Result<u64, Bad> {
     let text = String::from_utf8_lossy(digits);
     let text = text.trim();
-    let told: String = text.chars().take(30).collect();
+    let shown = || text.chars().take(30).collect();
     match text.parse::<u64>() {
         Ok(length) if length <= limits::LSP_MESSAGE_BYTES => Ok(length),
-        Ok(_) => Err(format!(
-            "a message of {told} bytes is too long: at most {} are taken",
-            limits::LSP_MESSAGE_BYTES
-        )),
-        Err(_) => Err(format!("Content-Length is '{told}', which is no number")),
+        Ok(_) => Err(Bad::Long(shown())),
+        Err(_) => Err(Bad::NoNumber(shown())),
     }
 }
 
@@ -162,9 +194,9 @@ mod tests {
         Frame::Body(text.as_bytes().to_vec())
     }
 
-    fn bad(frame: &Frame) -> &str {
+    fn bad(frame: &Frame) -> String {
         match frame {
-            Frame::Bad(why) => why,
+            Frame::Bad(why) => why.to_string(),
             Frame::Body(_) => panic!("{frame:?}"),
         }
     }

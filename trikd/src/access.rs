@@ -74,7 +74,7 @@ impl FromStr for Network {
 
 /// A computer that wants to be paired.
 #[derive(Clone, Copy, Debug)]
-struct Asked {
+struct PairingRequest {
     ip: IpAddr,
     when: Instant,
     /// When another one asked as well, if one did: nobody can know whom the key is meant for.
@@ -94,7 +94,7 @@ pub struct Access {
     paired: Option<Mutex<BTreeSet<IpAddr>>>,
     file: PathBuf,
     /// Who asked last: a key that is pressed soon after that pairs it.
-    asked: Mutex<Option<Asked>>,
+    asked: Mutex<Option<PairingRequest>>,
     /// The page on this machine asks for its browsers, after it has asked here about each of them.
     has_page: bool,
 }
@@ -173,7 +173,7 @@ impl Access {
                 Some(asked.when)
             }
         });
-        *last = Some(Asked {
+        *last = Some(PairingRequest {
             ip,
             when: Instant::now(),
             rival,
@@ -193,7 +193,7 @@ impl Access {
     pub fn pair_last(&self) -> io::Result<Option<IpAddr>> {
         let asked = held(&self.asked).take();
         match asked.filter(|asked| is_fresh(asked.when)) {
-            Some(Asked {
+            Some(PairingRequest {
                 ip,
                 rival: Some(at),
                 ..
@@ -201,7 +201,7 @@ impl Access {
                 "{ip} and others have asked within {} s, so none of them is paired: try again when only one asks, or use `trikd pair ADDRESS`",
                 limits::PAIRING_MS / 1000
             ))),
-            Some(Asked { ip, .. }) => self.pair(ip).map(|()| Some(ip)),
+            Some(PairingRequest { ip, .. }) => self.pair(ip).map(|()| Some(ip)),
             None => Ok(None),
         }
     }

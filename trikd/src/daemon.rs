@@ -34,7 +34,7 @@ use crate::status::Status;
 use crate::{heartbeat, keys, status};
 use crate::{limits, log};
 use nix::unistd::{User, chown, geteuid};
-use recorder::kept::Why;
+use recorder::kept::SaveReason;
 use std::fmt::Write as _;
 use std::io::Write;
 use std::net::{IpAddr, Ipv4Addr};
@@ -485,7 +485,7 @@ impl Keys {
         };
         while let Some(key) = pressed.recv().await {
             if key == freeze {
-                self.record.freeze(Why::Key);
+                self.record.freeze(SaveReason::Key);
             }
             if key == stop && self.programs.runs() {
                 self.programs.send(Command::Stop("the stop key")).await;

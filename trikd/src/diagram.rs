@@ -218,7 +218,7 @@ fn hear(
         }
         // The daemon starts another program for them; a client that sends one all the same learns that it is lost.
         Incoming::Direct(_) => host.error("a diagram takes no direct commands")?,
-        // Whoever called this knows.
+        // The caller knows.
         Incoming::Gone => {}
     }
     Ok(())

@@ -246,7 +246,7 @@ impl Display {
 
 /// Orders of programs in other languages, and of people at a shell: one on each line of `input`.
 ///
-/// Beside those of [`screen::order`] there are `image PATH` and `show WIDTH HEIGHT FORMAT COUNT`, behind whose line
+/// Beside those of [`screen::order`] there are `image PATH` and `show WIDTH HEIGHT FORMAT COUNT`, after whose line
 /// stand COUNT numbers of four bytes, the lowest first. `photo WIDTH HEIGHT` is a question to the camera. With `answers`
 /// each order is answered by a line `ok COUNT` and COUNT bytes (those of a photo, three for each point, else none), or
 /// `error: TEXT`; otherwise failures alone are told, on standard error.

@@ -42,7 +42,7 @@ pub enum Incoming {
         /// The order.
         order: String,
     },
-    /// Whoever was in control of the debugger is gone.
+    /// The client that was in control of the debugger is gone.
     DebugLeft,
     /// What a person says to a question, by its number; none: nobody answers.
     Reply(u32, Option<String>),

@@ -43,7 +43,7 @@ pub fn engine() -> impl Engine {
 /// Runs a program without a daemon: output goes to the terminal, and the mailbox knows only this robot.
 ///
 /// # Errors
-/// The failure, whose text a daemon would show behind `error: `.
+/// The failure, whose text a daemon would show after `error: `.
 pub fn run_alone(file: &Path, tree: &Path) -> Outcome {
     let file = std::path::absolute(file)
         .map_err(|error| Failure::Nowhere(file.to_owned(), error.into()))?;

@@ -258,7 +258,7 @@ impl Subscriber for Lines {
     fn exit(&self, _: &Id) {}
 }
 
-/// What an event says: its message, and the other fields behind it.
+/// What an event says: its message, and the other fields after it.
 #[derive(Default)]
 struct Text {
     message: String,

@@ -21,7 +21,7 @@ pub mod rest;
 mod says;
 
 use crate::clients::Clients;
-use crate::clients::debugging::Asked;
+use crate::clients::debugging::OrderId;
 use crate::feedback::{Feedback, Moment};
 use crate::protocol::news::{self, End};
 use crate::protocol::program::{FromProgram, ToProgram};
@@ -38,7 +38,7 @@ use nix::unistd::Pid;
 use output::Meter;
 pub use queue::{Command, Programs, Wish};
 use reaper::{Ended, Reaper};
-use recorder::kept::Why;
+use recorder::kept::SaveReason;
 use rest::Rest;
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
@@ -64,7 +64,7 @@ struct Current {
     meter: Meter,
     web: Vec<oneshot::Sender<String>>,
     /// Orders to its debugger that it has not answered yet.
-    orders: VecDeque<Asked>,
+    orders: VecDeque<OrderId>,
     ended: Option<(Ended, Instant)>,
 }
 
@@ -178,7 +178,7 @@ impl Supervisor {
                 let ran = self.current.is_some();
                 self.end(Cause::Ordered(who)).await;
                 if ran {
-                    self.around.record.freeze(Why::Stop);
+                    self.around.record.freeze(SaveReason::Stop);
                 }
                 // Also what came while nothing ran: after a stop everything begins anew.
                 self.around.mailbox.forget_kept();
@@ -527,7 +527,7 @@ impl Supervisor {
         let level = if failed { Level::Error } else { Level::Info };
         (self.around.record).level(Story::Programs, level, name, &text);
         if failed {
-            self.around.record.freeze(Why::Crash);
+            self.around.record.freeze(SaveReason::Crash);
         }
         let is_news = failed && !current.has_reported_error;
         if is_news {

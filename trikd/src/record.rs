@@ -9,7 +9,7 @@ use crate::settings::Settings;
 use journal::standard::Level;
 use journal::write::Story;
 use recorder::desk::{Desk, Listener};
-use recorder::kept::{self, Why};
+use recorder::kept::{self, SaveReason};
 use std::fmt;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -69,7 +69,7 @@ impl Record {
     }
 
     /// Something has happened after which somebody may want to know what was before. Without a black box it is nothing.
-    pub fn freeze(&self, why: Why) {
+    pub fn freeze(&self, why: SaveReason) {
         if self.desk.keeps() {
             self.desk.save(why, Box::new(|saved| tell(&saved)));
         }
@@ -82,7 +82,7 @@ impl Record {
     pub async fn save(&self) -> Result<PathBuf, recorder::error::Error> {
         let (tell_client, told) = oneshot::channel();
         self.desk.save(
-            Why::Asked,
+            SaveReason::Asked,
             Box::new(move |saved| {
                 tell(&saved);
                 // The client may have gone.

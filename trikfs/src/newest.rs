@@ -298,7 +298,7 @@ impl Newest {
         if self.latch.has_news() {
             return false;
         }
-        // Whoever has the lock takes a sample.
+        // The thread that has the lock takes a sample.
         let Ok(work) = self.work.try_lock() else {
             return false;
         };

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// takes what was ordered, what was measured and the time since the step before, and gives what the actuator is to do.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RegulatorDescription {
-    /// What is measured: one source, with the interval behind it.
+    /// What is measured: one source, with the interval after it.
     pub feedback: SeveralDescription,
     /// Path of the driven node.
     pub actuator: String,

@@ -2,9 +2,9 @@
 //!
 //! Owns the levels, and which one fits what a look at all work has found. Knows no thread and no clock.
 
-/// Nobody has worked for a while: whoever begins has to wake the thread.
+/// Nothing has worked for a while: a thread that begins has to wake the watchdog.
 pub(super) const ASLEEP: u8 = 0;
-/// The thread looks every few milliseconds: whoever begins awaited work has to wake it.
+/// The watchdog looks every few milliseconds: a thread that begins awaited work has to wake it.
 pub(super) const DOZING: u8 = 1;
 /// The thread looks every millisecond.
 pub(super) const TICKING: u8 = 2;

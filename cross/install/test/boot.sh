@@ -155,6 +155,16 @@ pids() {
 
 runs() { pids "$1" >/dev/null; }
 
+# answered LINE BYTES: sends bytes to the port of desktop programs, and prints what comes until there is such a line in it,
+# for 20 s at most. The end of the bytes would end the talk, and so would 5 s of silence.
+answered() {
+    # shellcheck disable=SC2016
+    board sh -c ': >/tmp/heard
+        { printf %s "$2"; left=80; until grep -q "$1" /tmp/heard || [ $left = 0 ]; do sleep 0.25; printf 9:keepalive; left=$((left - 1)); done; } |
+            nc -w 2 127.0.0.1 8888 >/tmp/heard
+        cat /tmp/heard; rm /tmp/heard' sh "$1" "$2"
+}
+
 # kill_all NAME: some may end by themselves when the first is gone.
 kill_all() {
     # shellcheck disable=SC2046
@@ -194,12 +204,13 @@ boot_gui() {
     check "trikGui runs" runs trikGui
     check "gui-off" board "$control" gui-off
     check "trikGui has ended" not runs trikGui
+    # init starts what it respawns at once: in this time it would.
     sleep 2
     check "and does not come back" not runs trikGui
     check "other services run on" runs sleep
     check "the tree is there" served 2
     check "trikd serves" within 60 board "$serving" status
-    check "on the port of desktop programs" says "version: " board sh -c "{ printf 7:version; sleep 2; } | nc -w 2 127.0.0.1 8888"
+    check "on the port of desktop programs" says "version: " answered "version: " 7:version
     check "start of what runs" says "control 8888" board "$serving" start
     check "trikd: stop" board "$serving" stop
     check "has ended" not runs trikd
@@ -217,11 +228,10 @@ boot_gui() {
 # A program in JavaScript from the network moves something, and a stop brings it to rest.
 boot_program() {
     check "trikd serves" within 60 board "$serving" status
-    board sh -c "{ printf '%s' '74:file:go.js:script.writeToFile(\"/trikfs/motor/value\", 70); script.wait(1e9)'
-        printf '9:run:go.js'; sleep 4; } | nc -w 2 127.0.0.1 8888" >"$work/heard" || true
-    check "a program from the network has started" grep -q "info: go.js has started" "$work/heard"
+    local text='script.writeToFile("/trikfs/motor/value", 70); script.wait(1e9)' started="info: go.js has started"
+    check "a program from the network has started" says "$started" answered "$started" "74:file:go.js:${text}9:run:go.js"
     check "a motor turns" within 20 motor_has 70
-    check "stop" says "info: go.js was stopped" board sh -c "{ printf 4:stop; sleep 4; } | nc -w 2 127.0.0.1 8888"
+    check "stop" says "info: go.js was stopped" answered "info: go.js was stopped" 4:stop
     check "and stands" motor_has 0
 }
 
@@ -257,6 +267,7 @@ boot_reinstalled() {
     power_on
     check "after a reinstallation: the tree is there" within 20 served 2
     check "trikGui stays off" not runs trikGui
+    # In this time init would have started it again.
     sleep 1
     check "for good" not runs trikGui
     check "status tells it" says "trikGui is off by choice" board "$control" status

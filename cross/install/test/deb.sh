@@ -35,10 +35,13 @@ test_deb() {
         check "systemd-analyze verify $service" layer systemd-analyze verify "$service"
     done
     check "the user of programs is there" layer id trikd
-    local page
+    local page program
     for page in trikfs trikfs-mount trikfs-check trikfs-convert trikfs-new-converter trikfs-edit trikfs-umount trikfs-completions trikfs-man trikfs-ev3dev \
         trikd trikd-serve trikd-status trikd-pair trikd-draw trikd-js trikd-completions trikd-man; do
         check "man $page" man_page "$page"
+    done
+    for program in "$layer"/usr/bin/trik*; do
+        check "${program##*/} has a man page" test -e "$layer/usr/share/man/man1/${program##*/}.1.gz"
     done
     check "no other man page" test "$(find "$layer/usr/share/man" -name 'trik*' | wc -l)" -eq 18
     check "bash completion" layer bash -n /usr/share/bash-completion/completions/trikfs

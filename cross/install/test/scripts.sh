@@ -194,6 +194,7 @@ test_respawn() {
     check "stop" "$control" stop
     check "the tree is gone" not test -e "$ROOT/trikfs/status"
     check "status 3" gives 3 "$control" status
+    # Longer than the pause of respawn: in this time it would be there again.
     sleep 1.5
     check "and stays gone" not test -e "$ROOT/trikfs/status"
 
@@ -240,6 +241,7 @@ test_respawn() {
     echo 'trikfs = {}' >"$ROOT/other.lua"
     check "a tree mounted by hand" "$ROOT/usr/bin/trikfs" mount --background --config "$ROOT/other.lua" "$ROOT/trikfs"
     check "start beside it" "$control" start
+    # In this time it would have been replaced.
     sleep 2
     check "leaves it alone" grep -q "config ok: 0 nodes" "$ROOT/trikfs/status"
     check "status says why" says "is mounted there already" "$control" status

@@ -1,7 +1,7 @@
 //! Messages of ROS 2 (Jazzy) that say what a robot measures and does, in SI units.
 //!
 //! Owns their fields, texts and bytes; the source of each is the package that its name begins with. Constants of the packages
-//! are left out, as they take no bytes. Which node of a tree is which message is known to whoever writes one.
+//! are left out, as they take no bytes. Which node of a tree is which message is known to the program that writes one.
 
 use super::{TIME, stamp};
 use crate::cdr::Writer;

@@ -3,6 +3,7 @@
 //! Owns these, and how seconds and values are written in them.
 
 use super::value::{Value, shown};
+use lang_text::json::quoted;
 
 /// How a message of the report is meant.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
@@ -80,18 +81,8 @@ pub(super) fn json(value: &Value) -> String {
     match value {
         Value::Bool(_) | Value::Int(_) => value.to_text(),
         Value::Double(number) if number.is_finite() => value.to_text(),
-        Value::Text(text) => {
-            let mut json = String::from("\"");
-            for c in text.chars() {
-                match c {
-                    '"' | '\\' => json.extend(['\\', c]),
-                    c if c < ' ' => json.push_str(&format!("\\u{:04x}", u32::from(c))),
-                    c => json.push(c),
-                }
-            }
-            json.push('"');
-            json
-        }
+        // A report holds texts whole.
+        Value::Text(text) => quoted(text, usize::MAX),
         Value::Null
         | Value::Double(_)
         | Value::NoText

@@ -40,7 +40,7 @@ pub fn format(text: &str) -> Result<String, Vec<Diagnostic>> {
     Ok(writer.out)
 }
 
-/// A statement or a declaration: its own tokens, and comments before, in and behind it.
+/// A statement or a declaration: its own tokens, and comments before, in and after it.
 #[derive(Default)]
 struct Item {
     before: Vec<Token>,
@@ -128,7 +128,7 @@ impl<'a> Writer<'a> {
         found
     }
 
-    /// Tokens up to the one that ends the item, which is told how many there are. Comments among them go before or behind:
+    /// Tokens up to the one that ends the item, which is told how many there are. Comments among them go before or after:
     /// those that need the rest of a line, or several lines, before.
     fn item(&mut self, before: Vec<Token>, is_last: impl Fn(&Token, usize) -> bool) -> Item {
         let mut item = Item::default();

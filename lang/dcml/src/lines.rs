@@ -72,7 +72,7 @@ impl<'a> Lines<'a> {
         (line, units.sum())
     }
 
-    /// The byte of such a place: behind the end of a line it is that end, behind the last line the end of the text.
+    /// The byte of such a place: after the end of a line it is that end, after the last line the end of the text.
     pub fn offset(&self, line: usize, unit: usize) -> u32 {
         let span = self.span(line);
         let text = super::lexer::slice(self.text, span);

@@ -206,7 +206,7 @@ impl<'a> Lowering<'a> {
         })
     }
 
-    /// Branches from the last to the first, each with the ones behind it as its other side.
+    /// Branches from the last to the first, each with the ones after it as its other side.
     fn piecewise(
         &mut self,
         branches: &[(Condition, Expr)],

@@ -1,7 +1,8 @@
 //! The known word that a mistyped one was probably meant to be.
 //!
 //! Distance: insertions, deletions, substitutions and swaps of neighbours count one each (optimal string alignment);
-//! case counts half an edit. Pure; bounded by [`crate::limits::DCML_WORDS_COMPARED`].
+//! case counts half an edit, since `r` and `R` are often both names of a model. The rules of `lang/text` for longer names are
+//! others, and this crate depends on no crate of ours. Pure; bounded by [`crate::limits::DCML_WORDS_COMPARED`].
 
 use strsim::osa_distance;
 

@@ -2,7 +2,7 @@
 //!
 //! Owns the grammar of documents, sections and equations; `cursor` has the tokens, `expression` the
 //! grammar of expressions. Where a statement cannot be
-//! read it goes on behind its semicolon, or at what must be the beginning of the next one.
+//! read it goes on after its semicolon, or at what must be the beginning of the next one.
 
 mod cursor;
 mod expression;
@@ -381,7 +381,7 @@ impl<'a> Parser<'a, '_> {
         });
     }
 
-    /// `(x)` behind `d`.
+    /// `(x)` after `d`.
     fn derivative_target(&mut self) -> Option<Name> {
         self.bump();
         let name = self.name()?;

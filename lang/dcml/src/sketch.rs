@@ -1,4 +1,4 @@
-//! Small models made by a program, for tests of what comes behind the reader of texts.
+//! Small models made by a program, for tests of what comes after the reader of texts.
 
 use super::function::Function;
 use super::model::{Condition, Equation, Expr, Model, Symbol};

@@ -355,7 +355,7 @@ impl Solver {
         actions(end.next_down(), &mut self.action);
         system.derivative(&self.state, &self.action, &mut self.slopes[6]);
         if self.slopes[6].iter().any(|one| !one.is_finite()) {
-            // It may be finite behind a jump of actions: the next step tells.
+            // It may be finite after a jump of actions: the next step tells.
             self.renew();
         }
         Ok(())

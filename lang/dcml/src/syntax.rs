@@ -7,7 +7,7 @@
 pub struct Span {
     /// The first byte.
     pub start: u32,
-    /// The byte behind the last one.
+    /// The byte after the last one.
     pub end: u32,
 }
 
@@ -109,7 +109,7 @@ pub struct Section {
 /// One declared name. Unit, range and circle are extensions: `v [m/s] in -2 .. 2`, `theta [rad] in S1`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Declaration {
-    /// What stands before or behind it as its documentation.
+    /// What stands before or after it as its documentation.
     pub doc: Option<Doc>,
     /// The name.
     pub name: Name,

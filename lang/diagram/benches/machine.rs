@@ -67,7 +67,7 @@ impl Brick for Nothing {
     }
 }
 
-/// A ring of blocks of one kind behind an initial node.
+/// A ring of blocks of one kind after an initial node.
 fn ring(kind: &str, properties: &[(&str, &str)], count: usize) -> Sketch {
     let mut sketch = Sketch::new();
     let start = sketch.block("InitialNode", &[]);

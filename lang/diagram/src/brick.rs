@@ -196,7 +196,7 @@ pub enum Answer {
     Waiting,
     /// This.
     Text(String),
-    /// He will not.
+    /// That there is no answer.
     Cancelled,
 }
 
@@ -219,7 +219,7 @@ pub trait Brick {
     /// The newest reading of a sensor with one number; nothing if no such sensor is plugged in.
     fn scalar(&mut self, port: Port) -> Option<i32>;
 
-    /// The newest reading of a sensor with several numbers, written behind what is in `into`; false if no such sensor is
+    /// The newest reading of a sensor with several numbers, written after what is in `into`; false if no such sensor is
     /// plugged in.
     fn vector(&mut self, port: Port, into: &mut Vec<i32>) -> bool;
 

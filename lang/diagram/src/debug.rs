@@ -208,7 +208,7 @@ impl Debugger {
         Ok(())
     }
 
-    /// A thread is no longer to be held; whoever calls it also calls [`Machine::release`].
+    /// A thread is no longer to be held; the caller also calls [`Machine::release`].
     pub fn let_thread(&mut self, name: &str) {
         self.held_alone.remove(name);
     }

@@ -263,7 +263,7 @@ impl Port {
     }
 }
 
-/// The text with Latin letters in place of Cyrillic ones that look like them; `None` if it is longer than any name.
+/// The text with Latin letters instead of Cyrillic ones that look like them; `None` if it is longer than any name.
 fn latin(text: &str) -> Option<String> {
     const LONGEST: usize = 40;
     if text.len() > LONGEST {

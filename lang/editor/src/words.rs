@@ -13,7 +13,7 @@ use std::ops::Range;
 pub enum Role {
     /// A reserved word.
     Keyword(Keyword),
-    /// The name of a model, behind `BEGIN`.
+    /// The name of a model, after `BEGIN`.
     ModelName,
     /// A part of the name of a package.
     Package,
@@ -29,11 +29,11 @@ pub enum Role {
     Use,
     /// `d` of a derivative.
     Derivative,
-    /// A name with a parenthesis behind it that is a function.
+    /// A name with a parenthesis after it that is a function.
     Function(Function),
     /// `piecewise`.
     Piecewise,
-    /// A name with a parenthesis behind it that is no function.
+    /// A name with a parenthesis after it that is no function.
     Unknown,
     /// A number.
     Number,

@@ -52,7 +52,7 @@ pub(super) enum Op {
     Table(Span),
     Block(Span),
     Assign(Slot, Id),
-    /// Base, indices and, behind them in the operands, the value.
+    /// Base, indices and, after them in the operands, the value.
     AssignElement(Base, Span),
     /// Index into the faults: told when it runs.
     Broken(u32),

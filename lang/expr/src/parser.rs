@@ -273,7 +273,7 @@ impl<'a> Parser<'a> {
         self.add(Node::Unary(operator, operand), at)
     }
 
-    /// A name or an expression in brackets, with what is behind it: indices and calls.
+    /// A name or an expression in brackets, with what follows it: indices and calls.
     fn prefixed(&mut self) -> Parsed<Id> {
         let mut found = self.prefix();
         loop {

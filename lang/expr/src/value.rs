@@ -397,7 +397,7 @@ pub fn float_text(number: f64) -> String {
     }
 }
 
-/// At most 6 decimals, no zeros behind the last one that counts.
+/// At most 6 decimals, no zeros after the last one that counts.
 fn six_decimals(number: f64) -> String {
     let mut text = format!("{number:.6}");
     let kept = text.trim_end_matches('0').trim_end_matches('.').len();

@@ -6,7 +6,9 @@ pub const XML_DEPTH: usize = 64;
 pub const XML_TAGS: usize = 100_000;
 /// Attributes of one tag.
 pub const XML_ATTRIBUTES: usize = 64;
-/// Problems that one reading tells; what is more is counted.
+/// Problems that one reading tells; those beyond that are counted.
 pub const PROBLEMS: usize = 200;
 /// Problems that are counted.
 pub const PROBLEMS_KEPT: usize = 2_000;
+/// Bytes of a word that is compared with known ones; a longer one is near to none.
+pub const NEAR_BYTES: usize = 200;

@@ -1,8 +1,10 @@
 //! The word that was meant: the nearest of those that are known.
 //!
 //! Distance: optimal string alignment (Damerau 1964, Levenshtein 1966), in which two letters that changed places are one
-//! mistake. Owns how far a word may be from what was meant.
+//! mistake. Owns how far a word may be from what was meant. Models of robots have their own in `lang/dcml`, which depends on
+//! no crate of ours: there names have one letter, and their case tells them apart.
 
+use crate::limits::NEAR_BYTES;
 use crate::problem::Words;
 use strsim::osa_distance;
 
@@ -10,7 +12,7 @@ use strsim::osa_distance;
 /// the letters are wrong, one of three or four.
 pub fn nearest<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     // A text that is no name at all is near to none, and costs nothing.
-    if word.len() > 200 {
+    if word.len() > NEAR_BYTES {
         return None;
     }
     let letters = word.chars().count();

@@ -78,7 +78,7 @@ pub struct Place {
     pub property: Option<String>,
     /// The place in the text of the property or the file.
     pub position: Option<Position>,
-    /// Bytes of the file before that place, where whoever told it does not have the text: [`locate`].
+    /// Bytes of the file before that place, if the part that found the problem does not have the text: [`locate`].
     pub offset: Option<u32>,
 }
 

@@ -87,15 +87,18 @@ async function pads(page) {
   await page.keyboard.press('Space');
   await until('the pad after a stop', isMoving, false);
   await at(0.5, 0.2);
+  // In this time it would.
   await page.waitForTimeout(300);
   assert.equal(value('motors/M3'), '0', 'a pad that is held on after a stop moves nothing');
   await page.mouse.up();
   await touch();
-  // Somebody else stops: what is held here must be let go first.
+  // Somebody else stops: what is held here must be let go first. For 400 ms a zero would be taken for the pad's own.
   await page.waitForTimeout(600);
   there.robot.write('stop', 1);
   await until('the pad after a stop from elsewhere', isMoving, false);
+  // In these times it would move again, while it is held still and when it is moved.
   await page.waitForTimeout(300);
+  assert.equal(value('motors/M3'), '0', 'a pad that is held still after a stop from elsewhere moves nothing');
   await at(0.5, 0.2);
   await page.waitForTimeout(300);
   assert.equal(value('motors/M3'), '0', 'a pad that is held on after a stop from elsewhere moves nothing');
@@ -156,6 +159,7 @@ async function gamepad(page) {
         now ? [{ connected: true, id: 'test', axes: now, buttons: [] }] : [];
     }, axes);
   const rests = async (what) => {
+    // In this time it would move.
     await page.waitForTimeout(300);
     assert.equal(value('motors/M3'), '0', what);
   };

@@ -28,7 +28,12 @@ async function give(page, name, file) {
   await (await asked).setFiles(file);
 }
 
-const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+/** A value lasts so long: a recording of it is as long, and has moments within it. */
+const lasts = (ms) => new Promise((done) => setTimeout(done, ms));
+
+/** Until the browser has drawn what came of the keys. */
+const drawn = (page) =>
+  page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
 
 /** Nobody is kept from it. */
 async function isUsable(page, what) {
@@ -41,9 +46,9 @@ async function isUsable(page, what) {
 /** The motor gets 10, then 20, and goes on with it. */
 async function drive() {
   there.robot.write('motors/M3/value', 10);
-  await wait(1500);
+  await lasts(1500);
   there.robot.write('motors/M3/value', 20);
-  await wait(1500);
+  await lasts(1500);
 }
 
 async function goesBack(page) {
@@ -55,15 +60,17 @@ async function goesBack(page) {
   await page.keyboard.press('Home');
   await until('the beginning', shown(page), '0');
   await page.keyboard.press('End');
-  // How long ago that was depends on the browser.
-  await eventually('what it was then', async () => {
-    for (let at = 0; at < 5; at++) await page.keyboard.press('ArrowLeft');
-    await wait(250);
+  // How long ago that was depends on the browser. What is shown may be some steps late, but not the 15 that it lasted.
+  const isThere = async () => {
+    await page.keyboard.press('ArrowLeft');
+    await drawn(page);
     return (await shown(page)()) === '10';
-  });
+  };
+  await eventually('what it was then', isThere, 60_000);
   // The robot goes on.
   there.robot.write('motors/M3/value', 25);
-  await wait(700);
+  // In this time the page would show it.
+  await lasts(700);
   assert.equal(await shown(page)(), '10');
   const set = page.getByRole('slider', { name: 'motors/M3, duty_cycle' });
   assert.ok(await set.isDisabled(), 'nothing can be moved');
@@ -110,7 +117,7 @@ test('the last minutes are at any moment, a stop works there, and now is now', a
 
 test('a recording that was saved is opened, and compared with the robot', async () => {
   there.robot.write('motors/M3/value', 30);
-  await wait(1200);
+  await lasts(1200);
   const page = await there.look.open(`${there.robot.url}#instruments`);
   await button(page, 'The last minutes').click();
   const saved = page.waitForEvent('download');

@@ -4,11 +4,10 @@
 
 import axe from 'axe-core';
 import { chromium } from 'playwright-core';
-import { execFile, spawn } from 'node:child_process';
+import { spawn } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
-import { promisify } from 'node:util';
 
 const TRIK = process.env.TRIK ?? resolve(import.meta.dirname, '../../../target/debug/trik');
 const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
@@ -57,12 +56,29 @@ export class Robot {
   }
 
   /**
-   * Records everything for some seconds.
+   * Records everything for some seconds: begun once the recorder looks, recorded once the file is whole.
    * @param {string} file
    * @param {number} seconds
    */
-  async record(file, seconds) {
-    await promisify(execFile)(TRIK, ['record', '-o', file, '--seconds', String(seconds), this.tree]);
+  record(file, seconds) {
+    const child = spawn(TRIK, ['record', '-o', file, '--seconds', String(seconds), this.tree]);
+    let said = '';
+    const begun = new Promise((done) => {
+      for (const stream of [child.stdout, child.stderr]) {
+        stream.on('data', (/** @type {Buffer} */ text) => {
+          said += text.toString();
+          if (said.includes('recording ')) done(undefined);
+        });
+      }
+    });
+    const recorded = new Promise((done, fail) => {
+      child.once('error', fail);
+      child.once('exit', (status) =>
+        status === 0 ? done(undefined) : fail(new Error(`trik record: ${said}`)),
+      );
+    });
+    // A recorder that ends at once has not begun.
+    return { begun: Promise.race([begun, recorded]), recorded };
   }
 
   /** Where its page is; it ends with a slash. */

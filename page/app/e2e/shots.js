@@ -47,6 +47,7 @@ try {
   await page.getByRole('button', { name: 'Run drive.py' }).click();
   await page.getByText('drive.py runs').waitFor();
   await open('world');
+  // The picture has the way of six seconds.
   await page.waitForTimeout(6000);
   await shot('world');
   await open('instruments');
@@ -59,6 +60,7 @@ try {
       .click();
   }
   await page.evaluate(() => window.scrollTo(0, 0));
+  // The graph has six seconds.
   await page.waitForTimeout(6000);
   await shot('instruments');
   await page.keyboard.press('Space');

@@ -8,8 +8,8 @@ import { Look, Robot, eventually, until } from './robot.js';
 test('a slider goes through a recording, and the instruments show its values', async () => {
   const robot = await Robot.start();
   const file = join(robot.home, 'run.mcap');
-  const recorded = robot.record(file, 4);
-  await new Promise((done) => setTimeout(done, 2000));
+  const { begun, recorded } = robot.record(file, 4);
+  await begun;
   robot.write('motors/M3/value', 33);
   await recorded;
   const player = await Robot.replay(file);

@@ -147,6 +147,7 @@ async function room(one) {
   await page.getByRole('button', { name: 'Pause' }).click();
   await page.getByRole('button', { name: 'Go on' }).waitFor();
   const still = seen.state.t;
+  // In this time four pictures would come.
   await new Promise((done) => setTimeout(done, 400));
   assert.equal(seen.state.t, still, 'time stands still');
   await page.getByRole('button', { name: 'Step' }).click();
@@ -213,6 +214,7 @@ async function room(one) {
 
   // Nobody looks: nothing comes.
   await page.evaluate(() => (location.hash = 'instruments'));
+  // In this time four pictures would come.
   const more = async () => {
     const { states } = seen;
     await new Promise((done) => setTimeout(done, 400));
@@ -226,8 +228,13 @@ async function room(one) {
     ['narrow', { viewport: { width: 400, height: 800 }, hasTouch: true, isMobile: true, locale: 'ru' }],
   ]) {
     const other = await look(one, options);
+    const [x, y] = other.seen.state.robots[0].at;
     drive(one, 30, 50);
-    await new Promise((done) => setTimeout(done, 1500));
+    await until(
+      'a way that can be seen',
+      () => other.seen.state.robots[0].at,
+      (at) => Math.hypot(at[0] - x, at[1] - y) > 0.15,
+    );
     drive(one, 0, 0);
     await shot(other.page, name);
     if (options.hasTouch) await pinch(other.page);

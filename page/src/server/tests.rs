@@ -296,6 +296,7 @@ fn a_browser_drives_and_what_it_drives_rests_when_it_is_gone() {
     let (mut browser, mut robot) = scene.browser();
     browser.until("\"is\":\"hello\"");
     browser.order(r#"{"do":"write","path":"motors/M1","value":"30"}"#);
+    // What was written and who is in control are two pieces of news: either may come first.
     browser.until_all(&["\"mine\":true", "\"is\":\"written\""]);
     assert_eq!(scene.motor(), "30\n");
     browser.send(2, b"version");

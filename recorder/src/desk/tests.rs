@@ -146,7 +146,7 @@ fn lines_reach_who_listens_and_nobody_is_waited_for_at_the_end() {
     );
     let (answer, answered) = channel();
     desk.save(
-        Why::Asked,
+        SaveReason::Asked,
         Box::new(move |saved| answer.send(saved).unwrap()),
     );
     let why = answered.recv().unwrap().unwrap_err().to_string();

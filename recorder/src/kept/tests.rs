@@ -16,7 +16,7 @@ fn settings(directory: &Path) -> Settings {
     }
 }
 
-fn nothing() -> Told {
+fn nothing() -> OnSaved {
     Box::new(|told| panic!("nothing was left, but {told:?}"))
 }
 
@@ -46,7 +46,7 @@ fn values(path: &Path) -> Vec<u32> {
 }
 
 /// Keeps one sample after the other, and begins a new part before each number that is named.
-fn fill(kept: &mut Kept, all: std::ops::Range<u32>, parts: &[u32]) {
+fn fill(kept: &mut BlackBox, all: std::ops::Range<u32>, parts: &[u32]) {
     let (known, still) = (known(1, "a"), known(2, "still"));
     for at in all {
         if parts.contains(&at) {
@@ -65,7 +65,7 @@ fn fill(kept: &mut Kept, all: std::ops::Range<u32>, parts: &[u32]) {
     }
 }
 
-fn saved_now(kept: &mut Kept, why: Why) -> PathBuf {
+fn saved_now(kept: &mut BlackBox, why: SaveReason) -> PathBuf {
     let (tell, told) = channel();
     kept.save(why, Box::new(move |path| tell.send(path).unwrap()));
     told.recv().unwrap().unwrap()
@@ -74,16 +74,16 @@ fn saved_now(kept: &mut Kept, why: Why) -> PathBuf {
 #[test]
 fn parts_are_saved_as_one_file_without_what_they_repeat() {
     let folder = tempdir().unwrap();
-    let mut kept = Kept::open(settings(folder.path()), "test", nothing()).unwrap();
-    assert!(kept.is_due(Why::Stop));
+    let mut kept = BlackBox::open(settings(folder.path()), "test", nothing()).unwrap();
+    assert!(kept.is_due(SaveReason::Stop));
     fill(&mut kept, 0..100, &[30, 60]);
-    let path = saved_now(&mut kept, Why::Stop);
+    let path = saved_now(&mut kept, SaveReason::Stop);
     assert!(path.to_string_lossy().ends_with("-stop.mcap"));
     assert_eq!(values(&path), (0..100).chain([1000]).collect::<Vec<_>>());
-    assert!(!kept.is_due(Why::Stop), "not again and again");
+    assert!(!kept.is_due(SaveReason::Stop), "not again and again");
     // It goes on meanwhile.
     fill(&mut kept, 100..150, &[]);
-    let path = saved_now(&mut kept, Why::Asked);
+    let path = saved_now(&mut kept, SaveReason::Asked);
     assert_eq!(values(&path), (0..150).chain([1000]).collect::<Vec<_>>());
     kept.close();
     assert_eq!(named(folder.path(), PART).unwrap(), [] as [PathBuf; 0]);
@@ -93,14 +93,14 @@ fn parts_are_saved_as_one_file_without_what_they_repeat() {
 #[test]
 fn the_oldest_part_begins_when_it_was_begun_and_not_with_what_was_long_before() {
     let folder = tempdir().unwrap();
-    let mut kept = Kept::open(settings(folder.path()), "test", nothing()).unwrap();
+    let mut kept = BlackBox::open(settings(folder.path()), "test", nothing()).unwrap();
     let (moving, still) = (known(1, "a"), known(2, "still"));
     for at in [5000, 6000] {
         kept.end_part();
         let first = || vec![sample(&still, 10)];
         kept.put(&[sample(&moving, at)].into(), first);
     }
-    let path = saved_now(&mut kept, Why::Asked);
+    let path = saved_now(&mut kept, SaveReason::Asked);
     let reader = Reader::open(File::open(&path).unwrap()).unwrap();
     assert_eq!(reader.begin_ns(), BEGIN_NS + 5000);
     assert_eq!(values(&path), [10, 5000, 6000], "and not once more");
@@ -109,7 +109,7 @@ fn the_oldest_part_begins_when_it_was_begun_and_not_with_what_was_long_before() 
 #[test]
 fn what_is_too_much_or_too_old_goes() {
     let folder = tempdir().unwrap();
-    let mut kept = Kept::open(settings(folder.path()), "test", nothing()).unwrap();
+    let mut kept = BlackBox::open(settings(folder.path()), "test", nothing()).unwrap();
     fill(&mut kept, 0..30, &[10, 20]);
     kept.end_part();
     for part in &mut kept.parts {
@@ -117,11 +117,14 @@ fn what_is_too_much_or_too_old_goes() {
     }
     kept.forget(Instant::now());
     assert_eq!(kept.parts.len(), 2, "of three parts with 1200 KiB");
-    assert_eq!(values(&saved_now(&mut kept, Why::Asked))[0], 10);
+    assert_eq!(values(&saved_now(&mut kept, SaveReason::Asked))[0], 10);
     kept.forget(Instant::now() + Duration::from_secs(3601));
     assert_eq!(kept.parts.len(), 0);
     let (tell, told) = channel();
-    kept.save(Why::Asked, Box::new(move |path| tell.send(path).unwrap()));
+    kept.save(
+        SaveReason::Asked,
+        Box::new(move |path| tell.send(path).unwrap()),
+    );
     let told = told.recv().unwrap().unwrap_err().to_string();
     assert!(told.contains("yet"), "{told}");
 }
@@ -129,7 +132,7 @@ fn what_is_too_much_or_too_old_goes() {
 #[test]
 fn what_a_killed_process_has_left_is_saved_by_the_next() {
     let folder = tempdir().unwrap();
-    let mut kept = Kept::open(settings(folder.path()), "test", nothing()).unwrap();
+    let mut kept = BlackBox::open(settings(folder.path()), "test", nothing()).unwrap();
     fill(&mut kept, 0..100, &[50]);
     kept.end_part();
     for part in &mut kept.parts {
@@ -143,7 +146,7 @@ fn what_a_killed_process_has_left_is_saved_by_the_next() {
     fs::write(folder.path().join("part-9999999999999999.mcap"), "").unwrap();
     let (tell, told) = channel();
     let tell = Box::new(move |path| tell.send(path).unwrap());
-    let _kept = Kept::open(settings(folder.path()), "test", tell).unwrap();
+    let _kept = BlackBox::open(settings(folder.path()), "test", tell).unwrap();
     let path = told.recv().unwrap().unwrap();
     assert_eq!(values(&path), (0..100).chain([1000]).collect::<Vec<_>>());
     assert_eq!(named(folder.path(), PART).unwrap(), [] as [PathBuf; 0]);
@@ -152,12 +155,12 @@ fn what_a_killed_process_has_left_is_saved_by_the_next() {
 #[test]
 fn one_is_saved_at_a_time_and_the_end_waits_for_it() {
     let folder = tempdir().unwrap();
-    let mut kept = Kept::open(settings(folder.path()), "test", nothing()).unwrap();
+    let mut kept = BlackBox::open(settings(folder.path()), "test", nothing()).unwrap();
     fill(&mut kept, 0..100, &[50]);
     let (tell, told) = channel();
     let (go, wait) = channel();
     kept.save(
-        Why::Stop,
+        SaveReason::Stop,
         Box::new(move |path| {
             wait.recv().unwrap();
             tell.send(path).unwrap();
@@ -166,7 +169,10 @@ fn one_is_saved_at_a_time_and_the_end_waits_for_it() {
     // As while parts are put together.
     kept.is_saving.store(true, Ordering::Relaxed);
     let (refuse, refused) = channel();
-    kept.save(Why::Asked, Box::new(move |path| refuse.send(path).unwrap()));
+    kept.save(
+        SaveReason::Asked,
+        Box::new(move |path| refuse.send(path).unwrap()),
+    );
     assert_eq!(refused.recv().unwrap(), Err(Error::Saving));
     go.send(()).unwrap();
     kept.close();

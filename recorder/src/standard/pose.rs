@@ -33,11 +33,11 @@ impl Place {
 
 /// The places of one node.
 #[derive(Debug, Default)]
-pub(super) struct Way {
+pub(super) struct Track {
     last: Option<(u64, Place)>,
 }
 
-impl Way {
+impl Track {
     /// The next place: None for the odometry of the first one, and after a pause, because a speed takes two.
     pub(super) fn go(
         &mut self,

@@ -63,7 +63,7 @@ pub struct Marker {
 /// Where random numbers of a program come from.
 #[derive(Clone, Debug)]
 pub struct Dice {
-    /// What comes in place of all of them, if a rule says so.
+    /// What comes instead of all of them, if a rule says so.
     pub fixed: Option<i32>,
     /// How often it was asked.
     pub calls: u32,
@@ -133,7 +133,7 @@ pub struct Robot {
     pub(super) hull: i32,
 }
 
-/// The digit behind a port's letter, from 0.
+/// The digit after a port's letter, from 0.
 fn digit(port: Port) -> usize {
     let digit = port.name().as_bytes().get(1).copied().unwrap_or(b'1');
     usize::from(digit.saturating_sub(b'1'))

@@ -38,7 +38,7 @@ impl Unit {
 /// How a field is simulated.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Settings {
-    /// Masses and friction in place of ideal motion.
+    /// Masses and friction instead of ideal motion.
     pub realistic_physics: bool,
     /// Noise of sensors.
     pub realistic_sensors: bool,

@@ -157,7 +157,7 @@ const BACKGROUND: &[&str] = &["id"];
 
 fn nothing(_: &mut Codec<'_, '_>) {}
 
-/// Attributes that whoever reads the tag asks for itself.
+/// Attributes that the reader of the tag asks for itself.
 fn named(codec: &mut Codec<'_, '_>, names: &[&str]) {
     for name in names {
         codec.attribute(name);

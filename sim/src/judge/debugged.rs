@@ -54,7 +54,7 @@ impl Debugged {
     }
 }
 
-/// Puts a new version in the place of a debugged program in its run, if no thread is at a block that it does not have. Model
+/// Replaces a debugged program in its run by a new version, if no thread is at a block that it does not have. Model
 /// time does not pass.
 ///
 /// # Errors

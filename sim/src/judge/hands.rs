@@ -77,7 +77,7 @@ impl fmt::Display for Refusal {
 
 impl std::error::Error for Refusal {}
 
-/// Reads deeds: in each line seconds and what is done, in order of time. Empty lines and those behind `#` mean nothing.
+/// Reads deeds: in each line seconds and what is done, in order of time. Empty lines and what follows `#` mean nothing.
 ///
 /// # Errors
 /// The number of the line and what is wrong in it.

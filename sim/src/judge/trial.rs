@@ -1,4 +1,4 @@
-//! A run that is done tick by tick, by whoever calls: at once for a verdict, or with pauses for a debugger.
+//! A run that is done tick by tick by its caller: at once for a verdict, or with pauses for a debugger.
 //!
 //! Owns the order of one tick: the world moves, the rules look, the program steps, what it has said is heard. A program that
 //! is held in the middle of its step holds the tick, and model time with it.

@@ -89,7 +89,7 @@ fn a_motor_that_cannot_be_read_back_shows_what_was_written_last() {
     assert_eq!(asked(&bus, 0x14), [(vec![0x14, 0], 0)]);
     m.write("motor/value", "50").unwrap();
     assert!(m.stop().success());
-    // The guardian may do it once more behind the daemon.
+    // The guardian may do it once more after the daemon.
     let at_the_end = asked(&bus, 0x14);
     let (first, rest) = at_the_end.split_first().expect("what was written");
     assert_eq!(first, &(vec![0x14, 50], 0));

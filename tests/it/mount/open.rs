@@ -106,7 +106,7 @@ fn other_users_come_in_only_when_they_are_let_in() {
     }";
     let nobody = "setpriv --reuid=65534 --regid=65534 --clear-groups";
     let Some(m) = mount(config) else { return };
-    // From outside: the tree cannot be somebody's working directory who is not let in.
+    // From outside: the tree cannot be the working directory of a user who has no access.
     let outside = m.try_sh(&format!("cd /; {nobody} cat $MNT/open/bin_data"));
     assert_ne!(outside.code(), 0);
     assert!(

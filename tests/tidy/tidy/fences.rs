@@ -41,7 +41,7 @@ const SHOWN: [&str; 13] = [
     "", "c", "dcml", "java", "js", "json", "lua", "python", "sh", "text", "toml", "xml", "yaml",
 ];
 
-/// Whether the words of a fence are those of a mark, with names behind them.
+/// Whether the words of a fence are those of a mark, with names after them.
 fn begins(info: &str, mark: &str) -> bool {
     info.strip_prefix(mark)
         .is_some_and(|rest| rest.is_empty() || rest.starts_with(' '))

@@ -3,6 +3,7 @@
 //! Owns the lists of crates and files that they are for, and of what they let pass.
 
 use super::{Source, none, sources};
+use std::collections::BTreeSet;
 
 /// Crates whose limits all stand in their `limits.rs`. Those of `filters` are ranges of parameters, which stand with them;
 /// `ev3dev`, `sim`, `lang/dcml` and `lang/diagram` have facts of devices and of picture and text beside theirs.
@@ -42,6 +43,9 @@ const BLAMING: [&str; 15] = [
     "screen",
     "trikfs",
 ];
+/// Crates in which no function gives a text as an error either. Numbers of errors stand in several of their files: each
+/// says what an answer of the system means there.
+const TYPED: [&str; 3] = ["bridge", "trik", "trikd"];
 /// Constants of such a crate that are named like limits and are none of ours, as beginnings of paths with a name.
 const NO_LIMITS: [(&str, &str); 5] = [
     ("config/src/vm/memory", "SMALL_MAX"),
@@ -85,7 +89,7 @@ fn constant(line: &str) -> Option<&str> {
 #[test]
 fn the_lists_name_crates() {
     let mut complaints = Vec::new();
-    for name in LIMITED.iter().chain(&BLAMING) {
+    for name in LIMITED.iter().chain(&BLAMING).chain(&TYPED) {
         if !super::CRATES.contains(name) {
             complaints.push(format!("there is no crate {name}"));
         }
@@ -140,8 +144,32 @@ fn errors_get_their_numbers_in_one_file() {
     none(&complaints);
 }
 
-/// Functions of one of the crates that may give a text instead of an error: values of options, whose errors `clap` shows.
-const TEXTS: [&str; 1] = ["fn group_id("];
+/// Functions that a parser of an option's value calls and that give its error; parsers themselves are found by the
+/// attribute that names them. `clap` shows such a text beside the option.
+const TEXTS: [&str; 1] = ["seconds"];
+
+/// The names of functions that parse the value of an option, with the directories of their crates.
+fn value_parsers(all: &[Source]) -> BTreeSet<(&str, &str)> {
+    let mut names = BTreeSet::new();
+    for source in all {
+        let (folder, _) = source.path.split_once("/src/").unwrap_or_default();
+        for (_, rest) in source
+            .code()
+            .filter_map(|(_, line)| line.split_once("value_parser = "))
+        {
+            let end = rest.find([')', ',', '(']).unwrap_or(rest.len());
+            let name = rest[..end].rsplit("::").next().unwrap_or_default();
+            names.insert((folder, name));
+        }
+    }
+    names
+}
+
+/// The name of the function whose head begins in a line.
+fn function(line: &str) -> Option<&str> {
+    let (_, rest) = line.split_once("fn ")?;
+    rest.split(['(', '<']).next()
+}
 
 /// Whether the types after `Result<` end with a text as the error.
 fn gives_text(types: &str) -> bool {
@@ -161,10 +189,13 @@ fn gives_text(types: &str) -> bool {
 fn what_goes_wrong_is_no_text() {
     let mut complaints = Vec::new();
     let all = sources();
-    for source in product(&all, &BLAMING) {
+    let parsers = value_parsers(&all);
+    for source in product(&all, &BLAMING).chain(product(&all, &TYPED)) {
+        let (folder, _) = source.path.split_once("/src/").unwrap_or_default();
+        let may = |name: &str| TEXTS.contains(&name) || parsers.contains(&(folder, name));
         for (number, line) in lines(source) {
             let is_text = line.split("Result<").skip(1).any(gives_text);
-            if is_text && !TEXTS.iter().any(|name| line.contains(name)) {
+            if is_text && !function(line).is_some_and(may) {
                 complaints.push(format!("{}:{number}: {}", source.path, line.trim()));
             }
         }

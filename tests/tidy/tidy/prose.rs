@@ -1,8 +1,8 @@
-//! Rules of the documents' prose: tables are whole, and old turns of phrase do not come back.
+//! Rules of prose: tables of documents are whole, and old turns of phrase do not come back, also not in comments.
 
 use std::path::PathBuf;
 
-use super::none;
+use super::{none, sources};
 use harness::documents::documents;
 
 /// Phrases that a reader stumbles over, in small letters, with what to write instead.
@@ -100,17 +100,34 @@ fn quotations_end_in_their_line() {
     none(&complaints);
 }
 
+/// What a line says in such words, with its place.
+fn stumbles<'a>(place: &'a str, line: &str) -> impl Iterator<Item = String> + 'a {
+    let line = line.to_lowercase();
+    let found = BANNED
+        .iter()
+        .filter(move |(phrase, _)| line.contains(phrase));
+    found.map(move |(phrase, better)| format!("{place}: '{phrase}': write {better}"))
+}
+
 #[test]
 fn documents_are_written_in_plain_words() {
     let mut complaints = Vec::new();
     for (path, lines) in prose() {
         for (number, line) in lines {
-            let line = line.to_lowercase();
-            for (phrase, better) in BANNED.iter().filter(|(phrase, _)| line.contains(phrase)) {
-                complaints.push(format!(
-                    "{}:{number}: '{phrase}': write {better}",
-                    path.display()
-                ));
+            complaints.extend(stumbles(&format!("{}:{number}", path.display()), &line));
+        }
+    }
+    none(&complaints);
+}
+
+#[test]
+fn comments_are_written_in_plain_words() {
+    let mut complaints = Vec::new();
+    for source in sources() {
+        for (index, line) in source.text.lines().enumerate() {
+            let line = line.trim_start();
+            if line.starts_with("//") {
+                complaints.extend(stumbles(&format!("{}:{}", source.path, index + 1), line));
             }
         }
     }

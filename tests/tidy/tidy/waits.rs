@@ -50,6 +50,51 @@ const PAUSES: [(&str, usize, &str); 20] = [
     ),
 ];
 
+/// Scripts of tests in other languages that pause, how often, and why: those of the page in a browser, and of what is
+/// installed.
+const SCRIPTS: [(&str, usize, &str); 12] = [
+    ("cross/board/guest.sh", 1, "between two looks"),
+    (
+        "cross/install/controller/usr/lib/trikfs/common.sh",
+        1,
+        "the product: between two signals",
+    ),
+    ("cross/install/test.sh", 1, "between two looks"),
+    (
+        "cross/install/test/boot.sh",
+        4,
+        "what would come back, in two places; between two looks; a program that does nothing",
+    ),
+    (
+        "cross/install/test/scripts.sh",
+        2,
+        "what would come back, and what would be replaced",
+    ),
+    (
+        "cross/serve.sh",
+        2,
+        "between two looks, and keepalives at their rate",
+    ),
+    ("page/app/e2e/bench.js", 2, "measures for a time"),
+    (
+        "page/app/e2e/instruments.e2e.js",
+        5,
+        "what would move, in four places, and what would be its own",
+    ),
+    (
+        "page/app/e2e/past.e2e.js",
+        1,
+        "values that last in a recording",
+    ),
+    ("page/app/e2e/robot.js", 1, "between two looks"),
+    (
+        "page/app/e2e/shots.js",
+        2,
+        "pictures of the last six seconds",
+    ),
+    ("page/app/e2e/world.e2e.js", 2, "pictures that would come"),
+];
+
 /// Seconds from which a program that sleeps is one that has to be ended.
 const FOR_EVER_S: f64 = 20.0;
 
@@ -62,16 +107,47 @@ fn pauses(line: &str) -> bool {
             !before.is_some_and(|letter| letter.is_alphanumeric() || letter == '_')
         })
         .any(|(at, word)| seconds(&line[at + word.len()..]).is_none_or(|time| time < FOR_EVER_S));
+    let waits = ["setTimeout(", "waitForTimeout("]
+        .iter()
+        .any(|call| line.contains(call));
     let programs = line
         .match_indices("sleep ")
         .any(|(at, word)| seconds(&line[at + word.len()..]).is_some_and(|time| time < FOR_EVER_S));
-    calls || programs
+    calls || waits || programs
 }
 
 /// The number that a text begins with.
 fn seconds(text: &str) -> Option<f64> {
     let end = text.find(|letter: char| !letter.is_ascii_digit() && letter != '.');
     text[..end.unwrap_or(text.len())].parse().ok()
+}
+
+#[test]
+fn no_script_of_a_test_sleeps_until_something_should_have_happened() {
+    assert!(pauses("await page.waitForTimeout(300);") && pauses("    sleep 2"));
+    let mut found = Vec::new();
+    for ending in ["js", "sh", "ts"] {
+        for folder in ["cross", "page/app/e2e", "tests"] {
+            super::files(&super::root().join(folder), ending, &mut found);
+        }
+    }
+    assert!(found.len() > 20, "only {} scripts", found.len());
+    let mut complaints = Vec::new();
+    for path in found {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let name = path.strip_prefix(super::root()).unwrap().to_str().unwrap();
+        let is_code = |line: &&str| !["#", "//", "*"].iter().any(|sign| line.starts_with(sign));
+        let lines = text.lines().map(str::trim_start).filter(is_code);
+        let count = lines.filter(|line| pauses(line)).count();
+        let listed = SCRIPTS.iter().find(|(path, ..)| *path == name);
+        let allowed = listed.map_or(0, |(_, count, _)| *count);
+        if count != allowed {
+            complaints.push(format!(
+                "{name}: {count} pauses, not {allowed}: wait for what has to come, or list why time is what is tested"
+            ));
+        }
+    }
+    none(&complaints);
 }
 
 #[test]

@@ -66,7 +66,7 @@ struct Task {
 }
 
 /// A solution, with the names on the way to it: folders, and the file without its ending.
-struct Found {
+struct Solution {
     path: PathBuf,
     parts: Vec<String>,
     name: PathBuf,
@@ -290,7 +290,7 @@ fn tasks(folder: &Path, args: &CheckArgs, passed: &mut Passed) -> Result<Vec<Tas
 
 /// All solutions. One directory is the class; of several each is a pupil. Programs with text run in fields, or in the save
 /// that was given out.
-fn found(args: &CheckArgs, has_tasks: bool, passed: &mut Passed) -> Result<Vec<Found>, Error> {
+fn found(args: &CheckArgs, has_tasks: bool, passed: &mut Passed) -> Result<Vec<Solution>, Error> {
     let has_worlds = has_tasks || !args.field.is_empty() || args.task.is_some();
     let endings: &[&str] = match has_worlds {
         true => &["qrs", "js", "py"],
@@ -314,7 +314,7 @@ fn found(args: &CheckArgs, has_tasks: bool, passed: &mut Passed) -> Result<Vec<F
             let parts = name.with_extension("");
             let parts = parts.components();
             let parts = parts.map(|part| shown(part.as_os_str()));
-            all.push(Found {
+            all.push(Solution {
                 path: solution,
                 parts: parts.collect(),
                 name,
@@ -325,7 +325,11 @@ fn found(args: &CheckArgs, has_tasks: bool, passed: &mut Passed) -> Result<Vec<F
 }
 
 /// Folders of pupils in which there is no solution: they have handed in nothing, and have a row all the same.
-fn empty_folders(args: &CheckArgs, found: &[Found], tasks: &[Task]) -> Result<Vec<String>, Error> {
+fn empty_folders(
+    args: &CheckArgs,
+    found: &[Solution],
+    tasks: &[Task],
+) -> Result<Vec<String>, Error> {
     let mut folders = Vec::new();
     match &args.paths[..] {
         [class] if class.is_dir() => {
@@ -361,7 +365,7 @@ type Owner = Option<(String, usize)>;
 /// The tasks, and of each solution whose it is and for which of them; none for one that fits nowhere.
 fn sorted(
     tasks: Option<Vec<Task>>,
-    found: &[Found],
+    found: &[Solution],
     args: &CheckArgs,
 ) -> Result<(Vec<Task>, Vec<Owner>), Error> {
     let tasks = match tasks {
@@ -382,7 +386,7 @@ fn sorted(
         .map(|(index, task)| (task.name.to_lowercase(), index))
         .collect();
     let number = |part: &String| numbers.get(&part.to_lowercase()).copied();
-    let owner = |one: &Found| -> Owner {
+    let owner = |one: &Solution| -> Owner {
         let (first, rest) = one.parts.split_first()?;
         // A folder for each task, with a file or a folder for each pupil.
         if let (Some(task), Some(pupil)) = (number(first), rest.first()) {
@@ -399,7 +403,7 @@ fn sorted(
 }
 
 /// What the tasks are called if nobody says it: as the files in the folders of pupils are, unless each pupil has one file.
-fn names_of_tasks(found: &[Found], args: &CheckArgs) -> Vec<String> {
+fn names_of_tasks(found: &[Solution], args: &CheckArgs) -> Vec<String> {
     let mut counts: BTreeMap<&String, usize> = BTreeMap::new();
     for pupil in found.iter().filter_map(|one| one.parts.first()) {
         *counts.entry(pupil).or_default() += 1;
@@ -429,12 +433,12 @@ mod tests {
         args: CheckArgs,
     }
 
-    fn found(paths: &[&str]) -> Vec<Found> {
+    fn found(paths: &[&str]) -> Vec<Solution> {
         let one = |path: &&str| {
             let name = PathBuf::from(path);
             let parts = name.with_extension("");
             let parts = parts.iter().map(|part| part.to_string_lossy().into_owned());
-            Found {
+            Solution {
                 path: name.clone(),
                 parts: parts.collect(),
                 name,

@@ -16,9 +16,9 @@ use std::path::{Path, PathBuf};
 pub(super) struct Job {
     /// The solution; a record alone stands here itself.
     pub solution: PathBuf,
-    /// The world in place of its own.
+    /// The world instead of its own.
     pub field: Option<PathBuf>,
-    /// A record that is judged in place of running the solution.
+    /// A record that is judged instead of running the solution.
     pub log: Option<PathBuf>,
     /// The save that pupils were given for this task, if not that of all runs.
     pub given: Option<PathBuf>,
@@ -27,7 +27,7 @@ pub(super) struct Job {
 }
 
 impl Job {
-    /// What is judged, as people are told: a record, a program in place of the diagram, or the solution.
+    /// What is judged, as people are told: a record, a program instead of the diagram, or the solution.
     pub fn judged<'a>(&'a self, args: &'a CheckArgs) -> &'a Path {
         let other = self.log.as_deref().or(args.script.as_deref());
         other.unwrap_or(&self.solution)

@@ -10,6 +10,7 @@ use super::pool;
 use super::run::text;
 use crate::diagrams::generate::{self, GenArgs};
 use crate::diagrams::save::must_open;
+use crate::error::Error;
 use crate::output::Output;
 use crate::refusal::say;
 use crate::{language, limits};
@@ -134,7 +135,7 @@ fn whole(text: &str) -> Result<i32, String> {
     number.ok_or_else(|| "not a whole number from 0 on".to_owned())
 }
 
-/// Platforms of Qt, perhaps with parameters behind a colon.
+/// Platforms of Qt, perhaps with parameters after a colon.
 fn platform(name: &str) -> Result<String, String> {
     let known = PLATFORMS.contains(&name.split(':').next().unwrap_or_default());
     let names = PLATFORMS.join(", ");
@@ -327,7 +328,8 @@ fn patched(args: &Patcher) -> Result<(), Refused> {
             Some(_) => world,
             None => {
                 let old = opened.project.world.as_deref().unwrap_or_default();
-                merged(&world, old, args.world.is_some()).map_err(because(1))?
+                merged(&world, old, args.world.is_some())
+                    .map_err(|why| because(1)(why.to_string()))?
             }
         };
         opened.save.set_world(&world).map_err(told)?;
@@ -344,8 +346,8 @@ fn patched(args: &Patcher) -> Result<(), Refused> {
     }
     if args.to_start {
         let (project, _) = opened.save.project();
-        let mut field =
-            field_of(project.world.as_deref().unwrap_or_default(), locale).map_err(because(1))?;
+        let mut field = field_of(project.world.as_deref().unwrap_or_default(), locale)
+            .map_err(|why| because(1)(why.to_string()))?;
         if let Some(robot) = field.robot_mut() {
             robot.to_start();
         }
@@ -365,19 +367,19 @@ fn patched(args: &Patcher) -> Result<(), Refused> {
     output.write(&bytes).map_err(|refusal| (refusal.lines, 255))
 }
 
-fn field_of(world: &str, locale: Locale) -> Result<Field, String> {
+fn field_of(world: &str, locale: Locale) -> Result<Field, Error> {
     let opened = Field::read(world).map_err(|problems| {
         let lines: Vec<String> = problems
             .iter()
             .map(|problem| problem.in_locale(locale))
             .collect();
-        lines.join("; ")
+        Error::Refused(lines.join("; "))
     })?;
     Ok(opened.field)
 }
 
 /// A new world with the robots of an old one; they keep the new place unless `keep_place`.
-fn merged(new: &str, old: &str, keep_place: bool) -> Result<String, String> {
+fn merged(new: &str, old: &str, keep_place: bool) -> Result<String, Error> {
     let locale = language::of_system();
     let mut field = field_of(new, locale)?;
     let old = field_of(old, locale)?;

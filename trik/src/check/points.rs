@@ -21,7 +21,7 @@ enum Part {
 
 /// The points that a message tells: the number that stands at a word for points. Of "30 of 100 points" it is 30. The last
 /// such number counts, because messages tell the sum at their ends.
-pub(super) fn told(message: &str) -> Option<f64> {
+pub(super) fn stated(message: &str) -> Option<f64> {
     let parts = parts(message);
     let mut found = None;
     for (index, part) in parts.iter().enumerate() {
@@ -146,7 +146,7 @@ mod tests {
             ("points", None),
             ("- -5- 7", None),
         ] {
-            assert_eq!(told(message), points, "{message}");
+            assert_eq!(stated(message), points, "{message}");
         }
     }
 }

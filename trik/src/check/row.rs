@@ -87,7 +87,7 @@ impl Row {
     pub fn points_in_words(&self) -> Option<f64> {
         let said = self.messages.iter().rev();
         let mut said = said.filter(|(level, _)| level != words::WARNING);
-        said.find_map(|(_, text)| points::told(text))
+        said.find_map(|(_, text)| points::stated(text))
             .filter(|_| self.verdict.is_judged())
     }
 

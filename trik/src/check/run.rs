@@ -7,7 +7,7 @@ use super::args::CheckArgs;
 use super::explain;
 use super::jobs::{Job, jobs, shown};
 use super::row::Row;
-use super::script::{self, Given, Language};
+use super::script::{self, Language, Setup};
 use super::verdict::Verdict;
 use super::words;
 use crate::diagrams::save::{Unreadable, open};
@@ -373,7 +373,7 @@ impl Solution {
     /// The program, ready for its first step; the task gets the sensors that it needs.
     fn program(self, task: &mut Task, args: &CheckArgs) -> Result<Box<dyn Program>, Refused> {
         if let Some((language, text)) = &self.script {
-            let given = Given {
+            let given = Setup {
                 file: &self.file,
                 seed: args.seed,
                 is_watched: args.explain || args.html.is_some(),
@@ -398,7 +398,7 @@ pub(crate) enum Start {
     Running,
 }
 
-/// A diagram that is ready to run in its world, for whoever runs it tick by tick.
+/// A diagram that is ready to run in its world, for a caller that runs it tick by tick.
 pub(crate) struct Staged {
     pub file: PathBuf,
     pub project: Project,

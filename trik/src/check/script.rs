@@ -35,7 +35,7 @@ impl Language {
 
 /// What a program is given beside its text.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Given<'a> {
+pub(super) struct Setup<'a> {
     /// Where its text comes from.
     pub file: &'a Path,
     /// Seed of random numbers.
@@ -53,7 +53,7 @@ pub(super) struct Given<'a> {
 pub(super) fn open(
     language: Language,
     text: &str,
-    given: Given<'_>,
+    given: Setup<'_>,
 ) -> Result<Box<dyn Program>, Error> {
     match language {
         Language::JavaScript => {

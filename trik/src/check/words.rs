@@ -360,7 +360,7 @@ pub(super) fn one_to_debug(count: usize, locale: Locale) -> String {
 
 #[cfg(test)]
 mod tests {
-    use crate::check::points::told;
+    use crate::check::points::stated;
 
     #[test]
     fn points_are_told_in_russian_too() {
@@ -380,7 +380,7 @@ mod tests {
             ("10 очков за финиш 2", Some(10.0)),
             ("Точка 7", None),
         ] {
-            assert_eq!(told(message), points, "{message}");
+            assert_eq!(stated(message), points, "{message}");
         }
     }
 }

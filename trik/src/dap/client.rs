@@ -53,7 +53,7 @@ impl Refused {
 
 /// What comes next.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Come {
+pub(super) enum Incoming {
     /// A request.
     Request(Request),
     /// Nothing in this time.
@@ -63,14 +63,14 @@ pub(super) enum Come {
 }
 
 /// What comes from the thread that reads.
-enum Heard {
+enum Received {
     Request(Request),
     Bad(String),
 }
 
 /// A client.
 pub(super) struct Client {
-    from: Receiver<Heard>,
+    from: Receiver<Received>,
     to: Box<dyn Write>,
     seq: u64,
     is_gone: bool,
@@ -85,7 +85,7 @@ impl Client {
             while let Ok(Some(frame)) = frames.next() {
                 let read = match frame {
                     Frame::Body(body) => request(&body),
-                    Frame::Bad(why) => Heard::Bad(why),
+                    Frame::Bad(why) => Received::Bad(why.to_string()),
                 };
                 if sender.send(read).is_err() {
                     return;
@@ -101,19 +101,19 @@ impl Client {
     }
 
     /// The next request, waiting at most so long.
-    pub fn next(&mut self, wait: Duration) -> Come {
+    pub fn next(&mut self, wait: Duration) -> Incoming {
         loop {
             if self.is_gone {
-                return Come::End;
+                return Incoming::End;
             }
             match self.from.recv_timeout(wait) {
-                Ok(Heard::Request(request)) => return Come::Request(request),
-                Ok(Heard::Bad(why)) => self.event(
+                Ok(Received::Request(request)) => return Incoming::Request(request),
+                Ok(Received::Bad(why)) => self.event(
                     "output",
                     json!({"category": "important", "output": format!("trik dap: {why}\n")}),
                 ),
-                Err(RecvTimeoutError::Timeout) => return Come::Nothing,
-                Err(RecvTimeoutError::Disconnected) => return Come::End,
+                Err(RecvTimeoutError::Timeout) => return Incoming::Nothing,
+                Err(RecvTimeoutError::Disconnected) => return Incoming::End,
             }
         }
     }
@@ -150,19 +150,19 @@ impl Client {
     }
 }
 
-fn request(body: &[u8]) -> Heard {
+fn request(body: &[u8]) -> Received {
     let read: Result<Map<String, Value>, _> = serde_json::from_slice(body);
     let mut all = match read {
         Ok(all) => all,
-        Err(why) => return Heard::Bad(format!("this is no message: {why}")),
+        Err(why) => return Received::Bad(format!("this is no message: {why}")),
     };
     let seq = all.get("seq").and_then(Value::as_u64);
     match (seq, all.remove("command")) {
-        (Some(seq), Some(Value::String(command))) => Heard::Request(Request {
+        (Some(seq), Some(Value::String(command))) => Received::Request(Request {
             seq,
             command,
             arguments: all.remove("arguments").unwrap_or(Value::Null),
         }),
-        (None | Some(_), _) => Heard::Bad("a request has a seq and a command".to_owned()),
+        (None | Some(_), _) => Received::Bad("a request has a seq and a command".to_owned()),
     }
 }

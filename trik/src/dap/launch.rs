@@ -211,7 +211,7 @@ impl Launch {
         }
     }
 
-    /// Puts the file as it is now in the place of what runs, if it has changed.
+    /// Replaces what runs by the file as it is now, if it has changed.
     fn restart(
         &self,
         client: &mut Client,
@@ -220,7 +220,7 @@ impl Launch {
     ) -> Restart {
         let now = save::bytes(&self.program).ok();
         if now == sheets.seen {
-            // Whoever has joined a program does not begin it.
+            // An editor that has joined a program does not begin it.
             return match self.is_joining {
                 true => Restart::Same,
                 false => Restart::Anew,
@@ -278,7 +278,7 @@ enum Restart {
 struct Sheets {
     listing: Listing,
     project: Project,
-    /// Its file when it was read, for whoever looks whether it has changed.
+    /// Its file when it was read, to see whether it has changed.
     seen: Option<Vec<u8>>,
 }
 

@@ -3,13 +3,13 @@
 //! Owns the order of the protocol and what each request does. The program begins stopped; it goes on when the editor has
 //! said all its breakpoints. Between requests it runs in small pieces, so that no request waits for long.
 
-use super::client::{Client, Come, Refused, Request};
+use super::client::{Client, Incoming, Refused, Request};
 use super::launch::Launch;
 use super::points::{Kind, Points};
 use super::view;
 use crate::debug::listing::Listing;
+use crate::debug::report::{Report, State};
 use crate::debug::target::{Channel, Event, Target, log_lines, why_not};
-use crate::debug::told::{State, Told};
 use crate::error::Error;
 use lang_diagram::debug::order::Order;
 use lang_diagram::debug::{Back, Step};
@@ -47,9 +47,9 @@ pub(super) enum After {
 pub(super) fn serve(mut client: Client) {
     loop {
         let request = match client.next(PATIENCE) {
-            Come::Request(request) => request,
-            Come::Nothing => continue,
-            Come::End => return,
+            Incoming::Request(request) => request,
+            Incoming::Nothing => continue,
+            Incoming::End => return,
         };
         match request.command.as_str() {
             "initialize" => client.answer(&request, Ok(capabilities())),
@@ -110,7 +110,7 @@ pub(super) struct Session<'a> {
     project: &'a Project,
     name: String,
     points: &'a mut Points,
-    told: Told,
+    told: Report,
     /// The client has said all its breakpoints.
     is_configured: bool,
     /// The run is over, and only its past is left.
@@ -133,7 +133,7 @@ impl<'a> Session<'a> {
             project,
             name,
             points,
-            told: Told::default(),
+            told: Report::default(),
             is_configured: false,
             is_over,
             launch,
@@ -205,17 +205,17 @@ impl<'a> Session<'a> {
                 || self.told.state == State::Searching;
             let wait = if is_running { Duration::ZERO } else { PATIENCE };
             match self.client.next(wait) {
-                Come::Request(request) => {
+                Incoming::Request(request) => {
                     if let Some(after) = self.receive(request)? {
                         return Ok(after);
                     }
                 }
-                Come::End => return Ok(After::End),
-                Come::Nothing if is_running => {
+                Incoming::End => return Ok(After::End),
+                Incoming::Nothing if is_running => {
                     let events = self.turn(PIECE)?;
                     self.hear(&events, true);
                 }
-                Come::Nothing => {
+                Incoming::Nothing => {
                     // A robot goes on living while a person thinks.
                     let events = self.turn(Duration::ZERO)?;
                     self.hear(&events, true);
@@ -246,7 +246,7 @@ impl<'a> Session<'a> {
     fn turn(&mut self, wait: Duration) -> Result<Vec<Event>, Error> {
         let mut events = self.target.turn(wait)?;
         events.retain(|event| match event {
-            Event::Told(value) => match Told::read(value) {
+            Event::Report(value) => match Report::read(value) {
                 Some(told) => {
                     let is_new = !told.is_same(&self.told);
                     self.told = told;
@@ -269,11 +269,11 @@ impl<'a> Session<'a> {
         let mut over = None;
         for event in events {
             match event {
-                Event::Told(value) => {
+                Event::Report(value) => {
                     for line in log_lines(value) {
                         self.output("console", line);
                     }
-                    let state = Told::read(value).map(|told| told.state);
+                    let state = Report::read(value).map(|told| told.state);
                     is_stopped |= matches!(state, Some(State::Stopped | State::Past));
                     is_at_end |= self.is_over && state == Some(State::Ended);
                 }
@@ -347,7 +347,7 @@ impl<'a> Session<'a> {
     /// Gives an order; what it says of the program is kept.
     fn order(&mut self, order: &Order) -> Result<Result<Value, Refused>, Error> {
         let answer = self.target.order(order)?;
-        if let Some(told) = answer.get("program").and_then(Told::read) {
+        if let Some(told) = answer.get("program").and_then(Report::read) {
             self.told = told;
         }
         Ok(match why_not(&answer) {
@@ -371,7 +371,7 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Whoever looked at the past of a run that is over is at its end again.
+    /// An editor that looked at the past of a run that is over is at its end again.
     fn at_end(&mut self) {
         match self.launch.stops_at_end && self.launch.is_debugged {
             true => self.stopped("pause", None),

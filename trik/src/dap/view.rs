@@ -3,8 +3,8 @@
 //! Owns the numbers by which it asks for them. They are good until the program goes on.
 
 use crate::debug::listing::Listing;
+use crate::debug::report::{At, Report};
 use crate::debug::target::{Target, why_not};
-use crate::debug::told::{At, Told};
 use crate::error::Error;
 use lang_diagram::debug::order::Order;
 use lang_diagram::ports::Port;
@@ -29,7 +29,7 @@ pub(super) fn thread_of(id: u64) -> u64 {
     id.saturating_sub(1)
 }
 
-pub(super) fn threads(told: &Told) -> Value {
+pub(super) fn threads(told: &Report) -> Value {
     let threads = told.threads.iter();
     let threads: Vec<Value> = threads
         .map(|thread| json!({"id": thread_id(thread.number), "name": thread.name}))
@@ -38,7 +38,7 @@ pub(super) fn threads(told: &Told) -> Value {
 }
 
 pub(super) fn stack(
-    told: &Told,
+    told: &Report,
     id: u64,
     window: (u64, u64),
     listing: &Listing,
@@ -96,7 +96,7 @@ pub(super) fn scopes() -> Value {
 }
 
 pub(super) fn variables(
-    told: &Told,
+    told: &Report,
     reference: u64,
     target: &mut dyn Target,
 ) -> Result<Value, Error> {
@@ -120,7 +120,7 @@ pub(super) fn variables(
 }
 
 /// Whether a breakpoint can stop at changes of what has this name, and how the client calls it then.
-pub(super) fn data(told: &Told, name: &str) -> Value {
+pub(super) fn data(told: &Report, name: &str) -> Value {
     let mut own = told.variables.iter();
     let is_known = own.any(|variable| variable.name == name)
         || Port::all().any(|port| port.variable() == Some(name));
@@ -149,7 +149,7 @@ pub(super) fn word(answer: &Value, name: &str) -> String {
 }
 
 /// Names that begin as what is typed ends.
-pub(super) fn completions(told: &Told, text: &str, column: u64) -> Value {
+pub(super) fn completions(told: &Report, text: &str, column: u64) -> Value {
     let column = usize::try_from(column.saturating_sub(1)).unwrap_or(usize::MAX);
     let typed: String = text.chars().take(column).collect();
     let is_part = |c: char| c.is_ascii_alphanumeric() || c == '_';

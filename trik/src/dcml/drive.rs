@@ -15,6 +15,7 @@ use crate::limits::{DRIVE_LAG_DEG, DRIVE_SETTLE_MS, DRIVE_TICK_MS, DRIVE_TOP_DEG
 use crate::output::standard;
 use crate::place;
 use crate::refusal::{REFUSED, Refusal};
+use crate::remote::target::tree_of;
 use clap::Args;
 use lang_dcml::robot::Robot;
 use lang_dcml::solve::propagate::Propagator;
@@ -50,8 +51,9 @@ pub(crate) struct DriveArgs {
     /// the port after @port in its documentation].
     #[arg(long, value_name = "ACTION=PORT", value_delimiter = ',', value_parser = driven)]
     pub drive: Vec<(String, Actuator)>,
-    /// The robot mounted there [default: the virtual robot that runs on this computer, or else /trikfs].
-    #[arg(long, env = "TRIK_TREE", value_name = "MOUNTPOINT")]
+    /// The robot: where its tree is mounted, or the address of a virtual one [default: the virtual robot that runs on this
+    /// computer, or else /trikfs].
+    #[arg(long, env = "TRIK_TREE", value_name = "ROBOT")]
     pub robot: Option<PathBuf>,
     /// Speed of a motor at full power, in degrees per second; a path that needs more is refused.
     #[arg(long, value_name = "DEG_S", default_value_t = DRIVE_TOP_DEG_S)]
@@ -113,7 +115,7 @@ pub(super) fn run(args: &DriveArgs) -> Result<u8, Refusal> {
 /// Where the tree of the robot is.
 fn tree(args: &DriveArgs) -> Result<PathBuf, Error> {
     if let Some(tree) = &args.robot {
-        return Ok(tree.clone());
+        return tree_of(tree);
     }
     let base = place::base()?;
     let all = place::running(&base).map_err(|error| Error::file(&base, error));

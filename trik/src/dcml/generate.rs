@@ -16,8 +16,7 @@ pub(crate) struct GenArgs {
     /// A file with a model; - is standard input.
     #[arg(required_unless_present = "interface")]
     pub file: Option<PathBuf>,
-    /// The language: rust, c, java, java-hipparchus, python, lua, javascript or latex.
-    #[arg(long, alias = "target", value_name = "LANGUAGE", value_parser = target)]
+    #[arg(long, alias = "target", value_name = "LANGUAGE", value_parser = target, help = about_languages())]
     pub lang: Target,
     /// Write to a new file; - is standard output, as without this option.
     #[arg(short, long, value_name = "OUT")]
@@ -37,12 +36,23 @@ pub(crate) struct GenArgs {
     pub force: bool,
 }
 
+/// The names of all languages, for a person.
+fn languages() -> String {
+    let all: Vec<_> = Target::ALL.into_iter().map(Target::name).collect();
+    match all.split_last() {
+        Some((last, others)) => format!("{} or {last}", others.join(", ")),
+        None => String::new(),
+    }
+}
+
+/// What the help says of the option.
+fn about_languages() -> String {
+    format!("The language: {}", languages())
+}
+
 /// A language by its name; for the command line.
 fn target(name: &str) -> Result<Target, String> {
-    Target::named(name).ok_or_else(|| {
-        let all: Vec<_> = Target::ALL.into_iter().map(Target::name).collect();
-        format!("there is no such language; there are {}", all.join(", "))
-    })
+    Target::named(name).ok_or_else(|| format!("there is no such language; take {}", languages()))
 }
 
 /// Writes the text.

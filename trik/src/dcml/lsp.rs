@@ -65,7 +65,7 @@ fn put(frame: Frame, inbox: &Inbox) {
             inbox.put(message, bytes);
         }
         Frame::Bad(why) => inbox.put(
-            Message::Bad(Value::Null, Refusal::new(INVALID_REQUEST, why)),
+            Message::Bad(Value::Null, Refusal::new(INVALID_REQUEST, why.to_string())),
             0,
         ),
     }

@@ -12,7 +12,7 @@ mod forms;
 mod picture;
 
 use self::args::{PlanArgs, Planner};
-use self::ask::Asked;
+use self::ask::Question;
 use super::load::load;
 use super::values;
 use crate::error::Error;
@@ -118,7 +118,7 @@ fn surroundings(args: &PlanArgs) -> Result<(Obstacles, Option<field::Stand>), Re
 
 fn read(path: &Path) -> Result<String, Error> {
     let refused = |why: String| Error::Refused(format!("{}: {why}", named(path)));
-    // One more than may be, so that whoever reads the text can say it.
+    // One more than may be, so that the reader of the text can say it.
     let limit = PLAN_OBSTACLES_TEXT_MAX as u64 + 1;
     let bytes =
         input::read(path, limit).map_err(|unread| refused(why(&unread, limit, A_FILE).english))?;
@@ -129,7 +129,7 @@ fn searched(
     args: &PlanArgs,
     robot: &mut Robot,
     obstacles: &Obstacles,
-    asked: &Asked,
+    asked: &Question,
     begun: Instant,
 ) -> Result<Outcome, Refusal> {
     let default = Options::default();

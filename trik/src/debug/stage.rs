@@ -133,7 +133,7 @@ impl<'a> Stage<'a> {
         let news = self.program.desk.news();
         let mut events: Vec<Event> = news
             .iter()
-            .filter_map(|text| Some(Event::Told(serde_json::from_str(text).ok()?)))
+            .filter_map(|text| Some(Event::Report(serde_json::from_str(text).ok()?)))
             .collect();
         self.said(&mut events);
         events

@@ -5,18 +5,18 @@
 pub(crate) mod words;
 
 use super::listing::Listing;
-use super::told::{At, State, Stop, Told};
+use super::report::{At, Report, State, Stop};
 use crate::terminal::harmless;
 use lang_text::problem::Locale;
 use words::said;
 
 /// The time of the program.
-pub(crate) fn time(told: &Told) -> String {
+pub(crate) fn time(told: &Report) -> String {
     format!("{:.2} s", told.ms as f64 / 1000.0)
 }
 
 /// Where it is stopped and why, and the block that comes next; nothing if it is not stopped.
-pub(crate) fn lines(told: &Told, listing: Option<&Listing>, locale: Locale) -> Vec<String> {
+pub(crate) fn lines(told: &Report, listing: Option<&Listing>, locale: Locale) -> Vec<String> {
     let Some(stop) = &told.stop else {
         return Vec::new();
     };
@@ -34,7 +34,7 @@ pub(crate) fn lines(told: &Told, listing: Option<&Listing>, locale: Locale) -> V
     lines
 }
 
-fn why((told, stop): (&Told, &Stop), listing: Option<&Listing>, locale: Locale) -> String {
+fn why((told, stop): (&Report, &Stop), listing: Option<&Listing>, locale: Locale) -> String {
     let number = stop.number.unwrap_or_default();
     let words = match stop.reason.as_str() {
         "breakpoint" => words::breakpoint(number),

@@ -25,7 +25,7 @@ pub(crate) trait Target {
     /// The robot is gone.
     fn turn(&mut self, wait: Duration) -> Result<Vec<Event>, Error>;
 
-    /// Puts the diagram of a file in the place of the one that runs, which goes on where it is with what it has.
+    /// Replaces the diagram that runs by the one of a file, which goes on where it is with what it has.
     ///
     /// # Errors
     /// The robot does not answer.
@@ -59,7 +59,7 @@ pub(crate) enum Changed {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Event {
     /// The debugger has told something, a JSON object.
-    Told(Value),
+    Report(Value),
     /// The program, or somebody about it, has said something.
     Said(Channel, String),
     /// The run is over, and why.

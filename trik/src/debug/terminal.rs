@@ -4,9 +4,9 @@
 //! pipe are read one after the other, each when the program has stopped.
 
 use super::listing::Listing;
+use super::report::{Report, State};
 use super::stops::{self, words};
 use super::target::{Changed, Channel, Event, Target, log_lines, why_not};
-use super::told::{State, Told};
 use super::words::{ROWS, Typed, understand};
 use crate::diagrams::save::must_open;
 use crate::error::Error;
@@ -33,7 +33,7 @@ pub(crate) struct Terminal<'a> {
     target: &'a mut dyn Target,
     listing: Listing,
     source: (PathBuf, Locale),
-    told: Told,
+    told: Report,
     /// Whether somebody reads prompts.
     is_interactive: bool,
     last: String,
@@ -52,7 +52,7 @@ impl<'a> Terminal<'a> {
             target,
             listing,
             source,
-            told: Told::default(),
+            told: Report::default(),
             is_interactive: io::stdin().is_terminal() && io::stdout().is_terminal(),
             last: String::new(),
             is_leaving: false,
@@ -166,7 +166,7 @@ impl<'a> Terminal<'a> {
     /// Where the program is now: a person may have set a variable since it stopped.
     fn look(&mut self) -> Result<(), Error> {
         let answer = self.target.order(&Order::Look)?;
-        if let Some(told) = answer.get("program").and_then(Told::read) {
+        if let Some(told) = answer.get("program").and_then(Report::read) {
             self.told = told;
         }
         Ok(())
@@ -187,7 +187,7 @@ impl<'a> Terminal<'a> {
             let points = points.clone();
             return self.breakpoints(points, answer);
         }
-        let Some(told) = answer.get("program").and_then(Told::read) else {
+        let Some(told) = answer.get("program").and_then(Report::read) else {
             return Ok(());
         };
         self.told = told;
@@ -236,7 +236,7 @@ impl<'a> Terminal<'a> {
         self.hear_but_states(events)?;
         let is_over = events.iter().any(|event| matches!(event, Event::Over(_)));
         let mut states = events.iter().filter_map(|event| match event {
-            Event::Told(value) => Told::read(value),
+            Event::Report(value) => Report::read(value),
             Event::Said(..) | Event::Over(_) => None,
         });
         let Some(told) = states.next_back() else {
@@ -259,7 +259,7 @@ impl<'a> Terminal<'a> {
     fn hear_but_states(&mut self, events: &[Event]) -> Result<(), Error> {
         for event in events {
             match event {
-                Event::Told(value) => {
+                Event::Report(value) => {
                     for line in log_lines(value) {
                         self.say(&harmless(line))?;
                     }

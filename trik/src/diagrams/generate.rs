@@ -21,7 +21,7 @@ pub(crate) struct GenArgs {
     /// The diagram, a file NAME.qrs.
     pub file: PathBuf,
     /// The language: python, javascript, lua, c, pascal or fsharp.
-    #[arg(long, value_name = "LANGUAGE", value_parser = target_language)]
+    #[arg(long, alias = "target", value_name = "LANGUAGE", value_parser = target_language)]
     pub lang: Language,
     /// Write to a new file; - is standard output.
     #[arg(short, long, value_name = "OUT")]

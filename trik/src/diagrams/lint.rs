@@ -54,8 +54,8 @@ pub(crate) fn run(args: &LintArgs) -> Result<u8, Refusal> {
     let mut unreadable = 0;
     for file in &args.files {
         let mut opened = match open(file) {
-            Ok(Found::Diagram(opened)) => *opened,
-            Ok(Found::World(text)) => {
+            Ok(Content::Diagram(opened)) => *opened,
+            Ok(Content::World(text)) => {
                 if args.recover.is_some() {
                     let why = "this is a world, and --recover is for diagrams";
                     return Err(Refusal::new(format!("{}: {why}", named(file))));
@@ -100,14 +100,14 @@ pub(crate) fn run(args: &LintArgs) -> Result<u8, Refusal> {
 }
 
 /// What a file is.
-enum Found {
+enum Content {
     Diagram(Box<Opened>),
     /// The text of a world model.
     World(String),
 }
 
 /// Reads a file; one that begins with a tag is a world.
-fn open(path: &Path) -> Result<Found, Unreadable> {
+fn open(path: &Path) -> Result<Content, Unreadable> {
     let bytes = bytes(path).map_err(Unreadable::File)?;
     if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
         return Err(Unreadable::File(words::utf_16()));
@@ -118,11 +118,11 @@ fn open(path: &Path) -> Result<Found, Unreadable> {
     let text = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(&bytes);
     if text.trim_ascii_start().first() != Some(&b'<') {
         let opened = read::read(&bytes).map_err(Unreadable::Save)?;
-        return Ok(Found::Diagram(Box::new(opened)));
+        return Ok(Content::Diagram(Box::new(opened)));
     }
     let text = String::from_utf8(bytes)
         .map_err(|error| Unreadable::File(words::no_utf_8(error.utf8_error().valid_up_to())))?;
-    Ok(Found::World(text))
+    Ok(Content::World(text))
 }
 
 /// Whether a file is a program by its name.

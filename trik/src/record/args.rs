@@ -3,7 +3,7 @@
 //! Owns the options. Knows nothing of what they do.
 
 use crate::error::Error;
-use crate::remote::target::{Target, target};
+use crate::remote::target::{Target, is_path, target};
 use clap::Args;
 use recorder::pattern::matches;
 use std::path::PathBuf;
@@ -20,10 +20,11 @@ pub(crate) struct RecordArgs {
     /// Stop after so many seconds [default: on Ctrl-C, or when the tree is unmounted].
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u32).range(1..=86400 * 7))]
     pub seconds: Option<u32>,
-    /// Record what happens on this robot, which sends it over the network: name or address, and its port if that is not 8888.
-    #[arg(long, value_name = "HOST[:PORT]", value_parser = target, conflicts_with = "mountpoint")]
-    pub robot: Option<Target>,
-    /// With --robot: at most so many samples a second of each node, the newest ones [default: all].
+    /// Record what happens on this robot: its name or address, with its port if that is not 8888, and it sends that over
+    /// the network; or where its tree is mounted, a path with a slash.
+    #[arg(long, value_name = "ROBOT", value_parser = recorded, conflicts_with = "mountpoint")]
+    pub robot: Option<Recorded>,
+    /// Of a robot in the network: at most so many samples a second of each node, the newest ones [default: all].
     #[arg(long, value_name = "NUMBER", requires = "robot", value_parser = rate)]
     pub hz: Option<f64>,
     /// Leave out the messages of standard types, which other tools show at once: a smaller file.
@@ -31,6 +32,23 @@ pub(crate) struct RecordArgs {
     pub no_standard: bool,
     /// The mounted tree [default: the virtual robot that runs, or else /trikfs].
     pub mountpoint: Option<PathBuf>,
+}
+
+/// A robot that is recorded.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Recorded {
+    /// One that sends what happens there.
+    Network(Target),
+    /// One whose tree is mounted here.
+    Tree(PathBuf),
+}
+
+/// A robot by its name, address or mountpoint; for the command line.
+fn recorded(text: &str) -> Result<Recorded, Error> {
+    match is_path(text) {
+        true => Ok(Recorded::Tree(text.into())),
+        false => target(text).map(Recorded::Network),
+    }
 }
 
 impl RecordArgs {

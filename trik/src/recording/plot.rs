@@ -17,7 +17,7 @@ use journal::layout::Layout;
 use journal::read::{Event, What};
 use lang_text::problem::Locale;
 use recorder::pattern::matches;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Size of a panel, and what is around it, in px.
 const PANEL: (f64, f64) = (560.0, 110.0);
@@ -42,9 +42,12 @@ pub(crate) struct PlotArgs {
     /// Up to this moment and with it [default: to the end].
     #[arg(long, value_name = "SECONDS", value_parser = moment)]
     pub to: Option<u64>,
-    /// The picture, a new file; - is standard output.
-    #[arg(long, short, value_name = "OUT.svg|OUT.png")]
-    pub output: PathBuf,
+    /// The picture as SVG, a new file; - is standard output.
+    #[arg(long, value_name = "OUT.svg", required_unless_present = "output")]
+    pub svg: Option<PathBuf>,
+    /// The picture as SVG or PNG, by the ending of a new file; - is SVG on standard output.
+    #[arg(long, short, value_name = "OUT.svg|OUT.png", conflicts_with = "svg")]
+    pub output: Option<PathBuf>,
     /// Overwrite the picture if it exists.
     #[arg(long)]
     pub force: bool,
@@ -77,16 +80,18 @@ struct Step {
 /// # Errors
 /// It is no whole recording, has no such numbers or too many, or the picture cannot be written.
 pub(crate) fn run(args: &PlotArgs) -> Result<u8, Refusal> {
+    let path = args.svg.as_deref().or(args.output.as_deref());
     let output = Output {
-        path: Some(&args.output),
+        path,
         force: args.force,
         source: &args.file,
         locale: Locale::English,
     };
-    let ends =
-        |with: &str| (args.output.extension()).is_some_and(|end| end.eq_ignore_ascii_case(with));
-    let is_png = ends("png");
-    if !ends("svg") && !is_png && !output.is_standard() {
+    let ends = |with: &str| {
+        (path.and_then(Path::extension)).is_some_and(|end| end.eq_ignore_ascii_case(with))
+    };
+    let is_png = args.svg.is_none() && ends("png");
+    if args.svg.is_none() && !ends("svg") && !is_png && !output.is_standard() {
         let why = "the picture is SVG or PNG: its name ends with .svg or .png";
         return Err(Refusal::new(why));
     }

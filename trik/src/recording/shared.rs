@@ -43,7 +43,7 @@ pub(super) fn moment(text: &str) -> Result<u64, Error> {
     }
 }
 
-/// Seconds with all digits that they have, at least one behind the point.
+/// Seconds with all digits that they have, at least one after the point.
 pub(super) fn seconds(ns: u64) -> String {
     let text = format!("{}.{:09}", ns / 1_000_000_000, ns % 1_000_000_000);
     let end = text.trim_end_matches('0');

@@ -67,7 +67,7 @@ impl Debugged {
         let mut debugged = Self::over(at.connect()?, Begun::Elsewhere);
         let answer = debugged.must(&Order::Attach.to_string())?;
         if let Some(program) = answer.get("program") {
-            debugged.events.push_back(Event::Told(program.clone()));
+            debugged.events.push_back(Event::Report(program.clone()));
         }
         Ok(debugged)
     }
@@ -133,14 +133,14 @@ impl Debugged {
     /// States that were told so far are of before the next order.
     pub(crate) fn forget_states(&mut self) {
         self.events.retain(|event| match event {
-            Event::Told(told) => told.get("state").is_none(),
+            Event::Report(told) => told.get("state").is_none(),
             Event::Said(..) | Event::Over(_) => true,
         });
     }
 
     /// Gives up control as if the connection had ended: a program that is stopped stays so, with its motors at rest.
     pub(crate) fn leave(&mut self) {
-        // Whoever does not answer has lost its connection, which means the same.
+        // A robot that does not answer has lost the connection, which means the same.
         let _ = self.ask("leave");
         self.is_gone = true;
     }
@@ -196,7 +196,7 @@ impl Debugged {
             }
             return;
         }
-        self.put(Event::Told(told));
+        self.put(Event::Report(told));
     }
 
     fn put(&mut self, event: Event) {

@@ -20,8 +20,9 @@ use trikd::program::rest::is_explained;
 /// What `trik stop` and `trik status` can be told.
 #[derive(Args, Clone, Debug, PartialEq, Eq)]
 pub(crate) struct FleetArgs {
-    /// Names or addresses of robots [default: the virtual robot that runs on this computer, or else 127.0.0.1].
-    #[arg(long, value_name = "HOST[:PORT]", value_parser = target, value_delimiter = ',')]
+    /// The robots: names or addresses, with ports that are not 8888, or where the trees of virtual ones are mounted, paths
+    /// with a slash [default: the virtual robot that runs on this computer, or else 127.0.0.1].
+    #[arg(long, value_name = "ROBOT", value_parser = target, value_delimiter = ',')]
     pub robot: Vec<Target>,
 }
 
@@ -31,8 +32,9 @@ pub(crate) struct SendArgs {
     /// Programs, and files that they need.
     #[arg(required = true)]
     pub files: Vec<PathBuf>,
-    /// Names or addresses of robots [default: the virtual robot that runs on this computer, or else 127.0.0.1].
-    #[arg(long, value_name = "HOST[:PORT]", value_parser = target, value_delimiter = ',')]
+    /// The robots: names or addresses, with ports that are not 8888, or where the trees of virtual ones are mounted, paths
+    /// with a slash [default: the virtual robot that runs on this computer, or else 127.0.0.1].
+    #[arg(long, value_name = "ROBOT", value_parser = target, value_delimiter = ',')]
     pub robot: Vec<Target>,
     /// Run this program when all files are there.
     #[arg(long, value_name = "NAME")]
@@ -78,7 +80,7 @@ fn each<T: Send>(all: &[Target], work: impl Fn(&Target) -> T + Sync) -> Vec<T> {
     })
 }
 
-/// What a robot answered to a request and a `status` behind it.
+/// What a robot answered to a request and a `status` after it.
 struct Answer {
     infos: Vec<String>,
     errors: Vec<String>,

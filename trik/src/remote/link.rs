@@ -116,7 +116,7 @@ impl Link {
         self.last_error = Some(text.to_owned());
     }
 
-    /// Puts one message of several parts behind what is still to be sent.
+    /// Puts one message of several parts after what is still to be sent.
     pub(super) fn ask(&mut self, parts: &[&[u8]]) {
         let size: usize = parts.iter().map(|part| part.len()).sum();
         self.unsent.reserve(size + 16);

@@ -33,9 +33,9 @@ pub(crate) struct SetArgs {
     /// A variable and its new value, an expression as in a block: n=5, "speed=n * 2".
     #[arg(value_name = "NAME=EXPRESSION", value_parser = assignment)]
     pub assignment: String,
-    /// Name or address of the robot, and its port if that is not 8888 [default: the virtual robot that runs on this
-    /// computer, or else 127.0.0.1].
-    #[arg(long, value_name = "HOST[:PORT]", value_parser = target)]
+    /// The robot: its name or address, with its port if that is not 8888, or where the tree of a virtual one is mounted, a
+    /// path with a slash [default: the virtual robot that runs on this computer, or else 127.0.0.1].
+    #[arg(long, value_name = "ROBOT", value_parser = target)]
     pub robot: Option<Target>,
 }
 
@@ -99,14 +99,14 @@ fn ask(args: &SetArgs) -> Result<u8, Error> {
 }
 
 /// What a file looked like: when it was written, and how long it was.
-type Look = Option<(SystemTime, u64)>;
+type FileVersion = Option<(SystemTime, u64)>;
 
 /// A diagram that is sent again at each save.
 #[derive(Debug)]
 pub(super) struct Watched {
     path: PathBuf,
     gone: WhenGone,
-    seen: Look,
+    seen: FileVersion,
     at: Instant,
 }
 
@@ -154,7 +154,7 @@ impl Watched {
     }
 }
 
-fn look(path: &Path) -> Look {
+fn look(path: &Path) -> FileVersion {
     let data = std::fs::metadata(path).ok()?;
     Some((data.modified().ok()?, data.len()))
 }

@@ -1,7 +1,7 @@
 //! The person at a terminal who answers the questions of a diagram that runs on a robot.
 //!
 //! Owns the question that is open. Standard input is not read before the first question: what else is typed there belongs to
-//! whoever started this program.
+//! the program that started this one.
 
 use super::output::harmless;
 use crate::limits;

@@ -24,9 +24,9 @@ pub(crate) struct SaveArgs {
     /// The recording, which must not exist yet.
     #[arg(long, short, value_name = "FILE.mcap", default_value = "box.mcap")]
     pub output: PathBuf,
-    /// Name or address of the robot, and its port if that is not 8888 [default: the virtual robot that runs on this
-    /// computer, or else 127.0.0.1].
-    #[arg(long, value_name = "HOST[:PORT]", value_parser = target)]
+    /// The robot: its name or address, with its port if that is not 8888, or where the tree of a virtual one is mounted, a
+    /// path with a slash [default: the virtual robot that runs on this computer, or else 127.0.0.1].
+    #[arg(long, value_name = "ROBOT", value_parser = target)]
     pub robot: Option<Target>,
 }
 

@@ -26,9 +26,9 @@ pub(crate) struct RunArgs {
     /// The program: NAME.js, NAME.py, NAME.qrs (a diagram of TRIK Studio), NAME.lua, or a file that begins with #! or is
     /// compiled for the robot.
     pub file: PathBuf,
-    /// Name or address of the robot, and its port if that is not 8888 [default: the virtual robot that runs on this
-    /// computer, or else 127.0.0.1].
-    #[arg(long, value_name = "HOST[:PORT]", value_parser = target)]
+    /// The robot: its name or address, with its port if that is not 8888, or where the tree of a virtual one is mounted, a
+    /// path with a slash [default: the virtual robot that runs on this computer, or else 127.0.0.1].
+    #[arg(long, value_name = "ROBOT", value_parser = target)]
     pub robot: Option<Target>,
     /// Send the diagram again at each save, and change the one that runs without a stop: blocks that are still there keep
     /// their loops and waits, variables keep their values. A save with mistakes changes nothing.

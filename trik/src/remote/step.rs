@@ -7,9 +7,9 @@ use super::debugged::Debugged;
 use super::output::say;
 use super::target::{Target, target, the_one};
 use crate::debug::listing::Listing;
+use crate::debug::report::{Report, State};
 use crate::debug::stops;
 use crate::debug::target::{Channel, Event, Target as _, log_lines, why_not};
-use crate::debug::told::{State, Told};
 use crate::diagrams::save::must_open;
 use crate::error::Error;
 use crate::language;
@@ -32,9 +32,9 @@ pub(crate) struct WhereArgs {
     /// The diagram that runs, a file NAME.qrs: with it lines are those of `trik show`.
     #[arg(long, value_name = "FILE.qrs")]
     pub file: Option<PathBuf>,
-    /// Name or address of the robot, and its port if that is not 8888 [default: the virtual robot that runs on this
-    /// computer, or else 127.0.0.1].
-    #[arg(long, value_name = "HOST[:PORT]", value_parser = target)]
+    /// The robot: its name or address, with its port if that is not 8888, or where the tree of a virtual one is mounted, a
+    /// path with a slash [default: the virtual robot that runs on this computer, or else 127.0.0.1].
+    #[arg(long, value_name = "ROBOT", value_parser = target)]
     pub robot: Option<Target>,
     /// Give up after this many seconds; the program goes on then [default: wait].
     #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u32).range(1..=86_400))]
@@ -61,7 +61,7 @@ pub(crate) struct BreakArgs {
 
 /// A way of `trik step`.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq, ValueEnum)]
-pub(crate) enum Way {
+pub(crate) enum StepKind {
     /// To the next block of this diagram
     #[default]
     Over,
@@ -78,7 +78,7 @@ pub(crate) enum Way {
 pub(crate) struct StepArgs {
     /// How far.
     #[arg(value_enum, default_value_t)]
-    pub way: Way,
+    pub way: StepKind,
     #[command(flatten)]
     pub at: WhereArgs,
 }
@@ -86,9 +86,9 @@ pub(crate) struct StepArgs {
 /// What `trik continue` can be told.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct ContinueArgs {
-    /// Name or address of the robot, and its port if that is not 8888 [default: the virtual robot that runs on this
-    /// computer, or else 127.0.0.1].
-    #[arg(long, value_name = "HOST[:PORT]", value_parser = target)]
+    /// The robot: its name or address, with its port if that is not 8888, or where the tree of a virtual one is mounted, a
+    /// path with a slash [default: the virtual robot that runs on this computer, or else 127.0.0.1].
+    #[arg(long, value_name = "ROBOT", value_parser = target)]
     pub robot: Option<Target>,
 }
 
@@ -112,16 +112,16 @@ pub(crate) fn stop_at(args: &BreakArgs) -> Result<u8, Refusal> {
     let talked = (|| {
         let state = ordered(&mut robot, &Order::Break(point))?;
         let state = match state {
-            Said::Done => ordered(&mut robot, &Order::Look)?,
-            Said::State(_) | Said::Refused(_) => state,
+            Reply::Done => ordered(&mut robot, &Order::Look)?,
+            Reply::State(_) | Reply::Refused(_) => state,
         };
         match state {
-            Said::State(told) if told.state != State::Running => {
+            Reply::State(told) if told.state != State::Running => {
                 // Somebody may have looked at the past, where it would go on no further than to the present.
                 ordered(&mut robot, &Order::Present)?;
                 ordered(&mut robot, &Order::Continue)
             }
-            Said::State(_) | Said::Done | Said::Refused(_) => Ok(state),
+            Reply::State(_) | Reply::Done | Reply::Refused(_) => Ok(state),
         }
     })();
     finish(&mut robot, talked, (&args.at, listing.as_ref()))
@@ -134,14 +134,14 @@ pub(crate) fn stop_at(args: &BreakArgs) -> Result<u8, Refusal> {
 pub(crate) fn step(args: &StepArgs) -> Result<u8, Refusal> {
     let listing = listing(&args.at)?;
     let order = match args.way {
-        Way::Over => Order::Step(Step::Over, None),
-        Way::Into => Order::Step(Step::Into, None),
-        Way::Out => Order::Step(Step::Out, None),
-        Way::Back => Order::Back(Back::Step(Step::Over)),
+        StepKind::Over => Order::Step(Step::Over, None),
+        StepKind::Into => Order::Step(Step::Into, None),
+        StepKind::Out => Order::Step(Step::Out, None),
+        StepKind::Back => Order::Back(Back::Step(Step::Over)),
     };
     let mut robot = attached(args.at.robot.as_ref())?;
     let talked = (|| {
-        if let Said::State(told) = ordered(&mut robot, &Order::Look)?
+        if let Reply::State(told) = ordered(&mut robot, &Order::Look)?
             && told.state == State::Running
         {
             // It is stopped where it is; the next step goes on from there.
@@ -163,23 +163,23 @@ pub(crate) fn go_on(args: &ContinueArgs) -> Result<u8, Refusal> {
 }
 
 /// What a robot says to an order.
-enum Said {
+enum Reply {
     /// It is done, and nothing is said of the program.
     Done,
     /// Where the program is.
-    State(Box<Told>),
+    State(Box<Report>),
     /// Why not.
     Refused(String),
 }
 
-fn ordered(robot: &mut Debugged, order: &Order) -> Result<Said, Error> {
+fn ordered(robot: &mut Debugged, order: &Order) -> Result<Reply, Error> {
     let answer = robot.order(order)?;
     robot.forget_states();
     if let Some(why) = why_not(&answer) {
-        return Ok(Said::Refused(why));
+        return Ok(Reply::Refused(why));
     }
-    let told = answer.get("program").and_then(Told::read);
-    Ok(told.map_or(Said::Done, |told| Said::State(Box::new(told))))
+    let told = answer.get("program").and_then(Report::read);
+    Ok(told.map_or(Reply::Done, |told| Reply::State(Box::new(told))))
 }
 
 fn attached(robot: Option<&Target>) -> Result<Debugged, Refusal> {
@@ -228,16 +228,16 @@ fn block(place: &str, listing: Option<&Listing>) -> Result<Box<str>, Refusal> {
 /// Waits until the program is stopped, says where, and leaves it so.
 fn finish(
     robot: &mut Debugged,
-    talked: Result<Said, Error>,
+    talked: Result<Reply, Error>,
     (at, listing): (&WhereArgs, Option<&Listing>),
 ) -> Result<u8, Refusal> {
     let until = at
         .seconds
         .map(|seconds| Instant::now() + Duration::from_secs(seconds.into()));
     let mut told = match talked.map_err(unreachable)? {
-        Said::State(told) => *told,
-        Said::Done => Told::default(),
-        Said::Refused(why) => {
+        Reply::State(told) => *told,
+        Reply::Done => Report::default(),
+        Reply::Refused(why) => {
             say(&harmless(&why));
             robot.leave();
             return Ok(1);
@@ -251,11 +251,11 @@ fn finish(
         }
         for event in robot.turn(TURN).map_err(unreachable)? {
             match event {
-                Event::Told(value) => {
+                Event::Report(value) => {
                     for line in log_lines(&value) {
                         say(&harmless(line));
                     }
-                    if let Some(state) = Told::read(&value) {
+                    if let Some(state) = Report::read(&value) {
                         told = state;
                     }
                 }

@@ -1,6 +1,6 @@
-//! Which robot is meant: its name or address, and the one that is meant without a name.
+//! Which robot is meant: its name, its address or the mountpoint of its tree, and the one that is meant without a name.
 //!
-//! Owns the forms of names, and what is said of a robot that cannot be reached. `link` is the connection.
+//! Owns the forms of names, of which a path has a slash, and what is said of a robot that cannot be reached. `link` is the connection.
 
 use super::link::Link;
 use crate::error::Error;
@@ -8,6 +8,7 @@ use crate::limits;
 use crate::place::{self, Running};
 use std::fmt;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, ToSocketAddrs};
+use std::path::{Path, PathBuf};
 
 /// The port on which robots take programs.
 const PORT: u16 = 8888;
@@ -39,8 +40,19 @@ impl From<SocketAddr> for Target {
     }
 }
 
-/// `HOST`, `HOST:PORT`, `[IPv6]:PORT` or a plain IPv6 address.
+/// Whether `--robot` means a mountpoint by a text.
+pub(crate) fn is_path(text: &str) -> bool {
+    text.contains('/')
+}
+
+/// `HOST`, `HOST:PORT`, `[IPv6]:PORT`, a plain IPv6 address, or the mountpoint of a virtual robot.
+///
+/// # Errors
+/// It is none of these, or no virtual robot that takes programs is mounted there.
 pub(crate) fn target(text: &str) -> Result<Target, Error> {
+    if is_path(text) {
+        return mounted(&local()?, Path::new(text));
+    }
     if let Ok(address) = text.parse::<SocketAddr>() {
         return Ok(address.into());
     }
@@ -70,11 +82,59 @@ pub(crate) fn target(text: &str) -> Result<Target, Error> {
 
 /// The robot if none is named: the virtual one that runs here, or what listens on this machine.
 pub(crate) fn the_one() -> Result<Target, Error> {
+    choose(&local()?)
+}
+
+/// The virtual robots of this user that run.
+fn local() -> Result<Vec<Running>, Error> {
     let base = place::base()?;
     let all = place::running(&base).map_err(|error| Error::file(&base, error));
     // Looking makes the directory; nobody needs it if no robot does.
     let _ = std::fs::remove_dir(&base);
-    choose(&all?)
+    all
+}
+
+/// What takes programs for the virtual robot that is mounted there. A real robot is never guessed from a path.
+fn mounted(all: &[Running], path: &Path) -> Result<Target, Error> {
+    let real = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let Some(robot) = all.iter().find(|robot| robot.mountpoint == real) else {
+        let why = "no virtual robot of yours is mounted there; robots in the network have names and addresses";
+        return Err(Error::file(path, why));
+    };
+    robot.trikd.map(Target::from).ok_or_else(|| deaf(robot))
+}
+
+/// Where the tree of a robot is that `--robot` names, for commands that need the tree: a mountpoint is taken as it is, and
+/// of the virtual robots one is found by its address.
+///
+/// # Errors
+/// No tree is known of a robot with this address.
+pub(crate) fn tree_of(named: &Path) -> Result<PathBuf, Error> {
+    if named.is_dir() {
+        return Ok(named.to_owned());
+    }
+    match named.to_str().filter(|text| !is_path(text)).map(target) {
+        Some(Ok(address)) => tree_at(&local()?, &address),
+        Some(Err(_)) | None => Ok(named.to_owned()),
+    }
+}
+
+fn tree_at(all: &[Running], address: &Target) -> Result<PathBuf, Error> {
+    let is_meant = |robot: &&Running| robot.trikd.map(Target::from).as_ref() == Some(address);
+    let found = all.iter().find(is_meant);
+    found.map(|robot| robot.mountpoint.clone()).ok_or_else(|| {
+        Error::Refused(format!(
+            "{address} is no virtual robot of yours, and this needs its tree: say where that is mounted, a path with a slash"
+        ))
+    })
+}
+
+/// What is said of a virtual robot that takes no programs.
+fn deaf(robot: &Running) -> Error {
+    Error::Refused(format!(
+        "the virtual robot at {} has no trikd, which takes programs: it told why when it started, or was started with --no-trikd",
+        robot.mountpoint.display()
+    ))
 }
 
 fn choose(all: &[Running]) -> Result<Target, Error> {
@@ -85,10 +145,7 @@ fn choose(all: &[Running]) -> Result<Target, Error> {
     match (&reachable[..], all) {
         ([(one, _)], _) => Ok(one.clone()),
         ([], []) => Ok(SocketAddr::new(Ipv4Addr::LOCALHOST.into(), PORT).into()),
-        ([], [robot, ..]) => Err(Error::Refused(format!(
-            "the virtual robot at {} has no trikd, which takes programs: it told why when it started, or was started with --no-trikd",
-            robot.mountpoint.display()
-        ))),
+        ([], [robot, ..]) => Err(deaf(robot)),
         (several, _) => {
             let list: Vec<_> = several
                 .iter()
@@ -179,7 +236,6 @@ mod tests {
             "trik:0",
             "trik:65536",
             "trik:x",
-            "a/b",
             "a:b:c",
         ] {
             assert!(target(text).is_err(), "{text}");
@@ -190,6 +246,29 @@ mod tests {
                 .to_string()
                 .contains("'99999' is no port")
         );
+    }
+
+    #[test]
+    fn a_path_and_an_address_of_a_virtual_robot_mean_the_same() {
+        let robot = |mountpoint: &str, trikd: Option<&str>| Running {
+            mountpoint: mountpoint.into(),
+            board: "/none".into(),
+            trikd: trikd.map(|text| text.parse().expect("an address")),
+        };
+        let all = [
+            robot("/none/a", Some("127.0.0.2:8888")),
+            robot("/none/b", None),
+        ];
+        let address = mounted(&all, Path::new("/none/a")).unwrap();
+        assert_eq!(address, target("127.0.0.2").unwrap());
+        assert_eq!(tree_at(&all, &address), Ok("/none/a".into()));
+        let refused = |path: &str| mounted(&all, Path::new(path)).unwrap_err().to_string();
+        assert!(refused("/none/b").starts_with("the virtual robot at /none/b has no trikd"));
+        assert!(refused("/none/c").starts_with("/none/c: no virtual robot of yours is mounted"));
+        let other = target("192.168.77.1").unwrap();
+        let why = tree_at(&all, &other).unwrap_err().to_string();
+        assert!(why.starts_with("192.168.77.1 is no virtual robot"), "{why}");
+        assert_eq!(tree_of(Path::new("/none/d")), Ok("/none/d".into()));
     }
 
     #[test]

@@ -71,7 +71,7 @@ impl Upload {
         mut report: impl FnMut(usize, usize),
     ) -> Result<(), Error> {
         link.ask(&[&self.request()]);
-        // Answered in order, so behind the answer the file is kept or refused.
+        // Answered in order, so after the answer the file is kept or refused.
         link.ask(&[b"version"]);
         let all = link.unsent();
         let mut moved = (all, Instant::now());

@@ -7,8 +7,8 @@ use super::link::{Link, Message, ms};
 use super::output::{harmless, say};
 use super::target::{Target, target, the_one};
 use crate::debug::listing::Listing;
+use crate::debug::report::Report;
 use crate::debug::target::why_not;
-use crate::debug::told::Told;
 use crate::diagrams::save::must_open;
 use crate::error::Error;
 use crate::language;
@@ -33,9 +33,9 @@ const DRAWN: usize = 40;
 pub(crate) struct WatchArgs {
     /// The diagram that runs, a file NAME.qrs: with it the sentence of each block is shown.
     pub file: Option<PathBuf>,
-    /// Name or address of the robot, and its port if that is not 8888 [default: the virtual robot that runs on this
-    /// computer, or else 127.0.0.1].
-    #[arg(long, value_name = "HOST[:PORT]", value_parser = target)]
+    /// The robot: its name or address, with its port if that is not 8888, or where the tree of a virtual one is mounted, a
+    /// path with a slash [default: the virtual robot that runs on this computer, or else 127.0.0.1].
+    #[arg(long, value_name = "ROBOT", value_parser = target)]
     pub robot: Option<Target>,
     /// End after this many seconds [default: with the program].
     #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u32).range(1..=86_400))]
@@ -92,7 +92,7 @@ fn watch(args: &WatchArgs, listing: Option<&Listing>) -> Result<u8, Error> {
             });
             return Ok(u8::from(!is_end));
         }
-        if let Some(told) = answer.get("program").and_then(Told::read) {
+        if let Some(told) = answer.get("program").and_then(Report::read) {
             has_seen = true;
             picture
                 .show(&told)
@@ -151,7 +151,7 @@ impl<'a> Picture<'a> {
         }
     }
 
-    fn show(&mut self, told: &Told) -> io::Result<()> {
+    fn show(&mut self, told: &Report) -> io::Result<()> {
         let lines = self.lines(told);
         let mut out = io::stdout().lock();
         if self.is_drawn {
@@ -181,7 +181,7 @@ impl<'a> Picture<'a> {
     }
 
     /// Threads, then variables.
-    fn lines(&mut self, told: &Told) -> Vec<String> {
+    fn lines(&mut self, told: &Report) -> Vec<String> {
         let mut lines = Vec::new();
         for thread in told.threads.iter().take(limits::WATCH_LINES_MAX) {
             let place = match self.listing {

@@ -2,7 +2,7 @@
 //!
 //! Owns the way from the file's times to positions, and which of its events are played: samples and failures of nodes.
 
-use super::recording::{Channel, Event, Recording, What};
+use super::recording::{Channel, Event, Reading, Recording};
 use crate::error::Error;
 use crate::limits;
 use journal::layout::Layout;
@@ -72,7 +72,7 @@ impl FileRecording {
     fn event(&self, event: read::Event) -> Option<Event> {
         let at = event.unix_ns.saturating_sub(self.reader.begin_ns());
         let (channel, what) = match event.what {
-            read::What::Sample { node, tuple, .. } => (node, What::Sample(tuple)),
+            read::What::Sample { node, tuple, .. } => (node, Reading::Sample(tuple)),
             read::What::Fault {
                 node,
                 errno,
@@ -80,14 +80,14 @@ impl FileRecording {
             } => {
                 // The tree puts the blame before it again.
                 let reason = reason.strip_prefix("device: ").unwrap_or(&reason);
-                (node, What::Failure(errno, reason.to_owned()))
+                (node, Reading::Failure(errno, reason.to_owned()))
             }
             read::What::Line(..) => return None,
         };
         // Before its format changed it was another node.
         let fits = match &what {
-            What::Sample(tuple) => tuple.len() == self.channels[channel].bytes,
-            What::Failure(..) => true,
+            Reading::Sample(tuple) => tuple.len() == self.channels[channel].bytes,
+            Reading::Failure(..) => true,
         };
         fits.then_some(Event {
             at: Duration::from_nanos(at),
@@ -133,7 +133,7 @@ impl Recording for FileRecording {
         }
     }
 
-    fn newest(&mut self, position: Duration) -> Result<Vec<Option<What>>, Error> {
+    fn newest(&mut self, position: Duration) -> Result<Vec<Option<Reading>>, Error> {
         let newest = self.reader.newest(self.moment(position));
         let newest = newest.map_err(|why| self.fail(why))?;
         let played = newest.into_iter().map(|event| self.event(event?));

@@ -8,7 +8,7 @@ use super::clock::Clock;
 use super::order::{BadOrder, Order};
 use super::outputs::Output;
 use super::peer::{Peer, Wish, wish};
-use super::recording::{Event, Recording, What};
+use super::recording::{Event, Reading, Recording};
 use crate::error::Error;
 use crate::limits;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
@@ -122,7 +122,7 @@ impl Player {
         };
         scene.learn_outputs()?;
         scene.seek(begin.at)?;
-        scene.tell();
+        scene.publish_state();
         let thread = std::thread::Builder::new()
             .name("player".to_owned())
             .spawn(move || scene.run())
@@ -181,7 +181,7 @@ struct Scene {
     recording: Box<dyn Recording + Send>,
     clock: Clock,
     /// What each channel has at the position.
-    newest: Vec<Option<What>>,
+    newest: Vec<Option<Reading>>,
     /// Which channels have had their next event already, at the beginning.
     is_told: Vec<bool>,
     outputs: Vec<Output>,
@@ -214,7 +214,7 @@ impl Scene {
                 self.clock.run(Instant::now(), false);
                 self.fail(&error.to_string());
             }
-            self.tell();
+            self.publish_state();
             match self.wait() {
                 Ok(speaking) => self.hear(&speaking),
                 Err(error) => return self.fail(&format!("poll: {error}")),
@@ -232,7 +232,7 @@ impl Scene {
         }
         self.recording.seek_among(Duration::ZERO, &written)?;
         while let Some(event) = self.recording.next()? {
-            if let What::Sample(tuple) = &event.what {
+            if let Reading::Sample(tuple) = &event.what {
                 self.outputs[event.channel].record(event.at, tuple, limits::REPLAY_CHANGES_MAX);
             }
         }
@@ -326,7 +326,7 @@ impl Scene {
         for (newest, before) in newest.iter_mut().zip(&self.newest) {
             if newest.is_none() && before.is_some() {
                 // Readers have a value that is not of this moment.
-                *newest = Some(What::Failure(
+                *newest = Some(Reading::Failure(
                     nix::Error::ETIMEDOUT as i32,
                     "nothing was recorded before this moment".to_owned(),
                 ));
@@ -340,7 +340,7 @@ impl Scene {
     }
 
     /// A node of which nothing was recorded yet has what the recorder found of it when it began.
-    fn learn_first(&mut self, after: Duration, found: &mut [Option<What>]) -> Result<(), Error> {
+    fn learn_first(&mut self, after: Duration, found: &mut [Option<Reading>]) -> Result<(), Error> {
         self.recording.seek(after)?;
         while let Some(event) = self.recording.next()?
             && event.at <= BEGINNING
@@ -358,7 +358,7 @@ impl Scene {
         &mut self,
         position: Duration,
         next: Duration,
-        newest: Vec<Option<What>>,
+        newest: Vec<Option<Reading>>,
     ) -> Result<(), Error> {
         self.clock.jump(Instant::now(), position);
         self.newest = newest;
@@ -565,7 +565,7 @@ impl Scene {
         }
     }
 
-    fn tell(&self) {
+    fn publish_state(&self) {
         let now = Instant::now();
         let mut shared = lock(&self.shared);
         let state = &mut shared.state;
@@ -588,10 +588,10 @@ const LATE: Duration = Duration::from_millis(limits::REPLAY_LATE_MS);
 const QUIET: MsgFlags = MsgFlags::MSG_NOSIGNAL;
 
 /// What a reader gets: see `device/played.rs` of trikfs.
-fn message(what: &What) -> Vec<u8> {
+fn message(what: &Reading) -> Vec<u8> {
     let (errno, body) = match what {
-        What::Sample(tuple) => (0, tuple.as_slice()),
-        What::Failure(errno, reason) => (*errno, reason.as_bytes()),
+        Reading::Sample(tuple) => (0, tuple.as_slice()),
+        Reading::Failure(errno, reason) => (*errno, reason.as_bytes()),
     };
     let mut message = errno.to_le_bytes().to_vec();
     message.extend_from_slice(body);

@@ -29,7 +29,7 @@ pub(crate) struct Channel {
 
 /// What a reader of the node got.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) enum What {
+pub(crate) enum Reading {
     /// A tuple.
     Sample(Vec<u8>),
     /// No value: the errno and the reason.
@@ -43,7 +43,7 @@ pub(crate) struct Event {
     pub(crate) at: Duration,
     /// Which channel.
     pub(crate) channel: usize,
-    pub(crate) what: What,
+    pub(crate) what: Reading,
 }
 
 /// A recording that is read from any position on.
@@ -76,5 +76,5 @@ pub(crate) trait Recording {
     ///
     /// # Errors
     /// The file cannot be read.
-    fn newest(&mut self, position: Duration) -> Result<Vec<Option<What>>, Error>;
+    fn newest(&mut self, position: Duration) -> Result<Vec<Option<Reading>>, Error>;
 }

@@ -6,7 +6,7 @@
 use super::input::{GAMEPAD, KEYS};
 use super::lines::Lines;
 use super::refresh::Readings;
-use super::stage::{Ear, Heard, Here, Stage, Wish};
+use super::stage::{Ear, Here, Stage, Subscriptions, Wish};
 use super::{START_MS, problem};
 use crate::error::Error;
 use generator::{Generator, Gn};
@@ -33,7 +33,7 @@ struct Thread {
     body: Generator<'static, Start, ()>,
     /// What it does, until it begins.
     start: Option<Start>,
-    heard: Rc<RefCell<Heard>>,
+    heard: Rc<RefCell<Subscriptions>>,
     /// When it goes on in any case.
     due: f64,
     /// Whether its bell and records wake it before that.

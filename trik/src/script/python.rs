@@ -28,10 +28,6 @@ use trikd::program::python::MODULE;
 use trikd::protocol::program::FromProgram;
 
 const BOOT: &str = include_str!("virtual.py");
-/// Numbers of errors that Python makes exceptions of.
-const EAGAIN: i32 = 11;
-const ENOENT: i32 = 2;
-const EIO: i32 = 5;
 /// What its first thread is called.
 const MAIN: &str = "main";
 
@@ -202,11 +198,11 @@ impl Python {
             Ok(text) => format!("ok:{now}:{text}"),
             Err(error) => {
                 let number = if error.kind() == io::ErrorKind::WouldBlock {
-                    EAGAIN
+                    libc::EAGAIN
                 } else if error.kind() == io::ErrorKind::NotFound {
-                    ENOENT
+                    libc::ENOENT
                 } else {
-                    EIO
+                    libc::EIO
                 };
                 format!("no:{now}:{number}:{error}")
             }

@@ -106,7 +106,7 @@ impl Stage {
 
 /// What a program has said and nobody has heard yet.
 #[derive(Debug, Default)]
-pub struct Said {
+pub struct Transcript {
     /// What was printed.
     pub printed: Vec<String>,
     /// Remarks that a person may want to know.
@@ -114,7 +114,7 @@ pub struct Said {
     bytes: usize,
 }
 
-impl Said {
+impl Transcript {
     /// What was printed since the last time.
     pub fn take_printed(&mut self) -> Vec<String> {
         self.bytes = 0;
@@ -124,10 +124,10 @@ impl Said {
 
 /// The way out of all threads.
 #[derive(Clone, Debug, Default)]
-pub struct Ear(pub Arc<Mutex<Said>>);
+pub struct Ear(pub Arc<Mutex<Transcript>>);
 
 impl Ear {
-    fn with(&self, work: impl FnOnce(&mut Said)) {
+    fn with(&self, work: impl FnOnce(&mut Transcript)) {
         work(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner));
     }
 }
@@ -167,14 +167,14 @@ impl Output for Ear {
 
 /// Records that a thread listens to.
 #[derive(Debug, Default)]
-pub struct Heard {
+pub struct Subscriptions {
     /// The streams.
     pub paths: BTreeSet<String>,
     /// What has come.
     pub records: VecDeque<(String, Record)>,
 }
 
-impl Heard {
+impl Subscriptions {
     /// Notes what has come on a stream, if somebody listens to it.
     pub fn note(&mut self, path: &str, record: &Record) {
         if self.paths.contains(path) {
@@ -192,7 +192,7 @@ pub struct Here {
     /// What all share.
     pub stage: Rc<Stage>,
     /// What it listens to.
-    pub heard: Rc<RefCell<Heard>>,
+    pub heard: Rc<RefCell<Subscriptions>>,
     /// Whether its engine has looked up from its work.
     pub has_looked_up: Cell<bool>,
 }

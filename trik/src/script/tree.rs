@@ -282,7 +282,7 @@ impl Tree {
         self.written.get(file).map(Vec::as_slice)
     }
 
-    /// Puts something behind what is in a file of the program.
+    /// Appends to what is in a file of the program.
     pub fn append(&mut self, brick: &mut dyn Brick, file: &str, bytes: &[u8]) -> io::Result<()> {
         let held: usize = self
             .written

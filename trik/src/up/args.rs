@@ -16,10 +16,10 @@ pub(crate) const DEFAULT_ROBOT: &str = "two-wheels";
 /// The options of `trik up`.
 #[derive(Args, Clone, Debug, PartialEq)]
 pub(crate) struct UpArgs {
-    /// Which robot: its body in the simulator, and its configuration robots/NAME.lua; or a model of DCML that moves the
-    /// usual body, FILE.dcml or the name of a shipped one.
-    #[arg(long, value_name = "NAME|FILE.dcml", default_value = DEFAULT_ROBOT, value_parser = robot_name)]
-    pub robot: String,
+    /// Which robot is simulated: its body, and its configuration robots/NAME.lua; or a model of DCML that moves the usual
+    /// body, FILE.dcml or the name of a shipped one.
+    #[arg(long, visible_alias = "robot", value_name = "NAME|FILE.dcml", default_value = DEFAULT_ROBOT, value_parser = robot_name)]
+    pub body: String,
     /// Which model, if the file has several.
     #[arg(long, value_name = "NAME")]
     pub model: Option<String>,
@@ -35,7 +35,7 @@ pub(crate) struct UpArgs {
     pub start: Vec<(String, f64)>,
     /// A world of TRIK Studio instead of the robot's own: FILE.xml, or a project FILE.qrs with a world in it. The robot
     /// is where the world puts it, and has the wheels and sensors that are plugged in there.
-    #[arg(long, value_name = "FILE", conflicts_with = "robot")]
+    #[arg(long, value_name = "FILE", conflicts_with = "body")]
     pub world: Option<PathBuf>,
     /// Configuration instead of the robot's own.
     #[arg(long, value_name = "FILE")]

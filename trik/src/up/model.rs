@@ -1,6 +1,6 @@
 //! A model in DCML as the robot of `trik up`: from a file or the name of a shipped one to a body and a configuration.
 //!
-//! Owns what `--robot` takes beside names of robots. What a model means is `lang`'s part, how it moves `sim`'s.
+//! Owns what `--body` takes beside names of robots. What a model means is `lang`'s part, how it moves `sim`'s.
 
 use super::args::UpArgs;
 use crate::error::Error;
@@ -25,7 +25,7 @@ pub(super) fn stray(args: &UpArgs) -> Option<&'static str> {
 /// # Errors
 /// Why there is none, for the person; what is wrong with the text has been told.
 pub(super) fn robot(args: &UpArgs) -> Result<(Box<dyn Body>, String), Error> {
-    let loaded = crate::dcml::load::load(args.robot.as_ref(), args.model.as_deref());
+    let loaded = crate::dcml::load::load(args.body.as_ref(), args.model.as_deref());
     let (text, model) = loaded.map_err(|refusal| {
         let lines: Vec<&str> = refusal.lines.iter().map(String::as_str).collect();
         let text = lines.join("\n");
@@ -36,7 +36,7 @@ pub(super) fn robot(args: &UpArgs) -> Result<(Box<dyn Body>, String), Error> {
         drive: args.drive.clone(),
         start: args.start.clone(),
     };
-    let about = |reason| Error::file(args.robot.as_ref(), reason);
+    let about = |reason| Error::file(args.body.as_ref(), reason);
     let rolling = Rolling::new(&model, &said, robots::MODEL_START).map_err(about)?;
     Ok(robots::modelled(rolling, one(&text, &model.name), &said))
 }

@@ -128,9 +128,9 @@ fn frame(shown: &[usize], lines: &[String], width: usize, height: usize) -> (Str
         up => text.push_str(&format!("\x1b[{up}A\r")),
     }
     let mut lengths = Vec::new();
-    // One row is for the cursor behind the last line.
+    // One row is for the cursor after the last line.
     for line in lines.iter().take(height.saturating_sub(1)) {
-        // The last column stays free: what a terminal does behind it differs.
+        // The last column stays free: what a terminal does after it differs.
         let line: String = line.chars().take(width.saturating_sub(1)).collect();
         lengths.push(line.chars().count());
         text.push_str(&format!("{line}\x1b[K\n"));

@@ -40,7 +40,7 @@ pub(crate) fn read(path: &Path) -> Result<(Field, Locks), Error> {
 }
 
 /// A world that was found in a file.
-pub(crate) struct Found {
+pub(crate) struct FoundWorld {
     /// The world.
     pub(crate) field: Field,
     /// What its project locks.
@@ -71,7 +71,7 @@ impl fmt::Display for Unfit {
 ///
 /// # Errors
 /// There is none.
-pub(crate) fn of(bytes: Vec<u8>) -> Result<Found, Unfit> {
+pub(crate) fn of(bytes: Vec<u8>) -> Result<FoundWorld, Unfit> {
     let is_text = bytes
         .iter()
         .find(|byte| !byte.is_ascii_whitespace() && ![0xef, 0xbb, 0xbf].contains(*byte))
@@ -91,7 +91,7 @@ pub(crate) fn of(bytes: Vec<u8>) -> Result<Found, Unfit> {
     let mut opened = Field::read(&text).map_err(Unfit::World)?;
     let mut problems = std::mem::take(&mut opened.problems);
     problems.extend(opened.field.add_blobs(&blobs.unwrap_or_default()));
-    Ok(Found {
+    Ok(FoundWorld {
         field: opened.field,
         locks,
         problems,

@@ -163,7 +163,7 @@ fn a_kill_of_trik_itself_unmounts_and_the_next_start_removes_the_board() {
 fn after_the_death_of_all_processes_at_once_the_next_start_takes_the_place_over() {
     let Some(mut robot) = moving() else { return };
     let all = [robot.pid(), robot.guardian(), robot.daemon()];
-    // Stopped first, none can clean up behind the others.
+    // Stopped first, none can clean up after the others.
     for pid in all {
         processes::signal(pid, Signal::SIGSTOP);
     }

@@ -193,7 +193,7 @@ fn beside_the_line_m(pose: Pose) -> f64 {
     (outside + from_x.max(from_y).min(0.0) - 0.3).abs()
 }
 
-/// From the lower straight over two corners to behind the crossing on the upper one, and then Ctrl-C.
+/// From the lower straight over two corners to beyond the crossing on the upper one, and then Ctrl-C.
 fn stays_on_the_line(robot: &Robot, program: &mut Program) -> Result<(), String> {
     let mut was_right = false;
     let is_there = program.watch(robot, |pose| {

@@ -16,7 +16,7 @@ fn an_unplugged_sensor_gives_an_error_and_comes_back() {
     eventually("a distance again", || robot.errno(value) == 0);
 }
 
-/// Each value of a robot that was just switched on, whoever is connected or not. The camera takes its first picture.
+/// Each value of a robot that was just switched on, whatever is connected to it. The camera takes its first picture.
 #[test]
 fn what_has_never_spoken_on_a_fresh_robot_says_so_at_once() {
     let Some(robot) = robot(&[]) else { return };

@@ -19,7 +19,7 @@ pub struct Holder {
 
 /// An order, by the client that gave it and what it calls it.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub struct Asked {
+pub struct OrderId {
     /// The number of the client.
     pub client: u32,
     /// What the client calls it.
@@ -150,12 +150,12 @@ impl Clients {
     }
 
     /// Answers an order that is carried out.
-    pub fn debug_done(&self, asked: Asked) {
+    pub fn debug_done(&self, asked: OrderId) {
         self.tell_answer(asked.client, &answer(Some(asked.tag), None));
     }
 
     /// Answers an order that is not carried out.
-    pub fn debug_refused(&self, asked: Asked, why: &str) {
+    pub fn debug_refused(&self, asked: OrderId, why: &str) {
         self.tell_answer(asked.client, &answer(Some(asked.tag), Some(why)));
     }
 }
@@ -203,13 +203,13 @@ mod tests {
         let heard = said(&two);
         assert_eq!(heard.len(), 2, "{heard:?}");
         clients.debug_refused(
-            Asked {
+            OrderId {
                 client: two.id,
                 tag: 7,
             },
             "a \"b\"",
         );
-        clients.debug_done(Asked {
+        clients.debug_done(OrderId {
             client: two.id,
             tag: 8,
         });

@@ -68,7 +68,7 @@ impl Debugging {
         answer
     }
 
-    /// Whoever was in control is gone: a program that is stopped stays so, with its motors at rest whatever was asked for;
+    /// The client that was in control is gone: a program that is stopped stays so, with its motors at rest whatever was asked for;
     /// another one loses its debugger.
     pub(super) fn left(&mut self, now: u32, robot: &mut Robot<'_>, watch: &mut Watch) {
         let order = match self.desk.is_stopped() {
@@ -87,7 +87,7 @@ impl Debugging {
         self.motors.settle(self.desk.is_at_rest(), robot);
     }
 
-    /// The program, and its robot, for whoever changes it.
+    /// The program, and its robot, for the code that changes it.
     pub(super) fn parts<'a>(
         &'a mut self,
         robot: &'a mut Robot<'_>,

@@ -39,7 +39,7 @@ impl Answer {
     }
 }
 
-/// Puts the save in a file in the place of the program that runs, whole or not at all.
+/// Replaces the program that runs by the save in a file, whole or not at all.
 pub(super) fn patch(
     session: &mut Session,
     (when_gone, path): (WhenGone, &Path),

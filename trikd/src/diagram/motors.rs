@@ -1,7 +1,7 @@
 //! Motors of a diagram while a debugger holds it: they rest, and come back as they were when it goes on.
 //!
 //! Owns what each motor was told last, and stands between the program and its robot for that. Knows no files, no debugger
-//! and no time: whoever steps the program says when motors rest.
+//! and no time: the caller that steps the program says when motors rest.
 
 use lang_diagram::brick::{Answer, Brick, Command, Question};
 use lang_diagram::ports::Port;
@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 /// What a motor does.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-enum Told {
+enum Setpoint {
     Power(i32),
     Servo(i32),
 }
@@ -18,7 +18,7 @@ enum Told {
 #[derive(Debug, Default)]
 pub(super) struct Motors {
     /// Those that are not off.
-    told: BTreeMap<Port, Told>,
+    told: BTreeMap<Port, Setpoint>,
     are_at_rest: bool,
 }
 
@@ -40,8 +40,8 @@ impl Motors {
         for (&port, told) in &self.told {
             robot.command(match (shall_rest, *told) {
                 (true, _) => Command::Off { port, brake: false },
-                (false, Told::Power(percent)) => Command::Power { port, percent },
-                (false, Told::Servo(degrees)) => Command::Servo { port, degrees },
+                (false, Setpoint::Power(percent)) => Command::Power { port, percent },
+                (false, Setpoint::Servo(degrees)) => Command::Servo { port, degrees },
             });
         }
     }
@@ -59,11 +59,11 @@ impl Driven<'_> {
         let Motors { told, are_at_rest } = &mut *self.motors;
         match command {
             Command::Power { port, percent } => {
-                told.insert(port, Told::Power(percent));
+                told.insert(port, Setpoint::Power(percent));
                 *are_at_rest
             }
             Command::Servo { port, degrees } => {
-                told.insert(port, Told::Servo(degrees));
+                told.insert(port, Setpoint::Servo(degrees));
                 *are_at_rest
             }
             Command::Off { port, .. } => {

@@ -134,7 +134,7 @@ pub trait Platform {
         read_text(&shared.folder.join(file))
     }
 
-    /// Puts something behind what is in a file.
+    /// Appends to what is in a file.
     ///
     /// # Errors
     /// Those of the file.

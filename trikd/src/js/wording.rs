@@ -211,7 +211,7 @@ mod tests {
                 "brick.sensor(\"Q (\")",
             ),
             ("z", "return(x).z", 0, "(x)"),
-            // The place is behind the expression when the engine counts otherwise.
+            // The place is after the expression when the engine counts otherwise.
             ("y", "\"\u{44f}\u{44f}\" + x.y", 30, "x"),
         ];
         for (name, line, column, owner) in cases {

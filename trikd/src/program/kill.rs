@@ -108,8 +108,8 @@ pub fn group(leader: Pid, signal: Signal) {
     let _ = killpg(leader, signal);
 }
 
-/// Stops everybody below a process who is not in a group that has been stopped, until nobody new is found; returns
-/// whether there was anybody. What they were about to write waits until they are dead.
+/// Stops all processes below one that are in no group that has been stopped, until no new one is found; returns
+/// whether there was one. What they were about to write waits until they are dead.
 pub fn freeze(ancestor: Pid, stopped: Pid) -> bool {
     let mut frozen = HashSet::new();
     for _ in 0..limits::FREEZE_ROUNDS {

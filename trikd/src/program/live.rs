@@ -5,7 +5,7 @@
 use super::child::Language;
 use super::queue::Wish;
 use super::{Cause, Current, Supervisor};
-use crate::clients::debugging::Asked;
+use crate::clients::debugging::OrderId;
 use crate::limits;
 use crate::protocol::news;
 use crate::protocol::program::{ALL, ToProgram, WhenGone};
@@ -73,7 +73,7 @@ impl Supervisor {
     }
 
     /// What somebody wants who debugs; each has one answer.
-    pub(super) async fn debug(&mut self, asked: Asked, wish: Wish) {
+    pub(super) async fn debug(&mut self, asked: OrderId, wish: Wish) {
         match wish {
             Wish::Run(path) => self.run_debugged(asked, &path).await,
             Wish::Order(order) => self.order(asked, &order),
@@ -81,12 +81,12 @@ impl Supervisor {
         }
     }
 
-    fn refuse(&self, asked: Asked, why: &str) {
+    fn refuse(&self, asked: OrderId, why: &str) {
         self.around.clients.debug_refused(asked, why);
     }
 
     /// Runs a diagram, stopped before its first block.
-    async fn run_debugged(&mut self, asked: Asked, path: &Path) {
+    async fn run_debugged(&mut self, asked: OrderId, path: &Path) {
         self.end(Cause::Ordered("another program")).await;
         let name = self.name_of(path);
         let file = path.display().to_string();
@@ -99,14 +99,14 @@ impl Supervisor {
     }
 
     /// An order for the debugger of the diagram that runs, which answers by itself.
-    fn order(&mut self, asked: Asked, order: &str) {
+    fn order(&mut self, asked: OrderId, order: &str) {
         if !self.runs_diagram() {
             return self.refuse(asked, news::NO_DIAGRAM);
         }
         let Some(current) = &mut self.current else {
             return;
         };
-        let Asked { client, tag } = asked;
+        let OrderId { client, tag } = asked;
         let message = ToProgram::Debug { client, tag, order };
         if current.orders.len() < limits::DEBUG_ORDERS && current.child.send(message) {
             current.orders.push_back(asked);
@@ -130,7 +130,7 @@ impl Supervisor {
         }
         if let Some(current) = &mut self.current {
             // A program answers in order, and no client that has not asked.
-            let is_oldest = |asked: &Asked| asked.client == client;
+            let is_oldest = |asked: &OrderId| asked.client == client;
             if current
                 .orders
                 .pop_front_if(|asked| is_oldest(asked))

@@ -2,7 +2,7 @@
 //!
 //! Owns the queue and its limit. Knows no processes.
 
-use crate::clients::debugging::Asked;
+use crate::clients::debugging::OrderId;
 use crate::limits;
 use crate::protocol::news;
 use crate::protocol::program::WhenGone;
@@ -22,14 +22,14 @@ pub enum Command {
     Script(String),
     /// Evaluate this text after the ones before it.
     Direct(String),
-    /// Put this file in the place of the diagram that runs.
+    /// Replace the diagram that runs by this file.
     Patch(WhenGone, PathBuf),
     /// Assign a variable of the diagram that runs, `NAME=EXPRESSION`.
     Set(String),
     /// What a person says to the question with this number; none: nobody answers.
     Reply(u32, Option<String>),
     /// Something that a client wants who debugs; each has an answer.
-    Debug(Asked, Wish),
+    Debug(OrderId, Wish),
     /// The client in control of the debugger is gone.
     DebugLeft,
     /// End what runs and bring everything to rest; says for whom.
@@ -199,7 +199,7 @@ mod tests {
         runtime.block_on(async {
             programs.send(Command::Run("a".into())).await;
             programs.send(Command::Direct("b".to_owned())).await;
-            let asked = Asked { client: 1, tag: 2 };
+            let asked = OrderId { client: 1, tag: 2 };
             let debug = Command::Debug(asked, Wish::Run("d".into()));
             programs.send(debug).await;
             programs.send(Command::Stop("somebody")).await;
@@ -208,7 +208,7 @@ mod tests {
         assert_eq!(
             waiting(&programs),
             [
-                "Debug(Asked { client: 1, tag: 2 }, Overtaken)",
+                "Debug(OrderId { client: 1, tag: 2 }, Overtaken)",
                 "Stop(\"somebody\")",
                 "Script(\"c\")"
             ]

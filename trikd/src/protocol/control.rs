@@ -28,7 +28,7 @@ pub enum Request<'a> {
     Stop,
     /// Tell this client where the running diagram is, or no more.
     Watch(bool),
-    /// Put a program that is there in the place of the diagram that runs.
+    /// Replace the diagram that runs by a program that is there.
     Patch {
         /// What becomes of threads at blocks that it does not have.
         when_gone: WhenGone,

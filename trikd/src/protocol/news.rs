@@ -4,12 +4,12 @@
 
 use std::fmt;
 
-/// What a robot says when a program has started, behind `info: `.
+/// What a robot says when a program has started, after `info: `.
 pub fn started(name: &str) -> String {
     format!("{name} has started")
 }
 
-/// Why a request of a computer that is not paired is refused, behind `error: `.
+/// Why a request of a computer that is not paired is refused, after `error: `.
 pub const NOT_PAIRED: &str = "this computer is not paired with the robot: press Enter on the robot within 30 s, then try again";
 /// How it begins when an upload was not kept; other reasons begin with its name in quotes.
 pub const UPLOAD_FAILED: &str = "the upload failed: ";

@@ -53,7 +53,7 @@ pub enum ToProgram<'a> {
         /// The order.
         order: &'a str,
     },
-    /// Whoever was in control of the debugger is gone.
+    /// The client that was in control of the debugger is gone.
     DebugLeft,
     /// What a person says to a question of the program.
     Reply {
@@ -111,7 +111,7 @@ pub enum FromProgram<'a> {
     },
 }
 
-/// In the place of a client in [`FromProgram::Debug`]: all who debug.
+/// Instead of a client in [`FromProgram::Debug`]: all that debug.
 pub const ALL: u32 = 0;
 
 /// The words of [`ToProgram`], in the order of the document.
@@ -377,7 +377,7 @@ mod tests {
         }
     }
 
-    /// The first word behind each mark in a text, up to a blank, a colon or a quotation mark.
+    /// The first word after each mark in a text, up to a blank, a colon or a quotation mark.
     fn words_behind<'a>(text: &'a str, mark: &str) -> BTreeSet<&'a str> {
         let words = text.split(mark).skip(1);
         words

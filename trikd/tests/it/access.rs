@@ -5,7 +5,7 @@ use std::io::Read;
 use std::process::Command;
 
 #[test]
-fn who_is_not_in_the_list_is_not_served() {
+fn computers_that_the_list_lacks_are_not_served() {
     let robot = robot(&["--allow", "10.0.0.0/8"]);
     for port in [
         "control",

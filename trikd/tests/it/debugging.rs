@@ -192,7 +192,7 @@ fn one_client_is_in_control_and_the_others_see_who_and_what() {
     assert_eq!(motor(&robot), "0");
     expect(&mut two, 6, "continue", "\"state\":\"running\"");
     assert_eq!(motor(&robot), "40");
-    // Who has left hears nothing more, and who has never asked never did.
+    // A client that has left hears nothing more, and one that has never asked never did.
     for client in [&mut one, &mut quiet] {
         client.send("version");
         loop {

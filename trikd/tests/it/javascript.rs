@@ -1,4 +1,4 @@
-//! JavaScript programs, one file each in `trikd/tests/js`, with what they must say behind them.
+//! JavaScript programs, one file each in `trikd/tests/js`, with what they must say after them.
 //!
 //! Lines at the end of a program: `//<` is a file of the tree and its text, `//>` a line of output, `//!` a line of
 //! standard error, `//=` a file of the tree and what it must have at the end. FOLDER stands for the program's directory, TREE for

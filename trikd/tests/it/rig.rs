@@ -390,7 +390,7 @@ impl Client {
         }
     }
 
-    /// Asks for the version, which is answered behind everything else that this client asked for directly.
+    /// Asks for the version, which is answered after everything else that this client asked for directly.
     pub fn sync(&mut self) {
         self.send("version");
         self.until("version: ");

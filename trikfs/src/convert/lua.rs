@@ -54,7 +54,7 @@ impl StateMaker {
         std::thread::Builder::new()
             .name("lua-states".to_owned())
             .spawn(move || {
-                // Whoever opens a file goes first. Everybody may give way; if it fails, nothing is lost.
+                // A program that opens a file goes first. Every thread may give way; if it fails, nothing is lost.
                 let _ = rustix::process::setpriority_process(None, limits::LUA_STATES_NICE);
                 own.serve(&todo);
             })?;

@@ -44,7 +44,7 @@ impl Newest {
         if self.need.comes(|| self.latch.forget()) {
             let (done, tried) = sync_channel(1);
             self.schedule_sampling(node, Instant::now(), Some(done));
-            // Who reads waits on, or gets what came out of it.
+            // The reader waits on, or gets what came out of it.
             let _ = tried.recv_timeout(Duration::from_millis(limits::RENEWAL_MS));
         }
     }

@@ -17,7 +17,7 @@ enum Mark {
 }
 
 impl Checker<'_, '_> {
-    /// Equations of values, each behind what it needs and else in the order of the text; then those of derivatives in the
+    /// Equations of values, each after what it needs and else in the order of the text; then those of derivatives in the
     /// order of declaration. Circles are told.
     pub(super) fn order(
         &mut self,

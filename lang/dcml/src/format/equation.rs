@@ -13,7 +13,7 @@ struct Piece {
     is_spaced: bool,
     /// How bad it is to break the line before it; nothing if it cannot be.
     cost: Option<u32>,
-    /// Whether the line ends behind it.
+    /// Whether the line ends after it.
     ends_line: bool,
 }
 
@@ -132,7 +132,7 @@ fn line_end(pieces: &[Piece], width: usize) -> usize {
             column = 0;
         }
         column += last.chars().count();
-        // A break directly behind the first piece gains nothing.
+        // A break directly after the first piece gains nothing.
         if let Some(cost) = piece.cost
             && at > 1
             && (column <= width || best.is_none())

@@ -200,7 +200,7 @@ impl<'a> Parser<'a, '_> {
         self.skip_statement();
     }
 
-    /// Goes behind the next semicolon, or before what begins another statement.
+    /// Goes to the token after the next semicolon, or before what begins another statement.
     pub(super) fn skip_statement(&mut self) {
         loop {
             match self.kind() {
@@ -230,7 +230,7 @@ impl<'a> Parser<'a, '_> {
         found
     }
 
-    /// The first documentation behind the end of a statement or declaration: on the same line, where the next word is not.
+    /// The first documentation after the end of a statement or declaration: on the same line, where the next word is not.
     /// What else stands there is passed.
     pub(super) fn doc_behind(&mut self) -> Option<Doc> {
         let end = self.before().end;

@@ -1,6 +1,6 @@
 //! Sections of declarations: names with their documentation, units, ranges and numbers.
 //!
-//! Owns where documentation belongs: what stands before a name, or behind its comma on the same line, is the name's; what
+//! Owns where documentation belongs: what stands before a name, or after its comma on the same line, is the name's; what
 //! stands before a section is that of all its names that have none.
 
 use super::super::diagnostic::{Code, Diagnostic};

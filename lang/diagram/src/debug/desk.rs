@@ -1,6 +1,6 @@
 //! A debugger's desk: orders come in as texts, what they do goes out as JSON.
 //!
-//! Owns what each order does, and what is told when. Whoever has the desk gives it the robot and the clock, carries the
+//! Owns what each order does, and what is told when. The owner of the desk gives it the robot and the clock, carries the
 //! texts, and decides what motors do at a stop. Knows no transport, no clients and no files.
 
 use super::order::{NoOrder, Order};
@@ -105,7 +105,7 @@ impl Desk {
         &mut self.session
     }
 
-    /// The program as it is, whoever looks at its past.
+    /// The program as it is, also while a client looks at its past.
     pub fn live(&self) -> &Machine {
         self.session.live()
     }

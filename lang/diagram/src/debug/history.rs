@@ -2,7 +2,7 @@
 //! between is computed again.
 //!
 //! Owns what is kept, how much memory that takes, and the search for a moment. A program is deterministic given what its
-//! robot answers, so a moment that is computed again is the one that was. Knows no breakpoints: whoever searches says
+//! robot answers, so a moment that is computed again is the one that was. Knows no breakpoints: the caller of a search says
 //! which moments it means.
 
 use std::collections::{BTreeSet, VecDeque};

@@ -135,7 +135,7 @@ impl Order {
         }
     }
 
-    /// Whether it changes what the program does, so that only whoever is in control may give it.
+    /// Whether it changes what the program does, so that only the client in control may give it.
     pub fn is_for_control(&self) -> bool {
         match self {
             Self::Look | Self::Breakpoints(_) | Self::Evaluate(_) => false,

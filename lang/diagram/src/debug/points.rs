@@ -465,7 +465,7 @@ fn same(one: &Value, other: &Value) -> bool {
     }
 }
 
-/// A line with values in the place of `{expression}`; what cannot be computed says why.
+/// A line with values instead of each `{expression}`; what cannot be computed says why.
 fn filled(line: &str, machine: &Machine) -> String {
     let mut out = String::new();
     let mut rest = line;

@@ -1,6 +1,6 @@
 //! A program with its debugger: model time that stands still while the program is stopped.
 //!
-//! Owns the machine, the debugger, its past, and the time that was spent in stops. Whoever calls it gives the clock, as to
+//! Owns the machine, the debugger, its past, and the time that was spent in stops. The caller gives the clock, as to
 //! a machine, and decides what motors do at a stop.
 
 use std::rc::Rc;
@@ -131,7 +131,7 @@ impl Session {
             .map_or(&self.machine, |past| &past.machine)
     }
 
-    /// The machine as it is, whoever looks at its past.
+    /// The machine as it is, also while a client looks at its past.
     pub fn live(&self) -> &Machine {
         &self.machine
     }
@@ -185,7 +185,7 @@ impl Session {
     }
 
     /// Goes on after a stop, at a moment of the caller's clock: finishes the step in which it was stopped, or stops again.
-    /// Whoever looks at the past is in the present with that.
+    /// A client that looks at the past is back in the present after that.
     pub fn go_on(&mut self, now: u32, brick: &mut dyn Brick, trace: &mut dyn Trace) -> Phase {
         self.past = None;
         self.search = None;
@@ -323,7 +323,7 @@ impl Session {
         false
     }
 
-    /// Ends a search: whoever looks at the program stays where it was begun.
+    /// Ends a search: what is looked at stays where it was begun.
     pub fn give_up_search(&mut self) -> bool {
         self.search.take().is_some()
     }
@@ -399,7 +399,7 @@ impl Session {
         Ok(())
     }
 
-    /// Puts a new version in the place of the program. Whoever looks at the past is in the present with that.
+    /// Replaces the program by a new version. A client that looks at the past is back in the present after that.
     ///
     /// # Errors
     /// [`Refused`]; nothing has changed then.

@@ -173,7 +173,7 @@ impl Printer<'_> {
             self.line(depth, &fill(head, &[test]), out);
             self.block(body, depth + 1, out);
         }
-        // A condition behind `else` needs no depth of its own.
+        // A condition after `else` needs no depth of its own.
         if let [Statement::If(when, yes, no)] = other {
             self.line(depth, &fill(syntax.else_if, &[&self.code(when, 0)]), out);
             self.block(yes, depth + 1, out);

@@ -68,7 +68,7 @@ impl Machine {
         at.ok().map(|at| self.clocks[at])
     }
 
-    /// The first block behind another one whose clock runs.
+    /// The first block after another one whose clock runs.
     pub(super) fn next_clock(&self, after: Option<Node>) -> Option<Node> {
         let from = match after {
             None => 0,

@@ -76,7 +76,7 @@ impl Machine {
         if self.pass.take() == Some(handle) {
             return false;
         }
-        // The thread stands where it is, for whoever looks.
+        // The thread stands where it is, for a client that looks.
         self.save(handle, (from, node), count, State::Ready);
         let thread = handle.slot;
         match env.trace.guard(self, Moment::Enters { thread, node }) {

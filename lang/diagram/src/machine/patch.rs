@@ -210,7 +210,7 @@ impl Moves {
 }
 
 impl Machine {
-    /// Puts a new version in the place of this one, between two steps or while the machine is held.
+    /// Replaces this version by a new one, between two steps or while the machine is held.
     ///
     /// What an expression or a property says counts when it is next evaluated, a link when it is next followed: a wait that
     /// has begun ends when it would have. With the last thread the program ends, and motors rest.

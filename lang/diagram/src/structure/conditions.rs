@@ -23,7 +23,7 @@ pub(super) fn merge(work: &mut Work, flow: &Flow) {
     work.prune();
 }
 
-/// A condition behind `first` that shares a target with it, and the way of `first` that leads there.
+/// A condition after `first` that shares a target with it, and the way of `first` that leads there.
 fn candidate(
     work: &Work,
     flow: &Flow,

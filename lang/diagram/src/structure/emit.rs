@@ -14,7 +14,7 @@ struct Around {
     head: usize,
     label: usize,
     follow: Option<usize>,
-    /// Its follower and other places behind it, when it has been closed.
+    /// Its follower and other places after it, when it has been closed.
     behind: Vec<usize>,
     /// Where it is left to, other than to its follower: the variable has the place in this list, from 1.
     exits: Vec<usize>,
@@ -239,7 +239,7 @@ impl Emitter<'_> {
         Some(out)
     }
 
-    /// Writes joins one behind the other, each falling into the next; gives the last one, for who writes on.
+    /// Writes joins one after the other, each falling into the next; gives the last one, after which the caller goes on.
     fn rest(
         &mut self,
         places: &[usize],

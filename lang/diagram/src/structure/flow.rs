@@ -133,7 +133,7 @@ impl Flow {
     fn spans(&self, order: &[usize]) -> Vec<(usize, usize)> {
         let mut spans = vec![(0, 0); order.len()];
         let mut next = vec![0; order.len()];
-        // Children take ranges one behind the other in the range of their parent.
+        // Children take ranges one after the other in the range of their parent.
         for &node in order {
             let start = if node == order[0] {
                 0

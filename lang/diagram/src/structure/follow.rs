@@ -5,7 +5,7 @@
 use super::flow::Flow;
 use super::work::{Kind, Work};
 
-/// What writing a place twice may cost before it is put behind the loop rather than what comes next anyway.
+/// What writing a place twice may cost before it is put after the loop rather than what comes next anyway.
 const COST_OF_COPIES: usize = 8;
 
 /// Where a loop is left to.
@@ -76,7 +76,7 @@ fn frontier(work: &Work, flow: &Flow, head: usize, targets: &[usize]) -> Vec<usi
     found
 }
 
-/// The place behind a loop that comes before `next`.
+/// The place after a loop that comes before `next`.
 pub(super) fn follow(work: &Work, flow: &Flow, head: usize, next: Option<usize>) -> Option<usize> {
     let exits = exits(work, flow, head);
     if exits.targets.len() <= 1 {
@@ -100,7 +100,7 @@ pub(super) fn follow(work: &Work, flow: &Flow, head: usize, next: Option<usize>)
     targets.max_by_key(|&node| (!is_end(node), flow.weight[node]))
 }
 
-/// All places behind a loop that several ways out meet in, first to last: for languages that can jump.
+/// All places after a loop that several ways out meet in, first to last: for languages that can jump.
 pub(super) fn all(work: &Work, flow: &Flow, head: usize) -> Vec<usize> {
     exits(work, flow, head).joins
 }

@@ -48,7 +48,7 @@ fn scratch(test: &str) -> PathBuf {
     path
 }
 
-/// Examples of the document, by the words behind their fence.
+/// Examples of the document, by the words after their fence.
 fn example(mark: &str) -> String {
     let text = std::fs::read_to_string(root().join("docs/user/generators.md")).unwrap();
     let start = format!("```{mark}\n");

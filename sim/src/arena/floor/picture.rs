@@ -270,7 +270,7 @@ fn affine(from: skia::Transform) -> Affine {
     Affine([from.sx, from.ky, from.kx, from.sy, from.tx, from.ty].map(f64::from))
 }
 
-/// The bytes behind Base64; white space is left out.
+/// The bytes that Base64 stands for; white space is left out.
 ///
 /// # Errors
 /// It is too long, empty or none.

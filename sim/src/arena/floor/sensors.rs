@@ -33,7 +33,7 @@ const CROSS_PART: f64 = 0.2;
 
 /// Noise of a variance, as the original makes it: the sum of twelve uniform numbers.
 ///
-/// Its deviation is a little more than the root of the variance, because it counts with 0.083 in place of 1/12.
+/// Its deviation is a little more than the root of the variance, because it counts with 0.083 instead of 1/12.
 pub fn noise(random: &mut Random, variance: f64) -> f64 {
     random.normal() * (variance / (12.0 * 0.083)).sqrt()
 }

@@ -244,7 +244,7 @@ impl Pen<'_> {
         }
     }
 
-    /// The left side of pieces, behind an end around `cap` or as a part of its own; where its first piece goes.
+    /// The left side of pieces, after an end around `cap` or as a part of its own; where its first piece goes.
     fn side(&mut self, pieces: &[Piece], cap: Option<Spot>) -> Option<Spot> {
         let mut before: Option<Spot> = None;
         let mut first = None;

@@ -95,7 +95,7 @@ fn wrong(form: Form, name: &str, text: &str) -> Option<lang_text::problem::Words
     if text.is_empty() {
         return None;
     }
-    // What is no number at all has been told by whoever reads numbers.
+    // What is no number at all has been told by the reader of numbers.
     let number: Option<f64> = text.trim().parse().ok();
     match form {
         Form::Colour => Tint::named(text)

@@ -93,7 +93,7 @@ impl Document {
         self.reading = OnceCell::new();
     }
 
-    /// Puts a change in. Places behind the end of a line or of the text are that end, those inside a character its
+    /// Puts a change in. Places after the end of a line or of the text are that end, those inside a character its
     /// beginning, and a range from back to front is turned round: so do editors.
     pub fn change(&mut self, change: &Change, encoding: Encoding) {
         (self.reading, self.is_new) = (OnceCell::new(), true);

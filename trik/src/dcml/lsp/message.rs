@@ -26,7 +26,7 @@ pub const INVALID_PARAMS: i32 = -32602;
 pub const NOT_INITIALIZED: i32 = -32002;
 /// The client does not want the answer any more.
 pub const CANCELLED: i32 = -32800;
-/// The document has changed behind the request.
+/// The document has changed after the request.
 pub const CONTENT_MODIFIED: i32 = -32801;
 /// The request is right and cannot be done.
 pub const FAILED: i32 = -32803;

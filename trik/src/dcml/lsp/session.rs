@@ -28,7 +28,7 @@ pub struct Client {
     pub has_versions: bool,
     /// It takes edits that mend something.
     pub has_fixes: bool,
-    /// It takes places of arguments in place of their names.
+    /// It takes the places of arguments instead of their names.
     pub has_label_places: bool,
     /// It shows other places of a diagnostic.
     pub has_related: bool,

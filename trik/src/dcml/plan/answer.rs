@@ -3,7 +3,7 @@
 //! Owns the forms. The table has a line for each step: `t`, actions, states, outputs; an action holds from its line to
 //! the next, so the last line only says where it ends.
 
-use super::ask::Asked;
+use super::ask::Question;
 use lang_dcml::robot::Robot;
 use lang_plan::{Counts, End, Outcome, Path};
 use std::fmt::Write;
@@ -32,7 +32,7 @@ pub(super) fn table(robot: &mut Robot, path: &Path) -> String {
 }
 
 /// How long the way of its position is.
-fn length(robot: &mut Robot, asked: &Asked, path: &Path) -> f64 {
+fn length(robot: &mut Robot, asked: &Question, path: &Path) -> f64 {
     let mut before: Option<[f64; 2]> = None;
     let mut sum = 0.0;
     path.replay(robot, 1, |_, place, _| {
@@ -66,7 +66,7 @@ pub(super) fn progress(counts: &Counts) -> String {
     )
 }
 
-fn values(asked: &Asked, place: &[f64], sign: &str, quoted: bool) -> String {
+fn values(asked: &Question, place: &[f64], sign: &str, quoted: bool) -> String {
     let one = |(name, value): (&String, &f64)| {
         if quoted {
             format!("\"{name}\"{sign}{value}")
@@ -79,7 +79,12 @@ fn values(asked: &Asked, place: &[f64], sign: &str, quoted: bool) -> String {
 }
 
 /// For a person.
-pub(super) fn summary(robot: &mut Robot, asked: &Asked, outcome: &Outcome, seconds: f64) -> String {
+pub(super) fn summary(
+    robot: &mut Robot,
+    asked: &Question,
+    outcome: &Outcome,
+    seconds: f64,
+) -> String {
     let counts = &outcome.counts;
     let mut text = String::new();
     let _ = match &outcome.path {
@@ -108,7 +113,7 @@ pub(super) fn summary(robot: &mut Robot, asked: &Asked, outcome: &Outcome, secon
 }
 
 /// For a program: one object on one line.
-pub(super) fn json(robot: &mut Robot, asked: &Asked, outcome: &Outcome, seconds: f64) -> String {
+pub(super) fn json(robot: &mut Robot, asked: &Question, outcome: &Outcome, seconds: f64) -> String {
     let counts = &outcome.counts;
     let mut text = format!("{{\"found\":{}", outcome.path.is_some());
     if let Some(path) = &outcome.path {

@@ -2,7 +2,7 @@
 //!
 //! Owns the options. Their forms are those of `forms`, what they do is known to `plan` and `ask`.
 
-use super::forms::{self, Bodied, Footing, Given, Linked, Ranges};
+use super::forms::{self, Assignments, Bodied, Footing, Linked, Ranges};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -17,13 +17,13 @@ pub(crate) struct PlanArgs {
     pub model: Option<String>,
     /// Its parameters, all of them: L=0.2,r=0.03.
     #[arg(long, value_name = "NAME=NUMBER,...", value_parser = forms::given)]
-    pub params: Vec<Given>,
+    pub params: Vec<Assignments>,
     /// The initial state; what is not named is 0, or with --world the position of the world's robot.
     #[arg(long, value_name = "NAME=NUMBER,...", value_parser = forms::given)]
-    pub start: Vec<Given>,
+    pub start: Vec<Assignments>,
     /// The goal: x=3,y=2 and optionally theta=0. States and outputs may be named.
     #[arg(long, required = true, value_name = "NAME=NUMBER,...", value_parser = forms::given)]
-    pub goal: Vec<Given>,
+    pub goal: Vec<Assignments>,
     /// How near the goal is near enough, in the unit of x and y.
     #[arg(long, value_name = "R", default_value_t = 0.1, value_parser = forms::positive)]
     pub goal_radius: f64,
@@ -45,7 +45,7 @@ pub(crate) struct PlanArgs {
     pub actions: Vec<Ranges>,
     /// Weight of a difference of 1 in distances [default: 1 for x and y, less for others].
     #[arg(long, value_name = "NAME=NUMBER,...", value_parser = forms::given)]
-    pub weights: Vec<Given>,
+    pub weights: Vec<Assignments>,
     /// Obstacles: a world of TRIK Studio, FILE.xml or a project FILE.qrs. In metres, x to the right and y up, so y has the
     /// other sign than there.
     #[arg(long, value_name = "FILE", conflicts_with = "obstacles")]

@@ -4,7 +4,7 @@
 
 use super::args::PlanArgs;
 use super::field::Stand;
-use super::forms::{Bodied, Given, Linked, Named, Ranges};
+use super::forms::{Assignments, Bodied, Linked, Named, Ranges};
 use crate::refusal::Refusal;
 use lang_dcml::robot::{Part, Robot};
 use lang_dcml::syntax::Domain;
@@ -21,7 +21,7 @@ const RADIUS: f64 = 0.1;
 const SHARE: f64 = 0.3;
 
 /// A question, and what is needed to show its answer.
-pub(super) struct Asked {
+pub(super) struct Question {
     pub problem: Problem,
     pub parts: Parts,
     pub footprint: Footprint,
@@ -103,7 +103,7 @@ impl Names<'_> {
     }
 }
 
-fn numbers(given: &[Given]) -> impl Iterator<Item = Named<f64>> {
+fn numbers(given: &[Assignments]) -> impl Iterator<Item = Named<f64>> {
     given.iter().flat_map(|one| one.0.iter().cloned())
 }
 
@@ -120,7 +120,7 @@ pub(super) fn ask(
     robot: &Robot,
     obstacles: &Obstacles,
     stands: Option<&Stand>,
-) -> Result<Asked, Refusal> {
+) -> Result<Question, Refusal> {
     let names = Names {
         states: robot.state_parts().len(),
         all: robot
@@ -172,7 +172,7 @@ pub(super) fn ask(
         hold: steps(args),
         links: links(args, &names)?,
     };
-    Ok(Asked {
+    Ok(Question {
         problem,
         parts,
         footprint,

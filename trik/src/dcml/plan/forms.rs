@@ -10,7 +10,7 @@ pub(crate) type Named<T> = (String, T);
 
 /// Names with numbers.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Given(pub Vec<Named<f64>>);
+pub(crate) struct Assignments(pub Vec<Named<f64>>);
 
 /// Names with ranges.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,8 +84,8 @@ fn named<T>(
 }
 
 /// `NAME=NUMBER,...`
-pub(crate) fn given(text: &str) -> Result<Given, Error> {
-    named(text, number, "NUMBER").map(Given)
+pub(crate) fn given(text: &str) -> Result<Assignments, Error> {
+    named(text, number, "NUMBER").map(Assignments)
 }
 
 /// `NAME=LOW..HIGH,...`

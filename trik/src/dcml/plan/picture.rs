@@ -2,7 +2,7 @@
 //!
 //! Owns the style. x goes to the right and y up, as in the model.
 
-use super::ask::Asked;
+use super::ask::Question;
 use lang_dcml::robot::Robot;
 use lang_dcml::system::System;
 use lang_plan::obstacles::flat::Point;
@@ -66,7 +66,7 @@ impl Plane {
 pub(super) fn draw(
     robot: &mut Robot,
     obstacles: &Obstacles,
-    asked: &Asked,
+    asked: &Question,
     outcome: &Outcome,
 ) -> String {
     let [(left, right), (low, high)] = asked.area;
@@ -118,7 +118,7 @@ pub(super) fn draw(
     svg.finish()
 }
 
-fn branches(svg: &mut Svg, plane: &Plane, robot: &mut Robot, asked: &Asked, outcome: &Outcome) {
+fn branches(svg: &mut Svg, plane: &Plane, robot: &mut Robot, asked: &Question, outcome: &Outcome) {
     let states = robot.states();
     let mut propagator = Propagator::new(robot, asked.problem.step);
     let every = outcome.tree.len().div_ceil(BRANCHES).max(1);
@@ -144,7 +144,7 @@ fn branches(svg: &mut Svg, plane: &Plane, robot: &mut Robot, asked: &Asked, outc
         .close();
 }
 
-fn path(svg: &mut Svg, plane: &Plane, robot: &mut Robot, asked: &Asked, outcome: &Outcome) {
+fn path(svg: &mut Svg, plane: &Plane, robot: &mut Robot, asked: &Question, outcome: &Outcome) {
     let mut draw_robot = |place: &[f64], style: &Style| {
         let others = asked.bodies.iter().map(|one| (&one.footprint, one.parts));
         for (footprint, parts) in others.chain([(&asked.footprint, asked.parts)]) {

@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 pub(super) struct Table {
     /// Time, states, outputs, actions.
     pub columns: Vec<Column>,
-    /// How many of the columns behind the time are states and outputs.
+    /// How many of the columns after the time are states and outputs.
     pub configs: usize,
     /// As many numbers as there are columns.
     pub rows: Vec<Vec<f64>>,

@@ -31,7 +31,7 @@ enum Anchor {
 /// The picture as a file.
 pub(super) fn picture(lines: &[Line], across: (f64, f64)) -> Vec<u8> {
     let (width, height) = size(lines);
-    let mut sheet = Sheet(Pixels::new(side(width), side(height), Some(WHITE)));
+    let mut sheet = Canvas(Pixels::new(side(width), side(height), Some(WHITE)));
     for (at, line) in lines.iter().enumerate() {
         let points = line.points(across.1);
         let panel = panel(at, &points, across);
@@ -77,9 +77,9 @@ fn pixel((x, y): (f64, f64)) -> [i32; 2] {
     pixel
 }
 
-struct Sheet(Pixels);
+struct Canvas(Pixels);
 
-impl Sheet {
+impl Canvas {
     fn line(&mut self, from: (f64, f64), to: (f64, f64), colour: Colour, width: u16) {
         let ([x1, y1], [x2, y2]) = (pixel(from), pixel(to));
         let line = Shape {

@@ -5,7 +5,7 @@
 
 use super::Session;
 use crate::blame::Blame;
-use crate::clients::debugging::Asked;
+use crate::clients::debugging::OrderId;
 use crate::program::child::Language;
 use crate::program::{Command, Wish};
 use crate::protocol::news;
@@ -67,7 +67,7 @@ impl Session {
             return self.client.done(tag);
         }
         self.control.clients.debugs(&self.client);
-        let asked = Asked {
+        let asked = OrderId {
             client: self.client.id(),
             tag,
         };
@@ -83,7 +83,7 @@ impl Session {
         }
     }
 
-    async fn run_debugged(&self, asked: Asked, name: &str) -> Result<(), Refusal> {
+    async fn run_debugged(&self, asked: OrderId, name: &str) -> Result<(), Refusal> {
         self.takes_debugger()?;
         let found = scripts::find(&self.control.scripts, name.as_bytes());
         let path = found.map_err(Refusal::Program)?;
@@ -94,7 +94,7 @@ impl Session {
         Ok(())
     }
 
-    async fn order(&self, asked: Asked, text: &str) -> Result<(), Refusal> {
+    async fn order(&self, asked: OrderId, text: &str) -> Result<(), Refusal> {
         let order = Order::parse(text).map_err(Refusal::Order)?;
         let command = Command::Debug(asked, Wish::Order(text.to_owned()));
         if !order.is_for_control() {

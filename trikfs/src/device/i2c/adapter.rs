@@ -107,7 +107,7 @@ impl Adapter {
     }
 
     /// Whether the kernel has taken the bus away: its node is gone, but transfers may go on, and the kernel waits for the
-    /// end of this opening, with it whoever unplugged the bus. Looks four times a second at most.
+    /// end of this opening, and with it the removal of the bus. Looks four times a second at most.
     pub(super) fn is_withdrawn(&mut self, path: &Path) -> bool {
         if self.seen.elapsed() < Duration::from_millis(BUS_LOOK_MS) {
             return false;

@@ -127,7 +127,7 @@ fn clearing_encoders_costs_a_step_within_a_turn() {
     for (delay, continues) in [("10", 40), ("20", 50), ("30", 60), ("40", 70)] {
         let mut sketch = Sketch::new();
         let start = sketch.block("InitialNode", &[]);
-        // A wait for an encoder ends behind the events of its step, where clearing waits for a turn.
+        // A wait for an encoder ends after the events of its step, where clearing waits for a turn.
         let wait = sketch.block("Timer", &[("Delay", delay)]);
         let passed = sketch.block("TrikV62WaitForEncoder", &[("TachoLimit", "-1")]);
         let clear = sketch.block("TrikV62ClearEncoder", &[]);

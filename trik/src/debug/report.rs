@@ -9,7 +9,7 @@ use serde_json::Value;
 
 /// Where a program is.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Told {
+pub(crate) struct Report {
     pub state: State,
     /// Milliseconds since the beginning.
     pub ms: u64,
@@ -147,7 +147,7 @@ impl State {
     }
 }
 
-impl Told {
+impl Report {
     /// What a state says; none if it is something else, or a state that is not known here.
     pub(crate) fn read(value: &Value) -> Option<Self> {
         let state = match value.get("state")?.as_str()? {
@@ -246,13 +246,13 @@ mod tests {
 
     #[test]
     fn a_state_that_is_not_known_says_nothing() {
-        let state = |word: &str| Told::read(&json!({"state": word})).map(|told| told.state);
+        let state = |word: &str| Report::read(&json!({"state": word})).map(|told| told.state);
         assert_eq!(state("running"), Some(State::Running));
         assert_eq!(state("stopped"), Some(State::Stopped));
         assert_eq!(state("searching"), Some(State::Searching));
         assert_eq!(state("past"), Some(State::Past));
         assert_eq!(state("ended"), Some(State::Ended));
         assert_eq!(state("asleep"), None);
-        assert_eq!(Told::read(&json!({"control": null})), None);
+        assert_eq!(Report::read(&json!({"control": null})), None);
     }
 }
