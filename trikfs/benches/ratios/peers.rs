@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::Arc;
 use tempfile::TempDir;
+use trikfs::mount::MountError;
 use trikfs::transport::null::NullFs;
 
 /// Puts this process and all that it starts on the last processor it may use.
@@ -143,7 +144,10 @@ impl Place {
 
 impl Drop for Place {
     fn drop(&mut self) {
-        let _ = trikfs::mount::unmount(&self.0);
+        let unmounted = trikfs::mount::unmount(&self.0);
+        let is_bare = matches!(unmounted, Ok(_) | Err(MountError::NotMounted(_)));
+        // What is still mounted is not emptied.
+        self.1.disable_cleanup(!is_bare);
     }
 }
 

@@ -21,7 +21,14 @@ impl Scratch {
 
 impl Drop for Scratch {
     fn drop(&mut self) {
-        while unmount(&self.0).is_ok() {}
+        loop {
+            match unmount(&self.0) {
+                Ok(_) => {}
+                Err(MountError::NotMounted(_)) => return,
+                // What is still mounted is not emptied.
+                Err(_) => return self.1.disable_cleanup(true),
+            }
+        }
     }
 }
 
