@@ -96,13 +96,15 @@ impl NodeDescription {
 
     /// Bytes of a tuple before and after the conversion in the direction of writing.
     pub fn write_conversion_sizes(&self) -> (usize, usize) {
-        match &self.source {
-            SourceDescription::Regulator(regulator) => (
-                RegulatorDescription::law_input_size(self.output_tuple_size),
-                regulator.actuator_tuple_size,
-            ),
-            _ if self.write_converter.is_some() => (self.output_tuple_size, self.input_tuple_size),
-            _ => (self.input_tuple_size, self.output_tuple_size),
+        match self.source.law_output_size() {
+            Some(driven) => {
+                let taken = RegulatorDescription::law_input_size(self.output_tuple_size);
+                (taken, driven)
+            }
+            None if self.write_converter.is_some() => {
+                (self.output_tuple_size, self.input_tuple_size)
+            }
+            None => (self.input_tuple_size, self.output_tuple_size),
         }
     }
 

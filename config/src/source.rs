@@ -262,6 +262,35 @@ impl SourceDescription {
         ask!(self, source => source.written_node())
     }
 
+    /// The node whose tuples it hands on, each of them.
+    pub fn linked_node(&self) -> Option<&str> {
+        ask!(self, source => source.linked_node())
+    }
+
+    /// The node whose newest sample it hands on.
+    pub fn sampled_node(&self) -> Option<&str> {
+        ask!(self, source => source.sampled_node())
+    }
+
+    /// The sources that stand side by side in it.
+    pub(crate) fn several(&self) -> Option<&SeveralDescription> {
+        if let Self::Several(several) = self {
+            Some(several)
+        } else {
+            None
+        }
+    }
+
+    /// Bytes of one tuple of the node that it drives, if its write converter is a control law.
+    pub(crate) fn law_output_size(&self) -> Option<usize> {
+        ask!(self, source => source.law_output_size())
+    }
+
+    /// How the line begins that is kept for readers who come later; of the innermost source.
+    pub fn kept_answer(&self) -> Option<&str> {
+        ask!(self.innermost(), source => source.kept_answer())
+    }
+
     /// How an actuator behind it is brought to rest.
     pub fn resting(&self) -> Resting<'_> {
         ask!(self, source => resting(source))

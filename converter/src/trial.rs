@@ -297,7 +297,8 @@ impl<'a> Bytes<'a> {
         }
     }
 
-    /// Marsaglia's xorshift with 32 bits, its words stirred by a multiplication.
+    /// Marsaglia's xorshift with 32 bits, its words stirred by a multiplication. Its own, so that this crate, which
+    /// libraries of others link, depends on none for four lines.
     fn next(&mut self) -> u32 {
         self.state ^= self.state << 13;
         self.state ^= self.state >> 17;

@@ -11,6 +11,7 @@ use crate::sensor::{Kind, Sensor};
 use crate::servo::Servo;
 use crate::tree::Tree;
 use std::collections::BTreeMap;
+use std::fmt;
 use std::sync::Arc;
 
 /// Directories of the view.
@@ -238,29 +239,57 @@ fn add_sensors(tree: &Tree, found: &mut Vec<Found>) {
     }
 }
 
+/// Why a motor gets no encoder; told to those who have written the option.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum NoEncoder {
+    /// There is no motor of this name.
+    Motor(String),
+    /// There is no encoder of this name.
+    Encoder(String),
+}
+
+impl fmt::Display for NoEncoder {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ports = MOTORS.map(|(port, _)| port);
+        match self {
+            Self::Motor(name) => {
+                let motors = ports.join(", ");
+                write!(f, "there is no motor {name:?}; there are {motors}")
+            }
+            Self::Encoder(name) => {
+                let encoders = ports.map(encoder_beside).join(", ");
+                write!(
+                    f,
+                    "there is no encoder {name:?}; there are {encoders}, and none"
+                )
+            }
+        }
+    }
+}
+
+impl std::error::Error for NoEncoder {}
+
+/// The encoder with the number of a motor.
+fn encoder_beside(motor: &str) -> String {
+    motor.replace('M', "E")
+}
+
 /// Reads `PORT=ENCODER`, or `PORT=none`.
 ///
 /// # Errors
 /// There is no such port, or no such encoder.
-pub fn encoder_of(text: &str) -> Result<(String, String), String> {
-    let ports: Vec<&str> = MOTORS.iter().map(|(port, _)| *port).collect();
+pub fn encoder_of(text: &str) -> Result<(String, String), NoEncoder> {
     let (port, encoder) = text.split_once('=').unwrap_or((text, ""));
-    if !ports.contains(&port) {
-        return Err(format!(
-            "there is no motor {port:?}; there are {}",
-            ports.join(", ")
-        ));
+    let mut ports = MOTORS.iter().map(|(port, _)| *port);
+    if !ports.clone().any(|known| known == port) {
+        return Err(NoEncoder::Motor(port.to_owned()));
     }
-    let encoders: Vec<String> = ports.iter().map(|port| port.replace('M', "E")).collect();
     match encoder {
         "none" => Ok((port.to_owned(), String::new())),
-        _ if encoders.iter().any(|other| other == encoder) => {
+        _ if ports.any(|port| encoder_beside(port) == encoder) => {
             Ok((port.to_owned(), encoder.to_owned()))
         }
-        _ => Err(format!(
-            "there is no encoder {encoder:?}; there are {}, and none",
-            encoders.join(", ")
-        )),
+        _ => Err(NoEncoder::Encoder(encoder.to_owned())),
     }
 }
 

@@ -4,6 +4,7 @@
 //! While one of its files is open the file of the tree stays open, because some sensors of the tree measure only then.
 
 use crate::device::{Attribute, Device, Shown, line, lock, no_such_word, read, read_write, write};
+use crate::errno;
 use crate::tree::{KeptFile, Tree};
 use std::sync::Mutex;
 use trikfs::errno::Error;
@@ -247,10 +248,11 @@ impl Sensor {
         }
         let mut values = values?;
         if values.len() < mode.values {
-            return Err(Error::Device(
-                libc::EIO,
-                format!("{}: the tree gives {} values", self.address, values.len()),
-            ));
+            return Err(errno::no_answer(format!(
+                "{}: the tree gives {} values",
+                self.address,
+                values.len()
+            )));
         }
         values.truncate(mode.values);
         Ok(values.iter().map(|value| value.round() as i32).collect())
@@ -319,7 +321,7 @@ impl Work {
         let rates = self.value.numbers()?;
         let z = rates.get(2).copied();
         z.map(|z| -z / 1000.0)
-            .ok_or_else(|| Error::Device(libc::EIO, "no rate around z".to_owned()))
+            .ok_or_else(|| errno::no_answer("no rate around z".to_owned()))
     }
 
     fn close(&mut self) {

@@ -90,9 +90,10 @@ impl Servo {
 
 /// A servo from 0 to 100 has no place for less than 0.
 fn out_of_reach(error: Error) -> Error {
-    match error {
-        Error::OutOfRange(what) => Error::Invalid(what),
-        other => other,
+    if let Error::OutOfRange(what) = error {
+        Error::Invalid(what)
+    } else {
+        error
     }
 }
 

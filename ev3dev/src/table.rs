@@ -193,9 +193,9 @@ mod tests {
     use crate::tree::Tree;
     use trikfs::errno::Error;
 
-    struct Thing;
+    struct Dummy;
 
-    impl Device for Thing {
+    impl Device for Dummy {
         fn attributes(&self) -> &'static [Attribute] {
             const ALL: [Attribute; 3] = [read("address"), read_write("a/x"), read_write("a/y")];
             &ALL
@@ -231,7 +231,7 @@ mod tests {
     #[test]
     fn devices_keep_their_numbers_when_they_go_and_come_back() {
         let mut table = Table::default();
-        let make = |_: &Found| Arc::new(Thing) as Arc<dyn Device>;
+        let make = |_: &Found| Arc::new(Dummy) as Arc<dyn Device>;
         let two = found(&["sensors/A1", "sensors/A2"]);
         let one = found(&["sensors/A2"]);
         table.update(&two, make);

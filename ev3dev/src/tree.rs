@@ -1,7 +1,8 @@
 //! Files of the tree: opened when they are needed, opened again after the tree was away.
 //!
-//! Owns what an errno of the tree means here: a tree that is gone is a device that is gone. Knows no class of ev3dev.
+//! Owns the files that are kept open. Knows no class of ev3dev, and leaves what an errno of the tree means to `errno`.
 
+use crate::errno;
 use crate::limits::TREE_TEXT_BYTES_MAX;
 use std::fs::File;
 use std::io;
@@ -39,7 +40,7 @@ impl Tree {
     /// Opens a file for reading.
     ///
     /// # Errors
-    /// As the tree has it; see [`error_of`].
+    /// As the tree has it; see [`errno::of_tree`].
     pub fn open(&self, name: &str) -> Result<TreeFile, Error> {
         TreeFile::new(File::open(self.path(name)), name)
     }
@@ -47,7 +48,7 @@ impl Tree {
     /// Opens a file for writing.
     ///
     /// # Errors
-    /// As the tree has it; see [`error_of`].
+    /// As the tree has it; see [`errno::of_tree`].
     pub fn open_to_write(&self, name: &str) -> Result<TreeFile, Error> {
         TreeFile::new(File::options().write(true).open(self.path(name)), name)
     }
@@ -83,7 +84,7 @@ impl TreeFile {
                 file,
                 name: name.to_owned(),
             }),
-            Err(error) => Err(error_of(&error, name)),
+            Err(error) => Err(errno::of_tree(&error, name)),
         }
     }
 
@@ -99,15 +100,12 @@ impl TreeFile {
                 Ok(0) => break,
                 Ok(count) => length += count,
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-                Err(error) => return Err(error_of(&error, &self.name)),
+                Err(error) => return Err(errno::of_tree(&error, &self.name)),
             }
         }
         match std::str::from_utf8(&bytes[..length]) {
             Ok(text) => Ok(text.trim().to_owned()),
-            Err(_) => Err(Error::Device(
-                libc::EIO,
-                format!("{}: not a text", self.name),
-            )),
+            Err(_) => Err(errno::no_answer(format!("{}: not a text", self.name))),
         }
     }
 
@@ -121,7 +119,7 @@ impl TreeFile {
         let numbers: Option<Vec<f64>> = text.split_ascii_whitespace().map(number).collect();
         numbers
             .filter(|numbers| !numbers.is_empty())
-            .ok_or_else(|| Error::Device(libc::EIO, format!("{}: no numbers: {text:?}", self.name)))
+            .ok_or_else(|| errno::no_answer(format!("{}: no numbers: {text:?}", self.name)))
     }
 
     /// The first of the newest numbers.
@@ -140,12 +138,9 @@ impl TreeFile {
         loop {
             return match self.file.write_at(text.as_bytes(), 0) {
                 Ok(count) if count == text.len() => Ok(()),
-                Ok(_) => Err(Error::Device(
-                    libc::EIO,
-                    format!("{}: took only a part", self.name),
-                )),
+                Ok(_) => Err(errno::no_answer(format!("{}: took only a part", self.name))),
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
-                Err(error) => Err(error_of(&error, &self.name)),
+                Err(error) => Err(errno::of_tree(&error, &self.name)),
             };
         }
     }
@@ -204,27 +199,6 @@ impl KeptFile {
             self.file = Some(file);
         }
         result
-    }
-}
-
-/// What an errno of a file of the tree means for who uses the view: a tree or node that is gone is ENODEV, everything
-/// else stays what it is.
-pub fn error_of(error: &io::Error, name: &str) -> Error {
-    let errno = error.raw_os_error().unwrap_or(libc::EIO);
-    let told = format!("{name}: {error}");
-    match errno {
-        libc::ENOENT
-        | libc::ENOTDIR
-        | libc::ENODEV
-        | libc::ENOTCONN
-        | libc::ECONNABORTED
-        | libc::ESTALE => Error::NoDevice(told),
-        libc::EINVAL => Error::Invalid(told),
-        libc::ERANGE => Error::OutOfRange(told),
-        libc::EBUSY => Error::Busy(told),
-        libc::ETIMEDOUT => Error::TimedOut(told),
-        libc::EINTR => Error::Interrupted,
-        _ => Error::Device(errno, name.to_owned()),
     }
 }
 

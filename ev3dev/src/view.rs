@@ -187,7 +187,7 @@ impl Operations for View {
         match self.node(ino)? {
             Node::Attribute(..) => return Err(Error::NotADirectory),
             Node::Directory if from == 0 => self.refresh(),
-            _ => {}
+            Node::Directory | Node::Device(_) => {}
         }
         let table = lock(&self.table);
         let dots = [(ino, "."), (table.parent(ino), "..")];
@@ -195,7 +195,7 @@ impl Operations for View {
         let entries = table.list(ino).map(|(ino, name, node)| {
             let kind = match node {
                 Node::Attribute(..) => FileKind::File,
-                _ => FileKind::Directory,
+                Node::Directory | Node::Device(_) => FileKind::Directory,
             };
             (ino, name, kind)
         });

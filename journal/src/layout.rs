@@ -6,7 +6,8 @@
 use crate::error::Error;
 use crate::limits::{FIELDS_MAX, FORMAT_BYTES_MAX, TUPLE_BYTES_MAX};
 
-/// Type of one number.
+/// Type of one number. It is `FieldKind` of `config` again: recordings are read by programs that link no configuration,
+/// and what they hold stays readable when configurations have other types.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Signed, 8 bits.

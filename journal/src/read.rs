@@ -52,12 +52,12 @@ pub struct Event {
     /// When, in ns since 1970.
     pub unix_ns: u64,
     /// What.
-    pub what: What,
+    pub what: EventKind,
 }
 
 /// What happened.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum What {
+pub enum EventKind {
     /// A sample of the node with this number.
     Sample {
         /// Among `nodes`.
@@ -402,7 +402,7 @@ impl<F: Read + Seek> Reader<F> {
             Some(&Carries::Samples(node, layout)) => {
                 let name = &self.nodes[node].path;
                 let tuple = node::decode(&self.layouts[layout], data);
-                What::Sample {
+                EventKind::Sample {
                     node,
                     layout,
                     sequence: sequence(data).unwrap_or(0),
@@ -413,7 +413,7 @@ impl<F: Read + Seek> Reader<F> {
                 let fault = Log::decode(data).ok_or_else(|| damaged("faults"))?;
                 let found = self.nodes.iter().position(|node| node.path == fault.name);
                 let Some(node) = found else { return Ok(None) };
-                What::Fault {
+                EventKind::Fault {
                     node,
                     errno: i32::try_from(fault.errno).unwrap_or(i32::MAX),
                     reason: fault.text,
@@ -421,7 +421,7 @@ impl<F: Read + Seek> Reader<F> {
             }
             Some(&Carries::Lines(story)) => {
                 let line = Log::decode(data).ok_or_else(|| damaged(story.topic()))?;
-                What::Line(story, line)
+                EventKind::Line(story, line)
             }
         };
         Ok(Some(Event { unix_ns, what }))
@@ -432,8 +432,8 @@ impl Event {
     /// The node that it is of.
     pub fn node(&self) -> Option<usize> {
         match &self.what {
-            What::Sample { node, .. } | What::Fault { node, .. } => Some(*node),
-            What::Line(..) => None,
+            EventKind::Sample { node, .. } | EventKind::Fault { node, .. } => Some(*node),
+            EventKind::Line(..) => None,
         }
     }
 }

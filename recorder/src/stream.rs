@@ -239,7 +239,7 @@ impl Listener for Stream {
 mod tests {
     use super::*;
     use journal::node::Node;
-    use journal::read::{Reader, What};
+    use journal::read::{EventKind, Reader};
     use std::io::Cursor;
     use std::sync::Mutex;
 
@@ -277,7 +277,7 @@ mod tests {
         let mut reader = Reader::open(whole).unwrap();
         let mut all = Vec::new();
         while let Some(event) = reader.next().unwrap() {
-            if let What::Sample { node, tuple, .. } = event.what {
+            if let EventKind::Sample { node, tuple, .. } = event.what {
                 all.push((reader.nodes()[node].path.clone(), tuple[0]));
             }
         }

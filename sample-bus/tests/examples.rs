@@ -3,8 +3,9 @@
 use sample_bus::layout;
 use sample_bus::place::{self, Directory};
 use sample_bus::{Rights, Writer};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
+use tempfile::TempDir;
 
 const READABLE: Rights = Rights {
     mode: 0o444,
@@ -17,18 +18,21 @@ fn folder() -> &'static Path {
 
 /// A folder that stands for a mount point, with a ring for its node `sensors/A1`.
 struct Stage {
-    mountpoint: PathBuf,
+    mountpoint: TempDir,
     writer: Option<Writer>,
     _directory: Directory,
 }
 
 impl Stage {
     fn new(name: &str) -> Self {
-        let mountpoint =
-            std::env::temp_dir().join(format!("samples {name}+{}", std::process::id()));
-        std::fs::create_dir(&mountpoint).unwrap();
+        // A name that has to be escaped in the name of its folder.
+        let made = tempfile::Builder::new()
+            .prefix(&format!("samples {name}+"))
+            .tempdir();
+        let mountpoint = made.unwrap();
         let shared_memory = Path::new(place::SHARED_MEMORY);
-        let path = place::directory(shared_memory, &mountpoint.canonicalize().unwrap()).unwrap();
+        let path =
+            place::directory(shared_memory, &mountpoint.path().canonicalize().unwrap()).unwrap();
         let directory = Directory::take(&path, 0o755).unwrap();
         let file = path.join(place::file_name("sensors/A1").unwrap());
         Self {
@@ -44,12 +48,6 @@ impl Stage {
     }
 }
 
-impl Drop for Stage {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir(&self.mountpoint);
-    }
-}
-
 /// All followers print the same, so that one check is enough for all languages.
 fn check(name: &str, mut command: Command) {
     let mut stage = Stage::new(name);
@@ -61,7 +59,7 @@ fn check(name: &str, mut command: Command) {
     stage.publish(22);
     let mut follow = |count: &str| {
         let words = [
-            stage.mountpoint.as_os_str(),
+            stage.mountpoint.path().as_os_str(),
             "sensors/A1".as_ref(),
             count.as_ref(),
         ];
@@ -92,7 +90,7 @@ fn assert_no_node(stage: &Stage, mut command: Command) {
     command = Command::new(program);
     command
         .args(script)
-        .arg(&stage.mountpoint)
+        .arg(stage.mountpoint.path())
         .arg("sensors/A2");
     let output = command.output().unwrap();
     assert!(!output.status.success());
@@ -136,7 +134,8 @@ const STANDARDS: [&str; 4] = ["-std=c99", "-std=c11", "-std=gnu99", "-std=gnu17"
 
 #[test]
 fn c() {
-    let program = std::env::temp_dir().join(format!("follow-{}", std::process::id()));
+    let scratch = tempfile::tempdir().unwrap();
+    let program = scratch.path().join("follow");
     let source = folder().join("examples/follow.c");
     for standard in STANDARDS {
         let mut compiler = compiler("CC", "cc");
@@ -144,7 +143,6 @@ fn c() {
         compiles(compiler.arg(&program).arg(&source));
     }
     check("c", Command::new(&program));
-    std::fs::remove_file(program).unwrap();
 }
 
 /// Asserts in C that header, manual and layout say the same.
@@ -210,14 +208,14 @@ fn the_manual() {
          int main(void) {{ {first} {in_place} return 0; }}\n"
     );
     program.push_str(&comparisons());
-    let source = std::env::temp_dir().join(format!("manual-{}.c", std::process::id()));
+    let scratch = tempfile::tempdir().unwrap();
+    let source = scratch.path().join("manual.c");
     std::fs::write(&source, &program).unwrap();
     let compiled = compiler("CC", "cc")
         .args(["-std=c11", "-fsyntax-only"])
         .arg(&source)
         .output()
         .unwrap();
-    std::fs::remove_file(source).unwrap();
     assert!(
         compiled.status.success(),
         "{}\n{program}",
@@ -230,7 +228,8 @@ fn the_manual() {
 fn the_header_behind_others_says_what_to_do() {
     let program =
         "#include <stdio.h>\n#include \"trikfs_samples.h\"\nint main(void) { return 0; }\n";
-    let source = std::env::temp_dir().join(format!("behind-{}.c", std::process::id()));
+    let scratch = tempfile::tempdir().unwrap();
+    let source = scratch.path().join("behind.c");
     std::fs::write(&source, program).unwrap();
     let check = |option: &str| {
         let mut compiler = compiler("CC", "cc");
@@ -238,7 +237,6 @@ fn the_header_behind_others_says_what_to_do() {
         compiler.arg(&source).output().unwrap()
     };
     let (refused, asked) = (check("-O0"), check("-D_DEFAULT_SOURCE"));
-    std::fs::remove_file(&source).unwrap();
     let complaint = String::from_utf8_lossy(&refused.stderr);
     assert!(!refused.status.success());
     assert!(

@@ -398,11 +398,8 @@ fn arbitrary_orders_never_panic() {
         "-2147483648",
         "\\n",
     ];
-    let mut seed = 12345_u32;
-    let mut random = |below: usize| {
-        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (seed >> 16) as usize % below
-    };
+    let mut numbers = needs::Random::new(12345);
+    let mut random = |below: usize| numbers.below(below);
     let mut drawing = Drawing::new(40, 30);
     for _ in 0..3000 {
         let mut order = verbs[random(verbs.len())].to_owned();

@@ -7,6 +7,7 @@
 //! Owns connections and their time; what answers is the [`Machine`](crate::machine::Machine).
 //! A client can harm only itself: packets have a limit, and one that does not take its answers is cut off.
 
+use crate::errno;
 use crate::limits::{MAX_CONNECTIONS, MAX_TRANSFER_BYTES};
 use crate::machine::Outcome;
 use crate::msp430;
@@ -222,13 +223,13 @@ impl Line {
     fn probe(&self, request: &Request<'_>, answer: &mut [u8]) -> usize {
         let read = &mut answer[4..4 + request.read];
         let &[register] = request.written else {
-            answer[..4].copy_from_slice(&libc::EINVAL.to_le_bytes());
+            answer[..4].copy_from_slice(&errno::MALFORMED.to_le_bytes());
             return 4;
         };
         let machine = self.shared.machine();
         let is_there = self.number == 2 && request.address == msp430::ADDRESS;
         let known = is_there && machine.msp430.probe(register, read);
-        let error = if known { 0 } else { msp430::NACK };
+        let error = if known { 0 } else { errno::NACK };
         answer[..4].copy_from_slice(&error.to_le_bytes());
         if known { 4 + request.read } else { 4 }
     }
@@ -258,20 +259,20 @@ struct Request<'a> {
 impl<'a> Request<'a> {
     /// `length` is that of the packet as it was sent, which may be more than what came into `packet`.
     fn parse(packet: &'a [u8], length: usize) -> Result<Self, i32> {
-        let whole = packet.get(..length).ok_or(libc::EMSGSIZE)?;
+        let whole = packet.get(..length).ok_or(errno::TOO_LONG)?;
         let Some((header, written)) = whole.split_at_checked(HEADER_BYTES) else {
-            return Err(libc::EINVAL);
+            return Err(errno::MALFORMED);
         };
         if header[0] != VERSION || header[1] & !PROBE != 0 {
-            return Err(libc::EPROTONOSUPPORT);
+            return Err(errno::OTHER_VERSION);
         }
         let word = |at: usize| u16::from_le_bytes([header[at], header[at + 1]]);
         let read = usize::from(word(6));
         if usize::from(word(4)) != written.len() {
-            return Err(libc::EINVAL);
+            return Err(errno::MALFORMED);
         }
         if read > MAX_TRANSFER_BYTES {
-            return Err(libc::EMSGSIZE);
+            return Err(errno::TOO_LONG);
         }
         Ok(Self {
             is_probe: header[1] & PROBE != 0,
@@ -293,23 +294,27 @@ mod tests {
         assert_eq!((request.address, request.read), (0x48, 2));
         assert_eq!(request.written, [0x26]);
         let fault = |packet: &[u8], length| Request::parse(packet, length).err();
-        assert_eq!(fault(&fine, 10), Some(libc::EMSGSIZE), "cut off");
-        assert_eq!(fault(&fine[..7], 7), Some(libc::EINVAL), "half a header");
+        assert_eq!(fault(&fine, 10), Some(errno::TOO_LONG), "cut off");
+        assert_eq!(
+            fault(&fine[..7], 7),
+            Some(errno::MALFORMED),
+            "half a header"
+        );
         assert_eq!(
             fault(&fine[..8], 8),
-            Some(libc::EINVAL),
+            Some(errno::MALFORMED),
             "a byte is missing"
         );
         let mut probe = fine;
         probe[1] = PROBE;
         assert!(Request::parse(&probe, 9).unwrap().is_probe && !request.is_probe);
         probe[1] = 2;
-        assert_eq!(fault(&probe, 9), Some(libc::EPROTONOSUPPORT));
+        assert_eq!(fault(&probe, 9), Some(errno::OTHER_VERSION));
         let mut other = fine;
         other[0] = 2;
-        assert_eq!(fault(&other, 9), Some(libc::EPROTONOSUPPORT));
+        assert_eq!(fault(&other, 9), Some(errno::OTHER_VERSION));
         let mut long = fine;
         long[7] = 0xFF;
-        assert_eq!(fault(&long, 9), Some(libc::EMSGSIZE));
+        assert_eq!(fault(&long, 9), Some(errno::TOO_LONG));
     }
 }

@@ -3,7 +3,7 @@
 //! Run by tests, and by anybody's fuzzer.
 
 use lang_diagram::brick::{Brick, Command};
-use lang_diagram::ports::{Port, Sort};
+use lang_diagram::ports::{Device, Port, Sort};
 
 use crate::arena::{Arena, Setup};
 use crate::field::Field;
@@ -42,7 +42,7 @@ pub fn field(bytes: &[u8]) {
         for port in Port::all() {
             robot.scalar(port);
             // A lidar asks 360 times.
-            if port.sort() == Sort::Vector && (tick == 0 || port.name() != "LidarPort") {
+            if port.sort() == Sort::Vector && (tick == 0 || port.device() != Device::Lidar) {
                 numbers.clear();
                 robot.vector(port, &mut numbers);
             }

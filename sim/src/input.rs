@@ -10,7 +10,7 @@ use crate::attributes::{Attributes, appear};
 use crate::faults::{self, Fault};
 use crate::fifo::{In, Out, Reader};
 use crate::files::Part;
-use crate::limits::MAX_LINE_BYTES;
+use crate::mistake::Mistake;
 use crate::random::Random;
 use crate::shared::Shared;
 use std::io;
@@ -166,7 +166,7 @@ impl Part for Ultrasonic {
 }
 
 /// A key, and what it is after each other, from a line.
-fn order(line: &str) -> Result<(usize, &'static [bool]), String> {
+fn order(line: &str) -> Result<(usize, &'static [bool]), Mistake> {
     let mut words = line.split_whitespace();
     let (verb, name) = (words.next().unwrap_or(""), words.next().unwrap_or(""));
     let states: &[bool] = match verb {
@@ -174,17 +174,15 @@ fn order(line: &str) -> Result<(usize, &'static [bool]), String> {
         "release" => &[false],
         "click" => &[true, false],
         _ => {
-            return Err(format!(
-                "'{line}' does not begin with press, release or click"
-            ));
+            return Err(Mistake::Verb(line.to_owned()));
         }
     };
     let key = KEYS.iter().position(|key| key.0 == name);
     match (key, words.next()) {
         (Some(key), None) => Ok((key, states)),
         _ => {
-            let names = KEYS.map(|key| key.0).join(", ");
-            Err(format!("'{line}' does not name one of the keys {names}"))
+            let names = KEYS.iter().map(|key| key.0).collect();
+            Err(Mistake::Key(line.to_owned(), names))
         }
     }
 }
@@ -240,13 +238,12 @@ impl Part for Keys {
             }
         }
         if self.control.take_left_out() > 0 {
-            let reason = format!("a line is printable and has at most {MAX_LINE_BYTES} bytes");
-            complaint = Some(reason);
+            complaint = Some(Mistake::Unprintable);
         }
         let name = format!("{CONTROL}.error");
         match complaint {
             // Who cannot be told has lost the folder of the board.
-            Some(reason) => drop(appear(&self.root, &name, &reason)),
+            Some(reason) => drop(appear(&self.root, &name, &reason.to_string())),
             None if good > 0 => drop(std::fs::remove_file(self.root.join(name))),
             None => {}
         }

@@ -3,6 +3,9 @@
 //! Owns the order of one tick, the limits of a run and what is told of it. Knows neither files nor processes: texts in,
 //! an outcome out. What a world does is in [`crate::arena`]; what a task demands is in `lang`.
 
+// A thing, part or record that is forgotten must not compile.
+#![deny(clippy::wildcard_enum_match_arm)]
+
 pub mod debugged;
 pub mod hands;
 pub mod json;

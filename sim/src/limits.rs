@@ -126,3 +126,15 @@ pub const RUNNING_MAX: usize = 32;
 pub const RUNNING_CHARS_MAX: usize = 200;
 /// Readings of an arena that wait for a program; those that none hears of are not kept for ever.
 pub const ANNOUNCED_MAX: usize = 64;
+/// Largest of what materials have.
+pub const MATERIAL_MAX: f64 = 1e4;
+/// Least mass of what can be pushed.
+pub const MASS_MIN: f64 = 1e-6;
+/// Places beyond this, in pixels, are none: the solver counts in 32 bits and is right within some kilometres.
+pub const PLACE_MAX: f64 = 1e6;
+/// Outlines with a smaller area, in square pixels, are no bodies.
+pub const AREA_MIN: f64 = 1e-3;
+/// Marks of time on the way of a robot in a picture.
+pub const MARKS_MAX: usize = 40;
+/// Pulses that come in in a second.
+pub const PULSES_HZ_MAX: u32 = 100_000;

@@ -4,6 +4,7 @@
 //! older than a step, and a board at which nobody looks costs nothing.
 
 use crate::body::{BadOrder, Body, Drive, Power, Senses};
+use crate::errno;
 use crate::faults::{self, Faults};
 use crate::field::{Field, Locks};
 use crate::limits::{MAX_CATCH_UP_S, SAYINGS_MAX, STEP_S};
@@ -251,7 +252,7 @@ impl Machine {
         }
         let is_deaf = line.unplug || chip.unplug || self.random.chance(line.nack.max(chip.nack));
         if is_deaf {
-            return Outcome::Failed(msp430::NACK);
+            return Outcome::Failed(errno::NACK);
         }
         let result = match (bus, address) {
             (1, mlx90640::ADDRESS) if self.body.has_infrared_camera() => {
@@ -261,7 +262,7 @@ impl Machine {
                 self.mlx90640.transact(written, read)
             }
             (2, msp430::ADDRESS) => self.ask_msp430(chip.stuck, written, read),
-            _ => Err(msp430::NACK),
+            _ => Err(errno::NACK),
         };
         if line.garbage || chip.garbage {
             self.random.fill(read);

@@ -7,11 +7,11 @@
 //! would need the maker's whole equation: here the floor is cool, walls are cooler, and a ball is warm.
 
 use crate::body::Body;
+use crate::errno::NACK;
 use crate::random::Random;
 
 /// Where it answers.
 pub const ADDRESS: u16 = 0x33;
-const NACK: i32 = libc::EREMOTEIO;
 const ROWS: usize = 24;
 const COLUMNS: usize = 32;
 /// Of a picture and of the calibration.

@@ -6,10 +6,10 @@
 //! What the real firmware does with other registers is not known: here they are not acknowledged.
 //! There is no watchdog: the last duty stays.
 
+use crate::errno::NACK;
+
 /// Where it answers.
 pub const ADDRESS: u16 = 0x48;
-/// Linux' number for "not acknowledged", as the controller's bus driver gives it.
-pub const NACK: i32 = libc::EREMOTEIO;
 const VERSION: u16 = 0x280E;
 const PERIOD: u8 = 0x10;
 const DUTY: u8 = 0x14;

@@ -25,7 +25,7 @@
 use crate::body::Body;
 use crate::body::bench::Bench;
 use crate::body::rolling::configuration::configuration;
-use crate::body::rolling::{Rolling, Said};
+use crate::body::rolling::{Overrides, Rolling};
 use crate::body::two_wheels::TwoWheels;
 use crate::geometry::{Pose, point};
 use crate::world::World;
@@ -100,7 +100,7 @@ pub const MODEL_START: Pose = Pose {
 
 /// The usual body in the room on the wheels of a model, and the configuration that goes with it. `text` is that of the
 /// model.
-pub fn modelled(rolling: Rolling, text: &str, said: &Said) -> (Box<dyn Body>, String) {
+pub fn modelled(rolling: Rolling, text: &str, said: &Overrides) -> (Box<dyn Body>, String) {
     let lua = configuration(&rolling, text, said, &TWO_WHEELS);
     (Box::new(TwoWheels::on(World::room(), rolling)), lua)
 }

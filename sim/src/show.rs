@@ -25,7 +25,7 @@ pub struct Scene {
     /// What markers have left so far.
     pub marks: Vec<Mark>,
     /// Things that can be moved, by their numbers.
-    pub things: Vec<Thing>,
+    pub things: Vec<Movable>,
     /// Where the robot begins.
     pub start: Pose,
     /// All robots; the first one is that of the board.
@@ -123,7 +123,7 @@ pub struct Mark {
 
 /// Something that can be moved.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Thing {
+pub struct Movable {
     /// `ball`, `skittle` or `cube`.
     pub kind: &'static str,
     /// Across.

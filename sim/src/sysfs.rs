@@ -1,8 +1,10 @@
 //! The attributes of the controller: servos (PWM), measured pulses, LEDs and GPIO, and what their texts mean.
 
 use crate::attributes::Attributes;
+use crate::limits;
 use crate::limits::GPIO_COUNT;
 use crate::machine::Machine;
+use crate::mistake::Mistake;
 use std::io;
 
 /// Chip and channel of S1 to S6.
@@ -15,7 +17,6 @@ const CAPTURES: [(&str, &str); 3] = [
 ];
 /// Where a person says which pulses come in.
 const PULSES: &str = "control/pulses";
-const MAX_PULSES_HZ: u32 = 100_000;
 const LEDS: [&str; 2] = ["led_green", "led_red"];
 /// Lines that the controller has exported or that its start exports, with their levels.
 const LINES: [(u32, &str); 7] = [
@@ -145,7 +146,7 @@ fn measure(attributes: &Attributes, port: &str, folder: &str) -> io::Result<()> 
     let control = format!("{PULSES}/{port}");
     let complaint = format!("{control}.error");
     let pulses = match attributes.line(&control).as_deref().map(pulses) {
-        Some(Err(reason)) => return attributes.appear(&complaint, &reason),
+        Some(Err(reason)) => return attributes.appear(&complaint, &reason.to_string()),
         Some(Ok(pulses)) => pulses,
         None => None,
     };
@@ -164,16 +165,14 @@ fn measure(attributes: &Attributes, port: &str, folder: &str) -> io::Result<()> 
 }
 
 /// Frequency and duty from a line; none for `0`.
-fn pulses(line: &str) -> Result<Option<(u32, u32)>, String> {
+fn pulses(line: &str) -> Result<Option<(u32, u32)>, Mistake> {
     let numbers: Option<Vec<u32>> = line.split(' ').map(|word| word.parse().ok()).collect();
     match numbers.as_deref() {
         Some([0]) => Ok(None),
-        Some(&[hz, percent]) if (1..=MAX_PULSES_HZ).contains(&hz) && percent <= 100 => {
+        Some(&[hz, percent]) if (1..=limits::PULSES_HZ_MAX).contains(&hz) && percent <= 100 => {
             Ok(Some((hz, percent)))
         }
-        _ => Err(format!(
-            "'{line}' is not a frequency from 1 to {MAX_PULSES_HZ} Hz and a duty from 0 to 100 %, as in '50 7', or 0"
-        )),
+        _ => Err(Mistake::Pulses(line.to_owned())),
     }
 }
 

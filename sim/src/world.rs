@@ -3,7 +3,7 @@
 //! Owns what stands where and what a ray meets; knows no robot and no sensor.
 
 use crate::geometry::{Point, Segment, circle_met_by, point};
-use crate::show::{Item, Kind, Thing};
+use crate::show::{Item, Kind, Movable};
 
 /// Red, green and blue, 0 to 255 each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -175,8 +175,8 @@ impl World {
     }
 
     /// Its balls, for people.
-    pub fn things(&self) -> Vec<Thing> {
-        let thing = |ball: &Ball| Thing {
+    pub fn things(&self) -> Vec<Movable> {
+        let thing = |ball: &Ball| Movable {
             kind: "ball",
             size_m: 2.0 * ball.radius_m,
             colour: ball.colour.text(),

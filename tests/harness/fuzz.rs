@@ -3,27 +3,8 @@
 //! The seed is printed; `TRIK_FUZZ_SEED` repeats a run, `TRIK_FUZZ_MS` makes it longer. A target is a plain function
 //! that must neither panic nor take long, whatever the bytes. Knows no target.
 
+use needs::Random;
 use std::time::{Duration, Instant};
-
-/// Small numbers that look random (Marsaglia, Xorshift RNGs, 2003).
-struct Random(u32);
-
-impl Random {
-    fn next(&mut self) -> u32 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 17;
-        self.0 ^= self.0 << 5;
-        self.0
-    }
-
-    fn below(&mut self, limit: usize) -> usize {
-        self.next() as usize % limit.max(1)
-    }
-
-    fn byte(&mut self) -> u8 {
-        self.next().to_le_bytes()[1]
-    }
-}
 
 fn seed() -> u32 {
     let given = std::env::var("TRIK_FUZZ_SEED")
@@ -73,7 +54,7 @@ pub fn run(name: &str, target: impl Fn(&[u8]), samples: &[&[u8]]) {
         .and_then(|text| text.parse().ok())
         .unwrap_or(1500);
     let end = Instant::now() + Duration::from_millis(limit);
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     for sample in samples {
         target(sample);
     }

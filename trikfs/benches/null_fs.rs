@@ -7,13 +7,14 @@
 
 use nix::sched::{CpuSet, sched_setaffinity};
 use nix::unistd::Pid;
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, Read, Write};
 use std::os::unix::fs::FileExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::Arc;
 use std::time::Instant;
+use tempfile::TempDir;
 use trikfs::mount::{MountOptions, mount, unmount};
 use trikfs::transport::null::NullFs;
 
@@ -89,6 +90,7 @@ struct Mounted {
     name: &'static str,
     child: Child,
     path: PathBuf,
+    _folder: TempDir,
     file: Option<File>,
     /// Ratio to the pipe and nanoseconds, of each round.
     results: Vec<(f64, u32)>,
@@ -96,8 +98,8 @@ struct Mounted {
 
 impl Mounted {
     fn new(name: &'static str) -> io::Result<Self> {
-        let path = std::env::temp_dir().join(format!("trikfs-bench-{name}-{}", std::process::id()));
-        fs::create_dir_all(&path)?;
+        let folder = tempfile::tempdir()?;
+        let path = folder.path().to_owned();
         let mut child = this_program()?.args(["serve", name]).arg(&path).spawn()?;
         let mut said = [0; 8];
         if let Some(output) = child.stdout.as_mut() {
@@ -108,6 +110,7 @@ impl Mounted {
             name,
             child,
             path,
+            _folder: folder,
             file,
             results: Vec::new(),
         })
@@ -124,7 +127,6 @@ impl Drop for Mounted {
         self.file = None;
         let _ = unmount(&self.path);
         let _ = self.child.wait();
-        let _ = fs::remove_dir(&self.path);
     }
 }
 

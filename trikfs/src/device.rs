@@ -46,13 +46,16 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// What opening a source gives.
-pub enum Device {
+/// What can be read in one of the two ways in which sources deliver: the source itself, and what stands over it.
+pub enum ByDelivery<S, T> {
     /// Something that has a value at any time.
-    State(Box<dyn State>),
+    State(S),
     /// Something that delivers one tuple after another.
-    Stream(Box<dyn Stream>),
+    Stream(T),
 }
+
+/// What opening a source gives.
+pub type Device = ByDelivery<Box<dyn State>, Box<dyn Stream>>;
 
 /// A source that can be asked again: a sysfs attribute, a register, a regular file.
 pub trait State: Send {

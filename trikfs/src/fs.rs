@@ -3,6 +3,9 @@
 //! Owns the table of open files and the tree in force. Each operation finds what a number stands for and calls it;
 //! what an open file does is in `files/`. Knows no FUSE.
 
+// A file that is forgotten must not be a text in silence.
+#![deny(clippy::wildcard_enum_match_arm)]
+
 use crate::clock;
 use crate::engine::Engine;
 use crate::errno::Error;
@@ -208,9 +211,8 @@ impl Fs {
 
     /// What a file says that is only a text; None for all others.
     fn text_of(&self, kind: &Kind) -> Option<Text> {
-        let node = kind.node().cloned();
-        Some(match (kind, node) {
-            (Kind::Status, _) => {
+        Some(match kind {
+            Kind::Status => {
                 let (reloader, forest) = (self.reloader.clone(), self.forest.clone());
                 let engine = self.engine.clone();
                 Box::new(move || {
@@ -223,18 +225,34 @@ impl Fs {
                     )
                 })
             }
-            (Kind::Units(_), Some(node)) => {
+            Kind::Units(node) => {
+                let node = node.clone();
                 Box::new(move || format!("{}\n", node.description.units))
             }
-            (Kind::Format(_), Some(node)) => Box::new(move || format!("{}\n", node.format)),
-            (Kind::Fault(_), Some(node)) => Box::new(move || {
-                node.fault()
-                    .map_or_else(String::new, |error| fault_line(&error) + "\n")
-            }),
-            (Kind::Stats(_), Some(node)) => {
+            Kind::Format(node) => {
+                let node = node.clone();
+                Box::new(move || format!("{}\n", node.format))
+            }
+            Kind::Fault(node) => {
+                let node = node.clone();
+                Box::new(move || {
+                    node.fault()
+                        .map_or_else(String::new, |error| fault_line(&error) + "\n")
+                })
+            }
+            Kind::Stats(node) => {
+                let node = node.clone();
                 Box::new(move || node.stats.render(clock::realtime_offset_ns()))
             }
-            _ => return None,
+            Kind::Directory
+            | Kind::Config
+            | Kind::Log
+            | Kind::Stop
+            | Kind::Device(_)
+            | Kind::Value(..)
+            | Kind::Period(_)
+            | Kind::Param(..)
+            | Kind::Owner(_) => return None,
         })
     }
 

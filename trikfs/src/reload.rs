@@ -17,9 +17,7 @@ use crate::limits;
 use crate::node::{LeasedActuators, Node, directory_of, rest_all};
 use crate::setup::SetupRunner;
 use crate::tree::{Owner, Tree};
-use config::description::{
-    Alias, Config, LinkDescription, NodeDescription, SourceDescription, StageKind,
-};
+use config::description::{Alias, Config, NodeDescription, StageKind};
 use config::load::Loader;
 use config::problem::Problem;
 use std::collections::{BTreeSet, HashMap};
@@ -481,8 +479,8 @@ fn leased_directory<'a>(
     // Directories may lead back to each other through their attributes; then each has a lease of its own.
     let mut passed = Vec::new();
     while let Some((main, _)) = descriptions.get(directory)
-        && let SourceDescription::Node(LinkDescription { path: target }) = &main.source
-        && let Some((_, is_attribute)) = descriptions.get(target.as_str())
+        && let Some(target) = main.source.linked_node()
+        && let Some((_, is_attribute)) = descriptions.get(target)
     {
         if passed.contains(&directory) {
             return passed[0];

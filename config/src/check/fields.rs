@@ -3,7 +3,6 @@
 //! Owns what a source may ask of the nodes that it names. Reading single fields is the business of `crate::fields`.
 
 use super::Checker;
-use crate::description::SourceDescription;
 use crate::fields::Fields;
 use crate::problem::Problem;
 use crate::source::kind::Nodes;
@@ -75,7 +74,7 @@ impl Nodes for Others<'_, '_> {
         let Some(node) = self.checker.built(path) else {
             return Err("there is no such node");
         };
-        let is_linked = matches!(node.source, SourceDescription::Node(_));
+        let is_linked = node.source.linked_node().is_some();
         if !is_linked && !node.source.takes_writes() {
             Err("it cannot be written")
         } else if node.rest.is_none() {

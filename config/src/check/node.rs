@@ -65,12 +65,10 @@ impl NodeFields<'_, '_> {
         if layout.format.is_none() && read.is_empty() {
             layout.format = self.joined_format(&source);
         }
-        let read_only = match &source {
+        let read_only = match source.linked_node() {
             // Writing through another node has to be asked for.
-            SourceDescription::Node(other) => {
-                write.is_none() || !self.checker.takes_tuples(&other.path)
-            }
-            source => !source.takes_writes(),
+            Some(other) => write.is_none() || !self.checker.takes_tuples(other),
+            None => !source.takes_writes(),
         };
         if write.is_some() && read_only {
             return Err(self.problem(
@@ -144,12 +142,9 @@ impl NodeFields<'_, '_> {
         let Some(drafts) = write else {
             return Ok(None);
         };
-        let (before, after) = match source {
-            SourceDescription::Regulator(regulator) => (
-                RegulatorDescription::law_input_size(layout.output),
-                regulator.actuator_tuple_size,
-            ),
-            _ => (layout.output, layout.input),
+        let (before, after) = match source.law_output_size() {
+            Some(driven) => (RegulatorDescription::law_input_size(layout.output), driven),
+            None => (layout.output, layout.input),
         };
         let stages = sized(drafts, before, after);
         stages

@@ -3,14 +3,14 @@
 //! Owns what such a description needs beside its source: a control law, a pace, and a driven node with a rest.
 
 use super::fields::NodeFields;
-use crate::description::{NodeDescription, Pace, SourceDescription};
+use crate::description::{NodeDescription, Pace};
 use crate::format::Format;
 use crate::problem::Problem;
 
 impl NodeFields<'_, '_> {
     /// What a regulator needs. It comes to rest with what it drives: its own rest is to hold nothing.
     pub(super) fn check_regulator(&self, node: &mut NodeDescription) -> Result<(), Problem> {
-        if !matches!(node.source, SourceDescription::Regulator(_)) {
+        if node.source.law_output_size().is_none() {
             return Ok(());
         }
         if !matches!(node.pace, Pace::Every { .. }) {

@@ -3,9 +3,7 @@
 //! Owns the layout of the input of the one converter behind them; each single source is read by `source`.
 
 use super::fields::NodeFields;
-use crate::description::{
-    LinkDescription, NewestDescription, PartDescription, SeveralDescription, SourceDescription,
-};
+use crate::description::{PartDescription, SeveralDescription, SourceDescription};
 use crate::format::Format;
 use crate::limits::{NAME_BYTES_MAX, SOURCES_MAX};
 use crate::problem::Problem;
@@ -159,8 +157,7 @@ impl<'a> NodeFields<'_, 'a> {
     fn cannot_trigger(&self, part: &PartDescription) -> Option<String> {
         const INSTEAD: &str =
             "name a stream, or leave out trigger and let poll_ms say when to sample";
-        if let SourceDescription::Newest(newest) = &part.source {
-            let other = &newest.path;
+        if let Some(other) = part.source.sampled_node() {
             return Some(match self.checker.delivery_of_node(other) {
                 Delivery::Stream => format!(
                     "'newest:{other}' has no events of its own; 'trikfs:{other}' delivers each tuple"
@@ -211,16 +208,11 @@ impl<'a> NodeFields<'_, 'a> {
     /// The format of nodes side by side without a converter: each number named after its source and itself.
     /// None if a source is no node with a format, or the names would not be unique words.
     pub(super) fn joined_format(&mut self, source: &SourceDescription) -> Option<Format> {
-        let SourceDescription::Several(several) = source else {
-            return None;
-        };
+        let several = source.several()?;
         let mut fields = Vec::new();
         for part in &several.parts {
-            let (SourceDescription::Node(LinkDescription { path: other })
-            | SourceDescription::Newest(NewestDescription { path: other })) = &part.source
-            else {
-                return None;
-            };
+            let linked = part.source.linked_node();
+            let other = linked.or(part.source.sampled_node())?;
             let is_numbered = part.name.bytes().all(|byte| byte.is_ascii_digit());
             let name = word(if is_numbered { other } else { &part.name });
             let format = self.checker.format_of_node(other)?;

@@ -64,6 +64,26 @@ pub(crate) trait Kind: Sized + 'static {
     fn written_node(&self) -> Option<&str> {
         None
     }
+
+    /// The node whose tuples it hands on, each of them.
+    fn linked_node(&self) -> Option<&str> {
+        None
+    }
+
+    /// The node whose newest sample it hands on.
+    fn sampled_node(&self) -> Option<&str> {
+        None
+    }
+
+    /// Bytes of one tuple of the node that it drives, if its write converter is a control law.
+    fn law_output_size(&self) -> Option<usize> {
+        None
+    }
+
+    /// How the line begins that is kept for readers who come later.
+    fn kept_answer(&self) -> Option<&str> {
+        None
+    }
 }
 
 /// A word of the sandbox: a function that gives a source.

@@ -92,6 +92,10 @@ impl Kind for LinesDescription {
     fn takes_writes(&self) -> bool {
         self.input.is_some()
     }
+
+    fn kept_answer(&self) -> Option<&str> {
+        self.answer.as_ref().map(|kept| kept.answer.as_str())
+    }
 }
 
 /// `lines{ path = ..., input = ..., start = { '/etc/init.d/x', 'start' }, stop = {...} }`

@@ -47,4 +47,8 @@ impl Kind for NewestDescription {
     fn nodes(&self) -> Vec<&str> {
         vec![&self.path]
     }
+
+    fn sampled_node(&self) -> Option<&str> {
+        Some(&self.path)
+    }
 }

@@ -59,4 +59,8 @@ impl Kind for LinkDescription {
     fn nodes(&self) -> Vec<&str> {
         vec![&self.path]
     }
+
+    fn linked_node(&self) -> Option<&str> {
+        Some(&self.path)
+    }
 }

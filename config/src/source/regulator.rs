@@ -67,6 +67,10 @@ impl Kind for RegulatorDescription {
     fn written_node(&self) -> Option<&str> {
         Some(&self.actuator)
     }
+
+    fn law_output_size(&self) -> Option<usize> {
+        Some(self.actuator_tuple_size)
+    }
 }
 
 /// Reads the constructor.
@@ -75,10 +79,7 @@ fn read(fields: &Fields<'_>, nodes: &mut dyn Nodes) -> Result<RegulatorDescripti
         return Err(fields.problem("src", "regulator: feedback is missing"));
     };
     let source = SourceDescription::read(value, fields, nodes)?;
-    if !matches!(
-        source,
-        SourceDescription::Node(_) | SourceDescription::Newest(_)
-    ) {
+    if source.linked_node().or(source.sampled_node()).is_none() {
         return Err(fields.problem(
             "src",
             "regulator: feedback is another node: 'trikfs:NODE' or 'newest:NODE'",

@@ -207,7 +207,9 @@ impl Control {
         match self.goal {
             Goal::Brake => Output::Brake,
             Goal::Coast => Output::Power(0),
-            _ => Output::Power(self.duty_cycle() * self.active.polarity.sign()),
+            Goal::Hold(_) | Goal::Speed(..) | Goal::Position(_) | Goal::Direct => {
+                Output::Power(self.duty_cycle() * self.active.polarity.sign())
+            }
         }
     }
 
@@ -240,10 +242,10 @@ impl Control {
 
     /// Flags of `state`.
     pub fn flags(&self) -> Flags {
-        let running = matches!(
-            self.goal,
-            Goal::Speed(..) | Goal::Position(_) | Goal::Direct
-        );
+        let running = match self.goal {
+            Goal::Speed(..) | Goal::Position(_) | Goal::Direct => true,
+            Goal::Coast | Goal::Brake | Goal::Hold(_) => false,
+        };
         Flags {
             running,
             ramping: running && self.ramps,
@@ -262,7 +264,7 @@ impl Control {
     pub fn is_busy(&self, now_s: f64) -> bool {
         match self.goal {
             Goal::Coast | Goal::Brake => self.has_encoder && self.encoder.is_moving(now_s),
-            _ => true,
+            Goal::Hold(_) | Goal::Speed(..) | Goal::Position(_) | Goal::Direct => true,
         }
     }
 
@@ -270,7 +272,12 @@ impl Control {
     pub fn ends_at_s(&self) -> Option<f64> {
         match self.goal {
             Goal::Speed(_, Ends::At(at)) => Some(at),
-            _ => None,
+            Goal::Speed(_, Ends::Never | Ends::AtZero)
+            | Goal::Coast
+            | Goal::Brake
+            | Goal::Hold(_)
+            | Goal::Position(_)
+            | Goal::Direct => None,
         }
     }
 
@@ -283,9 +290,11 @@ impl Control {
             self.integral.sum = 0.0;
             self.reference = position;
         }
-        match (before, goal) {
-            (Goal::Speed(..) | Goal::Position(_), _) => {}
-            _ => self.reference_speed = self.encoder.speed.value(),
+        match before {
+            Goal::Speed(..) | Goal::Position(_) => {}
+            Goal::Coast | Goal::Brake | Goal::Hold(_) | Goal::Direct => {
+                self.reference_speed = self.encoder.speed.value()
+            }
         }
         self.guard = Guard::default();
         self.goal = goal;
@@ -336,7 +345,11 @@ impl Control {
                     self.integral.sum = sum;
                 }
             }
-            _ => {}
+            Goal::Speed(_, Ends::Never | Ends::At(_) | Ends::AtZero)
+            | Goal::Coast
+            | Goal::Brake
+            | Goal::Hold(_)
+            | Goal::Direct => {}
         }
     }
 

@@ -77,7 +77,7 @@ fn everything_that_was_written_is_read_in_its_order() {
     assert_eq!(events.len(), 1002);
     assert!(events.is_sorted_by_key(|event| event.unix_ns));
     let third = events.iter().find(|event| event.unix_ns == ZERO + 3 * MS);
-    let wanted = What::Sample {
+    let wanted = EventKind::Sample {
         node: 0,
         layout: 0,
         sequence: 4,
@@ -85,14 +85,14 @@ fn everything_that_was_written_is_read_in_its_order() {
     };
     assert_eq!(third.unwrap().what, wanted);
     let fault = events.iter().find(|event| event.unix_ns == ZERO + 500 * MS);
-    let wanted = What::Fault {
+    let wanted = EventKind::Fault {
         node: 0,
         errno: 5,
         reason: "device: gone".to_owned(),
     };
     assert_eq!(fault.unwrap().what, wanted);
     assert!(
-        matches!(&events.last().unwrap().what, What::Line(Story::Log, log) if log.text == "a line")
+        matches!(&events.last().unwrap().what, EventKind::Line(Story::Log, log) if log.text == "a line")
     );
 }
 
@@ -118,7 +118,7 @@ fn a_moment_is_found_with_what_each_node_had_before_it() {
     let failed = reader.newest(ZERO + 15_000 * MS + 1).unwrap();
     assert!(matches!(
         failed[0].as_ref().unwrap().what,
-        What::Fault { errno: 5, .. }
+        EventKind::Fault { errno: 5, .. }
     ));
 }
 
@@ -137,8 +137,8 @@ fn a_node_whose_format_changes_stays_one_node() {
     let tuples: Vec<usize> = all(&mut reader)
         .iter()
         .map(|event| match &event.what {
-            What::Sample { tuple, .. } => tuple.len(),
-            What::Fault { .. } | What::Line(..) => 0,
+            EventKind::Sample { tuple, .. } => tuple.len(),
+            EventKind::Fault { .. } | EventKind::Line(..) => 0,
         })
         .collect();
     assert_eq!(tuples, [1, 2]);
@@ -303,8 +303,8 @@ fn samples_before_and_after_a_change_of_the_format_are_told_apart() {
     let shown: Vec<String> = all(&mut reader)
         .into_iter()
         .map(|event| match event.what {
-            What::Sample { layout, tuple, .. } => reader.layouts()[layout].show(&tuple),
-            What::Fault { .. } | What::Line(..) => String::new(),
+            EventKind::Sample { layout, tuple, .. } => reader.layouts()[layout].show(&tuple),
+            EventKind::Fault { .. } | EventKind::Line(..) => String::new(),
         })
         .collect();
     assert_eq!(shown, ["1065353216", "1"]);

@@ -9,7 +9,7 @@ use super::scene::ObjectPoint;
 use super::value::{Value, shown};
 use crate::limits;
 use lang_text::problem::Locale;
-use words::{Told, told};
+use words::{Wording, told};
 
 /// A condition that has no others in it; the head of several is "and" or "or", which is no text for people.
 pub(super) fn condition(condition: &Condition, locale: Locale) -> String {
@@ -55,7 +55,7 @@ fn sign(comparison: Comparison) -> &'static str {
     }
 }
 
-fn operand(one: &Operand, told: &Told) -> String {
+fn operand(one: &Operand, told: &Wording) -> String {
     let of = |name: &str, one: &Operand| format!("{name}({})", operand(one, told));
     match one {
         Operand::Constant(constant) => spelt(constant, told),
@@ -85,7 +85,7 @@ pub(super) fn value(value: &Value, locale: Locale) -> String {
     spelt(value, told(locale))
 }
 
-fn spelt(value: &Value, told: &Told) -> String {
+fn spelt(value: &Value, told: &Wording) -> String {
     let text = match value {
         Value::Null => told.nothing.to_owned(),
         Value::Bool(true) => told.yes.to_owned(),

@@ -238,7 +238,23 @@ impl Value {
                 left.len() == right.len() && pairs.all(|(left, right)| left.equals(right))
             }
             (Self::Record(left), Self::Record(right)) => Rc::ptr_eq(left, right),
-            _ => self.order(other) == Some(Ordering::Equal),
+            (
+                Self::Null
+                | Self::Bool(_)
+                | Self::Int(_)
+                | Self::Double(_)
+                | Self::NoText
+                | Self::Text(_)
+                | Self::Point(_)
+                | Self::Place(_)
+                | Self::Rect(_)
+                | Self::Colour(_)
+                | Self::Opaque
+                | Self::List(_)
+                | Self::Record(_)
+                | Self::Object(_),
+                _,
+            ) => self.order(other) == Some(Ordering::Equal),
         }
     }
 
@@ -264,6 +280,7 @@ impl Value {
             (Self::Bool(_), _) | (_, Self::Bool(_)) => {
                 return Some(self.truth()?.cmp(&other.truth()?));
             }
+            // Numbers, and what `number` says to be none.
             _ => {}
         }
         match (self.number(), other.number(), self, other) {
@@ -276,6 +293,7 @@ impl Value {
                 Some(left) => compare_numbers(left, right),
                 None => Some(by_code(text, &other.to_text())),
             },
+            // Without a number and a text there is no order.
             _ => None,
         }
     }

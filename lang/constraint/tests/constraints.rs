@@ -73,13 +73,8 @@ fn constraints_of_real_fields_are_read_and_their_misspelt_attributes_told() {
 #[test]
 fn whatever_stands_in_constraints_is_read_and_checked_within_limits() {
     let seeds = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds/constraints");
-    let mut state = 0x9e37_79b9_u32;
-    let mut random = move |below: usize| {
-        state ^= state << 13;
-        state ^= state >> 17;
-        state ^= state << 5;
-        state as usize % below
-    };
+    let mut numbers = needs::Random::new(0x9e37_79b9);
+    let mut random = move |below: usize| numbers.below(below);
     for name in ["all.xml", "templates.xml"] {
         let seed = std::fs::read(seeds.join(name)).unwrap();
         lang_constraint::fuzz::constraints(&seed);

@@ -4,6 +4,9 @@
 //! of `lower`, with the names of the model and the same floating-point operations in the same order, so that every
 //! language gives what [`super::tape::Tape::reference`] gives as far as its functions are those of the C library.
 
+// A function that a language lacks must not compile.
+#![deny(clippy::wildcard_enum_match_arm)]
+
 mod about;
 mod c;
 mod graph;

@@ -30,3 +30,13 @@ pub const DCML_WORDS_COMPARED: usize = 2000;
 pub const DCML_WORD_COMPARED_BYTES: usize = 64;
 /// Names of a loop, and bytes of a word, that a message shows.
 pub const DCML_SHOWN: usize = 40;
+/// Power of a base unit in a unit; none of use has a higher one.
+pub const DCML_UNIT_POWER: i16 = 30;
+/// Bytes of a name that is set as a symbol with an index.
+pub const DCML_SYMBOL_BYTES: usize = 60;
+/// Local names of a function in Lua, which allows 200.
+pub const DCML_LUA_LOCALS: usize = 150;
+/// Bytes of a written expression that becomes a part of another one.
+pub const DCML_INLINE_BYTES: usize = 100;
+/// Characters of a name in a written model; longer ones are cut.
+pub const DCML_WRITTEN_NAME: usize = 60;

@@ -3,6 +3,7 @@
 //! Owns the words of units and how they are multiplied. Quantities are those of the SI; angles are numbers, and a radian
 //! is 1.
 
+use crate::limits;
 use std::fmt::Write;
 
 /// What a value measures, and in what size. Powers are counted in quarters, so that roots are exact.
@@ -15,8 +16,6 @@ pub struct Unit {
 
 /// How a power of 1 is counted.
 const WHOLE: i16 = 4;
-/// No unit of use has a higher power.
-const POWER_MAX: i16 = 30 * WHOLE;
 
 /// Base units in the order of powers.
 const BASES: [&str; 7] = ["m", "kg", "s", "A", "K", "mol", "cd"];
@@ -137,7 +136,7 @@ impl Unit {
         let mut powers = self.powers;
         for one in &mut powers {
             let exact = f64::from(*one) * exponent;
-            if exact.fract() != 0.0 || exact.abs() > f64::from(POWER_MAX) {
+            if exact.fract() != 0.0 || exact.abs() > f64::from(limits::DCML_UNIT_POWER * WHOLE) {
                 return None;
             }
             // A whole number in range.
@@ -148,7 +147,10 @@ impl Unit {
     }
 
     fn sane(self) -> Option<Self> {
-        let is_low = self.powers.iter().all(|one| one.abs() <= POWER_MAX);
+        let is_low = self
+            .powers
+            .iter()
+            .all(|one| one.abs() <= limits::DCML_UNIT_POWER * WHOLE);
         (is_low && self.scale.is_normal()).then_some(self)
     }
 

@@ -290,13 +290,8 @@ fn marks_line_ends_and_bytes_that_are_no_text_are_understood_or_told_with_their_
 #[test]
 fn whatever_stands_in_a_document_is_understood_within_limits() {
     let seeds = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds/dcml");
-    let mut state = 0x9e37_79b9_u32;
-    let mut random = move |below: usize| {
-        state ^= state << 13;
-        state ^= state >> 17;
-        state ^= state << 5;
-        state as usize % below
-    };
+    let mut numbers = needs::Random::new(0x9e37_79b9);
+    let mut random = move |below: usize| numbers.below(below);
     for name in ["drive.dcml", "bart.dcml", "extensions.dcml", "wrong.dcml"] {
         let seed = std::fs::read(seeds.join(name)).unwrap();
         let is_good = understand(&String::from_utf8_lossy(&seed))

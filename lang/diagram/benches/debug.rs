@@ -16,6 +16,7 @@ use lang_diagram::machine::{Machine, Options, STEP_MS};
 use lang_diagram::ports::Port;
 use lang_diagram::program::Program;
 use lang_diagram::sketch::Sketch;
+use needs::Random;
 
 const RUNS: u32 = 7;
 /// A minute of model time.
@@ -24,7 +25,7 @@ const MINUTE: u32 = 60_000 / STEP_MS;
 const GOAL_MS: f64 = 100.0;
 
 /// Sensors that never rest.
-struct Robot(i32);
+struct Robot(Random);
 
 impl Brick for Robot {
     fn command(&mut self, command: Command<'_>) {
@@ -32,8 +33,7 @@ impl Brick for Robot {
     }
 
     fn scalar(&mut self, _: Port) -> Option<i32> {
-        self.0 = self.0.wrapping_mul(1_103_515_245).wrapping_add(12_345);
-        Some((self.0 >> 16) & 0x7f)
+        i32::try_from(self.0.below(128)).ok()
     }
 
     fn vector(&mut self, _: Port, _: &mut Vec<i32>) -> bool {
@@ -76,7 +76,7 @@ fn session(program: &Rc<Program>, keeps: bool) -> Session {
 }
 
 fn minute(session: &mut Session) -> f64 {
-    let mut robot = Robot(1);
+    let mut robot = Robot(Random::new(1));
     let began = Instant::now();
     for step in 0..MINUTE {
         session.step(step * STEP_MS, &mut robot, &mut Deaf);
@@ -88,7 +88,7 @@ fn minute(session: &mut Session) -> f64 {
 
 fn bare(program: &Rc<Program>) -> f64 {
     let mut machine = Machine::new(program.clone(), Options::default());
-    let mut robot = Robot(1);
+    let mut robot = Robot(Random::new(1));
     let began = Instant::now();
     for step in 0..MINUTE {
         machine.step(step * STEP_MS, &mut robot, &mut Deaf);
@@ -141,7 +141,7 @@ fn way_back(program: &Rc<Program>, id: &str) {
     let mut session = session(program, true);
     minute(&mut session);
     session.debugger().pause();
-    session.step(MINUTE * STEP_MS, &mut Robot(1), &mut Deaf);
+    session.step(MINUTE * STEP_MS, &mut Robot(Random::new(1)), &mut Deaf);
     let (from_ms, bytes) = session.kept().unwrap();
     println!(
         "back over a minute, kept from {from_ms} ms on in {} KiB:",

@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use super::lower::{Lowered, World, lower};
 use super::machine::wanted;
-use super::program::{ArgumentKind, Given, Leads, NOWHERE, Node, Program};
+use super::program::{ArgumentKind, AssignedKind, Leads, NOWHERE, Node, Program};
 use super::project::Project;
 use super::words;
 use lang_expr::tree::{Id, Node as Part, Tree};
@@ -280,13 +280,13 @@ fn declare<'a>(
 ) {
     if let Some((assignment, given)) = program.given(node) {
         match given {
-            Given::Whole => {
+            AssignedKind::Whole => {
                 names.declare(&assignment.variable, &Value::Int(0));
             }
-            Given::Text => {
+            AssignedKind::Text => {
                 names.declare(&assignment.variable, &Value::text(""));
             }
-            Given::Any | Given::Answer => {
+            AssignedKind::Any | AssignedKind::Answer => {
                 unknown.insert(&assignment.variable);
             }
         }

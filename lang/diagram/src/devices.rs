@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use super::blocks::Does;
-use super::ports::{Direction, Kit, Port};
+use super::ports::{Device, Direction, Kit, Port};
 use super::program::{Node, Op, Program};
 use super::project::Project;
 use super::words;
@@ -103,7 +103,7 @@ pub fn missing(project: &Project, program: &Program) -> Vec<(Port, Sensor)> {
         let watching = &program.watches[watch as usize];
         let port = watching.port.as_ref().ok().copied();
         let sensor = match port {
-            Some(port) if port.name() == "GyroscopePort" => Some(Sensor::Other),
+            Some(port) if port.device() == Device::Gyroscope => Some(Sensor::Other),
             _ => wanted(program, node),
         };
         if let Some((port, sensor)) = port.zip(sensor)

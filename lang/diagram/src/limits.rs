@@ -78,3 +78,13 @@ pub const TOLD_CALLS_BYTES: usize = 16 << 10;
 pub const TOLD_VARIABLES_BYTES: usize = 96 << 10;
 /// Bytes after which it tells of no more lines of breakpoints at once.
 pub const TOLD_LINES_BYTES: usize = 64 << 10;
+/// Lines that a stand-in keeps of what it was told.
+pub const LOG_LINES_MAX: usize = 100_000;
+/// Areas that are looked at for one text of a picture; pictures with more are not for people.
+pub const PICTURE_AREAS_MAX: usize = 2000;
+/// Rounds after which what changes in a program that is written as text counts as unclear.
+pub const GENERATED_ROUNDS_MAX: usize = 64;
+/// Characters of a name in a program that is written as text.
+pub const GENERATED_NAME_MAX: usize = 60;
+/// Characters of a property in a picture.
+pub const PICTURE_PROPERTY_MAX: usize = 48;

@@ -14,8 +14,8 @@ use super::blocks::{self, Act, Does, Row, Silent, Wait, foreign};
 use super::devices;
 use super::ports::{Direction, Kit, Port};
 use super::program::{
-    Action, Argument, ArgumentKind, Assignment, Call, Copying, Message, NOWHERE, Node, Op, Program,
-    Sheet, Sign, Source, Spot, Text, WatchedFor, Watching,
+    Action, Argument, ArgumentKind, Assignment, Call, Copying, DiagramName, Message, NOWHERE, Node,
+    Op, Program, Sign, Source, Spot, Text, WatchedFor, Watching,
 };
 use super::project::{Block, Diagram, DiagramKind, Project};
 use super::words;
@@ -157,7 +157,7 @@ impl<'a> Lowering<'a> {
     }
 
     fn finish(self, project: &Project) -> Lowered {
-        let sheets = project.diagrams.iter().map(|diagram| Sheet {
+        let sheets = project.diagrams.iter().map(|diagram| DiagramName {
             id: diagram.id.as_str().into(),
             name: diagram.name.as_str().into(),
         });

@@ -33,155 +33,236 @@ pub enum Sort {
     Button(i32),
 }
 
+/// What stands at a port. What gives readings names all of these, so a new one does not compile until each does.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Device {
+    /// A motor.
+    Motor,
+    /// A servo.
+    Servo,
+    /// An encoder.
+    Encoder,
+    /// Whatever is plugged in there; it says one number.
+    Plugged,
+    /// The gyroscope.
+    Gyroscope,
+    /// The accelerometer.
+    Accelerometer,
+    /// Where the camera sees a line.
+    LineSensor,
+    /// What colour the camera sees.
+    ColorSensor,
+    /// A number of the object that the camera sees.
+    ObjectSensor(ObjectPart),
+    /// The lidar.
+    Lidar,
+    /// A button of the board with its code.
+    Button(i32),
+    /// A part of the gamepad.
+    Gamepad(GamepadPart),
+}
+
+/// A number of an object that the camera sees.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum ObjectPart {
+    /// From the middle to the right.
+    X,
+    /// From the middle downwards.
+    Y,
+    /// How large it is.
+    Size,
+}
+
+/// A pad of the gamepad.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum Pad {
+    /// The left one.
+    One,
+    /// The right one.
+    Two,
+}
+
+/// A part of the gamepad.
+#[derive(Clone, Copy, Debug, Eq, PartialEq)]
+pub enum GamepadPart {
+    /// Where a pad is touched.
+    Place(Pad),
+    /// Whether a pad is touched.
+    Pressed(Pad),
+    /// The wheel.
+    Wheel,
+    /// A button, 1 to 5.
+    Button(u8),
+    /// Whether there is a gamepad.
+    Connected,
+}
+
+impl Pad {
+    /// Its number, from 1.
+    pub fn number(self) -> usize {
+        match self {
+            Self::One => 1,
+            Self::Two => 2,
+        }
+    }
+}
+
+impl Device {
+    /// What it gives or takes.
+    pub fn sort(self) -> Sort {
+        match self {
+            Self::Motor => Sort::Motor,
+            Self::Servo => Sort::Servo,
+            Self::Encoder => Sort::Encoder,
+            Self::Button(code) => Sort::Button(code),
+            Self::Gyroscope
+            | Self::Accelerometer
+            | Self::LineSensor
+            | Self::ColorSensor
+            | Self::Lidar
+            | Self::Gamepad(GamepadPart::Place(_)) => Sort::Vector,
+            Self::Plugged
+            | Self::ObjectSensor(_)
+            | Self::Gamepad(
+                GamepadPart::Pressed(_)
+                | GamepadPart::Wheel
+                | GamepadPart::Button(_)
+                | GamepadPart::Connected,
+            ) => Sort::Scalar,
+        }
+    }
+
+    fn way(self) -> Direction {
+        match self.sort() {
+            Sort::Motor | Sort::Servo => Direction::Out,
+            Sort::Encoder | Sort::Scalar | Sort::Vector | Sort::Button(_) => Direction::In,
+        }
+    }
+}
+
 /// One port, as an index into the table.
 #[derive(Clone, Copy, Debug, Eq, Hash, Ord, PartialEq, PartialOrd)]
 pub struct Port(u8);
 
 struct Line {
     name: &'static str,
-    way: Direction,
-    sort: Sort,
+    device: Device,
     /// The variable that shows it, or nothing.
     variable: &'static str,
 }
 
-const fn line(name: &'static str, way: Direction, sort: Sort, variable: &'static str) -> Line {
+const fn line(name: &'static str, device: Device, variable: &'static str) -> Line {
     Line {
         name,
-        way,
-        sort,
+        device,
         variable,
     }
 }
 
 const PORTS: &[Line] = &[
-    line("M1", Direction::Out, Sort::Motor, ""),
-    line("M2", Direction::Out, Sort::Motor, ""),
-    line("M3", Direction::Out, Sort::Motor, ""),
-    line("M4", Direction::Out, Sort::Motor, ""),
-    line("S1", Direction::Out, Sort::Servo, ""),
-    line("S2", Direction::Out, Sort::Servo, ""),
-    line("S3", Direction::Out, Sort::Servo, ""),
-    line("S4", Direction::Out, Sort::Servo, ""),
-    line("S5", Direction::Out, Sort::Servo, ""),
-    line("S6", Direction::Out, Sort::Servo, ""),
-    line("E1", Direction::In, Sort::Encoder, "encoder1"),
-    line("E2", Direction::In, Sort::Encoder, "encoder2"),
-    line("E3", Direction::In, Sort::Encoder, "encoder3"),
-    line("E4", Direction::In, Sort::Encoder, "encoder4"),
-    line("A1", Direction::In, Sort::Scalar, "sensorA1"),
-    line("A2", Direction::In, Sort::Scalar, "sensorA2"),
-    line("A3", Direction::In, Sort::Scalar, "sensorA3"),
-    line("A4", Direction::In, Sort::Scalar, "sensorA4"),
-    line("A5", Direction::In, Sort::Scalar, "sensorA5"),
-    line("A6", Direction::In, Sort::Scalar, "sensorA6"),
-    line("D1", Direction::In, Sort::Scalar, "sensorD1"),
-    line("D2", Direction::In, Sort::Scalar, "sensorD2"),
-    line("F1", Direction::In, Sort::Scalar, "sensorF1"),
-    line("GyroscopePort", Direction::In, Sort::Vector, "gyroscope"),
-    line(
-        "AccelerometerPort",
-        Direction::In,
-        Sort::Vector,
-        "accelerometer",
-    ),
-    line("LineSensorPort", Direction::In, Sort::Vector, "lineSensor"),
-    line(
-        "ColorSensorPort",
-        Direction::In,
-        Sort::Vector,
-        "colorSensor",
-    ),
+    line("M1", Device::Motor, ""),
+    line("M2", Device::Motor, ""),
+    line("M3", Device::Motor, ""),
+    line("M4", Device::Motor, ""),
+    line("S1", Device::Servo, ""),
+    line("S2", Device::Servo, ""),
+    line("S3", Device::Servo, ""),
+    line("S4", Device::Servo, ""),
+    line("S5", Device::Servo, ""),
+    line("S6", Device::Servo, ""),
+    line("E1", Device::Encoder, "encoder1"),
+    line("E2", Device::Encoder, "encoder2"),
+    line("E3", Device::Encoder, "encoder3"),
+    line("E4", Device::Encoder, "encoder4"),
+    line("A1", Device::Plugged, "sensorA1"),
+    line("A2", Device::Plugged, "sensorA2"),
+    line("A3", Device::Plugged, "sensorA3"),
+    line("A4", Device::Plugged, "sensorA4"),
+    line("A5", Device::Plugged, "sensorA5"),
+    line("A6", Device::Plugged, "sensorA6"),
+    line("D1", Device::Plugged, "sensorD1"),
+    line("D2", Device::Plugged, "sensorD2"),
+    line("F1", Device::Plugged, "sensorF1"),
+    line("GyroscopePort", Device::Gyroscope, "gyroscope"),
+    line("AccelerometerPort", Device::Accelerometer, "accelerometer"),
+    line("LineSensorPort", Device::LineSensor, "lineSensor"),
+    line("ColorSensorPort", Device::ColorSensor, "colorSensor"),
     line(
         "ObjectSensorXPort",
-        Direction::In,
-        Sort::Scalar,
+        Device::ObjectSensor(ObjectPart::X),
         "objectSensorX",
     ),
     line(
         "ObjectSensorYPort",
-        Direction::In,
-        Sort::Scalar,
+        Device::ObjectSensor(ObjectPart::Y),
         "objectSensorY",
     ),
     line(
         "ObjectSensorSizePort",
-        Direction::In,
-        Sort::Scalar,
+        Device::ObjectSensor(ObjectPart::Size),
         "objectSensorSize",
     ),
-    line("LidarPort", Direction::In, Sort::Vector, "lidar"),
-    line("Left", Direction::In, Sort::Button(105), "buttonLeft"),
-    line("Right", Direction::In, Sort::Button(106), "buttonRight"),
-    line("Up", Direction::In, Sort::Button(103), "buttonUp"),
-    line("Down", Direction::In, Sort::Button(108), "buttonDown"),
-    line("Enter", Direction::In, Sort::Button(28), "buttonEnter"),
-    line("Esc", Direction::In, Sort::Button(1), "buttonEsc"),
-    line("Power", Direction::In, Sort::Button(116), "buttonPower"),
+    line("LidarPort", Device::Lidar, "lidar"),
+    line("Left", Device::Button(105), "buttonLeft"),
+    line("Right", Device::Button(106), "buttonRight"),
+    line("Up", Device::Button(103), "buttonUp"),
+    line("Down", Device::Button(108), "buttonDown"),
+    line("Enter", Device::Button(28), "buttonEnter"),
+    line("Esc", Device::Button(1), "buttonEsc"),
+    line("Power", Device::Button(116), "buttonPower"),
     line(
         "GamepadPad1PosPort",
-        Direction::In,
-        Sort::Vector,
+        Device::Gamepad(GamepadPart::Place(Pad::One)),
         "gamepadPad1",
     ),
     line(
         "GamepadPad2PosPort",
-        Direction::In,
-        Sort::Vector,
+        Device::Gamepad(GamepadPart::Place(Pad::Two)),
         "gamepadPad2",
     ),
     line(
         "GamepadPad1PressedPort",
-        Direction::In,
-        Sort::Scalar,
+        Device::Gamepad(GamepadPart::Pressed(Pad::One)),
         "gamepadPad1Pressed",
     ),
     line(
         "GamepadPad2PressedPort",
-        Direction::In,
-        Sort::Scalar,
+        Device::Gamepad(GamepadPart::Pressed(Pad::Two)),
         "gamepadPad2Pressed",
     ),
     line(
         "GamepadWheelPort",
-        Direction::In,
-        Sort::Scalar,
+        Device::Gamepad(GamepadPart::Wheel),
         "gamepadWheel",
     ),
     line(
         "GamepadButton1Port",
-        Direction::In,
-        Sort::Scalar,
+        Device::Gamepad(GamepadPart::Button(1)),
         "gamepadButton1",
     ),
     line(
         "GamepadButton2Port",
-        Direction::In,
-        Sort::Scalar,
+        Device::Gamepad(GamepadPart::Button(2)),
         "gamepadButton2",
     ),
     line(
         "GamepadButton3Port",
-        Direction::In,
-        Sort::Scalar,
+        Device::Gamepad(GamepadPart::Button(3)),
         "gamepadButton3",
     ),
     line(
         "GamepadButton4Port",
-        Direction::In,
-        Sort::Scalar,
+        Device::Gamepad(GamepadPart::Button(4)),
         "gamepadButton4",
     ),
     line(
         "GamepadButton5Port",
-        Direction::In,
-        Sort::Scalar,
+        Device::Gamepad(GamepadPart::Button(5)),
         "gamepadButton5",
     ),
     line(
         "GamepadConnectionIndicatorPort",
-        Direction::In,
-        Sort::Scalar,
+        Device::Gamepad(GamepadPart::Connected),
         "gamepadConnected",
     ),
 ];
@@ -198,9 +279,14 @@ impl Port {
         PORTS[usize::from(self.0)].name
     }
 
+    /// What stands there.
+    pub fn device(self) -> Device {
+        PORTS[usize::from(self.0)].device
+    }
+
     /// What it gives or takes.
     pub fn sort(self) -> Sort {
-        PORTS[usize::from(self.0)].sort
+        self.device().sort()
     }
 
     /// The variable that shows it.
@@ -227,6 +313,11 @@ impl Port {
     /// The port with a canonical name.
     pub fn named(name: &str) -> Option<Self> {
         Self::all().find(|port| port.name() == name)
+    }
+
+    /// The first port at which a device stands.
+    pub fn of(device: Device) -> Option<Self> {
+        Self::all().find(|port| port.device() == device)
     }
 
     /// The port that a variable shows.
@@ -258,7 +349,7 @@ impl Port {
         let button = name.strip_suffix("ButtonPort").unwrap_or(name);
         Self::all().find(|port| {
             let row = &PORTS[usize::from(port.0)];
-            row.way == way && (row.name == name || row.name == button)
+            row.device.way() == way && (row.name == name || row.name == button)
         })
     }
 }

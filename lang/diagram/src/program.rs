@@ -28,7 +28,7 @@ pub struct Program {
     /// The first initial node of each diagram.
     pub(crate) entries: Box<[Option<Node>]>,
     /// Ids and names of the diagrams.
-    pub(crate) diagrams: Box<[Sheet]>,
+    pub(crate) diagrams: Box<[DiagramName]>,
     /// Which diagram is run.
     pub(crate) main: Option<u32>,
     /// Texts of expressions.
@@ -56,7 +56,7 @@ pub struct Program {
 
 /// The id and the name of a diagram.
 #[derive(Clone, Debug)]
-pub(crate) struct Sheet {
+pub(crate) struct DiagramName {
     pub id: Box<str>,
     pub name: Rc<str>,
 }
@@ -181,7 +181,7 @@ pub(crate) enum Wakes {
 
 /// What a node gives its variable.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub(crate) enum Given {
+pub(crate) enum AssignedKind {
     Whole,
     Text,
     /// Anything.
@@ -483,14 +483,14 @@ impl Program {
     }
 
     /// The variable that a node assigns by itself, not by one of its texts, and what that gets.
-    pub(crate) fn given(&self, node: Node) -> Option<(&Assignment, Given)> {
+    pub(crate) fn given(&self, node: Node) -> Option<(&Assignment, AssignedKind)> {
         let (assignment, given) = match *self.ops.get(node as usize)? {
             Op::Random { assignment, .. } | Op::AnyButton { assignment, .. } => {
-                (assignment, Given::Whole)
+                (assignment, AssignedKind::Whole)
             }
-            Op::Mail { assignment, .. } => (assignment, Given::Text),
-            Op::Receive { assignment, .. } => (assignment, Given::Any),
-            Op::Ask { assignment, .. } => (assignment, Given::Answer),
+            Op::Mail { assignment, .. } => (assignment, AssignedKind::Text),
+            Op::Receive { assignment, .. } => (assignment, AssignedKind::Any),
+            Op::Ask { assignment, .. } => (assignment, AssignedKind::Answer),
             Op::Pass { .. }
             | Op::End
             | Op::Fault { .. }

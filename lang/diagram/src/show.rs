@@ -13,10 +13,8 @@ mod tests;
 
 use super::blocks::{self, Content, Row};
 use super::project::Block;
+use crate::limits;
 use lang_text::problem::Locale;
-
-/// How long a property may be that is shown.
-const PROPERTY_MAX: usize = 48;
 
 /// The name of a block, as the editor has it.
 fn name(block: &Block, locale: Locale) -> String {
@@ -78,7 +76,7 @@ fn sign(word: &str) -> &str {
 fn shortened(text: &str) -> String {
     let mut out = String::new();
     for letter in text.trim().chars() {
-        if out.chars().count() >= PROPERTY_MAX {
+        if out.chars().count() >= limits::PICTURE_PROPERTY_MAX {
             out.push_str("...");
             break;
         }

@@ -15,7 +15,7 @@ pub struct Spot(usize);
 
 /// A diagram in a sketch.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-pub struct Sheet(usize);
+pub struct DiagramId(usize);
 
 /// Ids of a pair of objects.
 #[derive(Clone, Debug)]
@@ -68,7 +68,7 @@ impl Sketch {
     }
 
     /// Adds a diagram that calls can name; what is drawn next is drawn on it. Parameters are name, type and default.
-    pub fn subprogram(&mut self, name: &str, parameters: &[(&str, &str, &str)]) -> Sheet {
+    pub fn subprogram(&mut self, name: &str, parameters: &[(&str, &str, &str)]) -> DiagramId {
         let sheet = self.sheet("SubprogramDiagram", name);
         let mut labels = String::from("<labels>");
         for (at, (name, kind, default)) in parameters.iter().enumerate() {
@@ -88,12 +88,12 @@ impl Sketch {
     }
 
     /// The main diagram.
-    pub fn main(&self) -> Sheet {
-        Sheet(0)
+    pub fn main(&self) -> DiagramId {
+        DiagramId(0)
     }
 
     /// Draws the next blocks on a diagram.
-    pub fn draw_on(&mut self, sheet: Sheet) {
+    pub fn draw_on(&mut self, sheet: DiagramId) {
         self.current = sheet.0;
     }
 
@@ -124,7 +124,7 @@ impl Sketch {
     }
 
     /// Adds a call of a subprogram with texts of its arguments, in the order of its parameters.
-    pub fn call(&mut self, sheet: Sheet, arguments: &[&str]) -> Spot {
+    pub fn call(&mut self, sheet: DiagramId, arguments: &[&str]) -> Spot {
         let spot = self.block("Subprogram", &[]);
         let mut properties = String::from("<properties>");
         for (argument, (name, kind, _)) in arguments.iter().zip(&self.parameters[sheet.0]) {
@@ -226,12 +226,12 @@ impl Sketch {
         Save::made(self.objects.clone(), self.meta.clone()).write()
     }
 
-    fn sheet(&mut self, kind: &str, name: &str) -> Sheet {
+    fn sheet(&mut self, kind: &str, name: &str) -> DiagramId {
         let pair = self.pair(kind, ROOT, name);
         self.sheets.push(pair);
         self.parameters.push(Vec::new());
         self.current = self.sheets.len() - 1;
-        Sheet(self.current)
+        DiagramId(self.current)
     }
 
     /// A graphical and a logical object, listed where they belong.

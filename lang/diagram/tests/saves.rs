@@ -4,6 +4,7 @@ use lang_diagram::archive::{self, Container, Entry};
 use lang_diagram::project::{Link, Project};
 use lang_diagram::read::{Opened, VERSION, VERSION_KEY, read};
 use lang_text::problem::{Problem, Severity};
+use needs::Random;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
@@ -193,21 +194,9 @@ fn real_orphans_are_recovered_or_removed() {
     assert!(found == 0 || found > 50, "{found} orphans");
 }
 
-/// Numbers that look random, the same in each run (Marsaglia, Xorshift RNGs, 2003).
-struct Random(u32);
-
-impl Random {
-    fn below(&mut self, limit: usize) -> usize {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 17;
-        self.0 ^= self.0 << 5;
-        self.0 as usize % limit.max(1)
-    }
-}
-
 #[test]
 fn damaged_saves_do_no_harm() {
-    let mut random = Random(0x2545_f491);
+    let mut random = Random::new(0x2545_f491);
     let (mut refused, mut all) = (0, 0);
     for (_, bytes) in saves() {
         for _ in 0..10 {
@@ -231,7 +220,7 @@ fn damaged_saves_do_no_harm() {
 
 #[test]
 fn damaged_files_in_saves_do_no_harm() {
-    let mut random = Random(0x9e37_79b9);
+    let mut random = Random::new(0x9e37_79b9);
     let small = saves();
     let mut read_again = 0;
     for (_, bytes) in small.iter().filter(|(_, bytes)| bytes.len() < 100_000) {

@@ -104,7 +104,7 @@ impl<'a> Analysis<'a> {
         let slot = self.names.find(name)?;
         match self.names.kind(slot) {
             Some(Kind::Function(function)) => Some(*function),
-            _ => None,
+            Some(Kind::Variable | Kind::Sensor(_) | Kind::Constant(_)) | None => None,
         }
     }
 

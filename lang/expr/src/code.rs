@@ -229,7 +229,7 @@ impl Compiler<'_> {
                     let base = match self.kind(name) {
                         Some((slot, Kind::Variable)) => Base::Variable(slot),
                         Some((_, Kind::Sensor(sensor))) => Base::Sensor(sensor),
-                        _ => Base::Constant,
+                        Some((_, Kind::Constant(_) | Kind::Function(_))) | None => Base::Constant,
                     };
                     return Ok((base, path));
                 }
@@ -268,7 +268,9 @@ impl Compiler<'_> {
         match self.analysis.tree.node(target) {
             Node::Name(name) => match self.kind(name) {
                 Some((slot, Kind::Variable)) => Op::Assign(slot, value),
-                _ => self.broken(Reason::ReadOnly(name.to_string())),
+                Some((_, Kind::Sensor(_) | Kind::Constant(_) | Kind::Function(_))) | None => {
+                    self.broken(Reason::ReadOnly(name.to_string()))
+                }
             },
             Node::Index { .. } => match self.path(target) {
                 Ok((Base::Variable(slot), path)) => {

@@ -357,7 +357,16 @@ impl<'a> Run<'a> {
             (Value::Text(_) | Value::Unset, Value::Text(_) | Value::Unset) => {
                 texts(left.to_text().cmp(&right.to_text()))
             }
-            _ => numbers(left.to_float(), right.to_float()),
+            (
+                Value::Nil
+                | Value::Bool(_)
+                | Value::Int(_)
+                | Value::Float(_)
+                | Value::Text(_)
+                | Value::Unset
+                | Value::List(_),
+                _,
+            ) => numbers(left.to_float(), right.to_float()),
         }
     }
 

@@ -3,7 +3,7 @@
 use super::*;
 use crate::entry::Known;
 use journal::node::Node;
-use journal::read::{Reader, What};
+use journal::read::{EventKind, Reader};
 use std::sync::Arc;
 use std::sync::mpsc::channel;
 use tempfile::tempdir;
@@ -38,7 +38,7 @@ fn values(path: &Path) -> Vec<u32> {
     let mut reader = Reader::open(File::open(path).unwrap()).unwrap();
     let mut all = Vec::new();
     while let Some(event) = reader.next().unwrap() {
-        if let What::Sample { tuple, .. } = event.what {
+        if let EventKind::Sample { tuple, .. } = event.what {
             all.push(u32::from_ne_bytes(tuple.try_into().unwrap()));
         }
     }

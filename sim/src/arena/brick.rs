@@ -6,7 +6,7 @@
 #![deny(clippy::wildcard_enum_match_arm)]
 
 use lang_diagram::brick::{Answer, Brick, Command, Question};
-use lang_diagram::ports::{Port, Sort};
+use lang_diagram::ports::{Device, GamepadPart, Pad, Port};
 
 use super::floor::sensors;
 use super::ranges;
@@ -19,6 +19,14 @@ use crate::limits;
 const RANGE_NOISE: f64 = 1.5;
 /// What a noisy distance sensor says at most.
 const RANGE_NOISE_MAX: f64 = 255.0;
+
+/// Where a pad is in the list of them.
+fn place(pad: Pad) -> usize {
+    match pad {
+        Pad::One => 0,
+        Pad::Two => 1,
+    }
+}
 
 /// One robot of an arena.
 #[derive(Debug)]
@@ -92,27 +100,39 @@ impl Handle<'_> {
         }
     }
 
-    fn gamepad(&self, port: Port) -> Option<i32> {
+    fn gamepad(&self, part: GamepadPart) -> Option<i32> {
         let gamepad = self.arena.robots[self.index].gamepad();
-        if port.name() == "GamepadConnectionIndicatorPort" {
-            return Some(i32::from(gamepad.is_some_and(|one| !one.is_away)));
-        }
-        let gamepad = gamepad?;
-        let name = port.name();
-        let button = name
-            .strip_prefix("GamepadButton")
-            .and_then(|rest| rest.strip_suffix("Port"))
-            .and_then(|number| number.parse::<usize>().ok());
-        match (name, button) {
-            ("GamepadPad1PressedPort", _) => Some(i32::from(gamepad.pads[0].is_pressed)),
-            ("GamepadPad2PressedPort", _) => Some(i32::from(gamepad.pads[1].is_pressed)),
-            ("GamepadWheelPort", _) => Some(gamepad.wheel),
-            (_, Some(number)) => {
-                let button = gamepad.buttons.get(number.checked_sub(1)?)?;
+        match part {
+            GamepadPart::Connected => Some(i32::from(gamepad.is_some_and(|one| !one.is_away))),
+            GamepadPart::Pressed(pad) => Some(i32::from(gamepad?.pads[place(pad)].is_pressed)),
+            GamepadPart::Wheel => Some(gamepad?.wheel),
+            GamepadPart::Button(number) => {
+                let button = gamepad?.buttons.get(usize::from(number).checked_sub(1)?)?;
                 Some(i32::from(*button))
             }
-            _ => None,
+            GamepadPart::Place(_) => None,
         }
+    }
+
+    fn see_line(&mut self, into: &mut Vec<i32>) -> bool {
+        let is_there = self.look_ahead(sensors::LINE_PART);
+        if is_there {
+            let wanted = self.arena.robots[self.index].line_colour;
+            into.extend_from_slice(&sensors::line(&self.arena.window, wanted));
+        }
+        is_there
+    }
+
+    fn see_colour(&mut self, into: &mut Vec<i32>) -> bool {
+        let is_there = self.look_ahead(sensors::COLOUR_PART);
+        if is_there {
+            let arena = &mut *self.arena;
+            let is_noisy = arena.field.settings.realistic_sensors;
+            let noise = is_noisy.then_some(arena.robots[self.index].noise_mut());
+            let colour = sensors::colour(&arena.window, noise);
+            into.extend(colour.map(i32::from));
+        }
+        is_there
     }
 
     /// Puts a message into the boxes of other robots.
@@ -177,12 +197,18 @@ impl Brick for Handle<'_> {
 
     fn scalar(&mut self, port: Port) -> Option<i32> {
         let robot = &self.arena.robots[self.index];
-        let reading = match port.sort() {
-            Sort::Encoder => Some(robot.encoder(port) as i32),
-            Sort::Button(code) => Some(i32::from(robot.is_pressed(code))),
-            Sort::Scalar if port.name().starts_with("Gamepad") => self.gamepad(port),
-            Sort::Scalar => self.range(port),
-            Sort::Motor | Sort::Servo | Sort::Vector => None,
+        let reading = match port.device() {
+            Device::Encoder => Some(robot.encoder(port) as i32),
+            Device::Button(code) => Some(i32::from(robot.is_pressed(code))),
+            Device::Gamepad(part) => self.gamepad(part),
+            Device::Plugged | Device::ObjectSensor(_) => self.range(port),
+            Device::Motor
+            | Device::Servo
+            | Device::Gyroscope
+            | Device::Accelerometer
+            | Device::LineSensor
+            | Device::ColorSensor
+            | Device::Lidar => None,
         };
         if let Some(reading) = reading {
             let now = self.arena.now;
@@ -206,57 +232,46 @@ impl Brick for Handle<'_> {
     }
 
     fn vector(&mut self, port: Port, into: &mut Vec<i32>) -> bool {
-        match port.name() {
-            "LineSensorPort" => {
-                let is_there = self.look_ahead(sensors::LINE_PART);
-                if is_there {
-                    let wanted = self.arena.robots[self.index].line_colour;
-                    into.extend_from_slice(&sensors::line(&self.arena.window, wanted));
-                }
-                return is_there;
-            }
-            "ColorSensorPort" => {
-                let is_there = self.look_ahead(sensors::COLOUR_PART);
-                if is_there {
-                    let arena = &mut *self.arena;
-                    let is_noisy = arena.field.settings.realistic_sensors;
-                    let noise = is_noisy.then_some(arena.robots[self.index].noise_mut());
-                    let colour = sensors::colour(&arena.window, noise);
-                    into.extend(colour.map(i32::from));
-                }
-                return is_there;
-            }
-            _ => {}
-        }
-        let arena = &mut *self.arena;
-        let robot = &arena.robots[self.index];
-        match port.name() {
-            "GyroscopePort" => {
+        let robot = &self.arena.robots[self.index];
+        match port.device() {
+            Device::LineSensor => self.see_line(into),
+            Device::ColorSensor => self.see_colour(into),
+            Device::Gyroscope => {
                 let (rate, angle) = robot.gyroscope();
-                let now = i32::try_from(arena.now).unwrap_or(i32::MAX);
+                let now = i32::try_from(self.arena.now).unwrap_or(i32::MAX);
                 into.extend_from_slice(&[0, 0, rate, now, 0, 0, angle]);
                 true
             }
-            "AccelerometerPort" => {
+            Device::Accelerometer => {
                 into.extend_from_slice(&robot.accelerometer());
                 true
             }
-            "LidarPort" => {
+            Device::Lidar => {
                 let Some(sensor) = robot.sensor_of(SensorKind::Lidar) else {
                     return false;
                 };
                 let (at, degrees) = robot.sensor_pose(sensor);
+                let arena = &mut *self.arena;
                 ranges::lidar(&arena.solids, at, degrees, &mut arena.scratch, into);
                 true
             }
-            "GamepadPad1PosPort" | "GamepadPad2PosPort" => {
-                let pad = usize::from(port.name() == "GamepadPad2PosPort");
-                robot.gamepad().is_some_and(|gamepad| {
-                    into.extend_from_slice(&[gamepad.pads[pad].x, gamepad.pads[pad].y]);
-                    true
-                })
-            }
-            _ => false,
+            Device::Gamepad(GamepadPart::Place(pad)) => robot.gamepad().is_some_and(|gamepad| {
+                let pad = &gamepad.pads[place(pad)];
+                into.extend_from_slice(&[pad.x, pad.y]);
+                true
+            }),
+            Device::Motor
+            | Device::Servo
+            | Device::Encoder
+            | Device::Plugged
+            | Device::ObjectSensor(_)
+            | Device::Button(_)
+            | Device::Gamepad(
+                GamepadPart::Pressed(_)
+                | GamepadPart::Wheel
+                | GamepadPart::Button(_)
+                | GamepadPart::Connected,
+            ) => false,
         }
     }
 

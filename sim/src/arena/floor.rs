@@ -43,7 +43,7 @@ const SHIFT: f64 = 1.0 / 65536.0;
 
 /// Something on the floor.
 #[derive(Clone, Debug)]
-enum Thing {
+enum Covering {
     /// A painted area, and where it is looked for if that is not all of it.
     Area(Outline, Tint, Option<Bounds>),
     /// An area whose colour changes from place to place.
@@ -54,7 +54,7 @@ enum Thing {
     Mark(Stroke),
 }
 
-impl Thing {
+impl Covering {
     fn bounds(&self) -> Bounds {
         match self {
             Self::Area(_, _, Some(bounds)) => *bounds,
@@ -87,7 +87,7 @@ pub struct Stroke {
 #[derive(Clone, Debug)]
 pub struct Floor {
     background: [u8; 3],
-    things: Vec<Thing>,
+    things: Vec<Covering>,
     /// Things by the cells that they meet.
     cells: HashMap<(i32, i32), Vec<u32>>,
     /// Things that meet very many cells.
@@ -139,13 +139,13 @@ impl Floor {
 
     /// Lays an area over everything that is there.
     pub fn add_area(&mut self, outline: Outline, tint: Tint) {
-        self.add(Thing::Area(outline, tint, None));
+        self.add(Covering::Area(outline, tint, None));
         self.count = self.things.len();
     }
 
     /// The same for an area that only windows see which meet a rectangle, whatever else it covers.
     pub fn add_area_within(&mut self, outline: Outline, tint: Tint, bounds: Bounds) {
-        self.add(Thing::Area(outline, tint, Some(bounds)));
+        self.add(Covering::Area(outline, tint, Some(bounds)));
         self.count = self.things.len();
     }
 
@@ -161,12 +161,12 @@ impl Floor {
                     bounds.add(x, y);
                 }
                 if let Some(back) = to.inverse() {
-                    self.add(Thing::Pixels(Arc::clone(pixels), back, bounds));
+                    self.add(Covering::Pixels(Arc::clone(pixels), back, bounds));
                 }
             } else if let Some((outline, paint)) = layer.outline(place) {
                 self.add(match paint {
-                    Paint::Plain(tint) => Thing::Area(outline, tint, None),
-                    Paint::Shade(gradient) => Thing::Shade(outline, gradient),
+                    Paint::Plain(tint) => Covering::Area(outline, tint, None),
+                    Paint::Shade(gradient) => Covering::Shade(outline, gradient),
                 });
             }
         }
@@ -178,7 +178,7 @@ impl Floor {
         if stroke.begin == stroke.end || self.trace.len() >= limits::TRACE_STROKES {
             return;
         }
-        self.add(Thing::Mark(stroke));
+        self.add(Covering::Mark(stroke));
         self.trace.push(stroke);
     }
 
@@ -200,7 +200,7 @@ impl Floor {
         });
     }
 
-    fn add(&mut self, thing: Thing) {
+    fn add(&mut self, thing: Covering) {
         let Ok(index) = u32::try_from(self.things.len()) else {
             return;
         };
@@ -209,7 +209,7 @@ impl Floor {
         if !bounds.0.iter().all(|side| side.is_finite()) {
             return;
         }
-        if let Thing::Area(outline, ..) | Thing::Shade(outline, _) = &thing {
+        if let Covering::Area(outline, ..) | Covering::Shade(outline, _) = &thing {
             if self.steps + outline.len() > limits::FLOOR_STEPS {
                 self.is_full = true;
                 return;
@@ -300,23 +300,23 @@ impl Floor {
                 continue;
             }
             match thing {
-                Thing::Area(outline, tint, _) => {
+                Covering::Area(outline, tint, _) => {
                     let (coverage, canvas) = (&mut self.coverage, &mut self.canvas);
                     fill(outline, *tint, coverage, canvas, corner, size, ratio);
                 }
-                Thing::Shade(outline, gradient) => {
+                Covering::Shade(outline, gradient) => {
                     let (coverage, canvas) = (&mut self.coverage, &mut self.canvas);
                     let tint = |x, y| gradient.tint(x, y);
                     shade(outline, tint, coverage, canvas, corner, size, ratio);
                 }
-                Thing::Mark(stroke) => {
+                Covering::Mark(stroke) => {
                     if let Some(outline) = mark(stroke) {
                         let (coverage, canvas) = (&mut self.coverage, &mut self.canvas);
                         let tint = Tint::solid(stroke.rgb);
                         fill(&outline, tint, coverage, canvas, corner, size, ratio);
                     }
                 }
-                Thing::Pixels(pixels, back, _) => {
+                Covering::Pixels(pixels, back, _) => {
                     let whole = |value: f64| value.floor() as i32;
                     for (index, pixel) in self.canvas.iter_mut().enumerate() {
                         let along = |index: usize| (index as f64 + 0.5) / ratio;

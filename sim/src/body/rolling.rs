@@ -96,7 +96,7 @@ impl Actuator {
 
 /// What a person says of a robot beside its model, by names of the model.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Said {
+pub struct Overrides {
     /// A number for each parameter.
     pub params: Vec<(String, f64)>,
     /// Ports of actions, before what the model says.
@@ -134,7 +134,7 @@ impl Rolling {
     ///
     /// # Errors
     /// Why this model with these numbers and ports does not move a robot, for the person who said so.
-    pub fn new(model: &Model, said: &Said, start: Pose) -> Result<Self, Refusal> {
+    pub fn new(model: &Model, said: &Overrides, start: Pose) -> Result<Self, Refusal> {
         let of = |kind: Kind| -> Vec<&Symbol> { model.of_kind(kind).collect() };
         let params = numbers(
             &of(Kind::Param),

@@ -7,7 +7,7 @@ use super::battery::Battery;
 use super::motor::Motor;
 use super::pace::Pace;
 use super::rolling::refusal::Refusal;
-use super::rolling::{Actuator, Port, Rolling, Said};
+use super::rolling::{Actuator, Overrides, Port, Rolling};
 use super::{BadOrder, Body, Drive, GRAVITY_MPS2, Order, Senses};
 use crate::field::{Field, Locks};
 use crate::geometry::{Point, Pose, point};
@@ -83,7 +83,7 @@ pub fn two_wheels(start: Pose) -> Result<Rolling, Refusal> {
         let port = Port::Motor(index);
         (name.to_owned(), Actuator { port, factor: 1.0 })
     };
-    let said = Said {
+    let said = Overrides {
         params: vec![number("r", WHEEL_RADIUS_M), number("L", TRACK_M)],
         drive: vec![motor("u_l", LEFT), motor("u_r", RIGHT)],
         start: Vec::new(),

@@ -13,6 +13,7 @@ use super::trajectory::{Record, Trajectory};
 use super::words;
 use crate::field::{Field, ROBOT_SIZE};
 use crate::geometry::Point;
+use crate::limits;
 use lang_text::problem::Locale;
 use lang_text::svg::{Svg, View};
 use shapes::{Bounds, colour};
@@ -25,8 +26,6 @@ const NEAR: f64 = 0.5;
 const WAYS: [&str; 4] = ["#c2185b", "#1565c0", "#2e7d32", "#6a1b9a"];
 /// The least height of letters, in pixels of the field.
 const LETTERS_MIN: f64 = 4.0;
-/// How many marks of time a way has at most.
-const MARKS_MAX: usize = 40;
 
 /// The picture of a run: robots where they began and where they ended.
 pub fn svg(field: &Field, trajectory: &Trajectory, locale: Locale) -> String {
@@ -118,7 +117,8 @@ fn marker(trajectory: &Trajectory, svg: &mut Svg) {
                         stroke.extend(at);
                     }
                 }
-                _ => {}
+                // Of other robots, or of other devices.
+                Record::Pose { .. } | Record::Device { .. } => {}
             }
         }
         polyline(&stroke, &ink, 6.0, 1.0, svg);
@@ -138,7 +138,7 @@ fn way(trajectory: &Trajectory, robot: usize, (letters, locale): (f64, Locale), 
     let end = end.map_or(0.0, |pose| pose[0]);
     let every = [1e3, 2e3, 5e3, 1e4, 3e4, 6e4, 6e5]
         .into_iter()
-        .find(|every| end / every <= MARKS_MAX as f64)
+        .find(|every| end / every <= limits::MARKS_MAX as f64)
         .unwrap_or(6e5);
     let second = words::second(locale);
     let mut next = every;

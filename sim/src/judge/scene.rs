@@ -12,14 +12,14 @@ mod set;
 mod shown;
 
 use lang_constraint::{Missing, Object, ObjectPoint, Rect, Scene, Unfit, Value};
-use lang_diagram::ports::{Port, Sort};
+use lang_diagram::ports::{Device, Port, Sort};
 
 use crate::arena::{Arena, Robot};
 use crate::field::{Drawn, Material, Region, SensorKind, Shape, SolidKind};
 
 /// An object of an arena.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-enum Thing {
+enum SceneObject {
     Robot(usize),
     /// What is on a port of a robot.
     Device(usize, Port),
@@ -80,7 +80,7 @@ const WHICH: u32 = 24;
 /// Of an object of a robot: bits that say which one of the robot's.
 const OF_ROBOT: u32 = 8;
 
-impl Thing {
+impl SceneObject {
     fn number(self) -> Option<Object> {
         let of_robot = |robot: usize, which: u8| robot << OF_ROBOT | usize::from(which);
         let (kind, which) = match self {
@@ -116,7 +116,7 @@ impl Thing {
 }
 
 /// The thing of a name.
-fn named(arena: &Arena, name: &str) -> Option<Thing> {
+fn named(arena: &Arena, name: &str) -> Option<SceneObject> {
     if let Some(rest) = name.strip_prefix("robot") {
         let (number, inside) = match rest.split_once('.') {
             Some((number, inside)) => (number, Some(inside)),
@@ -127,13 +127,13 @@ fn named(arena: &Arena, name: &str) -> Option<Thing> {
         if let Some(robot) = index.and_then(|index| arena.robots().get(index)) {
             let index = index.unwrap_or_default();
             return match inside {
-                None => Some(Thing::Robot(index)),
+                None => Some(SceneObject::Robot(index)),
                 Some(inside) => of_robot(robot, index, inside),
             };
         }
     }
     if name == "trace" {
-        return Some(Thing::Trace);
+        return Some(SceneObject::Trace);
     }
     if name.is_empty() {
         return None;
@@ -143,10 +143,10 @@ fn named(arena: &Arena, name: &str) -> Option<Thing> {
     let is_there =
         |one: &Region| !one.is_bound() || field.drawn.iter().any(|drawn| drawn.id == one.bound);
     at(&field.regions, |one| one.id == name && is_there(one))
-        .map(Thing::Region)
-        .or_else(|| at(&field.solids, |one| one.id == name).map(Thing::Solid))
-        .or_else(|| at(&field.walls, |one| one.id == name).map(Thing::Wall))
-        .or_else(|| at(&field.drawn, |one| one.id == name).map(Thing::Drawn))
+        .map(SceneObject::Region)
+        .or_else(|| at(&field.solids, |one| one.id == name).map(SceneObject::Solid))
+        .or_else(|| at(&field.walls, |one| one.id == name).map(SceneObject::Wall))
+        .or_else(|| at(&field.drawn, |one| one.id == name).map(SceneObject::Drawn))
 }
 
 /// Whether rules mean a robot or its trace by a name, whatever else has it.
@@ -159,13 +159,13 @@ fn at<T>(all: &[T], is_it: impl Fn(&T) -> bool) -> Option<usize> {
 }
 
 /// What a robot has under a name: a part, or a device that is plugged in.
-fn of_robot(robot: &Robot, index: usize, name: &str) -> Option<Thing> {
+fn of_robot(robot: &Robot, index: usize, name: &str) -> Option<SceneObject> {
     let own = |name: &str| {
         if let Some((_, part, _)) = PARTS.iter().find(|(known, ..)| *known == name) {
-            return Some(Thing::Part(index, *part));
+            return Some(SceneObject::Part(index, *part));
         }
         let port = Port::all().find(|port| port.name() == long_name(name))?;
-        is_plugged_in(robot, port).then_some(Thing::Device(index, port))
+        is_plugged_in(robot, port).then_some(SceneObject::Device(index, port))
     };
     own(name).or_else(|| {
         let aliases = &robot.description().aliases;
@@ -199,85 +199,80 @@ fn short_name(port: &str) -> String {
 }
 
 fn is_plugged_in(robot: &Robot, port: Port) -> bool {
-    match port.sort() {
-        Sort::Motor | Sort::Servo | Sort::Encoder | Sort::Button(_) => true,
-        Sort::Scalar | Sort::Vector => match port.name() {
-            "GyroscopePort" | "AccelerometerPort" => true,
-            "LidarPort" => robot.sensor_of(SensorKind::Lidar).is_some(),
-            "LineSensorPort"
-            | "ColorSensorPort"
-            | "ObjectSensorXPort"
-            | "ObjectSensorYPort"
-            | "ObjectSensorSizePort" => robot.sensor_of(SensorKind::Camera).is_some(),
-            name if name.starts_with("Gamepad") => robot.gamepad().is_some(),
-            _ => robot
-                .sensor(port)
-                .is_some_and(|sensor| sensor.kind != SensorKind::Other),
-        },
+    match port.device() {
+        Device::Motor
+        | Device::Servo
+        | Device::Encoder
+        | Device::Button(_)
+        | Device::Gyroscope
+        | Device::Accelerometer => true,
+        Device::Lidar => robot.sensor_of(SensorKind::Lidar).is_some(),
+        Device::LineSensor | Device::ColorSensor | Device::ObjectSensor(_) => {
+            robot.sensor_of(SensorKind::Camera).is_some()
+        }
+        Device::Gamepad(_) => robot.gamepad().is_some(),
+        Device::Plugged => robot
+            .sensor(port)
+            .is_some_and(|sensor| sensor.kind != SensorKind::Other),
     }
 }
 
 /// The class of what is on a port.
 fn class_of_device(robot: &Robot, port: Port) -> Option<&'static str> {
-    Some(match port.sort() {
-        Sort::Motor | Sort::Servo => "twoDModel::robotModel::parts::Motor",
-        Sort::Encoder => "twoDModel::robotModel::parts::EncoderSensor",
-        Sort::Button(_) => "twoDModel::robotModel::parts::Button",
-        Sort::Scalar | Sort::Vector => match port.name() {
-            "GyroscopePort" => "trik::robotModel::twoD::parts::GyroscopeSensor",
-            "AccelerometerPort" => "twoDModel::robotModel::parts::Accelerometer",
-            "LidarPort" => "twoDModel::robotModel::parts::Lidar",
-            "LineSensorPort" => "trik::robotModel::twoD::parts::LineSensor",
-            "ColorSensorPort" => "trik::robotModel::twoD::parts::ColorSensor",
-            name if name.starts_with("ObjectSensor") => {
-                "trik::robotModel::twoD::parts::ObjectSensor"
-            }
-            _ => match robot.sensor(port)?.kind {
-                SensorKind::Infrared | SensorKind::Sonar => {
-                    "twoDModel::robotModel::parts::RangeSensor"
-                }
-                SensorKind::Light => "trik::robotModel::twoD::parts::TwoDLightSensor",
-                SensorKind::Touch => "twoDModel::robotModel::parts::TouchSensor",
-                SensorKind::Camera => "trik::robotModel::twoD::parts::LineSensor",
-                SensorKind::Lidar => "twoDModel::robotModel::parts::Lidar",
-                SensorKind::Other => return None,
-            },
+    Some(match port.device() {
+        Device::Motor | Device::Servo => "twoDModel::robotModel::parts::Motor",
+        Device::Encoder => "twoDModel::robotModel::parts::EncoderSensor",
+        Device::Button(_) => "twoDModel::robotModel::parts::Button",
+        Device::Gyroscope => "trik::robotModel::twoD::parts::GyroscopeSensor",
+        Device::Accelerometer => "twoDModel::robotModel::parts::Accelerometer",
+        Device::Lidar => "twoDModel::robotModel::parts::Lidar",
+        Device::LineSensor => "trik::robotModel::twoD::parts::LineSensor",
+        Device::ColorSensor => "trik::robotModel::twoD::parts::ColorSensor",
+        Device::ObjectSensor(_) => "trik::robotModel::twoD::parts::ObjectSensor",
+        // The gamepad has a class only where a world puts a sensor at one of its ports.
+        Device::Plugged | Device::Gamepad(_) => match robot.sensor(port)?.kind {
+            SensorKind::Infrared | SensorKind::Sonar => "twoDModel::robotModel::parts::RangeSensor",
+            SensorKind::Light => "trik::robotModel::twoD::parts::TwoDLightSensor",
+            SensorKind::Touch => "twoDModel::robotModel::parts::TouchSensor",
+            SensorKind::Camera => "trik::robotModel::twoD::parts::LineSensor",
+            SensorKind::Lidar => "twoDModel::robotModel::parts::Lidar",
+            SensorKind::Other => return None,
         },
     })
 }
 
-fn class_of(arena: &Arena, thing: Thing) -> Option<&'static str> {
+fn class_of(arena: &Arena, thing: SceneObject) -> Option<&'static str> {
     let field = arena.field();
     Some(match thing {
-        Thing::Robot(_) => "twoDModel::model::RobotModel",
-        Thing::Device(robot, port) => class_of_device(arena.robots().get(robot)?, port)?,
-        Thing::Part(_, part) => PARTS[part as usize].2,
-        Thing::Wall(_) => "twoDModel::items::WallItem",
-        Thing::Solid(index) => match field.solids.get(index)?.kind {
+        SceneObject::Robot(_) => "twoDModel::model::RobotModel",
+        SceneObject::Device(robot, port) => class_of_device(arena.robots().get(robot)?, port)?,
+        SceneObject::Part(_, part) => PARTS[part as usize].2,
+        SceneObject::Wall(_) => "twoDModel::items::WallItem",
+        SceneObject::Solid(index) => match field.solids.get(index)?.kind {
             SolidKind::Skittle => "twoDModel::items::SkittleItem",
             SolidKind::Ball => "twoDModel::items::BallItem",
             SolidKind::Cube => "twoDModel::items::CubeItem",
         },
-        Thing::Drawn(index) => match field.drawn.get(index)?.shape {
+        SceneObject::Drawn(index) => match field.drawn.get(index)?.shape {
             Shape::Line(..) => "twoDModel::items::LineItem",
             Shape::Rectangle(..) => "twoDModel::items::RectangleItem",
             Shape::Ellipse(..) => "twoDModel::items::EllipseItem",
             Shape::Curve(..) => "twoDModel::items::CurveItem",
             Shape::Stylus(..) => "twoDModel::items::StylusItem",
         },
-        Thing::Region(index) => match field.regions.get(index)? {
+        SceneObject::Region(index) => match field.regions.get(index)? {
             region if region.is_ellipse() => "twoDModel::items::EllipseRegion",
             region if region.is_bound() => "twoDModel::items::BoundRegion",
             _ => "twoDModel::items::RectangularRegion",
         },
-        Thing::Trace => "utils::ObjectsSetBase",
+        SceneObject::Trace => "utils::ObjectsSetBase",
     })
 }
 
 impl Scene for Arena {
     fn find(&mut self, name: &str) -> Option<Object> {
         let thing = named(self, name)?;
-        if let Thing::Device(robot, port) = thing
+        if let SceneObject::Device(robot, port) = thing
             && let Some(robot) = self.robot_mut(robot)
         {
             // What a rule may ask for is read every now and then from here on.
@@ -287,18 +282,18 @@ impl Scene for Arena {
     }
 
     fn type_of(&mut self, object: Object) -> Option<&'static str> {
-        let class = class_of(self, Thing::of(object)?)?;
+        let class = class_of(self, SceneObject::of(object)?)?;
         debug_assert!(names::CLASSES.contains(&class), "{class}");
         Some(class)
     }
 
     fn property(&mut self, object: Object, chain: &[Box<str>]) -> Result<Value, Missing> {
-        let thing = Thing::of(object).ok_or(Missing::Type(0))?;
+        let thing = SceneObject::of(object).ok_or(Missing::Type(0))?;
         let Some((name, rest)) = chain.split_first() else {
             return Ok(Value::Object(object));
         };
         // How many figures there are is asked in each tick, and needs no list of them.
-        if let (Thing::Part(robot, Part::Display), [last]) = (thing, rest)
+        if let (SceneObject::Part(robot, Part::Display), [last]) = (thing, rest)
             && let Some(robot) = self.robots().get(robot)
             && let Some(count) = shown::count(&robot.shown().screen, name, last)
         {
@@ -309,7 +304,7 @@ impl Scene for Arena {
     }
 
     fn set_property(&mut self, object: Object, property: &str, value: &Value) -> bool {
-        let thing = Thing::of(object);
+        let thing = SceneObject::of(object);
         thing.is_some_and(|thing| set::set(self, thing, property, value))
     }
 
@@ -320,7 +315,8 @@ impl Scene for Arena {
         property: &str,
         value: &Value,
     ) -> bool {
-        let (Some(Thing::Part(robot, Part::Display)), [list, which]) = (Thing::of(object), chain)
+        let (Some(SceneObject::Part(robot, Part::Display)), [list, which]) =
+            (SceneObject::of(object), chain)
         else {
             return false;
         };
@@ -335,23 +331,23 @@ impl Scene for Arena {
         region: Object,
         point: ObjectPoint,
     ) -> Result<bool, Unfit> {
-        let Some(Thing::Region(region)) = Thing::of(region) else {
+        let Some(SceneObject::Region(region)) = SceneObject::of(region) else {
             return Err(Unfit::NoRegion);
         };
-        let thing = Thing::of(object).ok_or(Unfit::NoPlace)?;
+        let thing = SceneObject::of(object).ok_or(Unfit::NoPlace)?;
         places::is_inside(self, thing, region, point)
     }
 
     fn distance(&mut self, object: Object, region: Object, point: ObjectPoint) -> Option<f64> {
-        let Some(Thing::Region(region)) = Thing::of(region) else {
+        let Some(SceneObject::Region(region)) = SceneObject::of(region) else {
             return None;
         };
-        places::distance(self, Thing::of(object)?, region, point)
+        places::distance(self, SceneObject::of(object)?, region, point)
     }
 
     fn bounding_rect(&mut self, object: Object) -> Option<Rect> {
-        let thing = Thing::of(object)?;
-        if thing == Thing::Trace {
+        let thing = SceneObject::of(object)?;
+        if thing == SceneObject::Trace {
             return places::around_trace(self);
         }
         // Only the trace has a rectangle of its own there; of others where they are is taken.
@@ -365,7 +361,7 @@ impl Scene for Arena {
 }
 
 /// A property of a thing; nothing if it has none of this name.
-fn property(arena: &Arena, thing: Thing, name: &str) -> Option<Value> {
+fn property(arena: &Arena, thing: SceneObject, name: &str) -> Option<Value> {
     let found = known_property(arena, thing, name);
     debug_assert!(
         found.is_none() || names::PROPERTIES.contains(&name),
@@ -374,9 +370,9 @@ fn property(arena: &Arena, thing: Thing, name: &str) -> Option<Value> {
     found
 }
 
-fn known_property(arena: &Arena, thing: Thing, name: &str) -> Option<Value> {
+fn known_property(arena: &Arena, thing: SceneObject, name: &str) -> Option<Value> {
     match thing {
-        Thing::Robot(index) => {
+        SceneObject::Robot(index) => {
             let robot = arena.robots().get(index)?;
             let pose = robot.pose();
             Some(match name {
@@ -387,14 +383,17 @@ fn known_property(arena: &Arena, thing: Thing, name: &str) -> Option<Value> {
                 _ => return None,
             })
         }
-        Thing::Device(index, port) => device(arena, index, port, name),
-        Thing::Part(index, part) => of_part(arena.robots().get(index)?, part, name),
-        Thing::Trace => match name {
+        SceneObject::Device(index, port) => device(arena, index, port, name),
+        SceneObject::Part(index, part) => of_part(arena.robots().get(index)?, part, name),
+        SceneObject::Trace => match name {
             "size" => Some(count(arena.trace().len())),
             "isEmpty" => Some(Value::Bool(arena.trace().is_empty())),
             _ => None,
         },
-        _ => of_item(arena, thing, name),
+        SceneObject::Wall(_)
+        | SceneObject::Solid(_)
+        | SceneObject::Drawn(_)
+        | SceneObject::Region(_) => of_item(arena, thing, name),
     }
 }
 
@@ -404,10 +403,14 @@ fn device(arena: &Arena, index: usize, port: Port, name: &str) -> Option<Value> 
         (Sort::Motor, "power") => Some(Value::Int(robot.power(port))),
         (Sort::Servo, "power") => Some(Value::Int(robot.servo(port))),
         (Sort::Motor | Sort::Servo, _) => None,
-        (_, "locked") => Some(Value::Bool(robot.readings.is_locked(port))),
+        (Sort::Encoder | Sort::Scalar | Sort::Button(_) | Sort::Vector, "locked") => {
+            Some(Value::Bool(robot.readings.is_locked(port)))
+        }
         (Sort::Vector, "value") => Some(Value::Opaque),
-        (_, "value") => Some(Value::Int(robot.readings.last(port))),
-        _ => None,
+        (Sort::Encoder | Sort::Scalar | Sort::Button(_), "value") => {
+            Some(Value::Int(robot.readings.last(port)))
+        }
+        (Sort::Encoder | Sort::Scalar | Sort::Button(_) | Sort::Vector, _) => None,
     }
 }
 
@@ -432,32 +435,47 @@ fn of_part(robot: &Robot, part: Part, name: &str) -> Option<Value> {
         (Part::Random, "lastValue") => Some(Value::Int(robot.dice.last)),
         // All that these have, and it was never set.
         (Part::Speaker | Part::Network, "objectName") => Some(Value::NoText),
-        _ => None,
+        (
+            Part::Shell | Part::Led | Part::Marker | Part::Random | Part::Speaker | Part::Network,
+            _,
+        ) => None,
     }
 }
 
 /// A property of something on the field.
-fn of_item(arena: &Arena, thing: Thing, name: &str) -> Option<Value> {
+fn of_item(arena: &Arena, thing: SceneObject, name: &str) -> Option<Value> {
     let field = arena.field();
     let (family, index) = set::family(thing)?;
     let graphic = arena.graphics.of(family, index);
     let (at, rotation) = match thing {
-        Thing::Solid(index) => {
+        SceneObject::Solid(index) => {
             let solid = field.solids.get(index)?;
             (places::as_told(solid.at, graphic.at), solid.rotation)
         }
-        _ => (graphic.at, graphic.rotation),
+        SceneObject::Wall(_)
+        | SceneObject::Drawn(_)
+        | SceneObject::Region(_)
+        | SceneObject::Robot(_)
+        | SceneObject::Device(..)
+        | SceneObject::Part(..)
+        | SceneObject::Trace => (graphic.at, graphic.rotation),
     };
     let visible = match thing {
-        Thing::Region(index) => field.regions.get(index)?.visible,
-        _ => true,
+        SceneObject::Region(index) => field.regions.get(index)?.visible,
+        SceneObject::Wall(_)
+        | SceneObject::Solid(_)
+        | SceneObject::Drawn(_)
+        | SceneObject::Robot(_)
+        | SceneObject::Device(..)
+        | SceneObject::Part(..)
+        | SceneObject::Trace => true,
     };
     match name {
         "x" => return Some(Value::Double(at.x)),
         "y" => return Some(Value::Double(at.y)),
         "rotation" => return Some(Value::Double(rotation)),
         // Nothing can be asked of that of a wall, as in the original.
-        "pos" if matches!(thing, Thing::Wall(_)) => return Some(Value::Opaque),
+        "pos" if matches!(thing, SceneObject::Wall(_)) => return Some(Value::Opaque),
         "pos" => return Some(Value::Place([at.x, at.y])),
         "visible" => return Some(Value::Bool(graphic.is_visible.unwrap_or(visible))),
         "enabled" => return Some(Value::Bool(true)),
@@ -466,14 +484,14 @@ fn of_item(arena: &Arena, thing: Thing, name: &str) -> Option<Value> {
         _ => {}
     }
     match thing {
-        Thing::Wall(index) => {
+        SceneObject::Wall(index) => {
             let material = &field.walls.get(index)?.material;
             let asked = ["mass", "friction", "restitution"].contains(&name);
             asked.then(|| of_material(material, name)).flatten()
         }
-        Thing::Solid(index) => of_material(&field.solids.get(index)?.material, name),
-        Thing::Drawn(index) => of_drawn(field.drawn.get(index)?, name),
-        Thing::Region(index) => {
+        SceneObject::Solid(index) => of_material(&field.solids.get(index)?.material, name),
+        SceneObject::Drawn(index) => of_drawn(field.drawn.get(index)?, name),
+        SceneObject::Region(index) => {
             let region = field.regions.get(index)?;
             Some(match name {
                 "filled" => Value::Bool(region.filled),
@@ -481,7 +499,10 @@ fn of_item(arena: &Arena, thing: Thing, name: &str) -> Option<Value> {
                 _ => return None,
             })
         }
-        Thing::Robot(_) | Thing::Device(..) | Thing::Part(..) | Thing::Trace => None,
+        SceneObject::Robot(_)
+        | SceneObject::Device(..)
+        | SceneObject::Part(..)
+        | SceneObject::Trace => None,
     }
 }
 

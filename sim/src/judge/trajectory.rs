@@ -86,7 +86,7 @@ impl Trajectory {
                 y,
                 degrees,
             } if robot == of => Some([f64::from(ms), x, y, degrees]),
-            _ => None,
+            Record::Pose { .. } | Record::Device { .. } => None,
         })
     }
 

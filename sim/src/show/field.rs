@@ -3,7 +3,7 @@
 //! Owns what of a field people see and what lies over what; colours and dashes are those of pictures of judged runs. What is too
 //! far away or too much is left out.
 
-use super::{Item, Kind, Mark, Scene, Sensor, Shape, Thing, Wheel};
+use super::{Item, Kind, Mark, Movable, Scene, Sensor, Shape, Wheel};
 use crate::arena::{Arena, ranges};
 use crate::field::{self, Blob, Drawn, Field, Image, Region, SensorKind, SolidKind};
 use crate::geometry::{Point, Pose, point};
@@ -62,8 +62,8 @@ pub fn scene(arena: &Arena, start: Pose) -> Scene {
     }
 }
 
-fn thing(solid: &field::Solid) -> Thing {
-    Thing {
+fn thing(solid: &field::Solid) -> Movable {
+    Movable {
         kind: match solid.kind {
             SolidKind::Skittle => "skittle",
             SolidKind::Ball => "ball",

@@ -2,7 +2,7 @@
 //!
 //! Owns the names and the digits; `page/app/src/world/types.ts` has the other end. Pure.
 
-use super::{Item, Moving, Placed, Scene, Sensor, Shape, Thing, Wheel};
+use super::{Item, Movable, Moving, Placed, Scene, Sensor, Shape, Wheel};
 use crate::geometry::{Point, Pose};
 use crate::judge::json;
 use serde_json::{Map, Value, json};
@@ -59,7 +59,7 @@ fn item(item: &Item) -> Value {
     Value::Object(all)
 }
 
-fn thing(thing: &Thing) -> Value {
+fn thing(thing: &Movable) -> Value {
     json!({"is": thing.kind, "size": rounded(thing.size_m), "colour": thing.colour})
 }
 

@@ -1,15 +1,22 @@
-//! What tests need of the machine: found, or the test is skipped by name and counted.
+//! What tests need of the machine: found, or the test is skipped by name and counted. `random` gives them numbers.
 //!
 //! Owns the variables that demand a need (a skip is a failure then), and the file in which skips are counted:
 //! `TRIK_SKIPS` names it. Knows no test and depends on no other crate.
+
+mod random;
+
+pub use random::Random;
 
 use std::fmt::Display;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Names the file to which each skip adds a line.
 const SKIPS: &str = "TRIK_SKIPS";
+/// Skips of this process.
+static COUNT: AtomicUsize = AtomicUsize::new(0);
 
 /// Something that a machine may lack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,12 +54,19 @@ impl Need {
             .variable()
             .is_some_and(|variable| std::env::var(variable).is_ok_and(|value| value == "1"));
         assert!(!is_demanded, "{name} would be skipped: {why}");
-        println!("skipped: {name}: {why}");
+        let count = 1 + COUNT.fetch_add(1, Ordering::Relaxed);
+        // `println!` would be kept by the test harness, which shows it of tests that fail alone.
+        let _ = std::io::stderr().write_all(told(count, &name, &why).as_bytes());
         if let Some(file) = std::env::var_os(SKIPS) {
             let package = std::env::var("CARGO_PKG_NAME").unwrap_or_default();
             note(Path::new(&file), &format!("{package} {name}: {why}\n"));
         }
     }
+}
+
+/// What a skip says: which one of this process it is, so that the last line has the count.
+fn told(count: usize, name: &str, why: &dyn Display) -> String {
+    format!("skipped ({count}): {name}: {why}\n")
 }
 
 /// Name of the running test.
@@ -103,12 +117,21 @@ mod tests {
 
     #[test]
     fn skips_are_lines_of_a_file() {
+        // This crate depends on none, so not on `tempfile` either.
         let file = std::env::temp_dir().join(format!("needs-{}", std::process::id()));
         note(&file, "one\n");
         note(&file, "two\n");
         let text = std::fs::read_to_string(&file).unwrap();
         std::fs::remove_file(&file).unwrap();
         assert_eq!(text, "one\ntwo\n");
+    }
+
+    #[test]
+    fn a_skip_says_which_one_of_the_process_it_is() {
+        assert_eq!(
+            told(3, "a test", &"no tool"),
+            "skipped (3): a test: no tool\n"
+        );
     }
 
     #[test]

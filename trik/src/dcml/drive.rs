@@ -24,7 +24,7 @@ use lang_dcml::system::System;
 use nix::poll::{PollFd, PollFlags, PollTimeout, poll};
 use nix::sys::signal::{SigSet, Signal};
 use nix::sys::signalfd::{SfdFlags, SignalFd};
-use sim::body::rolling::{Actuator, Rolling, Said};
+use sim::body::rolling::{Actuator, Overrides, Rolling};
 use sim::robots::MODEL_START;
 use std::io::{self, IsTerminal, Write};
 use std::os::fd::AsFd;
@@ -90,7 +90,7 @@ pub(super) fn run(args: &DriveArgs) -> Result<u8, Refusal> {
     let params = values::complete("--params", &names, given)?;
     let refused = |why: String| Refusal::new(format!("{}: {why}", model.name));
     let robot = Robot::new(&model, &params).map_err(|why| refused(why.to_string()))?;
-    let said = Said {
+    let said = Overrides {
         params: names
             .iter()
             .map(|name| (*name).to_owned())

@@ -10,7 +10,7 @@ use crate::output::csv;
 use crate::refusal::Refusal;
 use clap::Args;
 use journal::layout::Layout;
-use journal::read::{Event, What};
+use journal::read::{Event, EventKind};
 use recorder::pattern::matches;
 use std::collections::HashMap;
 use std::io::{self, BufWriter, Write};
@@ -179,7 +179,7 @@ fn event_row(
     let time = seconds(event.unix_ns - begin);
     let mut all = vec![String::new(); columns.names.len()];
     match &event.what {
-        What::Sample { layout, tuple, .. } => {
+        EventKind::Sample { layout, tuple, .. } => {
             let Some(places) = columns.of_layout.get(layout) else {
                 return Ok(());
             };
@@ -189,7 +189,7 @@ fn event_row(
             }
             row(out, &time, &all, "")
         }
-        What::Fault {
+        EventKind::Fault {
             node,
             errno,
             reason,
@@ -198,7 +198,7 @@ fn event_row(
             let fault = csv::text(&format!("{path}: errno {errno}: {reason}"));
             row(out, &time, &all, &fault)
         }
-        What::Fault { .. } | What::Line(..) => Ok(()),
+        EventKind::Fault { .. } | EventKind::Line(..) => Ok(()),
     }
 }
 

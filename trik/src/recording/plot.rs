@@ -14,7 +14,7 @@ use crate::refusal::Refusal;
 use crate::terminal::{harmless, named};
 use clap::Args;
 use journal::layout::Layout;
-use journal::read::{Event, What};
+use journal::read::{Event, EventKind};
 use lang_text::problem::Locale;
 use recorder::pattern::matches;
 use std::path::{Path, PathBuf};
@@ -204,7 +204,7 @@ fn read(
 
 fn take(opened: &Opened, lines: &mut [Line], event: &Event, step: usize, at: f64) {
     match &event.what {
-        What::Sample {
+        EventKind::Sample {
             node,
             layout,
             tuple,
@@ -227,12 +227,12 @@ fn take(opened: &Opened, lines: &mut [Line], event: &Event, step: usize, at: f64
                 }
             }
         }
-        What::Fault { node, .. } => {
+        EventKind::Fault { node, .. } => {
             for line in lines.iter_mut().filter(|line| line.node == *node) {
                 line.fail(at);
             }
         }
-        What::Line(..) => {}
+        EventKind::Line(..) => {}
     }
 }
 

@@ -72,8 +72,8 @@ impl FileRecording {
     fn event(&self, event: read::Event) -> Option<Event> {
         let at = event.unix_ns.saturating_sub(self.reader.begin_ns());
         let (channel, what) = match event.what {
-            read::What::Sample { node, tuple, .. } => (node, Reading::Sample(tuple)),
-            read::What::Fault {
+            read::EventKind::Sample { node, tuple, .. } => (node, Reading::Sample(tuple)),
+            read::EventKind::Fault {
                 node,
                 errno,
                 reason,
@@ -82,7 +82,7 @@ impl FileRecording {
                 let reason = reason.strip_prefix("device: ").unwrap_or(&reason);
                 (node, Reading::Failure(errno, reason.to_owned()))
             }
-            read::What::Line(..) => return None,
+            read::EventKind::Line(..) => return None,
         };
         // Before its format changed it was another node.
         let fits = match &what {

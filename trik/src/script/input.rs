@@ -4,7 +4,7 @@
 
 use super::tree::keys;
 use lang_diagram::brick::Brick;
-use lang_diagram::ports::Port;
+use lang_diagram::ports::{Device, GamepadPart, Pad, Port};
 use trikd::js::events::Record;
 
 /// Presses of the keys, seven numbers in the order of the tree.
@@ -21,16 +21,16 @@ pub struct Input {
     buttons: [bool; 5],
 }
 
-fn scalar(brick: &mut dyn Brick, name: &str) -> Option<i32> {
-    brick.scalar(Port::named(name)?)
+fn scalar(brick: &mut dyn Brick, part: GamepadPart) -> Option<i32> {
+    brick.scalar(Port::of(Device::Gamepad(part))?)
 }
 
-fn pad(brick: &mut dyn Brick, number: usize) -> Option<[i32; 2]> {
-    if scalar(brick, &format!("GamepadPad{number}PressedPort"))? == 0 {
+fn pad(brick: &mut dyn Brick, pad: Pad) -> Option<[i32; 2]> {
+    if scalar(brick, GamepadPart::Pressed(pad))? == 0 {
         return None;
     }
     let mut at = Vec::new();
-    let port = Port::named(&format!("GamepadPad{number}PosPort"))?;
+    let port = Port::of(Device::Gamepad(GamepadPart::Place(pad)))?;
     brick.vector(port, &mut at);
     Some([at.first().copied()?, at.get(1).copied()?])
 }
@@ -47,9 +47,9 @@ impl Input {
     /// What has happened to the gamepad.
     pub fn gamepad(&mut self, brick: &mut dyn Brick) -> Vec<Record> {
         let mut lines = Vec::new();
-        for (index, was) in self.pads.iter_mut().enumerate() {
-            let number = index + 1;
-            let is = pad(brick, number);
+        for (which, was) in [Pad::One, Pad::Two].into_iter().zip(&mut self.pads) {
+            let number = which.number();
+            let is = pad(brick, which);
             if is != *was {
                 lines.push(match is {
                     Some([x, y]) => format!("pad {number} {x} {y}"),
@@ -58,14 +58,13 @@ impl Input {
                 *was = is;
             }
         }
-        let wheel = scalar(brick, "GamepadWheelPort");
+        let wheel = scalar(brick, GamepadPart::Wheel);
         if wheel != self.wheel {
             lines.extend(wheel.map(|at| format!("wheel {at}")));
             self.wheel = wheel;
         }
-        for (index, was) in self.buttons.iter_mut().enumerate() {
-            let number = index + 1;
-            let is = scalar(brick, &format!("GamepadButton{number}Port")).unwrap_or(0) != 0;
+        for (number, was) in (1..).zip(&mut self.buttons) {
+            let is = scalar(brick, GamepadPart::Button(number)).unwrap_or(0) != 0;
             if is != *was {
                 lines.push(format!("btn {number} {}", if is { "down" } else { "up" }));
                 *was = is;

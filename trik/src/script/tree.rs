@@ -5,7 +5,7 @@
 
 use crate::limits;
 use lang_diagram::brick::{Brick, Command};
-use lang_diagram::ports::{Direction, Kit, Port, Sort};
+use lang_diagram::ports::{Device, Direction, GamepadPart, Kit, ObjectPart, Pad, Port, Sort};
 use std::collections::BTreeMap;
 use std::io;
 
@@ -79,23 +79,59 @@ fn joined(numbers: impl IntoIterator<Item = i32>) -> String {
     words.join(" ")
 }
 
+/// Where in the tree the readings of a device stand; what is there once for each port has a directory for each.
+fn place(device: Device) -> &'static str {
+    match device {
+        Device::Motor => "motors",
+        Device::Servo => "servos",
+        Device::Encoder => "encoders",
+        Device::Plugged => "sensors",
+        Device::Gyroscope => "gyroscope",
+        Device::Accelerometer => "accelerometer",
+        Device::LineSensor => "camera/line",
+        Device::ColorSensor => "camera/color",
+        Device::ObjectSensor(_) => "camera/object",
+        Device::Lidar => "lidar",
+        Device::Button(_) => "keys",
+        Device::Gamepad(GamepadPart::Place(Pad::One) | GamepadPart::Pressed(Pad::One)) => {
+            "gamepad/pad1"
+        }
+        Device::Gamepad(GamepadPart::Place(Pad::Two) | GamepadPart::Pressed(Pad::Two)) => {
+            "gamepad/pad2"
+        }
+        Device::Gamepad(GamepadPart::Wheel) => "gamepad/wheel",
+        Device::Gamepad(GamepadPart::Button(_)) => "gamepad/buttons",
+        Device::Gamepad(GamepadPart::Connected) => "gamepad",
+    }
+}
+
+/// The device whose readings stand in a directory.
+fn device_in(directory: &str) -> Option<Device> {
+    Port::all()
+        .map(Port::device)
+        .find(|device| place(*device) == directory)
+}
+
 /// Numbers of a sensor with several, at least as many as asked for; zeros where it has none.
-fn vector(brick: &mut dyn Brick, name: &str, least: usize) -> Option<Vec<i32>> {
+fn vector(brick: &mut dyn Brick, device: Device, least: usize) -> Option<Vec<i32>> {
     let mut numbers = Vec::new();
-    let found = brick.vector(Port::named(name)?, &mut numbers);
+    let found = brick.vector(Port::of(device)?, &mut numbers);
     if numbers.len() < least {
         numbers.resize(least, 0);
     }
     found.then_some(numbers)
 }
 
-fn scalar(brick: &mut dyn Brick, name: &str) -> Option<i32> {
-    brick.scalar(Port::named(name)?)
+fn scalar(brick: &mut dyn Brick, device: Device) -> Option<i32> {
+    brick.scalar(Port::of(device)?)
 }
 
 /// Presses of the keys, in the order of the tree.
 pub fn keys(brick: &mut dyn Brick) -> [i32; 7] {
-    KEYS.map(|name| scalar(brick, name).unwrap_or(0))
+    KEYS.map(|name| {
+        let key = Port::named(name);
+        key.and_then(|key| brick.scalar(key)).unwrap_or(0)
+    })
 }
 
 impl Tree {
@@ -109,14 +145,26 @@ impl Tree {
                 let port = port(name, Direction::In).filter(|port| port.sort() == Sort::Scalar);
                 port.is_some_and(|port| brick.scalar(port).is_some())
             }
-            Some(("camera", mode)) => ["line", "object", "color"].contains(&mode),
+            Some(("camera", _)) => device_in(directory).is_some(),
             Some(_) => false,
-            None => match directory {
-                "gyroscope" => vector(brick, "GyroscopePort", 0).is_some(),
-                "accelerometer" => vector(brick, "AccelerometerPort", 0).is_some(),
-                "lidar" => vector(brick, "LidarPort", 0).is_some(),
-                "marker" | "keys" | "led" | "battery" | "gamepad" | "display" => true,
-                _ => false,
+            None => match device_in(directory) {
+                Some(
+                    device @ (Device::Gyroscope
+                    | Device::Accelerometer
+                    | Device::LineSensor
+                    | Device::ColorSensor
+                    | Device::Lidar),
+                ) => vector(brick, device, 0).is_some(),
+                Some(Device::Button(_) | Device::Gamepad(_)) => true,
+                // These have a directory for each port or each number.
+                Some(
+                    Device::Motor
+                    | Device::Servo
+                    | Device::Encoder
+                    | Device::Plugged
+                    | Device::ObjectSensor(_),
+                ) => false,
+                None => ["marker", "led", "battery", "display"].contains(&directory),
             },
         }
     }
@@ -144,47 +192,22 @@ impl Tree {
                 let port = port(name, Direction::In).ok_or_else(absent)?;
                 brick.scalar(port).ok_or_else(unplugged)?.to_string()
             }
-            ["keys", "value"] => joined(keys(brick)),
             ["battery", _] => BATTERY.to_owned(),
-            ["gyroscope", part] => {
-                let all = vector(brick, "GyroscopePort", HEADING + 1).ok_or_else(unplugged)?;
-                match part {
-                    "tilt" => joined(all[4..6].iter().copied()),
-                    "heading" => all[HEADING].to_string(),
-                    _ => joined(all[..3].iter().copied()),
+            ["camera", mode, "hsv"] => {
+                let count = self.detections.get(mode).ok_or_else(nothing_yet)?;
+                format!("{count} 0 0 0 0 0")
+            }
+            _ => {
+                let (directory, file) = path.rsplit_once('/').ok_or_else(absent)?;
+                match (device_in(directory), &parts[..]) {
+                    (Some(device), _) => reading(brick, device, file)?,
+                    // What else the gamepad says never comes here.
+                    (None, ["gamepad", _, _]) => return Err(nothing_yet()),
+                    (None, _) => return Err(absent()),
                 }
             }
-            ["accelerometer", _] => {
-                joined(vector(brick, "AccelerometerPort", 3).ok_or_else(unplugged)?)
-            }
-            ["lidar", "value"] => joined(vector(brick, "LidarPort", 0).ok_or_else(unplugged)?),
-            ["camera", mode, part] => self.camera(brick, mode, part)?,
-            ["gamepad", part, kind] => gamepad(brick, part, kind)?,
-            _ => return Err(absent()),
         };
         Ok(text)
-    }
-
-    fn camera(&self, brick: &mut dyn Brick, mode: &str, part: &str) -> io::Result<String> {
-        if part == "hsv" {
-            let count = self.detections.get(mode).ok_or_else(nothing_yet)?;
-            return Ok(format!("{count} 0 0 0 0 0"));
-        }
-        Ok(match mode {
-            "line" => joined(vector(brick, "LineSensorPort", 3).unwrap_or_else(|| vec![0; 3])),
-            "color" => {
-                let all = vector(brick, "ColorSensorPort", 3).unwrap_or_else(|| vec![0; 3]);
-                let colour = all[..3]
-                    .iter()
-                    .fold(0, |sum, part| sum << 8 | (part & 0xff));
-                joined([colour; CELLS])
-            }
-            "object" => joined(
-                ["X", "Y", "Size"]
-                    .map(|part| scalar(brick, &format!("ObjectSensor{part}Port")).unwrap_or(0)),
-            ),
-            _ => return Err(absent()),
-        })
     }
 
     /// Takes one text.
@@ -313,23 +336,65 @@ fn is_sort(name: &str, way: Direction, sort: Sort) -> bool {
     port(name, way).is_some_and(|port| port.sort() == sort)
 }
 
-fn gamepad(brick: &mut dyn Brick, part: &str, kind: &str) -> io::Result<String> {
-    let is_connected = scalar(brick, "GamepadConnectionIndicatorPort").unwrap_or(0) != 0;
-    Ok(match (part, kind) {
-        ("pad1" | "pad2", "value") => {
-            let name = if part == "pad1" { "Pad1" } else { "Pad2" };
-            let pressed = scalar(brick, &format!("Gamepad{name}PressedPort")).unwrap_or(0);
-            let at = vector(brick, &format!("Gamepad{name}PosPort"), 2);
+/// A file of readings of a device.
+fn reading(brick: &mut dyn Brick, device: Device, file: &str) -> io::Result<String> {
+    let mut several = |least| vector(brick, device, least);
+    Ok(match device {
+        Device::Gyroscope => {
+            let all = several(HEADING + 1).ok_or_else(unplugged)?;
+            match file {
+                "tilt" => joined(all[4..6].iter().copied()),
+                "heading" => all[HEADING].to_string(),
+                _ => joined(all[..3].iter().copied()),
+            }
+        }
+        Device::Accelerometer => joined(several(3).ok_or_else(unplugged)?),
+        Device::Lidar if file == "value" => joined(several(0).ok_or_else(unplugged)?),
+        Device::LineSensor => joined(several(3).unwrap_or_else(|| vec![0; 3])),
+        Device::ColorSensor => {
+            let all = several(3).unwrap_or_else(|| vec![0; 3]);
+            let colour = all[..3]
+                .iter()
+                .fold(0, |sum, part| sum << 8 | (part & 0xff));
+            joined([colour; CELLS])
+        }
+        Device::ObjectSensor(_) => joined(
+            [ObjectPart::X, ObjectPart::Y, ObjectPart::Size]
+                .map(|part| scalar(brick, Device::ObjectSensor(part)).unwrap_or(0)),
+        ),
+        Device::Button(_) if file == "value" => joined(keys(brick)),
+        Device::Gamepad(GamepadPart::Connected) => return Err(absent()),
+        Device::Gamepad(part) => gamepad(brick, part, file)?,
+        // Of the first four each port has a directory; the others have no such file.
+        Device::Motor
+        | Device::Servo
+        | Device::Encoder
+        | Device::Plugged
+        | Device::Lidar
+        | Device::Button(_) => return Err(absent()),
+    })
+}
+
+fn gamepad(brick: &mut dyn Brick, part: GamepadPart, file: &str) -> io::Result<String> {
+    let mut number = |part| scalar(brick, Device::Gamepad(part));
+    let is_connected = number(GamepadPart::Connected).unwrap_or(0) != 0;
+    Ok(match part {
+        GamepadPart::Place(pad) | GamepadPart::Pressed(pad) if file == "value" => {
+            let pressed = number(GamepadPart::Pressed(pad)).unwrap_or(0);
+            let at = vector(brick, Device::Gamepad(GamepadPart::Place(pad)), 2);
             let at = at.unwrap_or_else(|| vec![RELEASED; 2]);
             joined([at[0], at[1], i32::from(pressed != 0)])
         }
-        ("wheel", "value") => scalar(brick, "GamepadWheelPort")
-            .unwrap_or(RELEASED)
-            .to_string(),
-        ("buttons", "value" | "presses") if is_connected => joined(
-            [1, 2, 3, 4, 5]
-                .map(|number| scalar(brick, &format!("GamepadButton{number}Port")).unwrap_or(0)),
-        ),
-        _ => return Err(nothing_yet()),
+        GamepadPart::Wheel if file == "value" => {
+            number(GamepadPart::Wheel).unwrap_or(RELEASED).to_string()
+        }
+        GamepadPart::Button(_) if is_connected && ["value", "presses"].contains(&file) => {
+            joined([1, 2, 3, 4, 5].map(|button| number(GamepadPart::Button(button)).unwrap_or(0)))
+        }
+        GamepadPart::Place(_)
+        | GamepadPart::Pressed(_)
+        | GamepadPart::Wheel
+        | GamepadPart::Button(_)
+        | GamepadPart::Connected => return Err(nothing_yet()),
     })
 }

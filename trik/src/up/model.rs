@@ -5,7 +5,7 @@
 use super::args::UpArgs;
 use crate::error::Error;
 use sim::body::Body;
-use sim::body::rolling::{Rolling, Said};
+use sim::body::rolling::{Overrides, Rolling};
 use sim::robots;
 
 /// An option that only a model takes.
@@ -31,7 +31,7 @@ pub(super) fn robot(args: &UpArgs) -> Result<(Box<dyn Body>, String), Error> {
         let text = lines.join("\n");
         Error::Refused(text.strip_prefix("trik: ").unwrap_or(&text).to_owned())
     })?;
-    let said = Said {
+    let said = Overrides {
         params: args.params.clone(),
         drive: args.drive.clone(),
         start: args.start.clone(),

@@ -3,7 +3,7 @@
 use crate::programs::Reachable;
 use crate::rig::Home;
 use harness::{eventually, processes, tools};
-use journal::read::{Reader, What};
+use journal::read::{EventKind, Reader};
 use journal::write::Story;
 use nix::sys::signal::Signal;
 use std::collections::BTreeMap;
@@ -30,13 +30,13 @@ fn content(path: &Path) -> (BTreeMap<String, u64>, Vec<(Story, String)>) {
     let mut lines = Vec::new();
     while let Some(event) = reader.next().expect("an event") {
         match event.what {
-            What::Sample { node, .. } => {
+            EventKind::Sample { node, .. } => {
                 *samples
                     .entry(reader.nodes()[node].path.clone())
                     .or_default() += 1;
             }
-            What::Line(story, line) => lines.push((story, line.text)),
-            What::Fault { .. } => {}
+            EventKind::Line(story, line) => lines.push((story, line.text)),
+            EventKind::Fault { .. } => {}
         }
     }
     (samples, lines)

@@ -2,7 +2,7 @@
 
 use crate::rig::{Home, Robot};
 use harness::eventually;
-use journal::read::{Reader, What};
+use journal::read::{EventKind, Reader};
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use std::collections::BTreeMap;
@@ -42,7 +42,7 @@ fn samples(home: &Home) -> BTreeMap<String, Vec<String>> {
     let mut reader = Reader::open(file).expect("a recording");
     let mut all: BTreeMap<String, Vec<String>> = BTreeMap::new();
     while let Some(event) = reader.next().expect("an event") {
-        if let What::Sample { node, tuple, .. } = event.what {
+        if let EventKind::Sample { node, tuple, .. } = event.what {
             let text = reader.layout(node).expect("a layout").show(&tuple);
             let path = reader.nodes()[node].path.clone();
             all.entry(path).or_default().push(text);
@@ -156,7 +156,7 @@ fn firsts(home: &Home) -> BTreeMap<String, Duration> {
     while let Some(event) = reader.next().expect("an event") {
         if let Some(node) = event.node() {
             let after = Duration::from_nanos(event.unix_ns - begin_ns);
-            let is_sample = matches!(event.what, What::Sample { .. });
+            let is_sample = matches!(event.what, EventKind::Sample { .. });
             let path = reader.nodes()[node].path.clone();
             firsts.entry(path).or_insert((after, is_sample));
         }

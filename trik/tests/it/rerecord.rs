@@ -6,7 +6,7 @@ use crate::replay::Recorder;
 use crate::rig::{Home, Robot};
 use harness::{eventually, processes};
 use journal::mend::mend;
-use journal::read::{Reader, What};
+use journal::read::{EventKind, Reader};
 use nix::sys::signal::Signal;
 use std::collections::BTreeMap;
 use std::collections::hash_map::RandomState;
@@ -32,12 +32,12 @@ fn events<F: std::io::Read + std::io::Seek>(file: F) -> BTreeMap<String, Events>
     }
     while let Some(event) = reader.next().expect("an event") {
         let (node, what) = match event.what {
-            What::Sample { node, tuple, .. } => {
+            EventKind::Sample { node, tuple, .. } => {
                 let layout = reader.layout(node).expect("a layout");
                 (node, Ok(layout.show(&tuple)))
             }
-            What::Fault { node, errno, .. } => (node, Err(errno)),
-            What::Line(..) => continue,
+            EventKind::Fault { node, errno, .. } => (node, Err(errno)),
+            EventKind::Line(..) => continue,
         };
         let path = &reader.nodes()[node].path;
         (all.get_mut(path).expect("a node")).push((event.unix_ns, what));

@@ -1,11 +1,11 @@
-//! Sensors of the tree as a running diagram reads them: whole numbers, by the names of ports.
+//! Sensors of the tree as a running diagram reads them: whole numbers, by what stands at a port.
 //!
 //! Owns the open files of the sensors that were read, and the heading that counts as 0. A reading that fails is none.
 
 use crate::brick::Brick;
 use crate::brick::sensors::{Camera, Encoder, Gamepad, KEYS, Keys, NOT_PRESSED, Sensor, Vector};
 use crate::limits;
-use lang_diagram::ports::{Port, Sort};
+use lang_diagram::ports::{Device, GamepadPart, ObjectPart, Port};
 use std::collections::HashMap;
 use std::io;
 use std::time::{Duration, Instant};
@@ -25,7 +25,8 @@ enum From {
     Encoder(Encoder),
     Gyroscope(Vector),
     Accelerometer(Vector),
-    Camera(&'static str),
+    Line,
+    Colour,
     /// Object: x, y or size.
     Object(usize),
     Lidar,
@@ -80,34 +81,27 @@ impl<'a> Readings<'a> {
     }
 
     fn find(&self, port: Port) -> From {
-        let name = port.name();
-        let gamepad = name.strip_prefix("Gamepad");
-        let digit = |text: &str| text.bytes().find(u8::is_ascii_digit);
-        let number = |text: &str| digit(text).map_or(1, |digit| usize::from(digit - b'0'));
-        let from = match (port.sort(), gamepad) {
-            (Sort::Encoder, _) => self.brick.encoder(name).map(From::Encoder),
-            (Sort::Button(code), _) => {
+        let from = match port.device() {
+            Device::Motor | Device::Servo => None,
+            Device::Encoder => self.brick.encoder(port.name()).map(From::Encoder),
+            Device::Plugged => self.brick.sensor(port.name()).map(From::Sensor),
+            Device::Gyroscope => self.brick.gyroscope().map(From::Gyroscope),
+            Device::Accelerometer => self.brick.accelerometer().map(From::Accelerometer),
+            Device::LineSensor => Some(From::Line),
+            Device::ColorSensor => Some(From::Colour),
+            Device::ObjectSensor(ObjectPart::X) => Some(From::Object(0)),
+            Device::ObjectSensor(ObjectPart::Y) => Some(From::Object(1)),
+            Device::ObjectSensor(ObjectPart::Size) => Some(From::Object(2)),
+            Device::Lidar => self.brick.tree().has("lidar").then_some(From::Lidar),
+            Device::Button(code) => {
                 let key = KEYS.iter().position(|key| i32::from(key.1) == code);
                 key.map(From::Key)
             }
-            (_, Some(part)) if part.starts_with("Pad") && part.ends_with("PosPort") => {
-                Some(From::Pad(number(part)))
-            }
-            (_, Some(part)) if part.starts_with("Pad") => Some(From::PadPressed(number(part))),
-            (_, Some(part)) if part.starts_with("Button") => Some(From::Button(number(part))),
-            (_, Some("WheelPort")) => Some(From::Wheel),
-            (_, Some(_)) => Some(From::Connected),
-            _ => match name {
-                "GyroscopePort" => self.brick.gyroscope().map(From::Gyroscope),
-                "AccelerometerPort" => self.brick.accelerometer().map(From::Accelerometer),
-                "LineSensorPort" => Some(From::Camera("line")),
-                "ColorSensorPort" => Some(From::Camera("color")),
-                "ObjectSensorXPort" => Some(From::Object(0)),
-                "ObjectSensorYPort" => Some(From::Object(1)),
-                "ObjectSensorSizePort" => Some(From::Object(2)),
-                "LidarPort" => self.brick.tree().has("lidar").then_some(From::Lidar),
-                _ => self.brick.sensor(name).map(From::Sensor),
-            },
+            Device::Gamepad(GamepadPart::Place(pad)) => Some(From::Pad(pad.number())),
+            Device::Gamepad(GamepadPart::Pressed(pad)) => Some(From::PadPressed(pad.number())),
+            Device::Gamepad(GamepadPart::Wheel) => Some(From::Wheel),
+            Device::Gamepad(GamepadPart::Button(number)) => Some(From::Button(number.into())),
+            Device::Gamepad(GamepadPart::Connected) => Some(From::Connected),
         };
         from.unwrap_or(From::Nothing)
     }
@@ -169,7 +163,7 @@ impl<'a> Readings<'a> {
     pub(super) fn calibrate(&mut self) {
         self.zero = 0;
         let mut numbers = Vec::new();
-        let Some(port) = Port::named("GyroscopePort") else {
+        let Some(port) = Port::of(Device::Gyroscope) else {
             return;
         };
         if self.vector(port, &mut numbers) {
@@ -203,7 +197,8 @@ impl<'a> Readings<'a> {
             From::Connected => Some(f64::from(self.gamepad.is_connected())),
             From::Gyroscope(_)
             | From::Accelerometer(_)
-            | From::Camera(_)
+            | From::Line
+            | From::Colour
             | From::Lidar
             | From::Pad(_)
             | From::Nothing => None,
@@ -221,11 +216,11 @@ impl<'a> Readings<'a> {
                 numbers
             }),
             From::Accelerometer(ref accelerometer) => accelerometer.read().ok(),
-            From::Camera("color") => self
+            From::Colour => self
                 .camera("color")
                 .and_then(|camera| camera.read().ok())
                 .map(|cells| middle_colour(&cells)),
-            From::Camera(mode) => self.camera(mode).and_then(|camera| camera.read().ok()),
+            From::Line => self.camera("line").and_then(|camera| camera.read().ok()),
             From::Lidar => {
                 let mut distances = [0.0; DIRECTIONS];
                 let read = self.brick.lidar(&mut distances).ok();

@@ -4,23 +4,12 @@
 
 use crate::rig::{Robot, robot};
 use harness::{eventually, processes};
+use needs::Random;
 use nix::sys::signal::Signal;
 use nix::sys::socket::{setsockopt, sockopt::Linger};
 use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::time::{Duration, Instant};
-
-/// Small numbers that look random (Marsaglia, Xorshift RNGs, 2003).
-struct Random(u32);
-
-impl Random {
-    fn below(&mut self, limit: usize) -> usize {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 17;
-        self.0 ^= self.0 << 5;
-        usize::try_from(self.0).unwrap_or(0) % limit.max(1)
-    }
-}
 
 fn number(name: &str, default: u32) -> u32 {
     std::env::var(name)
@@ -141,7 +130,7 @@ fn random_clients_and_faults_leave_nothing_open_and_nobody_behind() {
     println!("soak: TRIKD_SOAK_SEED={seed}");
     let robot = robot(&["--processes", "40"]);
     let daemon = robot.daemon();
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let mut open = Vec::new();
     // What is made once, such as buffers and threads, is made before anything is counted.
     for _ in 0..100 {

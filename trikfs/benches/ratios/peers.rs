@@ -7,6 +7,8 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::Arc;
+use tempfile::TempDir;
+use trikfs::mount::MountError;
 use trikfs::transport::null::NullFs;
 
 /// Puts this process and all that it starts on the last processor it may use.
@@ -128,20 +130,24 @@ fn null(mountpoint: &Path) {
 }
 
 /// A fresh directory that is unmounted and removed at the end.
-pub struct Place(pub PathBuf);
+pub struct Place(pub PathBuf, TempDir);
 
 impl Place {
     pub fn new(name: &str) -> Result<Self, String> {
-        let path = std::env::temp_dir().join(format!("trikfs-bench-{name}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).map_err(|error| error.to_string())?;
-        Ok(Self(path))
+        let folder = tempfile::Builder::new()
+            .prefix(&format!("trikfs-bench-{name}-"))
+            .tempdir();
+        let folder = folder.map_err(|error| error.to_string())?;
+        Ok(Self(folder.path().to_owned(), folder))
     }
 }
 
 impl Drop for Place {
     fn drop(&mut self) {
-        let _ = trikfs::mount::unmount(&self.0);
-        let _ = std::fs::remove_dir(&self.0);
+        let unmounted = trikfs::mount::unmount(&self.0);
+        let is_bare = matches!(unmounted, Ok(_) | Err(MountError::NotMounted(_)));
+        // What is still mounted is not emptied.
+        self.1.disable_cleanup(!is_bare);
     }
 }
 
@@ -172,8 +178,8 @@ pub struct Mount {
 impl Mount {
     pub fn start(name: &str, config: &str) -> Result<Self, String> {
         let place = Place::new(name)?;
-        let file =
-            std::env::temp_dir().join(format!("trikfs-bench-{name}-{}.lua", std::process::id()));
+        let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+        let file = folder.path().join("config.lua");
         std::fs::write(&file, config).map_err(|error| error.to_string())?;
         let mut command = Command::new(env!("CARGO_BIN_EXE_trikfs"));
         command
@@ -191,7 +197,6 @@ impl Mount {
         BufReader::new(out)
             .read_line(&mut line)
             .map_err(|error| error.to_string())?;
-        let _ = std::fs::remove_file(&file);
         if !line.contains("ready") {
             let _ = child.wait();
             return Err(format!("trikfs did not start: {line}"));

@@ -70,7 +70,9 @@ struct Copy {
 }
 
 impl Copy {
-    /// In a private directory: a configuration may hold what others should not read.
+    /// In a private directory: a configuration may hold what others should not read. Its name can be guessed, but what is
+    /// there already is refused, and the directory has to stay when the text is not in force: `tempfile` would add
+    /// nothing but itself to the program.
     fn new(text: &[u8]) -> Result<Self, Failure> {
         let name = format!(
             "trikfs-edit-{}-{}",

@@ -138,7 +138,8 @@ mod tests {
 
     #[test]
     fn an_attribute_is_read_afresh_and_written_without_its_padding() {
-        let path = std::env::temp_dir().join(format!("trikfs-attribute-{}", std::process::id()));
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("attribute");
         std::fs::write(&path, "41\n").unwrap();
         let mut source = Attribute::open(&path, true).unwrap();
         let mut buf = [0; 8];

@@ -121,8 +121,8 @@ mod tests {
 
     #[test]
     fn the_end_comes_once_a_writer_has_left_and_not_before_one_came() {
-        let path = std::env::temp_dir().join(format!("trikfs-fifo-{}", std::process::id()));
-        let _ = std::fs::remove_file(&path);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("in");
         nix::unistd::mkfifo(&path, nix::sys::stat::Mode::S_IRWXU).unwrap();
         let mut fifo = Fifo::open(&path).unwrap();
         let mut buf = [0; 8];
@@ -133,7 +133,6 @@ mod tests {
         drop(writer);
         assert_eq!(fifo.read(&mut buf), Ok(Got::Bytes(2)));
         assert_eq!(fifo.read(&mut buf), Ok(Got::End));
-        std::fs::remove_file(&path).unwrap();
         assert!(Fifo::open(Path::new("/dev/null")).is_err());
     }
 

@@ -10,7 +10,7 @@ use super::{Device, Got, Kind, Patience, State, Stream, Surroundings, kinds};
 use crate::bytes::copy_at;
 use crate::clock::Stamp;
 use crate::errno::Error;
-use config::description::{PartDescription, SeveralDescription, SourceDescription};
+use config::description::{PartDescription, SeveralDescription};
 use nix::sys::epoll::{Epoll, EpollCreateFlags, EpollEvent, EpollFlags, EpollTimeout};
 use std::collections::BTreeSet;
 use std::os::fd::{AsFd, BorrowedFd};
@@ -117,11 +117,9 @@ struct Input {
 
 impl Input {
     fn open(part: &PartDescription, around: &Surroundings) -> Result<Self, Error> {
-        let origin = match &part.source {
-            SourceDescription::Newest(newest) => {
-                From::Newest(Latched::open(around.link(&newest.path)?)?)
-            }
-            source => match kinds::open(source, part.tuple_size, around)? {
+        let origin = match part.source.sampled_node() {
+            Some(path) => From::Newest(Latched::open(around.link(path)?)?),
+            None => match kinds::open(&part.source, part.tuple_size, around)? {
                 Device::State(state) => From::State(state),
                 Device::Stream(stream) => From::Stream(stream),
             },

@@ -5,7 +5,7 @@
 use super::ownership::Ownership;
 use super::{OpenFile, READABLE, WRITABLE};
 use crate::crew::lock_patiently;
-use crate::device::{Got, State};
+use crate::device::{ByDelivery, Got, State};
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::{Ready, lock};
@@ -30,10 +30,7 @@ pub struct DeviceFile {
     poll: OnceLock<PollHandle>,
 }
 
-enum Source {
-    State(Box<Mutex<StateReader>>),
-    Stream(Arc<Reader>),
-}
+type Source = ByDelivery<Box<Mutex<StateReader>>, Arc<Reader>>;
 
 #[derive(Default)]
 struct Waiting {

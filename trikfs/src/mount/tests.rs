@@ -4,22 +4,31 @@ use super::*;
 use crate::transport::native::{Session, SessionOptions};
 use crate::transport::null::NullFs;
 use std::sync::Arc;
+use tempfile::TempDir;
 
-/// A directory of one test, taken away with it together with whatever is mounted there.
-struct Scratch(PathBuf);
+/// A directory of one test, taken away with it after whatever is mounted there.
+struct Scratch(PathBuf, TempDir);
 
 impl Scratch {
     fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("trikfs-mount-{name}-{}", std::process::id()));
-        fs::create_dir_all(&path).unwrap();
-        Self(path)
+        let folder = tempfile::Builder::new()
+            .prefix(&format!("trikfs-mount-{name}-"))
+            .tempdir();
+        let folder = folder.unwrap();
+        Self(folder.path().to_owned(), folder)
     }
 }
 
 impl Drop for Scratch {
     fn drop(&mut self) {
-        while unmount(&self.0).is_ok() {}
-        let _ = fs::remove_dir_all(&self.0);
+        loop {
+            match unmount(&self.0) {
+                Ok(_) => {}
+                Err(MountError::NotMounted(_)) => return,
+                // What is still mounted is not emptied.
+                Err(_) => return self.1.disable_cleanup(true),
+            }
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use super::Node;
 use crate::convert::{LogSink, Pipeline};
 use crate::device::lines::answer::Answer;
 use crate::device::linked::LinkedNode;
-use crate::device::{Device, Positions, State, Stream, Surroundings, kinds};
+use crate::device::{ByDelivery, Device, Positions, State, Stream, Surroundings, kinds};
 use crate::engine::Engine;
 use crate::errno::Error;
 use crate::events::{Ready, lock};
@@ -25,17 +25,10 @@ pub struct Source {
 }
 
 /// How a node can be read.
-pub enum Feed {
-    /// A value at any time.
-    State(StateReader),
-    /// One tuple after another.
-    Stream(Arc<Reader>),
-}
+pub type Feed = ByDelivery<StateReader, Arc<Reader>>;
 
-enum Opened {
-    State(Box<dyn State>),
-    Stream(Origin),
-}
+/// A source that is opened for a reader, alone or shared.
+type Opened = ByDelivery<Box<dyn State>, Origin>;
 
 impl Source {
     pub(super) fn new(

@@ -3,7 +3,7 @@
 use lang_text::problem::Locale;
 
 /// The words of a language. Signs, and names of objects, variables and functions of rules, are the same in all.
-pub(super) struct Told {
+pub(super) struct Wording {
     pub inside: &'static str,
     pub all: &'static str,
     pub any: &'static str,
@@ -21,9 +21,9 @@ pub(super) struct Told {
 }
 
 /// Those of a locale.
-pub(super) fn told(locale: Locale) -> &'static Told {
+pub(super) fn told(locale: Locale) -> &'static Wording {
     match locale {
-        Locale::English => &Told {
+        Locale::English => &Wording {
             inside: "inside",
             all: "all",
             any: "any",
@@ -39,7 +39,7 @@ pub(super) fn told(locale: Locale) -> &'static Told {
             object: "object",
             distance: "distance",
         },
-        Locale::Russian => &Told {
+        Locale::Russian => &Wording {
             inside: "внутри",
             all: "целиком",
             any: "хотя бы часть",

@@ -24,7 +24,7 @@ const ROBOT: i32 = 50;
 const TICK_MS: u64 = 10;
 
 /// What is said: the level, the moment, and the words but for what is critical.
-type Said = (Level, u64, String);
+type Report = (Level, u64, String);
 
 /// The evaluator.
 struct Naive<'a> {
@@ -38,7 +38,7 @@ struct Naive<'a> {
     variables: BTreeMap<&'static str, Plain>,
     state: BTreeMap<&'static str, Plain>,
     robot_x: i32,
-    said: Vec<Said>,
+    said: Vec<Report>,
     success: bool,
     deferred: bool,
     failed: bool,
@@ -374,7 +374,7 @@ fn value_of(plain: &Plain) -> Value {
     }
 }
 
-fn said_by(entries: Vec<Entry>) -> Vec<Said> {
+fn said_by(entries: Vec<Entry>) -> Vec<Report> {
     let said = entries.into_iter().map(|entry| {
         let words = if entry.level == Level::Critical {
             String::new()

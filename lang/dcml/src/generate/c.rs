@@ -45,7 +45,7 @@ impl Dialect for C {
     fn input(&self, input: Input, name: &str) -> String {
         match input {
             Input::Param(_) => format!("p->{name}"),
-            _ => name.to_owned(),
+            Input::State(_) | Input::Action(_) => name.to_owned(),
         }
     }
 
@@ -55,7 +55,18 @@ impl Dialect for C {
             Function::Min => "fmin",
             Function::Max => "fmax",
             Function::Sign => return Text::whole(format!("{}_sign({})", self.model, x.text)),
-            other => other.name(),
+            Function::Sin
+            | Function::Cos
+            | Function::Tan
+            | Function::Asin
+            | Function::Acos
+            | Function::Atan
+            | Function::Atan2
+            | Function::Sqrt
+            | Function::Exp
+            | Function::Log
+            | Function::Pow
+            | Function::Floor => function.name(),
         };
         Text::whole(match function.arguments() {
             1 => format!("{name}({})", x.text),

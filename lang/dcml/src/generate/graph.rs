@@ -48,7 +48,7 @@ impl Graph {
                 Operation::Select(comparison, values) => {
                     Operation::Select(comparison, values.map(of))
                 }
-                leaf => leaf,
+                leaf @ (Operation::Constant(_) | Operation::Input(_)) => leaf,
             };
             places.push(self.put(operation));
         }

@@ -73,7 +73,18 @@ impl Dialect for Java {
             Function::Pow => "pow",
             Function::Min => "min",
             Function::Max => "max",
-            other => &format!("Math.{}", other.name()),
+            Function::Sin
+            | Function::Cos
+            | Function::Tan
+            | Function::Asin
+            | Function::Acos
+            | Function::Atan
+            | Function::Atan2
+            | Function::Sqrt
+            | Function::Exp
+            | Function::Log
+            | Function::Abs
+            | Function::Floor => &format!("Math.{}", function.name()),
         };
         Text::whole(match function.arguments() {
             1 => format!("{name}({})", x.text),
@@ -246,7 +257,19 @@ fn helper(function: Function) -> &'static str {
             "    /** The other one where one is not a number. */\n    private static double max(double x, double y) {\n        \
              return Double.isNaN(x) ? y : Double.isNaN(y) ? x : Math.max(x, y);\n    }\n\n"
         }
-        _ => "",
+        Function::Sin
+        | Function::Cos
+        | Function::Tan
+        | Function::Asin
+        | Function::Acos
+        | Function::Atan
+        | Function::Atan2
+        | Function::Sqrt
+        | Function::Exp
+        | Function::Log
+        | Function::Abs
+        | Function::Sign
+        | Function::Floor => "",
     }
 }
 

@@ -47,7 +47,18 @@ impl Dialect for JavaScript {
         let name = match function {
             // ECMAScript 5 has none, or another one.
             Function::Sign | Function::Pow | Function::Min | Function::Max => function.name(),
-            other => &format!("Math.{}", other.name()),
+            Function::Sin
+            | Function::Cos
+            | Function::Tan
+            | Function::Asin
+            | Function::Acos
+            | Function::Atan
+            | Function::Atan2
+            | Function::Sqrt
+            | Function::Exp
+            | Function::Log
+            | Function::Abs
+            | Function::Floor => &format!("Math.{}", function.name()),
         };
         Text::whole(match function.arguments() {
             1 => format!("{name}({})", x.text),
@@ -126,7 +137,18 @@ fn helper(function: Function) -> &'static str {
             "    /* As in C: 1 to any power is 1, and -1 to an infinite one too. */\n    function pow(x, y) {\n        \
              return x === 1 || (x === -1 && (y === Infinity || y === -Infinity)) ? 1 : Math.pow(x, y);\n    }\n\n"
         }
-        _ => "",
+        Function::Sin
+        | Function::Cos
+        | Function::Tan
+        | Function::Asin
+        | Function::Acos
+        | Function::Atan
+        | Function::Atan2
+        | Function::Sqrt
+        | Function::Exp
+        | Function::Log
+        | Function::Abs
+        | Function::Floor => "",
     }
 }
 

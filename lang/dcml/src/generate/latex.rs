@@ -8,6 +8,7 @@ use super::names::letters;
 use super::plan::{Body, Dialect, Level, Planner, Text, digits};
 use super::row::Row;
 use crate::function::Function;
+use crate::limits;
 use crate::model::{Condition, Expr, Symbol};
 use crate::syntax::{Comparison, Kind, Operator};
 use crate::tape::{Input, ValueId};
@@ -23,8 +24,6 @@ pub(super) const ROW: Row = Row {
 
 const GREEK: &str = "alpha beta gamma delta epsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon \
     phi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega";
-/// How long a name may be that is set as symbol and index.
-const NAME_MAX: usize = 60;
 
 struct Latex<'m> {
     /// What a name of the planner is set as.
@@ -34,7 +33,7 @@ struct Latex<'m> {
 
 /// A name as a symbol with indices.
 fn set(name: &str) -> String {
-    let name = letters(name, NAME_MAX);
+    let name = letters(name, limits::DCML_SYMBOL_BYTES);
     let mut parts = name.split('_').filter(|part| !part.is_empty());
     let first = parts.next().unwrap_or("x");
     let mut indices: Vec<String> = Vec::new();
@@ -69,7 +68,7 @@ fn word(word: &str) -> String {
 
 /// A name that is set like no other one.
 fn exact(name: &str) -> String {
-    let name = letters(name, NAME_MAX).replace('_', "\\_");
+    let name = letters(name, limits::DCML_SYMBOL_BYTES).replace('_', "\\_");
     format!("\\mathtt{{{name}}}")
 }
 
@@ -147,7 +146,9 @@ impl Dialect for Latex<'_> {
             Function::Atan2 => "\\operatorname{atan2}",
             Function::Log => "\\ln",
             Function::Sign => "\\operatorname{sign}",
-            other => &format!("\\{}", other.name()),
+            Function::Sin | Function::Cos | Function::Tan | Function::Min | Function::Max => {
+                &format!("\\{}", function.name())
+            }
         };
         Text::whole(format!("{name}{arguments}"))
     }
@@ -272,7 +273,8 @@ fn names(planner: &Planner<'_, '_>) -> HashMap<String, String> {
     for symbol in symbols {
         let own = planner.symbol(symbol).to_owned();
         let nice = set(&symbol.name);
-        let is_alone = seen.get(&nice) == Some(&1) && symbol.name.len() <= NAME_MAX;
+        let is_alone =
+            seen.get(&nice) == Some(&1) && symbol.name.len() <= limits::DCML_SYMBOL_BYTES;
         let mut text = if is_alone { nice } else { exact(&own) };
         if !used.insert(text.clone()) {
             text = exact(&own);

@@ -9,6 +9,7 @@ use super::names::letters;
 use super::plan::{Body, Dialect, Level, Planner, Text, digits, sign};
 use super::row::Row;
 use crate::function::Function;
+use crate::limits;
 use crate::model::Symbol;
 use crate::syntax::{Comparison, Domain};
 use crate::tape::{Input, Operation, ValueId};
@@ -25,8 +26,6 @@ const KEYWORDS: &str = "and break do else elseif end false for function goto if 
 /// And what is called here.
 const TAKEN: &str = "math model state action params result dt k1 k2 k3 k4 at i row pi huge sin cos tan asin acos atan \
     atan2 sqrt exp log abs pow min max sign floor ceil shifted v _G _ENV self";
-/// A function of Lua has 200 local names at most.
-const LOCALS_MAX: usize = 150;
 
 struct Lua<'s, 'm> {
     scene: &'s Scene<'m>,
@@ -112,7 +111,7 @@ fn print(scene: &Scene<'_>) -> String {
     let values = scene.graph.operations.iter().filter(leaf).count() + scene.model.symbols.len();
     let dialect = Lua {
         scene,
-        is_crowded: values > LOCALS_MAX,
+        is_crowded: values > limits::DCML_LUA_LOCALS,
     };
     let element = |array: &str, at: usize| format!("{array}[{}]", at + 1);
     let symbols = &scene.params;
@@ -168,7 +167,16 @@ fn locals(planner: &Planner<'_, '_>) -> String {
             Function::Floor => {
                 "local function floor(x) return math.floor(x) + 0.0 end\n".to_owned()
             }
-            _ => format!("local {name} = math.{name}\n"),
+            Function::Sin
+            | Function::Cos
+            | Function::Tan
+            | Function::Asin
+            | Function::Acos
+            | Function::Atan
+            | Function::Sqrt
+            | Function::Exp
+            | Function::Log
+            | Function::Abs => format!("local {name} = math.{name}\n"),
         });
     }
     out

@@ -2,10 +2,8 @@
 //!
 //! Owns letters, lengths and clashes. Which words are taken is known to the printer of the language.
 
+use crate::limits;
 use std::collections::{HashMap, HashSet};
-
-/// How long a name may be; longer ones are cut.
-const LENGTH_MAX: usize = 60;
 
 /// Names that are in use in one text.
 pub(super) struct Names {
@@ -43,7 +41,7 @@ impl Names {
 
 /// A name of Latin letters, digits and underscores that begins with a letter and is not too long.
 fn plain(name: &str) -> String {
-    let mut out = letters(name, LENGTH_MAX);
+    let mut out = letters(name, limits::DCML_WRITTEN_NAME);
     // An underscore at the beginning makes a name special in one language or another.
     if !out.starts_with(|first: char| first.is_ascii_alphabetic()) {
         out.insert(0, 'v');
@@ -78,7 +76,13 @@ mod tests {
         let got = wanted.map(|one| names.take(one));
         let right = ["end_3", "x_2", "x_3", "y", "X", "v__proto__", "v9", "v"];
         assert_eq!(got, right);
-        assert_eq!(names.take(&"z".repeat(9000)).len(), LENGTH_MAX);
-        assert_eq!(names.take(&"z".repeat(9000)).len(), LENGTH_MAX + 2);
+        assert_eq!(
+            names.take(&"z".repeat(9000)).len(),
+            limits::DCML_WRITTEN_NAME
+        );
+        assert_eq!(
+            names.take(&"z".repeat(9000)).len(),
+            limits::DCML_WRITTEN_NAME + 2
+        );
     }
 }

@@ -6,14 +6,12 @@
 use super::graph::{Scene, operands};
 use super::names::Names;
 use crate::function::Function;
+use crate::limits;
 use crate::model::Symbol;
 use crate::syntax::{Comparison, Kind, Operator};
 use crate::tape::{Input, Operation, ValueId};
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::f64::consts::PI;
-
-/// How long a text may be that becomes a part of another one.
-const INLINE_MAX: usize = 100;
 
 /// How tightly a text holds together.
 #[derive(Clone, Copy, Debug, Eq, PartialEq, Ord, PartialOrd)]
@@ -240,7 +238,7 @@ impl<'s, 'm> Planner<'s, 'm> {
             }
             let text = self.text(*operation, &mut texts, dialect, &mut body);
             // A result may be as long as it is.
-            let is_short = text.text.len() <= INLINE_MAX || results.contains(&id);
+            let is_short = text.text.len() <= limits::DCML_INLINE_BYTES || results.contains(&id);
             let text = if self.stands_alone(id, *operation, count, is_short) {
                 let name = self.name(id, *operation, dialect);
                 body.lines.push((name.clone(), text.text));
@@ -322,7 +320,12 @@ impl<'s, 'm> Planner<'s, 'm> {
                 let argument = self.short_name(x);
                 argument.map(|argument| format!("{}_{argument}", function.name()))
             }
-            _ => None,
+            Operation::Constant(_)
+            | Operation::Input(_)
+            | Operation::Negative(_)
+            | Operation::Binary(..)
+            | Operation::Call(..)
+            | Operation::Select(..) => None,
         };
         let wanted = wanted.unwrap_or_else(|| format!("t{}", self.temporaries.len() + 1));
         let name = self.names.take(&wanted);
@@ -334,7 +337,11 @@ impl<'s, 'm> Planner<'s, 'm> {
     fn short_name(&self, id: ValueId) -> Option<&str> {
         let symbol = match self.scene.graph.operations.get(id as usize)? {
             Operation::Input(input) => self.scene.input(*input),
-            _ => self.scene.named.get(&id).copied(),
+            Operation::Constant(_)
+            | Operation::Negative(_)
+            | Operation::Binary(..)
+            | Operation::Call(..)
+            | Operation::Select(..) => self.scene.named.get(&id).copied(),
         };
         symbol.map(|symbol| self.symbol(symbol))
     }

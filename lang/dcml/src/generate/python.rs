@@ -44,7 +44,14 @@ impl Dialect for Python {
             Function::Min => "fmin",
             Function::Max => "fmax",
             Function::Sign => return Text::new(format!("np.sign({}) + 0.0", x.text), Level::Sum),
-            other => other.name(),
+            Function::Sin
+            | Function::Cos
+            | Function::Tan
+            | Function::Sqrt
+            | Function::Exp
+            | Function::Log
+            | Function::Abs
+            | Function::Floor => function.name(),
         };
         Text::whole(match function.arguments() {
             1 => format!("np.{name}({})", x.text),

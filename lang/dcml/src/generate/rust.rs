@@ -41,7 +41,7 @@ impl Dialect for Rust {
     fn input(&self, input: Input, name: &str) -> String {
         match input {
             Input::Param(_) => format!("params.{name}"),
-            _ => name.to_owned(),
+            Input::State(_) | Input::Action(_) => name.to_owned(),
         }
     }
 

@@ -9,6 +9,7 @@ use lang_dcml::lower::lower;
 use lang_dcml::model::Model;
 use lang_dcml::syntax::{Domain, Kind};
 use lang_dcml::tape::{Input, Lowered, Operation, Tape};
+use needs::Random;
 use std::f64::consts::PI;
 
 /// The length of a step.
@@ -25,24 +26,10 @@ pub struct Case {
     pub params: Vec<f64>,
 }
 
-/// A cheap sequence of numbers that look random.
-pub struct Dice(pub u64);
-
-impl Dice {
-    /// From -1 to 1.
-    pub fn roll(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-}
-
 /// Cases for a model.
 pub fn cases(model: &Model, count: usize) -> Vec<Case> {
-    let mut dice = Dice(model.name.len() as u64 + 11);
-    let mut several = |count: usize, size: f64| (0..count).map(|_| dice.roll() * size).collect();
+    let mut dice = Random::new(model.name.len() as u32 + 11);
+    let mut several = |count: usize, size: f64| (0..count).map(|_| dice.signed() * size).collect();
     let (states, actions) = (model.states().count(), model.of_kind(Kind::Action).count());
     let params = model.of_kind(Kind::Param).count();
     let mut case = |_| Case {
@@ -156,9 +143,9 @@ pub fn expected(model: &Model, case: &Case) -> Vec<Expected> {
             }),
         })
         .collect();
-    let mut dice = Dice(17);
+    let mut dice = Random::new(17);
     for _ in 0..TRIALS {
-        let mut off = |value: f64| value + dice.roll() * OFF * f64::EPSILON * value;
+        let mut off = |value: f64| value + dice.signed() * OFF * f64::EPSILON * value;
         for (one, moved) in expected
             .iter_mut()
             .zip(all(model, &lowered, case, &mut off))

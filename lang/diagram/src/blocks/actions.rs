@@ -6,7 +6,7 @@ use super::Content::{Choice, Evaluated, Number, Raw};
 use super::Type::{Text, Whole};
 use super::act::Operand::{self, Flag, Written, WrittenWhole};
 use super::act::{Act, Phrase, When, script};
-use super::example::{Given, example, within};
+use super::example::{Stimulus, example, within};
 use super::parts::{ENVELOPE, EVALUATE, block, expression, flag, property, variable};
 use super::{Category, Copied, Does, Needed, Property, Row, Silent};
 use crate::brick::Command;
@@ -321,7 +321,7 @@ pub(super) const ROWS: &[Row] = &[
         examples: &[within(
             "start > * > print(err) > end",
             &[],
-            &[(0, Given::Numbers("LineSensorPort", &[-17, 0, 30]))],
+            &[(0, Stimulus::Numbers("LineSensorPort", &[-17, 0, 30]))],
             &["print \"-17\""],
         )],
         ..copy(
@@ -434,7 +434,7 @@ pub(super) const ROWS: &[Row] = &[
         examples: &[within(
             "start > * > print(far[1]) > end",
             &[("variable", "far")],
-            &[(0, Given::Numbers("LidarPort", &[5, 7, 9]))],
+            &[(0, Stimulus::Numbers("LidarPort", &[5, 7, 9]))],
             &["print \"7\""],
         )],
         ..copy(

@@ -6,7 +6,7 @@ use super::Content::{Number, Raw};
 use super::Type::{Statements, Text, Truth, Whole};
 use super::act::Operand::{self, Written};
 use super::act::{Act, script};
-use super::example::{Given, example, waits, within};
+use super::example::{Stimulus, example, waits, within};
 use super::parts::{ENVELOPE, block, expression, flag, property, variable};
 use super::{Category, Copied, Property, Row, Silent, Wait};
 use crate::brick::Command;
@@ -350,7 +350,7 @@ pub(super) const ROWS: &[Row] = &[
         examples: &[within(
             "start > * > print(x) > end",
             &[],
-            &[(0, Given::Random(7))],
+            &[(0, Stimulus::Random(7))],
             &["print \"7\""],
         )],
         ..row(
@@ -370,7 +370,7 @@ pub(super) const ROWS: &[Row] = &[
         examples: &[within(
             "start > * > print(x) > end",
             &[],
-            &[(50, Given::Answer("2 + 3"))],
+            &[(50, Stimulus::Answer("2 + 3"))],
             &["print \"5\""],
         )],
         ..row(
@@ -438,7 +438,7 @@ pub(super) const ROWS: &[Row] = &[
             within(
                 "start > * > print(x) > end",
                 &[],
-                &[(75, Given::Number("Down", 1))],
+                &[(75, Stimulus::Number("Down", 1))],
                 &["print \"108\""],
             ),
             within(
@@ -514,7 +514,7 @@ pub(super) const ROWS: &[Row] = &[
         examples: &[within(
             "start > * > print(x) > end",
             &[("Variable", "x")],
-            &[(75, Given::Mail("hi"))],
+            &[(75, Stimulus::Mail("hi"))],
             &["print \"hi\""],
         )],
         ..row(

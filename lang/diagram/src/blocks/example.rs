@@ -13,7 +13,7 @@ pub struct Example {
     /// statement. The same word is the same block.
     pub diagram: &'static str,
     /// What the robot says from some moment on, in milliseconds of the program.
-    pub given: &'static [(u32, Given)],
+    pub given: &'static [(u32, Stimulus)],
     /// What the robot is told, as a log has it.
     pub told: &'static [&'static str],
     /// When the program ends, in milliseconds, if the example shows that.
@@ -22,7 +22,7 @@ pub struct Example {
 
 /// Something that a robot says.
 #[derive(Clone, Copy, Debug)]
-pub enum Given {
+pub enum Stimulus {
     /// The reading of a port with one number.
     Number(&'static str, i32),
     /// The reading of a port with several numbers.
@@ -46,7 +46,7 @@ pub(super) const fn example(
 /// When the program goes on after a block with these properties.
 pub(super) const fn waits(
     properties: &'static [(&'static str, &'static str)],
-    given: &'static [(u32, Given)],
+    given: &'static [(u32, Stimulus)],
     end: u32,
 ) -> Example {
     Example {
@@ -59,7 +59,7 @@ pub(super) const fn waits(
 pub(super) const fn within(
     diagram: &'static str,
     properties: &'static [(&'static str, &'static str)],
-    given: &'static [(u32, Given)],
+    given: &'static [(u32, Stimulus)],
     told: &'static [&'static str],
 ) -> Example {
     Example {

@@ -4,7 +4,7 @@
 
 use super::Content::{Choice, Number, Port};
 use super::Type::Whole;
-use super::example::{Given, waits};
+use super::example::{Stimulus, waits};
 use super::parts::{SIGN, block, expression, property};
 use super::wait::{Asked, Every, Measure, Reading, Until, Wait};
 use super::{Category, Does, Kits, Property, Row, Silent};
@@ -109,11 +109,11 @@ pub(super) const ROWS: &[Row] = &[
             &[
                 (
                     0,
-                    Given::Numbers("GyroscopePort", &[0, 0, 0, 0, 0, 0, 44_999]),
+                    Stimulus::Numbers("GyroscopePort", &[0, 0, 0, 0, 0, 0, 44_999]),
                 ),
                 (
                     75,
-                    Given::Numbers("GyroscopePort", &[0, 0, 0, 0, 0, 0, 45_999]),
+                    Stimulus::Numbers("GyroscopePort", &[0, 0, 0, 0, 0, 0, 45_999]),
                 ),
             ],
             80,
@@ -138,7 +138,10 @@ pub(super) const ROWS: &[Row] = &[
     Row {
         examples: &[waits(
             &[("Port", "A2")],
-            &[(0, Given::Number("A2", 0)), (75, Given::Number("A2", 1))],
+            &[
+                (0, Stimulus::Number("A2", 0)),
+                (75, Stimulus::Number("A2", 1)),
+            ],
             80,
         )],
         ..row(
@@ -157,7 +160,10 @@ pub(super) const ROWS: &[Row] = &[
     Row {
         examples: &[waits(
             &[("Percents", "10 * 3")],
-            &[(0, Given::Number("A1", 30)), (75, Given::Number("A1", 31))],
+            &[
+                (0, Stimulus::Number("A1", 30)),
+                (75, Stimulus::Number("A1", 31)),
+            ],
             80,
         )],
         ..row(
@@ -175,7 +181,10 @@ pub(super) const ROWS: &[Row] = &[
     Row {
         examples: &[waits(
             &[("Distance", "20"), ("Sign", "less"), ("Port", "D2")],
-            &[(0, Given::Number("D2", 20)), (75, Given::Number("D2", 19))],
+            &[
+                (0, Stimulus::Number("D2", 20)),
+                (75, Stimulus::Number("D2", 19)),
+            ],
             80,
         )],
         ..row(
@@ -196,7 +205,10 @@ pub(super) const ROWS: &[Row] = &[
     Row {
         examples: &[waits(
             &[("Distance", "20"), ("Sign", "notGreater")],
-            &[(0, Given::Number("A1", 21)), (75, Given::Number("A1", 20))],
+            &[
+                (0, Stimulus::Number("A1", 21)),
+                (75, Stimulus::Number("A1", 20)),
+            ],
             80,
         )],
         ..row(
@@ -211,7 +223,10 @@ pub(super) const ROWS: &[Row] = &[
         kits: Kits::V6,
         examples: &[waits(
             &[("TachoLimit", "360"), ("Sign", "notLess")],
-            &[(0, Given::Number("E3", 0)), (75, Given::Number("E3", 360))],
+            &[
+                (0, Stimulus::Number("E3", 0)),
+                (75, Stimulus::Number("E3", 360)),
+            ],
             80,
         )],
         ..row(
@@ -235,7 +250,10 @@ pub(super) const ROWS: &[Row] = &[
         kits: Kits::V62,
         examples: &[waits(
             &[("TachoLimit", "360"), ("Sign", "notLess")],
-            &[(0, Given::Number("E3", 0)), (75, Given::Number("E3", 360))],
+            &[
+                (0, Stimulus::Number("E3", 0)),
+                (75, Stimulus::Number("E3", 360)),
+            ],
             80,
         )],
         ..row(
@@ -258,7 +276,7 @@ pub(super) const ROWS: &[Row] = &[
     Row {
         examples: &[waits(
             &[("Button", "Esc")],
-            &[(75, Given::Number("Esc", 1))],
+            &[(75, Stimulus::Number("Esc", 1))],
             80,
         )],
         ..row(
@@ -280,24 +298,24 @@ pub(super) const ROWS: &[Row] = &[
             waits(
                 &[("Acceleration", "2")],
                 &[
-                    (0, Given::Numbers("AccelerometerPort", &[2, 3, 4])),
-                    (75, Given::Numbers("AccelerometerPort", &[3, 0, 0])),
+                    (0, Stimulus::Numbers("AccelerometerPort", &[2, 3, 4])),
+                    (75, Stimulus::Numbers("AccelerometerPort", &[3, 0, 0])),
                 ],
                 80,
             ),
             waits(
                 &[("AccelerationAxis", "yAxis"), ("Acceleration", "2")],
                 &[
-                    (0, Given::Numbers("AccelerometerPort", &[3, 2, 4])),
-                    (75, Given::Numbers("AccelerometerPort", &[0, 3, 0])),
+                    (0, Stimulus::Numbers("AccelerometerPort", &[3, 2, 4])),
+                    (75, Stimulus::Numbers("AccelerometerPort", &[0, 3, 0])),
                 ],
                 80,
             ),
             waits(
                 &[("AccelerationAxis", "zAxis"), ("Acceleration", "4000")],
                 &[
-                    (0, Given::Numbers("AccelerometerPort", &[4090, 4090, 3])),
-                    (75, Given::Numbers("AccelerometerPort", &[3, 4, 4090])),
+                    (0, Stimulus::Numbers("AccelerometerPort", &[4090, 4090, 3])),
+                    (75, Stimulus::Numbers("AccelerometerPort", &[3, 4, 4090])),
                 ],
                 80,
             ),
@@ -308,8 +326,8 @@ pub(super) const ROWS: &[Row] = &[
                     ("Sign", "equals"),
                 ],
                 &[
-                    (0, Given::Numbers("AccelerometerPort", &[5, 5, 5])),
-                    (75, Given::Numbers("AccelerometerPort", &[-3, 4, 1])),
+                    (0, Stimulus::Numbers("AccelerometerPort", &[5, 5, 5])),
+                    (75, Stimulus::Numbers("AccelerometerPort", &[-3, 4, 1])),
                 ],
                 80,
             ),
@@ -340,7 +358,10 @@ pub(super) const ROWS: &[Row] = &[
         silent: Silent::Simulated,
         examples: &[waits(
             &[],
-            &[(0, Given::Number("F1", 0)), (75, Given::Number("F1", 1))],
+            &[
+                (0, Stimulus::Number("F1", 0)),
+                (75, Stimulus::Number("F1", 1)),
+            ],
             80,
         )],
         ..row(
@@ -358,8 +379,8 @@ pub(super) const ROWS: &[Row] = &[
         examples: &[waits(
             &[("Button", "5")],
             &[
-                (0, Given::Number("GamepadButton5Port", 0)),
-                (75, Given::Number("GamepadButton5Port", 1)),
+                (0, Stimulus::Number("GamepadButton5Port", 0)),
+                (75, Stimulus::Number("GamepadButton5Port", 1)),
             ],
             80,
         )],
@@ -379,8 +400,8 @@ pub(super) const ROWS: &[Row] = &[
         examples: &[waits(
             &[("Pad", "2")],
             &[
-                (0, Given::Number("GamepadPad2PressedPort", 0)),
-                (75, Given::Number("GamepadPad2PressedPort", 1)),
+                (0, Stimulus::Number("GamepadPad2PressedPort", 0)),
+                (75, Stimulus::Number("GamepadPad2PressedPort", 1)),
             ],
             80,
         )],
@@ -397,8 +418,8 @@ pub(super) const ROWS: &[Row] = &[
         examples: &[waits(
             &[("Angle", "-50"), ("Sign", "less")],
             &[
-                (0, Given::Number("GamepadWheelPort", -50)),
-                (75, Given::Number("GamepadWheelPort", -51)),
+                (0, Stimulus::Number("GamepadWheelPort", -50)),
+                (75, Stimulus::Number("GamepadWheelPort", -51)),
             ],
             80,
         )],
@@ -418,8 +439,8 @@ pub(super) const ROWS: &[Row] = &[
         examples: &[waits(
             &[],
             &[
-                (0, Given::Number("GamepadConnectionIndicatorPort", 1)),
-                (75, Given::Number("GamepadConnectionIndicatorPort", 0)),
+                (0, Stimulus::Number("GamepadConnectionIndicatorPort", 1)),
+                (75, Stimulus::Number("GamepadConnectionIndicatorPort", 0)),
             ],
             80,
         )],
@@ -439,8 +460,8 @@ pub(super) const ROWS: &[Row] = &[
         examples: &[waits(
             &[],
             &[
-                (0, Given::Number("GamepadConnectionIndicatorPort", 0)),
-                (75, Given::Number("GamepadConnectionIndicatorPort", 1)),
+                (0, Stimulus::Number("GamepadConnectionIndicatorPort", 0)),
+                (75, Stimulus::Number("GamepadConnectionIndicatorPort", 1)),
             ],
             80,
         )],

@@ -23,12 +23,12 @@ pub struct Desk {
     /// Whether motors rest while the program is stopped.
     pub motors_rest: bool,
     /// What was told last: whether it runs, and how often it was stopped.
-    told: Told,
+    told: Announcement,
 }
 
 /// What is told by itself when it changes.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-enum Told {
+enum Announcement {
     /// Nothing is to be told.
     Detached,
     Runs,
@@ -96,7 +96,7 @@ impl Desk {
             locale,
             history_bytes,
             motors_rest: true,
-            told: Told::Detached,
+            told: Announcement::Detached,
         }
     }
 
@@ -130,7 +130,7 @@ impl Desk {
     /// Something else has changed the program: its state is told again.
     pub fn tell_again(&mut self) {
         if self.session.is_attached() {
-            self.told = Told::Detached;
+            self.told = Announcement::Detached;
         }
     }
 
@@ -169,11 +169,11 @@ impl Desk {
     pub fn news(&mut self) -> Vec<String> {
         let mut news: Vec<_> = self.log().into_iter().collect();
         let now = match self.session.phase() {
-            _ if !self.session.is_attached() => Told::Detached,
-            _ if self.session.is_searching() => Told::Searches,
-            Phase::Runs => Told::Runs,
-            Phase::Stopped(_) => Told::Stopped,
-            Phase::Ended { .. } => Told::Ended,
+            _ if !self.session.is_attached() => Announcement::Detached,
+            _ if self.session.is_searching() => Announcement::Searches,
+            Phase::Runs => Announcement::Runs,
+            Phase::Stopped(_) => Announcement::Stopped,
+            Phase::Ended { .. } => Announcement::Ended,
         };
         if now != self.told {
             self.told = now;
@@ -260,7 +260,7 @@ impl Desk {
             return Err(Refused::NotAttached);
         }
         if order.is_for_control() && self.session.give_up_search() {
-            self.told = Told::Searches;
+            self.told = Announcement::Searches;
         }
         Ok(())
     }
@@ -292,7 +292,7 @@ impl Desk {
             self.search();
         } else {
             self.session.walk((number, step), now, brick, trace);
-            self.told = Told::Runs;
+            self.told = Announcement::Runs;
         }
         Ok(())
     }
@@ -333,7 +333,7 @@ impl Desk {
             Phase::Stopped(_) => {
                 self.session.go_on(now, brick, trace);
                 // A stop at the next block is another stop, which is told again.
-                self.told = Told::Runs;
+                self.told = Announcement::Runs;
                 Ok(())
             }
             Phase::Runs => Err(Refused::NotStopped),
@@ -367,7 +367,7 @@ impl Desk {
     /// like a stop.
     fn search(&mut self) {
         if self.session.search_on() {
-            self.told = Told::Searches;
+            self.told = Announcement::Searches;
         }
     }
 

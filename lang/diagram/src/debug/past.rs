@@ -98,7 +98,7 @@ pub(super) fn oldest(history: &History) -> Option<Past> {
 
 /// In which direction a search goes.
 #[derive(Clone, Copy, Debug, Eq, PartialEq)]
-enum Way {
+enum Direction {
     Back,
     Forth,
 }
@@ -108,7 +108,7 @@ enum Way {
 pub(super) struct Search {
     /// Steps end there; without one, breakpoints are looked for.
     step: Option<Ends>,
-    way: Way,
+    way: Direction,
     after: Option<Position>,
     before: Position,
     /// The part that is looked through, or comes next.
@@ -146,7 +146,7 @@ impl Search {
         let last = from.at.checked_sub(1);
         Self {
             step: step.map(|step| Ends::of(from, step)),
-            way: Way::Back,
+            way: Direction::Back,
             after: None,
             before: from.at,
             part: last.and_then(|last| history.parts(last).1),
@@ -169,7 +169,7 @@ impl Search {
             None => from.at.checked_sub(1),
         };
         Self {
-            way: Way::Forth,
+            way: Direction::Forth,
             after,
             before: present,
             part: history.parts(from.at).1,
@@ -202,12 +202,12 @@ impl Search {
             };
             let ran = history.look_through(&mut rerun, before, &mut look);
             match (ran, self.way, &self.found) {
-                (Ran::Left, Way::Forth, Some(_)) | (Ran::Through, _, Some(_)) => {
+                (Ran::Left, Direction::Forth, Some(_)) | (Ran::Through, _, Some(_)) => {
                     return self.end(history);
                 }
-                (Ran::Left, Way::Back | Way::Forth, _) => self.rerun = Some(rerun),
-                (Ran::Through, Way::Back, None) => self.part = part.checked_sub(1),
-                (Ran::Through, Way::Forth, None) => {
+                (Ran::Left, Direction::Back | Direction::Forth, _) => self.rerun = Some(rerun),
+                (Ran::Through, Direction::Back, None) => self.part = part.checked_sub(1),
+                (Ran::Through, Direction::Forth, None) => {
                     let (parts, _) = history.parts(0);
                     self.part = Some(part + 1).filter(|next| *next < parts);
                 }
@@ -224,7 +224,7 @@ impl Search {
 
     /// Whether it goes back.
     pub(super) fn is_back(&self) -> bool {
-        self.way == Way::Back
+        self.way == Direction::Back
     }
 }
 
@@ -260,7 +260,7 @@ impl Look for Looked<'_> {
         let is_later = self.search.after.is_none_or(|after| at > after);
         if let Some(reason) = reason.filter(|_| is_later) {
             self.search.found = Some((at, reason));
-            if self.search.way == Way::Forth {
+            if self.search.way == Direction::Forth {
                 return Seen::Enough;
             }
         }

@@ -492,6 +492,7 @@ fn equal(left: Typed, right: Typed, operations: [Truth; 3]) -> Typed {
         (Kind::Text, other) if is_number(other) => {
             return truth_of(texts, [left.code, text(right)]);
         }
+        // What compares any two values is right for these, and for what is not known.
         _ => [left.code, right.code],
     };
     truth_of(any, operands)
@@ -523,6 +524,7 @@ fn element(table: Typed, index: Code) -> Typed {
         (Code::List(parts), Code::Int(at)) if readings::is_pair(parts) => usize::try_from(*at)
             .ok()
             .and_then(|at| parts.get(at).cloned()),
+        // Read as a whole, which is right for every table.
         _ => None,
     };
     if let Some(code) = pad {

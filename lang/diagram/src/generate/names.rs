@@ -2,6 +2,7 @@
 //!
 //! Owns letters, reserved words and clashes. Knows no meaning of a name.
 
+use crate::limits;
 use std::collections::HashSet;
 
 /// Latin letters for the Cyrillic ones from U+0430 on.
@@ -9,8 +10,6 @@ const LATIN: [&str; 32] = [
     "a", "b", "v", "g", "d", "e", "zh", "z", "i", "y", "k", "l", "m", "n", "o", "p", "r", "s", "t",
     "u", "f", "h", "ts", "ch", "sh", "sch", "", "y", "", "e", "yu", "ya",
 ];
-/// How long a name may be.
-const LENGTH_MAX: usize = 60;
 
 /// What a language allows.
 #[derive(Clone, Copy, Debug)]
@@ -73,7 +72,7 @@ fn folded(name: &str, rules: Rules) -> String {
 pub(super) fn plain(name: &str, rules: Rules) -> String {
     let mut out = String::new();
     for letter in name.chars() {
-        if out.len() >= LENGTH_MAX {
+        if out.len() >= limits::GENERATED_NAME_MAX {
             break;
         }
         match letter {

@@ -1,16 +1,14 @@
-//! What devices say, one row for each reading: its ports, its words in each language, and the shape of what comes.
+//! What devices say, one row for each reading: its words in each language, and the shape of what comes.
 //!
-//! Owns the table; a new sensor is a row. Knows no blocks and no statements.
+//! Owns the rows and which device has which; a new device does not compile without one. Knows no blocks and no statements.
 
 use super::code::{Code, Element, Kind, Operation, Typed};
 use crate::blocks::act::{self, Phrase};
-use crate::ports::{Port, Sort};
+use crate::ports::{Device, GamepadPart, ObjectPart, Port};
 
 /// What a device says.
 #[derive(Debug, Eq, PartialEq)]
 pub(super) struct Reading {
-    /// Which ports give it.
-    ports: Ports,
     shape: Shape,
     /// Its words in each language; `$1` is the operand.
     pub(super) phrase: Phrase,
@@ -19,21 +17,6 @@ pub(super) struct Reading {
     pub(super) russian: &'static str,
     /// Whether two readings at once may differ.
     pub(super) is_fickle: bool,
-}
-
-/// The ports of a reading, and what its operand is.
-#[derive(Debug, Eq, PartialEq)]
-enum Ports {
-    /// Encoders: the port.
-    Encoders,
-    /// Buttons of the board: the code of the button.
-    Buttons,
-    /// One port, without an operand.
-    Named(&'static str),
-    /// Ports with a number between these texts: the number.
-    Numbered(&'static str, &'static str),
-    /// All others: the port.
-    Others,
 }
 
 /// What comes.
@@ -62,9 +45,8 @@ const fn truth(javascript: &'static str, python: &'static str, tree: &'static st
     }
 }
 
-const fn reading(ports: Ports, shape: Shape, phrase: Phrase) -> Reading {
+const fn reading(shape: Shape, phrase: Phrase) -> Reading {
     Reading {
-        ports,
         shape,
         phrase,
         english: "",
@@ -89,136 +71,123 @@ const GAMEPAD: [&str; 2] = ["the gamepad", "пульт"];
 
 const OBJECT: Phrase = said("brick.objectSensor(\"video2\").read()", "objectSensor()");
 
-static PAD_Y: Reading = reading(
-    Ports::Numbered("GamepadPad", "PosPort"),
+static ENCODER: Reading = reading(
     Shape::Whole,
-    said("gamepad.padY($1)", "pad($1, 1)"),
+    said("brick.encoder($1).read()", "encoder($1)").dotnet("readEncoder($1)"),
+);
+
+static BUTTON: Reading = Reading {
+    is_fickle: true,
+    ..reading(
+        Shape::Whole,
+        truth(
+            "Number(brick.keys().isPressed($1))",
+            "int(brick.keys().isPressed($1))",
+            "button($1)",
+        )
+        .dotnet("isPressed($1)"),
+    )
+};
+
+static GYROSCOPE: Reading = reading(
+    Shape::Table(7),
+    said("brick.gyroscope().read()", "gyroscope()").dotnet("readGyroscope()"),
+);
+
+static ACCELEROMETER: Reading = reading(
+    Shape::Table(3),
+    said("brick.accelerometer().read()", "accelerometer()").dotnet("readAccelerometer()"),
+);
+
+static LINE: Reading = reading(
+    Shape::Table(3),
+    said("brick.lineSensor(\"video2\").read()", "lineSensor()").dotnet("readLine()"),
+);
+
+static COLOR: Reading = reading(
+    Shape::Table(3),
+    said("brick.colorSensor(\"video2\").read(1, 1)", "colorSensor()"),
+)
+.called(CAMERA[0], CAMERA[1]);
+
+static OBJECT_X: Reading = object(0);
+static OBJECT_Y: Reading = object(1);
+static OBJECT_SIZE: Reading = object(2);
+
+static LIDAR: Reading = reading(Shape::Table(360), said("brick.lidar().read()", "lidar()"))
+    .called("the lidar", "лидар");
+
+static WHEEL: Reading =
+    reading(Shape::Whole, said("gamepad.wheel()", "wheel()")).called(GAMEPAD[0], GAMEPAD[1]);
+
+static CONNECTED: Reading = reading(
+    Shape::Whole,
+    truth(
+        "Number(gamepad.isConnected())",
+        "int(gamepad.isConnected())",
+        "gamepadConnected()",
+    ),
 )
 .called(GAMEPAD[0], GAMEPAD[1]);
 
-/// The first row that has a port is its reading.
-static READINGS: &[Reading] = &[
-    reading(
-        Ports::Encoders,
-        Shape::Whole,
-        said("brick.encoder($1).read()", "encoder($1)").dotnet("readEncoder($1)"),
-    ),
-    Reading {
-        is_fickle: true,
-        ..reading(
-            Ports::Buttons,
-            Shape::Whole,
-            truth(
-                "Number(brick.keys().isPressed($1))",
-                "int(brick.keys().isPressed($1))",
-                "button($1)",
-            )
-            .dotnet("isPressed($1)"),
-        )
-    },
-    reading(
-        Ports::Named("GyroscopePort"),
-        Shape::Table(7),
-        said("brick.gyroscope().read()", "gyroscope()").dotnet("readGyroscope()"),
-    ),
-    reading(
-        Ports::Named("AccelerometerPort"),
-        Shape::Table(3),
-        said("brick.accelerometer().read()", "accelerometer()").dotnet("readAccelerometer()"),
-    ),
-    reading(
-        Ports::Named("LineSensorPort"),
-        Shape::Table(3),
-        said("brick.lineSensor(\"video2\").read()", "lineSensor()").dotnet("readLine()"),
-    ),
-    reading(
-        Ports::Named("ColorSensorPort"),
-        Shape::Table(3),
-        said("brick.colorSensor(\"video2\").read(1, 1)", "colorSensor()"),
-    )
-    .called(CAMERA[0], CAMERA[1]),
-    reading(Ports::Named("ObjectSensorXPort"), Shape::Element(0), OBJECT)
-        .called(CAMERA[0], CAMERA[1]),
-    reading(Ports::Named("ObjectSensorYPort"), Shape::Element(1), OBJECT)
-        .called(CAMERA[0], CAMERA[1]),
-    reading(
-        Ports::Named("ObjectSensorSizePort"),
-        Shape::Element(2),
-        OBJECT,
-    )
-    .called(CAMERA[0], CAMERA[1]),
-    reading(
-        Ports::Named("LidarPort"),
-        Shape::Table(360),
-        said("brick.lidar().read()", "lidar()"),
-    )
-    .called("the lidar", "лидар"),
-    reading(
-        Ports::Named("GamepadWheelPort"),
-        Shape::Whole,
-        said("gamepad.wheel()", "wheel()"),
-    )
-    .called(GAMEPAD[0], GAMEPAD[1]),
-    reading(
-        Ports::Named("GamepadConnectionIndicatorPort"),
-        Shape::Whole,
-        truth(
-            "Number(gamepad.isConnected())",
-            "int(gamepad.isConnected())",
-            "gamepadConnected()",
-        ),
-    )
-    .called(GAMEPAD[0], GAMEPAD[1]),
-    reading(
-        Ports::Numbered("GamepadPad", "PosPort"),
-        Shape::Pair(&PAD_Y),
-        said("gamepad.padX($1)", "pad($1, 0)"),
-    )
-    .called(GAMEPAD[0], GAMEPAD[1]),
-    reading(
-        Ports::Numbered("GamepadPad", "PressedPort"),
-        Shape::Whole,
-        truth(
-            "Number(gamepad.isPadPressed($1))",
-            "int(gamepad.isPadPressed($1))",
-            "pad($1, 2)",
-        ),
-    )
-    .called(GAMEPAD[0], GAMEPAD[1]),
-    reading(
-        Ports::Numbered("GamepadButton", "Port"),
-        Shape::Whole,
-        truth(
-            "Number(gamepad.buttonIsPressed($1))",
-            "int(gamepad.buttonIsPressed($1))",
-            "padButton($1)",
-        ),
-    )
-    .called(GAMEPAD[0], GAMEPAD[1]),
-    reading(
-        Ports::Others,
-        Shape::Whole,
-        said("brick.sensor($1).read()", "sensor($1)").dotnet("readSensor($1)"),
-    ),
-];
+static PAD_Y: Reading =
+    reading(Shape::Whole, said("gamepad.padY($1)", "pad($1, 1)")).called(GAMEPAD[0], GAMEPAD[1]);
 
-impl Ports {
-    /// The operand, if the port is one of these.
-    fn operand(&self, port: Port) -> Option<Vec<Code>> {
-        let own = || vec![Code::Port(port.name().into())];
-        match *self {
-            Self::Encoders => (port.sort() == Sort::Encoder).then(own),
-            Self::Buttons => match port.sort() {
-                Sort::Button(code) => Some(vec![Code::Int(code.into())]),
-                Sort::Motor | Sort::Servo | Sort::Encoder | Sort::Scalar | Sort::Vector => None,
-            },
-            Self::Named(name) => (port.name() == name).then(Vec::new),
-            Self::Numbered(before, behind) => {
-                let number = port.name().strip_prefix(before)?.strip_suffix(behind)?;
-                Some(vec![Code::Int(number.parse().ok()?)])
-            }
-            Self::Others => Some(own()),
-        }
+static PAD: Reading = reading(Shape::Pair(&PAD_Y), said("gamepad.padX($1)", "pad($1, 0)"))
+    .called(GAMEPAD[0], GAMEPAD[1]);
+
+static PAD_PRESSED: Reading = reading(
+    Shape::Whole,
+    truth(
+        "Number(gamepad.isPadPressed($1))",
+        "int(gamepad.isPadPressed($1))",
+        "pad($1, 2)",
+    ),
+)
+.called(GAMEPAD[0], GAMEPAD[1]);
+
+static PAD_BUTTON: Reading = reading(
+    Shape::Whole,
+    truth(
+        "Number(gamepad.buttonIsPressed($1))",
+        "int(gamepad.buttonIsPressed($1))",
+        "padButton($1)",
+    ),
+)
+.called(GAMEPAD[0], GAMEPAD[1]);
+
+static SENSOR: Reading = reading(
+    Shape::Whole,
+    said("brick.sensor($1).read()", "sensor($1)").dotnet("readSensor($1)"),
+);
+
+/// A number of the object that the camera sees.
+const fn object(at: i64) -> Reading {
+    reading(Shape::Element(at), OBJECT).called(CAMERA[0], CAMERA[1])
+}
+
+/// The reading of a port, and its operands.
+fn row(port: Port) -> (&'static Reading, Vec<Code>) {
+    let own = || vec![Code::Port(port.name().into())];
+    let number = |number: i64| vec![Code::Int(number)];
+    match port.device() {
+        Device::Encoder => (&ENCODER, own()),
+        Device::Button(code) => (&BUTTON, number(code.into())),
+        Device::Gyroscope => (&GYROSCOPE, Vec::new()),
+        Device::Accelerometer => (&ACCELEROMETER, Vec::new()),
+        Device::LineSensor => (&LINE, Vec::new()),
+        Device::ColorSensor => (&COLOR, Vec::new()),
+        Device::ObjectSensor(ObjectPart::X) => (&OBJECT_X, Vec::new()),
+        Device::ObjectSensor(ObjectPart::Y) => (&OBJECT_Y, Vec::new()),
+        Device::ObjectSensor(ObjectPart::Size) => (&OBJECT_SIZE, Vec::new()),
+        Device::Lidar => (&LIDAR, Vec::new()),
+        Device::Gamepad(GamepadPart::Wheel) => (&WHEEL, Vec::new()),
+        Device::Gamepad(GamepadPart::Connected) => (&CONNECTED, Vec::new()),
+        Device::Gamepad(GamepadPart::Place(pad)) => (&PAD, number(pad.number() as i64)),
+        Device::Gamepad(GamepadPart::Pressed(pad)) => (&PAD_PRESSED, number(pad.number() as i64)),
+        Device::Gamepad(GamepadPart::Button(which)) => (&PAD_BUTTON, number(which.into())),
+        // What is told something has no reading of its own; it is asked for like what is plugged in.
+        Device::Plugged | Device::Motor | Device::Servo => (&SENSOR, own()),
     }
 }
 
@@ -239,14 +208,7 @@ impl Reading {
 
 /// What the variable of a sensor gives.
 pub(super) fn of(port: Port) -> Typed {
-    let mut rows = READINGS.iter();
-    // The last row has all ports.
-    let Some((row, operand)) = rows.find_map(|row| Some((row, row.ports.operand(port)?))) else {
-        return Typed {
-            code: Code::Nil,
-            kind: Kind::Any,
-        };
-    };
+    let (row, operand) = row(port);
     let read = |row, operand| Code::does(Operation::Read(row), operand);
     let table = Kind::List(Box::new(Kind::Int));
     let (code, kind) = match row.shape {

@@ -427,6 +427,7 @@ fn ordered(low: Code, high: Code) -> [Code; 2] {
     match (&low, &high) {
         (Code::Int(one), Code::Int(two)) if one > two => [high, low],
         (Code::Int(_), Code::Int(_)) => [low, high],
+        // What is not known before it runs is ordered when it runs.
         _ => [
             Code::does(Function::Min, [low.clone(), high.clone()]),
             Code::does(Function::Max, [low, high]),

@@ -2,6 +2,7 @@
 //!
 //! Owns the rounds until no kind changes. Knows no statements of a language.
 
+use crate::limits;
 use std::collections::BTreeMap;
 
 use super::build::{Builder, Variables, Wrong};
@@ -9,14 +10,11 @@ use super::code::{Code, Kind, Typed};
 use super::plan::Plan;
 use super::words;
 use crate::blocks::Type;
-use crate::program::{ArgumentKind, Given, Leads, Node, Program, Source};
+use crate::program::{ArgumentKind, AssignedKind, Leads, Node, Program, Source};
 use lang_expr::parser::parse;
 use lang_expr::tree::{Id, Node as Part, Tree};
 use lang_expr::value::Compat;
 use lang_text::problem::Problem;
-
-/// How often kinds may change: a variable has few to go through.
-const ROUNDS_MAX: usize = 64;
 
 /// Parsed texts and variables.
 pub(super) struct Texts<'a> {
@@ -40,11 +38,11 @@ pub(super) enum Sentence {
 fn variable(program: &Program, node: Node) -> Option<(&str, Kind)> {
     let (assignment, given) = program.given(node)?;
     let kind = match given {
-        Given::Whole => Kind::Int,
-        Given::Text => Kind::Text,
-        Given::Any => Kind::Any,
+        AssignedKind::Whole => Kind::Int,
+        AssignedKind::Text => Kind::Text,
+        AssignedKind::Any => Kind::Any,
         // Nobody answers a generated program: the plan has refused it.
-        Given::Answer => return None,
+        AssignedKind::Answer => return None,
     };
     Some((&assignment.variable, kind))
 }
@@ -90,7 +88,7 @@ impl<'a> Texts<'a> {
             return Err(problems);
         }
         texts.declare(&nodes);
-        for _ in 0..ROUNDS_MAX {
+        for _ in 0..limits::GENERATED_ROUNDS_MAX {
             texts.variables.changed = false;
             problems.clear();
             for &node in &nodes {

@@ -4,14 +4,12 @@
 //! of blocks (`machine/clocks`), so a clock that is set by one before it counts that step already, and a program as text
 //! waits one step less. Where ways with different answers meet, the timer waits in full.
 
+use crate::limits;
 use std::collections::BTreeSet;
 
 use super::plan::{Owner, Plan};
 use crate::program::{Leads, Node, Op, Program, Wakes};
 use crate::structure::Exit;
-
-/// How often answers may change before they count as unclear.
-const ROUNDS_MAX: usize = 64;
 
 /// What has led the flow to a block within a step.
 #[derive(Clone, Copy, Debug, Default, Eq, PartialEq)]
@@ -81,7 +79,7 @@ pub(super) fn early(program: &Program, plan: &Plan) -> BTreeSet<(usize, Node)> {
     let mut rounds = 0;
     while std::mem::take(&mut flow.changed) {
         rounds += 1;
-        if rounds > ROUNDS_MAX {
+        if rounds > limits::GENERATED_ROUNDS_MAX {
             return BTreeSet::new();
         }
         for function in 0..functions.len() {

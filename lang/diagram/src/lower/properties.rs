@@ -63,7 +63,17 @@ impl<'a> Lowering<'a> {
         let property = at.row.property(name);
         let wanted = match property.map(|property| property.content) {
             Some(Content::Expression(wanted)) => wanted,
-            _ => Type::Text,
+            Some(
+                Content::Evaluated
+                | Content::Raw
+                | Content::Variable
+                | Content::Ports
+                | Content::Number
+                | Content::Flag
+                | Content::Choice(_)
+                | Content::Port(_),
+            )
+            | None => Type::Text,
         };
         let shown = property.map_or("", |property| property.shown);
         self.source(text(at, name), wanted, shown)

@@ -95,8 +95,6 @@ impl Machine {
     }
 
     /// See [`Machine::run_blocks`].
-    // What is not here goes on to `special` and `device`, which name all operations.
-    #[expect(clippy::wildcard_enum_match_arm)]
     fn execute<const GUARDED: bool>(
         &mut self,
         handle: Handle,
@@ -126,7 +124,8 @@ impl Machine {
             let Some(op) = program.ops.get(node as usize) else {
                 return;
             };
-            // The commonest ones need nothing of the thread.
+            // The commonest ones need nothing of the thread. The others go on to `special` and `device`, which name all.
+            #[expect(clippy::wildcard_enum_match_arm)]
             let flow = match *op {
                 Op::Pass { next } => Flow::Next(next),
                 Op::Loop {

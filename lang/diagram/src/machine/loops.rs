@@ -147,7 +147,17 @@ impl Loops {
                     inside.retain(|inner| !outside.contains(inner));
                     inside
                 }
-                _ => HashSet::new(),
+                Some(
+                    Leads::End
+                    | Leads::Fault(_)
+                    | Leads::To(_)
+                    | Leads::Switch(_)
+                    | Leads::Fork(_)
+                    | Leads::Join(..)
+                    | Leads::Call(..)
+                    | Leads::Ask(..),
+                )
+                | None => HashSet::new(),
             })
     }
 }
@@ -163,7 +173,17 @@ fn reach(from: Node, head: Node, program: &Program, looks: &mut usize) -> HashSe
         *looks -= 1;
         match program.leads(node) {
             Some(Leads::Call(_, next)) => open.push(next),
-            _ => successors(program, node, &mut |next| open.push(next)),
+            Some(
+                Leads::End
+                | Leads::Fault(_)
+                | Leads::To(_)
+                | Leads::Switch(_)
+                | Leads::Fork(_)
+                | Leads::Join(..)
+                | Leads::Test(..)
+                | Leads::Ask(..),
+            )
+            | None => successors(program, node, &mut |next| open.push(next)),
         }
     }
     found

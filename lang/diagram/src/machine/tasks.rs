@@ -38,6 +38,7 @@ impl Machine {
         }
         match program.ops.get(node as usize) {
             Some(Op::Call { next, .. }) => Flow::Next(*next),
+            // Only calls leave a frame, so anything else is a mistake of ours.
             _ => Flow::Failed,
         }
     }
@@ -238,6 +239,7 @@ impl Machine {
             {
                 Some((&program.assignments[*assignment as usize], *next))
             }
+            // A message that is received by nothing at once is kept, whatever the thread does.
             _ => None,
         };
         match receives {

@@ -9,7 +9,7 @@ use super::{Deferred, Env, Machine, words};
 use crate::brick::Brick;
 use crate::check::aside;
 use crate::ports::Port;
-use crate::program::{Given, Leads, Node, Op};
+use crate::program::{AssignedKind, Leads, Node, Op};
 use lang_expr::reserved::{SENSORS, SensorIndex};
 use lang_expr::{Outside, Value, Wanted};
 use lang_text::problem::Problem;
@@ -153,8 +153,11 @@ impl Machine {
         }
         match (self.program.leads(node), self.program.given(node)) {
             (Some(Leads::Join(..)), _) => Waits::Threads,
-            (_, Some((_, Given::Any))) => Waits::Message,
-            (_, Some((_, Given::Whole | Given::Text | Given::Answer)) | None) => Waits::Nothing,
+            (_, Some((_, AssignedKind::Any))) => Waits::Message,
+            (
+                _,
+                Some((_, AssignedKind::Whole | AssignedKind::Text | AssignedKind::Answer)) | None,
+            ) => Waits::Nothing,
         }
     }
 

@@ -2,6 +2,8 @@
 //!
 //! Owns the estimate of how wide a text is, the room under each block, and the search for a free place. Knows no SVG.
 
+use crate::limits;
+
 /// Half of the side of a block, in px.
 pub(super) const HALF: f64 = 25.0;
 /// Between two lines of text, in px.
@@ -17,8 +19,6 @@ const LINES: usize = 5;
 const NARROWEST: f64 = HALF;
 /// What stays free between two texts.
 const GAP: f64 = 3.0;
-/// How many areas are looked at for one text; pictures with more are not for people.
-const AREAS_MAX: usize = 2000;
 
 /// A part of the picture.
 #[derive(Clone, Copy, Debug)]
@@ -135,7 +135,7 @@ pub(super) fn wrapped(text: &str, widest: f64, lines: usize) -> Vec<String> {
 /// The first of some places that is free, else the first of all; it is taken then.
 pub(super) fn free(places: &[Area], taken: &mut Vec<Area>) -> Option<Area> {
     let is_free = |place: &&Area| !taken.iter().any(|area| area.meets(place));
-    let found = match taken.len() <= AREAS_MAX {
+    let found = match taken.len() <= limits::PICTURE_AREAS_MAX {
         true => places.iter().find(is_free),
         false => None,
     };

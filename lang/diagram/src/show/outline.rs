@@ -89,10 +89,16 @@ impl<'a> Writer<'a> {
         self.function = Some(function);
         let title = match &function.owner {
             Owner::Main => match self.main {
-                Some(sheet) if sheet.kind == DiagramKind::Subprogram => {
-                    self.subprogram(&sheet.name)
-                }
-                _ => self.word(Word::Program).to_owned(),
+                Some(Diagram {
+                    kind: DiagramKind::Subprogram,
+                    name,
+                    ..
+                }) => self.subprogram(name),
+                Some(Diagram {
+                    kind: DiagramKind::Main,
+                    ..
+                })
+                | None => self.word(Word::Program).to_owned(),
             },
             Owner::Subprogram(diagram) => {
                 let sheet = self.program.diagrams.get(*diagram as usize);
@@ -187,7 +193,17 @@ impl<'a> Writer<'a> {
         let program = self.program;
         let guards = match self.node(on).and_then(|node| program.leads(node)) {
             Some(Leads::Switch(switch)) => &switch.branches[..],
-            _ => &[],
+            Some(
+                Leads::End
+                | Leads::Fault(_)
+                | Leads::To(_)
+                | Leads::Test(..)
+                | Leads::Fork(_)
+                | Leads::Join(..)
+                | Leads::Call(..)
+                | Leads::Ask(..),
+            )
+            | None => &[],
         };
         for (ways, body) in branches {
             let named = ways.iter().filter_map(|&way| guards.get(way));

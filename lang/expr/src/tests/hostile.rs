@@ -396,11 +396,8 @@ fn what_the_fuzzer_feeds_does_no_harm() {
         b"\x8cM3, M4\0sensor('A1') < 5 and not nil or gyroscope[1] << 3",
         b"\xff\xffprint \"\\n\" random(6) max(1, 2) f{[1]=2}:g() ...",
     ];
-    let mut state = 1u32;
-    let mut random = |below: usize| {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (state >> 8) as usize % below
-    };
+    let mut numbers = needs::Random::new(1);
+    let mut random = |below: usize| numbers.below(below);
     for seed in seeds {
         crate::fuzz::expression(seed);
         for _ in 0..2_000 {

@@ -6,6 +6,7 @@
 //! Facts are those of the original (see `dynamics`). Its solver is older than ours in two points that are set from here:
 //! joints have no damping of their own, and the inertia of a polygon is summed about the origin of its body.
 
+use crate::limits;
 use box2d_rust::body::{
     body_get_joints, body_get_local_center, body_get_local_point, body_get_position,
     body_get_transform, body_get_world_center, body_get_world_point, body_set_mass_data,
@@ -76,13 +77,6 @@ const SENSOR: Material = Material {
 const SENSOR_AT: Point = Point { x: 75.0, y: 25.0 };
 /// By how much the outline of a thing is within what is drawn of it.
 const MARGIN: f64 = 1.0;
-/// Largest of what materials have, and least mass of what can be pushed.
-const MATERIAL_MAX: f64 = 1e4;
-const MASS_MIN: f64 = 1e-6;
-/// Places beyond this, in pixels, are none: the solver counts in 32 bits and is right within some kilometres.
-const PLACE_MAX: f64 = 1e6;
-/// Outlines with a smaller area, in square pixels, are no bodies.
-const AREA_MIN: f64 = 1e-3;
 
 /// A robot's bodies.
 pub(super) struct Chassis {
@@ -111,12 +105,12 @@ fn sane(value: f64, least: f64, most: f64) -> f64 {
 }
 
 fn is_place(at: Point) -> bool {
-    at.x.abs() <= PLACE_MAX && at.y.abs() <= PLACE_MAX
+    at.x.abs() <= limits::PLACE_MAX && at.y.abs() <= limits::PLACE_MAX
 }
 
 fn shape_of(material: &Material, density: f32) -> ShapeDef {
     let mut shape = ShapeDef::default();
-    shape.material.friction = sane(material.friction, 0.0, MATERIAL_MAX) as f32;
+    shape.material.friction = sane(material.friction, 0.0, limits::MATERIAL_MAX) as f32;
     shape.material.restitution = sane(material.restitution, 0.0, 1.0) as f32;
     shape.density = density;
     shape
@@ -131,15 +125,15 @@ fn body_of(material: &Material, position: Pos, rotation: Rot) -> BodyDef {
         },
         position,
         rotation,
-        linear_damping: sane(material.linear_damping, 0.0, MATERIAL_MAX) as f32,
-        angular_damping: sane(material.angular_damping, 0.0, MATERIAL_MAX) as f32,
+        linear_damping: sane(material.linear_damping, 0.0, limits::MATERIAL_MAX) as f32,
+        angular_damping: sane(material.angular_damping, 0.0, limits::MATERIAL_MAX) as f32,
         ..BodyDef::default()
     }
 }
 
 /// The mass of what can be pushed, in kilograms.
 pub(super) fn mass(material: &Material) -> f32 {
-    sane(material.mass, MASS_MIN, MATERIAL_MAX) as f32
+    sane(material.mass, limits::MASS_MIN, limits::MATERIAL_MAX) as f32
 }
 
 /// Twice the area of a closed figure halved: in square pixels, whichever way round it goes.
@@ -161,7 +155,7 @@ fn add_polygon(
     material: &Material,
     weighed: f64,
 ) -> Option<()> {
-    if !weighed.is_finite() || weighed < AREA_MIN || area(corners) < AREA_MIN {
+    if !weighed.is_finite() || weighed < limits::AREA_MIN || area(corners) < limits::AREA_MIN {
         return None;
     }
     let points: Vec<Vec2> = corners.iter().map(|&corner| vector(corner)).collect();
@@ -246,7 +240,7 @@ pub(super) fn add_wall(world: &mut World, wall: &Wall) {
 /// A ball, a skittle or a cube; nothing if it is not whole.
 pub(super) fn add_solid(world: &mut World, solid: &Solid) -> Option<BodyId> {
     let half = solid.size / 2.0 - MARGIN;
-    let is_whole = half > 0.0 && half <= PLACE_MAX && solid.rotation.is_finite();
+    let is_whole = half > 0.0 && half <= limits::PLACE_MAX && solid.rotation.is_finite();
     if !is_whole || !is_place(solid.at) {
         return None;
     }
@@ -465,8 +459,8 @@ pub(super) fn placed(pose: Pose) -> (Point, f64) {
     };
     (
         point(
-            sane(pose.x + half, -PLACE_MAX, PLACE_MAX),
-            sane(pose.y + half, -PLACE_MAX, PLACE_MAX),
+            sane(pose.x + half, -limits::PLACE_MAX, limits::PLACE_MAX),
+            sane(pose.y + half, -limits::PLACE_MAX, limits::PLACE_MAX),
         ),
         degrees,
     )

@@ -2,12 +2,12 @@
 //!
 //! Owns the text. Which ports there are is known to [`crate::robots`], what `dcml` means to the configuration.
 
-use super::{Actuator, Port, Rolling, Said};
+use super::{Actuator, Overrides, Port, Rolling};
 use crate::robots::Plug;
 use std::fmt::Write;
 
 /// The configuration of a robot whose model has this text, with these sensors beside its motors and servos.
-pub fn configuration(rolling: &Rolling, text: &str, said: &Said, plugs: &[Plug]) -> String {
+pub fn configuration(rolling: &Rolling, text: &str, said: &Overrides, plugs: &[Plug]) -> String {
     let mut lua = format!(
         "-- A robot that moves by the model {}.\nlocal trik = include 'trik.lua'\n\ntrikfs = trik.robot {{\n",
         rolling.robot.name()
@@ -57,7 +57,7 @@ pub fn configuration(rolling: &Rolling, text: &str, said: &Said, plugs: &[Plug])
 }
 
 /// The node that follows the robot by its own model.
-fn pose(rolling: &Rolling, text: &str, said: &Said) -> String {
+fn pose(rolling: &Rolling, text: &str, said: &Overrides) -> String {
     let pairs = |pairs: &[(String, f64)]| -> String {
         let all: Vec<String> = pairs
             .iter()

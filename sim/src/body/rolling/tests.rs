@@ -14,8 +14,8 @@ fn model(text: &str) -> Model {
     found.unwrap_or_else(|| panic!("{:?}", understood.diagnostics))
 }
 
-fn said(params: &[(&str, f64)], drive: &[(&str, &str)]) -> Said {
-    Said {
+fn said(params: &[(&str, f64)], drive: &[(&str, &str)]) -> Overrides {
+    Overrides {
         params: params
             .iter()
             .map(|(name, number)| ((*name).to_owned(), *number))
@@ -28,7 +28,7 @@ fn said(params: &[(&str, f64)], drive: &[(&str, &str)]) -> Said {
     }
 }
 
-fn refused(text: &str, said: &Said) -> String {
+fn refused(text: &str, said: &Overrides) -> String {
     Rolling::new(&model(text), said, Pose::default())
         .err()
         .unwrap()

@@ -115,14 +115,14 @@ fn a_person_orders_time_and_walls() {
     // The wall is gone in another field.
     let before = body.senses().analog[0];
     assert!(before > Some(sharp_gp2_raw(47.0)));
-    let file = std::env::temp_dir().join(format!("trik-field-{}.xml", std::process::id()));
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("field.xml");
     std::fs::write(
         &file,
         "<root version=\"20251219\"><settings/><world/></root>",
     )
     .unwrap();
     body.order(&format!("field {}", file.display())).unwrap();
-    std::fs::remove_file(&file).unwrap();
     assert_eq!(body.senses().analog[0], Some(sharp_gp2_raw(80.0)));
 }
 

@@ -5,7 +5,7 @@
 use lang_constraint::{Catalogue, Object};
 use lang_diagram::ports::Port;
 
-use super::{PARTS, Thing, is_plugged_in, long_name, property, short_name};
+use super::{PARTS, SceneObject, is_plugged_in, long_name, property, short_name};
 use crate::arena::Arena;
 
 /// All words for properties of objects. Reading a property that is not among them is refused in tests.
@@ -111,7 +111,7 @@ impl Catalogue for Arena {
     }
 
     fn properties(&mut self, object: Object) -> Vec<&'static str> {
-        let Some(thing) = Thing::of(object) else {
+        let Some(thing) = SceneObject::of(object) else {
             return Vec::new();
         };
         let has = |name: &&&'static str| property(self, thing, name).is_some();

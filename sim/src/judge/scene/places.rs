@@ -6,7 +6,7 @@
 
 use lang_constraint::{ObjectPoint, Point as Whole, Rect, Unfit};
 
-use super::Thing;
+use super::SceneObject;
 use crate::arena::floor::MARKER_WIDTH;
 use crate::arena::graphic::Family;
 use crate::arena::outline::{Bounds, Outline, is_inside as is_inside_figure};
@@ -23,7 +23,7 @@ const CURVE: u32 = 32;
 /// Whether a thing is in a region.
 pub(super) fn is_inside(
     arena: &Arena,
-    thing: Thing,
+    thing: SceneObject,
     region: usize,
     how: ObjectPoint,
 ) -> Result<bool, Unfit> {
@@ -36,7 +36,7 @@ pub(super) fn is_inside(
         return Ok(place.holds(graphic.back(centre)));
     }
     // A robot is asked in each tick, and needs no list of corners.
-    if let Thing::Robot(index) = thing {
+    if let SceneObject::Robot(index) = thing {
         let robot = arena.robots().get(index).ok_or(Unfit::NoPlace)?;
         let corners = robot.square().map(|at| graphic.back(at));
         return Ok(place.compares(&corners, how));
@@ -49,7 +49,7 @@ pub(super) fn is_inside(
 /// How far a thing is from being in a region, in pixels; nothing if one of them has no place.
 pub(super) fn distance(
     arena: &Arena,
-    thing: Thing,
+    thing: SceneObject,
     region: usize,
     how: ObjectPoint,
 ) -> Option<f64> {
@@ -382,21 +382,23 @@ fn band(path: Vec<Point>, wider: f64) -> Vec<Point> {
 }
 
 /// The outline of a thing; nothing if it has none.
-fn outline(arena: &Arena, thing: Thing) -> Option<Vec<Point>> {
+fn outline(arena: &Arena, thing: SceneObject) -> Option<Vec<Point>> {
     let field = arena.field();
     Some(match thing {
-        Thing::Robot(index) | Thing::Part(index, _) => arena.robots().get(index)?.square().to_vec(),
-        Thing::Device(index, port) => {
+        SceneObject::Robot(index) | SceneObject::Part(index, _) => {
+            arena.robots().get(index)?.square().to_vec()
+        }
+        SceneObject::Device(index, port) => {
             let robot = arena.robots().get(index)?;
             let body = robot.sensor(port).and_then(|one| robot.sensor_corners(one));
             body.unwrap_or_else(|| robot.square()).to_vec()
         }
-        Thing::Wall(index) => solids::wall(field.walls.get(index)?).to_vec(),
-        Thing::Solid(index) => solids::outline_of(field.solids.get(index)?)
+        SceneObject::Wall(index) => solids::wall(field.walls.get(index)?).to_vec(),
+        SceneObject::Solid(index) => solids::outline_of(field.solids.get(index)?)
             .corners(0)
             .to_vec(),
-        Thing::Drawn(index) => figure(field.drawn.get(index)?),
-        Thing::Region(index) => {
+        SceneObject::Drawn(index) => figure(field.drawn.get(index)?),
+        SceneObject::Region(index) => {
             let region = field.regions.get(index)?;
             match Place::of(region, field) {
                 Place::Nowhere => return None,
@@ -405,22 +407,25 @@ fn outline(arena: &Arena, thing: Thing) -> Option<Vec<Point>> {
                 Place::Ring(figure, _) => figure,
             }
         }
-        Thing::Trace => return None,
+        SceneObject::Trace => return None,
     })
 }
 
 /// The centre of a thing; nothing if it has no place.
-fn centre(arena: &Arena, thing: Thing) -> Option<Point> {
+fn centre(arena: &Arena, thing: SceneObject) -> Option<Point> {
     match thing {
-        Thing::Robot(index) => Some(arena.robots().get(index)?.centre()),
-        Thing::Part(index, _) => Some(arena.robots().get(index)?.square()[0]),
-        Thing::Device(index, port) => {
+        SceneObject::Robot(index) => Some(arena.robots().get(index)?.centre()),
+        SceneObject::Part(index, _) => Some(arena.robots().get(index)?.square()[0]),
+        SceneObject::Device(index, port) => {
             let robot = arena.robots().get(index)?;
             let place = robot.sensor(port).map(|one| robot.sensor_pose(one).0);
             Some(place.unwrap_or_else(|| robot.square()[0]))
         }
-        Thing::Solid(index) => Some(arena.field().solids.get(index)?.at),
-        thing => {
+        SceneObject::Solid(index) => Some(arena.field().solids.get(index)?.at),
+        SceneObject::Wall(_)
+        | SceneObject::Drawn(_)
+        | SceneObject::Region(_)
+        | SceneObject::Trace => {
             let bounds = Bounds::of(&outline(arena, thing)?);
             Some(point(
                 (bounds.low.x + bounds.high.x) / 2.0,

@@ -8,7 +8,7 @@ use lang_diagram::brick::{Brick as _, Command};
 use lang_diagram::ports::{Port, Sort};
 use screen::colour::Colour;
 
-use super::{Part, Thing, property};
+use super::{Part, SceneObject, property};
 use crate::arena::graphic::Family;
 use crate::arena::{Arena, Change};
 use crate::field::{Drawn, Shape};
@@ -19,13 +19,16 @@ use crate::limits;
 pub(super) const BLACK: u32 = 0xff00_0000;
 
 /// The family of a thing that is drawn on the field, and which one of it.
-pub(super) fn family(thing: Thing) -> Option<(Family, usize)> {
+pub(super) fn family(thing: SceneObject) -> Option<(Family, usize)> {
     match thing {
-        Thing::Wall(index) => Some((Family::Wall, index)),
-        Thing::Solid(index) => Some((Family::Solid, index)),
-        Thing::Drawn(index) => Some((Family::Drawn, index)),
-        Thing::Region(index) => Some((Family::Region, index)),
-        Thing::Robot(_) | Thing::Device(..) | Thing::Part(..) | Thing::Trace => None,
+        SceneObject::Wall(index) => Some((Family::Wall, index)),
+        SceneObject::Solid(index) => Some((Family::Solid, index)),
+        SceneObject::Drawn(index) => Some((Family::Drawn, index)),
+        SceneObject::Region(index) => Some((Family::Region, index)),
+        SceneObject::Robot(_)
+        | SceneObject::Device(..)
+        | SceneObject::Part(..)
+        | SceneObject::Trace => None,
     }
 }
 
@@ -48,7 +51,16 @@ pub(super) fn real(value: &Value) -> Option<f64> {
         Value::Int(number) => f64::from(*number),
         Value::Bool(yes) => f64::from(u8::from(*yes)),
         Value::Text(text) => text.trim().parse().ok()?,
-        _ => return None,
+        Value::Null
+        | Value::NoText
+        | Value::Point(_)
+        | Value::Place(_)
+        | Value::Rect(_)
+        | Value::Colour(_)
+        | Value::Opaque
+        | Value::List(_)
+        | Value::Record(_)
+        | Value::Object(_) => return None,
     };
     let most = limits::FIELD_NUMBER;
     number.is_finite().then(|| number.clamp(-most, most))
@@ -113,9 +125,9 @@ pub(super) fn colour(value: &Value) -> Option<u32> {
 }
 
 /// Gives a property of a thing a value; false if it has no such property, or if it can only be read through another name.
-pub(super) fn set(arena: &mut Arena, thing: Thing, name: &str, value: &Value) -> bool {
+pub(super) fn set(arena: &mut Arena, thing: SceneObject, name: &str, value: &Value) -> bool {
     match thing {
-        Thing::Robot(index) if name == "rotation" => {
+        SceneObject::Robot(index) if name == "rotation" => {
             if let (Some(robot), Some(degrees)) = (arena.robot_mut(index), real(value)) {
                 let mut pose = robot.pose();
                 pose.degrees = degrees;
@@ -123,18 +135,19 @@ pub(super) fn set(arena: &mut Arena, thing: Thing, name: &str, value: &Value) ->
             }
             true
         }
-        Thing::Device(index, port) => device(arena, (index, port), name, value),
-        Thing::Part(index, which) => part(arena, (index, which), name, value),
-        Thing::Wall(_) | Thing::Solid(_) | Thing::Drawn(_) | Thing::Region(_) => {
-            item(arena, thing, name, value)
-        }
+        SceneObject::Device(index, port) => device(arena, (index, port), name, value),
+        SceneObject::Part(index, which) => part(arena, (index, which), name, value),
+        SceneObject::Wall(_)
+        | SceneObject::Solid(_)
+        | SceneObject::Drawn(_)
+        | SceneObject::Region(_) => item(arena, thing, name, value),
         // What is there and cannot be set stays as it is, without a word.
-        Thing::Robot(_) | Thing::Trace => property(arena, thing, name).is_some(),
+        SceneObject::Robot(_) | SceneObject::Trace => property(arena, thing, name).is_some(),
     }
 }
 
 fn device(arena: &mut Arena, (index, port): (usize, Port), name: &str, value: &Value) -> bool {
-    if property(arena, Thing::Device(index, port), name).is_none() {
+    if property(arena, SceneObject::Device(index, port), name).is_none() {
         return false;
     }
     let Some(robot) = arena.robot_mut(index) else {
@@ -167,7 +180,7 @@ fn device(arena: &mut Arena, (index, port): (usize, Port), name: &str, value: &V
 }
 
 fn part(arena: &mut Arena, (index, part): (usize, Part), name: &str, value: &Value) -> bool {
-    if property(arena, Thing::Part(index, part), name).is_none() {
+    if property(arena, SceneObject::Part(index, part), name).is_none() {
         return false;
     }
     let change = match (part, name) {
@@ -209,7 +222,16 @@ fn part(arena: &mut Arena, (index, part): (usize, Part), name: &str, value: &Val
             });
             Change::Marker
         }),
-        _ => None,
+        (
+            Part::Display
+            | Part::Shell
+            | Part::Led
+            | Part::Marker
+            | Part::Random
+            | Part::Speaker
+            | Part::Network,
+            _,
+        ) => None,
     };
     if let Some(change) = change {
         arena.note(index, change);
@@ -217,14 +239,19 @@ fn part(arena: &mut Arena, (index, part): (usize, Part), name: &str, value: &Val
     true
 }
 
-fn item(arena: &mut Arena, thing: Thing, name: &str, value: &Value) -> bool {
+fn item(arena: &mut Arena, thing: SceneObject, name: &str, value: &Value) -> bool {
     let Some((family, index)) = family(thing) else {
         return false;
     };
     let is_of_pen = match thing {
-        Thing::Drawn(_) => ["color", "thickness", "filled"].contains(&name),
-        Thing::Region(_) => ["color", "filled"].contains(&name),
-        _ => false,
+        SceneObject::Drawn(_) => ["color", "thickness", "filled"].contains(&name),
+        SceneObject::Region(_) => ["color", "filled"].contains(&name),
+        SceneObject::Robot(_)
+        | SceneObject::Device(..)
+        | SceneObject::Part(..)
+        | SceneObject::Wall(_)
+        | SceneObject::Solid(_)
+        | SceneObject::Trace => false,
     };
     if is_of_pen {
         if property(arena, thing, name).is_some() {
@@ -242,7 +269,7 @@ fn item(arena: &mut Arena, thing: Thing, name: &str, value: &Value) -> bool {
         "rotation" => {
             if let Some(degrees) = real(value) {
                 arena.graphics.change(family, index).rotation = degrees;
-                if let Thing::Solid(index) = thing {
+                if let SceneObject::Solid(index) = thing {
                     arena.edit(|field| {
                         if let Some(solid) = field.solids.get_mut(index) {
                             solid.rotation = degrees;
@@ -265,7 +292,7 @@ fn item(arena: &mut Arena, thing: Thing, name: &str, value: &Value) -> bool {
 
 /// Puts a thing elsewhere: a ball with its centre there, everything else so far from where it was drawn. A wall is only
 /// drawn elsewhere, and stands where it stood.
-fn shift(arena: &mut Arena, thing: Thing, is_x: bool, number: f64) {
+fn shift(arena: &mut Arena, thing: SceneObject, is_x: bool, number: f64) {
     let Some((family, index)) = family(thing) else {
         return;
     };
@@ -279,7 +306,7 @@ fn shift(arena: &mut Arena, thing: Thing, is_x: bool, number: f64) {
     *place = number;
     let by = if is_x { point(by, 0.0) } else { point(0.0, by) };
     match thing {
-        Thing::Solid(index) => arena.edit(|field| {
+        SceneObject::Solid(index) => arena.edit(|field| {
             if let Some(solid) = field.solids.get_mut(index) {
                 *(if is_x {
                     &mut solid.at.x
@@ -288,17 +315,17 @@ fn shift(arena: &mut Arena, thing: Thing, is_x: bool, number: f64) {
                 }) = number;
             }
         }),
-        Thing::Drawn(index) => arena.edit(|field| {
+        SceneObject::Drawn(index) => arena.edit(|field| {
             if let Some(drawn) = field.drawn.get_mut(index) {
                 move_drawn(drawn, by);
             }
         }),
-        Thing::Wall(_)
-        | Thing::Region(_)
-        | Thing::Robot(_)
-        | Thing::Device(..)
-        | Thing::Part(..)
-        | Thing::Trace => {}
+        SceneObject::Wall(_)
+        | SceneObject::Region(_)
+        | SceneObject::Robot(_)
+        | SceneObject::Device(..)
+        | SceneObject::Part(..)
+        | SceneObject::Trace => {}
     }
 }
 
@@ -321,11 +348,11 @@ fn move_drawn(drawn: &mut Drawn, by: Point) {
     }
 }
 
-fn paint(arena: &mut Arena, thing: Thing, name: &str, value: &Value) {
+fn paint(arena: &mut Arena, thing: SceneObject, name: &str, value: &Value) {
     let hex = colour(value).map(|argb| format!("#{argb:08x}"));
     let (number, is_filled) = (real(value), truth(value));
     arena.edit(|field| match thing {
-        Thing::Drawn(index) => {
+        SceneObject::Drawn(index) => {
             let Some(drawn) = field.drawn.get_mut(index) else {
                 return;
             };
@@ -339,7 +366,7 @@ fn paint(arena: &mut Arena, thing: Thing, name: &str, value: &Value) {
                 _ => {}
             }
         }
-        Thing::Region(index) => {
+        SceneObject::Region(index) => {
             let Some(region) = field.regions.get_mut(index) else {
                 return;
             };
@@ -349,11 +376,11 @@ fn paint(arena: &mut Arena, thing: Thing, name: &str, value: &Value) {
                 _ => {}
             }
         }
-        Thing::Wall(_)
-        | Thing::Solid(_)
-        | Thing::Robot(_)
-        | Thing::Device(..)
-        | Thing::Part(..)
-        | Thing::Trace => {}
+        SceneObject::Wall(_)
+        | SceneObject::Solid(_)
+        | SceneObject::Robot(_)
+        | SceneObject::Device(..)
+        | SceneObject::Part(..)
+        | SceneObject::Trace => {}
     });
 }

@@ -13,7 +13,7 @@ pub struct Answer(Mutex<Option<Vec<u8>>>);
 impl Answer {
     /// Looks whether the answer is among these tuples of the source.
     pub fn note(&self, source: &SourceDescription, tuples: &[u8], tuple_size: usize) {
-        let Some(AnswerDescription { answer, .. }) = expected(source) else {
+        let Some(answer) = source.kept_answer() else {
             return;
         };
         let mut newest_first = tuples.chunks_exact(tuple_size).rev();
@@ -33,11 +33,4 @@ impl Answer {
     pub fn tuple(&self) -> Option<Vec<u8>> {
         lock(&self.0).clone()
     }
-}
-
-fn expected(source: &SourceDescription) -> Option<&AnswerDescription> {
-    let SourceDescription::Lines(lines) = source.innermost() else {
-        return None;
-    };
-    lines.answer.as_ref()
 }

@@ -2,28 +2,13 @@
 
 use super::*;
 use config::description::SourceDescription;
+use needs::Random;
 
 fn action(path: &str, bytes: &[u8]) -> RestAction {
     RestAction {
         sink: SourceDescription::Path(path.into()),
         tuple: bytes.to_vec(),
         timeout_ms: 1,
-    }
-}
-
-/// Repeatable numbers; xorshift32 by Marsaglia.
-struct Random(u32);
-
-impl Random {
-    fn next(&mut self) -> u32 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 17;
-        self.0 ^= self.0 << 5;
-        self.0
-    }
-
-    fn below(&mut self, end: u64) -> u64 {
-        u64::from(self.next()) % end
     }
 }
 
@@ -128,7 +113,7 @@ fn a_truncated_ledger_gives_the_older_value_or_none() {
 fn garbage_is_never_taken_for_a_value() {
     let seed = 0x5eed_0001;
     println!("seed {seed:#x}");
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let ledger = Ledger::create().expect("created");
     let rest = vec![action("/dev/a", b"12"), action("/dev/b", b"345")];
     for round in 0..2000 {
@@ -136,11 +121,11 @@ fn garbage_is_never_taken_for_a_value() {
         ledger.set_rest(&rest).expect("rest");
         ledger.set_cached(&[9, 8]).expect("cached");
         for _ in 0..=random.below(40) {
-            let section = Section::ALL[random.below(3) as usize];
-            let offset = section.offset(random.below(2) as usize) + random.below(60);
+            let section = Section::ALL[random.below(3)];
+            let offset = section.offset(random.below(2)) + random.below(60) as u64;
             ledger
                 .file
-                .write_all_at(&random.next().to_le_bytes(), offset)
+                .write_all_at(&random.bits().to_le_bytes(), offset)
                 .expect("written");
         }
         assert!(
@@ -162,14 +147,14 @@ fn garbage_is_never_taken_for_a_value() {
 fn any_payload_decodes_without_panic_or_large_memory() {
     let seed = 0x5eed_0002;
     println!("seed {seed:#x}");
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let good = actions::encode(&[action("/dev/a", b"12"), action("/dev/b", b"345")]);
     let good = good.expect("devices");
     for _ in 0..20_000 {
         let mut bytes = good.clone();
-        let at = random.below(bytes.len() as u64) as usize;
-        bytes[at] = random.next() as u8;
-        bytes.truncate(random.below(bytes.len() as u64 + 1) as usize);
+        let at = random.below(bytes.len());
+        bytes[at] = random.bits() as u8;
+        bytes.truncate(random.below(bytes.len() + 1));
         if let Some(actions) = actions::decode(&bytes) {
             assert_eq!(actions::encode(&actions), Some(bytes));
         }

@@ -6,39 +6,24 @@ pub(crate) mod rig;
 mod only_native;
 
 use super::*;
+use needs::Random;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 bodies::instantiate!(super::serve);
 
-/// A small generator (xorshift32) for tests that want arbitrary bytes; the seed is printed.
-struct Arbitrary(u32);
-
-impl Arbitrary {
-    fn new() -> Self {
-        let seed = std::env::var("TRIK_SEED")
-            .ok()
-            .and_then(|text| text.parse().ok());
-        let seed = seed.unwrap_or_else(|| {
-            SystemTime::now()
-                .duration_since(UNIX_EPOCH)
-                .unwrap()
-                .subsec_nanos()
-                | 1
-        });
-        println!("TRIK_SEED={seed}");
-        Self(seed)
-    }
-
-    fn next(&mut self) -> u32 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 17;
-        self.0 ^= self.0 << 5;
-        self.0
-    }
-
-    fn below(&mut self, limit: usize) -> usize {
-        self.next() as usize % limit
-    }
+/// Arbitrary numbers; the seed is printed, and `TRIK_SEED` repeats a run.
+fn arbitrary() -> Random {
+    let given = std::env::var("TRIK_SEED")
+        .ok()
+        .and_then(|text| text.parse().ok());
+    let seed = given.unwrap_or_else(|| {
+        SystemTime::now()
+            .duration_since(UNIX_EPOCH)
+            .unwrap()
+            .subsec_nanos()
+    });
+    println!("TRIK_SEED={seed}");
+    Random::new(seed)
 }
 
 /// A message with an honest length, so that arbitrary bodies get as far as their opcode.
@@ -57,15 +42,15 @@ fn message(opcode: u32, body: &[u8]) -> Vec<u8> {
 
 #[test]
 fn arbitrary_and_mutated_bytes_never_panic() {
-    let mut arbitrary = Arbitrary::new();
+    let mut arbitrary = arbitrary();
     for _ in 0..200_000 {
         let length = arbitrary.below(160);
-        let body: Vec<u8> = (0..length).map(|_| arbitrary.next() as u8).collect();
+        let body: Vec<u8> = (0..length).map(|_| arbitrary.bits() as u8).collect();
         fuzz_decode(&body);
-        let mut bytes = message(arbitrary.next() % 60, &body);
+        let mut bytes = message(arbitrary.bits() % 60, &body);
         fuzz_decode(&bytes);
         let at = arbitrary.below(bytes.len());
-        bytes[at] = arbitrary.next() as u8;
+        bytes[at] = arbitrary.bits() as u8;
         bytes.truncate(arbitrary.below(bytes.len() + 1));
         fuzz_decode(&bytes);
     }

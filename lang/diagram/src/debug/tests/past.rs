@@ -83,7 +83,7 @@ fn every_moment_of_the_past_is_the_one_that_was() {
     println!("seed {seed}");
     let mut looked = 0;
     for round in 0..200 {
-        let mut dice = Dice(seed.wrapping_mul(7919).wrapping_add(round));
+        let mut dice = Dice::new(seed.wrapping_mul(7919).wrapping_add(round));
         let project = random::project(&mut dice);
         let options = [Options::simulated(), Options::default()][dice.below(2) as usize];
         let program = Rc::new(lower(&project, World::default()).unwrap().program);

@@ -106,7 +106,7 @@ fn of_ten_thousand_versions_none_is_lost_and_no_thread_is_forgotten() {
         .and_then(|text| text.parse().ok());
     let seed: u32 = seed.unwrap_or_else(std::process::id);
     println!("TRIK_SEED={seed}");
-    let mut dice = Dice(seed);
+    let mut dice = Dice::new(seed);
     let (project, ids) = three();
     let mut desk = Desk::of(&project);
     desk.session.keep(1 << 20);

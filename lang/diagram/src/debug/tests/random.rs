@@ -1,15 +1,19 @@
 //! Random programs that use all that can interleave: threads, messages, calls, loops, waits, turns.
 
 use crate::project::Project;
-use crate::sketch::{Sheet, Sketch, Spot};
+use crate::sketch::{DiagramId, Sketch, Spot};
+use needs::Random;
 
-/// Small numbers from a seed.
-pub struct Dice(pub u32);
+/// Choices from a seed.
+pub struct Dice(Random);
 
 impl Dice {
+    pub fn new(seed: u32) -> Self {
+        Self(Random::new(seed))
+    }
+
     pub fn below(&mut self, count: u32) -> u32 {
-        self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (self.0 >> 8) % count
+        self.0.bits() % count
     }
 
     fn of<'a>(&mut self, texts: &[&'a str]) -> &'a str {
@@ -29,7 +33,7 @@ pub fn project(dice: &mut Dice) -> Project {
     sketch.project()
 }
 
-fn body(sketch: &mut Sketch, dice: &mut Dice, depth: u32, sub: Sheet, is_main: bool) {
+fn body(sketch: &mut Sketch, dice: &mut Dice, depth: u32, sub: DiagramId, is_main: bool) {
     let start = sketch.block("InitialNode", &[]);
     let set = match is_main {
         true => sketch.block("Function", &[("Body", "x = 1; y = 2")]),
@@ -56,7 +60,7 @@ fn statements<'a>(
     dice: &mut Dice,
     mut open: Open<'a>,
     depth: u32,
-    sub: Sheet,
+    sub: DiagramId,
 ) -> Open<'a> {
     for _ in 0..=dice.below(4) {
         open = statement(sketch, dice, open, depth, sub);
@@ -69,7 +73,7 @@ fn statement<'a>(
     dice: &mut Dice,
     open: Open<'a>,
     depth: u32,
-    sub: Sheet,
+    sub: DiagramId,
 ) -> Open<'a> {
     let choice = dice.below(if depth > 0 { 16 } else { 11 });
     let (kind, properties): (&str, Vec<(&str, &str)>) = match choice {
@@ -124,7 +128,7 @@ fn nested<'a>(
     dice: &mut Dice,
     open: Open<'a>,
     depth: u32,
-    sub: Sheet,
+    sub: DiagramId,
 ) -> Open<'a> {
     match dice.below(4) {
         0 => {

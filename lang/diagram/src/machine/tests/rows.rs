@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::rc::Rc;
 
 use super::{Machine, Options, STEP_MS, Sketch, Spot, StandIn, Status, chain, run_with};
-use crate::blocks::example::{Example, Given};
+use crate::blocks::example::{Example, Stimulus};
 use crate::blocks::wait::Every;
 use crate::blocks::{Does, Row, Silent, find, table};
 use crate::generate::{Language, generate};
@@ -85,16 +85,16 @@ fn other(sketch: &mut Sketch, word: &str) -> Spot {
     sketch.block(kind, &properties)
 }
 
-fn give(robot: &mut StandIn, given: Given) {
+fn give(robot: &mut StandIn, given: Stimulus) {
     let named = |port| Port::named(port).unwrap_or_else(|| panic!("no port {port}"));
     match given {
-        Given::Number(port, number) => drop(robot.readings.insert(named(port), number)),
-        Given::Numbers(port, numbers) => {
+        Stimulus::Number(port, number) => drop(robot.readings.insert(named(port), number)),
+        Stimulus::Numbers(port, numbers) => {
             robot.vectors.insert(named(port), numbers.to_vec());
         }
-        Given::Mail(text) => robot.mail.push_back(text.into()),
-        Given::Answer(text) => robot.answers.push_back(text.into()),
-        Given::Random(number) => robot.randoms.push_back(number),
+        Stimulus::Mail(text) => robot.mail.push_back(text.into()),
+        Stimulus::Answer(text) => robot.answers.push_back(text.into()),
+        Stimulus::Random(number) => robot.randoms.push_back(number),
     }
 }
 

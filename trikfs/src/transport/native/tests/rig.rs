@@ -15,6 +15,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant, UNIX_EPOCH};
+use tempfile::TempDir;
 
 /// How a transport serves.
 pub(crate) type Serve = fn(OwnedFd, Arc<dyn Operations>) -> io::Result<()>;
@@ -345,6 +346,7 @@ impl Operations for TestFs {
 pub(crate) struct Rig {
     pub(crate) fs: Arc<TestFs>,
     path: PathBuf,
+    _folder: TempDir,
     served: Option<JoinHandle<io::Result<()>>>,
 }
 
@@ -354,15 +356,12 @@ impl Rig {
         test: &str,
         serve: impl FnOnce(OwnedFd, Arc<TestFs>) -> io::Result<()> + Send + 'static,
     ) -> Option<Self> {
-        static COUNT: AtomicU32 = AtomicU32::new(0);
         if !Path::new("/dev/fuse").exists() || !nix::unistd::geteuid().is_root() {
             needs::Need::Fuse.missing(format_args!("no /dev/fuse or not root, for {test}"));
             return None;
         }
-        let number = COUNT.fetch_add(1, Ordering::Relaxed);
-        let path =
-            std::env::temp_dir().join(format!("trikfs-transport-{}-{number}", std::process::id()));
-        std::fs::create_dir_all(&path).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().to_owned();
         let device = mount(&path, &MountOptions::default()).unwrap();
         let fs = Arc::new(TestFs::default());
         let served = {
@@ -373,6 +372,7 @@ impl Rig {
         Some(Self {
             fs,
             path,
+            _folder: folder,
             served: Some(served),
         })
     }
@@ -405,6 +405,5 @@ impl Drop for Rig {
             served.join().unwrap().unwrap();
             assert_eq!(self.fs.stopped.load(Ordering::SeqCst), 1);
         }
-        let _ = std::fs::remove_dir(&self.path);
     }
 }
