@@ -322,9 +322,11 @@ mod tests {
         std::fs::write(root.join("status"), "").unwrap();
         let pairs = |said: &[&str]| -> Vec<_> {
             let found = scan(&Tree::new(root.to_owned()), &options(said)).unwrap();
-            let of = |one: Found| match one.hardware {
-                Hardware::Motor(_, paths) => Some((one.class, paths.encoder.unwrap_or_default())),
-                _ => None,
+            let of = |one: Found| {
+                let Hardware::Motor(_, paths) = one.hardware else {
+                    return None;
+                };
+                Some((one.class, paths.encoder.unwrap_or_default()))
             };
             found.into_iter().filter_map(of).collect()
         };

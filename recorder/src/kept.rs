@@ -326,7 +326,7 @@ fn join(parts: Vec<Source>, path: &Path) -> Result<(), Error> {
 /// Throws away the oldest saved files. Those that a person has asked for and fetched do not push out what was saved by itself.
 fn prune(directory: &Path) -> Result<(), Error> {
     let mut saved = named(directory, SAVED)?;
-    let asked = format!("-{}.mcap", Why::Asked.name());
+    let asked = format!("-{}.mcap", SaveReason::Asked.name());
     let is_asked = |path: &PathBuf| path.to_string_lossy().ends_with(&asked);
     let (asked, other): (Vec<_>, Vec<_>) = saved.drain(..).partition(is_asked);
     let old_asked = asked.iter().rev().skip(limits::BOX_ASKED);

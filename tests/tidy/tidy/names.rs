@@ -5,7 +5,8 @@
 use super::{none, sources};
 
 /// Crates that are held to it.
-const NAMED: [&str; 17] = [
+const NAMED: [&str; 22] = [
+    "bridge",
     "config",
     "converter",
     "ev3dev",
@@ -19,9 +20,13 @@ const NAMED: [&str; 17] = [
     "lang/expr",
     "lang/plan",
     "lang/text",
+    "page",
+    "recorder",
     "sample-bus",
     "screen",
     "sim",
+    "trik",
+    "trikd",
     "trikfs",
 ];
 /// Names that any type could have.
@@ -62,7 +67,7 @@ fn names_of_types_say_something() {
     }
     for source in sources() {
         let of = |name: &&str| source.path.starts_with(&format!("{name}/"));
-        if !NAMED.iter().any(|name| of(&name)) {
+        if !NAMED.iter().any(of) {
             continue;
         }
         for (number, line) in source.code() {

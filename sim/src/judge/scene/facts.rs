@@ -188,9 +188,11 @@ fn arena() -> Arena {
 fn shown(arena: &mut Arena, name: &str, chain: &str) -> Result<String, Missing> {
     let object = arena.find(name).unwrap_or_else(|| panic!("no {name}"));
     let chain: Vec<Box<str>> = chain.split('.').map(Into::into).collect();
-    Ok(match arena.property(object, &chain)? {
-        Value::Null => "null".to_owned(),
-        value => value.to_text(),
+    let value = arena.property(object, &chain)?;
+    Ok(if matches!(value, Value::Null) {
+        "null".to_owned()
+    } else {
+        value.to_text()
     })
 }
 

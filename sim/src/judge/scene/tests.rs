@@ -74,9 +74,10 @@ fn get(arena: &mut Arena, name: &str, chain: &str) -> Result<String, Missing> {
     let object = object(arena, name);
     let chain: Vec<Box<str>> = chain.split('.').map(Into::into).collect();
     let value = arena.property(object, &chain)?;
-    Ok(match value {
-        Value::Null => "null".to_owned(),
-        value => value.to_text(),
+    Ok(if matches!(value, Value::Null) {
+        "null".to_owned()
+    } else {
+        value.to_text()
     })
 }
 
