@@ -63,7 +63,7 @@ fn what_cannot_be_written_is_told() {
         (
             &["--lang", "fortran", "two.dcml"] as &[&str],
             2,
-            "take rust, c, java",
+            "there are rust, c, java",
         ),
         (&["two.dcml"], 2, "--lang"),
         (
