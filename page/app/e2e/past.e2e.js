@@ -64,6 +64,8 @@ async function goesBack(page) {
   const isThere = async () => {
     await page.keyboard.press('ArrowLeft');
     await drawn(page);
+    // Texts follow 30 times a second.
+    await lasts(70);
     return (await shown(page)()) === '10';
   };
   await eventually('what it was then', isThere, 60_000);
