@@ -52,7 +52,8 @@ fn about_languages() -> String {
 
 /// A language by its name; for the command line.
 fn target(name: &str) -> Result<Target, String> {
-    Target::named(name).ok_or_else(|| format!("there is no such language; there are {}", languages()))
+    Target::named(name)
+        .ok_or_else(|| format!("there is no such language; there are {}", languages()))
 }
 
 /// Writes the text.
