@@ -294,10 +294,15 @@ impl<W: Write + Seek> Writer<W> {
     }
 
     fn message(&mut self, id: u16, sequence: u32, unix_ns: u64, data: &[u8]) -> Result<(), Error> {
+        let begin_ns = self.begin_ns;
+        if unix_ns >= begin_ns {
+            // It has begun. If the clock is set back later, times are what they are.
+            self.begin_ns = 0;
+        }
         let header = MessageHeader {
             channel_id: id,
             sequence,
-            log_time: unix_ns.max(self.begin_ns),
+            log_time: unix_ns.max(begin_ns),
             publish_time: unix_ns,
         };
         (self.file)

@@ -176,9 +176,13 @@ impl Listener {
                 let playback = playback.ok_or(Error::NoPlayback)?;
                 playback.order(&words).map_err(|why| Error::World(why.0))
             }
-            Order::Remove(name) => self.change(move |programs| store::remove(programs, &name)),
+            Order::Remove(name) => {
+                let done = News::Programs(name.clone(), None);
+                self.change(done, move |programs| store::remove(programs, &name))
+            }
             Order::Rename(name, to) => {
-                self.change(move |programs| store::rename(programs, &name, &to))
+                let done = News::Programs(name.clone(), Some(to.clone()));
+                self.change(done, move |programs| store::rename(programs, &name, &to))
             }
             Order::Look(looks) => {
                 let changed = |now: &mut bool| std::mem::replace(now, looks) != looks;
@@ -222,17 +226,21 @@ impl Listener {
         Ok(())
     }
 
-    /// Something about the folder of programs. Nothing of it takes long.
+    /// Something about the folder of programs, which may be on a slow card; `done` is told when it is.
     fn change(
         &self,
+        done: News,
         change: impl FnOnce(&Path) -> Result<(), Error> + Send + 'static,
     ) -> Result<(), Error> {
         self.need()?;
+        let busy = |_| Error::Robot("other files are being read or changed: try again".to_owned());
+        let turn = (self.shared.large.clone().try_acquire_owned()).map_err(busy)?;
         let (news, shared) = (self.news.clone(), self.shared.clone());
         tokio::task::spawn_blocking(move || {
+            let _turn = turn;
             let folder = shared.settings.programs.as_deref();
-            let done = folder.ok_or(Error::NoFolder).and_then(change);
-            let told = done.map_or_else(|why| News::Refused(why.to_string()), |()| News::Programs);
+            let outcome = folder.ok_or(Error::NoFolder).and_then(change);
+            let told = outcome.map_or_else(|why| News::Refused(why.to_string()), |()| done);
             // A browser that does not read is told nothing.
             let _ = news.try_send(told);
         });

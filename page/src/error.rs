@@ -122,7 +122,7 @@ impl fmt::Display for Error {
             Self::Name(name) => write!(f, "there is no program '{name}'"),
             Self::NewName(name) => write!(
                 f,
-                "'{name}' is no name for a program: it has a colon, a backslash or control characters, a part of it begins with a dot, or its folder is not there"
+                "'{name}' is no name for a program: it is too long, it has a colon, a backslash or control characters, a part of it is empty or begins with a dot, or its folder is not there"
             ),
             Self::NoFolder => f.write_str("the programs of this robot are on another machine"),
         }

@@ -54,7 +54,7 @@ pub const LARGE_MAX: usize = FILE_THREADS / 2;
 /// Programs that are listed.
 pub const PROGRAMS_MAX: usize = 1000;
 /// Bytes of the name of a program, folders with it.
-pub const NAME_BYTES_MAX: usize = 200;
+pub const NAME_BYTES_MAX: usize = 400;
 /// Depth of folders of programs that are listed.
 pub const FOLDERS_MAX: usize = 4;
 /// Bytes of a program that is shown.

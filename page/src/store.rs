@@ -4,10 +4,13 @@
 
 use crate::error::Error;
 use crate::limits;
-use rustix::fs::{CWD, RenameFlags, renameat_with};
+use rustix::fs::{
+    AtFlags, FileType, Mode, OFlags, RenameFlags, open, openat, renameat_with, statat, unlinkat,
+};
 use serde_json::{Value, json};
 use std::fs;
 use std::io::Read;
+use std::os::fd::OwnedFd;
 use std::path::{Component, Path, PathBuf};
 use std::time::UNIX_EPOCH;
 
@@ -78,16 +81,14 @@ pub fn text(folder: &Path, name: &str) -> Result<String, Error> {
     String::from_utf8(bytes).map_err(|_| Error::Text(name.to_owned()))
 }
 
-/// Takes a program away, and the folder that it was alone in. One that runs goes on: it has been read.
+/// Takes a program away, and the folders that have nothing more in them. One that runs goes on: it has been read.
 ///
 /// # Errors
 /// There is no such program, or the folder cannot be changed.
 pub fn remove(folder: &Path, name: &str) -> Result<(), Error> {
-    inside(folder, name).ok_or_else(|| Error::Name(name.to_owned()))?;
-    // Not what a link leads to.
-    let path = folder.join(name);
-    fs::remove_file(&path).map_err(|error| Error::File(name.to_owned(), error))?;
-    tidy(folder, &path);
+    let (place, file) = Place::of_program(folder, name)?;
+    unlinkat(place.folder(), file, AtFlags::empty()).map_err(|error| failed(name, error))?;
+    place.tidy();
     Ok(())
 }
 
@@ -96,34 +97,79 @@ pub fn remove(folder: &Path, name: &str) -> Result<(), Error> {
 /// # Errors
 /// There is no such program, the new name is taken or none for a program, or the folder cannot be changed.
 pub fn rename(folder: &Path, name: &str, to: &str) -> Result<(), Error> {
-    inside(folder, name).ok_or_else(|| Error::Name(name.to_owned()))?;
-    let target = place(folder, to).ok_or_else(|| Error::NewName(to.to_owned()))?;
-    let path = folder.join(name);
-    renameat_with(CWD, &path, CWD, &target, RenameFlags::NOREPLACE)
-        .map_err(|error| Error::File(to.to_owned(), error.into()))?;
-    tidy(folder, &path);
+    let (place, file) = Place::of_program(folder, name)?;
+    let is_strange = |c: char| c.is_control() || matches!(c, ':' | '\\');
+    let is_name = to.len() <= limits::NAME_BYTES_MAX && !to.contains(is_strange);
+    let no_name = || Error::NewName(to.to_owned());
+    let target = is_name.then(|| Place::find(folder, to)).flatten();
+    let (target, new) = target.ok_or_else(no_name)?;
+    renameat_with(
+        place.folder(),
+        file,
+        target.folder(),
+        new,
+        RenameFlags::NOREPLACE,
+    )
+    .map_err(|error| failed(to, error))?;
+    place.tidy();
     Ok(())
 }
 
-/// Where a program of a new name is, if its folder is there and inside this one.
-fn place(folder: &Path, name: &str) -> Option<PathBuf> {
-    let is_strange = |c: char| c.is_control() || matches!(c, ':' | '\\');
-    let is_plain = |part: &str| !part.trim().is_empty() && !part.starts_with('.');
-    let is_name = name.len() <= limits::NAME_BYTES_MAX && !name.contains(is_strange);
-    if !is_name || !name.split('/').all(is_plain) {
-        return None;
-    }
-    let path = folder.join(name);
-    let at = path.parent()?.canonicalize().ok()?;
-    let is_inside = at.starts_with(folder.canonicalize().ok()?);
-    is_inside.then(|| at.join(path.file_name().unwrap_or_default()))
+fn failed(name: &str, error: rustix::io::Errno) -> Error {
+    Error::File(name.to_owned(), error.into())
 }
 
-/// A folder without programs is seen by nobody.
-fn tidy(folder: &Path, removed: &Path) {
-    if let Some(parent) = removed.parent().filter(|parent| *parent != folder) {
-        // One that has something in it stays.
-        let _ = fs::remove_dir(parent);
+/// Where a program is: the folder of programs and those below it, each opened from the one above. No link is followed, and none
+/// can be put there meanwhile: the folder may belong to a user who writes programs, and this may be root.
+struct Place<'a> {
+    folders: Vec<OwnedFd>,
+    /// The names of all but the first.
+    names: Vec<&'a str>,
+}
+
+impl<'a> Place<'a> {
+    /// The folder that a program of this name is in, and the last part of the name; None if there is no such folder, or the
+    /// name leads elsewhere.
+    fn find(folder: &Path, name: &'a str) -> Option<(Self, &'a str)> {
+        let is_plain =
+            |part: &&str| !part.trim().is_empty() && !part.starts_with('.') && !part.contains('\0');
+        let mut names: Vec<&str> = name.split('/').collect();
+        if !names.iter().all(is_plain) || names.len() > limits::FOLDERS_MAX + 1 {
+            return None;
+        }
+        let file = names.pop()?;
+        let opens = OFlags::PATH | OFlags::DIRECTORY | OFlags::CLOEXEC;
+        let mut folders = vec![open(folder, opens, Mode::empty()).ok()?];
+        for part in &names {
+            let above = folders.last()?;
+            let below = openat(above, *part, opens | OFlags::NOFOLLOW, Mode::empty());
+            folders.push(below.ok()?);
+        }
+        Some((Self { folders, names }, file))
+    }
+
+    /// The same for a program that is there.
+    fn of_program(folder: &Path, name: &'a str) -> Result<(Self, &'a str), Error> {
+        let found = Self::find(folder, name).filter(|(place, file)| {
+            let facts = statat(place.folder(), *file, AtFlags::SYMLINK_NOFOLLOW);
+            facts.is_ok_and(|facts| FileType::from_raw_mode(facts.st_mode) == FileType::RegularFile)
+        });
+        found.ok_or_else(|| Error::Name(name.to_owned()))
+    }
+
+    /// The folder that the program is in.
+    fn folder(&self) -> &OwnedFd {
+        self.folders.last().unwrap_or(&self.folders[0])
+    }
+
+    /// Takes away folders in which there is nothing more, from the innermost on.
+    fn tidy(&self) {
+        for (above, name) in self.folders.iter().zip(&self.names).rev() {
+            // One that has something in it stays, and so do those above it.
+            if unlinkat(above, *name, AtFlags::REMOVEDIR).is_err() {
+                return;
+            }
+        }
     }
 }
 
@@ -202,14 +248,25 @@ mod tests {
             "",
             "/x",
             "sub/",
-            &"x".repeat(300),
+            &"x".repeat(limits::NAME_BYTES_MAX + 1),
         ] {
             assert!(
                 matches!(rename(&folder, "sub/c.js", to), Err(Error::NewName(_))),
                 "{to}"
             );
         }
-        for name in ["../secret", "out/secret", "sub", "none", ""] {
+        fs::write(folder.join(".hidden"), "").unwrap();
+        std::os::unix::fs::symlink(home.path().join("secret"), folder.join("link")).unwrap();
+        for name in [
+            "../secret",
+            "out/secret",
+            "link",
+            ".hidden",
+            "sub",
+            "none",
+            "sub/",
+            "",
+        ] {
             assert!(
                 matches!(rename(&folder, name, "x"), Err(Error::Name(_))),
                 "{name}"

@@ -110,8 +110,8 @@ pub enum News {
     },
     /// The configuration was replaced, or not and why.
     Configured(Option<String>),
-    /// Programs were renamed or removed: the list is another one.
-    Programs,
+    /// A program has another name; None: it is gone.
+    Programs(String, Option<String>),
     /// Something was not done.
     Refused(String),
     /// What stands still in the world.
@@ -180,7 +180,10 @@ impl News {
             ),
             Self::Configured(why) => object("configured", vec![("why", why.clone().into())]),
             Self::Refused(why) => object("refused", vec![("why", why.as_str().into())]),
-            Self::Programs => object("programs", Vec::new()),
+            Self::Programs(name, to) => object(
+                "programs",
+                vec![("name", name.as_str().into()), ("to", to.clone().into())],
+            ),
             Self::Beat => object("beat", Vec::new()),
             // These are JSON already.
             Self::Scene(scene) => format!("{{\"is\":\"scene\",\"scene\":{scene}}}"),

@@ -330,7 +330,7 @@ fn prune(directory: &Path) -> Result<(), Error> {
     let is_asked = |path: &PathBuf| path.to_string_lossy().ends_with(&asked);
     let (asked, other): (Vec<_>, Vec<_>) = saved.drain(..).partition(is_asked);
     let old_asked = asked.iter().rev().skip(limits::BOX_ASKED);
-    let others = limits::BOX_SAVED - limits::BOX_ASKED;
+    let others = limits::BOX_SAVED - asked.len().min(limits::BOX_ASKED);
     for path in old_asked.chain(other.iter().rev().skip(others)) {
         // The next saving tries it again.
         let _ = fs::remove_file(path);

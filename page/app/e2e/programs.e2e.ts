@@ -45,7 +45,7 @@ test('a diagram stops at a breakpoint, goes on step by step, back, and takes a n
   await page.getByRole('button', { name: 'Run, stopped at the first block' }).click();
   await page.locator('g.stopped[data-id*=InitialNode]').waitFor();
   await page.locator('g[data-id*=Timer] rect').first().click();
-  await page.getByRole('button', { name: 'Breakpoint' }).click();
+  await page.getByRole('button', { name: 'Breakpoint', exact: true }).click();
   await page.locator('g.break[data-id*=Timer]').waitFor();
   await page.getByRole('button', { name: 'Continue' }).click();
   await page.locator('g.stopped[data-id*=Timer]').waitFor();
@@ -79,7 +79,7 @@ test('a diagram has breakpoints before it runs, and takes new values in its bloc
   await page.getByRole('button', { name: 'Run', exact: true }).click();
   await page.locator('g.stopped[data-id*=Timer]').waitFor();
   await page.getByText('at a breakpoint').waitFor();
-  await page.getByRole('button', { name: 'Breakpoint' }).click();
+  await page.getByRole('button', { name: 'Breakpoint', exact: true }).click();
   await page.locator('g.break').waitFor({ state: 'detached' });
   const delay = page.getByLabel('Delay (ms)');
   expect(await delay.inputValue()).toBe('100');

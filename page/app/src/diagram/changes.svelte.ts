@@ -22,57 +22,74 @@ const KEPT = 100;
 export class Changes {
   /** Why the last one was not made. */
   why = $state('');
-  isBusy = $state(false);
+  #waiting = $state(0);
   #made = $state.raw<readonly Change[]>([]);
+  /** The diagram after the last one. */
+  #sheets: readonly SheetPicture[] = [];
+  #last: Promise<unknown> = Promise.resolve();
 
   constructor(
     private readonly programs: Programs,
     private readonly name: string,
   ) {}
 
-  get canUndo(): boolean {
-    return this.#made.length > 0 && !this.isBusy;
+  get isBusy(): boolean {
+    return this.#waiting > 0;
   }
 
-  /** Gives a property of a block another value. Returns the diagram as it is then; undefined if it has not changed. */
+  get hasUndo(): boolean {
+    return this.#made.length > 0;
+  }
+
+  /**
+   * Gives a property of a block another value, after those that wait already. Returns the diagram as it is then; undefined if it
+   * has not changed.
+   */
   async make(
+    sheets: readonly SheetPicture[],
     block: string,
     property: string,
     value: string,
-    before: string,
     isRunning: boolean,
   ): Promise<SheetPicture[] | undefined> {
-    const sheets = await this.#send(block, property, value, isRunning);
-    if (sheets) this.#made = [...this.#made.slice(1 - KEPT), { block, property, before }];
-    return sheets;
+    return this.#next(async () => {
+      const now = this.#sheets.length > 0 ? this.#sheets : sheets;
+      const before = valueOf(now, block, property) ?? valueOf(sheets, block, property);
+      if (before === undefined || before === value) return undefined;
+      const done = await this.#try(block, property, value, isRunning);
+      if (done) this.#made = [...this.#made.slice(1 - KEPT), { block, property, before }];
+      return done;
+    });
   }
 
   /** Takes the last one back. */
   async undo(isRunning: boolean): Promise<SheetPicture[] | undefined> {
-    const last = this.#made.at(-1);
-    if (!last) return undefined;
-    const sheets = await this.#send(last.block, last.property, last.before, isRunning);
-    if (sheets) this.#made = this.#made.slice(0, -1);
-    return sheets;
+    return this.#next(async () => {
+      const last = this.#made.at(-1);
+      if (!last) return undefined;
+      const done = await this.#try(last.block, last.property, last.before, isRunning);
+      if (done) this.#made = this.#made.slice(0, -1);
+      return done;
+    });
   }
 
-  async #send(
-    block: string,
-    property: string,
-    value: string,
-    isRunning: boolean,
-  ): Promise<SheetPicture[] | undefined> {
-    if (this.isBusy) return undefined;
-    this.isBusy = true;
-    this.why = '';
-    try {
-      return await this.#try(block, property, value, isRunning);
-    } catch {
-      this.why = words.connecting;
-      return undefined;
-    } finally {
-      this.isBusy = false;
-    }
+  async #next(work: () => Promise<SheetPicture[] | undefined>): Promise<SheetPicture[] | undefined> {
+    this.#waiting++;
+    const turn = this.#last.then(async () => {
+      this.why = '';
+      try {
+        const sheets = await work();
+        if (sheets) this.#sheets = sheets;
+        return sheets;
+      } catch {
+        this.why = words.connecting;
+        return undefined;
+      } finally {
+        this.#waiting--;
+      }
+    });
+    this.#last = turn;
+    return turn;
   }
 
   async #try(

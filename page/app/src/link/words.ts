@@ -22,7 +22,8 @@ export type News =
   | { is: 'robot'; there: boolean; why: string | null }
   | { is: 'written'; path: string; value: string; why: string | null }
   | { is: 'configured'; why: string | null }
-  | { is: 'programs' }
+  /** A program has another name; null: it is gone. */
+  | { is: 'programs'; name: string; to: string | null }
   | { is: 'refused'; why: string }
   | { is: 'scene'; scene: Scene }
   | { is: 'world'; state: WorldState }

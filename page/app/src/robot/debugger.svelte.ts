@@ -72,6 +72,7 @@ export class Debugger {
   /** Why the last order was not carried out. */
   why = $state('');
   #tag = 0;
+  #toggled: Promise<void> = Promise.resolve();
   #waiting = new Map<number, (answer: Answer) => void>();
 
   constructor(private readonly link: Link) {}
@@ -87,8 +88,10 @@ export class Debugger {
 
   /** Looks where the program is. */
   async look(): Promise<void> {
+    const isFirst = this.told === undefined;
     const answer = await this.ask('look');
     if (answer) this.told = answer.done ? answer.program : undefined;
+    if (isFirst && this.told?.attached) await this.#learn();
   }
 
   /** Gives an order, and keeps the reason if it is not carried out. */
@@ -106,10 +109,16 @@ export class Debugger {
 
   /** Puts a breakpoint at a block of a diagram, or takes it away; one that does not run yet has it when it is run. */
   async toggle(name: string, id: string, isRunning: boolean): Promise<void> {
-    const before = this.planned(name);
-    const isNew = !before.includes(id);
+    // One after the other: each begins with what the one before has left.
+    this.#toggled = this.#toggled.then(() => this.#toggle(name, id, isRunning));
+    await this.#toggled;
+  }
+
+  async #toggle(name: string, id: string, isRunning: boolean): Promise<void> {
+    const isNew = isRunning ? !this.breakpoints.has(id) : !this.planned(name).includes(id);
     if (isRunning && !(await (isNew ? this.#set(id) : this.#clear(id)))) return;
-    this.plans.set(name, isNew ? [...before, id] : before.filter((one) => one !== id));
+    const others = this.planned(name).filter((one) => one !== id);
+    this.plans.set(name, isNew ? [...others, id] : others);
   }
 
   /** Runs a diagram with its breakpoints; it begins at once, or waits at its first block. */
@@ -118,15 +127,22 @@ export class Debugger {
     this.link.request('questions');
     const answer = await this.order(`run ${name}`);
     if (!answer?.done) return;
+    let why = '';
     for (const id of this.planned(name)) {
-      // A block that the diagram has no more cannot be stopped at.
-      if (!(await this.#set(id)))
-        this.plans.set(
-          name,
-          this.planned(name).filter((one) => one !== id),
-        );
+      if (!(await this.#set(id))) why ||= this.why;
     }
     if (!waits) await this.order('continue');
+    this.why ||= why;
+  }
+
+  /** Breakpoints that the diagram has already: another client has set them, or this page before it was loaded anew. */
+  async #learn(): Promise<void> {
+    const answer = await this.ask('breakpoints');
+    const all = new Map(this.breakpoints);
+    for (const { number, block } of answer?.breakpoints ?? []) {
+      if (typeof block === 'object') all.set(block.id, number);
+    }
+    this.breakpoints = all;
   }
 
   /** Goes on without debugger, and without breakpoints. */
@@ -146,7 +162,7 @@ export class Debugger {
 
   async #clear(id: string): Promise<boolean> {
     const number = this.breakpoints.get(id);
-    if (number !== undefined) await this.order(`clear ${number}`);
+    if (number !== undefined && !(await this.order(`clear ${number}`))?.done) return false;
     this.breakpoints = new Map([...this.breakpoints].filter(([one]) => one !== id));
     return true;
   }

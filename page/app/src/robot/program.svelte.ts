@@ -56,9 +56,8 @@ export class Programs {
   question = $state.raw<Question | undefined>(undefined);
   /** Texts of programs that a person has changed here and not saved, by their names. */
   readonly drafts = new SvelteMap<string, string>();
-  /** The program that was given another name last. */
+  /** A program that has got another name, until the view has followed. */
   renamed = $state.raw<{ from: string; to: string } | undefined>(undefined);
-  #renaming: { from: string; to: string } | undefined;
   /** Why the last upload was not sent. */
   refusal = $state<'' | 'name' | 'size' | 'offline'>('');
   /** Why the last change of a running diagram was not made. */
@@ -85,26 +84,23 @@ export class Programs {
 
   /** Gives a program another name. */
   rename(from: string, to: string): void {
-    this.#renaming = { from, to };
     this.link.order({ do: 'rename', name: from, to });
   }
 
-  /** Takes a program away, with what was changed in it here. */
+  /** Takes a program away. */
   remove(name: string): void {
-    this.drafts.delete(name);
     this.link.order({ do: 'remove', name });
   }
 
-  /** The robot has other programs than before. */
-  async changed(): Promise<void> {
-    const renaming = this.#renaming;
+  /** The robot has done it; null: the program is gone, with what was changed in it here. */
+  async changed(name: string, to: string | null): Promise<void> {
+    const draft = this.drafts.get(name);
+    this.drafts.delete(name);
+    if (to !== null) {
+      if (draft !== undefined) this.drafts.set(to, draft);
+      this.renamed = { from: name, to };
+    }
     await this.refresh();
-    if (!renaming || !this.list.some(({ name }) => name === renaming.to)) return;
-    this.#renaming = undefined;
-    const draft = this.drafts.get(renaming.from);
-    this.drafts.delete(renaming.from);
-    if (draft !== undefined) this.drafts.set(renaming.to, draft);
-    this.renamed = renaming;
   }
 
   /** Sends a file to the robot. */

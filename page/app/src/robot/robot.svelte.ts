@@ -209,7 +209,7 @@ export class Robot {
         this.#isDirty = true;
         break;
       case 'programs':
-        void this.programs.changed();
+        void this.programs.changed(news.name, news.to);
         break;
       case 'refused':
         this.refusal = news.why;
