@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use std::fs;
 use std::io::Read;
 use std::os::fd::OwnedFd;
-use std::path::{Component, Path, PathBuf};
+use std::path::Path;
 use std::time::UNIX_EPOCH;
 
 /// All programs, as JSON: `name`, `bytes`, `changed_s` since 1970; the names in order.
@@ -50,8 +50,7 @@ pub fn list(folder: &Path) -> Value {
 /// # Errors
 /// There is no such program, or it is none.
 pub fn read(folder: &Path, name: &str) -> Result<Vec<u8>, Error> {
-    let path = inside(folder, name).ok_or_else(|| Error::Name(name.to_owned()))?;
-    let file = fs::File::open(path).map_err(|error| Error::File(name.to_owned(), error))?;
+    let file = open_program(folder, name)?;
     let mut bytes = Vec::new();
     file.take(limits::PROGRAM_BYTES_MAX)
         .read_to_end(&mut bytes)
@@ -64,9 +63,8 @@ pub fn read(folder: &Path, name: &str) -> Result<Vec<u8>, Error> {
 /// # Errors
 /// There is no such program, it is no text, or it is too long to be edited.
 pub fn text(folder: &Path, name: &str) -> Result<String, Error> {
-    let path = inside(folder, name).ok_or_else(|| Error::Name(name.to_owned()))?;
     let failed = |error| Error::File(name.to_owned(), error);
-    let mut file = fs::File::open(path).map_err(failed)?;
+    let mut file = open_program(folder, name)?;
     let size = file.metadata().map_err(failed)?.len();
     let most = limits::EDITED_BYTES_MAX;
     let mut bytes = Vec::new();
@@ -113,6 +111,16 @@ pub fn rename(folder: &Path, name: &str, to: &str) -> Result<(), Error> {
     .map_err(|error| failed(to, error))?;
     place.tidy();
     Ok(())
+}
+
+fn open_program(folder: &Path, name: &str) -> Result<fs::File, Error> {
+    let (place, file) = Place::of_program(folder, name)?;
+    // Nothing waits for the other end of a FIFO that has come meanwhile.
+    let opens = OFlags::RDONLY | OFlags::NOFOLLOW | OFlags::NONBLOCK | OFlags::CLOEXEC;
+    let opened = openat(place.folder(), file, opens, Mode::empty());
+    opened
+        .map(fs::File::from)
+        .map_err(|error| failed(name, error))
 }
 
 fn failed(name: &str, error: rustix::io::Errno) -> Error {
@@ -171,17 +179,6 @@ impl<'a> Place<'a> {
             }
         }
     }
-}
-
-/// The file of a program, if it is a file in this folder when all links are followed.
-fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
-    let is_plain = |part: Component| matches!(part, Component::Normal(_));
-    if name.is_empty() || !Path::new(name).components().all(is_plain) {
-        return None;
-    }
-    let path = folder.join(name).canonicalize().ok()?;
-    let folder = folder.canonicalize().ok()?;
-    (path.starts_with(folder) && path.is_file()).then_some(path)
 }
 
 #[cfg(test)]

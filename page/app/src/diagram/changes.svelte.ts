@@ -101,7 +101,7 @@ export class Changes {
     const query = new URLSearchParams({ block, property, value, language });
     const answer = await fetch(`/changed/${pathOf(this.name)}?${query.toString()}`);
     if (!answer.ok) {
-      this.why = (await answer.text()).trim();
+      this.why = (await answer.text()).trim() || words.notChanged;
       return undefined;
     }
     if (!(await this.programs.upload(new File([await answer.blob()], this.name)))) {

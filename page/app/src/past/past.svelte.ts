@@ -118,9 +118,13 @@ export class Past {
 /** The severity of rcl_interfaces/msg/Log. */
 const ERROR = 40;
 
+/** A recorder finds out what all nodes have one after the other; at the beginning that is what they have. */
+const BEGINNING_S = 0.1;
+
 /** The nodes of a recording at a moment, which may become another one. */
 export function nodesAt(memory: Memory, now: () => number): ReadonlyMap<string, Known> {
-  return new Map([...memory.tracks].map(([path, track]) => [path, new Then(track, now)]));
+  const early = memory.begin + BEGINNING_S;
+  return new Map([...memory.tracks].map(([path, track]) => [path, new Then(track, now, early)]));
 }
 
 /** A node at the moment that is shown. */
@@ -132,6 +136,8 @@ class Then implements Known {
   constructor(
     private readonly track: Track,
     private readonly now: () => number,
+    /** Until when a node has what it gives first. */
+    private readonly early: number,
   ) {
     this.histories = new Map(
       [...track.numbers.keys()].map((field) => [
@@ -143,7 +149,11 @@ class Then implements Known {
 
   get #place(): number {
     const now = this.now();
-    if (this.#looked.now !== now) this.#looked = { now, place: this.track.placeAt(now) };
+    if (this.#looked.now !== now) {
+      const place = this.track.placeAt(now);
+      const isFirst = place < 0 && now <= this.early && this.track.placeAt(this.early) >= 0;
+      this.#looked = { now, place: isFirst ? 0 : place };
+    }
     return this.#looked.place;
   }
 

@@ -14,6 +14,7 @@ import {
   u32,
   u64,
 } from './example';
+import { nodesAt } from './past.svelte';
 import { FILE_BYTES_MAX } from './limits';
 import { unpacked } from './lz4';
 import { read, readNow } from './read';
@@ -114,6 +115,19 @@ describe('a recording that is made by hand', () => {
     const { memory } = readNow(file(...begin, ...other, sample(1, 501, [1]), line(1, 499.5, 'p', 'says')));
     expect([memory.begin, memory.end]).toEqual([499.5, 501]);
     expect(readNow(file(...begin, ...other)).memory.begin).toBe(500);
+  });
+
+  it('has at its beginning what each node gives first, if that comes at once', () => {
+    const others = [channel(2, 1, '/n', words), sample(2, 10.0625, [2]), channel(3, 1, '/late', words)];
+    const { memory } = readNow(file(...begin, sample(1, 10, [1]), ...others, sample(3, 10.25, [3])));
+    let now = 10;
+    const nodes = nodesAt(memory, () => now);
+    const all = () => ['m', 'n', 'late'].map((path) => nodes.get(path)?.fields?.['a']);
+    expect(all()).toEqual([1, 2, undefined]);
+    now = 10.3;
+    expect(all()).toEqual([1, 2, 3]);
+    now = 9;
+    expect(nodes.get('late')?.fields).toBeUndefined();
   });
 
   it('has numbers of all sizes, texts and bytes', () => {
